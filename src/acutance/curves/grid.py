@@ -1,0 +1,72 @@
+"""Reading a curve that is sampled on a regular grid, and its covariance with it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Floats", "crossing", "sample", "slope"]
+
+Floats = NDArray[np.float64]
+
+
+def _stencil(start: float, step: float, size: int, at: float) -> tuple[slice, Floats]:
+    """The four grid points around `at` and their cubic Lagrange weights."""
+    position = (at - start) / step
+    if not -1e-9 <= position <= size - 1 + 1e-9:
+        stop = start + step * (size - 1)
+        raise ValueError(f"{at:g} lies outside the curve, which runs from {start:g} to {stop:g}")
+    first = min(max(math.floor(position) - 1, 0), size - 4)
+    t = position - first
+    a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
+    weights = np.array([-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0])
+    return slice(first, first + 4), weights
+
+
+def sample(grid: Floats, values: NDArray[Any], at: float) -> Any:
+    """Cubic interpolation of `values` (n,) or (n, k), given on a regular `grid` (n,).
+
+    Interpolation is linear in the values, so it carries a covariance factor as well.
+
+    Raises
+    ------
+    ValueError
+        If `at` lies outside the grid.
+    """
+    window, weights = _stencil(float(grid[0]), float(grid[1] - grid[0]), grid.size, at)
+    return weights @ values[window]
+
+
+def slope(grid: Floats, values: Floats, at: float) -> float:
+    """Derivative of the interpolated curve at one place (central difference inside a cell)."""
+    h = float(grid[1] - grid[0]) / 4
+    low, high = max(at - h, float(grid[0])), min(at + h, float(grid[-1]))
+    return float(sample(grid, values, high) - sample(grid, values, low)) / (high - low)
+
+
+def crossing(grid: Floats, values: Floats, level: float, start: float, direction: int = 1) -> float:
+    """Where the curve first passes `level`, going from `start` in `direction` (+1 or -1).
+
+    Returns ``nan`` when it never does.
+    """
+    origin = int(np.searchsorted(grid, start))
+    side = values[origin:] if direction > 0 else values[: origin + 1][::-1]
+    places = grid[origin:] if direction > 0 else grid[: origin + 1][::-1]
+    if side.size < 2:
+        return math.nan
+    above = side > level
+    changes = np.flatnonzero(above[1:] != above[:-1])
+    if changes.size == 0:
+        return math.nan
+    i = int(changes[0])
+    x0, x1 = float(places[i]), float(places[i + 1])
+    y0, y1 = float(side[i]) - level, float(side[i + 1]) - level
+    guess = x0 + (x1 - x0) * y0 / (y0 - y1)
+    steepness = (y1 - y0) / (x1 - x0)
+    # One step on the cubic removes what the chord leaves.
+    residual = float(sample(grid, values, guess)) - level
+    refined = guess - residual / steepness
+    return refined if min(x0, x1) <= refined <= max(x0, x1) else guess

@@ -1,0 +1,121 @@
+"""What a system does to an edge, in one direction: the three curves and their numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from acutance.curves import metrics
+from acutance.curves.estimate import Estimate
+from acutance.curves.spread import Esf, Lsf
+from acutance.curves.transfer import Mtf
+
+__all__ = ["METRICS", "Response"]
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """ESF, LSF and MTF of one direction, measured or true, and the metrics they hold.
+
+    Parameters
+    ----------
+    esf, lsf, mtf : Esf, Lsf, Mtf
+        The curves; their covariance factors share one set of latent variables.
+    gsd_m : float, optional
+        Ground sampling distance along the normal in metres.
+    rer_centre : {"half", "peak"}, optional
+        The point RER is centred on: the 50 % point, or the peak of the LSF.
+    """
+
+    esf: Esf
+    lsf: Lsf
+    mtf: Mtf
+    gsd_m: float | None = None
+    rer_centre: metrics.RerCentre = "half"
+
+    @cached_property
+    def mtf_nyquist(self) -> Estimate:
+        """MTF at 0.5 cycles per pixel."""
+        return self.mtf(metrics.NYQUIST_CPP)
+
+    @cached_property
+    def rer(self) -> Estimate:
+        """Relative edge response, centred as `rer_centre` says."""
+        return metrics.rer(self.esf, self.lsf, self.rer_centre)
+
+    @cached_property
+    def fwhm_px(self) -> Estimate:
+        """Full width of the LSF at half of its maximum, in pixels."""
+        return metrics.full_width(self.lsf)
+
+    @cached_property
+    def fwhm_m(self) -> Estimate | None:
+        """FWHM in metres; ``None`` without a GSD."""
+        return None if self.gsd_m is None else self.fwhm_px.scaled(self.gsd_m)
+
+    @cached_property
+    def mtf50_cpp(self) -> Estimate:
+        """Lowest frequency where the MTF falls to 0.5."""
+        return metrics.mtf_crossing(self.mtf, 0.5)
+
+    @cached_property
+    def mtf30_cpp(self) -> Estimate:
+        """Lowest frequency where the MTF falls to 0.3."""
+        return metrics.mtf_crossing(self.mtf, 0.3)
+
+    @cached_property
+    def mtf_area(self) -> Estimate:
+        """Area under the MTF from 0 to Nyquist (cycles per pixel)."""
+        return metrics.mtf_area(self.mtf)
+
+    @cached_property
+    def edge_slope_per_px(self) -> Estimate:
+        """Mean slope of the ESF between 40 and 60 %."""
+        return metrics.edge_slope(self.esf)
+
+    @cached_property
+    def half_extent_dark_px(self) -> Estimate:
+        """Distance from the 5 to the 50 % point."""
+        return metrics.half_extent(self.esf, "dark")
+
+    @cached_property
+    def half_extent_bright_px(self) -> Estimate:
+        """Distance from the 50 to the 95 % point."""
+        return metrics.half_extent(self.esf, "bright")
+
+    @cached_property
+    def overshoot(self) -> Estimate:
+        """Largest excess of the ESF over the bright plateau."""
+        return metrics.overshoot(self.esf)
+
+    @cached_property
+    def undershoot(self) -> Estimate:
+        """Largest shortfall of the ESF under the dark plateau."""
+        return metrics.undershoot(self.esf)
+
+    @cached_property
+    def giqe_h(self) -> Estimate:
+        """Edge height overshoot H of GIQE 4."""
+        return metrics.giqe_h(self.esf)
+
+    def metrics(self) -> dict[str, Estimate]:
+        """All numbers by name, in the order a report prints them."""
+        found = {name: getattr(self, name) for name in METRICS}
+        return {name: number for name, number in found.items() if number is not None}
+
+
+METRICS = (
+    "mtf_nyquist",
+    "rer",
+    "fwhm_px",
+    "fwhm_m",
+    "mtf50_cpp",
+    "mtf30_cpp",
+    "mtf_area",
+    "edge_slope_per_px",
+    "half_extent_dark_px",
+    "half_extent_bright_px",
+    "overshoot",
+    "undershoot",
+    "giqe_h",
+)

@@ -1,0 +1,69 @@
+"""The edge spread function (ESF) and the line spread function (LSF)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from acutance.curves.estimate import Estimate
+from acutance.curves.grid import Floats, sample
+
+__all__ = ["Esf", "Lsf"]
+
+
+@dataclass(frozen=True, eq=False)
+class _SpreadCurve:
+    """A real curve over the distance along the edge's normal, with its covariance.
+
+    Parameters
+    ----------
+    distance_px : (n,) array
+        Regular grid of normal distances in pixels; 0 is where the ESF passes 50 %, positive
+        towards the bright side.
+    value : (n,) array
+        The curve.
+    factor : (n, k) array
+        Factor of the covariance: the curve's error is ``factor @ z`` with z standard normal.
+        All curves of one measurement share the same z. A truth has k = 0.
+    """
+
+    distance_px: Floats
+    value: Floats
+    factor: Floats
+
+    def __post_init__(self) -> None:
+        n = self.distance_px.shape
+        if self.value.shape != n or self.factor.ndim != 2 or self.factor.shape[:1] != n:
+            raise ValueError(
+                f"a curve needs (n,) distances, (n,) values and an (n, k) factor, found shapes "
+                f"{n}, {self.value.shape} and {self.factor.shape}"
+            )
+
+    @cached_property
+    def std(self) -> Floats:
+        """Standard deviation at every distance, (n,)."""
+        return np.sqrt(np.einsum("ij,ij->i", self.factor, self.factor))
+
+    def __call__(self, distance_px: float) -> Estimate:
+        """The curve at one normal distance, by cubic interpolation."""
+        gradient = sample(self.distance_px, self.factor, distance_px)
+        value = float(sample(self.distance_px, self.value, distance_px))
+        return Estimate(value, float(np.sqrt(gradient @ gradient)))
+
+    def to_dict(self) -> dict[str, list[float]]:
+        """Distances, values and standard deviations as lists."""
+        return {
+            "distance_px": np.round(self.distance_px, 6).tolist(),
+            "value": self.value.tolist(),
+            "std": self.std.tolist(),
+        }
+
+
+class Esf(_SpreadCurve):
+    """Edge spread function: 0 on the dark plateau, 1 on the bright one (no unit)."""
+
+
+class Lsf(_SpreadCurve):
+    """Line spread function, the derivative of the ESF along the normal (1/px), area 1."""

@@ -1,0 +1,65 @@
+"""What can go wrong, drawn once.
+
+::
+
+    AcutanceError
+    ├── ImageError          (OSError)     a file is missing, unreadable, or holds no image
+    ├── RegionError         (ValueError)  a region lies outside the image or holds too few pixels
+    ├── TargetError         (ValueError)  the pixels hold no target that can be measured
+    │   ├── NoEdgeError                   no straight edge stands out of the noise
+    │   ├── PhaseError                    the edge is aligned with the grid: no sub-pixel phases
+    │   └── SupportError                  too few rows or too narrow plateaus
+    ├── OptionError         (ValueError)  an option has a value that means nothing
+    └── ModelError          (ValueError)  a sensor or a scene is described in contradiction
+
+Every message says what was asked, what was found and what to do. Every class is also
+the builtin that fits, so that code which knows nothing of acutance can catch it.
+"""
+
+__all__ = [
+    "AcutanceError",
+    "ImageError",
+    "ModelError",
+    "NoEdgeError",
+    "OptionError",
+    "PhaseError",
+    "RegionError",
+    "SupportError",
+    "TargetError",
+]
+
+
+class AcutanceError(Exception):
+    """The root of everything acutance raises on purpose."""
+
+
+class ImageError(AcutanceError, OSError):
+    """A file is missing, unreadable, or holds no image."""
+
+
+class RegionError(AcutanceError, ValueError):
+    """A region lies outside the image or holds too few usable pixels."""
+
+
+class TargetError(AcutanceError, ValueError):
+    """The pixels hold no target that can be measured."""
+
+
+class NoEdgeError(TargetError):
+    """No straight edge stands out of the noise."""
+
+
+class PhaseError(TargetError):
+    """The edge is aligned with the pixel grid, so it has too few sub-pixel phases."""
+
+
+class SupportError(TargetError):
+    """The edge has too few rows or its plateaus are too narrow."""
+
+
+class OptionError(AcutanceError, ValueError):
+    """An option has a value that means nothing."""
+
+
+class ModelError(AcutanceError, ValueError):
+    """A sensor or a scene is described in contradiction with itself."""

@@ -1,0 +1,94 @@
+"""A straight edge in the image plane."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves.grid import Floats
+
+__all__ = ["Line", "Orientation"]
+
+Orientation = Literal["across", "along"]
+
+
+@dataclass(frozen=True)
+class Line:
+    """A straight line with a direction: its unit normal points from dark to bright.
+
+    Parameters
+    ----------
+    row, col : float
+        A point on the line, in pixels; integers are pixel centres.
+    normal_deg : float
+        Direction of the normal, from the column axis (x) towards the row axis (y, downwards),
+        in (-180, 180].
+    angle_std_deg : float, optional
+        Standard deviation of the direction.
+    offset_std_px : float, optional
+        Standard deviation of the position along the normal.
+    length_px : float, optional
+        How much of the line was used.
+    """
+
+    row: float
+    col: float
+    normal_deg: float
+    angle_std_deg: float = 0.0
+    offset_std_px: float = 0.0
+    length_px: float = math.nan
+
+    @property
+    def normal(self) -> tuple[float, float]:
+        """Unit normal as its (x, y) components, that is (column, row)."""
+        angle = math.radians(self.normal_deg)
+        return math.cos(angle), math.sin(angle)
+
+    @property
+    def orientation(self) -> Orientation:
+        """ "across" when the normal is nearer the column axis, "along" when nearer the rows'."""
+        x, y = self.normal
+        return "across" if abs(x) >= abs(y) else "along"
+
+    @property
+    def angle_deg(self) -> float:
+        """Acute angle between the edge and the nearer image axis, 0 to 45 degrees."""
+        x, y = (abs(component) for component in self.normal)
+        return math.degrees(math.atan2(min(x, y), max(x, y)))
+
+    def normal_distance(self, row: ArrayLike, col: ArrayLike) -> Floats:
+        """Signed distance along the normal in pixels, positive on the bright side."""
+        x, y = self.normal
+        return x * (np.asarray(col, float) - self.col) + y * (np.asarray(row, float) - self.row)
+
+    def tangent_distance(self, row: ArrayLike, col: ArrayLike) -> Floats:
+        """Signed distance along the line in pixels, from its point (row, col)."""
+        x, y = self.normal
+        return -y * (np.asarray(col, float) - self.col) + x * (np.asarray(row, float) - self.row)
+
+    def moved(self, offset_px: float, turn_deg: float) -> Line:
+        """The line shifted along its normal, then turned about its point (small changes)."""
+        x, y = self.normal
+        turned = (self.normal_deg + turn_deg + 180.0) % 360.0 - 180.0
+        return Line(
+            self.row + offset_px * y,
+            self.col + offset_px * x,
+            turned,
+            self.angle_std_deg,
+            self.offset_std_px,
+            self.length_px,
+        )
+
+    def to_dict(self) -> dict[str, float | str]:
+        """Position, direction and what was used, for JSON."""
+        return {
+            "row": self.row,
+            "col": self.col,
+            "normal_deg": self.normal_deg,
+            "length_px": self.length_px,
+            "orientation": self.orientation,
+        }

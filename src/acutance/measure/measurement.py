@@ -1,0 +1,210 @@
+"""What a measurement is: the curves, the evidence they rest on, and the checks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
+from acutance.curves.grid import Floats
+from acutance.fit.line import Line, Orientation
+
+__all__ = ["Check", "ImageInfo", "Measurement", "Samples"]
+
+SCHEMA = "acutance/measurement/1"
+
+
+@dataclass(frozen=True)
+class Check:
+    """One question asked of the target, with what was found and what is asked.
+
+    Parameters
+    ----------
+    name : str
+    value : float
+        What was found.
+    limit : str
+        What is asked, as text: ``">= 50"``.
+    passed : bool
+    message : str
+        What it means and what to do; with where the limit comes from.
+    """
+
+    name: str
+    value: float
+    limit: str
+    passed: bool
+    message: str
+
+    def to_dict(self) -> dict[str, Any]:
+        value = self.value if math.isfinite(self.value) else None
+        return {
+            "name": self.name,
+            "value": value,
+            "limit": self.limit,
+            "passed": self.passed,
+            "message": self.message,
+        }
+
+
+@dataclass(frozen=True)
+class ImageInfo:
+    """Where the pixels came from.
+
+    `roi` is (row, col, height, width) of the cut, in pixels of the whole image.
+    """
+
+    path: str | None = None
+    band: int = 1
+    gsd_m: float | None = None
+    roi: tuple[int, int, int, int] = (0, 0, 0, 0)
+    crs: str | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "path": self.path,
+            "band": self.band,
+            "gsd_m": self.gsd_m,
+            "roi": list(self.roi),
+            "crs": self.crs,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """The pixels a measurement used, seen along the normal: evidence for figures.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        The cut; unusable pixels are NaN.
+    used : (rows, cols) bool array
+        Which pixels entered the fit.
+    distance_px : (n,) array
+        Normal distance of the used pixels, in row-major order; 0 at the 50 % point.
+    value : (n,) array
+        Their edge response, normalised to 0 (dark plateau) .. 1 (bright plateau).
+    residual : (n,) array
+        Value less the fitted ESF, same scale.
+    dark, bright : float
+        Plateau levels in the image's units.
+    """
+
+    image: Floats
+    used: NDArray[np.bool_]
+    distance_px: Floats
+    value: Floats
+    residual: Floats
+    dark: float
+    bright: float
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """A measurement of one straight target: numbers, curves, evidence and checks.
+
+    The numbers (`mtf_nyquist`, `rer`, `fwhm_px` ...) are those of `response`.
+    """
+
+    kind: str
+    method: str
+    line: Line
+    response: Response
+    samples: Samples
+    snr: float
+    checks: tuple[Check, ...] = ()
+    image: ImageInfo = ImageInfo()
+    options: Mapping[str, Any] = field(default_factory=dict)
+    measured_at: datetime = field(default_factory=lambda: datetime.now(UTC))
+
+    @property
+    def orientation(self) -> Orientation:
+        """Which direction the MTF belongs to: "across" or "along"."""
+        return self.line.orientation
+
+    @property
+    def esf(self) -> Esf:
+        """Edge spread function along the normal."""
+        return self.response.esf
+
+    @property
+    def lsf(self) -> Lsf:
+        """Line spread function along the normal."""
+        return self.response.lsf
+
+    @property
+    def mtf(self) -> Mtf:
+        """The MTF; call it with a frequency in cycles per pixel."""
+        return self.response.mtf
+
+    @property
+    def mtf_nyquist(self) -> Estimate:
+        """MTF at 0.5 cycles per pixel."""
+        return self.response.mtf_nyquist
+
+    @property
+    def rer(self) -> Estimate:
+        """Relative edge response."""
+        return self.response.rer
+
+    @property
+    def fwhm_px(self) -> Estimate:
+        """Full width of the LSF at half maximum, pixels."""
+        return self.response.fwhm_px
+
+    @property
+    def fwhm_m(self) -> Estimate | None:
+        """The same in metres; ``None`` without a GSD."""
+        return self.response.fwhm_m
+
+    @property
+    def angle_deg(self) -> Estimate:
+        """Acute angle between the edge and the nearer image axis."""
+        return Estimate(self.line.angle_deg, self.line.angle_std_deg)
+
+    @property
+    def trusted(self) -> bool:
+        """Whether every check passed."""
+        return all(check.passed for check in self.checks)
+
+    @property
+    def failed_checks(self) -> tuple[Check, ...]:
+        """The checks that did not pass."""
+        return tuple(check for check in self.checks if not check.passed)
+
+    def metrics(self) -> dict[str, Estimate]:
+        """All numbers by name."""
+        return self.response.metrics()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The measurement as the JSON document ``acutance/measurement/1``."""
+        from acutance import __version__
+
+        numbers = {name: number.to_dict() for name, number in self.metrics().items()}
+        return {
+            "schema": SCHEMA,
+            "kind": self.kind,
+            "method": self.method,
+            "orientation": self.orientation,
+            "image": self.image.to_dict(),
+            "line": self.line.to_dict(),
+            "angle_deg": self.angle_deg.to_dict(),
+            "snr": self.snr if math.isfinite(self.snr) else None,
+            "dark": self.samples.dark,
+            "bright": self.samples.bright,
+            **numbers,
+            "rer_centre": self.response.rer_centre,
+            "mtf": self.mtf.to_dict(),
+            "lsf": self.lsf.to_dict(),
+            "esf": self.esf.to_dict(),
+            "checks": [check.to_dict() for check in self.checks],
+            "options": dict(self.options),
+            "software": {"acutance": __version__},
+            "measured_at": self.measured_at.isoformat(timespec="seconds"),
+        }
