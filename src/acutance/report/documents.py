@@ -1,0 +1,91 @@
+"""Measurements as JSON documents, and the schema they keep to."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from acutance.measure.measurement import Measurement
+
+__all__ = [
+    "comparison_document",
+    "json_text",
+    "measurement_document",
+    "measurement_schema",
+]
+
+
+def measurement_schema() -> dict[str, Any]:
+    """The JSON Schema (draft 2020-12) of the document ``acutance/measurement/1``."""
+    source = files("acutance.report") / "schemas" / "measurement-1.json"
+    schema: dict[str, Any] = json.loads(source.read_text(encoding="utf-8"))
+    return schema
+
+
+def measurement_document(measurement: Measurement, *, covariance: bool = False) -> dict[str, Any]:
+    """The document ``acutance/measurement/1``, with the covariance factors when asked.
+
+    The factors are lists of n rows and k columns. The columns of ``factor`` of the ESF and the
+    LSF, and of ``factor_real`` and ``factor_imag`` of the MTF, belong to the same k standard
+    normal variables, so any combination of the curves has a standard deviation.
+    """
+    document = measurement.to_dict()
+    if covariance:
+        transfer = measurement.mtf.factor
+        document["mtf"] |= {
+            "factor_real": transfer.real.tolist(),
+            "factor_imag": transfer.imag.tolist(),
+        }
+        document["lsf"] |= {"factor": measurement.lsf.factor.tolist()}
+        document["esf"] |= {"factor": measurement.esf.factor.tolist()}
+    return document
+
+
+def comparison_document(
+    measurements: Sequence[Measurement], *, covariance: bool = False
+) -> dict[str, Any]:
+    """The document ``acutance/comparison/1``: one target measured in several ways."""
+    return {
+        "schema": "acutance/comparison/1",
+        "measurements": [measurement_document(one, covariance=covariance) for one in measurements],
+    }
+
+
+def json_text(document: Mapping[str, Any]) -> str:
+    """Strict JSON, indented by one: what is not a finite number becomes null.
+
+    Lists of numbers stay on one line each, so that a reader can scroll.
+    """
+    return _render(_finite(document), 0)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def _render(value: Any, depth: int) -> str:
+    nested = isinstance(value, list) and any(isinstance(item, dict | list) for item in value)
+    if not value or not (isinstance(value, dict) or nested):
+        return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    inner, outer = " " * (depth + 1), " " * depth
+    if isinstance(value, dict):
+        items = [
+            f"{json.dumps(key, ensure_ascii=False)}: {_render(item, depth + 1)}"
+            for key, item in value.items()
+        ]
+        opening, closing = "{", "}"
+    else:
+        items = [_render(item, depth + 1) for item in value]
+        opening, closing = "[", "]"
+    body = f",\n{inner}".join(items)
+    return f"{opening}\n{inner}{body}\n{outer}{closing}"

@@ -1,0 +1,198 @@
+"""How numbers, methods and verdicts are put into words: one place for every face."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from acutance.curves import Estimate
+    from acutance.measure.measurement import Check, Measurement
+
+__all__ = [
+    "METRIC_WORDS",
+    "MISSING",
+    "MetricWords",
+    "NumberWords",
+    "describe_image",
+    "describe_line",
+    "flatten_options",
+    "format_number",
+    "metric_words",
+    "split_message",
+    "verdict",
+    "word_estimate",
+]
+
+MISSING = "–"
+
+
+@dataclass(frozen=True)
+class MetricWords:
+    """How one metric is called.
+
+    Parameters
+    ----------
+    label : str
+    unit : str
+        Empty for a pure number.
+    meaning : str
+        One sentence for a reader who does not know it.
+    """
+
+    label: str
+    unit: str
+    meaning: str
+
+    @property
+    def label_with_unit(self) -> str:
+        """The label, with the unit in brackets where there is one."""
+        return f"{self.label} [{self.unit}]" if self.unit else self.label
+
+
+METRIC_WORDS = {
+    "mtf_nyquist": MetricWords(
+        "MTF at Nyquist", "", "Contrast left at 0.5 cycles per pixel, the sampling limit."
+    ),
+    "rer": MetricWords(
+        "RER", "", "Relative edge response: rise of the edge over the central pixel."
+    ),
+    "fwhm_px": MetricWords("FWHM", "px", "Full width of the LSF at half of its maximum."),
+    "fwhm_m": MetricWords("FWHM on the ground", "m", "The same width in metres."),
+    "mtf50_cpp": MetricWords("MTF50", "c/px", "Lowest frequency where the MTF falls to 0.5."),
+    "mtf30_cpp": MetricWords("MTF30", "c/px", "Lowest frequency where the MTF falls to 0.3."),
+    "mtf_area": MetricWords("MTF area", "c/px", "Area under the MTF from 0 to Nyquist."),
+    "edge_slope_per_px": MetricWords(
+        "Edge slope 40–60 %", "1/px", "Mean slope of the ESF between its 40 and 60 % points."
+    ),
+    "half_extent_dark_px": MetricWords(
+        "Half extent 5–50 %", "px", "Distance from the 5 to the 50 % point of the ESF."
+    ),
+    "half_extent_bright_px": MetricWords(
+        "Half extent 50–95 %", "px", "Distance from the 50 to the 95 % point of the ESF."
+    ),
+    "overshoot": MetricWords("Overshoot", "", "Excess of the ESF over the bright plateau."),
+    "undershoot": MetricWords("Undershoot", "", "Shortfall of the ESF under the dark plateau."),
+    "giqe_h": MetricWords("GIQE H", "", "Edge height overshoot of the GIQE 4 equation."),
+}
+
+
+def metric_words(name: str) -> MetricWords:
+    """The words of a metric; an unknown one is called by its name."""
+    return METRIC_WORDS.get(name, MetricWords(name.replace("_", " "), "", ""))
+
+
+@dataclass(frozen=True)
+class NumberWords:
+    """An estimate as text: every part with the digits its standard deviation deserves."""
+
+    value: str
+    std: str
+    low: str
+    high: str
+
+    @property
+    def interval(self) -> str:
+        """The 95 % interval."""
+        return MISSING if self.low == MISSING else f"{self.low} … {self.high}"
+
+    @property
+    def value_and_std(self) -> str:
+        """Value ± standard deviation."""
+        return self.value if self.std == MISSING else f"{self.value} ± {self.std}"
+
+
+def word_estimate(estimate: Estimate) -> NumberWords:
+    """Write an estimate with two significant digits of its standard deviation.
+
+    A truth, which has no standard deviation, gets four decimals and no interval.
+    """
+    if not math.isfinite(estimate.value):
+        return NumberWords("undefined", MISSING, MISSING, MISSING)
+    if not (math.isfinite(estimate.std) and estimate.std > 0):
+        return NumberWords(f"{estimate.value:.4f}", MISSING, MISSING, MISSING)
+    digits = min(max(0, 1 - math.floor(math.log10(estimate.std))), 6)
+    low, high = estimate.interval(0.95)
+    parts = (estimate.value, estimate.std, low, high)
+    return NumberWords(*(_signed(f"{part:.{digits}f}") for part in parts))
+
+
+def _signed(text: str) -> str:
+    """A real minus sign, and none before a zero."""
+    return text.replace("-", "−") if any(digit in text for digit in "123456789") else text.strip("-")
+
+
+def format_number(value: float, digits: int = 4) -> str:
+    """A plain number with `digits` significant digits, without a needless exponent."""
+    if not math.isfinite(value):
+        return MISSING
+    if value != 0 and not 1e-4 <= abs(value) < 1e6:
+        return f"{value:.{digits - 1}e}"
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value)))) if value else 0
+    text = f"{value:.{decimals}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def describe_image(measurement: Measurement) -> str:
+    """Where the pixels came from, in one line."""
+    image = measurement.image
+    row, col, height, width = image.roi
+    parts = [image.path or "array in memory", f"band {image.band}"]
+    parts.append(f"rows {row}–{row + height - 1}, columns {col}–{col + width - 1}")
+    gsd_m = measurement.response.gsd_m
+    if gsd_m is not None:
+        parts.append(f"GSD {format_number(gsd_m)} m along the normal")
+    return ", ".join(parts)
+
+
+def describe_line(measurement: Measurement) -> str:
+    """The edge itself, in one line: angle, length, contrast and noise."""
+    angle = word_estimate(measurement.angle_deg)
+    parts = [f"angle {angle.value_and_std}°"]
+    if math.isfinite(measurement.line.length_px):
+        parts.append(f"{measurement.line.length_px:.0f} px long")
+    dark, bright = measurement.samples.dark, measurement.samples.bright
+    parts.append(f"from {format_number(dark)} to {format_number(bright)}")
+    parts.append(f"SNR {format_number(measurement.snr, 3)}")
+    return ", ".join(parts)
+
+
+def verdict(measurements: Measurement | tuple[Measurement, ...]) -> str:
+    """What the checks say, as a sentence."""
+    several = measurements if isinstance(measurements, tuple) else (measurements,)
+    total = sum(len(one.checks) for one in several)
+    failed = sum(len(one.failed_checks) for one in several)
+    if total == 0:
+        return "No checks were made."
+    if failed == 0:
+        return "The only check passed." if total == 1 else f"All {total} checks passed."
+    names = sorted({check.name for one in several for check in one.failed_checks})
+    return (
+        f"{failed} of {total} checks failed ({', '.join(names)}): "
+        "use the numbers only where that does not matter."
+    )
+
+
+def split_message(check: Check) -> tuple[str, str]:
+    """The message of a check, and the source of its limit where brackets at the end name one."""
+    message = check.message.strip()
+    if not message.endswith((")", "]", ").", "].")):
+        return message, ""
+    body = message.rstrip(".")
+    opening = body.rfind("(" if body.endswith(")") else "[")
+    if opening <= 0:
+        return message, ""
+    return body[:opening].rstrip(), body[opening + 1 : -1]
+
+
+def flatten_options(options: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+    """The options as (dotted name, text) pairs, nested ones in their order."""
+    for name, value in options.items():
+        if isinstance(value, Mapping):
+            yield from flatten_options(value, f"{prefix}{name}.")
+        elif isinstance(value, float):
+            yield f"{prefix}{name}", format_number(value)
+        else:
+            yield f"{prefix}{name}", str(value)
