@@ -1,0 +1,182 @@
+"""Blur made by the telescope: aperture, aberrations, stray light."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.optics.block import Transfer, require
+
+__all__ = ["Defocus", "Diffraction", "Gaussian", "Halo", "WavefrontError"]
+
+
+@dataclass(frozen=True)
+class Gaussian:
+    """A Gaussian point spread function: ``exp(-2 pi^2 (sigma_x^2 u^2 + sigma_y^2 v^2))``.
+
+    Parameters
+    ----------
+    sigma_px : float
+        Standard deviation in pixels, at least 0; along the column axis, and along the row axis
+        too unless `sigma_along_px` is given.
+    sigma_along_px : float, optional
+        Standard deviation along the row axis.
+    """
+
+    sigma_px: float
+    sigma_along_px: float | None = None
+
+    def __post_init__(self) -> None:
+        require(self, sigma_px=self.sigma_px, sigma_along_px=self.sigma_along_px or 0.0)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        along = self.sigma_px if self.sigma_along_px is None else self.sigma_along_px
+        spread = (self.sigma_px * np.asarray(u)) ** 2 + (along * np.asarray(v)) ** 2
+        return np.exp(-2 * math.pi**2 * spread)
+
+
+@dataclass(frozen=True)
+class Halo:
+    """A sharp core with part of the light in a broad Gaussian: scatter, ghosts, adjacency.
+
+    Parameters
+    ----------
+    fraction : float
+        Part of the light that goes to the halo, 0 to 1.
+    sigma_px : float
+        Standard deviation of the halo in pixels. Above some 100 px the halo no longer fits
+        on the plateaus of any target and acts as a loss of contrast only.
+    """
+
+    fraction: float
+    sigma_px: float
+
+    def __post_init__(self) -> None:
+        require(self, 0.0, 1.0, fraction=self.fraction)
+        require(self, sigma_px=self.sigma_px)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        return (1 - self.fraction) + self.fraction * Gaussian(self.sigma_px).otf(u, v)
+
+
+@dataclass(frozen=True)
+class Diffraction:
+    """A perfect circular aperture, with a central obscuration if there is one.
+
+    The OTF is the autocorrelation of the annular pupil: the overlap of two discs, less twice
+    that of a disc with an obscuration, plus that of two obscurations (the closed form of
+    O'Neill, J. Opt. Soc. Am. 46, 285, 1956).
+
+    Parameters
+    ----------
+    cutoff_cpp : float
+        Diameter / wavelength, expressed in cycles per pixel: D p / (lambda f) for a pixel pitch
+        p and a focal length f. Nothing passes beyond it.
+    obscuration : float, optional
+        Diameter of the obscuration over that of the aperture, 0 to below 1.
+    """
+
+    cutoff_cpp: float
+    obscuration: float = 0.0
+
+    def __post_init__(self) -> None:
+        require(self, above=True, cutoff_cpp=self.cutoff_cpp)
+        require(self, 0.0, 0.99, obscuration=self.obscuration)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        # Unit pupil radius: the discs' centres are 2 nu apart.
+        shift = 2 * np.hypot(u, v) / self.cutoff_cpp
+        hole = self.obscuration
+        if hole == 0:
+            return _overlap(1.0, 1.0, shift) / math.pi
+        area = _overlap(1.0, 1.0, shift) - 2 * _overlap(1.0, hole, shift)
+        return (area + _overlap(hole, hole, shift)) / (math.pi * (1 - hole**2))
+
+
+def _overlap(big: float, small: float, shift: Floats) -> Floats:
+    """Area common to two discs of radii `big` >= `small` whose centres are `shift` apart."""
+    d = np.clip(shift, max(big - small, 1e-300), big + small)
+    x = np.clip((d**2 + big**2 - small**2) / (2 * d), -big, big)
+    y = np.clip(d - x, -small, small)
+    chord = np.sqrt(np.maximum(big**2 - x**2, 0.0))
+    area = big**2 * np.arccos(x / big) + small**2 * np.arccos(y / small) - d * chord
+    return np.where(shift >= big + small, 0.0, np.where(shift <= big - small, _disc(small), area))
+
+
+def _disc(radius: float) -> float:
+    return math.pi * radius**2
+
+
+@dataclass(frozen=True)
+class Defocus:
+    """A circular aperture out of focus, diffraction included: use it instead of `Diffraction`.
+
+    The pupil's autocorrelation with the phase of a defocus W20, as one exact integral
+    (Hopkins, Proc. R. Soc. A 231, 91, 1955)::
+
+        H(nu) = 4/pi * integral_nu^1 sqrt(1 - t^2) cos(8 pi W nu (t - nu)) dt
+
+    by Gauss-Legendre quadrature; the error is below 1e-10. Beyond some 0.6 waves it is
+    negative over part of the band (reversed contrast).
+
+    Parameters
+    ----------
+    waves : float
+        Wavefront error at the rim of the pupil against its centre (W20), in wavelengths.
+    cutoff_cpp : float
+        Cut-off frequency of the aperture in cycles per pixel, as in `Diffraction`.
+    """
+
+    waves: float
+    cutoff_cpp: float
+
+    def __post_init__(self) -> None:
+        require(self, -20.0, 20.0, waves=self.waves)
+        require(self, above=True, cutoff_cpp=self.cutoff_cpp)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        nu = np.asarray(np.hypot(u, v) / self.cutoff_cpp)
+        otf = np.zeros(nu.shape)
+        inside = nu < 1
+        nodes, weights = np.polynomial.legendre.leggauss(32 + math.ceil(16 * abs(self.waves)))
+        at = nu[inside]
+        span = np.arccos(at)
+        for node, weight in zip(nodes, weights, strict=True):
+            theta = 0.5 * span * (node + 1)
+            phase = 8 * math.pi * self.waves * at * (np.cos(theta) - at)
+            otf[inside] += 0.5 * weight * span * np.sin(theta) ** 2 * np.cos(phase)
+        return otf * (4 / math.pi)
+
+
+@dataclass(frozen=True)
+class WavefrontError:
+    """Random figure errors of the mirrors, after Hufnagel and Shannon.
+
+    ``exp(-(2 pi w)^2 (1 - exp(-(f / (l f_c))^2)))``, the statistical OTF of a random wavefront
+    with a Gaussian autocorrelation (Shannon, The Art and Science of Optical Design, 1997).
+
+    Parameters
+    ----------
+    rms_waves : float
+        Root mean square wavefront error w in wavelengths.
+    correlation : float
+        Correlation length l as a fraction of the pupil's diameter, where the autocorrelation
+        has fallen to 1/e.
+    cutoff_cpp : float
+        Cut-off frequency f_c of the aperture in cycles per pixel.
+    """
+
+    rms_waves: float
+    correlation: float
+    cutoff_cpp: float
+
+    def __post_init__(self) -> None:
+        require(self, rms_waves=self.rms_waves)
+        require(self, above=True, correlation=self.correlation, cutoff_cpp=self.cutoff_cpp)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        shift = np.hypot(u, v) / (self.correlation * self.cutoff_cpp)
+        return np.exp(-((2 * math.pi * self.rms_waves) ** 2) * -np.expm1(-(shift**2)))

@@ -1,0 +1,60 @@
+"""What every OTF block has in common: a transfer over two frequencies, and sane parameters."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.errors import ModelError
+
+__all__ = ["Axis", "Block", "Transfer", "along_axis", "require"]
+
+Transfer = NDArray[Any]
+"""Values of an OTF: real where the blur is symmetric, complex where it is not."""
+
+Axis = Literal["across", "along"]
+"""The direction a blur acts in: "across" is the column axis x, "along" the row axis y."""
+
+
+class Block(Protocol):
+    """One cause of blur. Blocks are frozen dataclasses, so they compare, hash and print."""
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        """OTF at `u` (across, column axis x) and `v` (along, row axis y), cycles per pixel.
+
+        `u` and `v` broadcast against each other; the result has their common shape and is 1
+        at zero frequency. Sign of the phase: the Fourier transform of the point spread
+        function with the kernel ``exp(-2 pi i (u x + v y))``.
+        """
+        ...
+
+
+def along_axis(u: Floats, v: Floats, axis: Axis) -> Floats:
+    """The frequency component a one-dimensional blur acts on, in the common shape."""
+    chosen = u if axis == "across" else v
+    return np.broadcast_to(np.asarray(chosen, float), np.broadcast_shapes(np.shape(u), np.shape(v)))
+
+
+def require(
+    block: object, low: float = 0.0, high: float = math.inf, *, above: bool = False, **values: float
+) -> None:
+    """Refuse a parameter outside ``low..high`` (`above`: `low` itself is refused too).
+
+    Raises
+    ------
+    ModelError
+        Names the block, the parameter, the value and the range.
+    """
+    for name, value in values.items():
+        inside = (value > low if above else value >= low) and value <= high
+        if not (inside and math.isfinite(value)):
+            relation = "above" if above else "at least"
+            upper = "" if math.isinf(high) else f" and at most {high:g}"
+            raise ModelError(
+                f"{type(block).__name__}: {name} is {value:g}, it has to be finite, "
+                f"{relation} {low:g}{upper}"
+            )

@@ -1,0 +1,60 @@
+"""Blur made after the charge was collected: filters and trails."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.optics.block import Axis, Transfer, along_axis, require
+
+__all__ = ["Butterworth", "Exponential"]
+
+
+@dataclass(frozen=True)
+class Butterworth:
+    """The electronics of the generic sensor model: ``1 / (1 + (D / D0)^2)``.
+
+    D is the radial frequency. The form is kept as printed in the SDSU generic sensor model
+    (2005, equation 2.5); it is the squared modulus of a first order low-pass.
+
+    Parameters
+    ----------
+    cutoff_cpp : float, optional
+        D0 in cycles per pixel, where the transfer is 1/2.
+    """
+
+    cutoff_cpp: float = 1.4
+
+    def __post_init__(self) -> None:
+        require(self, above=True, cutoff_cpp=self.cutoff_cpp)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        return np.asarray(1 / (1 + (np.hypot(u, v) / self.cutoff_cpp) ** 2))
+
+
+@dataclass(frozen=True)
+class Exponential:
+    """A one-sided exponential trail, as slow electronics or lost charge leave it.
+
+    The spread function is ``exp(-x / L) / L`` for x > 0 (towards higher columns or rows), its
+    OTF ``1 / (1 + 2 pi i f L)``: complex, since the blur is not symmetric.
+
+    Parameters
+    ----------
+    length_px : float
+        Length L of the trail in pixels, at least 0.
+    axis : {"across", "along"}, optional
+        Direction of the trail.
+    """
+
+    length_px: float
+    axis: Axis = "across"
+
+    def __post_init__(self) -> None:
+        require(self, length_px=self.length_px)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        return np.asarray(1 / (1 + 2j * math.pi * self.length_px * along_axis(u, v, self.axis)))

@@ -1,0 +1,190 @@
+"""A straight edge on uniform ground, as a sensor sees it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
+from acutance.curves.grid import Floats
+from acutance.errors import ModelError
+from acutance.fit.line import Line, Orientation
+from acutance.optics.sensor import Sensor, normal_direction_deg
+from acutance.simulate.noise import Noise
+
+__all__ = ["Polarity", "Truth", "edge", "render_edge"]
+
+Polarity = Literal["rising", "falling"]
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """What a perfect measurement of a simulated edge would return.
+
+    Parameters
+    ----------
+    response : Response
+        The true curves along the normal, without uncertainty.
+    line : Line
+        Where the true ESF passes 50 %.
+    dark, bright : float
+        Plateau levels in image units.
+    noise : Noise, optional
+        What was added to the image.
+    """
+
+    response: Response
+    line: Line
+    dark: float
+    bright: float
+    noise: Noise | None = None
+
+    @property
+    def orientation(self) -> Orientation:
+        """The image axis the MTF belongs to."""
+        return self.line.orientation
+
+    @property
+    def esf(self) -> Esf:
+        return self.response.esf
+
+    @property
+    def lsf(self) -> Lsf:
+        return self.response.lsf
+
+    @property
+    def mtf(self) -> Mtf:
+        return self.response.mtf
+
+    @property
+    def mtf_nyquist(self) -> Estimate:
+        return self.response.mtf_nyquist
+
+    @property
+    def rer(self) -> Estimate:
+        return self.response.rer
+
+    @property
+    def fwhm_px(self) -> Estimate:
+        return self.response.fwhm_px
+
+
+def render_edge(
+    sensor: Sensor, line: Line, shape: tuple[int, int], dark: float, bright: float
+) -> Floats:
+    """An endless edge without noise: every pixel is the ESF at its normal distance.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    line : Line
+        Where the image passes half way between the plateaus.
+    shape : (rows, cols)
+    dark, bright : float
+        Plateau levels; the normal of `line` points towards `bright`.
+
+    Returns
+    -------
+    (rows, cols) array
+        Exact to the accuracy of `Profile`.
+    """
+    rows, cols = np.indices(shape)
+    profile = sensor.profile(line.normal_deg)
+    distance = line.normal_distance(rows, cols)
+    return np.asarray(dark + (bright - dark) * profile.esf(distance + profile.half_px))
+
+
+def edge(
+    sensor: Sensor,
+    *,
+    angle_deg: float = 6.0,
+    orientation: Orientation = "across",
+    polarity: Polarity = "rising",
+    shape: tuple[int, int] = (60, 40),
+    dark: float = 200.0,
+    bright: float = 1200.0,
+    offset_px: float = 0.0,
+    snr: float | None = None,
+    noise: Noise | None = None,
+    rng: np.random.Generator | None = None,
+) -> tuple[Floats, Truth]:
+    """An image of a straight edge, and the truth about it.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    angle_deg : float, optional
+        Tilt of the edge against the nearer image axis, -45 to 45: a positive angle turns the
+        normal from the column axis towards higher rows (from the row axis towards lower
+        columns).
+    orientation : {"across", "along"}, optional
+        The axis the normal is near to: "across" gives a nearly vertical edge.
+    polarity : {"rising", "falling"}, optional
+        "rising": brighter towards higher columns ("across") or higher rows ("along").
+    shape : (rows, cols), optional
+    dark, bright : float, optional
+        Plateau levels in image units, dark below bright.
+    offset_px : float, optional
+        Distance along the normal from the image's centre to the edge.
+    snr : float, optional
+        Contrast over the standard deviation of added white noise.
+    noise : Noise, optional
+        A full description of the noise, instead of `snr`.
+    rng : numpy.random.Generator, optional
+        Source of randomness; needed as soon as there is noise.
+
+    Returns
+    -------
+    image : (rows, cols) array of float
+    truth : Truth
+
+    Raises
+    ------
+    ModelError
+        If the arguments contradict each other.
+    """
+    if not abs(angle_deg) <= 45:
+        raise ModelError(
+            f"the edge is tilted by {angle_deg:g} deg against the nearer axis, which cannot "
+            'exceed 45: use the other orientation ("across" or "along")'
+        )
+    if polarity not in ("rising", "falling"):
+        raise ModelError(f'polarity is {polarity!r}, it has to be "rising" or "falling"')
+    if not dark < bright:
+        raise ModelError(
+            f"dark is {dark:g} and bright {bright:g}: dark has to be lower; "
+            'polarity="falling" turns the edge round'
+        )
+    line = _line_through_centre(shape, angle_deg, orientation, polarity).moved(offset_px, 0.0)
+    chosen = _noise(bright - dark, snr, noise)
+    image = render_edge(sensor, line, shape, dark, bright)
+    if chosen is not None:
+        image = chosen.added_to(image, rng)
+    response = sensor.response_along(line.normal_deg)
+    return image, Truth(response, line, dark, bright, chosen)
+
+
+def _line_through_centre(
+    shape: tuple[int, int], angle_deg: float, orientation: Orientation, polarity: Polarity
+) -> Line:
+    normal = normal_direction_deg(angle_deg, orientation) + (180.0 if polarity == "falling" else 0)
+    along = shape[0] if orientation == "across" else shape[1]
+    return Line(
+        row=0.5 * (shape[0] - 1),
+        col=0.5 * (shape[1] - 1),
+        normal_deg=180.0 - (180.0 - normal) % 360.0,
+        length_px=along / math.cos(math.radians(angle_deg)),
+    )
+
+
+def _noise(contrast: float, snr: float | None, noise: Noise | None) -> Noise | None:
+    if snr is None:
+        return noise
+    if noise is not None:
+        raise ModelError("snr and noise were both given: the noise already says how strong it is")
+    if not snr > 0:
+        raise ModelError(f"snr is {snr:g}, it has to be above 0")
+    return Noise(read=contrast / snr)

@@ -1,0 +1,62 @@
+"""What the detector and its electronics add to the signal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.errors import ModelError
+from acutance.optics.block import require
+
+__all__ = ["Noise"]
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Random noise with variance ``read^2 + shot_gain * I``, then saturation and rounding.
+
+    Parameters
+    ----------
+    read : float, optional
+        Standard deviation of the signal-independent noise, in image units.
+    shot_gain : float, optional
+        Variance per unit of signal: image units per photo-electron. The noise is drawn from a
+        normal distribution, which it follows above some 20 electrons.
+    quantum : float, optional
+        Step of the quantisation in image units (1 for whole digital numbers); 0 leaves it out.
+    saturation : float, optional
+        Level the image cannot exceed, in image units.
+    """
+
+    read: float = 0.0
+    shot_gain: float = 0.0
+    quantum: float = 0.0
+    saturation: float | None = None
+
+    def __post_init__(self) -> None:
+        require(self, read=self.read, shot_gain=self.shot_gain, quantum=self.quantum)
+
+    def std(self, signal: Floats) -> Floats:
+        """Standard deviation of the random part where the signal is `signal`, same shape."""
+        return np.sqrt(self.read**2 + self.shot_gain * np.maximum(signal, 0.0))
+
+    def added_to(self, image: Floats, rng: np.random.Generator | None) -> Floats:
+        """A noisy copy of `image`.
+
+        Raises
+        ------
+        ModelError
+            If something is random and no generator was handed in.
+        """
+        noisy = image
+        if self.read > 0 or self.shot_gain > 0:
+            if rng is None:
+                raise ModelError("noise was asked for without rng: pass numpy.random.default_rng()")
+            noisy = image + self.std(image) * rng.standard_normal(image.shape)
+        if self.saturation is not None:
+            noisy = np.minimum(noisy, self.saturation)
+        if self.quantum > 0:
+            noisy = np.round(noisy / self.quantum) * self.quantum
+        return np.array(noisy)
