@@ -1,1 +1,24 @@
-"""raster"""
+"""Images in and out, regions, geolocation, sites. Only files opened here load rasterio."""
+
+from acutance.raster.geolocation import Geolocation
+from acutance.raster.gsd import Gsd
+from acutance.raster.image import Image, open_image
+from acutance.raster.region import Box, Region
+from acutance.raster.roi import parse_roi
+from acutance.raster.site import Site, find_site, site_region, sites
+from acutance.raster.writing import write_geotiff
+
+__all__ = [
+    "Box",
+    "Geolocation",
+    "Gsd",
+    "Image",
+    "Region",
+    "Site",
+    "find_site",
+    "open_image",
+    "parse_roi",
+    "site_region",
+    "sites",
+    "write_geotiff",
+]

@@ -1,0 +1,211 @@
+"""Reading raster files through rasterio, a window at a time.
+
+Loaded when the first such file is opened: a plain array needs no GDAL.
+"""
+
+from __future__ import annotations
+
+import threading
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rasterio
+from numpy.typing import NDArray
+from rasterio._err import CPLE_BaseError
+from rasterio.enums import ColorInterp, MaskFlags
+from rasterio.errors import NotGeoreferencedWarning, RasterioError
+from rasterio.windows import Window
+
+from acutance.curves.grid import Floats
+from acutance.errors import ImageError, OptionError
+from acutance.raster.geolocation import Geolocation
+from acutance.raster.gsd import Gsd
+from acutance.raster.image import Image
+from acutance.raster.pixels import equals_nodata, usable_values
+from acutance.raster.region import Box
+
+__all__ = ["GSD_TAGS", "DatasetPixels", "open_dataset", "open_quietly"]
+
+GSD_TAGS = ("ACUTANCE_GSD_ROW_M", "ACUTANCE_GSD_COL_M")
+
+_CACHE_BYTES = 32 * 2**20
+_WARNING_FILTERS = threading.Lock()
+
+
+@dataclass(frozen=True)
+class DatasetPixels:
+    """One band of a raster file, opened for each reading.
+
+    Parameters
+    ----------
+    path : str
+    band : int
+        From 1.
+    nodata : float or None
+        The stored value of unusable pixels.
+    has_mask : bool
+        The file carries a mask beside its bands.
+    alpha_band : int or None
+        The band that is 0 where a pixel is transparent.
+    scale, offset : float
+        What `read` gives is stored value * scale + offset.
+    """
+
+    path: str
+    band: int
+    nodata: float | None
+    has_mask: bool
+    alpha_band: int | None
+    scale: float
+    offset: float
+
+    def read(self, box: Box) -> Floats:
+        window = Window(box.col, box.row, box.width, box.height)
+        with _opened(self.path) as dataset:
+            raw: NDArray[Any] = dataset.read(self.band, window=window)
+            masked = equals_nodata(raw, self.nodata)
+            if self.has_mask:
+                masked |= dataset.read_masks(self.band, window=window) == 0
+            if self.alpha_band is not None:
+                masked |= dataset.read(self.alpha_band, window=window) == 0
+        values = usable_values(raw, masked)
+        values *= self.scale
+        values += self.offset
+        return values
+
+
+def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Image:
+    """One band of a raster file as an image; see `open_image`.
+
+    Raises
+    ------
+    ImageError
+        If no driver reads the file, or the band is absent or cannot be measured.
+    """
+    with _opened(path) as dataset:
+        _require_band(dataset, path, band)
+        scale, offset = float(dataset.scales[band - 1]), float(dataset.offsets[band - 1])
+        if not (np.isfinite(scale) and np.isfinite(offset) and scale != 0.0):
+            raise ImageError(
+                f"{path} declares scale {scale:g} and offset {offset:g} for band {band}, which "
+                "leave nothing to measure: correct the file's metadata"
+            )
+        flags = dataset.mask_flag_enums[band - 1]
+        level = _saturation_level(dataset, band)
+        return Image(
+            path=path,
+            band=band,
+            band_count=dataset.count,
+            shape=(dataset.height, dataset.width),
+            dtype=dataset.dtypes[band - 1],
+            source=DatasetPixels(
+                path=path,
+                band=band,
+                nodata=dataset.nodatavals[band - 1] if nodata is None else nodata,
+                has_mask=MaskFlags.per_dataset in flags and MaskFlags.alpha not in flags,
+                alpha_band=_alpha_band(dataset, band),
+                scale=scale,
+                offset=offset,
+            ),
+            saturation_level=None if level is None else level * scale + offset,
+            geolocation=_geolocation(dataset),
+            own_gsd=_declared_gsd(dataset) if gsd is None else gsd,
+        )
+
+
+def open_quietly(path: str, mode: str = "r", **profile: Any) -> Any:
+    """``rasterio.open`` that says nothing of an image without a geotransform.
+
+    rasterio warns of each; to us it is an ordinary image. The filters of `warnings` belong to the
+    whole process, so only one thread at a time changes them.
+    """
+    with _WARNING_FILTERS, warnings.catch_warnings():
+        warnings.simplefilter("ignore", NotGeoreferencedWarning)
+        return rasterio.open(path, mode, **profile)
+
+
+@contextmanager
+def _opened(path: str) -> Iterator[Any]:
+    """A dataset open for reading, with a small block cache and errors in our own words."""
+    try:
+        with rasterio.Env(GDAL_CACHEMAX=_CACHE_BYTES), open_quietly(path) as dataset:
+            yield dataset
+    except (RasterioError, CPLE_BaseError) as error:
+        reason = str(error.__cause__ or error)
+        raise ImageError(f"{path} cannot be read ({reason}): {_advice(path)}") from error
+
+
+def _advice(path: str) -> str:
+    if Path(path).is_dir():
+        return "it is a directory; give the image file inside it"
+    return "check that the file is whole and of a format that `rio env --formats` lists"
+
+
+def _require_band(dataset: Any, path: str, band: int) -> None:
+    if dataset.count == 0:
+        parts = ", ".join(dataset.subdatasets[:12])
+        found = f"the images inside are: {parts}" if parts else "it holds no image"
+        raise ImageError(f"{path} holds no band of its own; {found}")
+    if not 1 <= band <= dataset.count:
+        raise ImageError(
+            f"band {band} of {path} was asked, but it has {dataset.count}: "
+            f"choose a band from 1 to {dataset.count}"
+        )
+    dtype = dataset.dtypes[band - 1]
+    if dtype.startswith("complex"):
+        raise ImageError(
+            f"band {band} of {path} holds complex values ({dtype}), not real numbers: "
+            "write its modulus to a file first"
+        )
+    if dataset.colorinterp[band - 1] == ColorInterp.palette:
+        raise ImageError(
+            f"band {band} of {path} holds palette indices, not grey levels: "
+            "expand it first, for example with gdal_translate -expand gray"
+        )
+
+
+def _alpha_band(dataset: Any, band: int) -> int | None:
+    """The band of transparency, unless it is the one to be measured."""
+    for number, meaning in enumerate(dataset.colorinterp, start=1):
+        if meaning == ColorInterp.alpha and number != band:
+            return number
+    return None
+
+
+def _saturation_level(dataset: Any, band: int) -> float | None:
+    """The largest stored count: declared by the file, or that of its integer type."""
+    dtype = np.dtype(dataset.dtypes[band - 1])
+    if dtype.kind not in "iu":
+        return None
+    largest = float(np.iinfo(dtype).max)
+    tags = dataset.tags()
+    bits = dataset.tags(band, ns="IMAGE_STRUCTURE").get("NBITS") or tags.get("NITF_ABPP")
+    saturated = tags.get("SPECIAL_VALUE_SATURATED")
+    declared = [largest]
+    if bits is not None and bits.strip().isdigit() and int(bits) > 0:
+        declared.append(2.0 ** (int(bits) - (dtype.kind == "i")) - 1.0)
+    if saturated is not None and saturated.strip().isdigit() and int(saturated) > 0:
+        declared.append(float(saturated))
+    return min(declared)
+
+
+def _geolocation(dataset: Any) -> Geolocation | None:
+    """The affine geotransform, if the image has one and a CRS for it to lead to."""
+    if dataset.crs is None or dataset.transform.is_identity:
+        return None
+    a, b, c, d, e, f = dataset.transform[:6]
+    return Geolocation((a, b, c, d, e, f), dataset.crs.to_string())
+
+
+def _declared_gsd(dataset: Any) -> Gsd | None:
+    """The GSD that `write_geotiff` was given."""
+    tags = dataset.tags()
+    try:
+        return Gsd(*(float(tags[name]) for name in GSD_TAGS))
+    except (KeyError, ValueError, OptionError):
+        return None

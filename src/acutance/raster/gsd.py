@@ -1,0 +1,65 @@
+"""The ground sampling distance: how far apart two neighbouring pixels lie on the ground."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from acutance.errors import OptionError
+
+__all__ = ["Gsd"]
+
+
+@dataclass(frozen=True)
+class Gsd:
+    """Ground sampling distance of an image at one place.
+
+    Parameters
+    ----------
+    row_m : float
+        Metres on the ground from one row to the next. Positive.
+    col_m : float
+        Metres on the ground from one column to the next. Positive.
+
+    Raises
+    ------
+    OptionError
+        If a distance is not a positive, finite number.
+    """
+
+    row_m: float
+    col_m: float
+
+    def __post_init__(self) -> None:
+        for axis, value in (("rows", self.row_m), ("columns", self.col_m)):
+            if not (math.isfinite(value) and value > 0.0):
+                raise OptionError(
+                    f"a GSD of {value:g} m between {axis} means nothing: "
+                    "give a positive number of metres, for example gsd_m=0.7"
+                )
+
+    @classmethod
+    def square(cls, gsd_m: float) -> Gsd:
+        """The same distance between rows and between columns."""
+        return cls(float(gsd_m), float(gsd_m))
+
+    def along_normal(self, normal_deg: float) -> float:
+        """Metres per pixel for distances measured along an edge's normal.
+
+        An edge is normal to the direction ``n = (cos t, sin t)`` (x = column, y = row). On the
+        ground its own normal is another one when the GSD differs between rows and columns; two
+        parallel edges one pixel apart along `n` are ``1 / sqrt((n_x/col_m)^2 + (n_y/row_m)^2)``
+        metres apart.
+
+        Parameters
+        ----------
+        normal_deg : float
+            Direction of the normal in the image, from the column axis towards the row axis.
+
+        Returns
+        -------
+        float
+            Metres; `col_m` at 0 degrees, `row_m` at 90 degrees.
+        """
+        angle = math.radians(normal_deg)
+        return 1.0 / math.hypot(math.cos(angle) / self.col_m, math.sin(angle) / self.row_m)

@@ -1,0 +1,235 @@
+"""An image to measure: one band of a file or an array, read a window at a time."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from acutance.curves.grid import Floats
+from acutance.errors import ImageError
+from acutance.raster.geolocation import Geolocation
+from acutance.raster.gsd import Gsd
+from acutance.raster.pixels import ArrayPixels, NpyPixels, PixelSource, require_image_array
+from acutance.raster.region import Box
+
+__all__ = ["Image", "open_image"]
+
+# Names that GDAL understands and the file system does not: "/vsizip/a.zip/b.tif",
+# "https://host/a.tif", "HDF5:a.h5://band". One letter and a colon is a Windows drive.
+_GDAL_NAME = re.compile(r"^(/vsi\w+/|\w+://|[A-Za-z0-9_]{2,}:)")
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """One band of an image, whether a file or an array: nothing is read before `read`.
+
+    Made by `open_image` and `Image.from_array`. It holds no open file, so it can be pickled and
+    read from several threads and processes at once.
+
+    Parameters
+    ----------
+    path : str or None
+        The file; ``None`` for an array.
+    band : int
+        Which band, from 1.
+    band_count : int
+        How many the file has.
+    shape : (rows, columns)
+    dtype : str
+        Of the stored pixels, as numpy calls it.
+    source : PixelSource
+        What the pixels are read from.
+    saturation_level : float or None
+        The largest value the detector's counts can take, in the units `read` gives: that of the
+        integer type, or of the bits or the saturated value the file declares. ``None`` for floats.
+    geolocation : Geolocation or None
+        ``None`` for an image with no CRS.
+    own_gsd : Gsd or None
+        The GSD given by the caller or declared by the file (`write_geotiff`); it goes before
+        the geolocation's.
+    """
+
+    path: str | None
+    band: int
+    band_count: int
+    shape: tuple[int, int]
+    dtype: str
+    source: PixelSource
+    saturation_level: float | None = None
+    geolocation: Geolocation | None = None
+    own_gsd: Gsd | None = None
+
+    @classmethod
+    def from_array(
+        cls,
+        array: ArrayLike | np.ma.MaskedArray[Any, Any],
+        gsd_m: float | Gsd | None = None,
+        nodata: float | None = None,
+    ) -> Image:
+        """An array in memory as an image.
+
+        Parameters
+        ----------
+        array : (rows, columns) array_like
+            Integers or floats. Masked and non-finite pixels are unusable. It is not copied.
+        gsd_m : float or Gsd, optional
+            Ground sampling distance in metres, the same both ways unless a `Gsd` is given.
+        nodata : float, optional
+            A value that marks unusable pixels.
+
+        Raises
+        ------
+        ImageError
+            If the array is not 2-D, is empty, or does not hold real numbers.
+        OptionError
+            If the GSD is not a positive number.
+        """
+        values = np.asanyarray(array)
+        require_image_array(values, "the array")
+        return cls(
+            path=None,
+            band=1,
+            band_count=1,
+            shape=(int(values.shape[0]), int(values.shape[1])),
+            dtype=values.dtype.name,
+            source=ArrayPixels(values, nodata),
+            saturation_level=_largest(values.dtype),
+            own_gsd=_as_gsd(gsd_m),
+        )
+
+    @property
+    def crs(self) -> str | None:
+        """The coordinate reference system as text ("EPSG:32631", WKT), or ``None``."""
+        return None if self.geolocation is None else self.geolocation.crs
+
+    def read(self, box: Box | None = None) -> Floats:
+        """The pixels of a box; it costs what the box costs, not what the file does.
+
+        Parameters
+        ----------
+        box : Box, optional
+            The whole image without one.
+
+        Returns
+        -------
+        (height, width) float64 array
+            A new array, scale and offset of the file applied; NaN where the pixel is nodata,
+            masked, fully transparent or not finite.
+
+        Raises
+        ------
+        RegionError
+            If the box reaches beyond the image.
+        ImageError
+            If the file cannot be read there.
+        """
+        window = Box.whole(self.shape) if box is None else box
+        window.require_inside(self.shape)
+        return self.source.read(window)
+
+    def gsd(self, row: float | None = None, col: float | None = None) -> Gsd | None:
+        """Ground sampling distance in metres at a pixel.
+
+        Parameters
+        ----------
+        row, col : float, optional
+            Where; the centre of the image by default. It matters for a geographic CRS.
+
+        Returns
+        -------
+        Gsd or None
+            ``None`` when it was not given and the image does not tell.
+        """
+        if self.own_gsd is not None or self.geolocation is None:
+            return self.own_gsd
+        at_row = (self.shape[0] - 1) / 2 if row is None else row
+        at_col = (self.shape[1] - 1) / 2 if col is None else col
+        return self.geolocation.gsd(at_row, at_col)
+
+
+def open_image(
+    path: str | os.PathLike[str],
+    band: int = 1,
+    gsd_m: float | Gsd | None = None,
+    nodata: float | None = None,
+) -> Image:
+    """Open one band of an image file.
+
+    Parameters
+    ----------
+    path : str or path
+        Any raster that GDAL reads in rasterio's wheel (GeoTIFF, COG, JPEG 2000, NITF, HDF5,
+        DIMAP, SAFE, TIFF, PNG, JPEG), a name of GDAL's own ("HDF5:file.h5://band",
+        "/vsizip/..."), or a 2-D array in a ``.npy`` file.
+    band : int
+        Which band, from 1.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres; it replaces the one of the geotransform.
+    nodata : float, optional
+        The stored value of unusable pixels; it replaces the one the file declares. Masks and
+        alpha bands keep their say.
+
+    Returns
+    -------
+    Image
+
+    Raises
+    ------
+    ImageError
+        If the file is missing, empty, damaged, a directory without an image, of a kind that
+        cannot be measured (complex, palette), or has no such band.
+    OptionError
+        If the GSD is not a positive number.
+    """
+    gsd = _as_gsd(gsd_m)
+    name = os.fspath(path)
+    _require_file(name)
+    if name.lower().endswith(".npy"):
+        return _open_npy(name, band, gsd, nodata)
+    from acutance.raster.dataset import open_dataset
+
+    return open_dataset(name, band, gsd, nodata)
+
+
+def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Image:
+    source = NpyPixels(path, nodata)
+    array: NDArray[Any] = source.map()
+    require_image_array(array, path)
+    if band != 1:
+        raise ImageError(f"band {band} of {path} was asked, but a .npy file has one: use band 1")
+    return Image(
+        path=path,
+        band=1,
+        band_count=1,
+        shape=(int(array.shape[0]), int(array.shape[1])),
+        dtype=array.dtype.name,
+        source=source,
+        saturation_level=_largest(array.dtype),
+        own_gsd=gsd,
+    )
+
+
+def _require_file(name: str) -> None:
+    """Check what the file system can tell before a driver is asked."""
+    path = Path(name)
+    if path.is_file():
+        if path.stat().st_size == 0:
+            raise ImageError(f"{name} is empty (0 bytes): it was not written or not copied whole")
+    elif not path.is_dir() and not _GDAL_NAME.match(name):
+        folder = path.parent
+        found = "the folder exists" if folder.is_dir() else f"there is no folder {folder} either"
+        raise ImageError(f"{name} does not exist ({found}): check the path")
+
+
+def _largest(dtype: np.dtype[Any]) -> float | None:
+    return float(np.iinfo(dtype).max) if dtype.kind in "iu" else None
+
+
+def _as_gsd(gsd_m: float | Gsd | None) -> Gsd | None:
+    return gsd_m if gsd_m is None or isinstance(gsd_m, Gsd) else Gsd.square(gsd_m)
