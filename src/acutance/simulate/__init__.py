@@ -2,5 +2,26 @@
 
 from acutance.simulate.edge import Truth, edge, render_edge
 from acutance.simulate.noise import Noise
+from acutance.simulate.resample import Regrid, resample
+from acutance.simulate.scene import Patch, Strip, render_patches, render_strip, texture
+from acutance.simulate.site import Scene, SceneEdge, checkerboard, site
+from acutance.simulate.systems import reference_systems
 
-__all__ = ["Noise", "Truth", "edge", "render_edge"]
+__all__ = [
+    "Noise",
+    "Patch",
+    "Regrid",
+    "Scene",
+    "SceneEdge",
+    "Strip",
+    "Truth",
+    "checkerboard",
+    "edge",
+    "reference_systems",
+    "render_edge",
+    "render_patches",
+    "render_strip",
+    "resample",
+    "site",
+    "texture",
+]

@@ -14,6 +14,7 @@ from acutance.errors import ModelError
 from acutance.fit.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.noise import Noise
+from acutance.simulate.resample import Regrid
 
 __all__ = ["Polarity", "Truth", "edge", "render_edge"]
 
@@ -34,6 +35,8 @@ class Truth:
         Plateau levels in image units.
     noise : Noise, optional
         What was added to the image.
+    regrid : Regrid, optional
+        The resampling the image went through, after the noise.
     """
 
     response: Response
@@ -41,6 +44,7 @@ class Truth:
     dark: float
     bright: float
     noise: Noise | None = None
+    regrid: Regrid | None = None
 
     @property
     def orientation(self) -> Orientation:
@@ -109,6 +113,7 @@ def edge(
     offset_px: float = 0.0,
     snr: float | None = None,
     noise: Noise | None = None,
+    regrid: Regrid | None = None,
     rng: np.random.Generator | None = None,
 ) -> tuple[Floats, Truth]:
     """An image of a straight edge, and the truth about it.
@@ -133,6 +138,9 @@ def edge(
         Contrast over the standard deviation of added white noise.
     noise : Noise, optional
         A full description of the noise, instead of `snr`.
+    regrid : Regrid, optional
+        Resample the noisy image, which correlates its noise. Line, shape and truth are those of
+        the resampled image.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 
@@ -159,12 +167,35 @@ def edge(
             'polarity="falling" turns the edge round'
         )
     line = _line_through_centre(shape, angle_deg, orientation, polarity).moved(offset_px, 0.0)
-    chosen = _noise(bright - dark, snr, noise)
-    image = render_edge(sensor, line, shape, dark, bright)
-    if chosen is not None:
-        image = chosen.added_to(image, rng)
-    response = sensor.response_along(line.normal_deg)
-    return image, Truth(response, line, dark, bright, chosen)
+    added = _noise(bright - dark, snr, noise)
+    if regrid is None:
+        system, image = sensor, render_edge(sensor, line, shape, dark, bright)
+        image = image if added is None else added.added_to(image, rng)
+    else:
+        system = regrid.system(sensor)
+        image = _render_resampled(sensor, regrid, line, shape, (dark, bright), added, rng)
+    response = system.response_along(line.normal_deg)
+    return image, Truth(response, line, dark, bright, added, regrid)
+
+
+def _render_resampled(
+    sensor: Sensor,
+    regrid: Regrid,
+    line: Line,
+    shape: tuple[int, int],
+    levels: tuple[float, float],
+    noise: Noise | None,
+    rng: np.random.Generator | None,
+) -> Floats:
+    """The edge rendered with a margin, made noisy, and interpolated onto the new grid."""
+    half_new_px = regrid.system(sensor).profile(line.normal_deg).half_px * regrid.scale
+    moved_px = half_new_px - sensor.profile(line.normal_deg).half_px
+    source = regrid.source_line(line, shape, moved_px)
+    margin = regrid.margin_px(shape)
+    source = Line(source.row + margin, source.col + margin, source.normal_deg)
+    wide = (shape[0] + 2 * margin, shape[1] + 2 * margin)
+    image = render_edge(sensor, source, wide, *levels)
+    return regrid.apply(image if noise is None else noise.added_to(image, rng), shape, margin)
 
 
 def _line_through_centre(

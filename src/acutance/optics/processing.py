@@ -1,0 +1,220 @@
+"""What ground processing does to the transfer: resampling and sharpening."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves.grid import Floats
+from acutance.errors import ModelError
+from acutance.optics.block import Block, Transfer, require
+
+__all__ = [
+    "KERNEL_REACH_PX",
+    "Interpolation",
+    "Resampling",
+    "Rescaled",
+    "Sharpening",
+    "Shift",
+    "interpolation_weight",
+]
+
+Interpolation = Literal["nearest", "bilinear", "cubic"]
+
+KERNEL_REACH_PX: dict[str, float] = {"nearest": 0.5, "bilinear": 1.0, "cubic": 2.0}
+"""Distance beyond which an interpolation kernel is zero, in pixels."""
+
+
+def interpolation_weight(kernel: Interpolation, distance_px: ArrayLike, a: float = -0.5) -> Floats:
+    """Weight an interpolation kernel gives to a pixel at a distance.
+
+    Parameters
+    ----------
+    kernel : {"nearest", "bilinear", "cubic"}
+        "cubic" is Keys' cubic convolution (IEEE Trans. ASSP 29, 1153, 1981).
+    distance_px : array
+        Signed distance from the pixel to the interpolated place.
+    a : float, optional
+        Slope of the cubic kernel at distance 1: -0.5 (Keys, third order), -0.75 and -1 are in use.
+
+    Returns
+    -------
+    array of the same shape
+    """
+    x = np.abs(np.asarray(distance_px, float))
+    if kernel == "nearest":
+        # Half way between two pixels the one on the left is taken, as `floor` would.
+        signed = np.asarray(distance_px, float)
+        return np.where((signed >= -0.5) & (signed < 0.5), 1.0, 0.0)
+    if kernel == "bilinear":
+        return np.asarray(np.maximum(1 - x, 0.0))
+    near = ((a + 2) * x - (a + 3)) * x**2 + 1
+    far = a * (((x - 5) * x + 8) * x - 4)
+    return np.where(x < 1, near, np.where(x < 2, far, 0.0))
+
+
+def _require_kernel(block: object, kernel: str) -> None:
+    if kernel not in KERNEL_REACH_PX:
+        raise ModelError(
+            f"{type(block).__name__}: kernel is {kernel!r}, it has to be one of "
+            + ", ".join(repr(name) for name in KERNEL_REACH_PX)
+        )
+
+
+@dataclass(frozen=True)
+class Resampling:
+    """Interpolation onto a grid whose phase against the pixels varies evenly over the image.
+
+    The OTF is the Fourier transform of the interpolation kernel in both axes, which is the
+    average of the transfers over all phases. For one constant phase use `Shift`.
+
+    Parameters
+    ----------
+    kernel : {"nearest", "bilinear", "cubic"}, optional
+    a : float, optional
+        Parameter of the cubic kernel; see `interpolation_weight`.
+    """
+
+    kernel: Interpolation = "cubic"
+    a: float = -0.5
+
+    def __post_init__(self) -> None:
+        _require_kernel(self, self.kernel)
+        require(self, -4.0, 0.0, a=self.a)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        return np.asarray(self._transform(np.asarray(u)) * self._transform(np.asarray(v)))
+
+    def _transform(self, f: Floats) -> Floats:
+        if self.kernel == "nearest":
+            return np.asarray(np.sinc(f))
+        if self.kernel == "bilinear":
+            return np.asarray(np.sinc(f) ** 2)
+        return _cubic_transform(f, self.a)
+
+
+def _cubic_transform(f: Floats, a: float) -> Floats:
+    """Fourier transform of the cubic convolution kernel: closed form, quadrature near zero."""
+    small = np.abs(f) < 0.1
+    g = np.where(small, 1.0, f)
+    keys = 3 * (np.sinc(g) ** 2 - np.sinc(2 * g))
+    keys = keys + 2 * a * (3 * np.sinc(2 * g) ** 2 - 2 * np.sinc(2 * g) - np.sinc(4 * g))
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    x = np.concatenate([0.5 * (nodes + 1), 0.5 * (nodes + 1) + 1])
+    mass = np.tile(weights, 2) * interpolation_weight("cubic", x, a)
+    low = np.where(small, f, 0.0)
+    near_zero = sum(m * np.cos(2 * math.pi * p * low) for m, p in zip(mass, x, strict=True))
+    return np.asarray(np.where(small, near_zero, keys / (math.pi * g) ** 2))
+
+
+@dataclass(frozen=True)
+class Shift:
+    """Interpolation at one constant sub-pixel shift: a short filter, so an exact OTF.
+
+    A pixel of the new image shows the place `row_px`, `col_px` further on in the old one. Its
+    value is a weighted sum of old pixels, whose transfer (referred to the shifted place) is
+    ``sum_k w(k - shift) exp(2 pi i u (k - shift))``; real at half a pixel, complex elsewhere.
+
+    Parameters
+    ----------
+    row_px, col_px : float
+        Shift in pixels; only its fraction of a pixel matters.
+    kernel : {"nearest", "bilinear", "cubic"}, optional
+    a : float, optional
+        Parameter of the cubic kernel; see `interpolation_weight`.
+    """
+
+    row_px: float = 0.0
+    col_px: float = 0.0
+    kernel: Interpolation = "cubic"
+    a: float = -0.5
+
+    def __post_init__(self) -> None:
+        _require_kernel(self, self.kernel)
+        require(self, -4.0, 0.0, a=self.a)
+        require(self, -1e6, 1e6, row_px=self.row_px, col_px=self.col_px)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        across = self._transform(np.asarray(u), self.col_px)
+        return np.asarray(across * self._transform(np.asarray(v), self.row_px))
+
+    def _transform(self, f: Floats, shift_px: float) -> Transfer:
+        offset = np.arange(-2, 4) - (shift_px - math.floor(shift_px))
+        weight = interpolation_weight(self.kernel, offset, self.a)
+        terms = (w * np.exp(2j * math.pi * x * f) for w, x in zip(weight, offset, strict=True))
+        return np.asarray(sum(terms))
+
+
+@dataclass(frozen=True)
+class Sharpening:
+    """A convolution of the image with a small kernel, as MTF compensation applies it.
+
+    The OTF is the finite sum ``sum k[i, j] exp(-2 pi i (v i + u j)) / sum k``, with i and j
+    counted from the kernel's centre: a sum of cosines for a symmetric kernel.
+
+    Parameters
+    ----------
+    kernel : tuple of tuples of float
+        Rows of the kernel; both sides odd, the sum not zero. Any nested sequence is accepted.
+    """
+
+    kernel: tuple[tuple[float, ...], ...]
+
+    def __post_init__(self) -> None:
+        taps = np.atleast_2d(np.asarray(self.kernel, float))
+        if taps.ndim != 2 or taps.shape[0] % 2 == 0 or taps.shape[1] % 2 == 0:
+            raise ModelError(
+                f"Sharpening: the kernel has shape {taps.shape}, both sides have to be odd"
+            )
+        if not abs(taps.sum()) > 1e-6 * np.abs(taps).sum():
+            raise ModelError(
+                "Sharpening: the kernel sums to zero, so it has no gain to normalise by"
+            )
+        object.__setattr__(self, "kernel", tuple(tuple(row) for row in taps.tolist()))
+
+    @classmethod
+    def both_axes(cls, strength: float) -> Sharpening:
+        """The kernel (-strength, 1 + 2 strength, -strength) applied to rows and to columns."""
+        taps = np.array([-strength, 1 + 2 * strength, -strength])
+        return cls(tuple(tuple(row) for row in np.outer(taps, taps).tolist()))
+
+    @property
+    def noise_gain(self) -> float:
+        """Growth of the standard deviation of white noise: ``sqrt(sum k^2) / |sum k|``."""
+        taps = np.asarray(self.kernel)
+        return float(np.sqrt(np.sum(taps**2)) / abs(taps.sum()))
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        taps = np.asarray(self.kernel) / np.sum(self.kernel)
+        symmetric = bool(np.array_equal(taps, taps[::-1, ::-1]))
+        total: Transfer = np.zeros(np.broadcast_shapes(np.shape(u), np.shape(v)), complex)
+        for (i, j), weight in np.ndenumerate(taps):
+            down, right = i - taps.shape[0] // 2, j - taps.shape[1] // 2
+            total = total + weight * np.exp(-2j * math.pi * (np.asarray(v) * down + u * right))
+        return np.ascontiguousarray(total.real) if symmetric else total
+
+
+@dataclass(frozen=True)
+class Rescaled:
+    """A system seen in pixels of another size.
+
+    Parameters
+    ----------
+    system : Block
+        A block, or a whole `Sensor`, in its own pixels.
+    scale : float
+        Size of the new pixels in old ones, above 0.
+    """
+
+    system: Block
+    scale: float
+
+    def __post_init__(self) -> None:
+        require(self, above=True, scale=self.scale)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        return self.system.otf(np.asarray(u) / self.scale, np.asarray(v) / self.scale)

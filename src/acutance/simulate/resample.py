@@ -1,0 +1,140 @@
+"""Interpolating an image onto another grid, as ground processing does."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves.grid import Floats
+from acutance.errors import ModelError
+from acutance.fit.line import Line
+from acutance.optics import Resampling, Rescaled, Sensor, Shift
+from acutance.optics.block import require
+from acutance.optics.processing import KERNEL_REACH_PX, Interpolation, interpolation_weight
+
+__all__ = ["Regrid", "resample"]
+
+
+def resample(
+    image: Floats,
+    rows: ArrayLike,
+    cols: ArrayLike,
+    *,
+    kernel: Interpolation = "cubic",
+    a: float = -0.5,
+) -> Floats:
+    """Interpolate an image at given places.
+
+    Parameters
+    ----------
+    image : (m, n) array
+    rows, cols : (p, q) arrays
+        Places in pixels of `image`; integers are pixel centres. Shift, stretch and rotation are
+        all said by these.
+    kernel : {"nearest", "bilinear", "cubic"}, optional
+    a : float, optional
+        Parameter of the cubic kernel; see `acutance.optics.processing.interpolation_weight`.
+
+    Returns
+    -------
+    (p, q) array
+        Pixels beyond the border repeat those at the border.
+    """
+    row_at, col_at = np.broadcast_arrays(np.asarray(rows, float), np.asarray(cols, float))
+    top, left = np.floor(row_at).astype(int), np.floor(col_at).astype(int)
+    row_taps = [
+        (np.clip(top + k, 0, image.shape[0] - 1), interpolation_weight(kernel, top + k - row_at, a))
+        for k in range(-1, 3)
+    ]
+    col_taps = [
+        (
+            np.clip(left + k, 0, image.shape[1] - 1),
+            interpolation_weight(kernel, left + k - col_at, a),
+        )
+        for k in range(-1, 3)
+    ]
+    result = np.zeros(row_at.shape)
+    for row, down in row_taps:
+        for col, right in col_taps:
+            result += down * right * image[row, col]
+    return result
+
+
+@dataclass(frozen=True)
+class Regrid:
+    """A new grid over an image, shifted and slightly stretched about the image's centre.
+
+    Pixel p of the new image shows the place ``centre + scale * (p - centre) + shift``.
+
+    Parameters
+    ----------
+    shift_row_px, shift_col_px : float, optional
+        Shift in old pixels.
+    scale : float, optional
+        Size of the new pixels in old ones, 0.5 to 2. At 1 all new pixels have the same phase
+        and the resampled system is known exactly; otherwise the phases vary, the transfer is
+        that of the mean phase, and single pixels depart from it by what their phase does.
+    kernel : {"nearest", "bilinear", "cubic"}, optional
+    a : float, optional
+        Parameter of the cubic kernel.
+    """
+
+    shift_row_px: float = 0.0
+    shift_col_px: float = 0.0
+    scale: float = 1.0
+    kernel: Interpolation = "cubic"
+    a: float = -0.5
+
+    def __post_init__(self) -> None:
+        require(self, 0.5, 2.0, scale=self.scale)
+        require(self, -1e6, 1e6, shift_row_px=self.shift_row_px, shift_col_px=self.shift_col_px)
+        if self.kernel not in KERNEL_REACH_PX:
+            raise ModelError(
+                f"Regrid: kernel is {self.kernel!r}, it has to be one of "
+                + ", ".join(repr(name) for name in KERNEL_REACH_PX)
+            )
+
+    def system(self, sensor: Sensor) -> Sensor:
+        """The sensor and the resampling as one system, in new pixels."""
+        gsd_m = None if sensor.gsd_m is None else sensor.gsd_m * self.scale
+        if self.scale == 1:
+            shift = Shift(self.shift_row_px, self.shift_col_px, self.kernel, self.a)
+            return Sensor([*sensor.blocks, shift], gsd_m)
+        averaged = Sensor([*sensor.blocks, Resampling(self.kernel, self.a)])
+        return Sensor([Rescaled(averaged, self.scale)], gsd_m)
+
+    def margin_px(self, shape: tuple[int, int]) -> int:
+        """How much wider the old image has to be on every side, in old pixels."""
+        reach = max(abs(self.shift_row_px), abs(self.shift_col_px))
+        return math.ceil(reach + abs(self.scale - 1) * max(shape)) + 3
+
+    def source_line(self, line: Line, shape: tuple[int, int], moved_px: float) -> Line:
+        """The line in old pixels that becomes `line` in new ones.
+
+        Parameters
+        ----------
+        line : Line
+            In pixels of the new image.
+        shape : (rows, cols)
+            Of the new image.
+        moved_px : float
+            How far along the normal, in old pixels, the resampling moves the 50 % point.
+        """
+        rows, cols = (0.5 * (size - 1) for size in shape)
+        x, y = line.normal
+        return Line(
+            rows + self.scale * (line.row - rows) + self.shift_row_px - moved_px * y,
+            cols + self.scale * (line.col - cols) + self.shift_col_px - moved_px * x,
+            line.normal_deg,
+            length_px=line.length_px * self.scale,
+        )
+
+    def apply(self, image: Floats, shape: tuple[int, int], margin_px: int) -> Floats:
+        """The new image of the given shape, from an old one with a margin around that shape."""
+        rows, cols = (np.arange(size) - 0.5 * (size - 1) for size in shape)
+        row = self.scale * rows + 0.5 * (shape[0] - 1) + self.shift_row_px + margin_px
+        col = self.scale * cols + 0.5 * (shape[1] - 1) + self.shift_col_px + margin_px
+        return resample(image, row[:, None], col[None, :], kernel=self.kernel, a=self.a)

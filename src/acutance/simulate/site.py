@@ -1,0 +1,236 @@
+"""A calibration site: painted checkerboard, grass and a road, with the truth of every edge."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.errors import ModelError
+from acutance.fit.line import Line
+from acutance.optics.sensor import Sensor
+from acutance.simulate.edge import Truth
+from acutance.simulate.noise import Noise
+from acutance.simulate.scene import Patch, Strip, render_patches, render_strip, texture
+
+__all__ = ["Scene", "SceneEdge", "checkerboard", "site"]
+
+GUARD_PX = 3.0
+"""Distance a region keeps from the corners of the tiles."""
+
+
+@dataclass(frozen=True, eq=False)
+class SceneEdge:
+    """One measurable edge of a scene.
+
+    Parameters
+    ----------
+    name : str
+    region : (4, 2) array
+        Corners of the region around the edge as (row, col); integers are pixel centres.
+    truth : Truth
+    """
+
+    name: str
+    region: Floats
+    truth: Truth
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A simulated image with all that is known about it.
+
+    Parameters
+    ----------
+    image : (rows, cols) array of float
+    edges : tuple of SceneEdge
+    sensor : Sensor
+    description : str
+        One sentence for people.
+    """
+
+    image: Floats
+    edges: tuple[SceneEdge, ...]
+    sensor: Sensor
+    description: str
+
+
+def checkerboard(
+    sensor: Sensor,
+    *,
+    shape: tuple[int, int] = (120, 120),
+    tile_px: float = 28.0,
+    turn_deg: float = 7.0,
+    centre: tuple[float, float] | None = None,
+    dark: float = 200.0,
+    bright: float = 1200.0,
+    ground: float = 500.0,
+    texture_std: float = 0.0,
+    texture_grain_px: float = 1.5,
+    strips: Sequence[Strip] = (),
+    noise: Noise | None = None,
+    rng: np.random.Generator | None = None,
+) -> Scene:
+    """A checkerboard of two by two tiles on flat or textured ground: four edges.
+
+    The bright tiles are the upper left and the lower right one before the board is turned.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    shape : (rows, cols), optional
+    tile_px : float, optional
+        Side of a tile, at least 16 px.
+    turn_deg : float, optional
+        Turn of the board from the column axis towards the row axis (clockwise on the screen),
+        -45 to 45.
+    centre : (row, col), optional
+        Where the four tiles meet; the middle of the image unless given.
+    dark, bright, ground : float, optional
+        Levels of the tiles and of the ground around them, in image units.
+    texture_std, texture_grain_px : float, optional
+        Standard deviation of the ground and size of its grain; the board has none.
+    strips : sequence of Strip, optional
+        Roads; they must not cross the board.
+    noise : Noise, optional
+    rng : numpy.random.Generator, optional
+        Needed for texture and noise.
+
+    Returns
+    -------
+    Scene
+        Its edges are "upper", "lower" (normal near the columns' axis), "left" and "right".
+
+    Raises
+    ------
+    ModelError
+        If the board is too small, leaves the image, or randomness is asked for without `rng`.
+    """
+    if centre is None:
+        centre = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))
+    _require_room(shape, tile_px, turn_deg, centre)
+    board = _tiles(centre, tile_px, turn_deg, dark - ground, bright - ground)
+    image = ground + render_patches(sensor, board, shape)
+    for strip in strips:
+        image = image + render_strip(sensor, strip, shape)
+    if texture_std > 0:
+        if rng is None:
+            raise ModelError("texture was asked for without rng: pass numpy.random.default_rng()")
+        whole = Patch(*centre, 2 * tile_px, 2 * tile_px, turn_deg, 1.0)
+        bare = 1 - render_patches(sensor, [whole], shape)
+        image = image + bare * texture(sensor, shape, texture_std, texture_grain_px, rng)
+    if noise is not None:
+        image = noise.added_to(image, rng)
+    edges = tuple(
+        _board_edge(sensor, name, direction, centre, tile_px, turn_deg, dark, bright, noise)
+        for name, direction in (("right", 0.0), ("lower", 90.0), ("left", 180.0), ("upper", 270.0))
+    )
+    description = (
+        f"Checkerboard of 2 x 2 tiles of {tile_px:g} px, turned by {turn_deg:g} deg, "
+        f"{dark:g} and {bright:g} on {ground:g}"
+    )
+    return Scene(image, edges, sensor, description)
+
+
+def site(
+    sensor: Sensor, rng: np.random.Generator, *, turn_deg: float = 7.0, noise: Noise | None = None
+) -> Scene:
+    """A small calibration site: a checkerboard of 28 px tiles on grass beside a road.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    rng : numpy.random.Generator
+    turn_deg : float, optional
+        Turn of the board.
+    noise : Noise, optional
+        White noise of standard deviation 8 unless given, which is an SNR of 125 on the board.
+
+    Returns
+    -------
+    Scene
+        180 rows, 160 columns.
+    """
+    road = Strip(row=158.0, col=80.0, normal_deg=68.0, width_px=9.0, contrast=260.0)
+    return checkerboard(
+        sensor,
+        shape=(180, 160),
+        turn_deg=turn_deg,
+        centre=(72.3, 78.6),
+        ground=430.0,
+        texture_std=14.0,
+        strips=[road],
+        noise=Noise(read=8.0) if noise is None else noise,
+        rng=rng,
+    )
+
+
+def _require_room(
+    shape: tuple[int, int], tile_px: float, turn_deg: float, centre: tuple[float, float]
+) -> None:
+    if not abs(turn_deg) <= 45:
+        raise ModelError(f"the board is turned by {turn_deg:g} deg, it has to be -45 to 45")
+    if not tile_px >= 16:
+        raise ModelError(f"tiles of {tile_px:g} px leave no plateaus: at least 16 px are needed")
+    angle = math.radians(abs(turn_deg))
+    reach = tile_px * (math.cos(angle) + math.sin(angle))
+    room = min(*centre, shape[0] - 1 - centre[0], shape[1] - 1 - centre[1])
+    if reach > room:
+        raise ModelError(
+            f"the board reaches {reach:.1f} px from its centre, the image {room:.1f} px: "
+            "use smaller tiles or a larger image"
+        )
+
+
+def _turned(x: float, y: float, turn_deg: float) -> tuple[float, float]:
+    """(x, y) turned from the column axis towards the row axis."""
+    angle = math.radians(turn_deg)
+    return (
+        math.cos(angle) * x - math.sin(angle) * y,
+        math.sin(angle) * x + math.cos(angle) * y,
+    )
+
+
+def _tiles(
+    centre: tuple[float, float], tile_px: float, turn_deg: float, dark: float, bright: float
+) -> list[Patch]:
+    tiles = []
+    for side_x, side_y in product((-0.5, 0.5), repeat=2):
+        x, y = _turned(side_x * tile_px, side_y * tile_px, turn_deg)
+        level = bright if side_x == side_y else dark
+        tiles.append(Patch(centre[0] + y, centre[1] + x, tile_px, tile_px, turn_deg, level))
+    return tiles
+
+
+def _board_edge(
+    sensor: Sensor,
+    name: str,
+    direction_deg: float,
+    centre: tuple[float, float],
+    tile_px: float,
+    turn_deg: float,
+    dark: float,
+    bright: float,
+    noise: Noise | None,
+) -> SceneEdge:
+    """The edge that runs from the board's centre in `direction_deg` (before the turn)."""
+    towards = turn_deg + direction_deg
+    # A quarter turn clockwise from the right-hand edge lies a bright tile, and so on round.
+    clockwise_is_bright = direction_deg in (0.0, 180.0)
+    normal = towards + (90.0 if clockwise_is_bright else -90.0)
+    normal = 180.0 - (180.0 - normal) % 360.0
+    middle_x, middle_y = _turned(0.5 * tile_px, 0.0, towards)
+    length = tile_px - 2 * GUARD_PX
+    ground_line = Line(centre[0] + middle_y, centre[1] + middle_x, normal, length_px=length)
+    line = ground_line.moved(sensor.profile(normal).half_px, 0.0)
+    corners = [
+        _turned(0.5 * tile_px + along * 0.5 * length, beside * (tile_px - GUARD_PX), towards)
+        for along, beside in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    ]
+    region = np.array([(centre[0] + y, centre[1] + x) for x, y in corners])
+    truth = Truth(sensor.response_along(normal), line, dark, bright, noise)
+    return SceneEdge(name, region, truth)
