@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
@@ -23,7 +22,7 @@ BANDS_CPP = (64, 128, 256, 512)
 """Highest frequency of the table: the first one that the OTF does not reach."""
 
 TAIL_PX = 1.0
-CORE_PX = 0.5
+CORE_PX = 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +38,7 @@ class Profile:
     A sum makes the curves periodic, which is harmless only for curves that die away. An aperture
     gives its LSF tails like 1/s^2, seen as a kink of the OTF at zero frequency. So a reference
     with the same kink, the same centroid and closed forms in both domains (a Lorentzian and a
-    Gaussian) is subtracted before the sum and added after it; what remains dies away faster
+    logistic curve) is subtracted before the sum and added after it; what remains dies away faster
     than 1/s^2 in the ESF.
 
     Errors of the ESF: below 1e-7 for systems with a Gaussian, an aperture or any other blur that
@@ -94,15 +93,15 @@ class Profile:
         """ESF (0 to 1) at distances in pixels from the origin of the point spread function."""
         s = np.asarray(distance_px, float) - self.centroid_px
         smooth = self.tail * (0.5 + np.arctan(s / TAIL_PX) / math.pi)
-        smooth = smooth + (1 - self.tail) * ndtr(s / CORE_PX)
+        smooth = smooth + (1 - self.tail) * 0.5 * (1 + np.tanh(s / (2 * CORE_PX)))
         return np.asarray(smooth + self._lookup(self.esf_rest, s))
 
     def lsf(self, distance_px: ArrayLike) -> Floats:
         """LSF (1/px) at distances in pixels from the origin of the point spread function."""
         s = np.asarray(distance_px, float) - self.centroid_px
         lorentzian = TAIL_PX / (math.pi * (s**2 + TAIL_PX**2))
-        gaussian = np.exp(-0.5 * (s / CORE_PX) ** 2) / (CORE_PX * math.sqrt(2 * math.pi))
-        smooth = self.tail * lorentzian + (1 - self.tail) * gaussian
+        logistic = (1 - np.tanh(s / (2 * CORE_PX)) ** 2) / (4 * CORE_PX)
+        smooth = self.tail * lorentzian + (1 - self.tail) * logistic
         return np.asarray(smooth + self._lookup(self.lsf_rest, s))
 
     def _lookup(self, table: Floats, s: Floats) -> Floats:
@@ -118,8 +117,10 @@ class Profile:
 
 def _reference_otf(freq_cpp: Floats, tail: float) -> Floats:
     lorentzian = np.exp(-2 * math.pi * TAIL_PX * freq_cpp)
-    gaussian = np.exp(-2 * (math.pi * CORE_PX * freq_cpp) ** 2)
-    return np.asarray(tail * lorentzian + (1 - tail) * gaussian)
+    x = 2 * math.pi**2 * CORE_PX * np.maximum(freq_cpp, 1e-12)
+    # x / sinh x, without overflow.
+    logistic = 2 * x * np.exp(-x) / -np.expm1(-2 * x)
+    return np.asarray(tail * lorentzian + (1 - tail) * logistic)
 
 
 def _at_zero(otf: Callable[[Floats], Transfer]) -> tuple[float, float]:

@@ -171,6 +171,6 @@ def _slice(sensor: Sensor, normal_deg: float, freq_cpp: Floats) -> Transfer:
     return sensor.otf(freq_cpp * math.cos(angle), freq_cpp * math.sin(angle))
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=16)
 def _profile(sensor: Sensor, normal_deg: float) -> Profile:
     return Profile.of_otf(lambda freq_cpp: _slice(sensor, normal_deg, freq_cpp))

@@ -45,21 +45,13 @@ def resample(
     """
     row_at, col_at = np.broadcast_arrays(np.asarray(rows, float), np.asarray(cols, float))
     top, left = np.floor(row_at).astype(int), np.floor(col_at).astype(int)
-    row_taps = [
-        (np.clip(top + k, 0, image.shape[0] - 1), interpolation_weight(kernel, top + k - row_at, a))
-        for k in range(-1, 3)
-    ]
-    col_taps = [
-        (
-            np.clip(left + k, 0, image.shape[1] - 1),
-            interpolation_weight(kernel, left + k - col_at, a),
-        )
-        for k in range(-1, 3)
-    ]
     result = np.zeros(row_at.shape)
-    for row, down in row_taps:
-        for col, right in col_taps:
-            result += down * right * image[row, col]
+    for row in (top + k for k in range(-1, 3)):
+        down = interpolation_weight(kernel, row - row_at, a)
+        for col in (left + k for k in range(-1, 3)):
+            right = interpolation_weight(kernel, col - col_at, a)
+            inside = np.clip(row, 0, image.shape[0] - 1), np.clip(col, 0, image.shape[1] - 1)
+            result += down * right * image[inside]
     return result
 
 

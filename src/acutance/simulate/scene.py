@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
+from acutance.errors import ModelError
 from acutance.fit.line import Line
 from acutance.optics.block import require
 from acutance.optics.sensor import Sensor
@@ -47,9 +49,10 @@ class Patch:
     def __post_init__(self) -> None:
         require(self, above=True, width_px=self.width_px, height_px=self.height_px)
 
-    def spectrum(self, u: Floats, v: Floats) -> Floats:
+    def spectrum(self, u: ArrayLike, v: ArrayLike) -> Floats:
         """Fourier transform of the patch about its own centre (real), at cycles per pixel."""
         angle = math.radians(self.turn_deg)
+        u, v = np.asarray(u, float), np.asarray(v, float)
         p = math.cos(angle) * u + math.sin(angle) * v
         q = math.cos(angle) * v - math.sin(angle) * u
         area = self.contrast * self.width_px * self.height_px
@@ -154,7 +157,8 @@ def texture(
     -------
     (rows, cols) array
     """
-    require(texture, 0.5, grain_px=grain_px)
+    if not grain_px >= 0.5:
+        raise ModelError(f"texture: grain_px is {grain_px:g}, it has to be at least 0.5")
     u = np.fft.rfftfreq(shape[1])
     v = np.fft.fftfreq(shape[0])[:, None]
     grain = np.exp(-2 * (math.pi * grain_px) ** 2 * (u**2 + v**2)) * sensor.otf(u, v)
