@@ -48,14 +48,10 @@ def closed_form(sigma_px: float, columns: int = 4, scatter: float = 0.0, gsd_m=N
     otf = np.exp(-2 * (np.pi * sigma_px * FREQ_CPP) ** 2) * np.sinc(FREQ_CPP)
     rng = np.random.default_rng(7)
     step = DISTANCE_PX[1] - DISTANCE_PX[0]
-    modes = np.stack(
-        [
-            np.exp(-((DISTANCE_PX / 1.2) ** 2)) * np.cos(k * DISTANCE_PX + rng.uniform(0, np.pi))
-            for k in range(columns)
-        ],
-        axis=1,
-    ).reshape(DISTANCE_PX.size, columns)
-    modes = modes - modes.sum(axis=0) / DISTANCE_PX.size / step / 16 * step
+    phase = rng.uniform(0, np.pi, columns)
+    waves = np.cos(np.outer(DISTANCE_PX, np.arange(columns)) + phase)
+    modes = np.exp(-((DISTANCE_PX / 1.2) ** 2))[:, None] * waves
+    modes = modes - modes.mean(axis=0)
     lsf_factor = scatter * modes
     kernel = np.exp(-2j * np.pi * np.outer(FREQ_CPP, DISTANCE_PX)) * step
     transfer = kernel @ lsf_factor
@@ -70,7 +66,7 @@ def closed_form(sigma_px: float, columns: int = 4, scatter: float = 0.0, gsd_m=N
 def edge_measurement(
     *,
     sigma_px: float = 0.4,
-    scatter: float = 0.012,
+    scatter: float = 0.004,
     normal_deg: float = 6.02,
     method: str = "spline",
     gsd_m: float | None = 0.7,

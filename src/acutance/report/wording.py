@@ -121,7 +121,9 @@ def word_estimate(estimate: Estimate) -> NumberWords:
 
 def _signed(text: str) -> str:
     """A real minus sign, and none before a zero."""
-    return text.replace("-", "−") if any(digit in text for digit in "123456789") else text.strip("-")
+    return (
+        text.replace("-", "−") if any(digit in text for digit in "123456789") else text.strip("-")
+    )
 
 
 def format_number(value: float, digits: int = 4) -> str:

@@ -1,0 +1,263 @@
+"""One drawing for each step of a measurement, each on axes it is handed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from acutance.curves import metrics
+from acutance.curves.grid import Floats, crossing
+from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, SHADE, VERMILION
+from acutance.report.wording import word_estimate
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from acutance.curves import Lsf, Mtf
+    from acutance.measure.measurement import Measurement
+
+__all__ = [
+    "band_edges",
+    "draw_cut",
+    "draw_esf",
+    "draw_lsf",
+    "draw_mtf",
+    "draw_residuals",
+    "mark_frequencies",
+    "reach_px",
+    "show_pixels",
+]
+
+TWO_SIDED_95 = 1.959964
+
+
+def band_edges(value: Floats, std: Floats) -> tuple[Floats, Floats]:
+    """Lower and upper edge of the 95 % band."""
+    return value - TWO_SIDED_95 * std, value + TWO_SIDED_95 * std
+
+
+def reach_px(measurement: Measurement) -> float:
+    """How far from the edge a drawing goes: where something still happens, 3 px at least."""
+    grid = measurement.lsf.distance_px
+    wide = 3.5 * measurement.fwhm_px.value
+    end = float(min(-grid[0], grid[-1]))
+    return min(max(3.0, wide), end) if math.isfinite(wide) else end
+
+
+def show_pixels(axes: Axes, pixels: Floats, row: int, col: int) -> None:
+    """An image in grey, its axes counting pixels of the whole image from (row, col)."""
+    import matplotlib
+
+    low, high = np.nanpercentile(pixels, (0.5, 99.5))
+    margin = 0.08 * (high - low)
+    height, width = pixels.shape
+    axes.imshow(
+        pixels,
+        cmap=matplotlib.colormaps["gray"].with_extremes(bad="#f6e7da"),
+        vmin=low - margin,
+        vmax=high + margin,
+        extent=(col - 0.5, col + width - 0.5, row + height - 0.5, row - 0.5),
+        interpolation="nearest",
+    )
+    axes.grid(visible=False)
+    axes.locator_params(integer=True, nbins=6)
+    axes.set(xlabel="column", ylabel="row")
+
+
+def draw_cut(axes: Axes, measurement: Measurement) -> None:
+    """The pixels, the line, the band that entered the fit, and an arrow from dark to bright."""
+    line, samples = measurement.line, measurement.samples
+    row, col, height, width = measurement.image.roi
+    show_pixels(axes, samples.image, row, col)
+    used = np.pad(samples.used, 1).astype(float)
+    axes.contour(
+        np.arange(-1, width + 1) + col,
+        np.arange(-1, height + 1) + row,
+        used,
+        levels=[0.5],
+        colors=[ORANGE],
+        linewidths=1.3,
+    )
+    x, y = line.normal
+    run = np.linspace(-height - width, height + width, 4001)
+    columns, rows = line.col - y * run, line.row + x * run
+    inside = (np.abs(columns - (width - 1) / 2) <= width / 2) & (
+        np.abs(rows - (height - 1) / 2) <= height / 2
+    )
+    axes.plot(columns[inside] + col, rows[inside] + row, color=VERMILION, linewidth=2)
+    half = 0.13 * min(height, width)
+    middle = run[inside].mean()
+    at_col, at_row = line.col - y * middle + col, line.row + x * middle + row
+    axes.annotate(
+        "",
+        (at_col + half * x, at_row + half * y),
+        (at_col - half * x, at_row - half * y),
+        arrowprops={"arrowstyle": "-|>", "color": BLUE, "linewidth": 2.4, "mutation_scale": 17},
+    )
+    _legend_below(axes, [("edge", VERMILION), ("pixels used", ORANGE), ("dark → bright", BLUE)])
+    axes.set_title("Target")
+
+
+def _legend_below(axes: Axes, entries: list[tuple[str, str]]) -> None:
+    from matplotlib.lines import Line2D
+
+    handles = [Line2D([], [], color=color, label=label) for label, color in entries]
+    axes.legend(
+        handles=handles,
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.14),
+        ncols=len(entries),
+        columnspacing=1.2,
+        handlelength=1.4,
+        borderaxespad=0.2,
+    )
+
+
+def draw_esf(axes: Axes, measurement: Measurement) -> None:
+    """The samples along the normal and the edge spread function with its 95 % band."""
+    esf, samples, reach = measurement.esf, measurement.samples, reach_px(measurement)
+    axes.plot(
+        samples.distance_px,
+        samples.value,
+        ".",
+        color=FAINT,
+        markersize=3,
+        alpha=0.45,
+        rasterized=True,
+        label=f"{samples.distance_px.size} pixels",
+    )
+    low, high = band_edges(esf.value, esf.std)
+    axes.fill_between(esf.distance_px, low, high, color=BLUE, alpha=0.3, linewidth=0)
+    axes.plot(esf.distance_px, esf.value, color=BLUE, label="ESF, 95 % band")
+    axes.set(xlim=(-reach, reach), ylabel="edge response", title="Edge spread function")
+    axes.legend(loc="upper left")
+
+
+def draw_residuals(axes: Axes, measurement: Measurement) -> None:
+    """What the fit leaves of every sample, in percent of the step."""
+    samples, esf, reach = measurement.samples, measurement.esf, reach_px(measurement)
+    axes.plot(
+        samples.distance_px,
+        100 * samples.residual,
+        ".",
+        color=FAINT,
+        markersize=3,
+        alpha=0.45,
+        rasterized=True,
+    )
+    low, high = band_edges(np.zeros_like(esf.std), 100 * esf.std)
+    axes.fill_between(esf.distance_px, low, high, color=BLUE, alpha=0.3, linewidth=0)
+    axes.axhline(0.0, color=BLUE, linewidth=1)
+    axes.set(xlim=(-reach, reach), xlabel="distance along the normal [px]", ylabel="residual [%]")
+
+
+def draw_lsf(axes: Axes, measurement: Measurement) -> None:
+    """The line spread function with its 95 % band and the FWHM."""
+    lsf, reach = measurement.lsf, reach_px(measurement)
+    low, high = band_edges(lsf.value, lsf.std)
+    axes.fill_between(lsf.distance_px, low, high, color=BLUE, alpha=0.3, linewidth=0)
+    axes.plot(lsf.distance_px, lsf.value, color=BLUE)
+    axes.axhline(0.0, color=FAINT, linewidth=0.8)
+    _mark_fwhm(axes, lsf, f"FWHM {word_estimate(measurement.fwhm_px).value_and_std} px")
+    top = float(np.max(high))
+    axes.set(
+        xlim=(-reach, reach),
+        ylim=(min(-0.05 * top, 1.05 * float(np.min(low))), 1.22 * top),
+        xlabel="distance along the normal [px]",
+        ylabel="LSF [1/px]",
+        title="Line spread function",
+    )
+
+
+def _mark_fwhm(axes: Axes, lsf: Lsf, label: str) -> None:
+    peak = int(np.argmax(lsf.value))
+    half = 0.5 * float(lsf.value[peak])
+    at = float(lsf.distance_px[peak])
+    left = crossing(lsf.distance_px, lsf.value, half, at, -1)
+    right = crossing(lsf.distance_px, lsf.value, half, at, +1)
+    if math.isnan(left) or math.isnan(right):
+        return
+    axes.annotate(
+        "",
+        (right, half),
+        (left, half),
+        arrowprops={"arrowstyle": "<|-|>", "color": VERMILION, "shrinkA": 0, "shrinkB": 0},
+    )
+    axes.text(0.5, 0.965, label, transform=axes.transAxes, color=VERMILION, ha="center", va="top")
+
+
+def draw_mtf(axes: Axes, measurement: Measurement) -> None:
+    """The MTF from 0 to 1 c/px with its 95 % band, Nyquist, MTF50 and the aliased region."""
+    mtf = measurement.mtf
+    mark_frequencies(axes, measurement.response.gsd_m)
+    low, high = band_edges(mtf.value, mtf.std)
+    axes.fill_between(mtf.freq_cpp, low, high, color=BLUE, alpha=0.3, linewidth=0)
+    axes.plot(mtf.freq_cpp, mtf.value, color=BLUE)
+    _mark_point(axes, mtf, metrics.NYQUIST_CPP, VERMILION)
+    nyquist = word_estimate(measurement.mtf_nyquist).value_and_std
+    lines = [(f"MTF at Nyquist\n{nyquist}", VERMILION)]
+    mtf50 = measurement.response.mtf50_cpp
+    if math.isfinite(mtf50.value) and mtf50.value <= 1.0:
+        axes.plot(
+            [0.0, mtf50.value, mtf50.value],
+            [0.5, 0.5, 0.0],
+            color=GREEN,
+            linewidth=1,
+            dashes=(4, 3),
+        )
+        axes.plot(mtf50.value, 0.5, "o", color=GREEN, markersize=5)
+        lines.append((f"MTF50\n{word_estimate(mtf50).value_and_std} c/px", GREEN))
+    for i, (text, color) in enumerate(lines):
+        axes.text(
+            0.985,
+            0.955 - 0.155 * i,
+            text,
+            transform=axes.transAxes,
+            ha="right",
+            va="top",
+            color=color,
+        )
+    axes.set_title("Modulation transfer function")
+
+
+def _mark_point(axes: Axes, mtf: Mtf, freq_cpp: float, color: str) -> None:
+    here = mtf(freq_cpp)
+    axes.errorbar(
+        freq_cpp,
+        here.value,
+        yerr=TWO_SIDED_95 * here.std,
+        fmt="o",
+        color=color,
+        markersize=5,
+        capsize=3,
+        linewidth=1.5,
+        zorder=4,
+    )
+
+
+def mark_frequencies(axes: Axes, gsd_m: float | None, ylabel: str = "MTF") -> None:
+    """Frequency axis from 0 to 1 c/px: Nyquist, the aliased region, cycles/m when known."""
+    axes.axvspan(metrics.NYQUIST_CPP, 1.0, color=SHADE, linewidth=0, zorder=0)
+    axes.axvline(metrics.NYQUIST_CPP, color=INK, linewidth=1, dashes=(5, 3))
+    axes.text(
+        metrics.NYQUIST_CPP - 0.012,
+        0.955,
+        "aliased beyond Nyquist →",
+        transform=axes.get_xaxis_transform(),
+        ha="right",
+        va="top",
+        color=FAINT,
+        fontsize=8.5,
+    )
+    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.05), xlabel="frequency [cycles/pixel]", ylabel=ylabel)
+    if gsd_m is not None:
+        second = axes.secondary_xaxis("top", functions=(_scaling(1.0 / gsd_m), _scaling(gsd_m)))
+        second.set_xlabel("frequency [cycles/m]")
+
+
+def _scaling(factor: float) -> Callable[[Any], Any]:
+    """Multiply by `factor`: one direction of a second axis."""
+    return lambda value: np.asarray(value) * factor
