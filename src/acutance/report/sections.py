@@ -1,0 +1,285 @@
+"""What a report says about a measurement, a comparison and a target, section by section."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from acutance.curves import METRICS, Estimate
+from acutance.report.comparison_page import comparison_figure, edge_labels
+from acutance.report.edge_page import panel_figures
+from acutance.report.html import Headline, Plate, Section, Table, Verdict
+from acutance.report.tables import mtf_rows
+from acutance.report.target_page import group_rows, target_figure
+from acutance.report.wording import (
+    describe_line,
+    flatten_options,
+    format_number,
+    metric_words,
+    split_message,
+    verdict,
+    word_estimate,
+)
+
+if TYPE_CHECKING:
+    from acutance.curves import Response
+    from acutance.curves.grid import Floats
+    from acutance.measure import TargetResult
+    from acutance.measure.measurement import Measurement
+
+__all__ = ["comparison_sections", "edge_sections", "reproducing_section", "target_sections"]
+
+HEADLINES = ("mtf_nyquist", "rer", "fwhm_px", "fwhm_m")
+
+CAPTIONS = {
+    "mtf": (
+        "Modulation transfer function",
+        "The MTF with its 95 % band. What the image holds beyond Nyquist is aliased.",
+    ),
+    "target": (
+        "The pixels and the line",
+        "The cut, the fitted edge, the pixels that entered the fit, the way from dark to bright.",
+    ),
+    "esf": (
+        "Edge spread function",
+        "Every pixel at its distance along the normal, the fitted ESF, and what it leaves.",
+    ),
+    "lsf": ("Line spread function", "The derivative of the ESF, with its full width at half."),
+}
+
+
+def edge_sections(measurement: Measurement, command: str | None = None) -> tuple[Section, ...]:
+    """A single edge: numbers, verdict, drawings, tables, how it was measured."""
+    plates = tuple(
+        Plate.of_figure(figure, *CAPTIONS[name])
+        for name, figure in panel_figures(measurement).items()
+    )
+    return (
+        Section(
+            "Result",
+            paragraphs=(f"An edge, {measurement.orientation}: {describe_line(measurement)}.",),
+            headlines=_headlines(measurement),
+            verdicts=(Verdict(measurement.trusted, verdict(measurement)),),
+        ),
+        Section("Curves", plates=plates),
+        Section("Numbers", tables=(_metrics_table(measurement),)),
+        *_checks_sections(measurement),
+        Section("MTF in steps of 0.02 cycles per pixel", tables=(_mtf_table(measurement),)),
+        reproducing_section(measurement, command),
+    )
+
+
+def _headlines(measurement: Measurement) -> tuple[Headline, ...]:
+    numbers = measurement.metrics()
+    cards = [_headline(name, numbers[name]) for name in HEADLINES if name in numbers]
+    cards.append(Headline("SNR", format_number(measurement.snr, 3), "", "contrast over noise"))
+    return tuple(cards)
+
+
+def _headline(name: str, estimate: Estimate, label: str = "") -> Headline:
+    words, number = metric_words(name), word_estimate(estimate)
+    detail = f"± {number.std}, 95 %: {number.interval}" if number.std != "–" else ""
+    return Headline(label or words.label, number.value, words.unit, detail)
+
+
+def _metrics_table(measurement: Measurement) -> Table:
+    rows = []
+    for name, estimate in measurement.metrics().items():
+        words, number = metric_words(name), word_estimate(estimate)
+        rows.append(
+            (words.label, number.value, number.std, number.interval, words.unit, words.meaning)
+        )
+    columns = ("Metric", "Value", "Std", "95 % interval", "Unit", "Meaning")
+    return Table(columns, tuple(rows), "lrrrll")
+
+
+def _checks_sections(measurement: Measurement) -> tuple[Section, ...]:
+    if not measurement.checks:
+        return ()
+    rows, alerts = [], set()
+    for i, check in enumerate(measurement.checks):
+        message, source = split_message(check)
+        found = format_number(check.value, 3)
+        state = "passed" if check.passed else "failed"
+        rows.append((check.name, found, check.limit, state, message, source))
+        if not check.passed:
+            alerts.add(i)
+    columns = ("Check", "Found", "Asked", "", "What it means", "Source of the limit")
+    table = Table(columns, tuple(rows), "lrrlll", alerts=frozenset(alerts))
+    return (Section("Checks", tables=(table,)),)
+
+
+def _mtf_table(measurement: Measurement) -> Table:
+    rows = []
+    for row in mtf_rows(measurement):
+        low, high = row.mtf.interval(0.95)
+        metres = () if row.freq_cpm is None else (f"{row.freq_cpm:.3f}",)
+        rows.append(
+            (f"{row.freq_cpp:.2f}", *metres, f"{row.mtf.value:.4f}", f"{low:.4f} … {high:.4f}")
+        )
+    metres = () if measurement.response.gsd_m is None else ("c/m",)
+    columns = ("c/px", *metres, "MTF", "95 % interval")
+    return Table(columns, tuple(rows), "r" * len(columns), parts=3)
+
+
+def reproducing_section(measurement: Measurement, command: str | None = None) -> Section:
+    """Options, software, time, and the command that measures the same again."""
+    from acutance import __version__
+
+    rows = [
+        ("method", measurement.method),
+        *flatten_options(measurement.options),
+        ("acutance", __version__),
+        ("measured at", measurement.measured_at.isoformat(sep=" ", timespec="seconds")),
+    ]
+    return Section(
+        "How it was measured",
+        tables=(Table(("Option", "Value"), tuple(rows), "ll"),),
+        command=command or _command(measurement),
+    )
+
+
+def _command(measurement: Measurement) -> str | None:
+    """The command line that repeats a measurement made from Python, where a file is known."""
+    image = measurement.image
+    if image.path is None:
+        return None
+    words = ["acutance", measurement.kind, image.path, "--roi", ",".join(map(str, image.roi))]
+    if image.band != 1:
+        words += ["--band", str(image.band)]
+    if image.gsd_m is not None:
+        words += ["--gsd", format_number(image.gsd_m, 8)]
+    words += ["--method", measurement.method]
+    if measurement.response.rer_centre != "half":
+        words += ["--rer-centre", measurement.response.rer_centre]
+    return shlex.join(words)
+
+
+def comparison_sections(
+    measurements: Sequence[Measurement],
+    *,
+    truth: Response | None = None,
+    command: str | None = None,
+) -> tuple[Section, ...]:
+    """One target by several methods: drawings, all numbers, verdicts."""
+    labels = edge_labels(measurements)
+    plate = Plate.of_figure(
+        comparison_figure(measurements, truth=truth),
+        "MTFs, their differences and the differences of the ESFs",
+        "Bands are 95 % intervals. Differences are taken to the truth, or to the first method.",
+        wide=True,
+    )
+    verdicts = tuple(
+        Verdict(one.trusted, f"{label}: {verdict(one)}")
+        for label, one in zip(labels, measurements, strict=True)
+    )
+    first = "" if truth is None else " and the truth"
+    return (
+        Section(
+            "Comparison",
+            paragraphs=(f"One target by {', '.join(labels)}{first}.",),
+            plates=(plate,),
+        ),
+        Section("Numbers", tables=(_comparison_table(measurements, labels, truth),)),
+        Section("Checks", verdicts=verdicts),
+        reproducing_section(measurements[0], command),
+    )
+
+
+def _comparison_table(
+    measurements: Sequence[Measurement], labels: Sequence[str], truth: Response | None
+) -> Table:
+    known = () if truth is None else ("truth",)
+    rows = []
+    for name in METRICS:
+        numbers = [one.metrics().get(name) for one in measurements]
+        if any(number is None for number in numbers):
+            continue
+        true = () if truth is None else (_true_value(truth, name),)
+        cells = (word_estimate(number).value_and_std for number in numbers if number is not None)
+        rows.append((metric_words(name).label_with_unit, *true, *cells))
+    columns = ("Metric", *known, *labels)
+    return Table(columns, tuple(rows), "l" + "r" * (len(columns) - 1))
+
+
+def _true_value(truth: Response, name: str) -> str:
+    number = truth.metrics().get(name)
+    return "–" if number is None else word_estimate(number).value
+
+
+def target_sections(
+    result: TargetResult,
+    *,
+    backdrop: Floats | None = None,
+    origin: tuple[int, int] = (0, 0),
+    command: str | None = None,
+) -> tuple[Section, ...]:
+    """All edges of a target: group means, every edge, what was rejected and why."""
+    measurements = tuple(result.measurements)
+    headlines = [
+        _headline(name, group.metrics[name], f"{metric_words(name).label}, {orientation}")
+        for orientation, group in result.groups.items()
+        for name in ("mtf_nyquist", "rer", "fwhm_px")
+    ]
+    plate = Plate.of_figure(
+        target_figure(result, backdrop=backdrop, origin=origin),
+        "The edges and their MTFs by direction",
+        "Numbered edges, the MTF of each with its 95 % band, the weighted mean at Nyquist.",
+        wide=True,
+    )
+    groups = Table(
+        ("Direction", "Metric", "Weighted mean", "chi² / dof", "p"),
+        tuple(group_rows(result)),
+        "llrrr",
+    )
+    sections = [
+        Section(
+            "Result",
+            headlines=tuple(headlines),
+            verdicts=(Verdict(all(one.trusted for one in measurements), verdict(measurements)),),
+        ),
+        Section("Edges", plates=(plate,), tables=(_edges_table(measurements),)),
+        Section(
+            "Means by direction",
+            paragraphs=(
+                "The means weigh every edge by its variance. A small p says that the edges differ "
+                "by more than their standard deviations explain.",
+            ),
+            tables=(groups,),
+        ),
+    ]
+    if result.rejected:
+        rows = tuple((one.stage, one.reason) for one in result.rejected)
+        sections.append(
+            Section("Rejected", tables=(Table(("Stage", "Why"), rows, "ll"),)),
+        )
+    return (*sections, reproducing_section(measurements[0], command))
+
+
+def _edges_table(measurements: Sequence[Measurement]) -> Table:
+    names = ("mtf_nyquist", "rer", "fwhm_px")
+    rows, alerts = [], set()
+    for i, one in enumerate(measurements):
+        failed = ", ".join(check.name for check in one.failed_checks)
+        rows.append(
+            (
+                str(i + 1),
+                one.orientation,
+                word_estimate(one.angle_deg).value_and_std,
+                format_number(one.snr, 3),
+                *(word_estimate(getattr(one, name)).value_and_std for name in names),
+                failed or "all passed",
+            )
+        )
+        if failed:
+            alerts.add(i)
+    columns = (
+        "Edge",
+        "Direction",
+        "Angle [°]",
+        "SNR",
+        *(metric_words(name).label_with_unit for name in names),
+        "Checks",
+    )
+    return Table(columns, tuple(rows), "rlrrrrrl", alerts=frozenset(alerts))
