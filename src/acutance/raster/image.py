@@ -218,12 +218,15 @@ def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Im
 def _require_file(name: str) -> None:
     """Check what the file system can tell before a driver is asked."""
     path = Path(name)
-    if path.is_file():
-        if path.stat().st_size == 0:
-            raise ImageError(f"{name} is empty (0 bytes): it was not written or not copied whole")
-    elif not path.is_dir() and not _GDAL_NAME.match(name):
-        folder = path.parent
-        found = "the folder exists" if folder.is_dir() else f"there is no folder {folder} either"
+    try:
+        is_file, is_folder = path.is_file(), path.is_dir()
+        is_empty = is_file and path.stat().st_size == 0
+    except OSError as error:
+        raise ImageError(f"{name} cannot be reached ({error.strerror}): check the path") from error
+    if is_empty:
+        raise ImageError(f"{name} is empty (0 bytes): it was not written or not copied whole")
+    if not is_file and not is_folder and not _GDAL_NAME.match(name):
+        found = "its folder exists" if path.parent.is_dir() else "nor does its folder"
         raise ImageError(f"{name} does not exist ({found}): check the path")
 
 

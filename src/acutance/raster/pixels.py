@@ -21,6 +21,8 @@ __all__ = [
     "usable_values",
 ]
 
+_NPY_MAGIC = b"\x93NUMPY"
+
 
 class PixelSource(Protocol):
     """Something that hands out boxes of one band."""
@@ -77,6 +79,9 @@ class NpyPixels:
             If the file is not a NumPy array, or is cut short.
         """
         try:
+            with open(self.path, "rb") as file:
+                if file.read(len(_NPY_MAGIC)) != _NPY_MAGIC:
+                    raise ValueError("its first bytes are not those of one")
             array: NDArray[Any] = np.load(self.path, mmap_mode="r", allow_pickle=False)
         except (ValueError, EOFError, OSError) as error:
             raise ImageError(
