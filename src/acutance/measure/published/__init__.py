@@ -1,0 +1,34 @@
+"""Published edge methods, faithful to their papers, biases included.
+
+Every method takes an `EdgeBand` and a frozen dataclass of options and gives an `EdgeFit`, like
+the reference method, so that they can be compared curve by curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from acutance.fit.band import EdgeFit
+from acutance.measure.published.fermi import FermiOptions, fermi
+from acutance.measure.published.iso12233 import Iso12233Options, iso12233
+from acutance.measure.published.kompsat import KompsatOptions, kompsat_2014
+from acutance.measure.published.sdsu import SdsuOptions, sdsu_2005
+
+__all__ = [
+    "PUBLISHED",
+    "FermiOptions",
+    "Iso12233Options",
+    "KompsatOptions",
+    "SdsuOptions",
+    "fermi",
+    "iso12233",
+    "kompsat_2014",
+    "sdsu_2005",
+]
+
+PUBLISHED: dict[str, Callable[..., EdgeFit]] = {
+    "sdsu-2005": sdsu_2005,
+    "kompsat-2014": kompsat_2014,
+    "iso12233": iso12233,
+    "fermi": fermi,
+}
