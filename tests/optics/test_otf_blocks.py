@@ -1,0 +1,261 @@
+"""Every OTF block against its closed form, or against the physics it is made of."""
+
+import math
+
+import numpy as np
+import pytest
+
+from acutance.errors import ModelError
+from acutance.optics import (
+    Aerosol,
+    Butterworth,
+    ChargeDiffusion,
+    Defocus,
+    Detector,
+    Diffraction,
+    Exponential,
+    Gaussian,
+    Halo,
+    Jitter,
+    Resampling,
+    Rescaled,
+    Sharpening,
+    Shift,
+    Smear,
+    Tdi,
+    Turbulence,
+    WavefrontError,
+)
+from acutance.optics.processing import interpolation_weight
+
+BLOCKS = [
+    Aerosol(0.3, 0.1),
+    Butterworth(1.4),
+    ChargeDiffusion(0.3),
+    ChargeDiffusion(0.3, 2.0),
+    Defocus(0.7, 1.2),
+    Detector(0.9, 1.1),
+    Diffraction(1.2),
+    Diffraction(1.2, 0.35),
+    Exponential(0.4, "across"),
+    Exponential(0.4, "along"),
+    Gaussian(0.4, 0.6),
+    Halo(0.1, 2.5),
+    Jitter(0.2),
+    Resampling("nearest"),
+    Resampling("bilinear"),
+    Resampling("cubic", -0.75),
+    Rescaled(Gaussian(0.4), 1.3),
+    Sharpening.both_axes(0.2),
+    Sharpening(((0.0, -0.1, -0.2),)),
+    Shift(0.25, 0.6),
+    Smear(1.2),
+    Tdi(48, 0.02, 0.01),
+    Turbulence(4.0),
+    WavefrontError(0.07, 0.2, 1.2),
+]
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=repr)
+class TestEveryBlock:
+    def test_is_one_at_zero_frequency(self, block):
+        assert block.otf(np.zeros(1), np.zeros(1)) == pytest.approx(1.0, abs=1e-12)
+
+    def test_belongs_to_a_real_point_spread_function(self, block):
+        u, v = np.array([0.13, 0.4, -0.7]), np.array([0.2, -0.31, 0.05])
+        np.testing.assert_allclose(block.otf(-u, -v), np.conj(block.otf(u, v)), atol=1e-14)
+
+    def test_broadcasts_rows_against_columns(self, block):
+        u, v = np.linspace(-1, 1, 7), np.linspace(0, 1, 5)[:, None]
+        grid = block.otf(u, v)
+        assert grid.shape == (5, 7)
+        assert grid[3, 2] == pytest.approx(complex(block.otf(u[2:3], v[3])[0]), abs=1e-14)
+
+    def test_compares_and_hashes_by_value(self, block):
+        assert hash(block) == hash(type(block)(**vars(block)))
+
+
+def transform(function, f, low, high, pieces=40):
+    """Fourier transform of a function of one variable by piecewise Gauss-Legendre quadrature."""
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    ends = np.linspace(low, high, pieces + 1)
+    half = np.diff(ends)[:, None] / 2
+    x = (ends[:-1, None] + half + half * nodes).ravel()
+    mass = (half * weights).ravel() * function(x)
+    return np.exp(-2j * math.pi * np.multiply.outer(f, x)) @ mass
+
+
+def pupil_autocorrelation(nu, obscuration=0.0, waves=0.0):
+    """OTF of an annular pupil by counting points of a fine grid, unit outer radius."""
+    x = np.linspace(-1, 1, 1501)[:, None] + nu
+    y = np.linspace(-1, 1, 1001)[None, :]
+
+    def pupil(shift):
+        r2 = (x + shift) ** 2 + y**2
+        return np.where((r2 <= 1) & (r2 >= obscuration**2), np.exp(2j * math.pi * waves * r2), 0)
+
+    def total(shift):
+        return np.sum(pupil(-nu + shift) * np.conj(pupil(-nu - shift)))
+
+    return (total(nu) / total(0.0)).real
+
+
+F = np.array([0.05, 0.2, 0.5, 0.9])
+ZERO = np.zeros(4)
+
+
+def test_gaussian_has_its_own_width_along_each_axis():
+    block = Gaussian(0.4, 0.7)
+    np.testing.assert_allclose(block.otf(F, ZERO), np.exp(-2 * (math.pi * 0.4 * F) ** 2))
+    np.testing.assert_allclose(block.otf(ZERO, F), np.exp(-2 * (math.pi * 0.7 * F) ** 2))
+
+
+def test_jitter_is_a_round_gaussian():
+    np.testing.assert_allclose(Jitter(0.3).otf(F, 2 * F), Gaussian(0.3).otf(F, 2 * F))
+
+
+def test_detector_is_zero_at_its_inverse_width():
+    assert Detector(0.8, 1.25).otf(np.array([1.25]), ZERO[:1]) == pytest.approx(0, abs=1e-15)
+    assert Detector(0.8, 1.25).otf(ZERO[:1], np.array([0.8])) == pytest.approx(0, abs=1e-15)
+    assert Detector().otf(np.array([0.5]), ZERO[:1]) == pytest.approx(2 / math.pi)
+
+
+def test_smear_acts_on_its_axis_only():
+    np.testing.assert_allclose(Smear(1.2, "along").otf(F, ZERO), 1.0)
+    np.testing.assert_allclose(Smear(1.2, "along").otf(ZERO, F), np.sinc(1.2 * F))
+    np.testing.assert_allclose(Smear(1.2, "across").otf(F, ZERO), np.sinc(1.2 * F))
+
+
+def test_butterworth_halves_at_its_cutoff_in_any_direction():
+    assert Butterworth(1.4).otf(np.array([1.4]), ZERO[:1]) == pytest.approx(0.5)
+    assert Butterworth(1.4).otf(np.array([1.4 * 0.6]), np.array([1.4 * 0.8])) == pytest.approx(0.5)
+
+
+def test_exponential_is_the_transform_of_a_trail_towards_higher_columns():
+    def trail(x):
+        return np.exp(-x / 0.4) / 0.4
+
+    expected = transform(trail, F, 0.0, 16.0)
+    np.testing.assert_allclose(Exponential(0.4).otf(F, ZERO), expected, atol=1e-12)
+
+
+def test_halo_keeps_the_core():
+    assert Halo(0.12, 2.5).otf(np.array([0.5]), ZERO[:1]) == pytest.approx(0.88, abs=1e-12)
+    low = Halo(0.12, 2.5).otf(np.array([0.05]), ZERO[:1])
+    assert low == pytest.approx(0.88 + 0.12 * math.exp(-2 * (math.pi * 2.5 * 0.05) ** 2))
+
+
+@pytest.mark.parametrize("obscuration", [0.0, 0.3, 0.6])
+@pytest.mark.parametrize("nu", [0.1, 0.33, 0.5, 0.77])
+def test_diffraction_is_the_autocorrelation_of_the_pupil(obscuration, nu):
+    found = Diffraction(1.2, obscuration).otf(np.array([1.2 * nu]), ZERO[:1])[0]
+    assert found == pytest.approx(pupil_autocorrelation(nu, obscuration), abs=1.5e-3)
+
+
+def test_diffraction_of_an_open_circle_has_the_classical_form():
+    nu = F
+    expected = 2 / math.pi * (np.arccos(nu) - nu * np.sqrt(1 - nu**2))
+    np.testing.assert_allclose(Diffraction(1.2).otf(1.2 * nu, ZERO), expected, atol=1e-14)
+    assert np.all(Diffraction(1.2, 0.3).otf(np.array([1.2, 1.3, 40.0]), np.zeros(3)) == 0)
+
+
+@pytest.mark.parametrize("nu", [0.1, 0.33, 0.5, 0.77])
+def test_defocus_is_the_autocorrelation_of_the_curved_pupil(nu):
+    found = Defocus(0.9, 1.2).otf(np.array([1.2 * nu]), ZERO[:1])[0]
+    assert found == pytest.approx(pupil_autocorrelation(nu, waves=0.9), abs=1.5e-3)
+
+
+def test_defocus_of_nothing_is_diffraction_and_a_lot_reverses_contrast():
+    np.testing.assert_allclose(
+        Defocus(0.0, 1.2).otf(F, ZERO), Diffraction(1.2).otf(F, ZERO), atol=1e-12
+    )
+    assert Defocus(1.0, 1.2).otf(np.array([0.4]), ZERO[:1])[0] < -0.02
+
+
+def test_wavefront_error_levels_off_at_the_strehl_ratio():
+    block = WavefrontError(0.07, 0.2, 1.2)
+    assert block.otf(np.array([1.2]), ZERO[:1]) == pytest.approx(
+        math.exp(-((2 * math.pi * 0.07) ** 2)), rel=1e-9
+    )
+    at_correlation = block.otf(np.array([0.24]), ZERO[:1])[0]
+    fallen = (2 * math.pi * 0.07) ** 2 * (1 - math.exp(-1))
+    assert at_correlation == pytest.approx(math.exp(-fallen))
+
+
+def test_charge_diffusion_is_one_over_cosh_when_nothing_recombines():
+    np.testing.assert_allclose(
+        ChargeDiffusion(0.3).otf(F, ZERO), 1 / np.cosh(2 * math.pi * 0.3 * F), rtol=1e-12
+    )
+    lossy = np.cosh(0.3 / 2) / np.cosh(0.3 * np.sqrt((2 * math.pi * F) ** 2 + 0.25))
+    np.testing.assert_allclose(ChargeDiffusion(0.3, 2.0).otf(ZERO, F), lossy, rtol=1e-12)
+
+
+def test_tdi_is_the_dirichlet_kernel_of_its_stages():
+    x = math.pi * 0.05 * F
+    np.testing.assert_allclose(
+        Tdi(16, drift_across_px=0.05).otf(F, ZERO), np.sin(16 * x) / (16 * np.sin(x)), rtol=1e-10
+    )
+    np.testing.assert_allclose(Tdi(16, phases=2).otf(ZERO, F), np.sinc(F / 2), rtol=1e-12)
+
+
+def test_atmosphere():
+    assert Turbulence(4.0).otf(np.array([4.0]), ZERO[:1]) == pytest.approx(math.exp(-3.44))
+    aerosol = Aerosol(0.3, 0.1).otf(np.array([0.05, 0.1, 0.5]), np.zeros(3))
+    np.testing.assert_allclose(aerosol, np.exp([-0.075, -0.3, -0.3]))
+
+
+@pytest.mark.parametrize(
+    ("kernel", "a"), [("nearest", -0.5), ("bilinear", -0.5), ("cubic", -0.5), ("cubic", -1.0)]
+)
+def test_resampling_is_the_transform_of_its_kernel(kernel, a):
+    # Pieces end where the kernels have their corners.
+    expected = transform(lambda x: interpolation_weight(kernel, x, a), F, -2.0, 2.0, 16)
+    np.testing.assert_allclose(Resampling(kernel, a).otf(F, ZERO), expected.real, atol=1e-12)
+
+
+@pytest.mark.parametrize("kernel", ["nearest", "bilinear", "cubic"])
+def test_resampling_is_the_mean_of_all_shifts(kernel):
+    shifts = (np.arange(2000) + 0.5) / 2000
+    mean = np.mean([Shift(0.0, s, kernel).otf(F, ZERO) for s in shifts], axis=0)
+    np.testing.assert_allclose(Resampling(kernel).otf(F, ZERO), mean, atol=1e-6)
+
+
+def test_shift_by_half_a_pixel():
+    assert Shift(0.0, 0.5, "bilinear").otf(np.array([0.5]), ZERO[:1]) == pytest.approx(0, abs=1e-12)
+    cubic = Shift(0.0, 0.5, "cubic").otf(F, ZERO)
+    expected = 2 * (9 / 16 * np.cos(math.pi * F) - 1 / 16 * np.cos(3 * math.pi * F))
+    np.testing.assert_allclose(cubic, expected, atol=1e-12)
+    np.testing.assert_allclose(Shift(3.0, -2.0).otf(F, 2 * F), 1.0, atol=1e-12)
+
+
+def test_sharpening_is_a_sum_of_cosines():
+    block = Sharpening(((-0.2, 1.4, -0.2),))
+    np.testing.assert_allclose(block.otf(F, F), 1.4 - 0.4 * np.cos(2 * math.pi * F))
+    assert block.noise_gain == pytest.approx(math.sqrt(1.4**2 + 2 * 0.04))
+    both = Sharpening.both_axes(0.2).otf(F, 2 * F)
+    expected = (1.4 - 0.4 * np.cos(2 * math.pi * F)) * (1.4 - 0.4 * np.cos(4 * math.pi * F))
+    np.testing.assert_allclose(both, expected)
+
+
+def test_larger_pixels_see_lower_frequencies():
+    np.testing.assert_allclose(
+        Rescaled(Gaussian(0.5), 2.0).otf(F, ZERO), Gaussian(0.25).otf(F, ZERO)
+    )
+
+
+@pytest.mark.parametrize(
+    ("build", "words"),
+    [
+        (lambda: Gaussian(-0.1), "Gaussian: sigma_px is -0.1"),
+        (lambda: Gaussian(math.nan), "finite"),
+        (lambda: Halo(1.2, 3.0), "at most 1"),
+        (lambda: Diffraction(0.0), "above 0"),
+        (lambda: Sharpening(((1.0, -1.0),)), "odd"),
+        (lambda: Sharpening(((1.0, -2.0, 1.0),)), "sums to zero"),
+        (lambda: Resampling("spline"), "'spline'"),
+        (lambda: Tdi(0), "stages is 0"),
+    ],
+)
+def test_meaningless_parameters_are_refused(build, words):
+    with pytest.raises(ModelError, match=words):
+        build()
