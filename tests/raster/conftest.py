@@ -15,8 +15,20 @@ from rasterio.errors import NotGeoreferencedWarning
 
 WriteRaster = Callable[..., str]
 
-UTM = {"crs": "EPSG:32631", "transform": rasterio.Affine(0.5, 0, 600000, 0, -0.5, 5000000)}
-LONLAT = {"crs": "EPSG:4326", "transform": rasterio.Affine(1e-5, 0, 5.0, 0, -1e-5, 60.0)}
+
+@pytest.fixture
+def utm() -> dict[str, Any]:
+    """Where an image of 0.5 m pixels lies: zone 31 north, upper left corner 600000, 5000000."""
+    return {
+        "crs": "EPSG:32631",
+        "transform": rasterio.Affine(0.5, 0, 600000, 0, -0.5, 5000000),
+    }
+
+
+@pytest.fixture
+def lonlat() -> dict[str, Any]:
+    """Where an image of 0.00001 degree pixels lies: upper left corner 5 E 60 N."""
+    return {"crs": "EPSG:4326", "transform": rasterio.Affine(1e-5, 0, 5.0, 0, -1e-5, 60.0)}
 
 
 @pytest.fixture
@@ -51,9 +63,9 @@ def write_raster(tmp_path: Path) -> WriteRaster:
                 dtype=bands.dtype.name,
                 **profile,
             ) as dataset:
-                dataset.write(bands)
                 if edit is not None:
                     edit(dataset)
+                dataset.write(bands)
         return path
 
     return write

@@ -88,7 +88,7 @@ def test_the_mask_is_that_of_the_even_odd_rule(corners):
         inside = False
         for (r0, c0), (r1, c1) in zip(corners, corners[1:] + corners[:1], strict=True):
             if (r0 <= row) != (r1 <= row):
-                inside ^= c0 + (row - r0) * ((c1 - c0) / (r1 - r0)) <= col
+                inside ^= c0 + (row - r0) / (r1 - r0) * (c1 - c0) <= col
         assert mask[row - box.row, col - box.col] == inside
 
 

@@ -198,11 +198,10 @@ def transform_points(
 
 def _parse_crs(crs: str) -> Any:
     from rasterio.crs import CRS
-    from rasterio.errors import CRSError
 
     try:
         return CRS.from_user_input(crs)
-    except CRSError as error:
+    except ValueError as error:
         raise RegionError(
             f"the coordinate reference system {_short(crs)!r} is not known ({error}): "
             'write it as "EPSG:32631", or "pixel" for pixel coordinates'

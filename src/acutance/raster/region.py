@@ -236,8 +236,8 @@ def _inside(outline: Floats, box: Box) -> NDArray[np.bool_]:
     rows = np.arange(box.row, box.row + box.height, dtype=np.float64)[:, np.newaxis]
     crossed = (start[:, 0] <= rows) != (stop[:, 0] <= rows)
     at_row, side = np.nonzero(crossed)
-    run = (stop[side, 1] - start[side, 1]) / (stop[side, 0] - start[side, 0])
-    column = start[side, 1] + (rows[at_row, 0] - start[side, 0]) * run
+    done = (rows[at_row, 0] - start[side, 0]) / (stop[side, 0] - start[side, 0])
+    column = start[side, 1] + done * (stop[side, 1] - start[side, 1])
     first = np.clip(np.ceil(column) - box.col, 0, box.width).astype(np.intp)
     crossings = np.zeros((box.height, box.width + 1), dtype=np.uint8)
     np.add.at(crossings, (at_row, first), 1)
