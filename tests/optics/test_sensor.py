@@ -185,8 +185,8 @@ def test_bare_detector_is_good_to_the_documented_error():
     straight = Sensor([Detector()]).profile(0.0)
     ramp = np.clip(s + 0.5, 0, 1)
     error = np.abs(straight.esf(s) - ramp)
-    assert error.max() < 2e-4
-    assert error[np.abs(np.abs(s) - 0.5) > 0.05].max() < 1e-5
+    assert error.max() < 1e-4
+    assert error[np.abs(np.abs(s) - 0.5) > 0.01].max() < 1e-6
 
 
 def test_turbulence_tails_do_not_wrap_round():

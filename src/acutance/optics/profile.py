@@ -42,8 +42,8 @@ class Profile:
     than 1/s^2 in the ESF.
 
     Errors of the ESF: below 1e-7 for systems with a Gaussian, an aperture or any other blur that
-    stops high frequencies. A bare detector or trail has OTF ~ 1/f and edges that are
-    themselves sharp: 2e-4 within 0.01 px of a corner of the ESF, 1e-6 elsewhere.
+    stops high frequencies. A bare detector (OTF ~ 1/f) has an ESF with corners: the error is 1e-4
+    at a corner and below 1e-6 from 0.01 px on, while the LSF rings at its jumps.
 
     Parameters
     ----------
