@@ -105,6 +105,16 @@ def test_an_npy_file_reads_like_its_array(tmp_path):
         assert image.path == str(tmp_path / "image.npy")
 
 
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_a_large_npy_file_is_read_in_strips(tmp_path, monkeypatch, order):
+    monkeypatch.setattr("acutance.raster.pixels._MAPPED_BYTES", 1000)
+    array = np.asarray(np.arange(6000.0).reshape(60, 100), order=order)
+    np.save(tmp_path / "image.npy", array)
+    image = open_image(tmp_path / "image.npy")
+    assert np.array_equal(image.read(), array)
+    assert np.array_equal(image.read(Box(7, 9, 41, 33)), array[7:48, 9:42])
+
+
 def test_an_npy_file_that_is_no_image_is_refused(tmp_path):
     path = tmp_path / "image.npy"
     np.save(path, np.zeros((2, 3, 4, 5)))

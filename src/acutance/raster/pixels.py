@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -22,6 +23,7 @@ __all__ = [
 ]
 
 _NPY_MAGIC = b"\x93NUMPY"
+_MAPPED_BYTES = 32 * 2**20
 
 
 class PixelSource(Protocol):
@@ -68,7 +70,16 @@ class NpyPixels:
     nodata: float | None = None
 
     def read(self, box: Box) -> Floats:
-        return ArrayPixels(self.map(), self.nodata).read(box)
+        # The system maps the neighbourhood of every page touched: a strip down all rows of a
+        # large file would hold the whole file, so it is mapped anew for every few lines.
+        values = np.empty(box.shape)
+        header = self.map()
+        lines = max(1, _MAPPED_BYTES // max(header.strides))
+        for part in _strips(box, lines, by_rows=header.strides[0] >= header.strides[1]):
+            inside = slice(part.row - box.row, part.row - box.row + part.height)
+            across = slice(part.col - box.col, part.col - box.col + part.width)
+            values[inside, across] = ArrayPixels(self.map(), self.nodata).read(part)
+        return values
 
     def map(self) -> NDArray[Any]:
         """The array, read-only, of which only the pages touched are loaded.
@@ -89,6 +100,16 @@ class NpyPixels:
                 "save a 2-D array of numbers with numpy.save"
             ) from error
         return array
+
+
+def _strips(box: Box, lines: int, *, by_rows: bool) -> Iterator[Box]:
+    """A box in pieces of so many whole rows, or columns, one after the other."""
+    if by_rows:
+        for row in range(box.row, box.row + box.height, lines):
+            yield Box(row, box.col, min(lines, box.row + box.height - row), box.width)
+    else:
+        for col in range(box.col, box.col + box.width, lines):
+            yield Box(box.row, col, box.height, min(lines, box.col + box.width - col))
 
 
 def require_image_array(array: NDArray[Any], name: str) -> None:

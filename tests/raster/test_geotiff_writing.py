@@ -1,0 +1,71 @@
+"""Writing GeoTIFF: what is written is read back, whole or not at all."""
+
+import numpy as np
+import pytest
+import rasterio
+
+from acutance.errors import ImageError, OptionError
+from acutance.raster import Gsd, open_image, write_geotiff
+
+
+@pytest.mark.parametrize("dtype", ["uint8", "uint16", "int16", "float32", "float64"])
+def test_round_trip(tmp_path, pixels, dtype):
+    path = tmp_path / "a.tif"
+    array = (pixels % 200).astype(dtype)
+    write_geotiff(path, array, gsd_m=Gsd(0.7, 0.6))
+    image = open_image(path)
+    assert np.array_equal(image.read(), array)
+    assert image.dtype == dtype
+    assert image.gsd() == Gsd(0.7, 0.6)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["a.tif"]
+
+
+def test_tiles_and_compression(tmp_path):
+    path = tmp_path / "a.tif"
+    write_geotiff(path, np.zeros((1000, 900), np.uint16))
+    assert path.stat().st_size < 20_000
+    with rasterio.Env(), pytest.warns(rasterio.errors.NotGeoreferencedWarning):
+        dataset = rasterio.open(path)
+    with dataset:
+        assert dataset.block_shapes == [(256, 256)]
+
+
+def test_place_nodata_and_bands(tmp_path, pixels):
+    path = tmp_path / "a.tif"
+    transform = (0.5, 0.0, 600000.0, 0.0, -0.5, 5000000.0)
+    write_geotiff(
+        str(path), np.stack([pixels, pixels + 1]), transform=transform, crs="EPSG:32631", nodata=7
+    )
+    image = open_image(path, band=2)
+    assert image.geolocation.transform == transform
+    assert image.crs == "EPSG:32631"
+    assert image.band_count == 2
+    assert np.array_equal(np.isnan(image.read()), pixels == 6)
+
+
+def test_an_existing_file_survives_a_failure(tmp_path, pixels):
+    path = tmp_path / "a.tif"
+    write_geotiff(path, pixels)
+    before = path.read_bytes()
+    with pytest.raises(ImageError, match="cannot be written"):
+        write_geotiff(path, pixels, crs="nonsense")
+    assert path.read_bytes() == before
+    write_geotiff(path, pixels + 1)
+    assert np.array_equal(open_image(path).read(), pixels + 1)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["a.tif"]
+
+
+@pytest.mark.parametrize("array", [np.zeros(5), np.zeros((2, 0)), np.zeros((2, 2), complex)])
+def test_arrays_that_are_no_image(tmp_path, array):
+    with pytest.raises(ImageError, match="cannot be written as an image"):
+        write_geotiff(tmp_path / "a.tif", array)
+
+
+def test_places_and_types_that_cannot_be_written(tmp_path, pixels):
+    with pytest.raises(ImageError, match="check that the folder exists"):
+        write_geotiff(tmp_path / "none" / "a.tif", pixels)
+    with pytest.raises(ImageError, match=r"longdouble|float128"):
+        write_geotiff(tmp_path / "a.tif", pixels.astype(np.longdouble))
+    with pytest.raises(OptionError, match="GSD"):
+        write_geotiff(tmp_path / "a.tif", pixels, gsd_m=0)
+    assert list(tmp_path.iterdir()) == []

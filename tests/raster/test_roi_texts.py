@@ -1,0 +1,204 @@
+"""Regions as texts and GeoJSON files."""
+
+import json
+
+import numpy as np
+import pytest
+
+from acutance.errors import RegionError
+from acutance.raster import Box, Image, open_image, parse_roi
+
+SQUARE = [[9.5, 4.5], [29.5, 4.5], [29.5, 14.5], [9.5, 14.5], [9.5, 4.5]]
+SQUARE_BOX = Box(5, 10, 10, 20)
+PIXEL_CRS = {"type": "name", "properties": {"name": "pixel"}}
+
+
+@pytest.fixture
+def plain():
+    return Image.from_array(np.zeros((40, 50)))
+
+
+@pytest.fixture
+def located(pixels, write_raster, utm):
+    return open_image(write_raster("located.tif", pixels, **utm))
+
+
+@pytest.fixture
+def write_geojson(tmp_path):
+    def write(document, name="roi.geojson"):
+        path = tmp_path / name
+        path.write_text(document if isinstance(document, str) else json.dumps(document))
+        return str(path)
+
+    return write
+
+
+def polygon(ring=SQUARE, **more):
+    return {"type": "Polygon", "coordinates": [ring], **more}
+
+
+def feature(geometry, **properties):
+    return {"type": "Feature", "geometry": geometry, "properties": properties}
+
+
+def collection(*features, **more):
+    return {"type": "FeatureCollection", "features": list(features), **more}
+
+
+def in_utm(ring):
+    """Pixel coordinates (x, y) of the located image as its map coordinates."""
+    return [[600000 + 0.5 * (x + 0.5), 5000000 - 0.5 * (y + 0.5)] for x, y in ring]
+
+
+def in_lonlat(ring, image):
+    x, y = np.array(ring).T
+    return np.column_stack(image.geolocation.to_lonlat(y, x)).tolist()
+
+
+def test_four_numbers_are_whole_pixels(plain):
+    for text in ("5,10,10,20", " 5, 10 ,10, 20 "):
+        assert parse_roi(text, plain).box(plain.shape) == SQUARE_BOX
+    assert parse_roi("0,0,40,50", plain).mask(Box(0, 0, 40, 50)).all()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("35,0,10,10", "part inside is 35,0,5,10 "),
+        ("-1,0,10,10", "part inside is 0,0,9,10 "),
+        ("40,0,10,10", "lies outside the image of 40 rows x 50 columns"),
+        ("0,0,0,10", "empty"),
+        ("1,2,3", "neither numbers nor a file .*ROW,COL,HEIGHT,WIDTH"),
+        ("1.5,2,3,4", "neither numbers nor a file"),
+        ("nowhere.geojson", "neither numbers nor a file"),
+        ("", "neither numbers nor a file"),
+        ("lonlat:1,2,3", "not four numbers"),
+        ("lonlat:a,b,c,d", "not four numbers"),
+        ("lonlat:4,50,3,51", "WEST < EAST"),
+        ("lonlat:nan,50,3,51", "WEST < EAST"),
+        ("lonlat:3,50,4,51", "no CRS .*ROW,COL,HEIGHT,WIDTH"),
+    ],
+)
+def test_texts_that_name_no_region(plain, text, message):
+    with pytest.raises(RegionError, match=message):
+        parse_roi(text, plain)
+
+
+def test_a_box_of_longitudes(located):
+    corners = np.array(in_lonlat([[9.6, 4.6], [29.4, 14.4]], located))
+    west, south = corners.min(axis=0)
+    east, north = corners.max(axis=0)
+    region = parse_roi(f"lonlat:{west:.8f},{south:.8f},{east:.8f},{north:.8f}", located)
+    box = region.box(located.shape)
+    assert abs(np.subtract(box.as_tuple(), SQUARE_BOX.as_tuple())).max() <= 1
+    with pytest.raises(RegionError, match="outside the image"):
+        parse_roi("lonlat:3,50,3.001,50.001", located)
+
+
+@pytest.mark.parametrize(
+    "document",
+    [
+        polygon(),
+        polygon([[*corner, 12.5] for corner in SQUARE]),
+        feature(polygon(), name="tarp"),
+        {"type": "Feature", "geometry": polygon(), "properties": None},
+        collection(feature(polygon())),
+        collection(feature(None), feature(polygon())),
+        {"type": "MultiPolygon", "coordinates": [[SQUARE]]},
+        {"type": "GeometryCollection", "geometries": [polygon()]},
+        polygon(crs=PIXEL_CRS),
+        polygon(crs=None),
+    ],
+)
+def test_every_way_to_write_a_polygon(plain, write_geojson, document):
+    region = parse_roi(write_geojson(document), plain)
+    assert region.box(plain.shape) == SQUARE_BOX
+    assert region.mask(SQUARE_BOX).all()
+
+
+def test_an_integer_is_a_pixel_centre(plain, write_geojson):
+    ring = [[10.0, 5.0], [29.0, 5.0], [29.0, 14.0], [10.0, 14.0]]
+    np.testing.assert_array_equal(
+        parse_roi(write_geojson(polygon(ring)), plain).vertices,
+        [[5.0, 10.0], [5.0, 29.0], [14.0, 29.0], [14.0, 10.0]],
+    )
+
+
+def test_a_polygon_with_a_hole(plain, write_geojson):
+    hole = [[14.5, 6.5], [16.5, 6.5], [16.5, 9.5], [14.5, 9.5], [14.5, 6.5]]
+    region = parse_roi(write_geojson({"type": "Polygon", "coordinates": [SQUARE, hole]}), plain)
+    assert region.mask(SQUARE_BOX).sum() == 200 - 6
+
+
+def test_a_polygon_may_reach_beyond_the_image(plain, write_geojson):
+    ring = [[-10, -10], [9.5, -10], [9.5, 4.5], [-10, 4.5]]
+    region = parse_roi(write_geojson(polygon(ring)), plain)
+    assert region.box(plain.shape) == Box(0, 0, 5, 10)
+
+
+@pytest.mark.parametrize("name", ["EPSG:32631", "urn:ogc:def:crs:EPSG::32631"])
+def test_coordinates_in_the_crs_of_the_file(located, write_geojson, name):
+    crs = {"type": "name", "properties": {"name": name}}
+    for document in (
+        polygon(in_utm(SQUARE), crs=crs),
+        collection(feature(polygon(in_utm(SQUARE)))),
+    ):
+        document["crs"] = crs
+        assert parse_roi(write_geojson(document), located).box(located.shape) == SQUARE_BOX
+
+
+@pytest.mark.parametrize("name", [None, "urn:ogc:def:crs:OGC:1.3:CRS84", "EPSG:4326"])
+def test_longitudes_and_latitudes(located, write_geojson, name):
+    document = polygon(in_lonlat(SQUARE, located))
+    if name is not None:
+        document["crs"] = {"type": "name", "properties": {"name": name}}
+    region = parse_roi(write_geojson(document), located)
+    np.testing.assert_allclose(region.vertices, np.array(SQUARE)[:-1, ::-1], atol=1e-3)
+
+
+def test_pixels_in_an_image_with_a_crs(located, write_geojson):
+    path = write_geojson(polygon(crs=PIXEL_CRS), "roi.json")
+    assert parse_roi(path, located).box(located.shape) == SQUARE_BOX
+
+
+def test_coordinates_that_need_a_crs(plain, located, write_geojson):
+    with pytest.raises(RegionError, match='no longitude and latitude, and no "crs" member'):
+        parse_roi(write_geojson(polygon(in_utm(SQUARE))), located)
+    crs = {"type": "name", "properties": {"name": "EPSG:32631"}}
+    with pytest.raises(RegionError, match="the image has no CRS"):
+        parse_roi(write_geojson(polygon(in_utm(SQUARE), crs=crs)), plain)
+    crs = {"type": "name", "properties": {"name": "EPSG:nonsense"}}
+    with pytest.raises(RegionError, match="not known"):
+        parse_roi(write_geojson(polygon(crs=crs)), located)
+    with pytest.raises(RegionError, match='"crs" without a name'):
+        parse_roi(write_geojson(polygon(crs={"type": "link"})), located)
+
+
+@pytest.mark.parametrize(
+    ("document", "message"),
+    [
+        ("{not json", "cannot be read as GeoJSON"),
+        ("\xff\xfe", "cannot be read as GeoJSON"),
+        ("[1, 2]", "a list, not a GeoJSON object"),
+        ("{}", "holds a None, which has no inside"),
+        ({"type": "Point", "coordinates": [1, 2]}, "'Point', which has no inside"),
+        (collection(), "no polygon"),
+        ({"type": "FeatureCollection"}, "without a list of features"),
+        ({"type": "FeatureCollection", "features": [3]}, "where GeoJSON has an object"),
+        ({"type": "Polygon", "coordinates": []}, "without coordinates"),
+        ({"type": "Polygon"}, "without coordinates"),
+        ({"type": "Polygon", "coordinates": [[[0, "a"], [1, 1], [2, 0]]]}, "pairs of numbers"),
+        ({"type": "Polygon", "coordinates": [3]}, "pairs of numbers"),
+        (polygon([[0, 0], [5, 5], [0, 0]]), "2 corners"),
+        (polygon([[0, 0], [float("nan"), 5], [5, 0]]), "finite"),
+        (polygon([[100, 100], [120, 100], [120, 120]]), "outside the image"),
+        (
+            collection(feature(polygon(), name="tarp"), feature(polygon())),
+            r"2 polygons \(tarp, feature 2\).*keep one polygon",
+        ),
+        ({"type": "MultiPolygon", "coordinates": [[SQUARE], [SQUARE]]}, "part 1, part 2"),
+    ],
+)
+def test_files_that_hold_no_single_polygon(plain, write_geojson, document, message):
+    with pytest.raises(RegionError, match=message):
+        parse_roi(write_geojson(document), plain)
