@@ -19,6 +19,22 @@ BOX = Box(7, 11, 20, 30)
 DTYPES = ["uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"]
 
 
+DIMAP = """<?xml version="1.0"?>
+<Dimap_Document>
+<Metadata_Id><METADATA_FORMAT version="1.1">DIMAP</METADATA_FORMAT></Metadata_Id>
+<Coordinate_Reference_System><Horizontal_CS>
+<HORIZONTAL_CS_CODE>EPSG:32631</HORIZONTAL_CS_CODE>
+</Horizontal_CS></Coordinate_Reference_System>
+<Geoposition><Geoposition_Insert>
+<ULXMAP>600000</ULXMAP><ULYMAP>5000000</ULYMAP><XDIM>0.7</XDIM><YDIM>0.7</YDIM>
+</Geoposition_Insert></Geoposition>
+<Raster_Dimensions><NCOLS>50</NCOLS><NROWS>40</NROWS><NBANDS>1</NBANDS></Raster_Dimensions>
+<Data_Access><DATA_FILE_FORMAT>GEOTIFF</DATA_FILE_FORMAT>
+<Data_File><DATA_FILE_PATH href="IMAGERY.TIF"/></Data_File></Data_Access>
+</Dimap_Document>
+"""
+
+
 def cut(array, box=BOX):
     return array[box.slices].astype(float)
 
@@ -71,6 +87,15 @@ def test_a_container_lists_the_images_inside(pixels, write_raster, tmp_path):
     assert np.array_equal(image.read(BOX), cut(pixels[::-1]))
     as_hdf5 = str(shutil.copy(container, tmp_path / "two.h5"))
     assert open_image(f"HDF5:{as_hdf5}://Band1").shape == (40, 50)
+
+
+def test_a_dimap_product(pixels, write_raster, tmp_path):
+    write_raster("IMAGERY.TIF", pixels)
+    (tmp_path / "METADATA.DIM").write_text(DIMAP)
+    for path in (tmp_path / "METADATA.DIM", tmp_path):
+        image = open_image(path)
+        assert np.array_equal(image.read(BOX), cut(pixels))
+        assert image.gsd() == Gsd(0.7, 0.7)
 
 
 def test_a_zipped_image(pixels, write_raster, tmp_path):
@@ -173,11 +198,13 @@ def test_a_scale_of_nothing_is_refused(pixels, write_raster):
         open_image(write_raster("a.tif", pixels, edit=declare))
 
 
-def test_a_saturated_value_declared_by_the_product(pixels, write_raster):
-    path = write_raster(
-        "a.tif", pixels, edit=lambda dataset: dataset.update_tags(SPECIAL_VALUE_SATURATED="1023")
-    )
-    assert open_image(path).saturation_level == 1023
+def test_special_values_declared_by_the_product(pixels, write_raster):
+    def declare(dataset):
+        dataset.update_tags(SPECIAL_VALUE_SATURATED="1023", SPECIAL_VALUE_NODATA="17")
+
+    image = open_image(write_raster("a.tif", pixels, edit=declare))
+    assert image.saturation_level == 1023
+    assert np.array_equal(np.isnan(image.read()), pixels == 17)
 
 
 def test_gsd_given_goes_before_the_files(pixels, write_raster, utm):

@@ -106,7 +106,7 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
             source=DatasetPixels(
                 path=path,
                 band=band,
-                nodata=dataset.nodatavals[band - 1] if nodata is None else nodata,
+                nodata=_nodata(dataset, band) if nodata is None else nodata,
                 has_mask=MaskFlags.per_dataset in flags and MaskFlags.alpha not in flags,
                 alpha_band=_alpha_band(dataset, band),
                 scale=scale,
@@ -177,21 +177,29 @@ def _alpha_band(dataset: Any, band: int) -> int | None:
     return None
 
 
+def _nodata(dataset: Any, band: int) -> float | None:
+    """The nodata value of the band, or of the product (Sentinel-2)."""
+    value: float | None = dataset.nodatavals[band - 1]
+    return _whole_number(dataset.tags().get("SPECIAL_VALUE_NODATA")) if value is None else value
+
+
 def _saturation_level(dataset: Any, band: int) -> float | None:
     """The largest stored count: declared by the file, or that of its integer type."""
     dtype = np.dtype(dataset.dtypes[band - 1])
     if dtype.kind not in "iu":
         return None
     largest = float(np.iinfo(dtype).max)
-    tags = dataset.tags()
-    bits = dataset.tags(band, ns="IMAGE_STRUCTURE").get("NBITS") or tags.get("NITF_ABPP")
-    saturated = tags.get("SPECIAL_VALUE_SATURATED")
-    declared = [largest]
-    if bits is not None and bits.strip().isdigit() and int(bits) > 0:
-        declared.append(2.0 ** (int(bits) - (dtype.kind == "i")) - 1.0)
-    if saturated is not None and saturated.strip().isdigit() and int(saturated) > 0:
-        declared.append(float(saturated))
-    return min(declared)
+    bits = dataset.tags(band, ns="IMAGE_STRUCTURE").get("NBITS")
+    depth = _whole_number(bits or dataset.tags().get("NITF_ABPP"))
+    saturated = _whole_number(dataset.tags().get("SPECIAL_VALUE_SATURATED"))
+    if depth:
+        largest = min(largest, 2.0 ** (depth - (dtype.kind == "i")) - 1.0)
+    return min(largest, float(saturated)) if saturated else largest
+
+
+def _whole_number(text: str | None) -> int | None:
+    """A metadata item as a number of 0 or more; ``None`` if it is absent or not one."""
+    return int(text) if text is not None and text.strip().isdecimal() else None
 
 
 def _geolocation(dataset: Any) -> Geolocation | None:

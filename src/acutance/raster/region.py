@@ -19,7 +19,7 @@ __all__ = ["Box", "Region"]
 _STRIP_PIXELS = 1_000_000
 
 
-@dataclass(frozen=True, order=True)
+@dataclass(frozen=True)
 class Box:
     """A window of whole pixels.
 
