@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from datetime import UTC, datetime
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -108,6 +109,49 @@ def edge_measurement(
         options={"rer_centre": "half", "robust": False, "limits": {"contrast_snr": 50.0}},
         measured_at=datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC),
     )
+
+
+def target_result() -> SimpleNamespace:
+    """Two edges across and two along, as the search for all edges of a target returns them."""
+    edges = (
+        edge_measurement(roi=(0, 0, 40, 36)),
+        edge_measurement(roi=(0, 50, 40, 36), sigma_px=0.41, normal_deg=-174.0),
+        edge_measurement(roi=(50, 0, 36, 40), normal_deg=96.0),
+        edge_measurement(roi=(50, 50, 36, 36), normal_deg=-84.0, sigma_px=0.45),
+    )
+    groups = {}
+    for orientation in ("across", "along"):
+        members = tuple(one for one in edges if one.orientation == orientation)
+        means = members[0].metrics()
+        groups[orientation] = SimpleNamespace(
+            orientation=orientation,
+            measurements=members,
+            metrics=means,
+            chi_square=dict.fromkeys(means, 1.3),
+            degrees_of_freedom=len(members) - 1,
+            p_value=dict.fromkeys(means, 0.254),
+        )
+    rejected = (SimpleNamespace(stage="phases", reason="<aligned> with the grid", values={}),)
+    return SimpleNamespace(measurements=edges, rejected=rejected, groups=groups)
+
+
+@pytest.fixture(scope="session")
+def target() -> SimpleNamespace:
+    return target_result()
+
+
+@pytest.fixture(scope="session")
+def compared() -> list[Measurement]:
+    return [
+        edge_measurement(),
+        edge_measurement(sigma_px=0.42, method="sdsu-2005"),
+        edge_measurement(sigma_px=0.38, method="iso12233"),
+    ]
+
+
+@pytest.fixture(scope="session")
+def truth() -> Response:
+    return closed_form(0.4, columns=0)
 
 
 @pytest.fixture(scope="session")

@@ -1,26 +1,39 @@
 """Faces of a measurement on paper: text, figures, HTML, CSV and JSON."""
 
 from acutance.report.comparison_page import comparison_figure
-from acutance.report.documents import json_text, measurement_document, measurement_schema
+from acutance.report.documents import (
+    comparison_document,
+    json_text,
+    measurement_document,
+    measurement_schema,
+    target_document,
+    truth_document,
+)
 from acutance.report.edge_page import edge_figure, panel_figures
 from acutance.report.page import save_figure
 from acutance.report.reports import comparison_report, edge_report, target_report
-from acutance.report.tables import mtf_csv
+from acutance.report.tables import mtf_csv, mtf_csv_of_many
 from acutance.report.target_page import target_figure
-from acutance.report.text import text_report
+from acutance.report.text import comparison_text, target_text, text_report
 
 __all__ = [
+    "comparison_document",
     "comparison_figure",
     "comparison_report",
+    "comparison_text",
     "edge_figure",
     "edge_report",
     "json_text",
     "measurement_document",
     "measurement_schema",
     "mtf_csv",
+    "mtf_csv_of_many",
     "panel_figures",
     "save_figure",
+    "target_document",
     "target_figure",
     "target_report",
+    "target_text",
     "text_report",
+    "truth_document",
 ]

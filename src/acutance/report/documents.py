@@ -5,17 +5,23 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from acutance.measure import TargetResult
     from acutance.measure.measurement import Measurement
+    from acutance.optics import Sensor
+    from acutance.simulate import Truth
 
 __all__ = [
     "comparison_document",
     "json_text",
     "measurement_document",
     "measurement_schema",
+    "target_document",
+    "truth_document",
 ]
 
 
@@ -53,6 +59,67 @@ def comparison_document(
         "schema": "acutance/comparison/1",
         "measurements": [measurement_document(one, covariance=covariance) for one in measurements],
     }
+
+
+def target_document(result: TargetResult, *, covariance: bool = False) -> dict[str, Any]:
+    """The document ``acutance/target/1``: every edge, the means by direction, what was rejected.
+
+    The edges of a group are counted from 0, in the order of "measurements".
+    """
+    place = {id(one): i for i, one in enumerate(result.measurements)}
+    return {
+        "schema": "acutance/target/1",
+        "measurements": [
+            measurement_document(one, covariance=covariance) for one in result.measurements
+        ],
+        "groups": {
+            orientation: {
+                "edges": [place[id(one)] for one in group.measurements],
+                "metrics": {name: mean.to_dict() for name, mean in group.metrics.items()},
+                "chi_square": dict(group.chi_square),
+                "degrees_of_freedom": group.degrees_of_freedom,
+                "p_value": dict(group.p_value),
+            }
+            for orientation, group in result.groups.items()
+        },
+        "rejected": [
+            {"stage": one.stage, "reason": one.reason, "values": dict(one.values)}
+            for one in result.rejected
+        ],
+    }
+
+
+def truth_document(truth: Truth, sensor: Sensor) -> dict[str, Any]:
+    """The document ``acutance/truth/1``: what a perfect measurement of a simulation returns.
+
+    Numbers and curves stand under the names they have in a measurement.
+    """
+    numbers = {name: number.value for name, number in truth.response.metrics().items()}
+    return {
+        "schema": "acutance/truth/1",
+        "orientation": truth.orientation,
+        "sensor": {
+            "gsd_m": sensor.gsd_m,
+            "blocks": [{"block": type(one).__name__, **_fields(one)} for one in sensor.blocks],
+        },
+        "line": truth.line.to_dict(),
+        "angle_deg": truth.line.angle_deg,
+        "dark": truth.dark,
+        "bright": truth.bright,
+        "noise": None if truth.noise is None else _fields(truth.noise),
+        **numbers,
+        "mtf": _without_std(truth.mtf.to_dict()),
+        "lsf": _without_std(truth.lsf.to_dict()),
+        "esf": _without_std(truth.esf.to_dict()),
+    }
+
+
+def _fields(described: Any) -> dict[str, Any]:
+    return {one.name: getattr(described, one.name) for one in fields(described)}
+
+
+def _without_std(curve: dict[str, list[float]]) -> dict[str, list[float]]:
+    return {name: values for name, values in curve.items() if name != "std"}
 
 
 def json_text(document: Mapping[str, Any]) -> str:

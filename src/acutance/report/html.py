@@ -27,14 +27,14 @@ class Headline:
     label : str
     value : str
     unit : str, optional
-    detail : str, optional
-        What stands under it: its standard deviation and interval.
+    details : tuple of str, optional
+        Lines under it: its standard deviation, its interval.
     """
 
     label: str
     value: str
     unit: str = ""
-    detail: str = ""
+    details: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -60,6 +60,8 @@ _STYLE: dict[Any, Any] = {
     "legend.fontsize": 8.5,
     "legend.frameon": False,
     "lines.linewidth": 1.8,
+    # A dollar sign in a file name is a dollar sign.
+    "text.parse_math": False,
     "svg.hashsalt": "acutance",
     "figure.facecolor": "white",
 }

@@ -13,6 +13,7 @@ from acutance.report.html import Headline, Plate, Section, Table, Verdict
 from acutance.report.tables import mtf_rows
 from acutance.report.target_page import group_rows, target_figure
 from acutance.report.wording import (
+    MISSING,
     describe_line,
     flatten_options,
     format_number,
@@ -20,6 +21,7 @@ from acutance.report.wording import (
     split_message,
     verdict,
     word_estimate,
+    write_fixed,
 )
 
 if TYPE_CHECKING:
@@ -73,14 +75,14 @@ def edge_sections(measurement: Measurement, command: str | None = None) -> tuple
 def _headlines(measurement: Measurement) -> tuple[Headline, ...]:
     numbers = measurement.metrics()
     cards = [_headline(name, numbers[name]) for name in HEADLINES if name in numbers]
-    cards.append(Headline("SNR", format_number(measurement.snr, 3), "", "contrast over noise"))
+    cards.append(Headline("SNR", format_number(measurement.snr, 3), "", ("contrast over noise",)))
     return tuple(cards)
 
 
 def _headline(name: str, estimate: Estimate, label: str = "") -> Headline:
     words, number = metric_words(name), word_estimate(estimate)
-    detail = f"± {number.std}, 95 %: {number.interval}" if number.std != "–" else ""
-    return Headline(label or words.label, number.value, words.unit, detail)
+    details = () if number.std == MISSING else (f"± {number.std}", f"95 %: {number.interval}")
+    return Headline(label or words.label, number.value, words.unit, details)
 
 
 def _metrics_table(measurement: Measurement) -> Table:
@@ -116,7 +118,12 @@ def _mtf_table(measurement: Measurement) -> Table:
         low, high = row.mtf.interval(0.95)
         metres = () if row.freq_cpm is None else (f"{row.freq_cpm:.3f}",)
         rows.append(
-            (f"{row.freq_cpp:.2f}", *metres, f"{row.mtf.value:.4f}", f"{low:.4f} … {high:.4f}")
+            (
+                f"{row.freq_cpp:.2f}",
+                *metres,
+                f"{row.mtf.value:.4f}",
+                f"{write_fixed(low)} … {write_fixed(high)}",
+            )
         )
     metres = () if measurement.response.gsd_m is None else ("c/m",)
     columns = ("c/px", *metres, "MTF", "95 % interval")
@@ -205,7 +212,7 @@ def _comparison_table(
 
 def _true_value(truth: Response, name: str) -> str:
     number = truth.metrics().get(name)
-    return "–" if number is None else word_estimate(number).value
+    return MISSING if number is None else word_estimate(number).value
 
 
 def target_sections(

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from acutance.report.comparison_page import edge_labels
+from acutance.report.target_page import group_rows
 from acutance.report.wording import (
     describe_image,
     describe_line,
@@ -15,9 +17,10 @@ from acutance.report.wording import (
 )
 
 if TYPE_CHECKING:
+    from acutance.measure import TargetResult
     from acutance.measure.measurement import Measurement
 
-__all__ = ["align_columns", "text_report"]
+__all__ = ["align_columns", "comparison_text", "target_text", "text_report"]
 
 
 def align_columns(rows: Sequence[Sequence[str]], align: str, indent: str = "  ") -> str:
@@ -71,6 +74,45 @@ def text_report(measurement: Measurement) -> str:
         ]
         blocks.append(align_columns(checks, "llrl"))
     blocks.append("\n".join([verdict(measurement), *_complaints(measurement)]))
+    return "\n\n".join(blocks)
+
+
+def comparison_text(measurements: Sequence[Measurement]) -> str:
+    """Several measurements of one target as text: one column a method."""
+    labels = edge_labels(measurements)
+    rows = [("", *labels)]
+    for name, first in measurements[0].metrics().items():
+        cells = (one.metrics().get(name, first) for one in measurements)
+        words = (word_estimate(cell).value_and_std for cell in cells)
+        rows.append((metric_words(name).label_with_unit, *words))
+    verdicts = (f"{label}: {verdict(one)}" for label, one in zip(labels, measurements, strict=True))
+    return "\n\n".join(
+        (
+            f"edge by {len(labels)} methods, {measurements[0].orientation}\n"
+            f"  {describe_image(measurements[0])}",
+            align_columns(rows, "l" + "r" * len(labels)),
+            "\n".join(verdicts),
+        )
+    )
+
+
+def target_text(result: TargetResult) -> str:
+    """All edges of a target as text: every edge, the means by direction, what was rejected."""
+    edges = [("edge", "direction", "angle [°]", "MTF at Nyquist", "RER", "FWHM [px]", "checks")]
+    for number, one in enumerate(result.measurements, start=1):
+        failed = ", ".join(check.name for check in one.failed_checks)
+        numbers = (one.angle_deg, one.mtf_nyquist, one.rer, one.fwhm_px)
+        words = (word_estimate(each).value_and_std for each in numbers)
+        edges.append((str(number), one.orientation, *words, failed or "all passed"))
+    blocks = [
+        f"{len(result.measurements)} edges measured, {len(result.rejected)} rejected",
+        align_columns(edges, "llrrrrl"),
+        align_columns(
+            [("mean", "metric", "value", "chi² / dof", "p"), *group_rows(result)], "llrrr"
+        ),
+    ]
+    if result.rejected:
+        blocks.append("\n".join(f"  {one.stage}: {one.reason}" for one in result.rejected))
     return "\n\n".join(blocks)
 
 

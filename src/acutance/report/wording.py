@@ -24,6 +24,7 @@ __all__ = [
     "split_message",
     "verdict",
     "word_estimate",
+    "write_fixed",
 ]
 
 MISSING = "–"
@@ -116,11 +117,12 @@ def word_estimate(estimate: Estimate) -> NumberWords:
     digits = min(max(0, 1 - math.floor(math.log10(estimate.std))), 6)
     low, high = estimate.interval(0.95)
     parts = (estimate.value, estimate.std, low, high)
-    return NumberWords(*(_signed(f"{part:.{digits}f}") for part in parts))
+    return NumberWords(*(write_fixed(part, digits) for part in parts))
 
 
-def _signed(text: str) -> str:
-    """A real minus sign, and none before a zero."""
+def write_fixed(value: float, digits: int = 4) -> str:
+    """A number with fixed decimals, a real minus sign, and none before a zero."""
+    text = f"{value:.{digits}f}"
     return (
         text.replace("-", "−") if any(digit in text for digit in "123456789") else text.strip("-")
     )
@@ -173,7 +175,7 @@ def verdict(measurements: Measurement | tuple[Measurement, ...]) -> str:
     names = sorted({check.name for one in several for check in one.failed_checks})
     return (
         f"{failed} of {total} checks failed ({', '.join(names)}): "
-        "use the numbers only where that does not matter."
+        "read what they say before using the numbers."
     )
 
 

@@ -1,0 +1,67 @@
+"""The command ``acutance`` and what it does with errors."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from acutance import __version__
+from acutance.cli import demo, edge, simulate, sites
+from acutance.cli.terminal import fail
+from acutance.errors import AcutanceError
+
+__all__ = ["app", "run"]
+
+
+class _Commands(TyperGroup):
+    """Commands whose expected errors are one message on stderr and exit code 2."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except AcutanceError as error:
+            fail(str(error))
+
+
+app = typer.Typer(
+    cls=_Commands,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    help="Measure how sharp an Earth-observation satellite really sees.",
+    epilog=edge.EXAMPLE,
+)
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"acutance {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _main(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Show the version and exit."
+        ),
+    ] = False,
+) -> None:
+    """Measure how sharp an Earth-observation satellite really sees.
+
+    Exit codes: 0 measured, 2 bad usage or input, 3 measured but a check failed under --strict.
+    """
+
+
+app.command("edge", epilog=edge.EXAMPLE)(edge.edge)
+app.command("sites", epilog=sites.EXAMPLE)(sites.sites)
+app.add_typer(simulate.app, name="simulate")
+app.command("demo", epilog=demo.EXAMPLE)(demo.demo)
+
+
+def run() -> None:
+    """Entry point of the command ``acutance``."""
+    app(prog_name="acutance")

@@ -1,0 +1,101 @@
+"""Files a command writes: refused before the work, or written whole."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from acutance.errors import OptionError
+
+__all__ = ["OutputFile", "check_output"]
+
+
+@dataclass(frozen=True)
+class OutputFile:
+    """A file that was found writable.
+
+    Parameters
+    ----------
+    option : str
+        The option that named it, for messages.
+    path : Path
+    """
+
+    option: str
+    path: Path
+
+    @property
+    def ending(self) -> str:
+        """What the name ends in, lower case, with its dot."""
+        return self.path.suffix.lower()
+
+    def write(self, content: str | bytes) -> None:
+        """Write the file under another name and rename it, so that it is whole or not there.
+
+        Raises
+        ------
+        OptionError
+            If the file system refuses.
+        """
+        data = content.encode() if isinstance(content, str) else content
+        part = _part_path(self.path)
+        try:
+            part.write_bytes(data)
+            os.replace(part, self.path)
+        except OSError as error:
+            part.unlink(missing_ok=True)
+            raise OptionError(_refusal(self.option, self.path, error)) from error
+
+
+def check_output(
+    option: str, name: str, endings: Sequence[str], *, keep: str | None = None
+) -> OutputFile:
+    """Make sure that a file can be written, before any work is done for it.
+
+    Parameters
+    ----------
+    option : str
+        The option that named it, as typed: ``"--figure"``.
+    name : str
+        The path.
+    endings : sequence of str
+        What the name may end in, with the dot.
+    keep : str, optional
+        A file that must not be overwritten: the input.
+
+    Raises
+    ------
+    OptionError
+        If the ending is none of `endings`, the folder is missing or not writable, the path is a
+        folder, or it is the input.
+    """
+    path = Path(name)
+    if path.suffix.lower() not in endings:
+        found = f'"{path.suffix}"' if path.suffix else "nothing"
+        raise OptionError(f"{option} {name} ends in {found}, it has to be {' or '.join(endings)}")
+    if not path.parent.is_dir():
+        raise OptionError(
+            f"{option} {name}: the folder {path.parent} does not exist, make it first"
+        )
+    if path.is_dir():
+        raise OptionError(f"{option} {name} is a folder: give the name of a file")
+    if keep is not None and path.exists() and Path(keep).exists() and path.samefile(keep):
+        raise OptionError(f"{option} {name} is the input image: give another name")
+    part = _part_path(path)
+    try:
+        part.write_bytes(b"")
+        part.unlink()
+    except OSError as error:
+        raise OptionError(_refusal(option, path, error)) from error
+    return OutputFile(option, path)
+
+
+def _part_path(path: Path) -> Path:
+    return path.with_name(f".{path.name}.{os.getpid()}.part")
+
+
+def _refusal(option: str, path: Path, error: OSError) -> str:
+    reason = error.strerror or str(error)
+    return f"{option} {path} cannot be written ({reason}): choose a folder you may write to"

@@ -1,0 +1,170 @@
+"""``acutance simulate``: images of targets, with their truth beside them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from acutance.cli.output import check_output
+from acutance.cli.terminal import say
+from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.optics import Block, Sensor
+
+__all__ = ["EXAMPLE", "app", "edge"]
+
+EXAMPLE = (
+    "\b\nExample:\n"
+    "  acutance simulate edge --gaussian 0.39 --smear 0.25 --snr 100 --seed 1 --out edge.tif"
+)
+
+app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="Render a target, with its truth beside it.",
+    epilog=EXAMPLE,
+)
+
+
+@app.callback()
+def _simulate() -> None:
+    """Render a target as a sensor sees it, with its truth beside it."""
+
+
+@app.command("edge", epilog=EXAMPLE)
+def edge(
+    out: Annotated[
+        str,
+        typer.Option(
+            metavar="FILE", help="The image, .tif; the truth goes beside it as .truth.json."
+        ),
+    ],
+    system: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="A ready system instead of the blocks below: gaussian, wide, diffraction, halo, "
+            "sharpened, asymmetric, smeared or defocused.",
+        ),
+    ] = None,
+    gaussian: Annotated[
+        float | None, typer.Option(metavar="PX", help="Gaussian blur: its standard deviation.")
+    ] = None,
+    detector: Annotated[
+        float | None,
+        typer.Option(metavar="PX", help="Side of the square detector; 1 if not given."),
+    ] = None,
+    smear: Annotated[
+        float | None, typer.Option(metavar="PX", help="Linear motion along the columns (y).")
+    ] = None,
+    jitter: Annotated[
+        float | None, typer.Option(metavar="PX", help="Random motion: its standard deviation.")
+    ] = None,
+    butterworth: Annotated[
+        float | None, typer.Option(metavar="CPP", help="Electronics: cut-off frequency.")
+    ] = None,
+    diffraction: Annotated[
+        float | None, typer.Option(metavar="CPP", help="Diffraction: cut-off frequency.")
+    ] = None,
+    obscuration: Annotated[
+        float | None,
+        typer.Option(metavar="RATIO", help="Central obscuration, 0 to 1; needs --diffraction."),
+    ] = None,
+    gsd: Annotated[
+        float | None, typer.Option(metavar="M", help="Ground sampling distance in metres.")
+    ] = None,
+    angle: Annotated[
+        float, typer.Option(metavar="DEG", help="Tilt against the nearer image axis, -45 to 45.")
+    ] = 6.0,
+    along: Annotated[
+        bool, typer.Option("--along", help="A nearly horizontal edge: the MTF along track.")
+    ] = False,
+    size: Annotated[
+        str, typer.Option(metavar="ROWS,COLS", help="Size of the image in pixels.")
+    ] = "60,40",
+    dark: Annotated[float, typer.Option(metavar="DN", help="Level of the dark side.")] = 200.0,
+    bright: Annotated[float, typer.Option(metavar="DN", help="Level of the bright side.")] = 1200.0,
+    snr: Annotated[
+        float | None,
+        typer.Option(metavar="RATIO", help="Contrast over noise; no noise if not given."),
+    ] = None,
+    seed: Annotated[int, typer.Option(metavar="N", help="Of the random numbers.")] = 0,
+) -> None:
+    """Render a straight edge as a sensor sees it, and write what a perfect measurement finds."""
+    target = check_output("--out", out, (".tif", ".tiff"))
+    truth_file = check_output("--out", str(target.path.with_suffix(".truth.json")), (".json",))
+    shape = _parse_size(size)
+    blocks = {
+        "gaussian": gaussian,
+        "detector": detector,
+        "smear": smear,
+        "jitter": jitter,
+        "butterworth": butterworth,
+        "diffraction": diffraction,
+        "obscuration": obscuration,
+    }
+    sensor = _sensor({name: size for name, size in blocks.items() if size is not None}, system, gsd)
+
+    import numpy as np
+
+    from acutance import simulate
+    from acutance.raster import write_geotiff
+    from acutance.report import json_text, truth_document
+
+    pixels, truth = simulate.edge(
+        sensor,
+        angle_deg=angle,
+        orientation="along" if along else "across",
+        shape=shape,
+        dark=dark,
+        bright=bright,
+        snr=snr,
+        rng=np.random.default_rng(seed),
+    )
+    write_geotiff(target.path, pixels.astype(np.float32), gsd_m=gsd)
+    truth_file.write(json_text({**truth_document(truth, sensor), "seed": seed}))
+    say(f"wrote {target.path}\nwrote {truth_file.path}")
+    typer.echo(f"true MTF at Nyquist {truth.mtf_nyquist}, RER {truth.rer}, FWHM {truth.fwhm_px} px")
+
+
+def _parse_size(text: str) -> tuple[int, int]:
+    try:
+        rows, cols = (int(part) for part in text.split(","))
+    except ValueError as error:
+        raise OptionError(f"--size {text}: write rows and columns, as in 60,40") from error
+    if min(rows, cols) < 1:
+        raise OptionError(f"--size {text}: rows and columns have to be 1 or more")
+    return rows, cols
+
+
+def _sensor(sizes: dict[str, float], system: str | None, gsd_m: float | None) -> Sensor:
+    """The sensor the options describe, one block an option."""
+    from dataclasses import replace
+
+    from acutance import optics
+    from acutance.simulate import reference_systems
+
+    if system is not None:
+        known = reference_systems()
+        if sizes:
+            given = ", ".join(f"--{name}" for name in sizes)
+            raise OptionError(f"--system {system} stands alone: leave out {given}")
+        if system not in known:
+            raise OptionError(f"--system {system}: the systems are {', '.join(known)}")
+        return replace(known[system], gsd_m=gsd_m)
+    if "obscuration" in sizes and "diffraction" not in sizes:
+        raise OptionError("--obscuration belongs to an aperture: add --diffraction CPP")
+    blocks: list[Block] = [optics.Detector(sizes.get("detector", 1.0))]
+    if "gaussian" in sizes:
+        blocks.append(optics.Gaussian(sizes["gaussian"]))
+    if "diffraction" in sizes:
+        blocks.append(optics.Diffraction(sizes["diffraction"], sizes.get("obscuration", 0.0)))
+    if "smear" in sizes:
+        blocks.append(optics.Smear(sizes["smear"], "along"))
+    if "jitter" in sizes:
+        blocks.append(optics.Jitter(sizes["jitter"]))
+    if "butterworth" in sizes:
+        blocks.append(optics.Butterworth(sizes["butterworth"]))
+    return optics.Sensor(blocks, gsd_m=gsd_m)

@@ -1,0 +1,93 @@
+"""JSON documents and the schema that ships with the package."""
+
+import copy
+import json
+
+import numpy as np
+import pytest
+from jsonschema import Draft202012Validator, ValidationError
+
+from acutance.report import (
+    comparison_document,
+    json_text,
+    measurement_document,
+    measurement_schema,
+    target_document,
+    truth_document,
+)
+
+
+@pytest.fixture(scope="module")
+def validator():
+    schema = measurement_schema()
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+def test_a_measurement_keeps_to_the_schema(measurement, validator):
+    validator.validate(measurement.to_dict())
+    validator.validate(json.loads(json_text(measurement.to_dict())))
+
+
+def test_undefined_numbers_are_null_and_keep_to_the_schema(vague_measurement, validator):
+    document = json.loads(json_text(vague_measurement.to_dict()))
+    validator.validate(document)
+    assert document["mtf30_cpp"] == {"value": None, "std": None, "interval95": None}
+    assert document["snr"] is None
+    assert "fwhm_m" not in document
+
+
+def test_the_covariance_comes_when_asked_and_gives_the_standard_deviations(measurement, validator):
+    document = json.loads(json_text(measurement_document(measurement, covariance=True)))
+    validator.validate(document)
+    factor = np.array(document["lsf"]["factor"])
+    assert np.linalg.norm(factor, axis=1) == pytest.approx(document["lsf"]["std"])
+    assert "factor" not in measurement_document(measurement)["lsf"]
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (("orientation",), "diagonal"),
+        (("rer", "std"), -0.1),
+        (("rer",), 0.68),
+        (("image", "roi"), [1, 2, 3]),
+        (("schema",), "acutance/measurement/2"),
+        (("checks", 0, "passed"), "yes"),
+    ],
+)
+def test_the_schema_refuses_what_it_should(measurement, validator, path, value):
+    document = copy.deepcopy(measurement.to_dict())
+    place = document
+    for key in path[:-1]:
+        place = place[key]
+    place[path[-1]] = value
+    with pytest.raises(ValidationError):
+        validator.validate(document)
+
+
+def test_json_is_strict_and_keeps_a_list_of_numbers_on_one_line():
+    text = json_text({"a": [1.0, float("nan")], "b": {"c": [{"d": 1}]}, "e": [], "f": "±"})
+    assert '"a": [1.0, null]' in text
+    assert json.loads(text) == {"a": [1.0, None], "b": {"c": [{"d": 1}]}, "e": [], "f": "±"}
+
+
+def test_comparison_and_target_hold_measurements(compared, target, validator):
+    comparison = json.loads(json_text(comparison_document(compared)))
+    whole = json.loads(json_text(target_document(target)))
+    for document in (*comparison["measurements"], *whole["measurements"]):
+        validator.validate(document)
+    assert whole["groups"]["along"]["edges"] == [2, 3]
+    assert whole["groups"]["along"]["chi_square"]["rer"] == 1.3
+    assert whole["rejected"][0]["stage"] == "phases"
+
+
+def test_a_truth_names_its_sensor_and_has_no_standard_deviation():
+    from acutance import optics, simulate
+
+    sensor = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=0.5)
+    _, truth = simulate.edge(sensor)
+    document = json.loads(json_text(truth_document(truth, sensor)))
+    assert document["mtf_nyquist"] == pytest.approx(0.2891, abs=1e-3)
+    assert document["sensor"]["blocks"][0]["block"] == "Gaussian"
+    assert set(document["mtf"]) == {"freq_cpp", "value", "phase_rad"}

@@ -1,0 +1,156 @@
+"""Figures: what they show, and that nothing is written over anything else."""
+
+from dataclasses import replace
+from itertools import combinations
+
+import pytest
+from matplotlib.axis import Axis, Tick
+from matplotlib.text import Text
+
+from acutance.report import (
+    comparison_figure,
+    edge_figure,
+    panel_figures,
+    save_figure,
+    target_figure,
+)
+from acutance.report.page import figure_bytes
+
+
+def written(figure):
+    """Every text that is drawn, with its box in pixels."""
+    figure.canvas.draw()
+    renderer = figure.canvas.get_renderer()
+    hidden = {text for axis in figure.findobj(Axis) for text in _labels_out_of_view(axis)}
+    return [
+        (text.get_text(), text.get_window_extent(renderer))
+        for text in figure.findobj(Text)
+        if text.get_visible() and text.get_text().strip() and text not in hidden
+    ]
+
+
+def _labels_out_of_view(axis):
+    """Labels of ticks that matplotlib keeps but does not draw."""
+    low, high = sorted(axis.get_view_interval())
+    margin = 1e-6 * (high - low)
+    current = axis.get_major_ticks()
+    for tick in {*axis.findobj(Tick), *current}:
+        drawn = axis.axes.axison and tick in current
+        if not drawn or not low - margin <= tick.get_loc() <= high + margin:
+            yield from (tick.label1, tick.label2)
+
+
+def overlaps(figure):
+    pairs = combinations(written(figure), 2)
+    return [
+        (one, other)
+        for (one, a), (other, b) in pairs
+        if a.x0 < b.x1 - 1 and b.x0 < a.x1 - 1 and a.y0 < b.y1 - 1 and b.y0 < a.y1 - 1
+    ]
+
+
+def outside(figure):
+    width, height = figure.canvas.get_width_height()
+    return [
+        text
+        for text, box in written(figure)
+        if box.x0 < -1 or box.y0 < -1 or box.x1 > width + 1 or box.y1 > height + 1
+    ]
+
+
+def texts(figure):
+    return "\n".join(text for text, _ in written(figure))
+
+
+def test_the_edge_page_shows_every_step(measurement):
+    figure = edge_figure(measurement)
+    shown = texts(figure)
+    for title in (
+        "Target",
+        "Edge spread function",
+        "Line spread function",
+        "Modulation transfer function",
+        "Numbers",
+        "Checks: not all passed",
+        "frequency [cycles/m]",
+        "FWHM 1.2084",
+        "aliased beyond Nyquist",
+        "✗",
+        "0.2890 ± 0.0039",
+    ):
+        assert title in shown, title
+
+
+def test_nothing_overlaps_and_nothing_leaves_the_page(measurement, compared, truth, target):
+    figures = {
+        "edge": edge_figure(measurement),
+        "comparison": comparison_figure(compared, truth=truth),
+        "target": target_figure(target),
+        **panel_figures(measurement),
+    }
+    for name, figure in figures.items():
+        assert not overlaps(figure), name
+        assert not outside(figure), name
+
+
+def test_the_check_for_overlaps_sees_one(measurement):
+    figure = panel_figures(measurement)["lsf"]
+    axes = figure.axes[0]
+    axes.text(0.5, 0.94, "on top of the FWHM", transform=axes.transAxes, ha="center", va="top")
+    assert overlaps(figure)
+
+
+def test_a_measurement_without_gsd_path_and_checks_is_drawn(vague_measurement):
+    figure = edge_figure(vague_measurement)
+    shown = texts(figure)
+    assert "cycles/m]" not in shown
+    assert "No checks were made." in shown
+    assert "undefined" in shown
+    assert not overlaps(figure)
+
+
+@pytest.mark.parametrize("normal_deg", [-174.0, 96.0, -84.0, 45.0])
+def test_the_arrow_points_from_dark_to_bright(measurement, normal_deg):
+    turned = replace(measurement, line=replace(measurement.line, normal_deg=normal_deg))
+    axes = panel_figures(turned)["target"].axes[0]
+    (arrow,) = [text for text in axes.texts if text.arrow_patch is not None]
+    (col, row), (from_col, from_row) = arrow.xy, arrow.get_position()
+    rows, cols = turned.image.roi[:2]
+    assert turned.line.normal_distance(row - rows, col - cols) > 0
+    assert turned.line.normal_distance(from_row - rows, from_col - cols) < 0
+
+
+def test_a_comparison_without_truth_takes_the_first_as_reference(compared, truth):
+    assert "MTF less spline" in texts(comparison_figure(compared))
+    assert "MTF less truth" in texts(comparison_figure(compared, truth=truth))
+    assert "1 spline" in texts(comparison_figure([compared[0], compared[0]]))
+
+
+def test_a_target_without_edges_along_says_so(target, measurement):
+    alone = type(target)(
+        measurements=target.groups["across"].measurements,
+        rejected=(),
+        groups={"across": target.groups["across"]},
+    )
+    figure = target_figure(alone, backdrop=measurement.samples.image, origin=(5, 7))
+    assert "MTF along: no edge measured" in texts(figure)
+    assert "2 edges measured, 0 rejected" in texts(figure)
+
+
+@pytest.mark.parametrize(
+    ("ending", "magic"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")]
+)
+def test_figures_are_saved_by_their_ending(measurement, tmp_path, ending, magic):
+    path = tmp_path / f"lsf.{ending}"
+    save_figure(panel_figures(measurement)["lsf"], path)
+    assert path.read_bytes().startswith(magic)
+
+
+def test_the_same_measurement_gives_the_same_bytes(measurement):
+    first, second = (figure_bytes(panel_figures(measurement)["mtf"], ".svg") for _ in range(2))
+    assert first == second
+
+
+def test_a_dollar_sign_in_a_path_is_a_dollar_sign(measurement):
+    odd = replace(measurement, image=replace(measurement.image, path="a$\\frac{$.tif"))
+    assert "a$\\frac{$.tif" in texts(edge_figure(odd))

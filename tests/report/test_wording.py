@@ -1,0 +1,80 @@
+"""Numbers, verdicts and messages as text."""
+
+import math
+
+import pytest
+
+from acutance.curves import METRICS, Estimate
+from acutance.measure.measurement import Check
+from acutance.report.wording import (
+    METRIC_WORDS,
+    flatten_options,
+    format_number,
+    metric_words,
+    split_message,
+    verdict,
+    word_estimate,
+    write_fixed,
+)
+
+
+def test_an_estimate_gets_two_digits_of_its_standard_deviation():
+    words = word_estimate(Estimate(0.15111, 0.00321))
+    assert words.value_and_std == "0.1511 ± 0.0032"
+    assert words.interval == "0.1448 … 0.1574"
+
+
+def test_a_truth_has_no_interval_and_an_undefined_number_says_so():
+    assert word_estimate(Estimate(0.28911)).value_and_std == "0.2891"
+    assert word_estimate(Estimate(0.28911)).interval == "–"
+    assert word_estimate(Estimate(math.nan, math.nan)).value_and_std == "undefined"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (104.2, "104.2"),
+        (0.0, "0"),
+        (40.0, "40"),
+        (1200.0, "1200"),
+        (math.nan, "–"),
+        (1e9, "1.000e+09"),
+    ],
+)
+def test_plain_numbers_have_four_digits_and_no_trailing_zeros(value, text):
+    assert format_number(value) == text
+
+
+def test_a_rounded_zero_has_no_sign():
+    assert write_fixed(-0.00001) == "0.0000"
+    assert write_fixed(-0.25, 2) == "−0.25"
+
+
+def test_every_metric_has_words():
+    assert set(METRIC_WORDS) == set(METRICS)
+    assert metric_words("fwhm_px").label_with_unit == "FWHM [px]"
+    assert metric_words("ground_tilt").label == "ground tilt"
+
+
+def test_the_verdict_names_what_failed(measurement, vague_measurement, target):
+    assert verdict(measurement).startswith("1 of 6 checks failed (plateau_px)")
+    assert verdict(vague_measurement) == "No checks were made."
+    assert verdict(target.measurements).startswith("4 of 24 checks failed")
+
+
+@pytest.mark.parametrize(
+    ("message", "expected"),
+    [
+        ("Too low (KOMPSAT-3 draft, step 2).", ("Too low", "KOMPSAT-3 draft, step 2")),
+        ("Too low [Kohm 2004]", ("Too low", "Kohm 2004")),
+        ("Use a wider region.", ("Use a wider region.", "")),
+        ("(all)", ("(all)", "")),
+    ],
+)
+def test_the_source_of_a_limit_is_found_in_brackets(message, expected):
+    assert split_message(Check("x", 1.0, ">= 2", False, message)) == expected
+
+
+def test_nested_options_become_dotted_names():
+    options = {"robust": False, "limits": {"snr": 50.0}}
+    assert list(flatten_options(options)) == [("robust", "False"), ("limits.snr", "50")]
