@@ -136,11 +136,12 @@ def fit_profile(x: Floats, y: Floats, weight: Floats) -> tuple[float, FermiSum]:
     low, high = float(y[x <= np.quantile(x, 0.1)].mean()), float(y[x >= np.quantile(x, 0.9)].mean())
 
     def residual(unknown: Floats) -> Floats:
-        return root * (unknown[0] + FermiSum.from_vector(unknown[1:]).value(x) - y)
+        model = unknown[0] + FermiSum.from_vector(unknown[1:]).value(x)
+        return np.asarray(root * (model - y))
 
     def jacobian(unknown: Floats) -> Floats:
         gradient = FermiSum.from_vector(unknown[1:]).value_gradient(x)
-        return root[:, None] * np.hstack((np.ones((x.size, 1)), gradient))
+        return np.asarray(root[:, None] * np.hstack((np.ones((x.size, 1)), gradient)))
 
     start = np.array([low, high - low, 0.0, np.log(0.3)])
     found = least_squares(residual, start, jac=jacobian, method="lm", x_scale="jac")

@@ -25,7 +25,16 @@ from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.fit.line import Line
 from acutance.measure.published.row_profiles import LocatedRows, RowLine
 
-__all__ = ["FREQ_CPP", "GRID_PX", "STEP_PX", "SampledEdge", "edge_fit", "fit_with_bootstrap"]
+__all__ = [
+    "FREQ_CPP",
+    "GRID_PX",
+    "STEP_PX",
+    "SampledEdge",
+    "crossing_of_half",
+    "edge_fit",
+    "fit_with_bootstrap",
+    "normalised",
+]
 
 STEP_PX = 0.05
 GRID_PX: Floats = np.arange(-100.0, 101.0) * STEP_PX
@@ -70,7 +79,7 @@ class SampledEdge:
 
     def normalised_esf(self) -> Floats:
         """The ESF from 0 to 1, (n,)."""
-        return (self.esf - self.dark) / (self.bright - self.dark)
+        return normalised(self.esf, self.dark, self.bright)
 
     def middle_px(self) -> float:
         """Where the ESF passes 50 %; NaN where it never does."""
@@ -85,6 +94,22 @@ class SampledEdge:
         waves = np.cumprod(np.broadcast_to(turn, (FREQ_CPP.size - 1, turn.size)), axis=0)
         otf = np.concatenate(([1.0 + 0j], np.einsum("fx,x->f", waves, self.lsf) / total))
         return np.asarray(otf if self.correction is None else otf * self.correction)
+
+
+def normalised(esf: Floats, dark: float, bright: float) -> Floats:
+    """An ESF from 0 to 1.
+
+    Raises
+    ------
+    NoEdgeError
+        If the bright level is not above the dark one.
+    """
+    if not bright > dark:
+        raise NoEdgeError(
+            f"the profile across the edge must rise, found levels {dark:g} and {bright:g}: "
+            "use a region with one edge and more contrast"
+        )
+    return (esf - dark) / (bright - dark)
 
 
 def crossing_of_half(distance_px: Floats, esf: Floats) -> float:
@@ -220,9 +245,12 @@ def edge_fit(
     per_normal_px : float, optional
         Length on the curves' distance axis per pixel along the normal.
     """
+    from scipy.interpolate import CubicSpline
+
     row, col = np.nonzero(np.isfinite(band.image))
     distance = line.normal_distance(row, col)
     value = (band.image[row, col] - dark) / (bright - dark)
     esf = response.esf
-    model = np.interp(distance * per_normal_px, esf.distance_px, esf.value)
+    places = np.clip(distance * per_normal_px, esf.distance_px[0], esf.distance_px[-1])
+    model = CubicSpline(esf.distance_px, esf.value)(places)
     return EdgeFit(line, response, dark, bright, distance, value, value - model)

@@ -22,6 +22,7 @@ from acutance.measure.published.resampled_response import (
     SampledEdge,
     crossing_of_half,
     fit_with_bootstrap,
+    normalised,
 )
 from acutance.measure.published.row_profiles import LocatedRows, RowLine, locate_rows
 
@@ -138,7 +139,7 @@ def _sample(rows: LocatedRows, weight: Floats, options: SdsuOptions) -> SampledE
     lsf = _smooth(rough, options.smoothing_points)
     places = grid[:-1] + STEP_PX / 2
     dark, bright = _plateaus(grid, esf, options.trim_px)
-    middle = crossing_of_half(grid, (esf - dark) / (bright - dark))
+    middle = crossing_of_half(grid, normalised(esf, dark, bright))
     if math.isnan(middle):
         raise NoEdgeError("the interpolated edge never passes half of its contrast")
     count = round(options.trim_px / STEP_PX)

@@ -1,0 +1,102 @@
+"""The South Dakota State University pipeline: its steps, and the gains they are known for."""
+
+import math
+
+import numpy as np
+import pytest
+from closed_form_edge import edge_band, gaussian_pixel_mtf
+
+from acutance.errors import OptionError, SupportError
+from acutance.measure.published import SdsuOptions, sdsu_2005
+from acutance.measure.published.edge_location import fermi_locations
+from acutance.measure.published.sdsu import modified_savitzky_golay
+
+NYQUIST = 0.5
+IRRATIONAL_DEG = math.degrees(math.atan((math.sqrt(5) - 1) / 6))
+
+
+@pytest.mark.parametrize(("order", "gain"), [(2, 0.98016), (4, 0.99958)])
+def test_window_has_its_published_gain_at_nyquist(order, gain):
+    x = np.arange(-4, 4, 0.0005) + 0.00025
+    grid = np.arange(-40, 41) * 0.05
+    smoothed = modified_savitzky_golay(
+        x, np.cos(2 * np.pi * NYQUIST * x), np.ones_like(x), grid, order
+    )
+    assert smoothed[40] == pytest.approx(gain, abs=2e-5)
+
+
+@pytest.mark.parametrize(("order", "gain"), [(2, 0.98016), (4, 0.99958)])
+def test_pipeline_along_the_normal_has_the_gains_of_its_steps(order, gain):
+    band = edge_band(angle_deg=IRRATIONAL_DEG, shape=(500, 40))
+    options = SdsuOptions(order=order, distance="normal", smoothing_points=0, replicates=0)
+    found = sdsu_2005(band, options).response.mtf_nyquist.value
+    expected = gain * np.sinc(NYQUIST * 0.05) * gaussian_pixel_mtf(NYQUIST)
+    # Line and finite number of samples leave 1e-3.
+    assert found / expected == pytest.approx(1.0, abs=1.5e-3)
+
+
+def test_adjacent_difference_costs_its_sinc():
+    band = edge_band(angle_deg=IRRATIONAL_DEG, shape=(300, 60))
+    response = sdsu_2005(band, SdsuOptions(smoothing_points=0, replicates=0)).response
+    x = response.esf.distance_px
+    slope = np.gradient(response.esf.value, x, edge_order=2)
+    for freq in (0.5, 0.8):
+        # np.gradient is a central difference: its own gain is known, too.
+        exact = abs(np.sum(slope * np.exp(-2j * np.pi * freq * x))) * 0.05
+        exact /= np.sinc(2 * freq * 0.05)
+        found = abs(response.mtf.otf[round(freq * 100)])
+        assert found / exact == pytest.approx(np.sinc(freq * 0.05), abs=4e-4)
+
+
+@pytest.mark.parametrize("angle_deg", [6.0, 13.0])
+def test_row_distance_stretches_the_frequency_axis(angle_deg):
+    band = edge_band(angle_deg=angle_deg, shape=(300, 60))
+    row = sdsu_2005(band, SdsuOptions(replicates=0)).response
+    for freq in (0.25, 0.5):
+        truth = gaussian_pixel_mtf(freq / math.cos(math.radians(angle_deg)))
+        assert row.mtf(freq).value / truth == pytest.approx(1.0, abs=4e-3)
+    assert SdsuOptions().distance == "row"
+
+
+def test_normal_distance_of_a_small_region_is_nearly_unbiased():
+    response = sdsu_2005(edge_band(), SdsuOptions(distance="normal")).response
+    assert response.mtf_nyquist.value / gaussian_pixel_mtf(0.5) == pytest.approx(1, abs=4e-3)
+    assert response.rer.value == pytest.approx(0.6823, abs=2e-3)
+    assert response.fwhm_px.value == pytest.approx(1.2084, abs=6e-3)
+
+
+def test_fermi_location_is_exact_for_a_fermi_edge():
+    rng = np.random.default_rng(3)
+    centre = 20 + rng.uniform(-0.5, 0.5, 30)
+    x = np.arange(40)
+    rows = 300 + 900 / (1 + np.exp(-(x - centre[:, None]) / 0.35))
+    found = fermi_locations(rows, centre + rng.normal(0, 0.2, 30), 0.6)
+    np.testing.assert_allclose(found, centre, atol=1e-6)
+
+
+def test_fermi_location_survives_a_step_within_one_pixel():
+    rows = np.where(np.arange(30) < 15, 100.0, 900.0)[None, :].repeat(4, axis=0)
+    found = fermi_locations(rows, np.full(4, 14.4), 0.5)
+    assert np.all(np.abs(found - 14.5) < 0.3)
+
+
+def test_a_band_narrower_than_the_trim_is_refused_and_says_why():
+    with pytest.raises(SupportError, match=r"needs 5\.7 px .* smaller trim_px"):
+        sdsu_2005(edge_band(shape=(40, 10), angle_deg=3.0, offset_px=0.0))
+
+
+def test_a_shorter_trim_measures_that_band():
+    response = sdsu_2005(
+        edge_band(shape=(40, 10), angle_deg=6.0, offset_px=0.0),
+        SdsuOptions(trim_px=5.0, smoothing_points=9, distance="normal"),
+    ).response
+    assert response.mtf_nyquist.value == pytest.approx(gaussian_pixel_mtf(0.5), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"order": 3}, {"distance": "column"}, {"trim_px": 1.0}, {"smoothing_points": 8}],
+)
+def test_meaningless_options_are_refused(wrong):
+    with pytest.raises(OptionError, match="found"):
+        SdsuOptions(**wrong)
