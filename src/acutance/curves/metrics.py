@@ -48,9 +48,9 @@ def _level_position(esf: Esf, level: float) -> tuple[float, Floats]:
     else:
         place = crossing(esf.distance_px, esf.value, level, centre, 1 if level > 0.5 else -1)
     if math.isnan(place):
-        return math.nan, np.full(esf.factor.shape[1], math.nan)
+        return math.nan, np.array([math.nan])
     steepness = slope(esf.distance_px, esf.value, place)
-    return place, -sample(esf.distance_px, esf.factor, place) / steepness
+    return place, -esf.gradient(place) / steepness
 
 
 def _start(esf: Esf) -> float:
@@ -74,11 +74,11 @@ def rer(esf: Esf, lsf: Lsf, centre: RerCentre = "half") -> Estimate:
         middle, moves = _level_position(esf, 0.5)
     else:
         # The peak is stationary, so its own uncertainty does not move the RER to first order.
-        middle, moves = _peak(lsf), np.zeros(esf.factor.shape[1])
+        middle, moves = _peak(lsf), np.zeros(1)
     if math.isnan(middle) or middle - 0.5 < grid[0] or middle + 0.5 > grid[-1]:
         return _UNDEFINED
     value = sample(grid, esf.value, middle + 0.5) - sample(grid, esf.value, middle - 0.5)
-    gradient = sample(grid, esf.factor, middle + 0.5) - sample(grid, esf.factor, middle - 0.5)
+    gradient = esf.gradient(middle + 0.5) - esf.gradient(middle - 0.5)
     tilt = slope(grid, esf.value, middle + 0.5) - slope(grid, esf.value, middle - 0.5)
     return _estimate(value, gradient + tilt * moves)
 
@@ -97,14 +97,14 @@ def full_width(lsf: Lsf, level: float = 0.5) -> Estimate:
     grid = lsf.distance_px
     top = _peak(lsf)
     peak = float(sample(grid, lsf.value, top))
-    peak_gradient = sample(grid, lsf.factor, top)
+    peak_gradient = lsf.gradient(top)
     left = crossing(grid, lsf.value, level * peak, top, -1)
     right = crossing(grid, lsf.value, level * peak, top, +1)
     if math.isnan(left) or math.isnan(right):
         return _UNDEFINED
     gradient = np.zeros_like(peak_gradient)
     for place, sign in ((left, -1.0), (right, 1.0)):
-        shortfall = level * peak_gradient - sample(grid, lsf.factor, place)
+        shortfall = level * peak_gradient - lsf.gradient(place)
         gradient = gradient + sign * shortfall / slope(grid, lsf.value, place)
     return _estimate(right - left, gradient)
 
@@ -114,7 +114,7 @@ def mtf_crossing(mtf: Mtf, level: float) -> Estimate:
     place = crossing(mtf.freq_cpp, mtf.value, level, 0.0)
     if math.isnan(place):
         return _UNDEFINED
-    gradient = -sample(mtf.freq_cpp, mtf.gradient, place) / slope(mtf.freq_cpp, mtf.value, place)
+    gradient = -mtf.gradient(place) / slope(mtf.freq_cpp, mtf.value, place)
     return _estimate(place, gradient)
 
 
@@ -123,7 +123,7 @@ def mtf_area(mtf: Mtf) -> Estimate:
     inside = mtf.freq_cpp <= NYQUIST_CPP + 1e-9
     weights = np.full(int(inside.sum()), mtf.freq_cpp[1] - mtf.freq_cpp[0])
     weights[[0, -1]] /= 2
-    return _estimate(weights @ mtf.value[inside], weights @ mtf.gradient[inside])
+    return _estimate(float(weights @ mtf.value[inside]), weights @ mtf.covariance_factor[inside])
 
 
 def edge_slope(esf: Esf) -> Estimate:
@@ -149,13 +149,13 @@ def half_extent(esf: Esf, side: Literal["dark", "bright"]) -> Estimate:
 def overshoot(esf: Esf) -> Estimate:
     """How far the ESF rises above the bright plateau at most (0 where it never does)."""
     i = int(np.argmax(esf.value))
-    return _estimate(max(esf.value[i] - 1.0, 0.0), esf.factor[i])
+    return _estimate(max(esf.value[i] - 1.0, 0.0), esf.gradient(float(esf.distance_px[i])))
 
 
 def undershoot(esf: Esf) -> Estimate:
     """How far the ESF falls below the dark plateau at most (0 where it never does)."""
     i = int(np.argmin(esf.value))
-    return _estimate(max(-esf.value[i], 0.0), esf.factor[i])
+    return _estimate(max(-esf.value[i], 0.0), esf.gradient(float(esf.distance_px[i])))
 
 
 def giqe_h(esf: Esf) -> Estimate:
@@ -170,6 +170,6 @@ def giqe_h(esf: Esf) -> Estimate:
         return _UNDEFINED
     values = np.array([sample(esf.distance_px, esf.value, place) for place in places])
     chosen = places[1] if np.all(np.diff(values) > 0) else places[int(np.argmax(values))]
-    gradient = sample(esf.distance_px, esf.factor, chosen)
+    gradient = esf.gradient(chosen)
     tilt = slope(esf.distance_px, esf.value, chosen)
     return _estimate(sample(esf.distance_px, esf.value, chosen), gradient + tilt * moves)

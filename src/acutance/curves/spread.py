@@ -27,11 +27,15 @@ class _SpreadCurve:
     factor : (n, k) array
         Factor of the covariance: the curve's error is ``factor @ z`` with z standard normal.
         All curves of one measurement share the same z. A truth has k = 0.
+    latent : (k, m) array, optional
+        A second factor that all curves of one measurement share: the error is then
+        ``factor @ latent @ z``. Nothing of size (n, m) is formed until somebody asks.
     """
 
     distance_px: Floats
     value: Floats
     factor: Floats
+    latent: Floats | None = None
 
     def __post_init__(self) -> None:
         n = self.distance_px.shape
@@ -44,11 +48,22 @@ class _SpreadCurve:
     @cached_property
     def std(self) -> Floats:
         """Standard deviation at every distance, (n,)."""
-        return np.sqrt(np.einsum("ij,ij->i", self.factor, self.factor))
+        spread = self.covariance_factor
+        return np.asarray(np.sqrt(np.einsum("ij,ij->i", spread, spread)))
+
+    @cached_property
+    def covariance_factor(self) -> Floats:
+        """All of the covariance's factor, (n, m): its square is the curve's covariance."""
+        return self.factor if self.latent is None else self.factor @ self.latent
+
+    def gradient(self, distance_px: float) -> Floats:
+        """The row of `covariance_factor` at any distance, (m,)."""
+        row: Floats = sample(self.distance_px, self.factor, distance_px)
+        return row if self.latent is None else row @ self.latent
 
     def __call__(self, distance_px: float) -> Estimate:
         """The curve at one normal distance, by cubic interpolation."""
-        gradient = sample(self.distance_px, self.factor, distance_px)
+        gradient = self.gradient(distance_px)
         value = float(sample(self.distance_px, self.value, distance_px))
         return Estimate(value, float(np.sqrt(gradient @ gradient)))
 

@@ -28,11 +28,14 @@ class Mtf:
         Phase relative to the centroid of the LSF, so that an asymmetric system shows.
     factor : (n, k) complex array
         Factor of the covariance: the error of `otf` is ``factor @ z``, z standard normal.
+    latent : (k, m) array, optional
+        A second factor shared by all curves of a measurement: the error is ``factor @ latent @ z``.
     """
 
     freq_cpp: Floats
     otf: Complexes
     factor: Complexes
+    latent: Floats | None = None
 
     def __post_init__(self) -> None:
         n = self.freq_cpp.shape
@@ -43,15 +46,14 @@ class Mtf:
             )
 
     @cached_property
-    def _direction(self) -> Complexes:
-        modulus = np.abs(self.otf)
-        return np.where(modulus > 0, self.otf / np.where(modulus > 0, modulus, 1.0), 1.0 + 0j)
+    def _along_and_quadrature(self) -> tuple[Floats, Floats]:
+        """Covariance factors, (n, m), of the OTF's part in phase with itself and of the rest."""
+        return _split(self.otf[:, None], self.factor, self.latent)
 
-    @cached_property
-    def gradient(self) -> Floats:
-        """Factor of the covariance of the MTF itself, (n, k): the part in phase with the OTF."""
-        inphase = np.conj(self._direction)[:, None] * self.factor
-        return np.ascontiguousarray(inphase.real)
+    @property
+    def covariance_factor(self) -> Floats:
+        """Factor of the covariance of the MTF itself, (n, m)."""
+        return self._along_and_quadrature[0]
 
     @cached_property
     def value(self) -> Floats:
@@ -59,25 +61,34 @@ class Mtf:
 
         Noise perpendicular to the OTF lengthens it (Rice), by var / (2 M) to first order.
         """
-        quadrature = (np.conj(self._direction)[:, None] * self.factor).imag
-        excess = np.einsum("ij,ij->i", quadrature, quadrature)
-        return np.sqrt(np.maximum(np.abs(self.otf) ** 2 - excess, 0.0))
+        quadrature = self._along_and_quadrature[1]
+        return _modulus(self.otf, np.einsum("ij,ij->i", quadrature, quadrature))
 
     @cached_property
     def std(self) -> Floats:
         """Standard deviation of the MTF at every frequency, (n,)."""
-        return np.sqrt(np.einsum("ij,ij->i", self.gradient, self.gradient))
+        along = self.covariance_factor
+        return np.asarray(np.sqrt(np.einsum("ij,ij->i", along, along)))
+
+    def gradient(self, freq_cpp: float) -> Floats:
+        """The row of `covariance_factor` at any frequency, (m,)."""
+        return self._at(freq_cpp)[1]
+
+    def __call__(self, freq_cpp: float) -> Estimate:
+        """The MTF at one frequency (cycles per pixel), by cubic interpolation of the OTF."""
+        value, gradient = self._at(freq_cpp)
+        return Estimate(value, float(np.sqrt(gradient @ gradient)))
+
+    def _at(self, freq_cpp: float) -> tuple[float, Floats]:
+        otf = np.atleast_1d(sample(self.freq_cpp, self.otf, freq_cpp))
+        row = sample(self.freq_cpp, self.factor, freq_cpp)[None, :]
+        along, quadrature = _split(otf, row, self.latent)
+        return float(_modulus(otf, np.einsum("ij,ij->i", quadrature, quadrature))[0]), along[0]
 
     @cached_property
     def phase_rad(self) -> Floats:
         """Phase of the OTF in radians, relative to the centroid of the LSF, (n,)."""
-        return np.angle(self.otf)
-
-    def __call__(self, freq_cpp: float) -> Estimate:
-        """The MTF at one frequency (cycles per pixel), by cubic interpolation."""
-        gradient = sample(self.freq_cpp, self.gradient, freq_cpp)
-        value = float(sample(self.freq_cpp, self.value, freq_cpp))
-        return Estimate(value, float(np.sqrt(gradient @ gradient)))
+        return np.asarray(np.angle(self.otf))
 
     def to_dict(self) -> dict[str, list[float]]:
         """Frequencies, values, standard deviations and phase as lists."""
@@ -87,3 +98,18 @@ class Mtf:
             "std": self.std.tolist(),
             "phase_rad": self.phase_rad.tolist(),
         }
+
+
+def _split(otf: Complexes, factor: Complexes, latent: Floats | None) -> tuple[Floats, Floats]:
+    """Covariance factors of the OTF's error along itself and perpendicular to itself."""
+    modulus = np.abs(otf)
+    direction = np.where(modulus > 0, otf, 1.0) / np.where(modulus > 0, modulus, 1.0)
+    turned = np.conj(direction) * factor
+    along, quadrature = np.ascontiguousarray(turned.real), np.ascontiguousarray(turned.imag)
+    if latent is None:
+        return along, quadrature
+    return along @ latent, quadrature @ latent
+
+
+def _modulus(otf: Complexes, excess: Floats) -> Floats:
+    return np.asarray(np.sqrt(np.maximum(np.abs(otf) ** 2 - excess, 0.0)))

@@ -1,0 +1,328 @@
+"""The reference estimator: one edge, one linear model, one covariance.
+
+The image of an edge is ``dark + ESF(s)`` with s the normal distance. The ESF is the plain blurred
+edge (`fit.start`) plus a free spline and a tail (`fit.spline`, `fit.prior`), whose amplitudes the
+data decide (`fit.posterior`). The line's direction is one more unknown of the same linear model,
+solved again where the line has moved.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves import Esf, Lsf, Mtf, Response
+from acutance.curves.grid import Floats, crossing
+from acutance.fit import prior as lsf_prior
+from acutance.fit.band import EdgeBand, EdgeFit
+from acutance.fit.blur import Blur
+from acutance.fit.noise import Correlation, correlation, huber_weights, side_variances
+from acutance.fit.normal import accumulate
+from acutance.fit.posterior import Posterior, Prior, regress
+from acutance.fit.spline import (
+    CELLS,
+    CENTRES,
+    HALF_SUPPORT,
+    SIZE,
+    edge_weights,
+    line_weights,
+    spread,
+    transform,
+)
+from acutance.fit.start import BlurredEdge, fit_blurred_edge
+
+__all__ = ["SplineEdge", "fit_edge"]
+
+_NOISE_FLOOR = 2e-4
+_FREQ_CPP: Floats = np.arange(101) * 0.01
+_STEP_PX = 0.05
+_SETTLED_PX = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class SplineEdge(EdgeFit):
+    """The reference estimator's fit, with what its checks ask for.
+
+    Attributes
+    ----------
+    blur : Blur
+        The plain blur that explains the edge best.
+    noise_dark, noise_bright : float
+        Standard deviation of the noise on either side, in image units.
+    correlation : Correlation
+        What the residuals say of the noise's correlation.
+    weights : (n,) array
+        Weight of every pixel used, 1 where it is no outlier.
+    tail : float
+        Share of the LSF in the 1/x^2 tail.
+    """
+
+    blur: Blur
+    noise_dark: float
+    noise_bright: float
+    correlation: Correlation
+    weights: Floats
+    tail: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Pixels:
+    row: Floats
+    col: Floats
+    value: Floats
+
+
+def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
+    """Measure the edge of a band.
+
+    Parameters
+    ----------
+    band : EdgeBand
+    robust : bool, optional
+        Bound the weight of outliers.
+
+    Raises
+    ------
+    NoEdgeError
+        If the band holds no step.
+    """
+    rows, cols = np.nonzero(np.isfinite(band.image))
+    pixels = _Pixels(rows.astype(float), cols.astype(float), band.image[rows, cols])
+    start = fit_blurred_edge(
+        pixels.row, pixels.col, pixels.value, band.line,
+        dark=band.dark, bright=band.bright, sigma_px=band.width_px, noise=band.noise,
+    )  # fmt: skip
+    outlier = np.ones(pixels.value.size)
+    spread_of_noise = Correlation(1.0, 0.0, 0.0)
+    for _ in range(6):
+        solved = _solve(pixels, start, outlier, spread_of_noise.inflation)
+        moved = abs(solved.turn_rad) * solved.half_length_px
+        standard = solved.residual / solved.noise
+        heavy = robust and bool(np.any(np.abs(standard) > 4.0))
+        again = huber_weights(solved.residual, solved.noise) if heavy else outlier
+        whiteness = correlation(np.clip(standard, -4, 4), rows, cols, start.line.normal)
+        settled = (
+            moved < _SETTLED_PX
+            and np.max(np.abs(again - outlier)) < 0.05
+            and abs(whiteness.inflation / spread_of_noise.inflation - 1) < 0.05
+        )
+        if settled:
+            break
+        outlier, spread_of_noise = again, whiteness
+        start = replace(start, line=start.line.moved(0.0, math.degrees(solved.turn_rad)))
+    return _finish(band, pixels, start, solved, spread_of_noise, outlier)
+
+
+@dataclass(frozen=True, eq=False)
+class _Solution:
+    """One pass of the linear model at a fixed line."""
+
+    posterior: Posterior
+    directions: lsf_prior.Directions
+    residual: Floats
+    noise: Floats
+    side_noise: tuple[float, float]
+    turn_rad: float
+    turn_std_rad: float
+    half_length_px: float
+
+
+def _solve(pixels: _Pixels, start: BlurredEdge, outlier: Floats, inflation: float) -> _Solution:
+    """Solve for the LSF's departures from the start, the levels and the line's direction."""
+    line, blur, height = start.line, start.blur, start.height
+    width = blur.width_px
+    s = line.normal_distance(pixels.row, pixels.col)
+    t = line.tangent_distance(pixels.row, pixels.col)
+    u = s / width
+    mean_esf = blur.esf(s)
+    departure = pixels.value - start.dark - height * mean_esf
+    variance_dark, variance_bright = side_variances(departure * np.sqrt(outlier), mean_esf)
+    floor = (_NOISE_FLOOR * height) ** 2
+    clipped = np.clip(mean_esf, 0.0, 1.0)
+    relative = (variance_dark + floor) * (1 - clipped) + (variance_bright + floor) * clipped
+    scale = 0.5 * (variance_dark + variance_bright) + floor
+    weight = outlier * (scale / relative)
+    # Regressors beside the spline: the tail beyond the support, and the turn of the line.
+    beyond = lsf_prior.tail_esf(u) - lsf_prior.tail_esf(np.clip(u, -HALF_SUPPORT, HALF_SUPPORT))
+    turn = height * t * blur.lsf(s)
+    sums = accumulate(u, departure, weight, np.stack([beyond, turn]))
+
+    directions = lsf_prior.directions(blur)
+    # Coefficients: dark level, the LSF's directions, turn. The dark level lifts every ESF
+    # coefficient alike, because the B-splines sum to one.
+    m = directions.block.size + 2
+    esf = np.zeros((CELLS + 3, m))
+    esf[:, 0] = 1.0
+    esf[:, 1:-1] = directions.esf
+    beside = np.zeros((2, m))
+    beside[0, -2] = 1.0
+    beside[1, -1] = 1.0
+    across = esf.T @ sums.cross @ beside
+    gram = esf.T @ sums.gram @ esf + across + across.T + beside.T @ sums.extra @ beside
+    projection = esf.T @ sums.spline_data + beside.T @ sums.extra_data
+    posterior = regress(
+        gram, projection, sums.data, sums.count, _prior(start, directions), inflation
+    )
+
+    beta = posterior.beta
+    cell, weights = edge_weights(u)
+    coefficients = esf @ beta
+    fitted = sum(weights[a] * coefficients[cell + a] for a in range(4))
+    residual = departure - fitted - beta[-2] * beyond - beta[-1] * turn
+    noise = np.sqrt(posterior.variance * relative / scale)
+    return _Solution(
+        posterior, directions, residual, noise,
+        (math.sqrt(posterior.variance * variance_dark / scale),
+         math.sqrt(posterior.variance * variance_bright / scale)),
+        float(beta[-1]), float(np.linalg.norm(posterior.factor[-1])), float(np.max(np.abs(t))),
+    )  # fmt: skip
+
+
+def _prior(start: BlurredEdge, directions: lsf_prior.Directions) -> Prior:
+    """The prior of all coefficients: dark, mean blur, processes, tail, turn."""
+    m = directions.block.size + 2
+    block = np.full(m, -1)
+    block[1:-1] = np.where(directions.block >= 2, directions.block - 2, -1)
+    scale = np.ones(m)
+    aperture, aperture_std = lsf_prior.APERTURE_PX
+    mean = np.zeros(m)
+    where = 1 + int(np.flatnonzero(directions.block == 1)[0])
+    scale[where] = aperture_std
+    mean[where] = (aperture - start.blur.aperture_px) * start.height
+    return Prior(
+        block, scale, mean, lsf_prior.LOG_AMPLITUDE, lsf_prior.LOG_AMPLITUDE_STD,
+        start.height, _NOISE_FLOOR * start.height,
+    )  # fmt: skip
+
+
+def _finish(
+    band: EdgeBand,
+    pixels: _Pixels,
+    start: BlurredEdge,
+    solved: _Solution,
+    whiteness: Correlation,
+    outlier: Floats,
+) -> SplineEdge:
+    """Turn the coefficients into curves about the 50 % point, with their covariance."""
+    curves = _Curves.of(start, solved)
+    middle = curves.half_point()
+    response = curves.response(middle)
+    line = start.line.moved(middle, math.degrees(solved.turn_rad))
+    t = line.tangent_distance(pixels.row, pixels.col)
+    s = line.normal_distance(pixels.row, pixels.col)
+    near = np.abs(s) < start.blur.width_px
+    length = float(np.ptp(t[near])) if near.any() else math.nan
+    dark = start.dark + float(solved.posterior.beta[0])
+    height = curves.height
+    value = (pixels.value - dark) / height
+    line = replace(
+        line,
+        angle_std_deg=math.degrees(solved.turn_std_rad),
+        offset_std_px=curves.half_point_std(middle),
+        length_px=length,
+    )
+    return SplineEdge(
+        line, response, dark, dark + height, s, value, solved.residual / height,
+        start.blur, *solved.side_noise, whiteness, outlier, curves.tail / height,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class _Curves:
+    """The unnormalised LSF: a plain blur, a spline and a tail, with the spline's covariance.
+
+    `spline` (SIZE,) and `tail` are in image units; `latent` (SIZE + 1, k) is the factor of their
+    joint covariance.
+    """
+
+    blur: Blur
+    level: float
+    spline: Floats
+    tail: float
+    latent: Floats
+
+    @classmethod
+    def of(cls, start: BlurredEdge, solved: _Solution) -> _Curves:
+        inner = solved.directions.lsf[:, :-1]
+        beta, factor = solved.posterior.beta, solved.posterior.factor
+        latent = np.vstack([inner @ factor[1:-2], factor[-2:-1]])
+        return cls(start.blur, start.height, inner @ beta[1:-2], float(beta[-2]), latent)
+
+    @property
+    def height(self) -> float:
+        """Bright less dark: the integral of the LSF."""
+        return float(self.level + (2 * HALF_SUPPORT / CELLS) * self.spline.sum() + self.tail)
+
+    def _height_row(self) -> Floats:
+        return np.append(np.full(SIZE, 2 * HALF_SUPPORT / CELLS), 1.0)
+
+    def _esf(self, s: Floats) -> tuple[Floats, Floats]:
+        """Normalised ESF at `s` and its design, (n, SIZE + 1): error = design @ latent @ z."""
+        width = self.blur.width_px
+        u = s / width
+        design = np.empty((s.size, SIZE + 1))
+        # d ESF / d c_j is the sum of the cubic B-splines from j + 3 on.
+        local = spread(*edge_weights(u))
+        design[:, :-1] = np.cumsum(local[:, ::-1], axis=1)[:, ::-1][:, 3 : 3 + SIZE]
+        design[:, :-1] *= 2 * HALF_SUPPORT / CELLS
+        design[:, -1] = lsf_prior.tail_esf(u)
+        value = self.level * self.blur.esf(s) + design[:, :-1] @ self.spline
+        value = (value + design[:, -1] * self.tail) / self.height
+        return value, (design - value[:, None] * self._height_row()) / self.height
+
+    def _lsf(self, s: Floats) -> tuple[Floats, Floats]:
+        width = self.blur.width_px
+        u = s / width
+        design = np.empty((s.size, SIZE + 1))
+        local = spread(*line_weights(u))
+        design[:, :-1] = np.cumsum(local[:, ::-1], axis=1)[:, ::-1][:, 3 : 3 + SIZE]
+        design[:, :-1] *= 2 * HALF_SUPPORT / CELLS / width
+        reach = lsf_prior.TAIL_WIDTH
+        design[:, -1] = reach / np.pi / (u * u + reach**2) / width
+        value = self.level * self.blur.lsf(s) + design[:, :-1] @ self.spline
+        value = (value + design[:, -1] * self.tail) / self.height
+        return value, (design - value[:, None] * self._height_row()) / self.height
+
+    def _otf(self, freq_cpp: Floats, middle: float) -> tuple[NDArray[np.complex128], ...]:
+        """Normalised OTF about the LSF's centroid and its design."""
+        width = self.blur.width_px
+        freq = freq_cpp * width
+        design = np.empty((freq.size, SIZE + 1), complex)
+        design[:, :-1] = transform(freq)
+        design[:, -1] = lsf_prior.tail_otf(freq)
+        value = self.level * self.blur.otf(freq_cpp) + design[:, :-1] @ self.spline
+        value = (value + design[:, -1] * self.tail) / self.height
+        centroid = width * (2 * HALF_SUPPORT / CELLS) * float(self.spline @ CENTRES) / self.height
+        turn = np.exp(2j * np.pi * freq_cpp * centroid)
+        design = (design - value[:, None] * self._height_row()) * (turn / self.height)[:, None]
+        return value * turn, design
+
+    def half_point(self) -> float:
+        """Normal distance of the 50 % point from the start's line."""
+        s: Floats = np.arange(-40, 41) * (0.05 * self.blur.width_px)
+        value, _ = self._esf(s)
+        steep = int(np.argmax(np.diff(value)))
+        return crossing(s, value, 0.5, float(s[max(steep - 8, 0)]))
+
+    def half_point_std(self, middle: float) -> float:
+        """Standard deviation of the 50 % point."""
+        at = np.array([middle])
+        _, design = self._esf(at)
+        steepness, _ = self._lsf(at)
+        return float(np.linalg.norm(design[0] @ self.latent) / abs(steepness[0]))
+
+    def response(self, middle: float) -> Response:
+        """The curves on their grids, 0 at `middle`."""
+        half = math.ceil(max(10.0, HALF_SUPPORT * self.blur.width_px) / _STEP_PX)
+        distance: Floats = np.arange(-half, half + 1) * _STEP_PX
+        esf, esf_design = self._esf(distance + middle)
+        lsf, lsf_design = self._lsf(distance + middle)
+        otf, otf_design = self._otf(_FREQ_CPP, middle)
+        return Response(
+            Esf(distance, esf, esf_design, self.latent),
+            Lsf(distance, lsf, lsf_design, self.latent),
+            Mtf(_FREQ_CPP, otf, otf_design, self.latent),
+        )

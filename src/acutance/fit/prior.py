@@ -1,0 +1,111 @@
+"""What is known of a line spread function before the pixels are seen.
+
+The LSF is the mean blur (`fit.blur`) with free level, width, aperture and place, plus two
+Gaussian processes and a tail, each with an amplitude that the data decide (`fit.posterior`):
+
+- CORE: departures near the peak (aperture shape, sharpening, asymmetry);
+- HALO: broad departures out to many widths (stray light, halo, charge trails);
+- TAIL: a term falling like 1/u^2 without end, as diffraction does.
+
+A Gaussian process has covariance ``exp(-(u^2 + u'^2) / 2 L^2) exp(-(u - u')^2 / 2 l^2)``: its
+departures live within L widths of the edge and vary over l widths. Nothing here knows a sensor.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.fit.blur import Blur
+from acutance.fit.spline import CENTRES, HALF_SUPPORT, esf_from_lsf, quasi_interpolant
+
+__all__ = [
+    "APERTURE_PX",
+    "LOG_AMPLITUDE",
+    "LOG_AMPLITUDE_STD",
+    "TAIL_WIDTH",
+    "Directions",
+    "directions",
+    "tail_esf",
+    "tail_otf",
+]
+
+_CORE: Final = (1.2, 0.3)
+_HALO: Final = (4.0, 1.5)
+TAIL_WIDTH: Final = 1.0
+
+LOG_AMPLITUDE: Final = -4.0
+LOG_AMPLITUDE_STD: Final = 1.0
+"""Amplitudes relative to the edge's height: about 2 %, within a factor e either way."""
+APERTURE_PX: Final = (1.0, 0.25)
+"""Mean and standard deviation of the detector's aperture: fill factors are near one."""
+
+
+class Directions(NamedTuple):
+    """The directions in which the LSF may differ from the mean blur.
+
+    Attributes
+    ----------
+    lsf : (SIZE, r) array
+        LSF coefficients of every direction, per width.
+    esf : (CELLS + 3, r) array
+        The same as ESF coefficients.
+    block : (r,) int array
+        0 level, width and place (free), 1 aperture, 2 core, 3 halo, 4 tail.
+    """
+
+    lsf: Floats
+    esf: Floats
+    block: Floats
+
+
+def _process(extent: float, smoothness: float) -> Floats:
+    """Square root of a Gaussian process's covariance, (SIZE, r), to 1e-5 of its variance."""
+    u = CENTRES
+    envelope = np.exp(-0.5 * (u / extent) ** 2)
+    kernel = np.exp(-0.5 * ((u[:, None] - u) / smoothness) ** 2) * envelope[:, None] * envelope
+    power, shape = np.linalg.eigh(kernel)
+    kept = power > 1e-5 * power[-1]
+    return np.asarray(shape[:, kept] * np.sqrt(power[kept]))
+
+
+def tail_esf(u: Floats) -> Floats:
+    """ESF of the tail term: its LSF is the Lorentz curve of half width TAIL_WIDTH."""
+    return np.arctan(u / TAIL_WIDTH) / np.pi + 0.5
+
+
+def tail_otf(freq: Floats) -> Floats:
+    """Transfer function of the tail term, at frequencies in cycles per width."""
+    return np.exp(-2 * np.pi * TAIL_WIDTH * freq)
+
+
+@cache
+def _fixed() -> tuple[Floats, Floats, Floats]:
+    core, halo = _process(*_CORE), _process(*_HALO)
+    tail = quasi_interpolant(TAIL_WIDTH / np.pi / (CENTRES**2 + TAIL_WIDTH**2))
+    lsf = np.hstack([core, halo, tail[:, None]])
+    block = np.repeat([2, 3, 4], [core.shape[1], halo.shape[1], 1])
+    esf = esf_from_lsf(lsf)
+    esf[:, -1] += float(tail_esf(np.array(-HALF_SUPPORT)))
+    return lsf, esf, block
+
+
+def directions(blur: Blur) -> Directions:
+    """The directions of the prior around the mean `blur`.
+
+    The level, width, place and aperture of the mean come first, then the processes and the tail.
+    """
+    lsf, esf, block = _fixed()
+    width = blur.width_px
+    s = CENTRES * width
+    by_place, by_sigma, by_aperture = blur.lsf_slopes(s)
+    shapes = (blur.lsf(s), by_sigma, -by_place, by_aperture)
+    mean = np.stack([quasi_interpolant(width * shape) for shape in shapes], axis=1)
+    return Directions(
+        np.hstack([mean, lsf]),
+        np.hstack([esf_from_lsf(mean), esf]),
+        np.concatenate([[0, 0, 0, 1], block]),
+    )
