@@ -1,0 +1,41 @@
+"""A small simulated edge on disk, and the command line run inside the test."""
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from acutance import optics, simulate
+from acutance.cli.app import app
+from acutance.raster import write_geotiff
+
+SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=0.7)
+
+
+@pytest.fixture(scope="session")
+def edge_image(tmp_path_factory):
+    """60 x 44 pixels, an edge at 6 degrees, SNR 100, 0.7 m."""
+    pixels, _ = simulate.edge(
+        SENSOR, angle_deg=6.0, shape=(60, 44), snr=100, rng=np.random.default_rng(3)
+    )
+    path = tmp_path_factory.mktemp("images") / "edge.tif"
+    write_geotiff(path, pixels.astype(np.float32), gsd_m=0.7)
+    return str(path)
+
+
+@pytest.fixture(scope="session")
+def site_image(tmp_path_factory):
+    """The calibration site: a checkerboard with four edges on grass."""
+    scene = simulate.site(SENSOR, np.random.default_rng(3))
+    path = tmp_path_factory.mktemp("images") / "site.tif"
+    write_geotiff(path, scene.image.astype(np.float32), gsd_m=0.7)
+    return str(path)
+
+
+@pytest.fixture
+def acutance():
+    """Run a command line; the result has .exit_code, .stdout and .stderr."""
+
+    def run(*words):
+        return CliRunner().invoke(app, [str(word) for word in words])
+
+    return run
