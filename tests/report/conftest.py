@@ -155,6 +155,12 @@ def truth() -> Response:
 
 
 @pytest.fixture(scope="session")
+def make_edge():
+    """The builder itself, for edges of another shape."""
+    return edge_measurement
+
+
+@pytest.fixture(scope="session")
 def measurement() -> Measurement:
     return edge_measurement()
 

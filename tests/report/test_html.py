@@ -80,7 +80,7 @@ def test_the_comparison_shows_every_method_and_the_truth(compared, truth):
 
 def test_the_target_report_shows_means_edges_and_rejections(target):
     text = words(target_report(target, command="acutance edge scene.tif --all"))
-    assert "MTF at Nyquist, across" in text
+    assert "Result across Weighted mean of 2 edges. MTF at Nyquist" in text
     assert "4 of 24 checks failed" in text
     assert "<aligned> with the grid" in text
     assert "acutance edge scene.tif --all" in text

@@ -68,7 +68,8 @@ def comparison_figure(
 
 
 def _draw_mtfs(axes: Axes, responses: Mapping[str, Response], truth: Response | None) -> None:
-    mark_frequencies(axes, next(iter(responses.values())).gsd_m)
+    top = max(float(response.mtf.value.max()) for response in responses.values())
+    mark_frequencies(axes, next(iter(responses.values())).gsd_m, top)
     for (label, response), color in zip(responses.items(), _colors(len(responses)), strict=True):
         mtf = response.mtf
         low, high = band_edges(mtf.value, mtf.std)

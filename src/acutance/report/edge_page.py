@@ -46,7 +46,7 @@ def edge_figure(measurement: Measurement) -> Figure:
         draw_esf(esf, measurement)
         draw_residuals(residuals, measurement)
         draw_lsf(right.subplots(), measurement)
-        curve, numbers, checks = split_page(lower, 1, 3, widths=(1.2, 1.15, 0.85))
+        curve, numbers, checks = split_page(lower, 1, 3, widths=(1.1, 1.25, 0.85))
         draw_mtf(curve.subplots(), measurement)
         _write_numbers(numbers.subplots(), measurement)
         _write_checks(checks.subplots(), measurement)

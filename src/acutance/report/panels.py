@@ -63,8 +63,14 @@ def show_pixels(axes: Axes, pixels: Floats, row: int, col: int) -> None:
         interpolation="nearest",
     )
     axes.grid(visible=False)
-    axes.locator_params(integer=True, nbins=6)
+    axes.locator_params(axis="x", integer=True, nbins=_tick_count(width / height))
+    axes.locator_params(axis="y", integer=True, nbins=_tick_count(height / width))
     axes.set(xlabel="column", ylabel="row")
+
+
+def _tick_count(relative_length: float) -> int:
+    """How many intervals between ticks have room on a side of an image."""
+    return max(1, int(6 * min(1.0, relative_length)))
 
 
 def draw_cut(axes: Axes, measurement: Measurement) -> None:
@@ -72,11 +78,10 @@ def draw_cut(axes: Axes, measurement: Measurement) -> None:
     line, samples = measurement.line, measurement.samples
     row, col, height, width = measurement.image.roi
     show_pixels(axes, samples.image, row, col)
-    used = np.pad(samples.used, 1).astype(float)
     axes.contour(
         np.arange(-1, width + 1) + col,
         np.arange(-1, height + 1) + row,
-        used,
+        np.pad(samples.used, 1).astype(float),
         levels=[0.5],
         colors=[ORANGE],
         linewidths=1.3,
@@ -88,7 +93,7 @@ def draw_cut(axes: Axes, measurement: Measurement) -> None:
         np.abs(rows - (height - 1) / 2) <= height / 2
     )
     axes.plot(columns[inside] + col, rows[inside] + row, color=VERMILION, linewidth=2)
-    half = 0.13 * min(height, width)
+    half = max(0.13 * min(height, width), 0.05 * max(height, width))
     middle = run[inside].mean()
     at_col, at_row = line.col - y * middle + col, line.row + x * middle + row
     axes.annotate(
@@ -105,14 +110,12 @@ def _legend_below(axes: Axes, entries: list[tuple[str, str]]) -> None:
     from matplotlib.lines import Line2D
 
     handles = [Line2D([], [], color=color, label=label) for label, color in entries]
-    axes.legend(
+    axes.figure.legend(
         handles=handles,
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.14),
+        loc="outside lower center",
         ncols=len(entries),
         columnspacing=1.2,
         handlelength=1.4,
-        borderaxespad=0.2,
     )
 
 
@@ -192,8 +195,8 @@ def _mark_fwhm(axes: Axes, lsf: Lsf, label: str) -> None:
 def draw_mtf(axes: Axes, measurement: Measurement) -> None:
     """The MTF from 0 to 1 c/px with its 95 % band, Nyquist, MTF50 and the aliased region."""
     mtf = measurement.mtf
-    mark_frequencies(axes, measurement.response.gsd_m)
     low, high = band_edges(mtf.value, mtf.std)
+    mark_frequencies(axes, measurement.response.gsd_m, top=float(np.max(high)))
     axes.fill_between(mtf.freq_cpp, low, high, color=BLUE, alpha=0.3, linewidth=0)
     axes.plot(mtf.freq_cpp, mtf.value, color=BLUE)
     _mark_point(axes, mtf, metrics.NYQUIST_CPP, VERMILION)
@@ -238,21 +241,29 @@ def _mark_point(axes: Axes, mtf: Mtf, freq_cpp: float, color: str) -> None:
     )
 
 
-def mark_frequencies(axes: Axes, gsd_m: float | None, ylabel: str = "MTF") -> None:
-    """Frequency axis from 0 to 1 c/px: Nyquist, the aliased region, cycles/m when known."""
+def mark_frequencies(axes: Axes, gsd_m: float | None, top: float) -> None:
+    """Axes of an MTF from 0 to 1 c/px: Nyquist, the aliased region, cycles/m when known.
+
+    `top` is the largest value to be drawn; a sharpened image exceeds 1.
+    """
     axes.axvspan(metrics.NYQUIST_CPP, 1.0, color=SHADE, linewidth=0, zorder=0)
     axes.axvline(metrics.NYQUIST_CPP, color=INK, linewidth=1, dashes=(5, 3))
-    axes.text(
-        metrics.NYQUIST_CPP - 0.012,
-        0.955,
-        "aliased beyond Nyquist →",
-        transform=axes.get_xaxis_transform(),
-        ha="right",
-        va="top",
-        color=FAINT,
-        fontsize=8.5,
-    )
-    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.05), xlabel="frequency [cycles/pixel]", ylabel=ylabel)
+    for text, place, height in (
+        ("Nyquist", metrics.NYQUIST_CPP - 0.012, 0.955),
+        ("aliased", 0.985, 0.55),
+    ):
+        axes.text(
+            place,
+            height,
+            text,
+            transform=axes.get_xaxis_transform(),
+            ha="right",
+            va="top",
+            color=FAINT,
+            fontsize=8.5,
+        )
+    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.05 * max(1.0, top)))
+    axes.set(xlabel="frequency [cycles/pixel]", ylabel="MTF")
     if gsd_m is not None:
         second = axes.secondary_xaxis("top", functions=(_scaling(1.0 / gsd_m), _scaling(gsd_m)))
         second.set_xlabel("frequency [cycles/m]")

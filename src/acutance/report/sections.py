@@ -79,10 +79,10 @@ def _headlines(measurement: Measurement) -> tuple[Headline, ...]:
     return tuple(cards)
 
 
-def _headline(name: str, estimate: Estimate, label: str = "") -> Headline:
+def _headline(name: str, estimate: Estimate) -> Headline:
     words, number = metric_words(name), word_estimate(estimate)
     details = () if number.std == MISSING else (f"± {number.std}", f"95 %: {number.interval}")
-    return Headline(label or words.label, number.value, words.unit, details)
+    return Headline(words.label, number.value, words.unit, details)
 
 
 def _metrics_table(measurement: Measurement) -> Table:
@@ -224,11 +224,6 @@ def target_sections(
 ) -> tuple[Section, ...]:
     """All edges of a target: group means, every edge, what was rejected and why."""
     measurements = tuple(result.measurements)
-    headlines = [
-        _headline(name, group.metrics[name], f"{metric_words(name).label}, {orientation}")
-        for orientation, group in result.groups.items()
-        for name in ("mtf_nyquist", "rer", "fwhm_px")
-    ]
     plate = Plate.of_figure(
         target_figure(result, backdrop=backdrop, origin=origin),
         "The edges and their MTFs by direction",
@@ -241,9 +236,9 @@ def target_sections(
         "llrrr",
     )
     sections = [
+        *_mean_sections(result),
         Section(
-            "Result",
-            headlines=tuple(headlines),
+            "Checks",
             verdicts=(Verdict(all(one.trusted for one in measurements), verdict(measurements)),),
         ),
         Section("Edges", plates=(plate,), tables=(_edges_table(measurements),)),
@@ -262,6 +257,19 @@ def target_sections(
             Section("Rejected", tables=(Table(("Stage", "Why"), rows, "ll"),)),
         )
     return (*sections, reproducing_section(measurements[0], command))
+
+
+def _mean_sections(result: TargetResult) -> list[Section]:
+    """The headlines, one section a direction."""
+    found = []
+    for orientation, group in result.groups.items():
+        cards = [
+            _headline(name, group.metrics[name]) for name in HEADLINES if name in group.metrics
+        ]
+        count = len(group.measurements)
+        text = f"Weighted mean of {count} {'edge' if count == 1 else 'edges'}."
+        found.append(Section(f"Result {orientation}", (text,), tuple(cards)))
+    return found
 
 
 def _edges_table(measurements: Sequence[Measurement]) -> Table:

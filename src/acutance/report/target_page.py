@@ -114,7 +114,8 @@ def _draw_group(axes: Axes, result: TargetResult, orientation: str, color: str) 
         axes.set_title(f"MTF {orientation}: no edge measured")
         axes.axis("off")
         return
-    mark_frequencies(axes, group.measurements[0].response.gsd_m)
+    top = max(float(one.mtf.value.max()) for one in group.measurements)
+    mark_frequencies(axes, group.measurements[0].response.gsd_m, top)
     numbers = {id(one): i for i, one in enumerate(result.measurements, start=1)}
     for one in group.measurements:
         low, high = band_edges(one.mtf.value, one.mtf.std)
