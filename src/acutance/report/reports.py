@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from acutance.report.html import render_report
 from acutance.report.sections import comparison_sections, edge_sections, target_sections
-from acutance.report.wording import describe_image
+from acutance.report.wording import count_edges, describe_image
 
 if TYPE_CHECKING:
     from acutance.curves import Response
@@ -55,6 +55,6 @@ def target_report(
     """
     sections = target_sections(result, backdrop=backdrop, origin=origin, command=command)
     count = len(result.measurements)
-    title = f"{count} {'edge' if count == 1 else 'edges'} of one target"
+    title = f"{count_edges(count)} of one target"
     image = result.measurements[0].image
     return render_report(title, f"{image.path or 'array in memory'}, band {image.band}", sections)

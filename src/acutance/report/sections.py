@@ -14,6 +14,7 @@ from acutance.report.tables import mtf_rows
 from acutance.report.target_page import group_rows, target_figure
 from acutance.report.wording import (
     MISSING,
+    count_edges,
     describe_line,
     flatten_options,
     format_number,
@@ -267,7 +268,7 @@ def _mean_sections(result: TargetResult) -> list[Section]:
             _headline(name, group.metrics[name]) for name in HEADLINES if name in group.metrics
         ]
         count = len(group.measurements)
-        text = f"Weighted mean of {count} {'edge' if count == 1 else 'edges'}."
+        text = f"Weighted mean of {count_edges(count)}."
         found.append(Section(f"Result {orientation}", (text,), tuple(cards)))
     return found
 

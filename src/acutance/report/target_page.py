@@ -12,7 +12,7 @@ from acutance.curves import METRICS
 from acutance.report.grids import write_grid
 from acutance.report.page import BLUE, INK, VERMILION, new_page, split_page, styled
 from acutance.report.panels import TWO_SIDED_95, band_edges, mark_frequencies, show_pixels
-from acutance.report.wording import MISSING, format_number, metric_words, word_estimate
+from acutance.report.wording import MISSING, count_edges, format_number, metric_words, word_estimate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["group_rows", "target_figure"]
 
+MOST_NAMED = 8
 DRAWN = ("mtf_nyquist", "rer", "fwhm_px", "mtf50_cpp", "mtf_area")
 
 
@@ -58,8 +59,7 @@ def target_figure(
         _draw_group(along, result, "along", VERMILION)
         count = len(result.measurements)
         figure.suptitle(
-            f"{count} {'edge' if count == 1 else 'edges'} measured, "
-            f"{len(result.rejected)} rejected",
+            f"{count_edges(count)} measured, {len(result.rejected)} rejected",
             x=0.012,
             ha="left",
             fontsize=12,
@@ -125,11 +125,14 @@ def _draw_group(axes: Axes, result: TargetResult, orientation: str, color: str) 
     axes.errorbar(
         0.5, mean.value, yerr=TWO_SIDED_95 * mean.std, fmt="D", color=INK, capsize=4, zorder=5
     )
-    members = ", ".join(str(numbers[id(one)]) for one in group.measurements)
+    members = [str(numbers[id(one)]) for one in group.measurements]
+    named = count_edges(len(members))
+    if len(members) <= MOST_NAMED:
+        named += f" ({', '.join(members)})"
     axes.text(
         0.985,
         0.955,
-        f"edges {members}\nmean at Nyquist {word_estimate(mean).value_and_std}",
+        f"{named}\nmean at Nyquist {word_estimate(mean).value_and_std}",
         transform=axes.transAxes,
         ha="right",
         va="top",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from acutance.report.comparison_page import edge_labels
 from acutance.report.target_page import group_rows
 from acutance.report.wording import (
+    count_edges,
     describe_image,
     describe_line,
     format_number,
@@ -105,7 +106,7 @@ def target_text(result: TargetResult) -> str:
         words = (word_estimate(each).value_and_std for each in numbers)
         edges.append((str(number), one.orientation, *words, failed or "all passed"))
     blocks = [
-        f"{len(result.measurements)} edges measured, {len(result.rejected)} rejected",
+        f"{count_edges(len(result.measurements))} measured, {len(result.rejected)} rejected",
         align_columns(edges, "llrrrrl"),
         align_columns(
             [("mean", "metric", "value", "chi² / dof", "p"), *group_rows(result)], "llrrr"

@@ -16,6 +16,7 @@ __all__ = [
     "MISSING",
     "MetricWords",
     "NumberWords",
+    "count_edges",
     "describe_image",
     "describe_line",
     "flatten_options",
@@ -137,6 +138,11 @@ def format_number(value: float, digits: int = 4) -> str:
     decimals = max(0, digits - 1 - math.floor(math.log10(abs(value)))) if value else 0
     text = f"{value:.{decimals}f}"
     return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def count_edges(count: int) -> str:
+    """ "1 edge", "2 edges"."""
+    return f"{count} edge" if count == 1 else f"{count} edges"
 
 
 def describe_image(measurement: Measurement) -> str:
