@@ -104,6 +104,14 @@ def test_evidence_agrees_with_the_curves(method):
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_the_lsf_stands_where_the_esf_rises(method):
+    response = PUBLISHED[method](edge_band(shape=(200, 60))).response
+    centroid = response.lsf.value @ response.lsf.distance_px / response.lsf.value.sum()
+    assert abs(centroid) < 0.008
+    np.testing.assert_allclose(response.mtf.phase_rad[:51], 0.0, atol=0.01)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_curves_share_their_latent_variables(method):
     response = PUBLISHED[method](edge_band(snr=100, rng=np.random.default_rng(9))).response
     k = response.mtf.factor.shape[1]

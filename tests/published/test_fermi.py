@@ -1,6 +1,7 @@
 """The parametric edge: closed forms against numbers, exactness, intervals that hold."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -65,6 +66,16 @@ def test_a_wrong_start_line_is_put_right():
     fit = fermi(moved)
     assert fit.line.angle_deg == pytest.approx(7.0, abs=1e-6)
     assert abs(float(band.line.normal_distance(fit.line.row, fit.line.col))) < 1e-6
+
+
+def test_offset_deviation_is_that_of_the_middle_of_the_edge():
+    band = edge_band(esf_of(SINGLE), snr=50, rng=np.random.default_rng(5))
+    x, y = band.line.normal
+    end = replace(band.line, row=band.line.row + 25 * x, col=band.line.col - 25 * y)
+    from_end = fermi(EdgeBand(band.image, end, 200.0, 1200.0, 0.5, 20.0)).line
+    from_middle = fermi(band).line
+    assert from_end.offset_std_px == pytest.approx(from_middle.offset_std_px, rel=1e-3)
+    assert from_end.row == pytest.approx(from_middle.row, abs=1e-4)
 
 
 def _standardised(terms, options, draws, snr):

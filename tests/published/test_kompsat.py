@@ -26,13 +26,13 @@ def test_a_row_that_bends_the_wrong_way_shows_no_edge():
     assert np.isnan(cubic_locations((20 * u + 2 * u**3)[None, :], np.array([5.5]), 0.5)).all()
 
 
-def test_spline_is_the_smoothing_spline_of_csaps():
+@pytest.mark.parametrize("p", [0.98, 0.5])
+def test_spline_is_the_smoothing_spline_of_csaps(p):
     from scipy.interpolate import make_smoothing_spline
 
     rng = np.random.default_rng(5)
     x = np.sort(rng.uniform(-4, 4, 400))
     y = gaussian_pixel_esf(x) + rng.normal(0, 0.02, 400)
-    p = 0.98
     ours = fit_smoothing_spline(x, y, np.ones(400), smoothness=p, start=-4.0, stop=4.0)
     reference = make_smoothing_spline(x, y, lam=(1 - p) / p)
     inside = np.linspace(x[0], x[-1], 300)

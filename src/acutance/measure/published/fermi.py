@@ -89,9 +89,9 @@ def fermi(band: EdgeBand, options: FermiOptions = _DEFAULT) -> EdgeFit:
     Returns
     -------
     EdgeFit
-        Curves along the normal. Their covariance is that of the fit, s^2 (J^T J)^-1: exact for
-        a system that is such a sum; what another system's shape differs from it is a bias and
-        not covered.
+        Curves along the normal. Their covariance is that of the fit, s^2 (J^T J)^-1: it holds
+        for a system that is such a sum. The difference of another system's shape is a bias, and
+        neither that nor the choice of the number of terms is covered.
 
     Raises
     ------
@@ -229,55 +229,63 @@ def _fit(pixels: _Pixels, start: Floats, options: FermiOptions) -> _Fit | None:
 def _response(fit: _Fit) -> tuple[Response, float, Floats]:
     """The curves with their covariance, the 50 % point and its gradient by the unknowns."""
     terms, size = fit.terms, fit.unknown.size
-    contrast, terms_count = terms.contrast, terms.amplitude.size
-    by_amplitude = np.zeros(size)
-    by_amplitude[2 : 2 + terms_count] = 1.0 / contrast
-
-    wide = np.arange(-200.0, 201.0) * 0.05 + terms.centroid_px
-    middle = crossing_of_half(wide, terms.value(wide) / contrast)
-    if math.isnan(middle):
-        raise NoEdgeError("the fitted sum of Fermi functions never passes 50 % of its contrast")
-    at_middle = np.array([middle])
-    steepness = float(terms.slope(at_middle)[0]) / contrast
-    rise_there = _padded(terms.value_gradient(at_middle), size)[0] / contrast
-    middle_gradient = -(rise_there - 0.5 * by_amplitude) / steepness
+    contrast, count = terms.contrast, terms.amplitude.size
+    by_contrast = np.zeros(size)
+    by_contrast[2 : 2 + count] = 1.0 / contrast
+    middle, middle_gradient = _middle(terms, by_contrast)
 
     x = GRID_PX + middle
     esf, lsf = terms.value(x) / contrast, terms.slope(x) / contrast
     esf_gradient = (
         _padded(terms.value_gradient(x), size) / contrast
-        - np.outer(esf, by_amplitude)
+        - np.outer(esf, by_contrast)
         + np.outer(lsf, middle_gradient)
     )
     lsf_gradient = (
         _padded(terms.slope_gradient(x), size) / contrast
-        - np.outer(lsf, by_amplitude)
+        - np.outer(lsf, by_contrast)
         + np.outer(terms.bend(x) / contrast, middle_gradient)
     )
 
     centroid_gradient = np.zeros(size)
-    shares = terms.amplitude / contrast
-    centroid_gradient[2 : 2 + terms_count] = (terms.centre_px - terms.centroid_px) / contrast
-    centroid_gradient[2 + terms_count : 2 + 2 * terms_count] = shares
+    centroid_gradient[2 : 2 + count] = (terms.centre_px - terms.centroid_px) / contrast
+    centroid_gradient[2 + count : 2 + 2 * count] = terms.amplitude / contrast
     phase = 2j * np.pi * FREQ_CPP
     back = np.exp(phase * terms.centroid_px) / contrast
     otf = terms.transfer(FREQ_CPP) * back
     otf_gradient = (
         _padded(terms.transfer_gradient(FREQ_CPP), size) * back[:, None]
-        - np.outer(otf, by_amplitude)
+        - np.outer(otf, by_contrast)
         + np.outer(otf * phase, centroid_gradient)
     )
 
-    deviations = np.sqrt(np.diag(fit.covariance))
-    safe = np.where(deviations > 0, deviations, 1.0)
-    values, vectors = np.linalg.eigh(fit.covariance / np.outer(safe, safe))
-    root = safe[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
+    root = _square_root(fit.covariance)
     response = Response(
         Esf(GRID_PX, esf, esf_gradient @ root),
         Lsf(GRID_PX, lsf, lsf_gradient @ root),
         Mtf(FREQ_CPP, otf, otf_gradient @ root),
     )
     return response, middle, middle_gradient
+
+
+def _middle(terms: FermiSum, by_contrast: Floats) -> tuple[float, Floats]:
+    """The 50 % point of a sum and its gradient by all unknowns."""
+    wide = np.arange(-200.0, 201.0) * 0.05 + terms.centroid_px
+    middle = crossing_of_half(wide, terms.value(wide) / terms.contrast)
+    if math.isnan(middle):
+        raise NoEdgeError("the fitted sum of Fermi functions never passes 50 % of its contrast")
+    there = np.array([middle])
+    steepness = float(terms.slope(there)[0]) / terms.contrast
+    rise = _padded(terms.value_gradient(there), by_contrast.size)[0] / terms.contrast
+    return middle, -(rise - 0.5 * by_contrast) / steepness
+
+
+def _square_root(covariance: Floats) -> Floats:
+    """A factor of a covariance, also of one that is 0 or singular."""
+    deviation = np.sqrt(np.diag(covariance))
+    scale = np.where(deviation > 0, deviation, 1.0)
+    values, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
+    return np.asarray(scale[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
 def _padded(gradient: NDArray[Any], size: int) -> NDArray[Any]:

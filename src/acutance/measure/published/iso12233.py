@@ -1,7 +1,7 @@
 """The slanted-edge spatial frequency response of ISO 12233 (e-SFR).
 
-Source: ISO 12233:2023, annex on the e-SFR algorithm, and Burns, Williams, "Camera resolution
-and distortion: advanced edge fitting" (2018), doi:10.2352/ISSN.2470-1173.2018.12.IQSP-171.
+Source: the e-SFR algorithm of ISO 12233:2023; what the steps leave open follows the reference
+program, sfrmat5 by P. D. Burns.
 """
 
 from __future__ import annotations

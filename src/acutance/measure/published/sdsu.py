@@ -1,8 +1,8 @@
 """South Dakota State University's edge method: Fermi location and modified Savitzky-Golay.
 
 Sources: Helder, Choi, "Generic sensor modeling using pulse method" (2005), section 2.3, and
-Helder, Choi, Rangaswamy, "In-flight characterization of spatial quality using point spread
-functions" (QuickBird, 2003), section 3.3.
+Helder, Choi, Rangaswamy, "Quickbird satellite in-orbit modulation transfer function (MTF)
+measurement using edge, pulse and impulse methods for summer 2003" (2005), section 3.3.
 """
 
 from __future__ import annotations
