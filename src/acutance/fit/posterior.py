@@ -35,8 +35,10 @@ class Prior:
         Standard deviation of a coefficient whose block is -1, relative to `height`.
     mean : (m,) array
         Prior mean, in data units.
-    log_amplitude, log_amplitude_std : float
-        Hyperprior of every amplitude's logarithm, relative to `height`.
+    log_amplitude : (k,) array
+        Hyperprior mean of the logarithm of every block's amplitude, relative to `height`.
+    log_amplitude_std : float
+        Its standard deviation.
     height : float
         Height of the edge, in data units.
     noise_floor : float
@@ -46,7 +48,7 @@ class Prior:
     block: Floats
     scale: Floats
     mean: Floats
-    log_amplitude: float
+    log_amplitude: Floats
     log_amplitude_std: float
     height: float
     noise_floor: float
@@ -98,7 +100,7 @@ def regress(
     groups = [np.flatnonzero(prior.block == k) for k in range(int(prior.block.max()) + 1)]
     spans = [slice(int(g[0]), int(g[-1]) + 1) for g in groups]
     wish, wish_precision = prior.log_amplitude, 1 / prior.log_amplitude_std**2
-    tau = np.full(len(spans), wish)
+    tau = wish.copy()
     floor = prior.noise_floor**2
     sigma = prior.scale * prior.height
     variance = max((data - _explained(gram, projection)) / max(count - 12, 1), floor)
