@@ -1,0 +1,220 @@
+"""Trim a region to the pixels that serve one edge.
+
+Beside a real edge there are other things: the target's end, a road, a second edge. A pixel
+serves when, going outwards from the line, everything up to it looks like the plateau of its side.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.errors import NoEdgeError, SupportError
+from acutance.fit.band import EdgeBand
+from acutance.fit.line import Line
+from acutance.fit.locate import Segment
+from acutance.fit.start import BlurredEdge, fit_blurred_edge
+
+__all__ = ["Extent", "trim"]
+
+_MIN_ROWS = 8
+_MIN_SNR = 3.0
+_TOLERANCE = 0.12
+_NEAR_TOLERANCE = 0.3
+_SIGNIFICANCE = 4.0
+_MAX_HALF_WIDTH_PX = 40.0
+_FIRST_REACH_PX = 7.0
+
+
+@dataclass(frozen=True)
+class Extent:
+    """What of a region serves the edge.
+
+    Attributes
+    ----------
+    dark_px, bright_px : float
+        How far the plateaus reach from the line (the width nine rows in ten have).
+    length_px : float
+        How long the edge is.
+    whole : bool
+        Whether the whole region serves.
+    """
+
+    dark_px: float
+    bright_px: float
+    length_px: float
+    whole: bool
+
+
+def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
+    """The pixels that serve the edge found as `segment`.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        NaN where a pixel must not be used.
+    segment : Segment
+
+    Returns
+    -------
+    band : EdgeBand
+    extent : Extent
+
+    Raises
+    ------
+    NoEdgeError
+        If the edge drowns in the noise.
+    SupportError
+        If it is too short, or a side has no plateau.
+    """
+    rows, cols = np.nonzero(np.isfinite(image))
+    row, col = rows.astype(float), cols.astype(float)
+    value = image[rows, cols]
+    edge = _first_fit(row, col, value, segment)
+    s = edge.line.normal_distance(row, col)
+    t = edge.line.tangent_distance(row, col)
+    strange = _strange(image, rows, cols, value, s, t, edge, segment)
+    need = 1.5 * edge.blur.width_px + 1.5
+    first, bins, dark_reach, bright_reach = _reaches(s, t, strange)
+    whole = not strange.any()
+    start, stop = _best_run(np.minimum(dark_reach, bright_reach), need)
+    length = stop - start
+    if length < _MIN_ROWS:
+        raise SupportError(
+            f"only {length} rows of the edge have at least {need:.1f} px of plateau on both sides "
+            f"(at least {_MIN_ROWS} are needed): choose a region with more of the edge in it"
+        )
+    mask = np.zeros(image.shape, bool)
+    if whole:
+        mask[rows, cols] = True
+    else:
+        inside = (bins >= start) & (bins < stop)
+        clear = np.where(s > 0, s < bright_reach[bins], -s < dark_reach[bins])
+        mask[rows, cols] = inside & clear
+    dark_px, bright_px = (
+        float(np.quantile(reach[start:stop], 0.1)) for reach in (dark_reach, bright_reach)
+    )
+    middle = first + 0.5 * (start + stop)
+    x, y = edge.line.normal
+    line = Line(
+        edge.line.row + x * middle, edge.line.col - y * middle, edge.line.normal_deg,
+        length_px=float(length),
+    )  # fmt: skip
+    band = EdgeBand(
+        np.where(mask, image, np.nan), line, edge.dark, edge.dark + edge.height,
+        edge.blur.sigma_px, edge.noise,
+    )  # fmt: skip
+    return band, Extent(dark_px, bright_px, float(length), whole)
+
+
+def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> BlurredEdge:
+    """Fit the plain blurred edge to the pixels close to the segment."""
+    s = segment.line.normal_distance(row, col)
+    t = segment.line.tangent_distance(row, col)
+    beside = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
+    near = beside & (np.abs(s) < _FIRST_REACH_PX)
+    side = 0.5 * _FIRST_REACH_PX
+    dark, bright = value[near & (s < -side)], value[near & (s > side)]
+    if min(dark.size, bright.size) < _MIN_ROWS:
+        raise SupportError(
+            f"the strongest edge has {dark.size} usable pixels on its dark and {bright.size} on "
+            f"its bright side within {_FIRST_REACH_PX:g} px: choose a region that reaches further "
+            "to both sides of the edge"
+        )
+    levels = float(np.median(dark)), float(np.median(bright))
+    if not levels[1] > levels[0]:
+        raise NoEdgeError(
+            f"the strongest edge separates levels of {levels[0]:.4g} and {levels[1]:.4g}, which is "
+            "a line and not a step: choose a region with one bright and one dark side"
+        )
+    edge = fit_blurred_edge(
+        row[near], col[near], value[near], segment.line, dark=levels[0], bright=levels[1]
+    )
+    if edge.height < _MIN_SNR * edge.noise:
+        raise NoEdgeError(
+            f"the strongest edge has a height of {edge.height:.4g} in noise of {edge.noise:.3g}: "
+            f"an SNR of {edge.height / edge.noise:.1f} where {_MIN_SNR:g} is the least"
+        )
+    return edge
+
+
+def _strange(
+    image: Floats,
+    rows: NDArray[np.intp],
+    cols: NDArray[np.intp],
+    value: Floats,
+    s: Floats,
+    t: Floats,
+    edge: BlurredEdge,
+    segment: Segment,
+) -> NDArray[np.bool_]:
+    """Which pixels do not look like the plateau of their side, in the mean of 3 x 3 pixels."""
+    departure = np.zeros(image.shape)
+    departure[rows, cols] = (value - edge.dark) / edge.height - edge.blur.esf(s)
+    known = np.zeros(image.shape)
+    known[rows, cols] = 1.0
+    smooth = (_box(departure) / np.maximum(_box(known), 1.0))[rows, cols]
+    width = edge.blur.width_px
+    beside = (np.abs(t) < segment.stop_px) & (np.abs(s) > width)
+    beside &= np.abs(s) < _FIRST_REACH_PX + width
+    noise = float(np.median(np.abs(smooth[beside]))) / 0.6745 if beside.any() else 0.0
+    tolerance = max(_TOLERANCE, _SIGNIFICANCE * noise)
+    near = np.abs(s) < 1.5 * width
+    return np.abs(smooth) > np.where(near, max(_NEAR_TOLERANCE, tolerance), tolerance)
+
+
+def _box(values: Floats) -> Floats:
+    """Sums over 3 x 3 pixels, zero beyond the image."""
+    padded = np.zeros((values.shape[0] + 2, values.shape[1] + 2))
+    padded[1:-1, 1:-1] = values
+    down = padded[:-2] + padded[1:-1] + padded[2:]
+    return down[:, :-2] + down[:, 1:-1] + down[:, 2:]
+
+
+def _reaches(
+    s: Floats, t: Floats, strange: NDArray[np.bool_]
+) -> tuple[float, NDArray[np.intp], Floats, Floats]:
+    """How far every row of the edge is clear, on the dark and on the bright side.
+
+    Rows are one pixel long along the edge; the reach of a row ends at the first strange pixel or
+    at the last pixel there is.
+    """
+    first = math.floor(float(t.min()))
+    bins = (t - first).astype(np.intp)
+    count = int(bins.max()) + 1
+    reaches = []
+    for outwards in (-s, s):
+        outside = outwards > 0
+        last = np.zeros(count)
+        np.maximum.at(last, bins[outside], outwards[outside])
+        last = np.minimum(last + 0.5, _MAX_HALF_WIDTH_PX)
+        stop = np.full(count, np.inf)
+        wrong = strange & (outwards > -0.5)
+        np.minimum.at(stop, bins[wrong], np.maximum(outwards[wrong] - 1.0, 0.0))
+        # A strange pixel also spoils the rows beside it.
+        around = np.minimum(stop, np.minimum(np.roll(stop, 1), np.roll(stop, -1)))
+        reaches.append(np.minimum(last, around))
+    return float(first), bins, reaches[0], reaches[1]
+
+
+def _best_run(reach: Floats, need: float) -> tuple[int, int]:
+    """The run of rows that serves best: long, with plateaus of at least `need` pixels.
+
+    Asking for a wider plateau shortens the run; twice the need is worth a third of the rows.
+    """
+    best, best_score = (0, 0), 0.0
+    for times in (1.0, 1.5, 2.0, 3.0, 4.0):
+        clear = np.concatenate([[0], (reach >= times * need).astype(np.int8), [0]])
+        edges = np.diff(clear)
+        starts, stops = np.flatnonzero(edges > 0), np.flatnonzero(edges < 0)
+        if starts.size == 0:
+            break
+        longest = int(np.argmax(stops - starts))
+        score = float(stops[longest] - starts[longest]) * (1 - 2.0**-times)
+        if score > best_score:
+            best, best_score = (int(starts[longest]), int(stops[longest])), score
+    return best
