@@ -27,6 +27,7 @@ def test_an_estimate_gets_two_digits_of_its_standard_deviation():
 def test_a_truth_has_no_interval_and_an_undefined_number_says_so():
     assert word_estimate(Estimate(0.28911)).value_and_std == "0.2891"
     assert word_estimate(Estimate(0.28911)).interval == "–"
+    assert word_estimate(Estimate(0.0, 1e-9)).value_and_std == "0.0000"
     assert word_estimate(Estimate(math.nan, math.nan)).value_and_std == "undefined"
 
 

@@ -134,14 +134,16 @@ def _esf_at(response: Response, places: Floats) -> tuple[Floats, Floats]:
 def _write_comparison(
     axes: Axes, responses: Mapping[str, Response], truth: Response | None
 ) -> None:
-    rows = [("", *(metric_words(name).label_with_unit for name in COMPARED))]
-    colors = [INK]
+    rows = [("", "", *(metric_words(name).label_with_unit for name in COMPARED))]
+    marks = [INK]
     if truth is not None:
-        rows.append(("truth", *(f"{getattr(truth, name).value:.4f}" for name in COMPARED)))
-        colors.append(INK)
+        rows.append(
+            ("–", "truth", *(word_estimate(getattr(truth, name)).value for name in COMPARED))
+        )
+        marks.append(INK)
     for (label, response), color in zip(responses.items(), _colors(len(responses)), strict=True):
         cells = (word_estimate(getattr(response, name)).value_and_std for name in COMPARED)
-        rows.append((label, *cells))
-        colors.append(color)
-    places = (0.01, *np.linspace(0.27, 1.0, len(COMPARED)))
-    write_grid(axes, rows, places=places, align="l" + "r" * len(COMPARED), colors=colors)
+        rows.append(("■", label, *cells))
+        marks.append(color)
+    places = (0.01, 0.03, *np.linspace(0.27, 1.0, len(COMPARED)))
+    write_grid(axes, rows, places=places, align="ll" + "r" * len(COMPARED), marks=marks)

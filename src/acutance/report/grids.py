@@ -25,6 +25,7 @@ def write_grid(
     places: Sequence[float],
     align: str,
     colors: Sequence[str] | None = None,
+    marks: Sequence[str] | None = None,
     fontsize: float = FONT_SIZE,
 ) -> None:
     """Write a table from the top of the axes down; the first row is its header.
@@ -40,13 +41,15 @@ def write_grid(
         One letter a column: ``"l"`` starts at its place, ``"r"`` ends there.
     colors : sequence of str, optional
         One a row.
+    marks : sequence of str, optional
+        Colours of the first column, one a row, where it differs from the rest.
     fontsize : float, optional
         In points; rows are 1.75 times as high.
     """
     axes.axis("off")
     for i, row in enumerate(rows):
         color = FAINT if i == 0 else (colors[i] if colors else INK)
-        for text, place, side in zip(row, places, align, strict=True):
+        for j, (text, place, side) in enumerate(zip(row, places, align, strict=True)):
             if not text:
                 continue
             axes.annotate(
@@ -58,7 +61,7 @@ def write_grid(
                 ha="left" if side == "l" else "right",
                 va="center",
                 fontsize=fontsize,
-                color=color,
+                color=marks[i] if marks and j == 0 else color,
                 annotation_clip=False,
             ).set_in_layout(False)
 

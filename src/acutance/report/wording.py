@@ -29,6 +29,7 @@ __all__ = [
 ]
 
 MISSING = "–"
+SMALLEST_STD = 1e-6
 
 
 @dataclass(frozen=True)
@@ -109,13 +110,14 @@ class NumberWords:
 def word_estimate(estimate: Estimate) -> NumberWords:
     """Write an estimate with two significant digits of its standard deviation.
 
-    A truth, which has no standard deviation, gets four decimals and no interval.
+    A truth, which has no standard deviation (or one too small to be written), gets four decimals
+    and no interval.
     """
     if not math.isfinite(estimate.value):
         return NumberWords("undefined", MISSING, MISSING, MISSING)
-    if not (math.isfinite(estimate.std) and estimate.std > 0):
+    if not (math.isfinite(estimate.std) and estimate.std >= SMALLEST_STD):
         return NumberWords(f"{estimate.value:.4f}", MISSING, MISSING, MISSING)
-    digits = min(max(0, 1 - math.floor(math.log10(estimate.std))), 6)
+    digits = min(max(0, 1 - math.floor(math.log10(estimate.std))), 7)
     low, high = estimate.interval(0.95)
     parts = (estimate.value, estimate.std, low, high)
     return NumberWords(*(write_fixed(part, digits) for part in parts))
