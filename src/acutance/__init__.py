@@ -1,3 +1,111 @@
-"""acutance: how sharp an Earth-observation satellite really sees."""
+"""acutance: how sharp an Earth-observation satellite really sees.
+
+Measures MTF, RER and FWHM of an imaging sensor from the images it took in orbit, each with a
+standard deviation that is true, and simulates sensor and target to prove it.
+
+>>> import acutance as ac
+>>> m = ac.measure_edge(ac.open_image("scene.tif"), (120, 340, 40, 40))  # doctest: +SKIP
+>>> print(m.mtf_nyquist, m.rer, m.fwhm_px)  # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from acutance.errors import (
+    AcutanceError,
+    ImageError,
+    ModelError,
+    NoEdgeError,
+    OptionError,
+    PhaseError,
+    RegionError,
+    SupportError,
+    TargetError,
+)
+
+if TYPE_CHECKING:
+    from acutance import optics, simulate
+    from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
+    from acutance.measure import (
+        EdgeLimits,
+        EdgeOptions,
+        Measurement,
+        TargetResult,
+        measure_edge,
+        measure_edges,
+    )
+    from acutance.optics import Sensor
+    from acutance.raster import Box, Gsd, Image, Region, open_image, sites
 
 __version__ = "0.1.0"
+
+# Where a public name lives. Modules are loaded when a name is first used, so that
+# `import acutance` stays quick.
+_HOMES = {
+    "Box": "acutance.raster",
+    "EdgeLimits": "acutance.measure",
+    "EdgeOptions": "acutance.measure",
+    "Esf": "acutance.curves",
+    "Estimate": "acutance.curves",
+    "Gsd": "acutance.raster",
+    "Image": "acutance.raster",
+    "Lsf": "acutance.curves",
+    "Measurement": "acutance.measure",
+    "Mtf": "acutance.curves",
+    "Region": "acutance.raster",
+    "Response": "acutance.curves",
+    "Sensor": "acutance.optics",
+    "TargetResult": "acutance.measure",
+    "measure_edge": "acutance.measure",
+    "measure_edges": "acutance.measure",
+    "open_image": "acutance.raster",
+    "sites": "acutance.raster",
+}
+_MODULES = ("optics", "simulate")
+
+__all__ = [
+    "AcutanceError",
+    "Box",
+    "EdgeLimits",
+    "EdgeOptions",
+    "Esf",
+    "Estimate",
+    "Gsd",
+    "Image",
+    "ImageError",
+    "Lsf",
+    "Measurement",
+    "ModelError",
+    "Mtf",
+    "NoEdgeError",
+    "OptionError",
+    "PhaseError",
+    "Region",
+    "RegionError",
+    "Response",
+    "Sensor",
+    "SupportError",
+    "TargetError",
+    "TargetResult",
+    "__version__",
+    "measure_edge",
+    "measure_edges",
+    "open_image",
+    "optics",
+    "simulate",
+    "sites",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        return getattr(importlib.import_module(_HOMES[name]), name)
+    if name in _MODULES:
+        return importlib.import_module(f"acutance.{name}")
+    raise AttributeError(f"module 'acutance' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

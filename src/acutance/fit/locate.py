@@ -121,7 +121,8 @@ def _gradient_votes(image: Floats) -> _Votes:
     rows, cols = np.nonzero(known & (magnitude > max(0.2 * strongest, 2 * typical, 1e-300)))
     x, y = by_col[rows, cols], by_row[rows, cols]
     direction = np.degrees(np.arctan2(y, x))
-    return _Votes(rows + 1.0, cols + 1.0, direction, magnitude[rows, cols])
+    row, col = (places.astype(float) + 1.0 for places in (rows, cols))
+    return _Votes(row, col, direction, magnitude[rows, cols])
 
 
 def _strongest(votes: _Votes) -> tuple[Segment, NDArray[np.bool_]] | None:

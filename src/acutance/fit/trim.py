@@ -172,7 +172,7 @@ def _box(values: Floats) -> Floats:
     padded = np.zeros((values.shape[0] + 2, values.shape[1] + 2))
     padded[1:-1, 1:-1] = values
     down = padded[:-2] + padded[1:-1] + padded[2:]
-    return down[:, :-2] + down[:, 1:-1] + down[:, 2:]
+    return np.asarray(down[:, :-2] + down[:, 1:-1] + down[:, 2:])
 
 
 def _reaches(

@@ -1,1 +1,21 @@
-"""measure"""
+"""Measurements: an image in, a `Measurement` out."""
+
+from acutance.measure.edge import METHODS, measure_edge
+from acutance.measure.measurement import Check, ImageInfo, Measurement, Samples
+from acutance.measure.options import EdgeLimits, EdgeOptions
+from acutance.measure.target import EdgeGroup, Rejected, TargetResult, measure_edges
+
+__all__ = [
+    "METHODS",
+    "Check",
+    "EdgeGroup",
+    "EdgeLimits",
+    "EdgeOptions",
+    "ImageInfo",
+    "Measurement",
+    "Rejected",
+    "Samples",
+    "TargetResult",
+    "measure_edge",
+    "measure_edges",
+]

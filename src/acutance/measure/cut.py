@@ -1,0 +1,101 @@
+"""The pixels a measurement starts from, cut out of an image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves.grid import Floats
+from acutance.errors import RegionError
+from acutance.fit.line import Line
+from acutance.measure.measurement import ImageInfo
+from acutance.raster import Box, Gsd, Image, Region
+
+__all__ = ["Cut", "RoiLike", "cut"]
+
+_MAX_PIXELS = 9_000_000
+_MIN_SIDE_PX = 8
+
+RoiLike = Region | Box | tuple[int, int, int, int] | None
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """Pixels of a region.
+
+    Attributes
+    ----------
+    pixels : (rows, cols) array
+        NaN outside the region and where there is no data.
+    box : Box
+        Where the cut lies in the image.
+    saturation_level : float or None
+        The largest value the detector can give.
+    gsd : Gsd or None
+    image : Image
+    """
+
+    pixels: Floats
+    box: Box
+    saturation_level: float | None
+    gsd: Gsd | None
+    image: Image
+
+    def info(self, line: Line) -> ImageInfo:
+        """What a measurement records of its image; the GSD is that along the line's normal."""
+        gsd_m = None if self.gsd is None else self.gsd.along_normal(line.normal_deg)
+        return ImageInfo(
+            self.image.path, self.image.band, gsd_m, self.box.as_tuple(), self.image.crs
+        )
+
+
+def cut(image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None = None) -> Cut:
+    """Read a region of an image, and only that.
+
+    Parameters
+    ----------
+    image : Image or (rows, cols) array_like
+    roi : Region, Box, (row, col, height, width) or None
+        None reads the whole image.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres, instead of the image's own.
+
+    Raises
+    ------
+    RegionError
+        If the region lies outside the image, holds too few usable pixels, or is far larger than
+        any target.
+    """
+    source = image if isinstance(image, Image) else Image.from_array(image)
+    if roi is None:
+        box, region = Box.whole(source.shape), None
+    elif isinstance(roi, Region):
+        box, region = roi.box(source.shape), roi
+    else:
+        box, region = roi if isinstance(roi, Box) else Box(*roi), None
+        box.require_inside(source.shape)
+    if box.height * box.width > _MAX_PIXELS:
+        raise RegionError(
+            f"the region has {box.height} x {box.width} pixels, more than any edge target: choose "
+            "a region around the target (row, column, height, width, a polygon or a site)"
+        )
+    if min(box.height, box.width) < _MIN_SIDE_PX:
+        raise RegionError(
+            f"the region has {box.height} x {box.width} pixels: an edge needs at least "
+            f"{_MIN_SIDE_PX} both ways"
+        )
+    pixels = source.read(box)
+    if region is not None:
+        pixels = np.where(region.mask(box), pixels, np.nan)
+    usable = int(np.count_nonzero(np.isfinite(pixels)))
+    if usable < _MIN_SIDE_PX**2:
+        raise RegionError(
+            f"only {usable} of the region's {pixels.size} pixels hold data: the rest is nodata, "
+            "masked or NaN; choose another region, or name the nodata value"
+        )
+    gsd = source.gsd(box.row + box.height / 2, box.col + box.width / 2)
+    if gsd_m is not None:
+        gsd = gsd_m if isinstance(gsd_m, Gsd) else Gsd.square(gsd_m)
+    return Cut(pixels, box, source.saturation_level, gsd, source)

@@ -1,0 +1,152 @@
+"""Measure a straight edge: from pixels to MTF, RER and FWHM with their standard deviations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.errors import OptionError, PhaseError
+from acutance.fit.band import EdgeBand, EdgeFit
+from acutance.fit.edge import fit_edge
+from acutance.fit.line import Line
+from acutance.fit.locate import Segment, find_segment
+from acutance.fit.trim import Extent, trim
+from acutance.measure.checks import check_edge, edge_snr, sample_phases
+from acutance.measure.cut import Cut, RoiLike, cut
+from acutance.measure.measurement import Measurement, Samples
+from acutance.measure.options import EdgeOptions
+from acutance.measure.published import PUBLISHED
+from acutance.raster import Gsd, Image
+
+__all__ = ["METHODS", "measure_edge", "measure_segment"]
+
+_MIN_PHASES = 2.0
+_WANTED_PHASES = 4.0
+
+
+def _spline(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
+    if options.method_options is not None:
+        raise OptionError("method_options belong to the published methods: leave them out")
+    return fit_edge(band, robust=options.robust)
+
+
+def _published(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
+    def measure(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
+        chosen = options.method_options
+        return PUBLISHED[name](band) if chosen is None else PUBLISHED[name](band, chosen)
+
+    return measure
+
+
+METHODS: dict[str, Callable[[EdgeBand, EdgeOptions], EdgeFit]] = {
+    "spline": _spline,
+    **{name: _published(name) for name in PUBLISHED},
+}
+
+
+def measure_edge(
+    image: Image | ArrayLike,
+    roi: RoiLike = None,
+    *,
+    gsd_m: float | Gsd | None = None,
+    method: str = "spline",
+    options: EdgeOptions | None = None,
+) -> Measurement:
+    """Measure the dominant straight edge of a region.
+
+    Parameters
+    ----------
+    image : Image or (rows, cols) array_like
+        From `acutance.open_image`, or pixels in memory; NaN and masked pixels are not used.
+    roi : Region, Box, (row, col, height, width) or None
+        A loose region is normal: the edge is found in it, and what serves is trimmed.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres, instead of the image's own.
+    method : {"spline", "sdsu-2005", "kompsat-2014", "iso12233", "fermi"}, optional
+        The reference estimator, or a published one with its biases.
+    options : EdgeOptions, optional
+
+    Returns
+    -------
+    Measurement
+        Numbers with standard deviations, curves, evidence and checks. The line is in pixels of
+        the whole image, row and column, integers at pixel centres.
+
+    Raises
+    ------
+    ImageError, RegionError
+        If there are no pixels to measure.
+    NoEdgeError, PhaseError, SupportError
+        If there is no edge, it is aligned with the grid, or too little of it is there.
+
+    Examples
+    --------
+    >>> import acutance as ac
+    >>> image, truth = ac.simulate.edge(sensor, angle_deg=6, snr=100, rng=rng)  # doctest: +SKIP
+    >>> print(ac.measure_edge(image).mtf_nyquist)  # doctest: +SKIP
+    0.2893 ± 0.0061
+    """
+    pixels = cut(image, roi, gsd_m)
+    return measure_segment(pixels, find_segment(pixels.pixels), method, options or EdgeOptions())
+
+
+def measure_segment(
+    pixels: Cut, segment: Segment, method: str, options: EdgeOptions
+) -> Measurement:
+    """Measure one segment that was found in a cut; see `measure_edge`."""
+    estimate = _method(method)
+    band, extent = trim(pixels.pixels, segment)
+    _require_phases(band)
+    fit = estimate(band, options)
+    return _measurement(pixels, band, extent, fit, method, options)
+
+
+def _method(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
+    if name not in METHODS:
+        raise OptionError(f"there is no edge method {name!r}: choose one of {', '.join(METHODS)}")
+    return METHODS[name]
+
+
+def _require_phases(band: EdgeBand) -> None:
+    """Refuse an edge whose samples repeat at the same sub-pixel phases."""
+    rows, cols = np.nonzero(np.isfinite(band.image))
+    phases = sample_phases(band.line.normal_distance(rows, cols))
+    if phases >= _MIN_PHASES:
+        return
+    angle, length = band.line.angle_deg, band.line.length_px
+    needed = (1 - 1 / _WANTED_PHASES) / math.tan(math.radians(max(angle, 0.05)))
+    advice = (
+        f"a region of at least {needed:.0f} rows or a more inclined edge"
+        if angle < 40
+        else "an edge that is not at 45 degrees to the grid"
+    )
+    raise PhaseError(
+        f"edge angle {angle:.2f} deg gives {phases:.1f} sample phases over {length:.0f} rows, at "
+        f"least {_WANTED_PHASES:g} are wanted and {_MIN_PHASES:g} needed: use {advice}"
+    )
+
+
+def _measurement(
+    pixels: Cut, band: EdgeBand, extent: Extent, fit: EdgeFit, method: str, options: EdgeOptions
+) -> Measurement:
+    """Put together what a measurement holds; the line moves into the whole image's pixels."""
+    info = pixels.info(fit.line)
+    centre = options.rer_centre or fit.response.rer_centre
+    response = replace(fit.response, gsd_m=info.gsd_m, rer_centre=centre)
+    fit = replace(fit, response=response)
+    line: Line = replace(
+        fit.line, row=fit.line.row + pixels.box.row, col=fit.line.col + pixels.box.col
+    )
+    samples = Samples(
+        pixels.pixels, np.isfinite(band.image), fit.distance_px, fit.value, fit.residual,
+        fit.dark, fit.bright,
+    )  # fmt: skip
+    checks = check_edge(pixels, band, extent, fit, options.limits, by_rows=method in PUBLISHED)
+    return Measurement(
+        "edge", method, line, response, samples, edge_snr(band, fit), checks, info,
+        options.to_dict(),
+    )  # fmt: skip

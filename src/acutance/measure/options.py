@@ -1,0 +1,95 @@
+"""What a caller may change of an edge measurement, and the limits its checks hold it to."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from acutance.curves.metrics import RerCentre
+from acutance.errors import OptionError
+from acutance.measure.published import (
+    FermiOptions,
+    Iso12233Options,
+    KompsatOptions,
+    SdsuOptions,
+)
+
+__all__ = ["EdgeLimits", "EdgeOptions", "MethodOptions"]
+
+MethodOptions = SdsuOptions | KompsatOptions | Iso12233Options | FermiOptions
+
+
+@dataclass(frozen=True)
+class EdgeLimits:
+    """Limits of the target checks. `acutance.measure.checks` says where each comes from.
+
+    Parameters
+    ----------
+    contrast_snr : float
+        Least ratio of contrast to noise.
+    uniformity : float
+        Least ratio of contrast to the structure of either plateau.
+    angle_deg : float
+        Largest angle between edge and grid for the methods that work row by row.
+    sample_phases : float
+        Least number of sub-pixel phases.
+    rows : float
+        Least number of rows.
+    straightness_px : float
+        Largest departure of the edge from a line, rms, in pixels.
+    plateau_px : float
+        Least width of either plateau in pixels.
+    saturation : float
+        Largest share of pixels at the detector's limit.
+    correlation : float
+        Largest correlation of the noise between neighbouring pixels.
+    structure : float
+        Largest structure beside the edge, as a share of the contrast.
+    outliers : float
+        Largest share of outlying pixels.
+    """
+
+    contrast_snr: float = 50.0
+    uniformity: float = 50.0
+    angle_deg: float = 30.0
+    sample_phases: float = 3.0
+    rows: float = 20.0
+    straightness_px: float = 0.05
+    plateau_px: float = 7.0
+    saturation: float = 0.001
+    correlation: float = 0.1
+    structure: float = 0.02
+    outliers: float = 0.02
+
+
+@dataclass(frozen=True)
+class EdgeOptions:
+    """Options of an edge measurement.
+
+    Parameters
+    ----------
+    rer_centre : {"half", "peak"} or None
+        What RER is centred on; None leaves it to the method (the 50 % point, but the LSF's peak
+        for "kompsat-2014", step 9b).
+    robust : bool
+        Bound the weight of outlying pixels (method "spline").
+    limits : EdgeLimits
+        Limits of the checks.
+    method_options : SdsuOptions, KompsatOptions, Iso12233Options or FermiOptions, optional
+        Options of a published method.
+    """
+
+    rer_centre: RerCentre | None = None
+    robust: bool = True
+    limits: EdgeLimits = field(default_factory=EdgeLimits)
+    method_options: MethodOptions | None = None
+
+    def __post_init__(self) -> None:
+        if self.rer_centre not in (None, "half", "peak"):
+            raise OptionError(
+                f"rer_centre is {self.rer_centre!r}: it has to be 'half', 'peak' or None"
+            )
+
+    def to_dict(self) -> dict[str, Any]:
+        """All options by name, for JSON."""
+        return asdict(self)

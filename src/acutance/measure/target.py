@@ -1,0 +1,197 @@
+"""Every usable edge of a target, grouped across and along, with the means and their consistency."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves import Estimate
+from acutance.errors import AcutanceError
+from acutance.fit.line import Orientation
+from acutance.fit.locate import Segment, find_segments
+from acutance.measure.cut import RoiLike, cut
+from acutance.measure.edge import measure_segment
+from acutance.measure.measurement import Measurement
+from acutance.measure.options import EdgeOptions
+from acutance.raster import Gsd, Image
+
+__all__ = ["EdgeGroup", "Rejected", "TargetResult", "combine_edges", "measure_edges"]
+
+_CONTRAST_SHARE = 0.75
+_STRENGTH_SHARE = 0.1
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A candidate that was not measured: at which stage, why, and the numbers behind it."""
+
+    stage: str
+    reason: str
+    values: Mapping[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeGroup:
+    """Edges of one orientation and what they say together.
+
+    Attributes
+    ----------
+    orientation : {"across", "along"}
+    measurements : tuple of Measurement
+    metrics : dict of Estimate
+        Means weighted by 1 / std^2. Where the edges disagree beyond their standard deviations,
+        that of the mean is widened by the square root of chi-square per degree of freedom.
+    chi_square, p_value : dict of float
+        Consistency: chi-square of the edges about the mean, and the chance of a larger one.
+    degrees_of_freedom : int
+    """
+
+    orientation: Orientation
+    measurements: tuple[Measurement, ...]
+    metrics: Mapping[str, Estimate]
+    chi_square: Mapping[str, float]
+    p_value: Mapping[str, float]
+    degrees_of_freedom: int
+
+
+@dataclass(frozen=True, eq=False)
+class TargetResult:
+    """All edges of a target.
+
+    Attributes
+    ----------
+    measurements : tuple of Measurement
+        The strongest edge first.
+    rejected : tuple of Rejected
+    groups : dict of EdgeGroup
+        By orientation.
+    """
+
+    measurements: tuple[Measurement, ...]
+    rejected: tuple[Rejected, ...]
+    groups: Mapping[str, EdgeGroup]
+
+
+def measure_edges(
+    image: Image | ArrayLike,
+    roi: RoiLike = None,
+    *,
+    gsd_m: float | Gsd | None = None,
+    method: str = "spline",
+    options: EdgeOptions | None = None,
+) -> TargetResult:
+    """Measure every usable edge of a target: four of a 2 x 2 checkerboard, the sides of a tarp.
+
+    Edges with less than three quarters of the strongest contrast are left out: they are the
+    target's border with its surroundings, or not of the target.
+
+    Parameters
+    ----------
+    image, roi, gsd_m, method, options
+        As in `acutance.measure_edge`.
+
+    Returns
+    -------
+    TargetResult
+    """
+    pixels = cut(image, roi, gsd_m)
+    chosen = options or EdgeOptions()
+    measured: list[Measurement] = []
+    rejected: list[Rejected] = []
+    strongest = 0.0
+    for segment in find_segments(pixels.pixels):
+        strongest = max(strongest, segment.strength)
+        if segment.strength < _STRENGTH_SHARE * strongest:
+            break
+        try:
+            found = measure_segment(pixels, segment, method, chosen)
+        except AcutanceError as error:
+            rejected.append(Rejected("fit", str(error), _describe(segment)))
+            continue
+        if not any(_same_edge(found, other) for other in measured):
+            measured.append(found)
+    kept, dim = _of_the_target(measured)
+    return TargetResult(kept, (*rejected, *dim), combine_edges(kept))
+
+
+def _describe(segment: Segment) -> dict[str, float]:
+    line = segment.line
+    return {"row": line.row, "col": line.col, "normal_deg": line.normal_deg}
+
+
+def _same_edge(one: Measurement, other: Measurement) -> bool:
+    """Whether two measurements took the same stretch of the same edge."""
+    turn = abs((one.line.normal_deg - other.line.normal_deg + 180) % 360 - 180)
+    beside = abs(float(other.line.normal_distance(one.line.row, one.line.col)))
+    apart = abs(float(other.line.tangent_distance(one.line.row, one.line.col)))
+    reach = 0.5 * min(one.line.length_px, other.line.length_px)
+    return turn < 5 and beside < 2 and apart < reach
+
+
+def _of_the_target(
+    measured: Sequence[Measurement],
+) -> tuple[tuple[Measurement, ...], tuple[Rejected, ...]]:
+    """Keep the edges with the target's contrast."""
+    heights = [one.samples.bright - one.samples.dark for one in measured]
+    least = _CONTRAST_SHARE * max(heights, default=0.0)
+    kept = tuple(one for one, height in zip(measured, heights, strict=True) if height >= least)
+    dim = tuple(
+        Rejected(
+            "contrast",
+            f"contrast {height:.4g} is less than {_CONTRAST_SHARE:g} of the strongest edge's "
+            f"{max(heights):.4g}: probably not of the target",
+            {"row": one.line.row, "col": one.line.col, "normal_deg": one.line.normal_deg},
+        )
+        for one, height in zip(measured, heights, strict=True)
+        if height < least
+    )
+    return kept, dim
+
+
+def combine_edges(measurements: Sequence[Measurement]) -> dict[str, EdgeGroup]:
+    """Group measurements by orientation and average each group."""
+    groups: dict[str, EdgeGroup] = {}
+    for orientation in ("across", "along"):
+        own = tuple(one for one in measurements if one.orientation == orientation)
+        if own:
+            groups[orientation] = _group(own)
+    return groups
+
+
+def _group(own: tuple[Measurement, ...]) -> EdgeGroup:
+    metrics, chi_square, p_value = {}, {}, {}
+    for name in own[0].metrics():
+        numbers = [one.metrics().get(name, Estimate(math.nan)) for one in own]
+        mean, scatter = _weighted_mean(numbers)
+        metrics[name] = mean
+        chi_square[name] = scatter
+        p_value[name] = _chance(scatter, len(own) - 1)
+    return EdgeGroup(own[0].orientation, own, metrics, chi_square, p_value, len(own) - 1)
+
+
+def _weighted_mean(numbers: Sequence[Estimate]) -> tuple[Estimate, float]:
+    """Mean weighted by 1 / std^2, and chi-square about it; the Birge ratio widens the std."""
+    value = np.array([number.value for number in numbers])
+    std = np.array([number.std for number in numbers])
+    if not (np.isfinite(value).all() and np.isfinite(std).all() and (std > 0).all()):
+        return Estimate(float(np.mean(value)), math.nan), math.nan
+    weight = 1 / std**2
+    mean = float(weight @ value / weight.sum())
+    scatter = float(weight @ (value - mean) ** 2)
+    freedom = len(numbers) - 1
+    widened = max(1.0, math.sqrt(scatter / freedom)) if freedom else 1.0
+    return Estimate(mean, widened / math.sqrt(weight.sum())), scatter
+
+
+def _chance(chi_square: float, freedom: int) -> float:
+    """Chance of a larger chi-square."""
+    from scipy.special import gammaincc
+
+    if freedom < 1 or not math.isfinite(chi_square):
+        return math.nan
+    return float(gammaincc(freedom / 2, chi_square / 2))
