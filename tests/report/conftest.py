@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from datetime import UTC, datetime
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +12,9 @@ from scipy.special import erf
 
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.fit.line import Line
+from acutance.measure import Rejected, TargetResult
 from acutance.measure.measurement import Check, ImageInfo, Measurement, Samples
+from acutance.measure.target import combine_edges
 
 DISTANCE_PX = np.linspace(-8.0, 8.0, 641)
 FREQ_CPP = np.linspace(0.0, 1.0, 101)
@@ -77,10 +78,11 @@ def edge_measurement(
 ) -> Measurement:
     """An edge as a measurement would return it, its pixels drawn from the same closed form."""
     rng = np.random.default_rng(11)
-    height, width = roi[2:]
+    top, left, height, width = roi
     response = closed_form(sigma_px, scatter=scatter, gsd_m=gsd_m)
-    line = Line((height - 1) / 2, (width - 1) / 2 + 0.3, normal_deg, 0.006, 0.004, float(height))
-    rows, cols = np.mgrid[0:height, 0:width]
+    middle_row, middle_col = top + (height - 1) / 2, left + (width - 1) / 2 + 0.3
+    line = Line(middle_row, middle_col, normal_deg, 0.006, 0.004, float(height))
+    rows, cols = np.mgrid[top : top + height, left : left + width]
     distance = line.normal_distance(rows, cols)
     truth = np.interp(distance, DISTANCE_PX, response.esf.value)
     residual = rng.normal(0.0, 0.0096, distance.shape)
@@ -111,7 +113,8 @@ def edge_measurement(
     )
 
 
-def target_result() -> SimpleNamespace:
+@pytest.fixture(scope="session")
+def target() -> TargetResult:
     """Two edges across and two along, as the search for all edges of a target returns them."""
     edges = (
         edge_measurement(roi=(0, 0, 40, 36)),
@@ -119,25 +122,8 @@ def target_result() -> SimpleNamespace:
         edge_measurement(roi=(50, 0, 36, 40), normal_deg=96.0),
         edge_measurement(roi=(50, 50, 36, 36), normal_deg=-84.0, sigma_px=0.45),
     )
-    groups = {}
-    for orientation in ("across", "along"):
-        members = tuple(one for one in edges if one.orientation == orientation)
-        means = members[0].metrics()
-        groups[orientation] = SimpleNamespace(
-            orientation=orientation,
-            measurements=members,
-            metrics=means,
-            chi_square=dict.fromkeys(means, 1.3),
-            degrees_of_freedom=len(members) - 1,
-            p_value=dict.fromkeys(means, 0.254),
-        )
-    rejected = (SimpleNamespace(stage="phases", reason="<aligned> with the grid", values={}),)
-    return SimpleNamespace(measurements=edges, rejected=rejected, groups=groups)
-
-
-@pytest.fixture(scope="session")
-def target() -> SimpleNamespace:
-    return target_result()
+    rejected = (Rejected("phases", "<aligned> with the grid", {"row": 3.0}),)
+    return TargetResult(edges, rejected, combine_edges(edges))
 
 
 @pytest.fixture(scope="session")

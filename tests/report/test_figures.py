@@ -7,6 +7,7 @@ import pytest
 from matplotlib.axis import Axis, Tick
 from matplotlib.text import Text
 
+from acutance.measure import TargetResult
 from acutance.report import (
     comparison_figure,
     edge_figure,
@@ -116,9 +117,8 @@ def test_the_arrow_points_from_dark_to_bright(measurement, normal_deg):
     axes = panel_figures(turned)["target"].axes[0]
     (arrow,) = [text for text in axes.texts if text.arrow_patch is not None]
     (col, row), (from_col, from_row) = arrow.xy, arrow.get_position()
-    rows, cols = turned.image.roi[:2]
-    assert turned.line.normal_distance(row - rows, col - cols) > 0
-    assert turned.line.normal_distance(from_row - rows, from_col - cols) < 0
+    assert turned.line.normal_distance(row, col) > 0
+    assert turned.line.normal_distance(from_row, from_col) < 0
 
 
 @pytest.mark.parametrize("roi", [(1000, 2000, 150, 30), (1000, 20000, 20, 90)])
@@ -136,11 +136,8 @@ def test_a_comparison_without_truth_takes_the_first_as_reference(compared, truth
 
 
 def test_a_target_without_edges_along_says_so(target, measurement):
-    alone = type(target)(
-        measurements=target.groups["across"].measurements,
-        rejected=(),
-        groups={"across": target.groups["across"]},
-    )
+    across = target.groups["across"]
+    alone = TargetResult(across.measurements, (), {"across": across})
     figure = target_figure(alone, backdrop=measurement.samples.image, origin=(5, 7))
     assert "MTF along: no edge measured" in texts(figure)
     assert "2 edges measured, 0 rejected" in texts(figure)

@@ -44,4 +44,5 @@ def test_a_target_lists_edges_means_and_rejections(target):
     assert text.startswith("4 edges measured, 1 rejected")
     assert sum("plateau_px" in line for line in text.splitlines()) == 4
     assert "phases: <aligned> with the grid" in text
-    assert "1.3 / 1" in text
+    scatter = target.groups["along"].chi_square["mtf_nyquist"]
+    assert f"{scatter:.1f} / 1" in text

@@ -75,14 +75,16 @@ def edge(
         typer.Option(metavar="NAME=VALUE", help="Ask more or less of a check; repeatable."),
     ] = None,
     rer_centre: Annotated[
-        str,
+        str | None,
         typer.Option(
-            metavar="half|peak", help="Centre RER on the 50 % point or on the peak of the LSF."
+            metavar="half|peak",
+            help="Centre RER on the 50 % point or on the peak of the LSF; without it as the "
+            "method does.",
         ),
-    ] = "half",
+    ] = None,
     robust: Annotated[
-        bool, typer.Option("--robust", help="Give outlying pixels less weight.")
-    ] = False,
+        bool, typer.Option(help="Bound the weight of outlying pixels (method spline).")
+    ] = True,
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with code 3 when a check failed.")
     ] = False,
@@ -125,21 +127,16 @@ def _split(names: str | None) -> list[str]:
     return [name for name in found if name]
 
 
-def _edge_options(limits: Sequence[str], rer_centre: str, robust: bool) -> EdgeOptions:
+def _edge_options(limits: Sequence[str], rer_centre: str | None, robust: bool) -> EdgeOptions:
     """The options of the measurement, its limits changed as ``--limit`` asks."""
-    from acutance.measure import EdgeOptions
+    from acutance.measure import EdgeLimits, EdgeOptions
 
-    if rer_centre not in ("half", "peak"):
+    if rer_centre not in (None, "half", "peak"):
         raise OptionError(f"--rer-centre {rer_centre}: it has to be half or peak")
-    options = EdgeOptions()
-    known = {field.name for field in fields(options.limits)}
+    defaults = EdgeLimits()
+    known = {field.name for field in fields(defaults)}
     changed = dict(_parse_limit(text, known) for text in limits)
-    return replace(
-        options,
-        rer_centre=rer_centre,
-        robust=robust,
-        limits=replace(options.limits, **changed),
-    )
+    return EdgeOptions(rer_centre=rer_centre, robust=robust, limits=replace(defaults, **changed))
 
 
 def _parse_limit(text: str, known: set[str]) -> tuple[str, float]:

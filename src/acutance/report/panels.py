@@ -89,17 +89,15 @@ def draw_cut(axes: Axes, measurement: Measurement) -> None:
     x, y = line.normal
     run = np.linspace(-height - width, height + width, 4001)
     columns, rows = line.col - y * run, line.row + x * run
-    inside = (np.abs(columns - (width - 1) / 2) <= width / 2) & (
-        np.abs(rows - (height - 1) / 2) <= height / 2
+    inside = (np.abs(columns - col - (width - 1) / 2) <= width / 2) & (
+        np.abs(rows - row - (height - 1) / 2) <= height / 2
     )
-    axes.plot(columns[inside] + col, rows[inside] + row, color=VERMILION, linewidth=2)
+    axes.plot(columns[inside], rows[inside], color=VERMILION, linewidth=2)
     half = max(0.13 * min(height, width), 0.05 * max(height, width))
-    middle = run[inside].mean()
-    at_col, at_row = line.col - y * middle + col, line.row + x * middle + row
     axes.annotate(
         "",
-        (at_col + half * x, at_row + half * y),
-        (at_col - half * x, at_row - half * y),
+        (line.col + half * x, line.row + half * y),
+        (line.col - half * x, line.row - half * y),
         arrowprops={"arrowstyle": "-|>", "color": BLUE, "linewidth": 2.4, "mutation_scale": 17},
     )
     _legend_below(axes, [("edge", VERMILION), ("pixels used", ORANGE), ("dark → bright", BLUE)])

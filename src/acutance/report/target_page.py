@@ -83,19 +83,17 @@ def _mosaic(measurements: Sequence[Measurement]) -> tuple[Floats, tuple[int, int
 def _number_edges(axes: Axes, result: TargetResult) -> None:
     for number, one in enumerate(result.measurements, start=1):
         color = BLUE if one.orientation == "across" else VERMILION
-        row, col, height, _ = one.image.roi
         x, y = one.line.normal
-        half = 0.5 * (one.line.length_px if math.isfinite(one.line.length_px) else height)
-        middle_col, middle_row = one.line.col + col, one.line.row + row
+        half = 0.5 * (one.line.length_px if math.isfinite(one.line.length_px) else 0.0)
         axes.plot(
-            [middle_col - half * y, middle_col + half * y],
-            [middle_row + half * x, middle_row - half * x],
+            [one.line.col - half * y, one.line.col + half * y],
+            [one.line.row + half * x, one.line.row - half * x],
             color=color,
             linewidth=2.2,
         )
         axes.annotate(
             str(number),
-            (middle_col, middle_row),
+            (one.line.col, one.line.row),
             (11 * x, -11 * y),
             textcoords="offset points",
             ha="center",
@@ -149,16 +147,14 @@ def group_rows(
         for name in names:
             if name not in group.metrics:
                 continue
-            spread, chance = group.chi_square.get(name), group.p_value.get(name)
+            spread, freedom = group.chi_square[name], group.degrees_of_freedom
             rows.append(
                 (
                     orientation,
                     metric_words(name).label_with_unit,
                     word_estimate(group.metrics[name]).value_and_std,
-                    MISSING
-                    if spread is None or group.degrees_of_freedom == 0
-                    else f"{spread:.1f} / {group.degrees_of_freedom}",
-                    MISSING if chance is None else format_number(chance, 2),
+                    f"{spread:.1f} / {freedom}" if freedom and math.isfinite(spread) else MISSING,
+                    format_number(group.p_value[name], 2),
                 )
             )
     return rows

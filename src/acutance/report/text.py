@@ -99,7 +99,9 @@ def comparison_text(measurements: Sequence[Measurement]) -> str:
 
 def target_text(result: TargetResult) -> str:
     """All edges of a target as text: every edge, the means by direction, what was rejected."""
-    edges = [("edge", "direction", "angle [°]", "MTF at Nyquist", "RER", "FWHM [px]", "checks")]
+    edges: list[tuple[str, ...]] = [
+        ("edge", "direction", "angle [°]", "MTF at Nyquist", "RER", "FWHM [px]", "checks")
+    ]
     for number, one in enumerate(result.measurements, start=1):
         failed = ", ".join(check.name for check in one.failed_checks)
         numbers = (one.angle_deg, one.mtf_nyquist, one.rer, one.fwhm_px)

@@ -1,0 +1,176 @@
+"""``acutance edge``: text, JSON, files, checks and refusals."""
+
+import json
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from acutance.report import measurement_schema
+
+
+@pytest.fixture(scope="module")
+def validator():
+    return Draft202012Validator(measurement_schema())
+
+
+def test_the_text_report_goes_to_stdout(acutance, edge_image):
+    result = acutance("edge", edge_image)
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.startswith("edge by spline, across")
+    assert "MTF at Nyquist" in result.stdout
+    assert "GSD 0.7 m" in result.stdout
+    assert result.stderr == ""
+
+
+def test_json_is_all_of_stdout_and_keeps_to_the_schema(acutance, edge_image, tmp_path, validator):
+    result = acutance("edge", edge_image, "--json", "--csv", tmp_path / "mtf.csv")
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    validator.validate(document)
+    low, high = document["mtf_nyquist"]["interval95"]
+    assert low - 0.02 < 0.289 < high + 0.02
+    assert document["image"]["path"] == edge_image
+    assert "factor" not in document["lsf"]
+    assert "wrote" in result.stderr
+
+
+def test_the_covariance_is_added_when_asked(acutance, edge_image, validator):
+    document = json.loads(acutance("edge", edge_image, "--json", "--covariance").stdout)
+    validator.validate(document)
+    assert len(document["mtf"]["factor_real"]) == len(document["mtf"]["freq_cpp"])
+
+
+def test_region_band_and_gsd_reach_the_measurement(acutance, edge_image):
+    result = acutance(
+        *("edge", edge_image, "--roi", "5,3,44,38", "--band", 1, "--gsd", "0.5,0.6", "--json")
+    )
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    row, col, height, width = document["image"]["roi"]
+    assert row >= 5
+    assert col >= 3
+    assert row + height <= 49
+    assert col + width <= 41
+    assert document["fwhm_m"]["value"] == pytest.approx(
+        0.6 * document["fwhm_px"]["value"], rel=0.01
+    )
+
+
+@pytest.mark.parametrize("method", ["sdsu-2005", "kompsat-2014", "iso12233", "fermi"])
+def test_every_method_measures(acutance, edge_image, method):
+    result = acutance("edge", edge_image, "--method", method, "--json")
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["method"] == method
+    assert document["rer"]["value"] == pytest.approx(0.682, abs=0.08)
+
+
+def test_figure_report_and_csv_are_written(acutance, edge_image, tmp_path):
+    result = acutance(
+        *("edge", edge_image, "--figure", tmp_path / "edge.png"),
+        *("--report", tmp_path / "edge.html", "--csv", tmp_path / "mtf.csv"),
+    )
+    assert result.exit_code == 0, result.stderr
+    assert (tmp_path / "edge.png").read_bytes().startswith(b"\x89PNG")
+    assert "MTF at Nyquist" in (tmp_path / "edge.html").read_text(encoding="utf-8")
+    assert (tmp_path / "mtf.csv").read_text().startswith("freq_cpp,mtf,std,low95,high95,freq_cpm")
+    assert len(result.stderr.splitlines()) == 3
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_methods_are_compared(acutance, edge_image, tmp_path):
+    words = ("edge", edge_image, "--compare", "spline,iso12233", "--report", tmp_path / "c.html")
+    result = acutance(*words)
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.startswith("edge by 2 methods")
+    assert "iso12233" in (tmp_path / "c.html").read_text(encoding="utf-8")
+    document = json.loads(acutance("edge", edge_image, "--compare", "fermi", "--json").stdout)
+    assert document["schema"] == "acutance/comparison/1"
+    assert [one["method"] for one in document["measurements"]] == ["spline", "fermi"]
+
+
+def test_all_edges_of_a_site_are_measured(acutance, site_image, tmp_path, validator):
+    result = acutance(
+        *("edge", site_image, "--all", "--json", "--figure", tmp_path / "all.svg"),
+        *("--report", tmp_path / "all.html", "--csv", tmp_path / "all.csv"),
+    )
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["schema"] == "acutance/target/1"
+    for one in document["measurements"]:
+        validator.validate(one)
+    assert set(document["groups"]) == {"across", "along"}
+    assert len(list(tmp_path.iterdir())) == 3
+    assert acutance("edge", site_image, "--all").stdout.splitlines()[0].endswith("rejected")
+
+
+def test_strict_is_exit_3_after_the_result(acutance, edge_image):
+    limit = ("--limit", f"{_snr_limit()}=100000")
+    loose = acutance("edge", edge_image, *limit)
+    assert (loose.exit_code, loose.stderr) == (0, "")
+    assert "FAILED" in loose.stdout
+    strict = acutance("edge", edge_image, *limit, "--strict", "--json")
+    assert strict.exit_code == 3
+    assert not all(check["passed"] for check in json.loads(strict.stdout)["checks"])
+    assert "check failed" in strict.stderr
+
+
+def _snr_limit():
+    from dataclasses import fields
+
+    from acutance.measure import EdgeOptions
+
+    return next(one.name for one in fields(EdgeOptions().limits) if "snr" in one.name)
+
+
+def test_rer_can_be_centred_on_the_peak(acutance, edge_image):
+    document = json.loads(acutance("edge", edge_image, "--rer-centre", "peak", "--json").stdout)
+    assert document["rer_centre"] == "peak"
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--figure", "edge.doc"), "has to be .png or .svg or .pdf"),
+        (("--report", "nowhere/edge.html"), "the folder nowhere does not exist"),
+        (("--csv", "mtf.txt"), "has to be .csv"),
+        (("--covariance",), "add --json"),
+        (("--all", "--compare", "fermi"), "cannot be combined"),
+        (("--roi", "0,0,20,20", "--site", "stennis"), "give one of them"),
+        (("--roi", "0,0,20"), "ROW,COL,HEIGHT,WIDTH"),
+        (("--roi", "50,0,20,20"), "50"),
+        (("--site", "atlantis"), "the sites are"),
+        (("--site", "stennis"), "no CRS"),
+        (("--band", "2"), "band 2"),
+        (("--gsd", "metre"), "is not a distance"),
+        (("--gsd", "-1"), "-1"),
+        (("--method", "magic"), "magic"),
+        (("--compare", "magic"), "magic"),
+        (("--rer-centre", "middle"), "half or peak"),
+        (("--limit", "nonsense=1"), "the limits are"),
+        (("--roi", "0,0,60,12"), "edge"),
+    ],
+)
+def test_what_means_nothing_is_exit_2_with_a_message(
+    acutance, edge_image, tmp_path, monkeypatch, words, message
+):
+    monkeypatch.chdir(tmp_path)
+    result = acutance("edge", edge_image, *words)
+    assert result.exit_code == 2, result.stdout
+    assert result.stdout == ""
+    assert message in result.stderr
+    assert "Traceback" not in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_limit_has_to_be_a_number(acutance, edge_image):
+    result = acutance("edge", edge_image, "--limit", f"{_snr_limit()}=much")
+    assert result.exit_code == 2
+    assert "write a number" in result.stderr
+
+
+def test_the_input_is_never_overwritten(acutance, edge_image, tmp_path):
+    image = tmp_path / "scene.png"
+    image.write_bytes(b"pixels")
+    assert acutance("edge", image, "--figure", image).exit_code == 2
+    assert image.read_bytes() == b"pixels"
