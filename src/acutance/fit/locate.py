@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.errors import NoEdgeError
 from acutance.fit.line import Line
 
-__all__ = ["Segment", "find_segment", "find_segments"]
+__all__ = ["Segment", "find_segments"]
 
 _BIN_DEG = 5.0
 _WINDOW_DEG = 20.0
@@ -59,28 +58,6 @@ class _Votes:
         return _Votes(
             self.row[chosen], self.col[chosen], self.direction_deg[chosen], self.magnitude[chosen]
         )
-
-
-def find_segment(image: Floats) -> Segment:
-    """The dominant straight edge of an image.
-
-    Parameters
-    ----------
-    image : (rows, cols) array
-        NaN where a pixel must not be used.
-
-    Raises
-    ------
-    NoEdgeError
-        If nothing stands out.
-    """
-    for segment in find_segments(image, most=1):
-        return segment
-    raise NoEdgeError(
-        f"no straight edge stands out in the {image.shape[0]} x {image.shape[1]} pixels: the "
-        "region is flat, or its longest edge is shorter than "
-        f"{_MIN_LENGTH_PX:g} px; choose a region that holds one bright and one dark side"
-    )
 
 
 def find_segments(image: Floats, most: int = 32) -> Iterator[Segment]:

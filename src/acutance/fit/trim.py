@@ -24,6 +24,7 @@ __all__ = ["Extent", "trim"]
 _MIN_ROWS = 8
 _MIN_SNR = 3.0
 _TOLERANCE = 0.12
+_MAX_TOLERANCE = 0.22
 _NEAR_TOLERANCE = 0.3
 _SIGNIFICANCE = 4.0
 _MAX_HALF_WIDTH_PX = 40.0
@@ -104,6 +105,7 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
         edge.line.row + x * middle, edge.line.col - y * middle, edge.line.normal_deg,
         length_px=float(length),
     )  # fmt: skip
+    _require_contrast(edge, value[mask[rows, cols]], s[mask[rows, cols]])
     band = EdgeBand(
         np.where(mask, image, np.nan), line, edge.dark, edge.dark + edge.height,
         edge.blur.sigma_px, edge.noise,
@@ -142,6 +144,17 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
     return edge
 
 
+def _require_contrast(edge: BlurredEdge, value: Floats, s: Floats) -> None:
+    """Refuse an edge that is lower than its own plateaus are rough."""
+    roughness = float(np.std(value - edge.dark - edge.height * edge.blur.esf(s)))
+    if edge.height < _MIN_SNR * roughness:
+        raise NoEdgeError(
+            f"the edge has a height of {edge.height:.4g}, and its sides vary by {roughness:.3g}: "
+            f"a ratio of {edge.height / roughness:.1f} where {_MIN_SNR:g} is the least; choose a "
+            "region whose two sides are uniform"
+        )
+
+
 def _strange(
     image: Floats,
     rows: NDArray[np.intp],
@@ -162,7 +175,8 @@ def _strange(
     beside = (np.abs(t) < segment.stop_px) & (np.abs(s) > width)
     beside &= np.abs(s) < _FIRST_REACH_PX + width
     noise = float(np.median(np.abs(smooth[beside]))) / 0.6745 if beside.any() else 0.0
-    tolerance = max(_TOLERANCE, _SIGNIFICANCE * noise)
+    # Beyond a fifth of the contrast nothing passes for noise, however rough the ground is.
+    tolerance = max(_TOLERANCE, min(_SIGNIFICANCE * noise, _MAX_TOLERANCE))
     near = np.abs(s) < 1.5 * width
     return np.abs(smooth) > np.where(near, max(_NEAR_TOLERANCE, tolerance), tolerance)
 

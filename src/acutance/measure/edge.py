@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from acutance.errors import OptionError, PhaseError
+from acutance.errors import NoEdgeError, OptionError, PhaseError, TargetError
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.fit.edge import fit_edge
 from acutance.fit.line import Line
-from acutance.fit.locate import Segment, find_segment
+from acutance.fit.locate import Segment, find_segments
 from acutance.fit.trim import Extent, trim
 from acutance.measure.checks import check_edge, edge_snr, sample_phases
 from acutance.measure.cut import Cut, RoiLike, cut
@@ -26,6 +26,7 @@ __all__ = ["METHODS", "measure_edge", "measure_segment"]
 
 _MIN_PHASES = 2.0
 _WANTED_PHASES = 4.0
+_CANDIDATES = 4
 
 
 def _spline(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
@@ -91,7 +92,22 @@ def measure_edge(
     0.2893 ± 0.0061
     """
     pixels = cut(image, roi, gsd_m)
-    return measure_segment(pixels, find_segment(pixels.pixels), method, options or EdgeOptions())
+    return _measure_first(pixels, method, options or EdgeOptions())
+
+
+def _measure_first(pixels: Cut, method: str, options: EdgeOptions) -> Measurement:
+    """Measure the strongest edge that can be measured; if none can, say why the strongest not."""
+    first: TargetError | None = None
+    for segment in find_segments(pixels.pixels, _CANDIDATES):
+        try:
+            return measure_segment(pixels, segment, method, options)
+        except TargetError as error:
+            first = first or error
+    raise first or NoEdgeError(
+        f"no straight edge stands out in the {pixels.box.height} x {pixels.box.width} pixels: the "
+        "region is flat, or its longest edge is too short; choose a region that holds one bright "
+        "and one dark side"
+    )
 
 
 def measure_segment(
@@ -100,8 +116,9 @@ def measure_segment(
     """Measure one segment that was found in a cut; see `measure_edge`."""
     estimate = _method(method)
     band, extent = trim(pixels.pixels, segment)
-    _require_phases(band)
+    _require_phases(band, band.line)
     fit = estimate(band, options)
+    _require_phases(band, fit.line)
     return _measurement(pixels, band, extent, fit, method, options)
 
 
@@ -111,13 +128,13 @@ def _method(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
     return METHODS[name]
 
 
-def _require_phases(band: EdgeBand) -> None:
+def _require_phases(band: EdgeBand, line: Line) -> None:
     """Refuse an edge whose samples repeat at the same sub-pixel phases."""
     rows, cols = np.nonzero(np.isfinite(band.image))
-    phases = sample_phases(band.line.normal_distance(rows, cols))
+    phases = sample_phases(line.normal_distance(rows, cols))
     if phases >= _MIN_PHASES:
         return
-    angle, length = band.line.angle_deg, band.line.length_px
+    angle, length = line.angle_deg, line.length_px
     needed = (1 - 1 / _WANTED_PHASES) / math.tan(math.radians(max(angle, 0.05)))
     advice = (
         f"a region of at least {needed:.0f} rows or a more inclined edge"
