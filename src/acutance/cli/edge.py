@@ -28,6 +28,7 @@ from acutance.cli.terminal import FAILED_CHECK, say
 from acutance.errors import NoEdgeError, OptionError
 
 if TYPE_CHECKING:
+    from acutance.curves.metrics import RerCentre
     from acutance.measure import EdgeOptions
     from acutance.measure.measurement import Measurement
     from acutance.raster import Image, Region
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["EXAMPLE", "edge"]
 
 EXAMPLE = "\b\nExample:\n  acutance edge scene.tif --roi 120,340,40,40 --gsd 0.7 --report edge.html"
+RER_CENTRES: dict[str, RerCentre] = {"half": "half", "peak": "peak"}
 METHODS_HELP = "spline (the reference), sdsu-2005, kompsat-2014, iso12233 or fermi"
 
 
@@ -102,12 +104,12 @@ def edge(
         "report": _checked("--report", report, (".html",), image),
         "csv": _checked("--csv", csv, (".csv",), image),
     }
+    methods = _methods(method, compare)
     options = _edge_options(limit or [], rer_centre, robust)
     source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site)
     if all_edges:
         measurements, faces = _measure_all(source, region, method, options)
     else:
-        methods = list(dict.fromkeys([method, *_split(compare)]))
         measurements, faces = _measure_by(source, region, methods, options)
     deliver(faces, **files, as_json=as_json, covariance=covariance)
     failed = sum(not one.trusted for one in measurements)
@@ -122,21 +124,32 @@ def _checked(
     return None if name is None else check_output(option, name, endings, keep=image)
 
 
-def _split(names: str | None) -> list[str]:
-    found = [name.strip() for name in (names or "").split(",")]
-    return [name for name in found if name]
+def _methods(first: str, compare: str | None) -> list[str]:
+    """The methods to measure by, each once, all of them known."""
+    from acutance.measure import METHODS
+
+    others = [name.strip() for name in (compare or "").split(",")]
+    wanted = list(dict.fromkeys([first, *(name for name in others if name)]))
+    for name in wanted:
+        if name not in METHODS:
+            raise OptionError(f"there is no method {name!r}: choose from {', '.join(METHODS)}")
+    return wanted
 
 
 def _edge_options(limits: Sequence[str], rer_centre: str | None, robust: bool) -> EdgeOptions:
     """The options of the measurement, its limits changed as ``--limit`` asks."""
     from acutance.measure import EdgeLimits, EdgeOptions
 
-    if rer_centre not in (None, "half", "peak"):
+    if rer_centre is not None and rer_centre not in RER_CENTRES:
         raise OptionError(f"--rer-centre {rer_centre}: it has to be half or peak")
     defaults = EdgeLimits()
     known = {field.name for field in fields(defaults)}
     changed = dict(_parse_limit(text, known) for text in limits)
-    return EdgeOptions(rer_centre=rer_centre, robust=robust, limits=replace(defaults, **changed))
+    return EdgeOptions(
+        rer_centre=None if rer_centre is None else RER_CENTRES[rer_centre],
+        robust=robust,
+        limits=replace(defaults, **changed),
+    )
 
 
 def _parse_limit(text: str, known: set[str]) -> tuple[str, float]:
