@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
 
@@ -102,6 +103,15 @@ def test_all_edges_of_a_site_are_measured(acutance, site_image, tmp_path, valida
     assert set(document["groups"]) == {"across", "along"}
     assert len(list(tmp_path.iterdir())) == 3
     assert acutance("edge", site_image, "--all").stdout.splitlines()[0].endswith("rejected")
+
+
+def test_a_flat_image_has_no_edges(acutance, tmp_path):
+    np.save(tmp_path / "flat.npy", np.random.default_rng(0).normal(500.0, 5.0, (40, 40)))
+    for words in ((), ("--all",)):
+        result = acutance("edge", tmp_path / "flat.npy", *words)
+        assert result.exit_code == 2
+        assert result.stderr.startswith("acutance: ")
+        assert "edge" in result.stderr
 
 
 def test_strict_is_exit_3_after_the_result(acutance, edge_image):

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.axis import Axis, Tick
 from matplotlib.text import Text
 
-from acutance.measure import TargetResult
+from acutance.measure import Check, TargetResult
 from acutance.report import (
     comparison_figure,
     edge_figure,
@@ -125,6 +125,15 @@ def test_the_arrow_points_from_dark_to_bright(measurement, normal_deg):
 def test_long_and_flat_cuts_keep_their_labels_apart(make_edge, roi):
     normal_deg = 6.0 if roi[2] > roi[3] else -84.0
     figure = edge_figure(make_edge(roi=roi, normal_deg=normal_deg, scatter=0.03))
+    assert not overlaps(figure)
+    assert not outside(figure)
+
+
+def test_thirteen_checks_and_a_long_verdict_have_room(make_edge):
+    checks = tuple(
+        Check(f"uniformity_of_{i:02d}", 12.25 * i, ">= 50", i % 2 == 0, "no") for i in range(13)
+    )
+    figure = edge_figure(make_edge(checks=checks))
     assert not overlaps(figure)
     assert not outside(figure)
 

@@ -58,8 +58,8 @@ def test_every_metric_has_words():
 
 
 def test_the_verdict_names_what_failed(measurement, vague_measurement, target):
-    assert verdict(measurement).startswith("1 of 6 checks failed (plateau_px)")
-    assert verdict(vague_measurement) == "No checks were made."
+    assert verdict([measurement]).startswith("1 of 6 checks failed (plateau_px)")
+    assert verdict([vague_measurement]) == "No checks were made."
     assert verdict(target.measurements).startswith("4 of 24 checks failed")
 
 

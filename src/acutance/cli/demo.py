@@ -164,7 +164,7 @@ def _truth_section(edges: Sequence[SceneEdge], by_edge: dict[str, list[Measureme
             numbers = [getattr(one, name) for name in COMPARED]
             off = (numbers[0].value - truths[0].value) / numbers[0].std
             words = (word_estimate(number).value_and_std for number in numbers)
-            rows.append(("", "", one.method, *words, f"{off:+.1f}"))
+            rows.append(("", "", one.method, *words, f"{off:+.1f}".replace("-", "−")))
     columns = (
         "Edge",
         "Direction",

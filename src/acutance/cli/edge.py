@@ -183,10 +183,10 @@ def _measure_all(
 
     result = measure_edges(image, region, method=method, options=options)
     if not result.measurements:
-        reasons = "; ".join(dict.fromkeys(one.reason for one in result.rejected))
+        tried = len(result.rejected)
+        why = f"; of {tried} tried the first: {result.rejected[0].reason}" if tried else ""
         raise NoEdgeError(
-            f"no edge of {image.path} could be measured ({reasons or 'none was found'}): "
-            "choose a region around one edge and leave out --all"
+            f"no edge of {image.path} could be measured{why}. Choose a region around one target"
         )
     box = Box.whole(image.shape) if region is None else region.box(image.shape)
     return result.measurements, faces_of_target(result, image.read(box), (box.row, box.col))

@@ -8,11 +8,11 @@ from acutance.report.grids import write_below, write_grid
 from acutance.report.page import INK, VERMILION, new_page, split_page, styled
 from acutance.report.panels import draw_cut, draw_esf, draw_lsf, draw_mtf, draw_residuals
 from acutance.report.wording import (
+    count_failed_checks,
     describe_image,
     describe_line,
     format_number,
     metric_words,
-    verdict,
     word_estimate,
 )
 
@@ -26,7 +26,7 @@ __all__ = ["edge_figure", "panel_figures"]
 
 
 def edge_figure(measurement: Measurement) -> Figure:
-    """One page (13 x 8 inches) with every step of an edge measurement.
+    """One page (13 x 8.6 inches) with every step of an edge measurement.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def edge_figure(measurement: Measurement) -> Figure:
         With its own Agg canvas; save it with `save_figure` or ``figure.savefig``.
     """
     with styled():
-        figure = new_page(13.0, 8.4)
+        figure = new_page(13.0, 8.6)
         upper, lower = split_page(figure, 2, 1)
         left, middle, right = split_page(upper, 1, 3, widths=(0.95, 1.15, 1.0))
         draw_cut(left.subplots(), measurement)
@@ -100,7 +100,7 @@ def _write_checks(axes: Axes, measurement: Measurement) -> None:
     axes.set_title("Checks" if measurement.trusted else "Checks: not all passed")
     write_below(
         axes,
-        verdict(measurement),
+        count_failed_checks([measurement]),
         rows=len(rows) if measurement.checks else 0,
         color=INK if measurement.trusted else VERMILION,
     )

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["write_below", "write_grid"]
 
 FONT_SIZE = 9.0
-ROW_HEIGHT = 1.75
+ROW_HEIGHT = 1.65
 LINE_LENGTH = 46
 
 
@@ -44,7 +44,7 @@ def write_grid(
     marks : sequence of str, optional
         Colours of the first column, one a row, where it differs from the rest.
     fontsize : float, optional
-        In points; rows are 1.75 times as high.
+        In points; rows are 1.65 times as high.
     """
     axes.axis("off")
     for i, row in enumerate(rows):

@@ -63,7 +63,7 @@ def edge_sections(measurement: Measurement, command: str | None = None) -> tuple
             "Result",
             paragraphs=(f"An edge, {measurement.orientation}: {describe_line(measurement)}.",),
             headlines=_headlines(measurement),
-            verdicts=(Verdict(measurement.trusted, verdict(measurement)),),
+            verdicts=(Verdict(measurement.trusted, verdict([measurement])),),
         ),
         Section("Curves", plates=plates),
         Section("Numbers", tables=(_metrics_table(measurement),)),
@@ -179,7 +179,7 @@ def comparison_sections(
         wide=True,
     )
     verdicts = tuple(
-        Verdict(one.trusted, f"{label}: {verdict(one)}")
+        Verdict(one.trusted, f"{label}: {verdict([one])}")
         for label, one in zip(labels, measurements, strict=True)
     )
     first = "" if truth is None else " and the truth"

@@ -74,7 +74,7 @@ def text_report(measurement: Measurement) -> str:
             for one in measurement.checks
         ]
         blocks.append(align_columns(checks, "llrl"))
-    blocks.append("\n".join([verdict(measurement), *_complaints(measurement)]))
+    blocks.append("\n".join([verdict([measurement]), *_complaints(measurement)]))
     return "\n\n".join(blocks)
 
 
@@ -86,7 +86,9 @@ def comparison_text(measurements: Sequence[Measurement]) -> str:
         cells = (one.metrics().get(name, first) for one in measurements)
         words = (word_estimate(cell).value_and_std for cell in cells)
         rows.append((metric_words(name).label_with_unit, *words))
-    verdicts = (f"{label}: {verdict(one)}" for label, one in zip(labels, measurements, strict=True))
+    verdicts = (
+        f"{label}: {verdict([one])}" for label, one in zip(labels, measurements, strict=True)
+    )
     return "\n\n".join(
         (
             f"edge by {len(labels)} methods, {measurements[0].orientation}\n"

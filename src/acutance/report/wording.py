@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ __all__ = [
     "MetricWords",
     "NumberWords",
     "count_edges",
+    "count_failed_checks",
     "describe_image",
     "describe_line",
     "flatten_options",
@@ -171,20 +172,24 @@ def describe_line(measurement: Measurement) -> str:
     return ", ".join(parts)
 
 
-def verdict(measurements: Measurement | tuple[Measurement, ...]) -> str:
-    """What the checks say, as a sentence."""
-    several = measurements if isinstance(measurements, tuple) else (measurements,)
-    total = sum(len(one.checks) for one in several)
-    failed = sum(len(one.failed_checks) for one in several)
+def count_failed_checks(measurements: Sequence[Measurement]) -> str:
+    """How many checks passed or failed, as a sentence."""
+    total = sum(len(one.checks) for one in measurements)
+    failed = sum(len(one.failed_checks) for one in measurements)
     if total == 0:
         return "No checks were made."
-    if failed == 0:
-        return "The only check passed." if total == 1 else f"All {total} checks passed."
-    names = sorted({check.name for one in several for check in one.failed_checks})
-    return (
-        f"{failed} of {total} checks failed ({', '.join(names)}): "
-        "read what they say before using the numbers."
-    )
+    if failed:
+        return f"{failed} of {total} checks failed."
+    return "The only check passed." if total == 1 else f"All {total} checks passed."
+
+
+def verdict(measurements: Sequence[Measurement]) -> str:
+    """What the checks say, with the names of those that failed."""
+    counted = count_failed_checks(measurements)
+    names = sorted({check.name for one in measurements for check in one.failed_checks})
+    if not names:
+        return counted
+    return f"{counted[:-1]} ({', '.join(names)}): read what they say before using the numbers."
 
 
 def split_message(check: Check) -> tuple[str, str]:
