@@ -80,7 +80,7 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
     t = edge.line.tangent_distance(row, col)
     strange = _strange(image, rows, cols, value, s, t, edge, segment)
     need = 1.5 * edge.blur.width_px + 1.5
-    first, bins, dark_reach, bright_reach = _reaches(s, t, strange)
+    first, bins, dark_reach, bright_reach = _reaches(s, t, strange, need, edge.blur.width_px)
     whole = not strange.any()
     start, stop = _best_run(np.minimum(dark_reach, bright_reach), need)
     length = stop - start
@@ -190,12 +190,13 @@ def _box(values: Floats) -> Floats:
 
 
 def _reaches(
-    s: Floats, t: Floats, strange: NDArray[np.bool_]
+    s: Floats, t: Floats, strange: NDArray[np.bool_], need: float, blur_px: float
 ) -> tuple[float, NDArray[np.intp], Floats, Floats]:
     """How far every row of the edge is clear, on the dark and on the bright side.
 
-    Rows are one pixel long along the edge; the reach of a row ends at the first strange pixel or
-    at the last pixel there is.
+    Rows are one pixel long along the edge; the reach of a row ends before the first strange pixel
+    of it or of the rows beside it, or at the last pixel there is. What is strange is blurred too:
+    where there is more than `need`, the reach keeps the blur's width away from it.
     """
     first = math.floor(float(t.min()))
     bins = (t - first).astype(np.intp)
@@ -209,10 +210,16 @@ def _reaches(
         stop = np.full(count, np.inf)
         wrong = strange & (outwards > -0.5)
         np.minimum.at(stop, bins[wrong], np.maximum(outwards[wrong] - 1.0, 0.0))
-        # A strange pixel also spoils the rows beside it.
-        around = np.minimum(stop, np.minimum(np.roll(stop, 1), np.roll(stop, -1)))
-        reaches.append(np.minimum(last, around))
+        close = _spoiled(stop, 1)
+        wary = _spoiled(stop, math.ceil(blur_px)) - blur_px
+        reaches.append(np.minimum(last, np.maximum(wary, np.minimum(close, need))))
     return float(first), bins, reaches[0], reaches[1]
+
+
+def _spoiled(stop: Floats, rows: int) -> Floats:
+    """What is left where a strange pixel also spoils the `rows` beside its own."""
+    padded = np.pad(stop, rows, constant_values=np.inf)
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * rows + 1).min(axis=1))
 
 
 def _best_run(reach: Floats, need: float) -> tuple[int, int]:

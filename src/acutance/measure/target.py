@@ -22,7 +22,7 @@ from acutance.raster import Gsd, Image
 
 __all__ = ["EdgeGroup", "Rejected", "TargetResult", "combine_edges", "measure_edges"]
 
-_CONTRAST_SHARE = 0.75
+_CONTRAST_SHARE = 0.8
 _STRENGTH_SHARE = 0.1
 
 
@@ -87,7 +87,7 @@ def measure_edges(
 ) -> TargetResult:
     """Measure every usable edge of a target: four of a 2 x 2 checkerboard, the sides of a tarp.
 
-    Edges with less than three quarters of the strongest contrast are left out: they are the
+    Edges with less than four fifths of the strongest contrast are left out: they are the
     target's border with its surroundings, or not of the target.
 
     Parameters
