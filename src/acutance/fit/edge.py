@@ -12,34 +12,23 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from acutance.curves import Esf, Lsf, Mtf, Response
-from acutance.curves.grid import Floats, crossing
+from acutance.curves.grid import Floats
 from acutance.fit import prior as lsf_prior
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.fit.blur import Blur
+from acutance.fit.lsf_model import LsfModel
 from acutance.fit.noise import Correlation, correlation, huber_weights, side_variances
 from acutance.fit.normal import accumulate
 from acutance.fit.posterior import Posterior, Prior, regress
-from acutance.fit.spline import (
-    CELLS,
-    CENTRES,
-    HALF_SUPPORT,
-    SIZE,
-    edge_weights,
-    line_weights,
-    spread,
-    transform,
-)
+from acutance.fit.spline import CELLS, HALF_SUPPORT, combine, edge_weights
 from acutance.fit.start import BlurredEdge, fit_blurred_edge
 
 __all__ = ["SplineEdge", "fit_edge"]
 
 _NOISE_FLOOR = 2e-4
-_FREQ_CPP: Floats = np.arange(101) * 0.01
-_STEP_PX = 0.05
 _SETTLED_PX = 1e-3
+_MAX_PASSES = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +86,9 @@ def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
     )  # fmt: skip
     outlier = np.ones(pixels.value.size)
     spread_of_noise = Correlation(1.0, 0.0, 0.0)
-    for _ in range(6):
-        solved = _solve(pixels, start, outlier, spread_of_noise.inflation)
+    earlier: Posterior | None = None
+    for _ in range(_MAX_PASSES):
+        solved = _solve(pixels, start, outlier, spread_of_noise.inflation, earlier)
         moved = abs(solved.turn_rad) * solved.half_length_px
         standard = solved.residual / solved.noise
         heavy = robust and bool(np.any(np.abs(standard) > 4.0))
@@ -111,7 +101,7 @@ def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
         )
         if settled:
             break
-        outlier, spread_of_noise = again, whiteness
+        outlier, spread_of_noise, earlier = again, whiteness, solved.posterior
         start = replace(start, line=start.line.moved(0.0, math.degrees(solved.turn_rad)))
     return _finish(band, pixels, start, solved, spread_of_noise, outlier)
 
@@ -130,7 +120,13 @@ class _Solution:
     half_length_px: float
 
 
-def _solve(pixels: _Pixels, start: BlurredEdge, outlier: Floats, inflation: float) -> _Solution:
+def _solve(
+    pixels: _Pixels,
+    start: BlurredEdge,
+    outlier: Floats,
+    inflation: float,
+    earlier: Posterior | None,
+) -> _Solution:
     """Solve for the LSF's departures from the start, the levels and the line's direction."""
     line, blur, height = start.line, start.blur, start.height
     width = blur.width_px
@@ -164,14 +160,13 @@ def _solve(pixels: _Pixels, start: BlurredEdge, outlier: Floats, inflation: floa
     gram = esf.T @ sums.gram @ esf + across + across.T + beside.T @ sums.extra @ beside
     projection = esf.T @ sums.spline_data + beside.T @ sums.extra_data
     posterior = regress(
-        gram, projection, sums.data, sums.count, _prior(start, directions), inflation
+        gram, projection, sums.data, sums.count, _prior(start, directions), scale, inflation, earlier
     )
 
     beta = posterior.beta
-    cell, weights = edge_weights(u)
-    coefficients = esf @ beta
-    fitted = sum(weights[a] * coefficients[cell + a] for a in range(4))
-    residual = departure - fitted - beta[-2] * beyond - beta[-1] * turn
+    residual = (
+        departure - combine(*edge_weights(u), esf @ beta) - beta[-2] * beyond - beta[-1] * turn
+    )
     noise = np.sqrt(posterior.variance * relative / scale)
     return _Solution(
         posterior, directions, residual, noise,
@@ -207,122 +202,32 @@ def _finish(
     outlier: Floats,
 ) -> SplineEdge:
     """Turn the coefficients into curves about the 50 % point, with their covariance."""
-    curves = _Curves.of(start, solved)
-    middle = curves.half_point()
-    response = curves.response(middle)
+    model = _lsf_model(start, solved)
+    middle = model.half_point()
+    response = model.response(middle)
     line = start.line.moved(middle, math.degrees(solved.turn_rad))
     t = line.tangent_distance(pixels.row, pixels.col)
     s = line.normal_distance(pixels.row, pixels.col)
     near = np.abs(s) < start.blur.width_px
     length = float(np.ptp(t[near])) if near.any() else math.nan
     dark = start.dark + float(solved.posterior.beta[0])
-    height = curves.height
+    height = model.height
     value = (pixels.value - dark) / height
     line = replace(
         line,
         angle_std_deg=math.degrees(solved.turn_std_rad),
-        offset_std_px=curves.half_point_std(middle),
+        offset_std_px=model.half_point_std(response),
         length_px=length,
     )
     return SplineEdge(
         line, response, dark, dark + height, s, value, solved.residual / height,
-        start.blur, *solved.side_noise, whiteness, outlier, curves.tail / height,
+        start.blur, *solved.side_noise, whiteness, outlier, model.tail / height,
     )  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
-class _Curves:
-    """The unnormalised LSF: a plain blur, a spline and a tail, with the spline's covariance.
-
-    `spline` (SIZE,) and `tail` are in image units; `latent` (SIZE + 1, k) is the factor of their
-    joint covariance.
-    """
-
-    blur: Blur
-    level: float
-    spline: Floats
-    tail: float
-    latent: Floats
-
-    @classmethod
-    def of(cls, start: BlurredEdge, solved: _Solution) -> _Curves:
-        inner = solved.directions.lsf[:, :-1]
-        beta, factor = solved.posterior.beta, solved.posterior.factor
-        latent = np.vstack([inner @ factor[1:-2], factor[-2:-1]])
-        return cls(start.blur, start.height, inner @ beta[1:-2], float(beta[-2]), latent)
-
-    @property
-    def height(self) -> float:
-        """Bright less dark: the integral of the LSF."""
-        return float(self.level + (2 * HALF_SUPPORT / CELLS) * self.spline.sum() + self.tail)
-
-    def _height_row(self) -> Floats:
-        return np.append(np.full(SIZE, 2 * HALF_SUPPORT / CELLS), 1.0)
-
-    def _esf(self, s: Floats) -> tuple[Floats, Floats]:
-        """Normalised ESF at `s` and its design, (n, SIZE + 1): error = design @ latent @ z."""
-        width = self.blur.width_px
-        u = s / width
-        design = np.empty((s.size, SIZE + 1))
-        # d ESF / d c_j is the sum of the cubic B-splines from j + 3 on.
-        local = spread(*edge_weights(u))
-        design[:, :-1] = np.cumsum(local[:, ::-1], axis=1)[:, ::-1][:, 3 : 3 + SIZE]
-        design[:, :-1] *= 2 * HALF_SUPPORT / CELLS
-        design[:, -1] = lsf_prior.tail_esf(u)
-        value = self.level * self.blur.esf(s) + design[:, :-1] @ self.spline
-        value = (value + design[:, -1] * self.tail) / self.height
-        return value, (design - value[:, None] * self._height_row()) / self.height
-
-    def _lsf(self, s: Floats) -> tuple[Floats, Floats]:
-        width = self.blur.width_px
-        u = s / width
-        design = np.empty((s.size, SIZE + 1))
-        local = spread(*line_weights(u))
-        design[:, :-1] = np.cumsum(local[:, ::-1], axis=1)[:, ::-1][:, 3 : 3 + SIZE]
-        design[:, :-1] *= 2 * HALF_SUPPORT / CELLS / width
-        reach = lsf_prior.TAIL_WIDTH
-        design[:, -1] = reach / np.pi / (u * u + reach**2) / width
-        value = self.level * self.blur.lsf(s) + design[:, :-1] @ self.spline
-        value = (value + design[:, -1] * self.tail) / self.height
-        return value, (design - value[:, None] * self._height_row()) / self.height
-
-    def _otf(self, freq_cpp: Floats, middle: float) -> tuple[NDArray[np.complex128], ...]:
-        """Normalised OTF about the LSF's centroid and its design."""
-        width = self.blur.width_px
-        freq = freq_cpp * width
-        design = np.empty((freq.size, SIZE + 1), complex)
-        design[:, :-1] = transform(freq)
-        design[:, -1] = lsf_prior.tail_otf(freq)
-        value = self.level * self.blur.otf(freq_cpp) + design[:, :-1] @ self.spline
-        value = (value + design[:, -1] * self.tail) / self.height
-        centroid = width * (2 * HALF_SUPPORT / CELLS) * float(self.spline @ CENTRES) / self.height
-        turn = np.exp(2j * np.pi * freq_cpp * centroid)
-        design = (design - value[:, None] * self._height_row()) * (turn / self.height)[:, None]
-        return value * turn, design
-
-    def half_point(self) -> float:
-        """Normal distance of the 50 % point from the start's line."""
-        s: Floats = np.arange(-40, 41) * (0.05 * self.blur.width_px)
-        value, _ = self._esf(s)
-        steep = int(np.argmax(np.diff(value)))
-        return crossing(s, value, 0.5, float(s[max(steep - 8, 0)]))
-
-    def half_point_std(self, middle: float) -> float:
-        """Standard deviation of the 50 % point."""
-        at = np.array([middle])
-        _, design = self._esf(at)
-        steepness, _ = self._lsf(at)
-        return float(np.linalg.norm(design[0] @ self.latent) / abs(steepness[0]))
-
-    def response(self, middle: float) -> Response:
-        """The curves on their grids, 0 at `middle`."""
-        half = math.ceil(max(10.0, HALF_SUPPORT * self.blur.width_px) / _STEP_PX)
-        distance: Floats = np.arange(-half, half + 1) * _STEP_PX
-        esf, esf_design = self._esf(distance + middle)
-        lsf, lsf_design = self._lsf(distance + middle)
-        otf, otf_design = self._otf(_FREQ_CPP, middle)
-        return Response(
-            Esf(distance, esf, esf_design, self.latent),
-            Lsf(distance, lsf, lsf_design, self.latent),
-            Mtf(_FREQ_CPP, otf, otf_design, self.latent),
-        )
+def _lsf_model(start: BlurredEdge, solved: _Solution) -> LsfModel:
+    """The LSF the coefficients make: the tail has its own closed form beside the spline."""
+    inner = solved.directions.esf[:, :-1]
+    beta, factor = solved.posterior.beta, solved.posterior.factor
+    latent = np.vstack([inner @ factor[1:-2], factor[-2]])
+    return LsfModel(start.blur, start.height, inner @ beta[1:-2], float(beta[-2]), latent)

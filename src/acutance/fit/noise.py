@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,11 @@ __all__ = ["Correlation", "correlation", "huber_weights", "side_variances"]
 
 _HUBER = 3.0
 _LAGS = 2
+# Lags as rows down and columns to the right; the opposite ones say the same.
+_NEAREST = ((0, 1), (1, 0))
+_FURTHER = ((1, 1), (1, -1), (0, 2), (2, 0))
+_MIN_PAIRS = 20
+_FREQ_CPP: Floats = np.linspace(0.0, 0.5, 11)
 _SIGNIFICANT = 4.0
 
 
@@ -76,31 +82,34 @@ def correlation(
     """
     height, width = int(rows.max()) + 1, int(cols.max()) + 1
     field = np.zeros((height + _LAGS, width + 2 * _LAGS))
-    field[rows, cols + _LAGS] = residual
     known = np.zeros_like(field)
+    field[rows, cols + _LAGS] = residual
     known[rows, cols + _LAGS] = 1.0
     power = float(residual @ residual) / residual.size
-    lags, values, counts = [], [], []
-    for down, right in ((0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)):
-        there = (slice(down, down + height), slice(_LAGS + right, _LAGS + right + width))
-        here = (slice(0, height), slice(_LAGS, _LAGS + width))
-        pairs = float(np.vdot(known[here], known[there]))
-        if pairs < 20:
-            continue
-        lags.append((down, right))
-        values.append(float(np.vdot(field[here], field[there])) / pairs / power)
-        counts.append(pairs)
-    if not values:
-        return Correlation(1.0, 0.0, 0.0)
-    rho, errors = np.array(values), 1 / np.sqrt(np.array(counts))
-    z = rho / errors
-    worst = int(np.argmax(np.abs(z[:2])))
-    strongest, significance = float(rho[worst]), float(abs(z[worst]))
+    nearest = [_lagged(field, known, lag) for lag in _NEAREST]
+    strongest, significance = 0.0, 0.0
+    for covariance, pairs in nearest:
+        rho = covariance / power
+        if pairs >= _MIN_PAIRS and abs(rho) * math.sqrt(pairs) > significance:
+            strongest, significance = rho, abs(rho) * math.sqrt(pairs)
     if significance < _SIGNIFICANT:
         return Correlation(1.0, strongest, significance)
-    freq = np.linspace(0.0, 0.5, 11)
-    phase = (
-        2 * np.pi * np.outer(freq, [right * normal[0] + down * normal[1] for down, right in lags])
-    )
-    spectrum = 1 + 2 * np.cos(phase) @ rho
+    spectrum = np.ones(_FREQ_CPP.size)
+    further = [_lagged(field, known, lag) for lag in _FURTHER]
+    for (down, right), (covariance, pairs) in zip(
+        _NEAREST + _FURTHER, nearest + further, strict=True
+    ):
+        if pairs >= _MIN_PAIRS:
+            along_px = right * normal[0] + down * normal[1]
+            spectrum += 2 * covariance / power * np.cos(2 * np.pi * _FREQ_CPP * along_px)
     return Correlation(max(float(spectrum.max()), 1.0), strongest, significance)
+
+
+def _lagged(field: Floats, known: Floats, lag: tuple[int, int]) -> tuple[float, float]:
+    """Mean product of the pixels a lag apart, and how many pairs there are."""
+    down, right = lag
+    height, width = field.shape[0] - _LAGS, field.shape[1] - 2 * _LAGS
+    here = (slice(0, height), slice(_LAGS, _LAGS + width))
+    there = (slice(down, down + height), slice(_LAGS + right, _LAGS + right + width))
+    pairs = float(np.vdot(known[here], known[there]))
+    return float(np.vdot(field[here], field[there])) / max(pairs, 1.0), pairs

@@ -10,13 +10,14 @@ factor a step serves all of it (MacKay 1992, doi:10.1162/neco.1992.4.3.415, give
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from acutance.curves.grid import Floats
 
-__all__ = ["Posterior", "Prior", "regress"]
+__all__ = ["Evidence", "Posterior", "Prior", "Whitened", "evidence_of", "regress", "whiten"]
 
 _MAX_STEPS = 12
 _CURVATURE_FLOOR = 0.05
@@ -53,6 +54,11 @@ class Prior:
     height: float
     noise_floor: float
 
+    @cached_property
+    def members(self) -> Floats:
+        """(m, k): 1 where a coefficient belongs to a block, else 0."""
+        return (self.block[:, None] == np.arange(self.log_amplitude.size)).astype(float)
+
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
@@ -79,7 +85,14 @@ class Posterior:
 
 
 def regress(
-    gram: Floats, projection: Floats, data: float, count: int, prior: Prior, inflation: float = 1.0
+    gram: Floats,
+    projection: Floats,
+    data: float,
+    count: int,
+    prior: Prior,
+    variance: float,
+    inflation: float = 1.0,
+    earlier: Posterior | None = None,
 ) -> Posterior:
     """Fit coefficients, prior amplitudes and noise variance together.
 
@@ -94,85 +107,117 @@ def regress(
     count : int
         Number of data.
     prior : Prior
+    variance : float
+        First guess of the noise variance for unit weight.
     inflation : float, optional
         Factor on the noise variance for correlated noise (>= 1 for low-pass noise).
+    earlier : Posterior, optional
+        Solution of nearly the same problem: its amplitudes are the first guess.
     """
-    groups = [np.flatnonzero(prior.block == k) for k in range(int(prior.block.max()) + 1)]
-    spans = [slice(int(g[0]), int(g[-1]) + 1) for g in groups]
-    wish, wish_precision = prior.log_amplitude, 1 / prior.log_amplitude_std**2
-    tau = wish.copy()
     floor = prior.noise_floor**2
-    sigma = prior.scale * prior.height
-    variance = max((data - _explained(gram, projection)) / max(count - 12, 1), floor)
-    diagonal = np.arange(gram.shape[0])
+    variance = max(variance, floor)
+    log_amplitude = prior.log_amplitude if earlier is None else earlier.log_amplitude
     for _ in range(_MAX_STEPS):
-        for k, span in enumerate(spans):
-            sigma[span] = np.exp(tau[k]) * prior.height
-        noise = variance * inflation
-        whitened = gram * (sigma[:, None] * (sigma / noise))
-        whitened[diagonal, diagonal] += 1.0
-        lower, _ = _potrf(whitened, lower=1, clean=1)
-        inverse, _ = _trtri(lower, lower=1)
-        covariance = inverse.T @ inverse
-        coefficient = covariance @ (sigma * projection / noise + prior.mean / sigma)
-        beta = sigma * coefficient
-        step, moves, spread = _amplitude_step(
-            covariance, coefficient, spans, tau - wish, wish_precision
-        )
-        freedom = float(len(diagonal) - np.trace(covariance))
+        white = whiten(gram, projection, prior, log_amplitude, variance * inflation)
+        evidence = evidence_of(white, prior, log_amplitude)
+        step = evidence.step()
+        beta = white.sigma * white.mean
+        freedom = float(beta.size - np.trace(white.covariance))
         misfit = max(data - 2 * beta @ projection + beta @ gram @ beta, 0.0)
         updated = max(misfit / max(count - freedom, 1.0), floor)
-        settled = abs(updated / variance - 1) < 0.01 and np.max(np.abs(step)) < 0.05
-        if settled:
+        if abs(updated / variance - 1) < 0.01 and bool(np.all(np.abs(step) < 0.05)):
             break
         variance = updated
-        tau = tau + step
-    hyper = sigma[:, None] * (moves @ spread)
-    factor = np.hstack([sigma[:, None] * inverse.T, hyper])
-    return Posterior(beta, factor, tau, variance, freedom)
+        log_amplitude = log_amplitude + step
+    moves = evidence.moves @ evidence.spread()
+    factor = white.sigma[:, None] * np.hstack([white.root, moves])
+    return Posterior(beta, factor, log_amplitude, variance, freedom)
 
 
-def _explained(gram: Floats, projection: Floats) -> float:
-    """What a ridge regression explains of the data: enough for a first noise estimate."""
-    ridge = 1e-6 * float(np.trace(gram)) / len(gram)
-    solution = np.linalg.solve(gram + ridge * np.eye(len(gram)), projection)
-    return float(2 * solution @ projection - solution @ gram @ solution)
+@dataclass(frozen=True, eq=False)
+class Whitened:
+    """The posterior at given amplitudes and noise, in units of the prior.
 
-
-def _amplitude_step(
-    covariance: Floats, coefficient: Floats, spans: list[slice], beyond: Floats, precision: float
-) -> tuple[Floats, Floats, Floats]:
-    """One Newton step of the log amplitudes on the log marginal likelihood.
-
-    In whitened coordinates (prior covariance 1) with posterior covariance N and mean m, for
-    the log amplitudes a_j
-
-        gradient_k    = |m_k|^2 + tr N_kk - r_k - (a_k - a0) / s^2
-        hessian_kj    = 4 m_k (N E_j m)_k + 2 |N_kj|^2
-                        - delta_kj (2 |m_k|^2 + 2 tr N_kk + 1 / s^2)
-        d beta / d a_j = 2 sigma N E_j m
-
-    Returns
-    -------
-    step : (k,) array
-    moves : (m, k) array
-        d beta / d a_j in whitened coordinates.
-    spread : (k, k) array
-        Factor of the covariance of the log amplitudes.
+    Attributes
+    ----------
+    sigma : (m,) array
+        Prior standard deviations: beta is ``sigma * mean``.
+    mean : (m,) array
+    covariance : (m, m) array
+        ``root @ root.T``.
+    root : (m, m) array
     """
-    count = len(spans)
-    moves = np.stack([covariance[:, span] @ coefficient[span] for span in spans], axis=1)
-    gradient = np.empty(count)
-    hessian = np.empty((count, count))
-    for k, span in enumerate(spans):
-        mean = coefficient[span]
-        evidence = mean @ mean + np.trace(covariance[span, span])
-        gradient[k] = evidence - (span.stop - span.start) - beyond[k] * precision
-        hessian[k] = 4 * mean @ moves[span]
-        for j, other in enumerate(spans):
-            hessian[k, j] += 2 * np.sum(covariance[span, other] ** 2)
-        hessian[k, k] -= 2 * evidence + precision
-    power, axes = np.linalg.eigh(-hessian)
-    step = axes @ ((axes.T @ gradient) / np.maximum(np.abs(power), _CURVATURE_FLOOR))
-    spread = axes / np.sqrt(np.maximum(power, precision / 4))
-    return np.clip(step, -1.0, 1.0), 2 * moves, spread
+
+    sigma: Floats
+    mean: Floats
+    covariance: Floats
+    root: Floats
+
+
+def whiten(
+    gram: Floats, projection: Floats, prior: Prior, log_amplitude: Floats, noise: float
+) -> Whitened:
+    """Posterior mean and covariance at given amplitudes and noise variance, by one Cholesky."""
+    sigma = prior.height * prior.scale * np.exp(prior.members @ log_amplitude)
+    precision = gram * (sigma[:, None] * (sigma / noise))
+    precision.reshape(-1)[:: sigma.size + 1] += 1.0
+    # The transpose is laid out as Fortran wants it: nothing is copied.
+    lower, _ = _potrf(precision.T, lower=1, clean=1, overwrite_a=1)
+    inverse, _ = _trtri(lower, lower=1, overwrite_c=1)
+    root = inverse.T
+    covariance = root @ inverse
+    mean = covariance @ (sigma * projection / noise + prior.mean / sigma)
+    return Whitened(sigma, mean, covariance, root)
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """How the logarithm of the evidence depends on the log amplitudes.
+
+    Attributes
+    ----------
+    gradient : (k,) array
+    hessian : (k, k) array
+    moves : (m, k) array
+        Derivative of the whitened coefficients by the log amplitudes.
+    floor : float
+        The least curvature the uncertainty of the amplitudes is computed with.
+    """
+
+    gradient: Floats
+    hessian: Floats
+    moves: Floats
+    floor: float
+
+    def step(self) -> Floats:
+        """One bounded Newton step of the log amplitudes, uphill also where it is not concave."""
+        power, axes = np.linalg.eigh(-self.hessian)
+        power = np.maximum(np.abs(power), _CURVATURE_FLOOR)
+        return np.asarray(np.clip(axes @ ((axes.T @ self.gradient) / power), -1.0, 1.0))
+
+    def spread(self) -> Floats:
+        """Factor of the covariance of the log amplitudes (Laplace), (k, k)."""
+        power, axes = np.linalg.eigh(-self.hessian)
+        return np.asarray(axes / np.sqrt(np.maximum(power, self.floor)))
+
+
+def evidence_of(white: Whitened, prior: Prior, log_amplitude: Floats) -> Evidence:
+    """Slope and curvature of the log evidence, hyperprior included, at a whitened posterior.
+
+    With posterior covariance N and mean m in whitened coordinates, and E_j the projector on
+    block j of r_j coefficients, for the log amplitudes a_j
+
+        gradient_k     = |m_k|^2 + tr N_kk - r_k - (a_k - a0) / s^2
+        hessian_kj     = 4 m_k (N E_j m)_k + 2 |N_kj|^2
+                         - delta_kj (2 |m_k|^2 + 2 tr N_kk + 1 / s^2)
+        d beta / d a_j = 2 sigma N E_j m
+    """
+    members, precision = prior.members, 1 / prior.log_amplitude_std**2
+    own = members * white.mean[:, None]
+    moves = 2 * white.covariance @ own
+    explained = (white.mean**2 + white.covariance.diagonal()) @ members
+    gradient = explained - members.sum(axis=0)
+    gradient -= (log_amplitude - prior.log_amplitude) * precision
+    hessian = 2 * own.T @ moves + 2 * members.T @ white.covariance**2 @ members
+    hessian.reshape(-1)[:: gradient.size + 1] -= 2 * explained + precision
+    return Evidence(gradient, hessian, moves, precision / 4)

@@ -18,6 +18,7 @@ from functools import cache
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.fit.blur import Blur
@@ -31,6 +32,7 @@ __all__ = [
     "Directions",
     "directions",
     "tail_esf",
+    "tail_lsf",
     "tail_otf",
 ]
 
@@ -54,17 +56,14 @@ class Directions(NamedTuple):
 
     Attributes
     ----------
-    lsf : (SIZE, r) array
-        LSF coefficients of every direction, per width.
     esf : (CELLS + 3, r) array
-        The same as ESF coefficients.
+        ESF coefficients of every direction, for an LSF per width.
     block : (r,) int array
         0 level, width and place (free), 1 aperture, 2 shape, 3 detail, 4 halo, 5 tail.
     """
 
-    lsf: Floats
     esf: Floats
-    block: Floats
+    block: NDArray[np.intp]
 
 
 def _process(extent: float, smoothness: float) -> Floats:
@@ -82,20 +81,25 @@ def tail_esf(u: Floats) -> Floats:
     return np.arctan(u / TAIL_WIDTH) / np.pi + 0.5
 
 
+def tail_lsf(u: Floats) -> Floats:
+    """LSF of the tail term, per width."""
+    return np.asarray(TAIL_WIDTH / np.pi / (u * u + TAIL_WIDTH**2))
+
+
 def tail_otf(freq: Floats) -> Floats:
     """Transfer function of the tail term, at frequencies in cycles per width."""
     return np.exp(-2 * np.pi * TAIL_WIDTH * freq)
 
 
 @cache
-def _fixed() -> tuple[Floats, Floats, Floats]:
+def _fixed() -> tuple[Floats, NDArray[np.intp]]:
     processes = [_process(*scales) for scales in (_SHAPE, _DETAIL, _HALO)]
-    tail = quasi_interpolant(TAIL_WIDTH / np.pi / (CENTRES**2 + TAIL_WIDTH**2))
+    tail = quasi_interpolant(tail_lsf(CENTRES))
     lsf = np.hstack([*processes, tail[:, None]])
     block = np.repeat([2, 3, 4, 5], [*(p.shape[1] for p in processes), 1])
     esf = esf_from_lsf(lsf)
     esf[:, -1] += float(tail_esf(np.array(-HALF_SUPPORT)))
-    return lsf, esf, block
+    return esf, block
 
 
 def directions(blur: Blur) -> Directions:
@@ -103,14 +107,10 @@ def directions(blur: Blur) -> Directions:
 
     The level, width, place and aperture of the mean come first, then the processes and the tail.
     """
-    lsf, esf, block = _fixed()
+    esf, block = _fixed()
     width = blur.width_px
     s = CENTRES * width
     by_place, by_sigma, by_aperture = blur.lsf_slopes(s)
-    shapes = (blur.lsf(s), by_sigma, -by_place, by_aperture)
-    mean = np.stack([quasi_interpolant(width * shape) for shape in shapes], axis=1)
-    return Directions(
-        np.hstack([mean, lsf]),
-        np.hstack([esf_from_lsf(mean), esf]),
-        np.concatenate([[0, 0, 0, 1], block]),
-    )
+    shapes = np.stack([blur.lsf(s), by_sigma, -by_place, by_aperture], axis=1)
+    mean = esf_from_lsf(quasi_interpolant(width * shapes))
+    return Directions(np.hstack([mean, esf]), np.concatenate([[0, 0, 0, 1], block]))

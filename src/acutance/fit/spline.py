@@ -27,6 +27,7 @@ __all__ = [
     "CENTRES",
     "HALF_SUPPORT",
     "SIZE",
+    "combine",
     "edge_weights",
     "esf_from_lsf",
     "line_weights",
@@ -84,13 +85,22 @@ def line_weights(u: Floats) -> tuple[NDArray[np.intp], Floats]:
     return cell, np.stack([first, second, -first - second - last, last]) * (1 / CELL)
 
 
-def spread(cell: NDArray[np.intp], weights: Floats) -> Floats:
-    """The (n, CELLS + 3) matrix that holds the local `weights` (4, n)."""
-    matrix = np.zeros((cell.size, CELLS + 3))
-    rows = np.arange(cell.size)
+def spread(cell: NDArray[np.intp], weights: Floats, further: int = 0) -> Floats:
+    """The (n, CELLS + 3 + further) matrix that holds the local `weights` (4, n), else zero."""
+    columns = CELLS + 3 + further
+    matrix = np.zeros((cell.size, columns))
+    first = np.arange(0, matrix.size, columns) + cell
     for a in range(4):
-        matrix[rows, cell + a] = weights[a]
+        matrix.reshape(-1)[first + a] = weights[a]
     return matrix
+
+
+def combine(cell: NDArray[np.intp], weights: Floats, coefficients: Floats) -> Floats:
+    """The spline of `coefficients` (CELLS + 3,): ``spread(cell, weights) @ coefficients``."""
+    value = weights[0] * coefficients[cell]
+    for a in range(1, 4):
+        value += weights[a] * coefficients[cell + a]
+    return np.asarray(value)
 
 
 def esf_from_lsf(coefficients: Floats) -> Floats:
@@ -114,7 +124,9 @@ def quasi_interpolant(values: Floats) -> Floats:
 
 
 def transform(freq: Floats) -> NDArray[np.complex128]:
-    """Fourier transform of every quadratic B-spline, (n, SIZE).
+    """Fourier transform of the LSF by ESF coefficients, (n, CELLS + 3).
+
+    The OTF is ``transform(freq) @ e`` where e starts with zeros and ends level, as an ESF does.
 
     Parameters
     ----------
@@ -122,14 +134,19 @@ def transform(freq: Floats) -> NDArray[np.complex128]:
         A regular grid of frequencies from 0, in cycles per width.
     """
     n = freq.size
-    step = np.exp(-2j * np.pi * freq[1] * CENTRES)
-    powers = np.ones((n, SIZE), complex)
-    done = 1
+    columns = np.zeros((n, CELLS + 3), complex)
     # Doubling: frequencies m .. 2m - 1 are the first m, turned by m steps.
+    turns = columns[:, 3 : 3 + SIZE]
+    step = np.exp(-2j * np.pi * freq[1] * CENTRES)
+    turns[0] = 1.0
+    done = 1
     while done < n:
         more = min(done, n - done)
-        turn = powers[done - 1] * step
-        np.multiply(powers[:more], turn, out=powers[done : done + more])
+        np.multiply(turns[:more], turns[done - 1] * step, out=turns[done : done + more])
         done += more
-    powers *= (CELL * np.sinc(freq * CELL) ** 3)[:, None]
-    return powers
+    # Coefficient e_m lifts the LSF's c_(m - 3) and lowers c_(m - 2), one cell further on.
+    further = 1 - np.exp(-2j * np.pi * freq * CELL)
+    further = np.sinc(freq * CELL) ** 3 * np.stack([further, np.ones(n)])
+    turns[:, :-1] *= further[0][:, None]
+    turns[:, -1] *= further[1]
+    return columns

@@ -9,17 +9,22 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
-from acutance.fit.blur import Blur
+from acutance.fit.blur import FWHM_OF_SIGMA, Blur
 from acutance.fit.line import Line
-from acutance.fit.prior import APERTURE_PX, tail_esf
+from acutance.fit.prior import APERTURE_PX, tail_esf, tail_lsf
 
 __all__ = ["BlurredEdge", "fit_blurred_edge"]
 
-_MAX_STEPS = 40
+_MAX_STEPS = 30
+_SETTLED = 1e-3
 _REACH_WIDTHS = 2.5
 _MIN_SIGMA_PX = 0.35
 _TAIL_STD = 0.1
-_MAX_APERTURE_PX = 4.0
+_APERTURE_STEP_PX = 1.0
+# Parameters: dark, height, offset, turn, sigma, aperture, tail.
+_EXPECTED: Floats = np.array([0.0, 0.0, 0.0, 0.0, 0.0, APERTURE_PX[0], 0.0])
+_LOWEST: Floats = np.array([*[-np.inf] * 4, _MIN_SIGMA_PX, 0.2, 0.0])
+_HIGHEST: Floats = np.array([*[np.inf] * 4, np.inf, 4.0, 0.5])
 
 
 @dataclass(frozen=True)
@@ -65,107 +70,115 @@ def fit_blurred_edge(
     NoEdgeError
         If no step survives the fit.
     """
-    aperture, aperture_std = APERTURE_PX
     t = line.tangent_distance(row, col)
     s = line.normal_distance(row, col)
-    offset = turn = 0.0
-    height, sigma = bright - dark, sigma_px
-    weight_scale = noise if noise else 0.02 * abs(height)
-    reach = max(6.0, 4 * _REACH_WIDTHS * sigma)
+    p = np.array([dark, bright - dark, 0.0, 0.0, sigma_px, APERTURE_PX[0], 0.0])
+    scale = noise if noise else 0.02 * abs(bright - dark)
+    reach = max(6.0, 4 * _REACH_WIDTHS * sigma_px)
     for _ in range(4):
-        near = np.abs(s - offset + t * turn) < reach
-        fitted = _gauss_newton(
-            s[near],
-            t[near],
-            value[near],
-            (dark, height, offset, turn, sigma, aperture, 0.0),
-            weight_scale / aperture_std,
-            weight_scale / _TAIL_STD,
+        near = np.abs(s - p[2] + t * p[3]) < reach
+        p, left = _gauss_newton(
+            s[near], t[near], value[near], p, scale / APERTURE_PX[1], scale / _TAIL_STD
         )
-        (dark, height, offset, turn, sigma, aperture, tail), noise_near = fitted
-        weight_scale = max(noise_near, 1e-6 * abs(height))
-        wanted = _REACH_WIDTHS * Blur(sigma, aperture).width_px
+        dark, height, offset, turn, sigma, aperture, _ = p.tolist()
+        blur = Blur(sigma, aperture)
+        scale = max(left, 1e-6 * abs(height))
+        wanted = _REACH_WIDTHS * blur.width_px
         if wanted <= reach * 1.05:
             break
         reach = 1.2 * wanted
-    if not (height > 0 and math.isfinite(height)) or height < weight_scale * 1.0:
+    if not (height > 0 and math.isfinite(height)) or height < scale:
         raise NoEdgeError(
             f"no straight edge was found: the best fit is a step of {height:.3g} in noise of "
-            f"{weight_scale:.3g}; choose a region with one bright and one dark side"
+            f"{scale:.3g}; choose a region with one bright and one dark side"
         )
-    located = line.moved(offset, math.degrees(turn))
-    return BlurredEdge(located, Blur(sigma, aperture), dark, height, float(weight_scale))
-
-
-_Parameters = tuple[float, float, float, float, float, float, float]
+    return BlurredEdge(line.moved(offset, math.degrees(turn)), blur, dark, height, scale)
 
 
 def _gauss_newton(
     s: Floats,
     t: Floats,
     value: Floats,
-    start: _Parameters,
+    start: Floats,
     aperture_weight: float,
     tail_weight: float,
-) -> tuple[_Parameters, float]:
-    """Minimise the squared residuals and the aperture's penalty over the seven parameters."""
-    p = np.array(start)
-    damping = 1e-3
-    cost, jacobian, residual = _linearise(s, t, value, p, aperture_weight, tail_weight)
+) -> tuple[Floats, float]:
+    """Minimise the squared residuals and the penalties over the seven parameters.
+
+    Returns the parameters and the standard deviation of what they leave.
+    """
+    p, damping = start, 1e-3
+    # The priors of aperture and tail: two more data.
+    penalty = np.array([0.0, 0.0, 0.0, 0.0, 0.0, aperture_weight**2, tail_weight**2])
+    cost, jacobian, residual = _linearise(s, t, value, p, penalty)
     for _ in range(_MAX_STEPS):
         gram = jacobian @ jacobian.T
-        gradient = jacobian @ residual
-        # The aperture's prior: one more datum.
-        gram[5, 5] += aperture_weight**2
-        gradient[5] += aperture_weight**2 * (APERTURE_PX[0] - p[5])
-        gram[6, 6] += tail_weight**2
-        gradient[6] -= tail_weight**2 * p[6]
-        gram[np.arange(7), np.arange(7)] *= 1 + damping
-        step = np.linalg.solve(gram + 1e-12 * np.trace(gram) * np.eye(7) / 7, gradient)
-        step[4] = np.clip(step[4], -0.5 * p[4], p[4])
-        trial = p + step
-        trial[4] = max(trial[4], _MIN_SIGMA_PX)
-        trial[6] = min(max(trial[6], 0.0), 0.5)
-        trial[5] = min(max(trial[5], 0.2), _MAX_APERTURE_PX)
-        new_cost, new_jacobian, new_residual = _linearise(
-            s, t, value, trial, aperture_weight, tail_weight
+        gradient = jacobian @ residual + penalty * (_EXPECTED - p)
+        diagonal = gram.diagonal() + penalty
+        gram.reshape(-1)[::8] = diagonal * (1 + damping) + 1e-13 * diagonal.sum()
+        longest = np.array([*[np.inf] * 4, p[4], _APERTURE_STEP_PX, 1.0])
+        step = _bounded_solution(
+            gram,
+            gradient,
+            np.maximum(_LOWEST - p, -0.5 * longest),
+            np.minimum(_HIGHEST - p, longest),
         )
+        trial = p + step
+        # A wider aperture at the same variance leaves less to the Gaussian.
+        variance = p[4] ** 2 + 2 * p[4] * step[4] - step[5] ** 2 / 12
+        trial[4] = math.sqrt(max(variance, _MIN_SIGMA_PX**2))
+        new_cost, new_jacobian, new_residual = _linearise(s, t, value, trial, penalty)
         if new_cost <= cost:
             gain = cost - new_cost
             p, cost, jacobian, residual = trial, new_cost, new_jacobian, new_residual
             damping *= 0.1
-            if gain <= 1e-4 * cost + 1e-18 * p[1] ** 2 * s.size:
+            if gain <= _SETTLED * cost + 1e-18 * p[1] ** 2 * s.size:
                 break
         else:
             damping = max(damping, 1e-4) * 10
             if damping > 1e6:
                 break
-    misfit = float(residual @ residual)
-    a, b, c, d, e, f, g = p.tolist()
-    return (a, b, c, d, e, f, g), math.sqrt(misfit / max(s.size - 7, 1))
+    return p, math.sqrt(float(residual @ residual) / max(s.size - 7, 1))
+
+
+def _bounded_solution(gram: Floats, gradient: Floats, low: Floats, high: Floats) -> Floats:
+    """The minimum of a quadratic form within bounds, found by holding what would leave them."""
+    step = np.linalg.solve(gram, gradient)
+    held = np.zeros(step.size, bool)
+    while (outside := ((step < low) | (step > high)) & ~held).any():
+        held |= outside
+        free = ~held
+        step[held] = np.clip(step[held], low[held], high[held])
+        rest = gradient[free] - gram[np.ix_(free, held)] @ step[held]
+        step[free] = np.linalg.solve(gram[np.ix_(free, free)], rest)
+    return step
 
 
 def _linearise(
-    s: Floats, t: Floats, value: Floats, p: Floats, aperture_weight: float, tail_weight: float
+    s: Floats, t: Floats, value: Floats, p: Floats, penalty: Floats
 ) -> tuple[float, Floats, Floats]:
-    """Cost, Jacobian (6, n) and residual at parameters p."""
-    dark, height, offset, turn, sigma, aperture, tail = p
+    """Cost, Jacobian of the model (7, n) and residual at parameters p."""
+    dark, height, offset, turn, sigma, aperture, tail = p.tolist()
+    blur = Blur(sigma, aperture)
+    width = blur.width_px
     # Turning the normal by a small angle moves a pixel at t by -t * angle along it: the line
     # turns about its own point.
-    blur = Blur(sigma, aperture)
     distance = s - offset + t * turn
     esf, lsf, by_sigma, by_aperture = blur.esf_and_slopes(distance)
-    beyond = tail_esf(distance / blur.width_px) - esf
+    u = distance / width
+    beyond = tail_esf(u) - esf
     step = esf + tail * beyond
     residual = value - dark - height * step
+    within, far = height * (1 - tail), height * tail / width * tail_lsf(u)
+    # The tail scales with the width, whose square is that of sigma and aperture / sqrt(12) added.
+    stretch = -far * u * (FWHM_OF_SIGMA**2 / width)
     jacobian = np.empty((7, s.size))
     jacobian[0] = 1.0
     jacobian[1] = step
-    jacobian[6] = height * beyond
-    jacobian[2] = -height * lsf
+    jacobian[2] = -within * lsf - far
     jacobian[3] = -jacobian[2] * t
-    jacobian[4] = height * by_sigma
-    jacobian[5] = height * by_aperture
-    cost = float(residual @ residual)
-    cost += (aperture_weight * (APERTURE_PX[0] - aperture)) ** 2 + (tail_weight * tail) ** 2
+    jacobian[4] = within * by_sigma + sigma * stretch
+    jacobian[5] = within * by_aperture + aperture / 12 * stretch
+    jacobian[6] = height * beyond
+    cost = float(residual @ residual) + float(penalty @ (p - _EXPECTED) ** 2)
     return cost, jacobian, residual
