@@ -3,6 +3,7 @@
 from dataclasses import replace
 from itertools import combinations
 
+import numpy as np
 import pytest
 from matplotlib.axis import Axis, Tick
 from matplotlib.text import Text
@@ -127,6 +128,16 @@ def test_long_and_flat_cuts_keep_their_labels_apart(make_edge, roi):
     figure = edge_figure(make_edge(roi=roi, normal_deg=normal_deg, scatter=0.03))
     assert not overlaps(figure)
     assert not outside(figure)
+
+
+def test_only_the_surroundings_of_the_pixels_used_are_drawn(measurement):
+    used = np.zeros_like(measurement.samples.used)
+    used[10:30, 12:20] = True
+    small = replace(measurement, samples=replace(measurement.samples, used=used))
+    axes = panel_figures(small)["target"].axes[0]
+    row, col = measurement.image.roi[:2]
+    assert axes.get_ylim() == pytest.approx((row + 35.5, row + 3.5), abs=0.6)
+    assert axes.get_xlim() == pytest.approx((col + 5.5, col + 25.5), abs=0.6)
 
 
 def test_thirteen_checks_and_a_long_verdict_have_room(make_edge):

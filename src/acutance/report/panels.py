@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves import metrics
 from acutance.curves.grid import Floats, crossing
@@ -70,18 +71,23 @@ def show_pixels(axes: Axes, pixels: Floats, row: int, col: int) -> None:
 
 def _tick_count(relative_length: float) -> int:
     """How many intervals between ticks have room on a side of an image."""
-    return max(1, int(6 * min(1.0, relative_length)))
+    return math.ceil(6 * min(1.0, relative_length) - 0.5)
 
 
 def draw_cut(axes: Axes, measurement: Measurement) -> None:
-    """The pixels, the line, the band that entered the fit, and an arrow from dark to bright."""
-    line, samples = measurement.line, measurement.samples
-    row, col, height, width = measurement.image.roi
-    show_pixels(axes, samples.image, row, col)
+    """The pixels around the edge, the line, the band used, and an arrow from dark to bright."""
+    line = measurement.line
+    rows_shown, cols_shown = _surroundings(measurement.samples.used)
+    pixels = measurement.samples.image[rows_shown, cols_shown]
+    used = measurement.samples.used[rows_shown, cols_shown]
+    row = measurement.image.roi[0] + rows_shown.start
+    col = measurement.image.roi[1] + cols_shown.start
+    height, width = pixels.shape
+    show_pixels(axes, pixels, row, col)
     axes.contour(
         np.arange(-1, width + 1) + col,
         np.arange(-1, height + 1) + row,
-        np.pad(samples.used, 1).astype(float),
+        np.pad(used, 1).astype(float),
         levels=[0.5],
         colors=[ORANGE],
         linewidths=1.3,
@@ -102,6 +108,17 @@ def draw_cut(axes: Axes, measurement: Measurement) -> None:
     )
     _legend_below(axes, [("edge", VERMILION), ("pixels used", ORANGE), ("dark → bright", BLUE)])
     axes.set_title("Target")
+
+
+def _surroundings(used: NDArray[np.bool_]) -> tuple[slice, slice]:
+    """The rows and columns that hold the pixels used, with a margin to see what lies beside."""
+    spans = []
+    for axis in (1, 0):
+        places = np.flatnonzero(used.any(axis=axis))
+        first, last = int(places[0]), int(places[-1])
+        margin = max(6, (last - first) // 6)
+        spans.append(slice(max(0, first - margin), min(used.shape[1 - axis], last + 1 + margin)))
+    return spans[0], spans[1]
 
 
 def _legend_below(axes: Axes, entries: list[tuple[str, str]]) -> None:
