@@ -19,7 +19,7 @@ from acutance.measure.checks import check_edge, edge_snr, sample_phases
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.measurement import Measurement, Samples
 from acutance.measure.options import EdgeOptions
-from acutance.measure.published import PUBLISHED
+from acutance.measure.published import PUBLISHED, PUBLISHED_OPTIONS
 from acutance.raster import Gsd, Image
 
 __all__ = ["METHODS", "measure_edge", "measure_segment"]
@@ -37,8 +37,12 @@ def _spline(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
 
 def _published(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
     def measure(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
-        chosen = options.method_options
-        return PUBLISHED[name](band) if chosen is None else PUBLISHED[name](band, chosen)
+        chosen, wanted = options.method_options, PUBLISHED_OPTIONS[name]
+        if chosen is not None and not isinstance(chosen, wanted):
+            raise OptionError(
+                f"method_options are {type(chosen).__name__}: method {name} takes {wanted.__name__}"
+            )
+        return PUBLISHED[name](band, wanted() if chosen is None else chosen)
 
     return measure
 

@@ -16,6 +16,7 @@ from acutance.measure.published.sdsu import SdsuOptions, sdsu_2005
 
 __all__ = [
     "PUBLISHED",
+    "PUBLISHED_OPTIONS",
     "FermiOptions",
     "Iso12233Options",
     "KompsatOptions",
@@ -31,4 +32,11 @@ PUBLISHED: dict[str, Callable[..., EdgeFit]] = {
     "kompsat-2014": kompsat_2014,
     "iso12233": iso12233,
     "fermi": fermi,
+}
+
+PUBLISHED_OPTIONS: dict[str, type] = {
+    "sdsu-2005": SdsuOptions,
+    "kompsat-2014": KompsatOptions,
+    "iso12233": Iso12233Options,
+    "fermi": FermiOptions,
 }

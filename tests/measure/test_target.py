@@ -1,0 +1,72 @@
+"""All edges of a target: found, grouped, averaged, and consistent."""
+
+import math
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance.curves import Estimate
+from acutance.measure.target import _weighted_mean
+from acutance.simulate import site
+
+SYSTEM = ac.Sensor(
+    [ac.optics.Gaussian(0.4), ac.optics.Detector(1.0), ac.optics.Smear(0.5, "along")]
+)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return site(SYSTEM, np.random.default_rng(4))
+
+
+def test_a_checkerboard_gives_its_four_edges(scene):
+    result = ac.measure_edges(scene.image)
+    assert len(result.measurements) == 4
+    assert {key: len(group.measurements) for key, group in result.groups.items()} == {
+        "across": 2,
+        "along": 2,
+    }
+    for m in result.measurements:
+        truth = min(
+            (one.truth for one in scene.edges),
+            key=lambda one: math.hypot(one.line.row - m.line.row, one.line.col - m.line.col),
+        )
+        assert m.orientation == truth.orientation
+        assert abs(m.mtf_nyquist.value - truth.mtf_nyquist.value) < 4 * m.mtf_nyquist.std
+        assert abs(m.rer.value - truth.rer.value) < 4 * m.rer.std
+
+
+def test_group_means_are_better_than_their_edges_and_consistent(scene):
+    for group in ac.measure_edges(scene.image).groups.values():
+        stds = [m.mtf_nyquist.std for m in group.measurements]
+        assert group.metrics["mtf_nyquist"].std < 1.5 * min(stds)
+        assert group.degrees_of_freedom == 1
+        assert group.p_value["mtf_nyquist"] > 1e-3
+
+
+def test_border_edges_are_rejected_with_their_reason(scene):
+    result = ac.measure_edges(scene.image)
+    reasons = [one for one in result.rejected if one.stage == "contrast"]
+    assert reasons
+    assert all("probably not of the target" in one.reason for one in reasons)
+    assert all({"row", "col", "normal_deg"} <= set(one.values) for one in reasons)
+
+
+def test_an_image_without_edges_gives_an_empty_result():
+    result = ac.measure_edges(np.random.default_rng(0).normal(100, 1, (60, 60)))
+    assert result.measurements == ()
+    assert result.groups == {}
+
+
+def test_weighted_mean_and_chi_square():
+    mean, chi_square = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.3, 0.2)])
+    assert mean.value == pytest.approx((1.0 / 0.01 + 1.3 / 0.04) / (1 / 0.01 + 1 / 0.04))
+    assert chi_square == pytest.approx(
+        (1.0 - mean.value) ** 2 / 0.01 + (1.3 - mean.value) ** 2 / 0.04
+    )
+    # chi-square 1.8 with one degree of freedom: the Birge ratio widens the mean's deviation.
+    assert mean.std == pytest.approx(math.sqrt(chi_square) / math.sqrt(125))
+    agreeing, small = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)])
+    assert small < 1
+    assert agreeing.std == pytest.approx(0.1 / math.sqrt(2))
