@@ -1,0 +1,126 @@
+"""Arrows point down: which floor may import which, and who may import what from outside."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+
+import pytest
+from package_source import MODULES, ROOT, Import, all_imports, imports_of
+
+# From the roof to the ground. A floor imports itself and what stands after it.
+FLOORS = ("cli", "report", "measure", "simulate", "raster", "fit", "optics", "curves", "errors")
+
+# Libraries, and the floors that may use them.
+LIBRARIES = {
+    "numpy": {"cli", "report", "measure", "simulate", "raster", "fit", "optics", "curves"},
+    "scipy": {"measure", "simulate", "fit", "optics"},
+    "rasterio": {"raster"},
+    "matplotlib": {"report"},
+    "jinja2": {"report"},
+    "markupsafe": {"report"},
+    "typer": {"cli"},
+    "rich": {"cli"},
+}
+
+# (module, imported module): why it is right all the same.
+EXCEPTIONS = {
+    ("cli/faces.py", "matplotlib.figure"): "the type of what report draws; for mypy alone",
+}
+
+
+def floor_of(module: str) -> str:
+    return module.split("/")[0].removesuffix(".py")
+
+
+def is_face(module: str) -> bool:
+    """The package's own face: it names everything, and loads it when it is asked for."""
+    return module == "__init__.py"
+
+
+def upward(found: Import) -> bool:
+    """Whether an import of our own points to a higher floor."""
+    own = floor_of(found.importer)
+    other = found.target.split(".")[1]
+    return FLOORS.index(other) < FLOORS.index(own)
+
+
+def test_every_module_stands_on_a_floor() -> None:
+    assert {floor_of(module) for module in MODULES if not is_face(module)} == set(FLOORS)
+
+
+@pytest.mark.parametrize("module", [module for module in MODULES if not is_face(module)])
+def test_own_imports_point_down(module: str) -> None:
+    own = [found for found in imports_of(module) if found.target.split(".")[0] == "acutance"]
+    named = [found for found in own if found.target != "acutance.__version__"]
+    wrong = [str(found) for found in named if upward(found)]
+    assert not wrong, wrong
+
+
+def test_no_relative_imports() -> None:
+    assert not [str(found) for found in all_imports() if found.target.startswith(".")]
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_libraries_stay_on_their_floors(module: str) -> None:
+    for found in imports_of(module):
+        root = found.target.split(".")[0]
+        if root == "acutance" or root in sys.stdlib_module_names:
+            continue
+        assert root in LIBRARIES, f"{found}: a library nobody has chosen"
+        allowed = floor_of(module) in LIBRARIES[root]
+        assert allowed or (module, found.target) in EXCEPTIONS, f"{found}: belongs elsewhere"
+
+
+def test_the_exceptions_are_all_needed() -> None:
+    seen = {(found.importer, found.target) for found in all_imports()}
+    assert set(EXCEPTIONS) <= seen
+
+
+def test_nobody_uses_pyplot() -> None:
+    assert not [str(found) for found in all_imports() if "pyplot" in found.target]
+    named = [module for module in MODULES if "pyplot" in _names(module)]
+    assert not named
+
+
+def _names(module: str) -> set[str]:
+    """Every name and attribute a module's code uses."""
+    tree = ast.parse((ROOT / module).read_text(encoding="utf-8"))
+    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    return names | {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+
+
+def loaded_after(code: str) -> set[str]:
+    """Roots of the modules a fresh interpreter has loaded after running some code."""
+    program = f"{code}\nimport sys\nprint(*sorted({{m.split('.')[0] for m in sys.modules}}))"
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    return set(done.stdout.splitlines()[-1].split())
+
+
+def test_importing_acutance_loads_nothing_heavy() -> None:
+    loaded = loaded_after("import acutance")
+    assert "acutance" in loaded
+    assert not loaded & {"numpy", "scipy", "matplotlib", "rasterio", "pydantic", "jinja2", "typer"}
+
+
+@pytest.mark.parametrize("command", [[], ["edge"], ["simulate", "edge"], ["sites"], ["demo"]])
+def test_help_loads_nothing_heavy(command: list[str]) -> None:
+    arguments = [*command, "--help"]
+    loaded = loaded_after(
+        f"from acutance.cli.app import app\napp({arguments!r}, standalone_mode=False)"
+    )
+    assert "typer" in loaded
+    assert not loaded & {"scipy", "matplotlib", "rasterio", "jinja2"}
+
+
+def test_measuring_an_array_needs_no_file_library() -> None:
+    loaded = loaded_after(
+        "import acutance as ac\n"
+        "sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])\n"
+        "ac.measure_edge(ac.simulate.edge(sensor)[0])"
+    )
+    assert "scipy" in loaded
+    assert not loaded & {"rasterio", "matplotlib", "jinja2", "typer"}
