@@ -26,7 +26,7 @@ from acutance.errors import (
 )
 
 if TYPE_CHECKING:
-    from acutance import optics, simulate
+    from acutance import optics, report, simulate
     from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
     from acutance.measure import (
         EdgeLimits,
@@ -63,7 +63,7 @@ _HOMES = {
     "open_image": "acutance.raster",
     "sites": "acutance.raster",
 }
-_MODULES = ("optics", "simulate")
+_MODULES = ("optics", "report", "simulate")
 
 __all__ = [
     "AcutanceError",
@@ -94,6 +94,7 @@ __all__ = [
     "measure_edges",
     "open_image",
     "optics",
+    "report",
     "simulate",
     "sites",
 ]

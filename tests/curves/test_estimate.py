@@ -29,5 +29,6 @@ def test_scaling_carries_the_standard_deviation() -> None:
 
 def test_document_has_none_where_there_is_no_number() -> None:
     assert Estimate(math.nan, 1.0).to_dict() == {"value": None, "std": None, "interval95": None}
+    assert Estimate(1.0, math.nan).to_dict() == {"value": 1.0, "std": None, "interval95": None}
     document = Estimate(0.2, 0.01).to_dict()
     assert document["interval95"] == pytest.approx([0.1804004, 0.2195996])

@@ -151,7 +151,7 @@ def test_low_contrast_and_few_rows_fail_their_checks():
 
 def test_narrow_plateau_fails_its_check():
     image, _ = simulated(shape=(40, 12), angle_deg=4.0)
-    assert {"plateau_dark", "plateau_bright"} & failed(ac.measure_edge(image))
+    assert {"plateau_dark_px", "plateau_bright_px"} & failed(ac.measure_edge(image))
 
 
 def test_curved_edge_fails_straightness():
@@ -159,7 +159,7 @@ def test_curved_edge_fails_straightness():
     profile = SYSTEM.profile(0.0)
     s = cols - 25 - 0.1 * (rows - 40) - ((rows - 40) / 40.0) ** 2 * 0.6
     image = 200 + 1000 * profile.esf(s) + np.random.default_rng(0).normal(0, 10, s.shape)
-    assert "straightness" in failed(ac.measure_edge(image))
+    assert "straightness_px" in failed(ac.measure_edge(image))
 
 
 def test_a_dark_line_beside_the_edge_fails_structure():
@@ -167,7 +167,7 @@ def test_a_dark_line_beside_the_edge_fails_structure():
     rows, cols = np.indices(image.shape)
     along = np.cos(np.radians(6)) * (cols - 29.5) + np.sin(np.radians(6)) * (rows - 29.5)
     m = ac.measure_edge(image - 90.0 * np.exp(-0.5 * ((along - 6.0) / 0.8) ** 2))
-    assert {"structure", "uniformity_bright", "plateau_bright"} & failed(m)
+    assert {"structure", "uniformity_bright", "plateau_bright_px"} & failed(m)
 
 
 def test_limits_can_be_changed():

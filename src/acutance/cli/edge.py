@@ -153,7 +153,9 @@ def _edge_options(limits: Sequence[str], rer_centre: str | None, robust: bool) -
 
 
 def _parse_limit(text: str, known: set[str]) -> tuple[str, float]:
-    name, _, number = text.partition("=")
+    asked, _, number = text.partition("=")
+    # A limit holds for both sides: the names of a side's check are understood too.
+    name = asked.replace("_dark", "").replace("_bright", "")
     if name not in known:
         raise OptionError(f"--limit {text}: the limits are {', '.join(sorted(known))}")
     try:

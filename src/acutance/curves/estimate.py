@@ -44,6 +44,8 @@ class Estimate:
         """Value, standard deviation and 95 % interval; ``None`` where they do not exist."""
         if not math.isfinite(self.value):
             return {"value": None, "std": None, "interval95": None}
+        if not math.isfinite(self.std):
+            return {"value": self.value, "std": None, "interval95": None}
         return {"value": self.value, "std": self.std, "interval95": list(self.interval(0.95))}
 
     def __float__(self) -> float:

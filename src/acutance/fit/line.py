@@ -83,12 +83,12 @@ class Line:
             self.length_px,
         )
 
-    def to_dict(self) -> dict[str, float | str]:
+    def to_dict(self) -> dict[str, float | str | None]:
         """Position, direction and what was used, for JSON."""
         return {
             "row": self.row,
             "col": self.col,
             "normal_deg": self.normal_deg,
-            "length_px": self.length_px,
+            "length_px": self.length_px if math.isfinite(self.length_px) else None,
             "orientation": self.orientation,
         }

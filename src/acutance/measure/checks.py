@@ -157,7 +157,7 @@ def _angle(fit: EdgeFit, limits: EdgeLimits, by_rows: bool) -> Check:
     angle = fit.line.angle_deg
     limit = limits.angle_deg if by_rows else 45.0
     return _at_most(
-        "angle", angle, limit,
+        "angle_deg", angle, limit,
         f"the edge is inclined by {angle:.2f} degrees (KOMPSAT-3 draft 3d allows 30 to methods "
         "that work row by row; a fit along the normal allows every angle with enough phases)",
     )  # fmt: skip
@@ -209,7 +209,7 @@ def _straightness(seen: _Evidence, limits: EdgeLimits) -> Check:
     value = math.sqrt(max(excess, 0.0)) if bent else 0.0
     lost = 100 * (1 - math.exp(-2 * math.pi**2 * 0.25 * value**2))
     return _at_most(
-        "straightness", value, limits.straightness_px,
+        "straightness_px", value, limits.straightness_px,
         f"the edge leaves its line by {value:.3f} px rms, which takes {lost:.1f} % of the MTF at "
         "Nyquist (0.05 px take 1.2 %): choose a straighter part",
     )  # fmt: skip
@@ -218,7 +218,7 @@ def _straightness(seen: _Evidence, limits: EdgeLimits) -> Check:
 def _plateau(extent: Extent, limits: EdgeLimits, side: str) -> Check:
     value = extent.dark_px if side == "dark" else extent.bright_px
     return _at_least(
-        f"plateau_{side}", value, limits.plateau_px,
+        f"plateau_{side}_px", value, limits.plateau_px,
         f"the {side} side is uniform out to {value:.1f} px from the edge (Li et al. 4.2: 7 to 10); "
         "what lies further of a halo is not seen and raises the MTF",
     )  # fmt: skip
@@ -259,7 +259,7 @@ def _correlation(seen: _Evidence, limits: EdgeLimits) -> Check:
         found, significance = abs(measured.strongest), measured.significance
     value = found if significance >= 4 else 0.0
     return _at_most(
-        "correlated_noise", value, limits.correlation,
+        "correlated_noise", value, limits.correlated_noise,
         f"neighbouring pixels' noise correlates by {found:.2f} ({significance:.0f} standard "
         "deviations): a resampled product or textured ground; the intervals allow for it, and "
         "the MTF is the product's",

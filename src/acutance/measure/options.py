@@ -41,7 +41,7 @@ class EdgeLimits:
         Least width of either plateau in pixels.
     saturation : float
         Largest share of pixels at the detector's limit.
-    correlation : float
+    correlated_noise : float
         Largest correlation of the noise between neighbouring pixels.
     structure : float
         Largest structure beside the edge, as a share of the contrast.
@@ -57,7 +57,7 @@ class EdgeLimits:
     straightness_px: float = 0.05
     plateau_px: float = 7.0
     saturation: float = 0.001
-    correlation: float = 0.1
+    correlated_noise: float = 0.1
     structure: float = 0.02
     outliers: float = 0.02
 
