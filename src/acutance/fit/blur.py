@@ -47,6 +47,14 @@ class Blur:
         ramp = high * ndtr(high) + gaussian(high) - low * ndtr(low) - gaussian(low)
         return np.asarray(self.sigma_px / self.aperture_px * ramp)
 
+    def esf_and_lsf(self, s: Floats) -> tuple[Floats, Floats]:
+        """Edge and line spread function at normal distances `s`."""
+        high, low = self._ends(s)
+        cdf_high, cdf_low = ndtr(high), ndtr(low)
+        ramp = high * cdf_high + gaussian(high) - low * cdf_low - gaussian(low)
+        esf = self.sigma_px / self.aperture_px * ramp
+        return np.asarray(esf), np.asarray((cdf_high - cdf_low) / self.aperture_px)
+
     def otf(self, freq_cpp: Floats) -> Floats:
         """Transfer function at frequencies in cycles per pixel (real: the blur is symmetric)."""
         fall = np.exp(-2 * np.pi**2 * (self.sigma_px * freq_cpp) ** 2)

@@ -133,47 +133,46 @@ def _solve(
     s = line.normal_distance(pixels.row, pixels.col)
     t = line.tangent_distance(pixels.row, pixels.col)
     u = s / width
-    mean_esf = blur.esf(s)
+    mean_esf, mean_lsf = blur.esf_and_lsf(s)
     departure = pixels.value - start.dark - height * mean_esf
     variance_dark, variance_bright = side_variances(departure * np.sqrt(outlier), mean_esf)
     floor = (_NOISE_FLOOR * height) ** 2
-    clipped = np.clip(mean_esf, 0.0, 1.0)
-    relative = (variance_dark + floor) * (1 - clipped) + (variance_bright + floor) * clipped
     scale = 0.5 * (variance_dark + variance_bright) + floor
-    weight = outlier * (scale / relative)
+    relative = (variance_dark + floor + (variance_bright - variance_dark) * mean_esf) / scale
+
     # Regressors beside the spline: the tail beyond the support, and the turn of the line.
     beyond = lsf_prior.tail_esf(u) - lsf_prior.tail_esf(np.clip(u, -HALF_SUPPORT, HALF_SUPPORT))
-    turn = height * t * blur.lsf(s)
-    sums = accumulate(u, departure, weight, np.stack([beyond, turn]))
-
+    columns = np.stack([beyond, height * t * mean_lsf])
+    cell, basis = edge_weights(u)
     directions = lsf_prior.directions(blur)
-    # Coefficients: dark level, the LSF's directions, turn. The dark level lifts every ESF
-    # coefficient alike, because the B-splines sum to one.
-    m = directions.block.size + 2
-    esf = np.zeros((CELLS + 3, m))
-    esf[:, 0] = 1.0
-    esf[:, 1:-1] = directions.esf
-    beside = np.zeros((2, m))
-    beside[0, -2] = 1.0
-    beside[1, -1] = 1.0
-    across = esf.T @ sums.cross @ beside
-    gram = esf.T @ sums.gram @ esf + across + across.T + beside.T @ sums.extra @ beside
-    projection = esf.T @ sums.spline_data + beside.T @ sums.extra_data
-    posterior = regress(
-        gram, projection, sums.data, sums.count, _prior(start, directions), scale, inflation, earlier
-    )
+    design = _design(directions)
+    normal = accumulate(cell, basis, departure, outlier / relative, columns).combined(design)
+    posterior = regress(normal, _prior(start, directions), scale, inflation, earlier)
 
-    beta = posterior.beta
-    residual = (
-        departure - combine(*edge_weights(u), esf @ beta) - beta[-2] * beyond - beta[-1] * turn
-    )
-    noise = np.sqrt(posterior.variance * relative / scale)
+    coefficients = design @ posterior.beta
+    fitted = combine(cell, basis, coefficients[: CELLS + 3]) + coefficients[CELLS + 3 :] @ columns
+    noise = np.sqrt(posterior.variance * relative)
+    side_noise = np.sqrt(posterior.variance / scale * np.array([variance_dark, variance_bright]))
     return _Solution(
-        posterior, directions, residual, noise,
-        (math.sqrt(posterior.variance * variance_dark / scale),
-         math.sqrt(posterior.variance * variance_bright / scale)),
-        float(beta[-1]), float(np.linalg.norm(posterior.factor[-1])), float(np.max(np.abs(t))),
+        posterior, directions, departure - fitted, noise,
+        (float(side_noise[0]), float(side_noise[1])),
+        float(posterior.beta[-1]), float(np.linalg.norm(posterior.factor[-1])),
+        float(np.max(np.abs(t))),
     )  # fmt: skip
+
+
+def _design(directions: lsf_prior.Directions) -> Floats:
+    """What every coefficient (dark, the LSF's directions, turn) does to spline, tail and turn.
+
+    The dark level lifts every ESF coefficient alike, because the B-splines sum to one; the tail
+    is the last direction, within the support and beyond.
+    """
+    design = np.zeros((CELLS + 5, directions.block.size + 2))
+    design[: CELLS + 3, 0] = 1.0
+    design[: CELLS + 3, 1:-1] = directions.esf
+    design[CELLS + 3, -2] = 1.0
+    design[CELLS + 4, -1] = 1.0
+    return design
 
 
 def _prior(start: BlurredEdge, directions: lsf_prior.Directions) -> Prior:

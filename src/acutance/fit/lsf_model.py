@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,9 +25,10 @@ from acutance.fit.spline import (
 
 __all__ = ["LsfModel"]
 
-_FREQ_CPP: Floats = np.arange(101) * 0.01
+_FREQ_CPP: Floats = np.asarray(np.arange(101) * 0.01)
 _STEP_PX = 0.05
 _MIN_HALF_PX = 10.0
+_Linear = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ class LsfModel:
 
     def half_point(self) -> float:
         """Normal distance of the 50 % point."""
-        s: Floats = np.arange(-40, 41) * (0.05 * self.blur.width_px)
+        s = np.asarray(np.arange(-40, 41) * (0.05 * self.blur.width_px))
         value = self.esf(s)
         steep = int(np.argmax(np.diff(value)))
         return crossing(s, value, 0.5, float(s[max(steep - 8, 0)]))
@@ -80,9 +80,8 @@ class LsfModel:
     def response(self, middle: float) -> Response:
         """The curves on their grids, 0 at `middle`."""
         half = math.ceil(max(_MIN_HALF_PX, HALF_SUPPORT * self.blur.width_px) / _STEP_PX)
-        distance: Floats = np.arange(-half, half + 1) * _STEP_PX
-        esf, esf_design = self._esf(distance + middle)
-        lsf, lsf_design = self._lsf(distance + middle)
+        distance = np.asarray(np.arange(-half, half + 1) * _STEP_PX)
+        (esf, esf_design), (lsf, lsf_design) = self._esf_and_lsf(distance + middle)
         otf, otf_design = self._otf(_FREQ_CPP)
         return Response(
             Esf(distance, esf, esf_design, self.latent),
@@ -94,46 +93,43 @@ class LsfModel:
         """Standard deviation of the 50 % point of a `response` about it."""
         return response.esf(0.0).std / abs(response.lsf(0.0).value)
 
-    def _esf(self, s: Floats) -> tuple[Floats, Floats]:
-        """Normalised ESF and its design."""
-        u = s / self.blur.width_px
-        cell, weights = edge_weights(u)
-        tail = tail_esf(u)
-        value = self.level * self.blur.esf(s) + combine(cell, weights, self.spline)
-        value = (value + self.tail * tail) / self.height
-        design = spread(cell, weights / self.height, further=1)
-        design[:, -1] = tail / self.height
-        return value, self._normalised(design, value)
-
-    def _lsf(self, s: Floats) -> tuple[Floats, Floats]:
-        """Normalised LSF, per pixel, and its design."""
+    def _esf_and_lsf(self, s: Floats) -> tuple[_Linear, _Linear]:
+        """Normalised ESF, and LSF per pixel."""
         width = self.blur.width_px
         u = s / width
-        cell, weights = line_weights(u)
-        tail = tail_lsf(u) / width
-        value = self.level * self.blur.lsf(s) + combine(cell, weights, self.spline) / width
-        value = (value + self.tail * tail) / self.height
-        design = spread(cell, weights / (width * self.height), further=1)
-        design[:, -1] = tail / self.height
-        return value, self._normalised(design, value)
+        blurred_esf, blurred_lsf = self.blur.esf_and_lsf(s)
+        cell, weights = edge_weights(u)
+        esf = self._normalised(blurred_esf, cell, weights, tail_esf(u))
+        weights = line_weights(u)[1] / width
+        return esf, self._normalised(blurred_lsf, cell, weights, tail_lsf(u) / width)
+
+    def _normalised(
+        self, blurred: Floats, cell: NDArray[np.intp], weights: Floats, tail: Floats
+    ) -> _Linear:
+        height = self.height
+        value = self.level * blurred + combine(cell, weights, self.spline) + self.tail * tail
+        value /= height
+        design = spread(cell, weights / height, further=1)
+        design[:, -1] = tail / height
+        # What lifts the height lowers the curve.
+        design[:, -2:] -= (value / height)[:, None]
+        return value, design
 
     def _otf(self, freq_cpp: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Normalised OTF about the LSF's centroid, and its design."""
         freq = freq_cpp * self.blur.width_px
         about = self._turn_to_centroid(freq_cpp) / self.height
-        spline = transform(freq) * about[:, None]
-        tail = tail_otf(freq) * about
-        value = self.level * self.blur.otf(freq_cpp) * about + spline @ self.spline
-        value += self.tail * tail
-        return value, self._normalised(np.column_stack([spline, tail]), value)
+        design = transform(freq, further=1)
+        design[:, -1] = tail_otf(freq)
+        design *= about[:, None]
+        value = self.level * self.blur.otf(freq_cpp) * about
+        # A complex product of this size would wake the threads of BLAS: einsum does not.
+        value += np.einsum("ij,j->i", design, np.append(self.spline, self.tail))
+        design[:, -2:] -= (value / self.height)[:, None]
+        return value, design
 
     def _turn_to_centroid(self, freq_cpp: Floats) -> NDArray[np.complex128]:
         """What moving the origin to the LSF's centroid multiplies the OTF by."""
         shares = np.diff(self.spline[2 : 3 + SIZE])
         centroid = self.blur.width_px * float(shares @ CENTRES) / self.height
-        return np.exp(2j * np.pi * freq_cpp * centroid)
-
-    def _normalised(self, design: NDArray[Any], value: NDArray[Any]) -> NDArray[Any]:
-        """A design divided by the height: what lifts the height lowers the curve."""
-        design[:, -2:] -= (value / self.height)[:, None]
-        return design
+        return np.asarray(np.exp(2j * np.pi * freq_cpp * centroid))

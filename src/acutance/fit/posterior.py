@@ -16,6 +16,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from acutance.curves.grid import Floats
+from acutance.fit.normal import Normal
 
 __all__ = ["Evidence", "Posterior", "Prior", "Whitened", "evidence_of", "regress", "whiten"]
 
@@ -57,7 +58,7 @@ class Prior:
     @cached_property
     def members(self) -> Floats:
         """(m, k): 1 where a coefficient belongs to a block, else 0."""
-        return (self.block[:, None] == np.arange(self.log_amplitude.size)).astype(float)
+        return np.asarray(self.block[:, None] == np.arange(self.log_amplitude.size), float)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,10 +86,7 @@ class Posterior:
 
 
 def regress(
-    gram: Floats,
-    projection: Floats,
-    data: float,
-    count: int,
+    normal: Normal,
     prior: Prior,
     variance: float,
     inflation: float = 1.0,
@@ -98,14 +96,8 @@ def regress(
 
     Parameters
     ----------
-    gram : (m, m) array
-        A^T W A.
-    projection : (m,) array
-        A^T W y.
-    data : float
-        y^T W y.
-    count : int
-        Number of data.
+    normal : Normal
+        The data's normal equations in the m coefficients.
     prior : Prior
     variance : float
         First guess of the noise variance for unit weight.
@@ -118,13 +110,13 @@ def regress(
     variance = max(variance, floor)
     log_amplitude = prior.log_amplitude if earlier is None else earlier.log_amplitude
     for _ in range(_MAX_STEPS):
-        white = whiten(gram, projection, prior, log_amplitude, variance * inflation)
+        white = whiten(normal, prior, log_amplitude, variance * inflation)
         evidence = evidence_of(white, prior, log_amplitude)
         step = evidence.step()
         beta = white.sigma * white.mean
         freedom = float(beta.size - np.trace(white.covariance))
-        misfit = max(data - 2 * beta @ projection + beta @ gram @ beta, 0.0)
-        updated = max(misfit / max(count - freedom, 1.0), floor)
+        misfit = normal.data - 2 * beta @ normal.projection + beta @ normal.gram @ beta
+        updated = max(float(misfit) / max(normal.count - freedom, 1.0), floor)
         if abs(updated / variance - 1) < 0.01 and bool(np.all(np.abs(step) < 0.05)):
             break
         variance = updated
@@ -154,19 +146,17 @@ class Whitened:
     root: Floats
 
 
-def whiten(
-    gram: Floats, projection: Floats, prior: Prior, log_amplitude: Floats, noise: float
-) -> Whitened:
+def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Whitened:
     """Posterior mean and covariance at given amplitudes and noise variance, by one Cholesky."""
     sigma = prior.height * prior.scale * np.exp(prior.members @ log_amplitude)
-    precision = gram * (sigma[:, None] * (sigma / noise))
+    precision = normal.gram * (sigma[:, None] * (sigma / noise))
     precision.reshape(-1)[:: sigma.size + 1] += 1.0
     # The transpose is laid out as Fortran wants it: nothing is copied.
     lower, _ = _potrf(precision.T, lower=1, clean=1, overwrite_a=1)
     inverse, _ = _trtri(lower, lower=1, overwrite_c=1)
     root = inverse.T
     covariance = root @ inverse
-    mean = covariance @ (sigma * projection / noise + prior.mean / sigma)
+    mean = covariance @ (sigma * normal.projection / noise + prior.mean / sigma)
     return Whitened(sigma, mean, covariance, root)
 
 

@@ -42,7 +42,7 @@ CELLS: Final = 80
 CELL: Final = 2 * HALF_SUPPORT / CELLS
 SIZE: Final = CELLS - 2
 """Number of LSF coefficients; the ESF has CELLS + 3."""
-CENTRES: Final[Floats] = -HALF_SUPPORT + CELL * (np.arange(SIZE) + 1.5)
+CENTRES: Final[Floats] = np.asarray(-HALF_SUPPORT + CELL * (np.arange(SIZE) + 1.5))
 """Where the quadratic B-splines are centred, (SIZE,)."""
 
 
@@ -123,8 +123,8 @@ def quasi_interpolant(values: Floats) -> Floats:
     return coefficients
 
 
-def transform(freq: Floats) -> NDArray[np.complex128]:
-    """Fourier transform of the LSF by ESF coefficients, (n, CELLS + 3).
+def transform(freq: Floats, further: int = 0) -> NDArray[np.complex128]:
+    """Fourier transform of the LSF by ESF coefficients, (n, CELLS + 3 + further).
 
     The OTF is ``transform(freq) @ e`` where e starts with zeros and ends level, as an ESF does.
 
@@ -132,9 +132,11 @@ def transform(freq: Floats) -> NDArray[np.complex128]:
     ----------
     freq : (n,) array
         A regular grid of frequencies from 0, in cycles per width.
+    further : int, optional
+        Number of columns to leave room for.
     """
     n = freq.size
-    columns = np.zeros((n, CELLS + 3), complex)
+    columns = np.zeros((n, CELLS + 3 + further), complex)
     # Doubling: frequencies m .. 2m - 1 are the first m, turned by m steps.
     turns = columns[:, 3 : 3 + SIZE]
     step = np.exp(-2j * np.pi * freq[1] * CENTRES)
@@ -144,9 +146,9 @@ def transform(freq: Floats) -> NDArray[np.complex128]:
         more = min(done, n - done)
         np.multiply(turns[:more], turns[done - 1] * step, out=turns[done : done + more])
         done += more
-    # Coefficient e_m lifts the LSF's c_(m - 3) and lowers c_(m - 2), one cell further on.
-    further = 1 - np.exp(-2j * np.pi * freq * CELL)
-    further = np.sinc(freq * CELL) ** 3 * np.stack([further, np.ones(n)])
-    turns[:, :-1] *= further[0][:, None]
-    turns[:, -1] *= further[1]
+    # Coefficient e_m lifts the LSF's c_(m - 3) and lowers c_(m - 2), one cell further on; the
+    # last one only lifts.
+    smooth = np.sinc(freq * CELL) ** 3
+    turns[:, :-1] *= (smooth * (1 - np.exp(-2j * np.pi * freq * CELL)))[:, None]
+    turns[:, -1] *= smooth
     return columns

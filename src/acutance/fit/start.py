@@ -151,7 +151,7 @@ def _bounded_solution(gram: Floats, gradient: Floats, low: Floats, high: Floats)
         step[held] = np.clip(step[held], low[held], high[held])
         rest = gradient[free] - gram[np.ix_(free, held)] @ step[held]
         step[free] = np.linalg.solve(gram[np.ix_(free, free)], rest)
-    return step
+    return np.asarray(step, float)
 
 
 def _linearise(
