@@ -2,6 +2,7 @@
 
 from acutance.simulate.edge import Truth, edge, render_edge
 from acutance.simulate.noise import Noise
+from acutance.simulate.pulse import PulseTruth, pulse, render_pulse
 from acutance.simulate.resample import Regrid, resample
 from acutance.simulate.scene import Patch, Strip, render_patches, render_strip, texture
 from acutance.simulate.site import Scene, SceneEdge, checkerboard, site
@@ -10,6 +11,7 @@ from acutance.simulate.systems import reference_systems
 __all__ = [
     "Noise",
     "Patch",
+    "PulseTruth",
     "Regrid",
     "Scene",
     "SceneEdge",
@@ -17,9 +19,11 @@ __all__ = [
     "Truth",
     "checkerboard",
     "edge",
+    "pulse",
     "reference_systems",
     "render_edge",
     "render_patches",
+    "render_pulse",
     "render_strip",
     "resample",
     "site",

@@ -13,10 +13,10 @@ from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.fit.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg
-from acutance.simulate.noise import Noise
-from acutance.simulate.resample import Regrid
+from acutance.simulate.noise import Noise, noise_of_snr
+from acutance.simulate.resample import Regrid, render_regridded
 
-__all__ = ["Polarity", "Truth", "edge", "render_edge"]
+__all__ = ["Polarity", "Truth", "edge", "line_through_centre", "render_edge"]
 
 Polarity = Literal["rising", "falling"]
 
@@ -154,11 +154,6 @@ def edge(
     ModelError
         If the arguments contradict each other.
     """
-    if not abs(angle_deg) <= 45:
-        raise ModelError(
-            f"the edge is tilted by {angle_deg:g} deg against the nearer axis, which cannot "
-            'exceed 45: use the other orientation ("across" or "along")'
-        )
     if polarity not in ("rising", "falling"):
         raise ModelError(f'polarity is {polarity!r}, it has to be "rising" or "falling"')
     if not dark < bright:
@@ -166,41 +161,44 @@ def edge(
             f"dark is {dark:g} and bright {bright:g}: dark has to be lower; "
             'polarity="falling" turns the edge round'
         )
-    line = _line_through_centre(shape, angle_deg, orientation, polarity).moved(offset_px, 0.0)
-    added = _noise(bright - dark, snr, noise)
+    line = line_through_centre(shape, angle_deg, orientation, polarity).moved(offset_px, 0.0)
+    added = noise_of_snr(bright - dark, snr, noise)
     if regrid is None:
         system, image = sensor, render_edge(sensor, line, shape, dark, bright)
         image = image if added is None else added.added_to(image, rng)
     else:
         system = regrid.system(sensor)
-        image = _render_resampled(sensor, regrid, line, shape, (dark, bright), added, rng)
+        image = render_regridded(
+            sensor,
+            regrid,
+            line,
+            shape,
+            lambda source, wide: render_edge(sensor, source, wide, dark, bright),
+            added,
+            rng,
+        )
     response = system.response_along(line.normal_deg)
     return image, Truth(response, line, dark, bright, added, regrid)
 
 
-def _render_resampled(
-    sensor: Sensor,
-    regrid: Regrid,
-    line: Line,
+def line_through_centre(
     shape: tuple[int, int],
-    levels: tuple[float, float],
-    noise: Noise | None,
-    rng: np.random.Generator | None,
-) -> Floats:
-    """The edge rendered with a margin, made noisy, and interpolated onto the new grid."""
-    half_new_px = regrid.system(sensor).profile(line.normal_deg).half_px * regrid.scale
-    moved_px = half_new_px - sensor.profile(line.normal_deg).half_px
-    source = regrid.source_line(line, shape, moved_px)
-    margin = regrid.margin_px(shape)
-    source = Line(source.row + margin, source.col + margin, source.normal_deg)
-    wide = (shape[0] + 2 * margin, shape[1] + 2 * margin)
-    image = render_edge(sensor, source, wide, *levels)
-    return regrid.apply(image if noise is None else noise.added_to(image, rng), shape, margin)
-
-
-def _line_through_centre(
-    shape: tuple[int, int], angle_deg: float, orientation: Orientation, polarity: Polarity
+    angle_deg: float,
+    orientation: Orientation,
+    polarity: Polarity = "rising",
 ) -> Line:
+    """The line of a target through the middle of an image of the given shape.
+
+    Raises
+    ------
+    ModelError
+        If the tilt exceeds 45 degrees or the orientation is none.
+    """
+    if not abs(angle_deg) <= 45:
+        raise ModelError(
+            f"the edge is tilted by {angle_deg:g} deg against the nearer axis, which cannot "
+            'exceed 45: use the other orientation ("across" or "along")'
+        )
     normal = normal_direction_deg(angle_deg, orientation) + (180.0 if polarity == "falling" else 0)
     along = shape[0] if orientation == "across" else shape[1]
     return Line(
@@ -209,13 +207,3 @@ def _line_through_centre(
         normal_deg=180.0 - (180.0 - normal) % 360.0,
         length_px=along / math.cos(math.radians(angle_deg)),
     )
-
-
-def _noise(contrast: float, snr: float | None, noise: Noise | None) -> Noise | None:
-    if snr is None:
-        return noise
-    if noise is not None:
-        raise ModelError("snr and noise were both given: the noise already says how strong it is")
-    if not snr > 0:
-        raise ModelError(f"snr is {snr:g}, it has to be above 0")
-    return Noise(read=contrast / snr)

@@ -10,7 +10,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.optics.block import require
 
-__all__ = ["Noise"]
+__all__ = ["Noise", "noise_of_snr"]
 
 
 @dataclass(frozen=True)
@@ -60,3 +60,20 @@ class Noise:
         if self.quantum > 0:
             noisy = np.round(noisy / self.quantum) * self.quantum
         return np.array(noisy)
+
+
+def noise_of_snr(contrast: float, snr: float | None, noise: Noise | None) -> Noise | None:
+    """The noise a target was asked to have: white noise of a given SNR, or a full description.
+
+    Raises
+    ------
+    ModelError
+        If both are given, or the SNR is not above 0.
+    """
+    if snr is None:
+        return noise
+    if noise is not None:
+        raise ModelError("snr and noise were both given: the noise already says how strong it is")
+    if not snr > 0:
+        raise ModelError(f"snr is {snr:g}, it has to be above 0")
+    return Noise(read=abs(contrast) / snr)

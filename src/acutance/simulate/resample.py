@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,8 +15,9 @@ from acutance.fit.line import Line
 from acutance.optics import Resampling, Rescaled, Sensor, Shift
 from acutance.optics.block import require
 from acutance.optics.processing import KERNEL_REACH_PX, Interpolation, interpolation_weight
+from acutance.simulate.noise import Noise
 
-__all__ = ["Regrid", "resample"]
+__all__ = ["Regrid", "render_regridded", "resample"]
 
 
 def resample(
@@ -130,3 +132,38 @@ class Regrid:
         row = self.scale * rows + 0.5 * (shape[0] - 1) + self.shift_row_px + margin_px
         col = self.scale * cols + 0.5 * (shape[1] - 1) + self.shift_col_px + margin_px
         return resample(image, row[:, None], col[None, :], kernel=self.kernel, a=self.a)
+
+
+def render_regridded(
+    sensor: Sensor,
+    regrid: Regrid,
+    line: Line,
+    shape: tuple[int, int],
+    render: Callable[[Line, tuple[int, int]], Floats],
+    noise: Noise | None,
+    rng: np.random.Generator | None,
+) -> Floats:
+    """A straight target rendered with a margin, made noisy, and interpolated onto a new grid.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Before the resampling.
+    regrid : Regrid
+    line : Line
+        The target's line in the new image.
+    shape : (rows, cols)
+        Of the new image.
+    render : function of (line, shape)
+        Draws the target, without noise, in old pixels.
+    noise : Noise or None
+        Added before the resampling.
+    rng : numpy.random.Generator or None
+    """
+    half_new_px = regrid.system(sensor).profile(line.normal_deg).half_px * regrid.scale
+    moved_px = half_new_px - sensor.profile(line.normal_deg).half_px
+    source = regrid.source_line(line, shape, moved_px)
+    margin = regrid.margin_px(shape)
+    source = Line(source.row + margin, source.col + margin, source.normal_deg)
+    image = render(source, (shape[0] + 2 * margin, shape[1] + 2 * margin))
+    return regrid.apply(image if noise is None else noise.added_to(image, rng), shape, margin)
