@@ -116,7 +116,7 @@ def exact_tables(processes: int) -> list[str]:
         "## Without noise, 60 x 60 px: largest absolute error",
         f"Over {len(ANGLES_DEG)} angles, both orientations, both polarities ({shapes} images a "
         "row); dM over 0 to Nyquist.",
-        table(["method", "system", *errors], by_system),
+        table(["method", "system", *errors], by_system, texts=2),
         "The same by angle, over all systems:",
         table(["method", "angle / deg", *errors], by_angle),
     ]
@@ -127,7 +127,7 @@ def largest(results: list) -> list[str]:
     measured = np.array([result for result in results if not isinstance(result, str)])
     if measured.size == 0:
         return ["refused"] * 3
-    return [f"{value:.5f}" for value in measured.max(axis=0)]
+    return [f"{value:.5f}" if np.isfinite(value) else "undefined" for value in measured.max(axis=0)]
 
 
 def noisy_tables(arguments: argparse.Namespace) -> list[str]:

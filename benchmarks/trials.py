@@ -99,9 +99,9 @@ def work_through(
     return results
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A Markdown table; the first column is text, the others are numbers."""
-    lines = [head, ["---", *["---:"] * (len(head) - 1)], *rows]
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], texts: int = 1) -> str:
+    """A Markdown table; the first `texts` columns are text, the others are numbers."""
+    lines = [head, ["---"] * texts + ["---:"] * (len(head) - texts), *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
@@ -110,7 +110,11 @@ def publish(title: str, parts: Sequence[str], arguments: argparse.Namespace) -> 
     print("\n\n".join(parts))
     if arguments.out is None:
         return
-    given = [f"--{name} {value}" for name, value in vars(arguments).items() if name != "out"]
+    given = [
+        f"--{name.replace('_', '-')} {value}"
+        for name, value in vars(arguments).items()
+        if name != "out"
+    ]
     how = (
         f"`python benchmarks/{Path(sys.argv[0]).name} {' '.join(given)}`, "
         f"acutance {ac.__version__}, {datetime.now(UTC):%Y-%m-%d}, 2 cores."
