@@ -69,17 +69,23 @@ def random_edges(draws, *, seed, size_px, snr, angle_deg, systems, **options):
 
 
 @pytest.mark.parametrize(
-    ("size_px", "snr", "bar"), [(20, 100, 0.0083), (40, 100, 0.0060), (100, 100, 0.0038)]
+    ("size_px", "snr", "bar"),
+    [(20, 100, 0.0083), (40, 100, 0.0060), (100, 100, 0.0038), (40, 50, 0.0105)],
 )
-def test_rms_error_at_nyquist_stays_below_the_bar(size_px, snr, bar):
+def test_rms_error_at_nyquist_stays_by_the_bar(size_px, snr, bar):
+    draws = 150
     error = [
         ac.measure_edge(image).mtf_nyquist.value - truth.mtf_nyquist.value
         for image, truth in random_edges(
-            100, seed=2, size_px=(size_px, size_px), snr=(snr, snr), angle_deg=(5, 20),
+            draws, seed=2, size_px=(size_px, size_px), snr=(snr, snr), angle_deg=(5, 20),
             systems=[SYSTEMS["gaussian"]],
         )
     ]  # fmt: skip
-    assert np.sqrt(np.mean(np.square(error))) < bar
+    # The RMS of so few draws scatters by 1 / sqrt(2 n): two of that are allowed for. A spline
+    # without its prior has .0087 to .0109 at 40 px and SNR 100.
+    allowed = bar * (1 + 2 / math.sqrt(2 * draws))
+    assert np.sqrt(np.mean(np.square(error))) < allowed
+    assert abs(np.mean(error)) < 3 * bar / math.sqrt(draws)
 
 
 @pytest.fixture(scope="module")
