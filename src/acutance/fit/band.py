@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from acutance.curves import Response
 from acutance.curves.grid import Floats
+from acutance.fit.blur import Blur
 from acutance.fit.line import Line
 
 __all__ = ["EdgeBand", "EdgeFit"]
@@ -27,6 +28,9 @@ class EdgeBand:
         Standard deviation of the Gaussian that fits the blur of the edge, in pixels.
     noise : float
         Standard deviation of the noise about the edge model, in the image's units.
+    blur : Blur, optional
+        The plain blur fitted to the edge, with line and levels to match; without it the
+        reference method fits its own.
     """
 
     image: Floats
@@ -35,6 +39,7 @@ class EdgeBand:
     bright: float
     width_px: float
     noise: float
+    blur: Blur | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,13 +12,20 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.fit import prior as lsf_prior
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.fit.blur import Blur
 from acutance.fit.lsf_model import LsfModel
-from acutance.fit.noise import Correlation, correlation, huber_weights, side_variances
+from acutance.fit.noise import (
+    Correlation,
+    correlation,
+    outlier_weights,
+    robust_scale,
+    side_variances,
+)
 from acutance.fit.normal import accumulate
 from acutance.fit.posterior import Posterior, Prior, regress
 from acutance.fit.spline import CELLS, HALF_SUPPORT, combine, edge_weights
@@ -80,10 +87,7 @@ def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
     """
     rows, cols = np.nonzero(np.isfinite(band.image))
     pixels = _Pixels(rows.astype(float), cols.astype(float), band.image[rows, cols])
-    start = fit_blurred_edge(
-        pixels.row, pixels.col, pixels.value, band.line,
-        dark=band.dark, bright=band.bright, sigma_px=band.width_px, noise=band.noise,
-    )  # fmt: skip
+    start = _start(band, pixels)
     outlier = np.ones(pixels.value.size)
     spread_of_noise = Correlation(1.0, 0.0, 0.0)
     earlier: Posterior | None = None
@@ -92,7 +96,7 @@ def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
         moved = abs(solved.turn_rad) * solved.half_length_px
         standard = solved.residual / solved.noise
         heavy = robust and bool(np.any(np.abs(standard) > 4.0))
-        again = huber_weights(solved.residual, solved.noise) if heavy else outlier
+        again = _reweighted(standard, solved.transition) if heavy else outlier
         whiteness = correlation(np.clip(standard, -4, 4), rows, cols, start.line.normal)
         settled = (
             moved < _SETTLED_PX
@@ -106,6 +110,16 @@ def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
     return _finish(band, pixels, start, solved, spread_of_noise, outlier)
 
 
+def _start(band: EdgeBand, pixels: _Pixels) -> BlurredEdge:
+    """The plain blurred edge the linear model departs from."""
+    if band.blur is not None:
+        return BlurredEdge(band.line, band.blur, band.dark, band.bright - band.dark, band.noise)
+    return fit_blurred_edge(
+        pixels.row, pixels.col, pixels.value, band.line,
+        dark=band.dark, bright=band.bright, sigma_px=band.width_px, noise=band.noise,
+    )  # fmt: skip
+
+
 @dataclass(frozen=True, eq=False)
 class _Solution:
     """One pass of the linear model at a fixed line."""
@@ -114,6 +128,7 @@ class _Solution:
     directions: lsf_prior.Directions
     residual: Floats
     noise: Floats
+    transition: NDArray[np.bool_]
     side_noise: tuple[float, float]
     turn_rad: float
     turn_std_rad: float
@@ -147,6 +162,8 @@ def _solve(
     directions = lsf_prior.directions(blur)
     design = _design(directions)
     normal = accumulate(cell, basis, departure, outlier / relative, columns).combined(design)
+    # What an outlier does not weigh, it does not count.
+    normal = replace(normal, count=float(np.sum(outlier)))
     posterior = regress(normal, _prior(start, directions), scale, inflation, earlier)
 
     coefficients = design @ posterior.beta
@@ -154,11 +171,21 @@ def _solve(
     noise = np.sqrt(posterior.variance * relative)
     side_noise = np.sqrt(posterior.variance / scale * np.array([variance_dark, variance_bright]))
     return _Solution(
-        posterior, directions, departure - fitted, noise,
+        posterior, directions, departure - fitted, noise, np.abs(u) < 1.0,
         (float(side_noise[0]), float(side_noise[1])),
         float(posterior.beta[-1]), float(np.linalg.norm(posterior.factor[-1])),
         float(np.max(np.abs(t))),
     )  # fmt: skip
+
+
+def _reweighted(standard: Floats, transition: NDArray[np.bool_]) -> Floats:
+    """Weights of the pixels by their standardised residuals.
+
+    An outlier stands out from pixels like itself. Where many depart together, as in the
+    transition when the model does not yet follow the edge, nobody is one.
+    """
+    bulk = [robust_scale(standard[place]) for place in (transition, ~transition) if place.any()]
+    return outlier_weights(standard / min(max(bulk), 1.0))
 
 
 def _design(directions: lsf_prior.Directions) -> Floats:

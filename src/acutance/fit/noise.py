@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 
-__all__ = ["Correlation", "correlation", "huber_weights", "side_variances"]
+__all__ = ["Correlation", "correlation", "outlier_weights", "robust_scale", "side_variances"]
 
-_HUBER = 3.0
+_HARMLESS = 3.0
+_UNHEARD_OF = 4.5
 _LAGS = 2
 # Lags as rows down and columns to the right; the opposite ones say the same.
 _NEAREST = ((0, 1), (1, 0))
@@ -30,20 +31,40 @@ def side_variances(residual: Floats, esf: Floats) -> tuple[float, float]:
     residual, esf : (n,) arrays
         Residuals of a fit, and the fitted edge response (0 dark .. 1 bright), of the same pixels.
     """
-    dark, bright = residual[esf < 0.05], residual[esf > 0.95]
-    pooled = float(np.mean(residual**2))
-    variances = [float(np.mean(side**2)) if side.size >= 20 else pooled for side in (dark, bright)]
-    return variances[0], variances[1]
+    sides = (residual[esf < 0.05], residual[esf > 0.95])
+    dark, bright = (
+        _variance(side) if side.size >= _MIN_PAIRS else _variance(residual) for side in sides
+    )
+    return dark, bright
 
 
-def huber_weights(residual: Floats, scale: Floats | float) -> Floats:
-    """Weights that bound the pull of outliers: 1 within 3 standard deviations, then falling.
+def _variance(residual: Floats) -> float:
+    """Mean square, without what lies beyond reach of Gaussian noise."""
+    squares = residual**2
+    mean = float(np.mean(squares))
+    if float(squares.max()) < 16 * mean:
+        return mean
+    usual = squares[squares <= (_UNHEARD_OF * robust_scale(residual)) ** 2]
+    return float(np.mean(usual)) if usual.size else mean
 
-    At 3 standard deviations Gaussian noise loses next to nothing (Huber 1964,
-    doi:10.1214/aoms/1177703732).
+
+def robust_scale(residual: Floats) -> float:
+    """Standard deviation of the bulk of the residuals, by their median modulus."""
+    return 1.4826 * float(np.median(np.abs(residual)))
+
+
+def outlier_weights(standard: Floats) -> Floats:
+    """Weights that take outliers out: 1 within 3 standard deviations, then falling.
+
+    They fall with the fourth power, so that an outlier's share of the mean square vanishes with
+    its pull. At 3 standard deviations Gaussian noise loses next to nothing.
+
+    Parameters
+    ----------
+    standard : (n,) array
+        Residuals in units of their standard deviation.
     """
-    ratio = np.abs(residual) / scale
-    return np.where(ratio > _HUBER, _HUBER / np.maximum(ratio, _HUBER), 1.0)
+    return np.asarray((_HARMLESS / np.maximum(np.abs(standard), _HARMLESS)) ** 4)
 
 
 @dataclass(frozen=True)

@@ -25,14 +25,14 @@ class Normal:
         Sum of w a y.
     data : float
         Sum of w y^2.
-    count : int
+    count : float
         Number of pixels.
     """
 
     gram: Floats
     projection: Floats
     data: float
-    count: int
+    count: float
 
     def combined(self, directions: Floats) -> Normal:
         """The equations of r coefficients beta, where the m + q are ``directions @ beta``."""

@@ -115,7 +115,7 @@ def _gauss_newton(
         gram = jacobian @ jacobian.T
         gradient = jacobian @ residual + penalty * (_EXPECTED - p)
         diagonal = gram.diagonal() + penalty
-        gram.reshape(-1)[::8] = diagonal * (1 + damping) + 1e-13 * diagonal.sum()
+        gram.reshape(-1)[::8] = np.where(diagonal > 0, diagonal * (1 + damping), 1.0)
         longest = np.array([*[np.inf] * 4, p[4], _APERTURE_STEP_PX, 1.0])
         step = _bounded_solution(
             gram,

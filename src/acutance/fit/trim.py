@@ -29,6 +29,7 @@ _NEAR_TOLERANCE = 0.3
 _SIGNIFICANCE = 4.0
 _MAX_HALF_WIDTH_PX = 40.0
 _FIRST_REACH_PX = 7.0
+_REACH_WIDTHS = 2.5
 
 
 @dataclass(frozen=True)
@@ -80,8 +81,8 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
     t = edge.line.tangent_distance(row, col)
     strange = _strange(image, rows, cols, value, s, t, edge, segment)
     need = 1.5 * edge.blur.width_px + 1.5
-    first, bins, dark_reach, bright_reach = _reaches(s, t, strange, need, edge.blur.width_px)
     whole = not strange.any()
+    first, bins, dark_reach, bright_reach = _reaches(s, t, strange, need, edge.blur.width_px)
     start, stop = _best_run(np.minimum(dark_reach, bright_reach), need)
     length = stop - start
     if length < _MIN_ROWS:
@@ -96,8 +97,9 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
         inside = (bins >= start) & (bins < stop)
         clear = np.where(s > 0, s < bright_reach[bins], -s < dark_reach[bins])
         mask[rows, cols] = inside & clear
+    tenth = length // 10
     dark_px, bright_px = (
-        float(np.quantile(reach[start:stop], 0.1)) for reach in (dark_reach, bright_reach)
+        float(np.sort(reach[start:stop])[tenth]) for reach in (dark_reach, bright_reach)
     )
     middle = first + 0.5 * (start + stop)
     x, y = edge.line.normal
@@ -108,34 +110,39 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
     _require_contrast(edge, value[mask[rows, cols]], s[mask[rows, cols]])
     band = EdgeBand(
         np.where(mask, image, np.nan), line, edge.dark, edge.dark + edge.height,
-        edge.blur.sigma_px, edge.noise,
+        edge.blur.sigma_px, edge.noise, edge.blur,
     )  # fmt: skip
     return band, Extent(dark_px, bright_px, float(length), whole)
 
 
 def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> BlurredEdge:
-    """Fit the plain blurred edge to the pixels close to the segment."""
+    """Fit the plain blurred edge to the pixels close to the segment: closer for a sharper one."""
     s = segment.line.normal_distance(row, col)
     t = segment.line.tangent_distance(row, col)
     beside = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
-    near = beside & (np.abs(s) < _FIRST_REACH_PX)
-    side = 0.5 * _FIRST_REACH_PX
-    dark, bright = value[near & (s < -side)], value[near & (s > side)]
-    if min(dark.size, bright.size) < _MIN_ROWS:
-        raise SupportError(
-            f"the strongest edge has {dark.size} usable pixels on its dark and {bright.size} on "
-            f"its bright side within {_FIRST_REACH_PX:g} px: choose a region that reaches further "
-            "to both sides of the edge"
-        )
-    levels = float(np.median(dark)), float(np.median(bright))
-    if not levels[1] > levels[0]:
-        raise NoEdgeError(
-            f"the strongest edge separates levels of {levels[0]:.4g} and {levels[1]:.4g}, which is "
-            "a line and not a step: choose a region with one bright and one dark side"
-        )
-    edge = fit_blurred_edge(
-        row[near], col[near], value[near], segment.line, dark=levels[0], bright=levels[1]
-    )
+    reach, sigma_px = _FIRST_REACH_PX, 0.6
+    for _ in range(3):
+        near = beside & (np.abs(s) < reach)
+        dark, bright = value[near & (s < -0.5 * reach)], value[near & (s > 0.5 * reach)]
+        if min(dark.size, bright.size) < _MIN_ROWS:
+            raise SupportError(
+                f"the strongest edge has {dark.size} usable pixels on its dark and {bright.size} "
+                f"on its bright side between {0.5 * reach:.1f} and {reach:.1f} px from it: choose "
+                "a region that reaches further to both sides of the edge"
+            )
+        levels = float(np.median(dark)), float(np.median(bright))
+        if not levels[1] > levels[0]:
+            raise NoEdgeError(
+                f"the strongest edge separates levels of {levels[0]:.4g} and {levels[1]:.4g}, "
+                "which is a line and not a step: choose a region with one bright and one dark side"
+            )
+        edge = fit_blurred_edge(
+            row[near], col[near], value[near], segment.line,
+            dark=levels[0], bright=levels[1], sigma_px=sigma_px,
+        )  # fmt: skip
+        if edge.blur.width_px * _REACH_WIDTHS <= reach:
+            break
+        reach, sigma_px = 1.2 * _REACH_WIDTHS * edge.blur.width_px, edge.blur.sigma_px
     if edge.height < _MIN_SNR * edge.noise:
         raise NoEdgeError(
             f"the strongest edge has a height of {edge.height:.4g} in noise of {edge.noise:.3g}: "
@@ -207,6 +214,9 @@ def _reaches(
         last = np.zeros(count)
         np.maximum.at(last, bins[outside], outwards[outside])
         last = np.minimum(last + 0.5, _MAX_HALF_WIDTH_PX)
+        if not strange.any():
+            reaches.append(last)
+            continue
         stop = np.full(count, np.inf)
         wrong = strange & (outwards > -0.5)
         np.minimum.at(stop, bins[wrong], np.maximum(outwards[wrong] - 1.0, 0.0))
