@@ -1,0 +1,61 @@
+"""Write everything the pages include."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from acutance.report import save_figure
+from acutance.report.page import styled
+from textbook import benchmarks, edge_figures, method_figures, plane_figures, reference, tables
+
+__all__ = ["write_all"]
+
+FIGURES: dict[str, Callable[[], Figure]] = {
+    "pixel-grid": plane_figures.pixel_grid,
+    "metrics": plane_figures.metrics_on_curves,
+    "edge-curves": edge_figures.measured_beside_truth,
+    "tail-and-support": edge_figures.what_truncation_does,
+    "prior-directions": edge_figures.prior_directions,
+    "step-gains": method_figures.gains_of_steps,
+    "method-errors": method_figures.errors_of_methods,
+    "reference-systems": plane_figures.reference_systems,
+}
+
+TEXTS: dict[str, Callable[[], str]] = {
+    "closed-forms.inc": tables.closed_forms,
+    "slices.inc": tables.slices,
+    "phases.inc": tables.phases,
+    "phase-error.inc": tables.phase_error,
+    "row-distances.inc": tables.row_distances,
+    "checks.inc": tables.checks,
+    "methods.inc": tables.methods,
+    "blocks.inc": tables.blocks,
+    "systems.inc": tables.systems,
+    "sites.inc": tables.sites,
+    "top-names.inc": reference.top_names,
+    **reference.help_texts(),
+}
+
+
+def write_all(folder: Path) -> None:
+    """Write figures, tables, help texts, the API's pages and the benchmarks' pages."""
+    folder.mkdir(exist_ok=True)
+    for name, text in TEXTS.items():
+        _write(folder / name, text())
+    for name, text in reference.package_pages().items():
+        _write(folder / f"{name}.rst", text)
+    for name, text in benchmarks.pages(folder.parent / "benchmarks").items():
+        _write(folder / f"benchmark-{name}.rst", text)
+    for name, draw in FIGURES.items():
+        with styled():
+            figure = draw()
+        save_figure(figure, folder / f"{name}.svg")
+
+
+def _write(path: Path, text: str) -> None:
+    """Leave a file that says the same alone, so that unchanged pages are not built again."""
+    if not path.is_file() or path.read_text(encoding="utf-8") != text:
+        path.write_text(text, encoding="utf-8")

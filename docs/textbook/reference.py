@@ -1,0 +1,100 @@
+"""Pages of the API, and the commands' own help, from what the package says is public."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+
+import acutance
+from textbook.rst import heading, list_table
+
+__all__ = ["help_texts", "package_pages", "top_names"]
+
+PACKAGES = {
+    "curves": "Curves and the numbers read from them.",
+    "curves.metrics": "The metrics as functions of the curves.",
+    "optics": "OTF blocks and the sensor they make.",
+    "fit.edge": "The reference estimator.",
+    "raster": "Images, regions, geolocation, sites.",
+    "simulate": "Targets as a sensor sees them, with the truth.",
+    "measure": "From an image to a measurement.",
+    "measure.published": "The published edge methods.",
+    "report": "Text, figures, HTML, CSV and JSON.",
+}
+
+COMMANDS: dict[str, list[str]] = {
+    "acutance": [],
+    "edge": ["edge"],
+    "sites": ["sites"],
+    "simulate-edge": ["simulate", "edge"],
+    "demo": ["demo"],
+}
+
+
+def top_names() -> str:
+    """The names of ``import acutance as ac`` and where they are described."""
+    rows = []
+    for name in acutance.__all__:
+        found = getattr(acutance, name)
+        if name.startswith("__"):
+            continue
+        if inspect.ismodule(found):
+            link = f":doc:`acutance.{name} </generated/acutance.{name}>`"
+        elif name in acutance.errors.__all__:
+            continue
+        else:
+            link = f":py:obj:`{name} <{acutance._HOMES[name]}.{name}>`"
+        summary = (inspect.getdoc(found) or "").split("\n")[0]
+        rows.append([link, summary])
+    return list_table(["name", "what it is"], rows, (25, 75))
+
+
+def package_pages() -> dict[str, str]:
+    """A page for each package: its public names, each with a page of its own."""
+    pages = {}
+    for name, _ in PACKAGES.items():
+        module = importlib.import_module(f"acutance.{name}")
+        kinds: dict[str, list[str]] = {"Classes": [], "Functions": [], "Data": []}
+        for public in module.__all__:
+            found = getattr(module, public)
+            kind = "Classes" if inspect.isclass(found) else "Functions"
+            kinds[kind if hasattr(found, "__qualname__") else "Data"].append(public)
+        summary = (inspect.getdoc(module) or "").strip()
+        text = [heading(f"acutance.{name}"), summary, "", f".. currentmodule:: acutance.{name}", ""]
+        for kind, names in kinds.items():
+            if kind == "Data" or not names:
+                continue
+            text += [
+                heading(kind, "-"),
+                ".. autosummary::",
+                "   :toctree: api",
+                "   :nosignatures:",
+            ]
+            text += ["", *(f"   {public}" for public in names), ""]
+        if kinds["Data"]:
+            listed = ", ".join(f"``{public}``" for public in kinds["Data"])
+            text += [heading("Data", "-"), listed, ""]
+        pages[f"acutance.{name}"] = "\n".join(text)
+    return pages
+
+
+def help_texts() -> dict[str, Callable[[], str]]:
+    """``help-NAME.inc`` for every command."""
+    return {f"help-{name}.inc": _help(arguments) for name, arguments in COMMANDS.items()}
+
+
+def _help(arguments: list[str]) -> Callable[[], str]:
+    def text() -> str:
+        code = "from acutance.cli.app import run; run()"
+        done = subprocess.run(
+            [sys.executable, "-c", code, *arguments, "--help"],
+            capture_output=True, text=True, check=True,
+            env={**os.environ, "COLUMNS": "88", "NO_COLOR": "1"},
+        )  # fmt: skip
+        return done.stdout
+
+    return text
