@@ -7,8 +7,10 @@ methods", 3.2 and 4.2; and what simulation shows of this estimator (documentatio
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import overload
 
 import numpy as np
 
@@ -20,7 +22,7 @@ from acutance.measure.cut import Cut
 from acutance.measure.measurement import Check
 from acutance.measure.options import EdgeLimits
 
-__all__ = ["check_edge", "edge_snr", "sample_phases"]
+__all__ = ["EdgeChecks", "sample_phases"]
 
 _FAR_WIDTHS = 2.0
 _OUTLIER_SIGMAS = 4.5
@@ -76,10 +78,9 @@ class _Evidence:
         return sum(stds) / len(stds) if stds else 0.0
 
 
-def check_edge(
-    cut: Cut, band: EdgeBand, extent: Extent, fit: EdgeFit, limits: EdgeLimits, *, by_rows: bool
-) -> tuple[Check, ...]:
-    """All target checks of an edge; the first gives its SNR (KOMPSAT-3 draft 3c).
+@dataclass(frozen=True, eq=False)
+class EdgeChecks(Sequence[Check]):
+    """All target checks of an edge, answered when somebody first asks.
 
     Parameters
     ----------
@@ -89,28 +90,54 @@ def check_edge(
     by_rows : bool
         Whether the method works row by row, which limits the angle.
     """
-    seen = _Evidence.of(band, fit)
-    return (
-        _contrast(seen, limits),
-        _uniformity(seen, limits, "dark"),
-        _uniformity(seen, limits, "bright"),
-        _angle(fit, limits, by_rows),
-        _phases(seen, limits),
-        _rows(extent, limits),
-        _straightness(seen, limits),
-        _plateau(extent, limits, "dark"),
-        _plateau(extent, limits, "bright"),
-        _saturation(cut, band, seen, limits),
-        _correlation(seen, limits),
-        _structure(seen, limits),
-        _outliers(seen, limits),
-    )
 
+    cut: Cut
+    band: EdgeBand
+    extent: Extent
+    fit: EdgeFit
+    limits: EdgeLimits
+    by_rows: bool
 
-def edge_snr(band: EdgeBand, fit: EdgeFit) -> float:
-    """SNR of an edge: contrast over the mean standard deviation of the plateaus (KOMPSAT-3, 3c)."""
-    std = _Evidence.of(band, fit).plateau_std
-    return 1 / std if std > 0 else math.inf
+    @cached_property
+    def _seen(self) -> _Evidence:
+        return _Evidence.of(self.band, self.fit)
+
+    @property
+    def snr(self) -> float:
+        """Contrast over the mean standard deviation of the plateaus (KOMPSAT-3 draft 3c)."""
+        std = self._seen.plateau_std
+        return 1 / std if std > 0 else math.inf
+
+    @cached_property
+    def _answers(self) -> tuple[Check, ...]:
+        seen, limits = self._seen, self.limits
+        return (
+            _contrast(seen, limits),
+            _uniformity(seen, limits, "dark"),
+            _uniformity(seen, limits, "bright"),
+            _angle(self.fit, limits, self.by_rows),
+            _phases(seen, limits),
+            _rows(self.extent, limits),
+            _straightness(seen, limits),
+            _plateau(self.extent, limits, "dark"),
+            _plateau(self.extent, limits, "bright"),
+            _saturation(self.cut, self.band, seen, limits),
+            _correlation(seen, limits),
+            _structure(seen, limits),
+            _outliers(seen, limits),
+        )
+
+    def __len__(self) -> int:
+        return len(self._answers)
+
+    @overload
+    def __getitem__(self, index: int) -> Check: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Check, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Check | tuple[Check, ...]:
+        return self._answers[index]
 
 
 def _at_least(name: str, value: float, limit: float, message: str) -> Check:

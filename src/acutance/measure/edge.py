@@ -15,7 +15,7 @@ from acutance.fit.edge import fit_edge
 from acutance.fit.line import Line
 from acutance.fit.locate import Segment, find_segments
 from acutance.fit.trim import Extent, trim
-from acutance.measure.checks import check_edge, edge_snr, sample_phases
+from acutance.measure.checks import EdgeChecks, sample_phases
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.measurement import Measurement, Samples
 from acutance.measure.options import EdgeOptions
@@ -166,8 +166,7 @@ def _measurement(
         pixels.pixels, np.isfinite(band.image), fit.distance_px, fit.value, fit.residual,
         fit.dark, fit.bright,
     )  # fmt: skip
-    checks = check_edge(pixels, band, extent, fit, options.limits, by_rows=method in PUBLISHED)
+    checks = EdgeChecks(pixels, band, extent, fit, options.limits, method in PUBLISHED)
     return Measurement(
-        "edge", method, line, response, samples, edge_snr(band, fit), checks, info,
-        options.to_dict(),
-    )  # fmt: skip
+        "edge", method, line, response, samples, checks.snr, checks, info, options.to_dict()
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
@@ -118,7 +118,7 @@ class Measurement:
     response: Response
     samples: Samples
     snr: float
-    checks: tuple[Check, ...] = ()
+    checks: Sequence[Check] = ()
     image: ImageInfo = ImageInfo()
     options: Mapping[str, Any] = field(default_factory=dict)
     measured_at: datetime = field(default_factory=lambda: datetime.now(UTC))

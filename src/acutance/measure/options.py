@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.curves.metrics import RerCentre
@@ -92,4 +92,10 @@ class EdgeOptions:
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""
-        return asdict(self)
+        chosen = self.method_options
+        return {
+            "rer_centre": self.rer_centre,
+            "robust": self.robust,
+            "limits": dict(vars(self.limits)),
+            "method_options": None if chosen is None else dict(vars(chosen)),
+        }
