@@ -15,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.fit import ground
 from acutance.fit import prior as lsf_prior
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.fit.blur import Blur
+from acutance.fit.ground import ground_trends, is_uneven
 from acutance.fit.lsf_model import LsfModel
 from acutance.fit.noise import (
     Correlation,
@@ -91,21 +93,25 @@ def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
     outlier = np.ones(pixels.value.size)
     spread_of_noise = Correlation(1.0, 0.0, 0.0)
     earlier: Posterior | None = None
+    uneven = False
     for _ in range(_MAX_PASSES):
-        solved = _solve(pixels, start, outlier, spread_of_noise.inflation, earlier)
+        solved = _solve(pixels, start, outlier, spread_of_noise.inflation, earlier, uneven)
         moved = abs(solved.turn_rad) * solved.half_length_px
         standard = solved.residual / solved.noise
         heavy = robust and bool(np.any(np.abs(standard) > 4.0))
         again = _reweighted(standard, solved.transition) if heavy else outlier
         whiteness = correlation(np.clip(standard, -4, 4), rows, cols, start.line.normal)
         settled = (
-            moved < _SETTLED_PX
+            (uneven or not solved.uneven)
+            and moved < _SETTLED_PX
             and np.max(np.abs(again - outlier)) < 0.05
             and abs(whiteness.inflation / spread_of_noise.inflation - 1) < 0.05
         )
         if settled:
             break
-        outlier, spread_of_noise, earlier = again, whiteness, solved.posterior
+        # With the trends there is one amplitude more: nothing earlier to start it from.
+        earlier = solved.posterior if uneven or not solved.uneven else None
+        outlier, spread_of_noise, uneven = again, whiteness, uneven or solved.uneven
         start = replace(start, line=start.line.moved(0.0, math.degrees(solved.turn_rad)))
     return _finish(band, pixels, start, solved, spread_of_noise, outlier)
 
@@ -133,6 +139,7 @@ class _Solution:
     turn_rad: float
     turn_std_rad: float
     half_length_px: float
+    uneven: bool
 
 
 def _solve(
@@ -141,6 +148,7 @@ def _solve(
     outlier: Floats,
     inflation: float,
     earlier: Posterior | None,
+    uneven: bool,
 ) -> _Solution:
     """Solve for the LSF's departures from the start, the levels and the line's direction."""
     line, blur, height = start.line, start.blur, start.height
@@ -157,24 +165,27 @@ def _solve(
 
     # Regressors beside the spline: the tail beyond the support, and the turn of the line.
     beyond = lsf_prior.tail_esf(u) - lsf_prior.tail_esf(np.clip(u, -HALF_SUPPORT, HALF_SUPPORT))
-    columns = np.stack([beyond, height * t * mean_lsf])
+    trends = height * ground_trends(s, t, mean_esf) if uneven else np.empty((0, s.size))
+    columns = np.vstack([beyond, height * t * mean_lsf, trends])
     cell, basis = edge_weights(u)
     directions = lsf_prior.directions(blur)
-    design = _design(directions)
+    design = _design(directions, len(trends))
     normal = accumulate(cell, basis, departure, outlier / relative, columns).combined(design)
     # What an outlier does not weigh, it does not count.
     normal = replace(normal, count=float(np.sum(outlier)))
-    posterior = regress(normal, _prior(start, directions), scale, inflation, earlier)
+    posterior = regress(normal, _prior(start, directions, len(trends)), scale, inflation, earlier)
 
     coefficients = design @ posterior.beta
     fitted = combine(cell, basis, coefficients[: CELLS + 3]) + coefficients[CELLS + 3 :] @ columns
     noise = np.sqrt(posterior.variance * relative)
+    standard = np.clip((departure - fitted) / noise, -4, 4)
+    turn = directions.block.size + 1
     side_noise = np.sqrt(posterior.variance / scale * np.array([variance_dark, variance_bright]))
     return _Solution(
         posterior, directions, departure - fitted, noise, np.abs(u) < 1.0,
         (float(side_noise[0]), float(side_noise[1])),
-        float(posterior.beta[-1]), float(np.linalg.norm(posterior.factor[-1])),
-        float(np.max(np.abs(t))),
+        float(posterior.beta[turn]), float(np.linalg.norm(posterior.factor[turn])),
+        float(np.max(np.abs(t))), is_uneven(standard, s, t, width),
     )  # fmt: skip
 
 
@@ -188,25 +199,31 @@ def _reweighted(standard: Floats, transition: NDArray[np.bool_]) -> Floats:
     return outlier_weights(standard / min(max(bulk), 1.0))
 
 
-def _design(directions: lsf_prior.Directions) -> Floats:
-    """What every coefficient (dark, the LSF's directions, turn) does to spline, tail and turn.
+def _design(directions: lsf_prior.Directions, trends: int) -> Floats:
+    """What every coefficient (dark, the LSF's directions, turn, trends) does to spline and columns.
 
     The dark level lifts every ESF coefficient alike, because the B-splines sum to one; the tail
     is the last direction, within the support and beyond.
     """
-    design = np.zeros((CELLS + 5, directions.block.size + 2))
+    last = directions.block.size
+    beside = 2 + trends
+    design = np.zeros((CELLS + 3 + beside, last + beside))
     design[: CELLS + 3, 0] = 1.0
-    design[: CELLS + 3, 1:-1] = directions.esf
-    design[CELLS + 3, -2] = 1.0
-    design[CELLS + 4, -1] = 1.0
+    design[: CELLS + 3, 1 : last + 1] = directions.esf
+    design[CELLS + 3 :, last:] = np.eye(beside)
     return design
 
 
-def _prior(start: BlurredEdge, directions: lsf_prior.Directions) -> Prior:
-    """The prior of all coefficients: dark, mean blur, processes, tail, turn."""
-    m = directions.block.size + 2
+def _prior(start: BlurredEdge, directions: lsf_prior.Directions, trends: int) -> Prior:
+    """The prior of all coefficients: dark, mean blur, processes, tail, turn, trends."""
+    last = directions.block.size
+    m = last + 2 + trends
     block = np.full(m, -1)
-    block[1:-1] = np.where(directions.block >= 2, directions.block - 2, -1)
+    block[1 : last + 1] = np.where(directions.block >= 2, directions.block - 2, -1)
+    log_amplitude = lsf_prior.LOG_AMPLITUDE
+    if trends:
+        block[last + 2 :] = log_amplitude.size
+        log_amplitude = np.append(log_amplitude, ground.LOG_AMPLITUDE)
     scale = np.ones(m)
     aperture, aperture_std = lsf_prior.APERTURE_PX
     mean = np.zeros(m)
@@ -214,7 +231,7 @@ def _prior(start: BlurredEdge, directions: lsf_prior.Directions) -> Prior:
     scale[where] = aperture_std
     mean[where] = (aperture - start.blur.aperture_px) * start.height
     return Prior(
-        block, scale, mean, lsf_prior.LOG_AMPLITUDE, lsf_prior.LOG_AMPLITUDE_STD,
+        block, scale, mean, log_amplitude, lsf_prior.LOG_AMPLITUDE_STD,
         start.height, _NOISE_FLOOR * start.height,
     )  # fmt: skip
 
@@ -253,7 +270,7 @@ def _finish(
 
 def _lsf_model(start: BlurredEdge, solved: _Solution) -> LsfModel:
     """The LSF the coefficients make: the tail has its own closed form beside the spline."""
-    inner = solved.directions.esf[:, :-1]
+    inner, tail = solved.directions.esf[:, :-1], solved.directions.block.size
     beta, factor = solved.posterior.beta, solved.posterior.factor
-    latent = np.vstack([inner @ factor[1:-2], factor[-2]])
-    return LsfModel(start.blur, start.height, inner @ beta[1:-2], float(beta[-2]), latent)
+    latent = np.vstack([inner @ factor[1:tail], factor[tail]])
+    return LsfModel(start.blur, start.height, inner @ beta[1:tail], float(beta[tail]), latent)
