@@ -107,6 +107,14 @@ def test_amplitudes_settle_where_the_evidence_is_highest(problem):
     assert 0 < found.freedom <= M
 
 
+def test_variance_is_the_misfit_per_degree_of_freedom(problem):
+    design, y, prior, normal = problem
+    found = regress(normal, prior, NOISE)
+    misfit = float(np.sum((y - design @ found.beta) ** 2))
+    assert found.freedom > 5
+    assert found.variance == pytest.approx(misfit / (N - found.freedom), rel=0.015)
+
+
 def test_the_first_guess_of_the_noise_does_not_matter(problem):
     _, _, prior, normal = problem
     small, large = (regress(normal, prior, NOISE * k) for k in (0.05, 20))
