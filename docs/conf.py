@@ -8,7 +8,7 @@ from pathlib import Path
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE))
 
-from textbook import build, mathml  # noqa: E402
+from textbook import build, crossref, mathml  # noqa: E402
 
 import acutance  # noqa: E402
 
@@ -61,7 +61,8 @@ html_show_sourcelink = False
 html_sidebars = {"**": ["about.html", "searchfield.html", "navigation.html"]}
 html_theme_options = {
     "description": "How sharp an Earth-observation satellite really sees",
-    "page_width": "1120px",
+    "page_width": "1180px",
+    "body_max_width": "920px",
     "sidebar_width": "230px",
     "fixed_sidebar": True,
     "font_family": "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', sans-serif",
@@ -74,4 +75,5 @@ html_theme_options = {
 
 def setup(app):
     mathml.setup(app)
+    crossref.setup(app)
     app.connect("config-inited", lambda app, config: build.write_all(HERE / "generated"))

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import acutance as ac
+from acutance import report
 from acutance.raster import parse_roi, write_geotiff
 
 # %%
@@ -51,4 +52,5 @@ for check in measurement.failed_checks:
     print(f"failed: {check.name} {check.value:.2f} {check.limit}: {check.message}")
 
 # %%
-# On the command line: ``acutance edge scene.tif --roi target.geojson``.
+# On the command line: ``acutance edge scene.tif --roi target.geojson --figure edge.png``.
+figure = report.edge_figure(measurement)

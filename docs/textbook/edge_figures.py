@@ -23,7 +23,7 @@ def measured_beside_truth() -> Figure:
         sensor, angle_deg=6, shape=(40, 40), snr=70, rng=np.random.default_rng(7)
     )
     found = ac.measure_edge(image)
-    figure = new_page(13.0, 8.2)
+    figure = new_page(10.4, 7.1)
     (esf, lsf), (mtf, error) = figure.subplots(2, 2)
 
     s = found.samples.distance_px
@@ -69,7 +69,7 @@ def prior_directions() -> Figure:
     weights = line_weights(u)
     rng = np.random.default_rng(4)
     names = ("shape", "detail", "halo", "tail")
-    figure = new_page(13.0, 4.6)
+    figure = new_page(10.4, 4.0)
     panels = figure.subplots(1, 4, sharey=True)
     plain = blur.width_px * blur.lsf(u * blur.width_px)
     for k, (axes, name) in enumerate(zip(panels, names, strict=True)):
@@ -82,16 +82,17 @@ def prior_directions() -> Figure:
                 drawn = known.esf[:, own] @ (amplitude * rng.standard_normal(own.size))
             axes.plot(u, combine(*weights, drawn), color=PALETTE[i], lw=1.5)
         axes.plot(u, 0.2 * plain, color=FAINT, lw=1, ls="--")
+        axes.set_ylim(-0.165, 0.215)
         axes.set(title=f"{name}, {100 * amplitude:.1f} %", xlabel="distance, widths")
     panels[0].set_ylabel("departure of the LSF, per width")
-    panels[0].text(-5.9, 0.175, "dashed: a fifth\nof the plain blur", color=FAINT, fontsize=8.5,
+    panels[0].text(-6, 0.21, "dashed: a fifth of\nthe plain blur", color=FAINT, fontsize=8.5,
                    va="top")  # fmt: skip
     return figure
 
 
 def what_truncation_does() -> Figure:
     """An LSF cut off at a distance raises the whole MTF: three systems with feet."""
-    figure = new_page(13.0, 4.3)
+    figure = new_page(10.4, 3.7)
     panels = figure.subplots(1, 3, sharey=True)
     systems = ac.simulate.reference_systems()
     for axes, name in zip(panels, ("gaussian", "halo", "diffraction"), strict=True):

@@ -27,7 +27,7 @@ def gains_of_steps() -> Figure:
     freq = np.linspace(0, 0.5, 101)
     sensor = ac.Sensor([ac.optics.Gaussian(0.5), ac.optics.Detector()])
     mtf = np.abs(sensor.otf(freq, 0.0))
-    figure = new_page(13.0, 4.9)
+    figure = new_page(10.4, 4.2)
     left, middle, right = figure.subplots(1, 3)
 
     p, rows = 0.98, 40
@@ -73,7 +73,7 @@ def gains_of_steps() -> Figure:
 def errors_of_methods() -> Figure:
     """Error of every method on edges without noise: 6 and 14 degrees, four systems."""
     systems = ac.simulate.reference_systems()
-    figure = new_page(13.0, 8.4)
+    figure = new_page(10.4, 7.2)
     panels = figure.subplots(2, 4, sharex=True, sharey="row")
     for row, angle in zip(panels, (6.0, 14.0), strict=True):
         for axes, name in zip(row, ("gaussian", "halo", "sharpened", "diffraction"), strict=True):

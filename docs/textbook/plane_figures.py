@@ -19,8 +19,8 @@ _SHARP = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
 
 def pixel_grid() -> Figure:
     """How pixels are counted, and what normal, angle and orientation are."""
-    figure = new_page(13.0, 4.7)
-    counting, across, along = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 1.0))
+    figure = new_page(10.4, 4.0)
+    counting, across, along = figure.subplots(1, 3, width_ratios=(1.0, 1.1, 1.1))
     _draw_counting(counting)
     _draw_edge(across, 20.0, "across")
     _draw_edge(along, 20.0, "along")
@@ -28,32 +28,26 @@ def pixel_grid() -> Figure:
 
 
 def _draw_counting(axes: Axes) -> None:
-    axes.set_title("Counting pixels", pad=34)
+    axes.set_title("Counting pixels")
+    for place in np.arange(-0.5, 4):
+        axes.plot([place, place], [-0.5, 3.5], color=FAINT, lw=0.8)
+        axes.plot([-0.5, 3.5], [place, place], color=FAINT, lw=0.8)
     for row in range(4):
         for col in range(4):
             axes.plot(col, row, "o", ms=4, color=BLUE)
             axes.text(
-                col, row + 0.16, f"({row}, {col})", ha="center", va="top", color=BLUE, fontsize=9
+                col, row + 0.13, f"({row}, {col})", ha="center", va="top", color=BLUE, fontsize=9
             )
-    axes.plot(-0.5, -0.5, "s", ms=7, color=VERMILION, clip_on=False)
-    axes.annotate(
-        "GDAL x = 0, y = 0", (-0.5, -0.5), (-0.42, -0.92), color=VERMILION, annotation_clip=False,
-        ha="left", va="bottom", fontsize=9,
-    )  # fmt: skip
-    axes.annotate(
-        "acutance row = 0, col = 0", (0, 0), (1.05, -0.92), color=BLUE, annotation_clip=False,
-        va="bottom", fontsize=9, arrowprops={"arrowstyle": "-", "color": BLUE, "lw": 0.8},
-    )  # fmt: skip
-    axes.set(xlim=(-0.5, 3.5), ylim=(3.5, -0.5), aspect="equal")
+    axes.plot(-0.5, -0.5, "s", ms=8, color=VERMILION, clip_on=False)
+    axes.text(-0.5, -1.08, "blue: (row, column) of pixel centres", color=BLUE, va="center")
+    axes.text(-0.5, -0.78, "red: x = 0, y = 0 of GDAL", color=VERMILION, va="center")
+    axes.set(xlim=(-0.6, 3.6), ylim=(3.6, -1.25), aspect="equal")
     axes.set_xlabel("column, x →")
     axes.set_ylabel("← row, y (down)")
-    axes.set_xticks(np.arange(-0.5, 4), minor=True)
-    axes.set_yticks(np.arange(-0.5, 4), minor=True)
     axes.set_xticks(range(4))
     axes.set_yticks(range(4))
     axes.grid(False)
-    axes.grid(True, which="minor", color=FAINT, linewidth=0.8)
-    axes.tick_params(which="minor", length=0)
+    axes.spines[:].set_visible(False)
 
 
 def _draw_edge(axes: Axes, angle_deg: float, orientation: str) -> None:
@@ -94,11 +88,12 @@ def _draw_edge(axes: Axes, angle_deg: float, orientation: str) -> None:
     s = float(line.normal_distance(row, col))
     axes.plot(col, row, "o", ms=5, color=GREEN)
     axes.plot([col, col - s * x], [row, row - s * y], color=GREEN, lw=1.6)
-    axes.text(col - 0.5 * s * x + 0.2, row - 0.5 * s * y - 0.75 * abs(x) + 0.1, f"s = {s:.1f} px",
-              color=GREEN, ha="center" if orientation == "across" else "left",
-              va="bottom" if orientation == "across" else "center", fontsize=9.5)  # fmt: skip
-    axes.set_title(f"orientation {orientation}: angle {line.angle_deg:.0f}°, "
-                   f"normal {line.normal_deg:.0f}°", fontsize=10)  # fmt: skip
+    if orientation == "across":
+        place = {"x": col - 0.5 * s * x, "y": row - 0.5 * s * y - 0.7, "ha": "center"}
+    else:
+        place = {"x": col - 0.5, "y": row + 0.3, "ha": "right"}
+    axes.text(s=f"s = {s:.1f} px", color=GREEN, va="center", **place)
+    axes.set_title(f"{orientation}: angle {line.angle_deg:.0f}°, θ = {line.normal_deg:.0f}°")
     axes.set_xlabel("column, x →")
     axes.set_ylabel("← row, y (down)")
     axes.set_xticks(range(0, size, 2))
@@ -110,7 +105,7 @@ def metrics_on_curves() -> Figure:
     """Every number shown on the curve it is read from."""
     sensor = ac.simulate.reference_systems()["sharpened"]
     truth = sensor.response()
-    figure = new_page(13.0, 4.6)
+    figure = new_page(10.4, 4.0)
     left, middle, right = figure.subplots(1, 3)
     _draw_esf_numbers(left, truth)
     _draw_lsf_numbers(middle, truth)
@@ -179,7 +174,7 @@ def _draw_mtf_numbers(axes: Axes, truth: ac.Response) -> None:
 
 def reference_systems() -> Figure:
     """True MTF and LSF of the systems that tests, benchmarks and pages share."""
-    figure = new_page(13.0, 5.0)
+    figure = new_page(10.4, 4.3)
     left, right = figure.subplots(1, 2)
     marks = ("-", "--")
     for i, (name, sensor) in enumerate(ac.simulate.reference_systems().items()):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
+import re
 import textwrap
 
 import numpy as np
@@ -29,7 +30,7 @@ __all__ = [
     "systems",
 ]
 
-# Formulas of the blocks; f is the radial frequency. A block that is missing here stops the build.
+# Formulas of the blocks; f is the radial frequency.
 FORMULAS = {
     "Aerosol": r"e^{-t (f/f_a)^2} \ (f < f_a), \quad e^{-t} \ (f \ge f_a)",
     "Butterworth": r"\frac{1}{1 + (f/D_0)^2}",
@@ -37,7 +38,7 @@ FORMULAS = {
     "Defocus": r"\frac{4}{\pi} \int_\nu^1 \sqrt{1-t^2} \cos(8\pi W \nu (t-\nu)) \, dt,"
     r" \quad \nu = f/f_c",
     "Detector": r"\mathrm{sinc}(w u) \, \mathrm{sinc}(h v)",
-    "Diffraction": r"\text{autocorrelation of the annular pupil, } 0 \text{ for } f \ge f_c",
+    "Diffraction": r"P \star P \text{ (annular pupil)}, \quad 0 \ (f \ge f_c)",
     "Exponential": r"\frac{1}{1 + 2\pi i f L}",
     "Gaussian": r"e^{-2\pi^2 (\sigma_x^2 u^2 + \sigma_y^2 v^2)}",
     "Halo": r"(1 - a) + a \, e^{-2\pi^2\sigma^2 f^2}",
@@ -47,12 +48,12 @@ FORMULAS = {
     "Sharpening": r"\frac{\sum k_{ij} e^{-2\pi i (v i + u j)}}{\sum k_{ij}}",
     "Shift": r"\sum_k w(k - d) \, e^{2\pi i u (k - d)} \text{, in both axes}",
     "Smear": r"\mathrm{sinc}(\ell f)",
-    "Tdi": r"\frac{\sin N x}{N \sin x} \, \mathrm{sinc}(v / p), \quad x = \pi \, d \cdot (u, v)",
+    "Tdi": r"\frac{\sin(N x)}{N \sin(x)} \, \mathrm{sinc}(v / p), \quad x = \pi \, d \cdot (u, v)",
     "Turbulence": r"e^{-3.44 (f/f_0)^{5/3}}",
     "WavefrontError": r"e^{-(2\pi w)^2 \left(1 - e^{-(f / (l f_c))^2}\right)}",
 }
 
-_NOT_BLOCKS = ("Block", "Profile", "Sensor")
+_NOT_BLOCKS = ("Block", "Sensor")
 
 
 def _summary(found: object) -> str:
@@ -184,18 +185,21 @@ def methods() -> str:
 
 def blocks() -> str:
     """All OTF blocks with their formulas."""
-    names = [name for name in optics.__all__ if name not in _NOT_BLOCKS]
-    missing = set(names) ^ set(FORMULAS)
-    if missing:
-        raise RuntimeError(
-            f"docs/textbook/tables.py: no formula for {sorted(missing)}, or no block"
-        )
-    rows = [
-        [f":py:class:`~acutance.optics.{name}`", f":math:`{FORMULAS[name]}`",
-         _summary(getattr(optics, name))]
-        for name in names
-    ]  # fmt: skip
+    rows = []
+    for name in optics.__all__:
+        found = getattr(optics, name)
+        if inspect.isclass(found) and hasattr(found, "otf") and name not in _NOT_BLOCKS:
+            link = f":py:class:`~acutance.optics.{name}`"
+            rows.append([link, _formula(name, found), _summary(found)])
     return list_table(["block", "OTF", "what it is"], rows, (18, 40, 42))
+
+
+def _formula(name: str, block: type) -> str:
+    """The formula of a block; the code in its docstring if it is not typeset here yet."""
+    if name in FORMULAS:
+        return f":math:`{FORMULAS[name]}`"
+    code = re.search(r"``[^`]+``", inspect.getdoc(block) or "")
+    return code[0] if code else "see its page"
 
 
 def systems() -> str:
