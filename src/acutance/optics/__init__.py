@@ -3,16 +3,32 @@
 from acutance.optics.aperture import Defocus, Diffraction, Gaussian, Halo, WavefrontError
 from acutance.optics.atmosphere import Aerosol, Turbulence
 from acutance.optics.block import Block
+from acutance.optics.budget import Budget, BudgetRow, budget
+from acutance.optics.catalogue import BLOCKS, BlockKind, describe_block
 from acutance.optics.detector import ChargeDiffusion, Detector
 from acutance.optics.electronics import Butterworth, Exponential
+from acutance.optics.metres import GroundCurves, on_the_ground, psf_on_the_ground
 from acutance.optics.motion import Jitter, Smear, Tdi
+from acutance.optics.preset import preset, presets
 from acutance.optics.processing import Resampling, Rescaled, Sharpening, Shift
 from acutance.optics.profile import Profile
+from acutance.optics.raster_psf import RasterPsf, numerical_psf
 from acutance.optics.sensor import Sensor
+from acutance.optics.sheet import (
+    SensorSheet,
+    read_sensor,
+    sheet_from_toml,
+    sheet_to_toml,
+    write_sensor,
+)
 
 __all__ = [
+    "BLOCKS",
     "Aerosol",
     "Block",
+    "BlockKind",
+    "Budget",
+    "BudgetRow",
     "Butterworth",
     "ChargeDiffusion",
     "Defocus",
@@ -20,16 +36,30 @@ __all__ = [
     "Diffraction",
     "Exponential",
     "Gaussian",
+    "GroundCurves",
     "Halo",
     "Jitter",
     "Profile",
+    "RasterPsf",
     "Resampling",
     "Rescaled",
     "Sensor",
+    "SensorSheet",
     "Sharpening",
     "Shift",
     "Smear",
     "Tdi",
     "Turbulence",
     "WavefrontError",
+    "budget",
+    "describe_block",
+    "numerical_psf",
+    "on_the_ground",
+    "preset",
+    "presets",
+    "psf_on_the_ground",
+    "read_sensor",
+    "sheet_from_toml",
+    "sheet_to_toml",
+    "write_sensor",
 ]

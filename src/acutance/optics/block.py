@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 
-__all__ = ["Axis", "Block", "Transfer", "along_axis", "require"]
+__all__ = ["Axis", "Block", "Transfer", "along_axis", "require", "require_axis"]
 
 Transfer = NDArray[Any]
 """Values of an OTF: real where the blur is symmetric, complex where it is not."""
@@ -37,6 +37,20 @@ def along_axis(u: Floats, v: Floats, axis: Axis) -> Floats:
     """The frequency component a one-dimensional blur acts on, in the common shape."""
     chosen = u if axis == "across" else v
     return np.broadcast_to(np.asarray(chosen, float), np.broadcast_shapes(np.shape(u), np.shape(v)))
+
+
+def require_axis(block: object, axis: str) -> None:
+    """Refuse an axis that is neither "across" nor "along".
+
+    Raises
+    ------
+    ModelError
+        Names the block and what was given.
+    """
+    if axis not in ("across", "along"):
+        raise ModelError(
+            f'{type(block).__name__}: axis is {axis!r}, it has to be "across" or "along"'
+        )
 
 
 def require(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.optics.block import Axis, Transfer, along_axis, require
+from acutance.optics.block import Axis, Transfer, along_axis, require, require_axis
 
 __all__ = ["Butterworth", "Exponential"]
 
@@ -55,6 +55,7 @@ class Exponential:
 
     def __post_init__(self) -> None:
         require(self, length_px=self.length_px)
+        require_axis(self, self.axis)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
         return np.asarray(1 / (1 + 2j * math.pi * self.length_px * along_axis(u, v, self.axis)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.optics.block import Axis, Transfer, along_axis, require
+from acutance.optics.block import Axis, Transfer, along_axis, require, require_axis
 
 __all__ = ["Jitter", "Smear", "Tdi"]
 
@@ -30,6 +30,7 @@ class Smear:
 
     def __post_init__(self) -> None:
         require(self, length_px=self.length_px)
+        require_axis(self, self.axis)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
         return np.sinc(self.length_px * along_axis(u, v, self.axis))

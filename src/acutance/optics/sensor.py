@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -16,7 +16,7 @@ from acutance.errors import ModelError
 from acutance.optics.block import Axis, Block, Transfer
 from acutance.optics.profile import Profile
 
-__all__ = ["DISTANCE_PX", "FREQ_CPP", "Sensor", "normal_direction_deg"]
+__all__ = ["DISTANCE_PX", "FREQ_CPP", "Sensor", "normal_direction_deg", "spread_over_plane"]
 
 FREQ_CPP: Floats = np.linspace(0.0, 1.0, 101)
 DISTANCE_PX: Floats = np.linspace(-16.0, 16.0, 641)
@@ -47,6 +47,8 @@ class Sensor:
         The causes of blur, in any order.
     gsd_m : float, optional
         Ground sampling distance: the size of a pixel on the ground in metres.
+    gsd_along_m : float, optional
+        Distance from one row to the next in metres, where it differs from that between columns.
 
     Examples
     --------
@@ -58,13 +60,39 @@ class Sensor:
 
     blocks: Sequence[Block]
     gsd_m: float | None = None
+    gsd_along_m: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "blocks", tuple(self.blocks))
         if not self.blocks:
             raise ModelError("a sensor needs at least one block, such as Detector()")
-        if self.gsd_m is not None and not self.gsd_m > 0:
-            raise ModelError(f"gsd_m is {self.gsd_m:g}, it has to be above 0")
+        for name in ("gsd_m", "gsd_along_m"):
+            size = getattr(self, name)
+            if size is not None and not (size > 0 and math.isfinite(size)):
+                raise ModelError(f"{name} is {size:g}, it has to be finite and above 0")
+        if self.gsd_along_m is not None and self.gsd_m is None:
+            raise ModelError("gsd_along_m was given without gsd_m: give the distance both ways")
+
+    @property
+    def pixel_m(self) -> tuple[float, float] | None:
+        """Size of a pixel in metres along (rows, columns): from row to row, column to column."""
+        if self.gsd_m is None:
+            return None
+        return (self.gsd_along_m or self.gsd_m), self.gsd_m
+
+    def gsd_along_normal_m(self, normal_deg: float) -> float | None:
+        """Metres per pixel of distance along an edge's normal; ``None`` without a GSD.
+
+        Lines of equal distance one pixel apart are ``1 / hypot(cos t / g_col, sin t / g_row)``
+        metres apart on the ground.
+        """
+        if self.pixel_m is None:
+            return None
+        row_m, col_m = self.pixel_m
+        if row_m == col_m:
+            return col_m
+        angle = math.radians(normal_deg)
+        return 1.0 / math.hypot(math.cos(angle) / col_m, math.sin(angle) / row_m)
 
     def otf(self, u: ArrayLike, v: ArrayLike) -> Transfer:
         """OTF at frequencies `u` (across) and `v` (along) in cycles per pixel, 1 at zero.
@@ -104,7 +132,7 @@ class Sensor:
                 _slice(self, normal_deg, FREQ_CPP) * shift,
                 np.zeros((FREQ_CPP.size, 0), complex),
             ),
-            gsd_m=self.gsd_m,
+            gsd_m=self.gsd_along_normal_m(normal_deg),
         )
 
     def response(self, angle_deg: float = 0.0, orientation: Axis = "across") -> Response:
@@ -156,14 +184,37 @@ class Sensor:
                 f"a PSF of half width {half_width_px:g} px in steps of {step_px:g} px was asked "
                 "for: the step has to be below 0.5, the half width between one step and 32"
             )
-        size = 2 * math.ceil(32.0 / step_px)
-        u = np.fft.rfftfreq(size, step_px)
-        v = np.fft.fftfreq(size, step_px)[:, None]
-        plane = np.fft.fftshift(np.fft.irfft2(self.otf(u, v), (size, size))) / step_px**2
-        reach = round(half_width_px / step_px)
-        window = slice(size // 2 - reach, size // 2 + reach + 1)
-        distance_px = np.arange(-reach, reach + 1, dtype=float) * step_px
-        return distance_px, np.ascontiguousarray(plane[window, window])
+        return spread_over_plane(self.otf, half_width_px, step_px, 32.0)
+
+
+def spread_over_plane(
+    otf: Callable[[Floats, Floats], Transfer], half_width: float, step: float, room: float
+) -> tuple[Floats, Floats]:
+    """Point spread function of an OTF on a square grid, by a discrete Fourier transform.
+
+    Parameters
+    ----------
+    otf : function of (u, v)
+        Frequencies in cycles per unit of length.
+    half_width, step : float
+        Half the width of the returned square, and the spacing of its grid.
+    room : float
+        Half the period of the transform: light further away is folded back.
+
+    Returns
+    -------
+    distance : (n,) array
+    psf : (n, n) array
+        Light per unit of area at (row, column) distances.
+    """
+    size = 2 * math.ceil(room / step)
+    u: Floats = np.asarray(np.fft.rfftfreq(size, step), np.float64)
+    v: Floats = np.asarray(np.fft.fftfreq(size, step)[:, None], np.float64)
+    plane = np.fft.fftshift(np.fft.irfft2(otf(u, v), (size, size))) / step**2
+    reach = round(half_width / step)
+    window = slice(size // 2 - reach, size // 2 + reach + 1)
+    distance = np.arange(-reach, reach + 1, dtype=float) * step
+    return distance, np.ascontiguousarray(plane[window, window])
 
 
 def _slice(sensor: Sensor, normal_deg: float, freq_cpp: Floats) -> Transfer:

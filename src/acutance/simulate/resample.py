@@ -93,12 +93,13 @@ class Regrid:
 
     def system(self, sensor: Sensor) -> Sensor:
         """The sensor and the resampling as one system, in new pixels."""
-        gsd_m = None if sensor.gsd_m is None else sensor.gsd_m * self.scale
+        sizes = (sensor.gsd_m, sensor.gsd_along_m)
+        gsd_m, gsd_along_m = (None if size is None else size * self.scale for size in sizes)
         if self.scale == 1:
             shift = Shift(self.shift_row_px, self.shift_col_px, self.kernel, self.a)
-            return Sensor([*sensor.blocks, shift], gsd_m)
+            return Sensor([*sensor.blocks, shift], gsd_m, gsd_along_m)
         averaged = Sensor([*sensor.blocks, Resampling(self.kernel, self.a)])
-        return Sensor([Rescaled(averaged, self.scale)], gsd_m)
+        return Sensor([Rescaled(averaged, self.scale)], gsd_m, gsd_along_m)
 
     def margin_px(self, shape: tuple[int, int]) -> int:
         """How much wider the old image has to be on every side, in old pixels."""
