@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import acutance.simulate as sim
 from acutance.errors import NoEdgeError
 from acutance.fit.band import EdgeBand
+from acutance.fit.blur import Blur
 from acutance.fit.edge import fit_edge
 from acutance.fit.line import Line
 from acutance.simulate.noise import Noise
@@ -124,6 +125,18 @@ def test_the_start_of_the_line_changes_nothing_that_matters():
     assert np.all(np.ptp(found[:, ::2], axis=0) < 0.2 * found[0, 1::2])
 
 
+def test_the_blur_it_departs_from_changes_nothing_that_matters():
+    """Blurs of the same width and another aperture: the linear model finds its way back."""
+    image, truth = noisy_edge(1)
+    variance = 0.4**2 + 1 / 12
+    fits = []
+    for aperture in (0.7, 1.0, 1.2):
+        blur = Blur(np.sqrt(variance - aperture**2 / 12), aperture)
+        fits.append(fit_edge(EdgeBand(image, truth.line, 200, 1200, 0.4, 10, blur)))
+    found = np.array([numbers(fit) for fit in fits])
+    assert np.all(np.ptp(found[:, ::2], axis=0) < 0.3 * found[1, 1::2])
+
+
 def test_noise_that_depends_on_the_signal_is_read_on_either_side():
     noise = Noise(read=2.0, shot_gain=0.3)
     image, truth = noisy_edge(3, shape=(80, 60), snr=None, noise=noise)
@@ -143,6 +156,11 @@ def test_outliers_are_bounded(seed):
     fit = fit_edge(band_of(spoilt, truth.line))
     assert abs(fit.response.mtf_nyquist.value - clean.value) < 2 * clean.std
     assert np.mean(fit.weights.reshape(image.shape).flat[spikes] < 0.5) > 0.9
+    kept = np.ones(image.size, bool)
+    kept[spikes] = False
+    noise = np.hypot(fit.noise_dark, fit.noise_bright) / np.sqrt(2)
+    left = fit.residual[kept] * (fit.bright - fit.dark)
+    assert noise == pytest.approx(np.sqrt(np.mean(left**2)), rel=0.015)
     careless = fit_edge(band_of(spoilt, truth.line), robust=False)
     assert careless.response.mtf_nyquist.std > 1.5 * fit.response.mtf_nyquist.std
     assert np.all(careless.weights == 1.0)

@@ -24,7 +24,7 @@ _SIGNIFICANT = 4.0
 
 
 def side_variances(residual: Floats, esf: Floats) -> tuple[float, float]:
-    """Noise variance on the dark and on the bright side, by least squares on squared residuals.
+    """Noise variance on the dark and on the bright side, each about its own level.
 
     Parameters
     ----------
@@ -39,13 +39,13 @@ def side_variances(residual: Floats, esf: Floats) -> tuple[float, float]:
 
 
 def _variance(residual: Floats) -> float:
-    """Mean square, without what lies beyond reach of Gaussian noise."""
-    squares = residual**2
-    mean = float(np.mean(squares))
-    if float(squares.max()) < 16 * mean:
-        return mean
-    usual = squares[squares <= (_UNHEARD_OF * robust_scale(residual)) ** 2]
-    return float(np.mean(usual)) if usual.size else mean
+    """Variance, without what lies beyond reach of Gaussian noise."""
+    variance, farthest = float(np.var(residual)), float(np.max(np.abs(residual - residual.mean())))
+    if farthest**2 < 16 * variance:
+        return variance
+    centred = residual - np.median(residual)
+    usual = residual[np.abs(centred) <= _UNHEARD_OF * robust_scale(centred)]
+    return float(np.var(usual)) if usual.size else variance
 
 
 def robust_scale(residual: Floats) -> float:
