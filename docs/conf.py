@@ -32,6 +32,9 @@ autosummary_generate = True
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
+autodoc_type_aliases = {
+    name: name for name in ("ArrayLike", "Floats", "Transfer", "RoiLike", "Axis", "Orientation")
+}
 python_use_unqualified_type_names = True
 python_maximum_signature_line_length = 88
 numpydoc_show_class_members = False
@@ -45,6 +48,7 @@ sphinx_gallery_conf = {
     "reset_modules": (),
     "within_subsection_order": "FileNameSortKey",
     "download_all_examples": False,
+    "capture_repr": (),
     "show_memory": False,
     "min_reported_time": 10_000,
     "remove_config_comments": True,

@@ -45,7 +45,7 @@ polygon = {
 image = ac.open_image(folder / "scene.tif")
 region = parse_roi(str(folder / "target.geojson"), image)
 measurement = ac.measure_edge(image, region)
-print(image.gsd(), measurement.image)
+print(image.gsd(), "region (row, column, height, width):", measurement.image.roi)
 print(f"FWHM {measurement.fwhm_m} m, truth {edge.truth.fwhm_px.value * 0.7:.4f} m")
 print(f"RER {measurement.rer}, truth {edge.truth.rer}")
 for check in measurement.failed_checks:

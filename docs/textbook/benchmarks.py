@@ -83,7 +83,7 @@ def _table(rows: list[list[str]]) -> str:
 
 def _inline(text: str) -> str:
     """Code, links and characters that mean something in reStructuredText."""
-    parts = re.split(r"(`[^`]+`|\[[^\]]+\]\([^)]+\)|\*\*[^*]+\*\*)", text)
+    parts = re.split(r"(`[^`]+`|\[[^\]]+\]\([^)]+\)|\*\*[^*]+\*\*|(?<!\w)\*[^*\s][^*]*\*)", text)
     return "".join(_piece(part, i % 2 == 1) for i, part in enumerate(parts))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import math
-import re
 import textwrap
 
 import numpy as np
@@ -43,6 +42,7 @@ FORMULAS = {
     "Gaussian": r"e^{-2\pi^2 (\sigma_x^2 u^2 + \sigma_y^2 v^2)}",
     "Halo": r"(1 - a) + a \, e^{-2\pi^2\sigma^2 f^2}",
     "Jitter": r"e^{-2\pi^2 \sigma^2 f^2}",
+    "RasterPsf": r"\sum_k p_k \, e^{-2\pi i (u x_k + v y_k)}",
     "Resampling": r"\hat k(u) \, \hat k(v)",
     "Rescaled": r"H(u/s, \, v/s)",
     "Sharpening": r"\frac{\sum k_{ij} e^{-2\pi i (v i + u j)}}{\sum k_{ij}}",
@@ -190,16 +190,15 @@ def blocks() -> str:
         found = getattr(optics, name)
         if inspect.isclass(found) and hasattr(found, "otf") and name not in _NOT_BLOCKS:
             link = f":py:class:`~acutance.optics.{name}`"
-            rows.append([link, _formula(name, found), _summary(found)])
+            rows.append([link, _formula(name), _summary(found)])
     return list_table(["block", "OTF", "what it is"], rows, (18, 40, 42))
 
 
-def _formula(name: str, block: type) -> str:
-    """The formula of a block; the code in its docstring if it is not typeset here yet."""
+def _formula(name: str) -> str:
+    """The formula of a block, where it has been typeset."""
     if name in FORMULAS:
         return f":math:`{FORMULAS[name]}`"
-    code = re.search(r"``[^`]+``", inspect.getdoc(block) or "")
-    return code[0] if code else "see its page"
+    return "see its page"
 
 
 def systems() -> str:
@@ -222,7 +221,7 @@ def sites() -> str:
         if site.latitude_deg is not None and site.longitude_deg is not None:
             place = f"{site.latitude_deg:.4f}, {site.longitude_deg:.4f}"
         size = f"{site.panel_size_m:g}" + ("" if site.size_m is None else f" of {site.size_m:g}")
-        angles = ", ".join(f"{angle:g}°" for angle in site.orientation_deg) or "-"
+        angles = ", ".join(f"{angle:g}°" for angle in site.orientation_deg) or "not given"
         rows.append([f"``{site.name}``", site.title, place, size, angles, site.notes])
     head = [
         "name",
