@@ -43,6 +43,7 @@ TEXTS: dict[str, Callable[[], str]] = {
 def write_all(folder: Path) -> None:
     """Write figures, tables, help texts, the API's pages and the benchmarks' pages."""
     folder.mkdir(exist_ok=True)
+    _forget_old_pages(folder)
     for name, text in TEXTS.items():
         _write(folder / name, text())
     for name, text in reference.package_pages().items():
@@ -53,6 +54,14 @@ def write_all(folder: Path) -> None:
         with styled():
             figure = draw()
         save_figure(figure, folder / f"{name}.svg")
+
+
+def _forget_old_pages(folder: Path) -> None:
+    """Delete pages of an earlier build about what is no longer there."""
+    current = reference.object_pages()
+    old = [page for page in folder.glob("api/*.rst") if page.name not in current]
+    for page in [*old, *folder.glob("benchmark-*.rst"), *folder.glob("acutance.*.rst")]:
+        page.unlink()
 
 
 def _write(path: Path, text: str) -> None:

@@ -12,19 +12,21 @@ from collections.abc import Callable
 import acutance
 from textbook.rst import heading, list_table
 
-__all__ = ["help_texts", "package_pages", "top_names"]
+__all__ = ["help_texts", "object_pages", "package_pages", "top_names"]
 
-PACKAGES = {
-    "curves": "Curves and the numbers read from them.",
-    "curves.metrics": "The metrics as functions of the curves.",
-    "optics": "OTF blocks and the sensor they make.",
-    "fit.edge": "The reference estimator.",
-    "raster": "Images, regions, geolocation, sites.",
-    "simulate": "Targets as a sensor sees them, with the truth.",
-    "measure": "From an image to a measurement.",
-    "measure.published": "The published edge methods.",
-    "report": "Text, figures, HTML, CSV and JSON.",
-}
+PACKAGES = (
+    "curves",
+    "curves.metrics",
+    "optics",
+    "fit.line",
+    "fit.band",
+    "fit.edge",
+    "raster",
+    "simulate",
+    "measure",
+    "measure.published",
+    "report",
+)
 
 COMMANDS: dict[str, list[str]] = {
     "acutance": [],
@@ -56,7 +58,7 @@ def top_names() -> str:
 def package_pages() -> dict[str, str]:
     """A page for each package: its public names, each with a page of its own."""
     pages = {}
-    for name, _ in PACKAGES.items():
+    for name in PACKAGES:
         module = importlib.import_module(f"acutance.{name}")
         kinds: dict[str, list[str]] = {"Classes": [], "Functions": [], "Data": []}
         for public in module.__all__:
@@ -80,6 +82,12 @@ def package_pages() -> dict[str, str]:
             text += [heading("Data", "-"), listed, ""]
         pages[f"acutance.{name}"] = "\n".join(text)
     return pages
+
+
+def object_pages() -> set[str]:
+    """File names of the pages that describe one class or function each."""
+    modules = [importlib.import_module(f"acutance.{name}") for name in PACKAGES]
+    return {f"{module.__name__}.{name}.rst" for module in modules for name in module.__all__}
 
 
 def help_texts() -> dict[str, Callable[[], str]]:

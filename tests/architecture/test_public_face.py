@@ -8,7 +8,6 @@ import re
 import tomllib
 from collections.abc import Iterator
 from importlib import metadata, resources
-from pathlib import Path
 from types import FunctionType
 from typing import Any
 
@@ -101,6 +100,15 @@ def test_the_lazy_table_is_the_public_face() -> None:
         _ = acutance.mtf
 
 
+def test_the_textbook_describes_every_package() -> None:
+    page = ROOT.parents[1] / "docs" / "api.rst"
+    if not page.is_file():
+        pytest.skip("the textbook does not ship with an installed package")
+    listed = set(re.findall(r"generated/(acutance[\w.]*)", page.read_text(encoding="utf-8")))
+    public = {module.__name__ for module in with_all() if hasattr(module, "__path__")}
+    assert public - {"acutance"} <= listed
+
+
 @pytest.mark.parametrize(("name", "found"), list(public_objects()))
 def test_public_things_have_docstrings(name: str, found: Any) -> None:
     assert inspect.getdoc(found), f"{name} has no docstring"
@@ -179,7 +187,7 @@ def test_type_information_ships() -> None:
 
 def test_versions_agree() -> None:
     assert metadata.version("acutance") == acutance.__version__
-    pyproject = Path(ROOT).parents[1] / "pyproject.toml"
+    pyproject = ROOT.parents[1] / "pyproject.toml"
     if pyproject.is_file():
         project = tomllib.loads(pyproject.read_text(encoding="utf-8"))["project"]
         assert project["version"] == acutance.__version__
