@@ -19,25 +19,27 @@ __all__ = ["LOG_AMPLITUDE", "ground_trends", "is_uneven"]
 LOG_AMPLITUDE: Final = -5.0
 """Hyperprior mean of the trends' amplitude relative to the edge's height, logarithm."""
 
+Sides = tuple[tuple[Floats, Floats], ...]
+
 _STRETCH_PX = 5.0
 _MIN_PIXELS = 6
 _SIGNIFICANT = 5.0
 _BEYOND_WIDTHS = 1.5
 
 
-def ground_trends(s: Floats, t: Floats, bright_share: Floats) -> Floats:
+def ground_trends(sides: Sides, t: Floats) -> Floats:
     """Trends of the two sides, (10, n): five modes a side, each about 1 at its largest.
 
     Parameters
     ----------
-    s, t : (n,) arrays
-        Distance along the normal and along the edge, pixels.
-    bright_share : (n,) array
-        How much of a pixel sees the bright side (the mean ESF).
+    sides : pairs of (n,) arrays
+        For either plateau how much of a pixel sees it, and how far out the pixel lies.
+    t : (n,) array
+        Distance along the edge, pixels.
     """
     along = t / max(float(np.max(np.abs(t))), 1e-9)
     modes = []
-    for share, outwards in ((1 - bright_share, -s), (bright_share, s)):
+    for share, outwards in sides:
         away = np.maximum(outwards, 0.0)
         away = away / max(float(away.max()), 1e-9)
         for mode in (along, 1.5 * along**2 - 0.5, away, away * along, away**2):
@@ -45,22 +47,22 @@ def ground_trends(s: Floats, t: Floats, bright_share: Floats) -> Floats:
     return np.array(modes)
 
 
-def is_uneven(standard: Floats, s: Floats, t: Floats, width_px: float) -> bool:
+def is_uneven(standard: Floats, sides: Sides, t: Floats, width_px: float) -> bool:
     """Whether the plateaus change along the edge by more than noise does.
 
     Parameters
     ----------
     standard : (n,) array
         Residuals in standard deviations, outliers bounded.
-    s, t : (n,) arrays
-        Distance along the normal and along the edge, pixels.
+    sides, t
+        As in `ground_trends`.
     width_px : float
         Width of the blur; pixels nearer than 1.5 widths are left out.
     """
     stretch = ((t - t.min()) / _STRETCH_PX).astype(np.intp)
     number = int(stretch.max()) + 1
     chi_square, freedom = 0.0, 0
-    for outwards in (-s, s):
+    for _, outwards in sides:
         there = outwards > _BEYOND_WIDTHS * width_px
         count = np.bincount(stretch[there], minlength=number)
         total = np.bincount(stretch[there], standard[there], number)

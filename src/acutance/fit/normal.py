@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,9 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.fit.spline import CELLS
 
-__all__ = ["Normal", "accumulate"]
+__all__ = ["Normal", "Stencil", "accumulate"]
+
+Stencil = tuple[NDArray[np.intp], Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,15 +43,14 @@ class Normal:
         return Normal(gram, directions.T @ self.projection, self.data, self.count)
 
 
-def accumulate(
-    cell: NDArray[np.intp], basis: Floats, y: Floats, weight: Floats, columns: Floats
-) -> Normal:
-    """Sum the pixels into the normal equations of ``y = ESF + columns^T a``.
+def accumulate(stencils: Sequence[Stencil], y: Floats, weight: Floats, columns: Floats) -> Normal:
+    """Sum the pixels into the normal equations of ``y = sum of ESFs + columns^T a``.
 
     Parameters
     ----------
-    cell, basis : (n,) int and (4, n) arrays
-        Every pixel's place in the ESF's spline, as `spline.edge_weights` gives it.
+    stencils : sequence of ((n,) int, (4, n)) arrays
+        For every step of the ground: each pixel's place in the ESF's spline, as
+        `spline.edge_weights` gives it, the weights times the step's share.
     y, weight : (n,) arrays
         Value, and inverse variance (any common scale) of the pixels.
     columns : (q, n) array
@@ -57,19 +59,43 @@ def accumulate(
     m, q = CELLS + 3, columns.shape[0]
     gram = np.zeros((m + q, m + q))
     projection = np.zeros(m + q)
-    weighted, weighted_columns = basis * weight, columns * weight
-    # Entries (cell + a, cell + b) lie on one diagonal: a strided slice of the flat matrix.
-    flat, stride = gram.reshape(-1), m + q + 1
-    for a in range(4):
-        here = slice(a, a + CELLS)
-        projection[here] += np.bincount(cell, weighted[a] * y, CELLS)
-        for j, column in enumerate(columns):
-            gram[here, m + j] += np.bincount(cell, weighted[a] * column, CELLS)
-        for b in range(a, 4):
-            start = a * (m + q) + b
-            diagonal = flat[start : start + CELLS * stride : stride]
-            diagonal += np.bincount(cell, weighted[a] * basis[b], CELLS)
+    weighted_columns = columns * weight
+    for i, (cell, basis) in enumerate(stencils):
+        weighted = basis * weight
+        _add_own(gram, cell, basis, weighted)
+        for other, other_basis in stencils[i + 1 :]:
+            _add_pair(gram, cell, weighted, other, other_basis)
+        for a in range(4):
+            here = slice(a, a + CELLS)
+            projection[here] += np.bincount(cell, weighted[a] * y, CELLS)
+            for j, column in enumerate(columns):
+                gram[here, m + j] += np.bincount(cell, weighted[a] * column, CELLS)
     gram[m:, m:] = np.triu(weighted_columns @ columns.T)
     gram += np.triu(gram, 1).T
     projection[m:] = weighted_columns @ y
     return Normal(gram, projection, float(np.dot(weight * y, y)), y.size)
+
+
+def _add_own(gram: Floats, cell: NDArray[np.intp], basis: Floats, weighted: Floats) -> None:
+    """Products of one step's spline with itself, into the upper triangle."""
+    # Entries (cell + a, cell + b) lie on one diagonal: a strided slice of the flat matrix.
+    size = gram.shape[0]
+    flat, stride = gram.reshape(-1), size + 1
+    for a in range(4):
+        for b in range(a, 4):
+            start = a * size + b
+            diagonal = flat[start : start + CELLS * stride : stride]
+            diagonal += np.bincount(cell, weighted[a] * basis[b], CELLS)
+
+
+def _add_pair(
+    gram: Floats, cell: NDArray[np.intp], weighted: Floats, other: NDArray[np.intp], basis: Floats
+) -> None:
+    """Products of two steps' splines, both ways, into the upper triangle."""
+    m = CELLS + 3
+    products = np.zeros((m, m))
+    for a in range(4):
+        for b in range(4):
+            sums = np.bincount(cell * CELLS + other, weighted[a] * basis[b], CELLS * CELLS)
+            products[a : a + CELLS, b : b + CELLS] += sums.reshape(CELLS, CELLS)
+    gram[:m, :m] += np.triu(products + products.T)

@@ -12,6 +12,7 @@ from acutance.errors import NoEdgeError
 from acutance.fit.blur import FWHM_OF_SIGMA, Blur
 from acutance.fit.line import Line
 from acutance.fit.prior import APERTURE_PX, tail_esf, tail_lsf
+from acutance.fit.profile import EDGE, Profile
 
 __all__ = ["BlurredEdge", "fit_blurred_edge"]
 
@@ -31,7 +32,8 @@ _HIGHEST: Floats = np.array([*[np.inf] * 4, np.inf, 4.0, 0.5])
 class BlurredEdge:
     """A Gaussian-and-detector edge fitted to the pixels.
 
-    `height` is bright minus dark; `noise` the standard deviation of what the model leaves.
+    `height` is that of the first step (bright minus dark for an edge); `noise` the standard
+    deviation of what the model leaves.
     """
 
     line: Line
@@ -39,6 +41,7 @@ class BlurredEdge:
     dark: float
     height: float
     noise: float
+    profile: Profile = EDGE
 
 
 def fit_blurred_edge(

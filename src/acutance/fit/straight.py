@@ -1,0 +1,321 @@
+"""The reference estimator: every straight target is one linear model.
+
+The image of a straight target is ``dark + height * sum_k share_k R(s - position_k)`` with s the
+normal distance and R the response to a unit step (`fit.profile`). R is that of the plain blurred
+edge (`fit.start`) plus a free spline and a tail (`fit.spline`, `fit.prior`), whose amplitudes the
+data decide (`fit.posterior`). The line's direction and, of a pulse, its width and its fall are
+further unknowns of the same linear model, solved again where they have moved.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.fit import ground
+from acutance.fit import prior as lsf_prior
+from acutance.fit.ground import ground_trends, is_uneven
+from acutance.fit.lsf_model import LsfModel
+from acutance.fit.noise import (
+    Correlation,
+    correlation,
+    outlier_weights,
+    robust_scale,
+    side_variances,
+)
+from acutance.fit.normal import accumulate
+from acutance.fit.posterior import Posterior, Prior, regress
+from acutance.fit.profile import Profile
+from acutance.fit.spline import CELLS, HALF_SUPPORT, combine, edge_weights
+from acutance.fit.start import BlurredEdge
+
+__all__ = ["Pixels", "Solution", "Solved", "solve"]
+
+_NOISE_FLOOR = 2e-4
+_SETTLED_PX = 1e-3
+_SETTLED_FALL = 1e-4
+_MAX_PASSES = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Pixels:
+    """The pixels of a fit, (n,) each: row, column (integers at centres) and value."""
+
+    row: Floats
+    col: Floats
+    value: Floats
+
+    @classmethod
+    def of(cls, image: Floats) -> Pixels:
+        """The finite pixels of an image, in row-major order."""
+        rows, cols = np.nonzero(np.isfinite(image))
+        return cls(rows.astype(float), cols.astype(float), image[rows, cols])
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A straight target, solved.
+
+    Attributes
+    ----------
+    start : BlurredEdge
+        What the linear model departs from: line, blur, levels and profile as they settled.
+    solution : Solution
+        The last pass.
+    outlier : (n,) array
+        Weight of every pixel, 1 where it is no outlier.
+    correlation : Correlation
+        What the residuals say of the noise's correlation.
+    """
+
+    start: BlurredEdge
+    solution: Solution
+    outlier: Floats
+    correlation: Correlation
+
+    @property
+    def model(self) -> LsfModel:
+        """The LSF the coefficients make: the tail has its own closed form beside the spline."""
+        inner, tail = self.solution.directions.esf[:, :-1], self.solution.directions.block.size
+        beta, factor = self.solution.posterior.beta, self.solution.posterior.factor
+        latent = np.vstack([inner @ factor[1:tail], factor[tail]])
+        spline = inner @ beta[1:tail]
+        return LsfModel(self.start.blur, self.start.height, spline, float(beta[tail]), latent)
+
+    @property
+    def dark(self) -> float:
+        """Level before the first step."""
+        return self.start.dark + float(self.solution.posterior.beta[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """One pass of the linear model at a fixed line and profile.
+
+    Attributes
+    ----------
+    posterior : Posterior
+        Of the coefficients: dark, the LSF's directions (the tail the last), the line's turn,
+        the changes of the free step parameters, the ground's trends.
+    directions : Directions
+    residual, noise : (n,) arrays
+        What is left of every pixel, and the noise's standard deviation there, in image units.
+    transition : (n,) bool array
+        Pixels within a blur's width of a step.
+    side_noise : (float, float)
+        Standard deviation of the noise on dark and on bright ground.
+    turn_rad, turn_std_rad : float
+        How the line wants to turn, and how well that is known.
+    steps, steps_std : (k,) arrays
+        How the free step parameters want to change, and their standard deviations.
+    half_length_px : float
+    uneven : bool
+        Whether the ground shows trends.
+    """
+
+    posterior: Posterior
+    directions: lsf_prior.Directions
+    residual: Floats
+    noise: Floats
+    transition: NDArray[np.bool_]
+    side_noise: tuple[float, float]
+    turn_rad: float
+    turn_std_rad: float
+    steps: Floats
+    steps_std: Floats
+    half_length_px: float
+    uneven: bool
+
+
+def solve(
+    pixels: Pixels, start: BlurredEdge, *, robust: bool = True, fit_width: bool = False
+) -> Solved:
+    """Solve the linear model until line, profile, outliers and noise have settled.
+
+    Parameters
+    ----------
+    pixels : Pixels
+    start : BlurredEdge
+        Line, blur, levels and profile to depart from.
+    robust : bool, optional
+        Bound the weight of outliers.
+    fit_width : bool, optional
+        Whether a pulse's width is unknown (its fall always is).
+    """
+    rows, cols = pixels.row.astype(np.intp), pixels.col.astype(np.intp)
+    outlier = np.ones(pixels.value.size)
+    whiteness = Correlation(1.0, 0.0, 0.0)
+    earlier: Posterior | None = None
+    uneven = False
+    for _ in range(_MAX_PASSES):
+        solved = _pass(pixels, start, outlier, whiteness.inflation, earlier, uneven, fit_width)
+        standard = solved.residual / solved.noise
+        heavy = robust and bool(np.any(np.abs(standard) > 4.0))
+        again = _reweighted(standard, solved.transition) if heavy else outlier
+        found = correlation(np.clip(standard, -4, 4), rows, cols, start.line.normal)
+        settled = (
+            (uneven or not solved.uneven)
+            and abs(solved.turn_rad) * solved.half_length_px < _SETTLED_PX
+            and bool(np.all(np.abs(solved.steps) < _tolerance(fit_width)[: solved.steps.size]))
+            and np.max(np.abs(again - outlier)) < 0.05
+            and abs(found.inflation / whiteness.inflation - 1) < 0.05
+        )
+        if settled:
+            break
+        # With the trends there is one amplitude more: nothing earlier to start it from.
+        earlier = solved.posterior if uneven or not solved.uneven else None
+        outlier, whiteness, uneven = again, found, uneven or solved.uneven
+        start = _moved(start, solved, fit_width)
+    return Solved(start, solved, outlier, whiteness)
+
+
+def _tolerance(fit_width: bool) -> Floats:
+    return np.array([_SETTLED_PX, _SETTLED_FALL] if fit_width else [_SETTLED_FALL])
+
+
+def _moved(start: BlurredEdge, solved: Solution, fit_width: bool) -> BlurredEdge:
+    """The start, with the line and the profile moved to where the solution wants them."""
+    line = start.line.moved(0.0, math.degrees(solved.turn_rad))
+    if not solved.steps.size:
+        return replace(start, line=line)
+    width_px, fall = start.profile.positions_px[1], -start.profile.shares[1]
+    if fit_width:
+        # A step that is too long for the linear model is cut: half the width a pass.
+        width_px += float(np.clip(solved.steps[0], -0.5 * width_px, 0.5 * width_px))
+    fall += float(np.clip(solved.steps[-1], -0.5 * fall, 0.5 * fall))
+    profile = Profile((0.0, width_px), (1.0, -fall))
+    return replace(start, line=line, profile=profile)
+
+
+def _pass(
+    pixels: Pixels,
+    start: BlurredEdge,
+    outlier: Floats,
+    inflation: float,
+    earlier: Posterior | None,
+    uneven: bool,
+    fit_width: bool,
+) -> Solution:
+    """Solve for the LSF's departures from the start, the levels, the line and the steps."""
+    line, blur, height, profile = start.line, start.blur, start.height, start.profile
+    width = blur.width_px
+    s = line.normal_distance(pixels.row, pixels.col)
+    t = line.tangent_distance(pixels.row, pixels.col)
+    mean, slope = profile.response(blur, s)
+    departure = pixels.value - start.dark - height * mean
+    share = np.clip(mean, 0.0, 1.0)
+    variance_dark, variance_bright = side_variances(departure * np.sqrt(outlier), mean)
+    floor = (_NOISE_FLOOR * height) ** 2
+    scale = 0.5 * (variance_dark + variance_bright) + floor
+    relative = (variance_dark + floor + (variance_bright - variance_dark) * share) / scale
+
+    sides = profile.sides(blur, s)
+    steps = _step_columns(profile, start, s, fit_width)
+    trends = height * ground_trends(sides, t) if uneven else np.empty((0, s.size))
+    columns = np.vstack([_beyond(profile, s, width), height * t * slope, steps, trends])
+    stencils = []
+    for distance, part in zip(profile.distances(s), profile.shares, strict=True):
+        cell, basis = edge_weights(distance / width)
+        stencils.append((cell, basis if part == 1 else part * basis))
+    directions = lsf_prior.directions(blur)
+    design = _design(directions, len(columns))
+    if len(profile.shares) > 1:
+        # The dark level is under every pixel once, whatever the steps.
+        columns = np.vstack([columns, np.ones(s.size)])
+        design = np.vstack([design, np.zeros(design.shape[1])])
+        design[: CELLS + 3, 0], design[-1, 0] = 0.0, 1.0
+    normal = accumulate(stencils, departure, outlier / relative, columns).combined(design)
+    # What an outlier does not weigh, it does not count.
+    normal = replace(normal, count=float(np.sum(outlier)))
+    prior = _prior(start, directions, len(steps), len(trends))
+    posterior = regress(normal, prior, scale, inflation, earlier)
+
+    coefficients = design @ posterior.beta
+    fitted = coefficients[CELLS + 3 :] @ columns
+    for cell, basis in stencils:
+        fitted = fitted + combine(cell, basis, coefficients[: CELLS + 3])
+    noise = np.sqrt(posterior.variance * relative)
+    standard = np.clip((departure - fitted) / noise, -4, 4)
+    side_noise = np.sqrt(posterior.variance / scale * np.array([variance_dark, variance_bright]))
+    turn = directions.block.size + 1
+    own = slice(turn + 1, turn + 1 + len(steps))
+    return Solution(
+        posterior, directions, departure - fitted, noise,
+        np.min([np.abs(d) for d in profile.distances(s)], axis=0) < width,
+        (float(side_noise[0]), float(side_noise[1])),
+        float(posterior.beta[turn]), float(np.linalg.norm(posterior.factor[turn])),
+        posterior.beta[own], np.linalg.norm(posterior.factor[own], axis=1),
+        float(np.max(np.abs(t))), is_uneven(standard, sides, t, width),
+    )  # fmt: skip
+
+
+def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
+    """What the tail adds beyond the spline's support, (n,)."""
+    total = np.zeros(s.size)
+    for distance, share in zip(profile.distances(s), profile.shares, strict=True):
+        u = distance / width
+        inside = np.clip(u, -HALF_SUPPORT, HALF_SUPPORT)
+        total += share * (lsf_prior.tail_esf(u) - lsf_prior.tail_esf(inside))
+    return total
+
+
+def _step_columns(profile: Profile, start: BlurredEdge, s: Floats, fit_width: bool) -> Floats:
+    """Derivatives of the mean by a pulse's width (if free) and by its fall, (k, n)."""
+    if len(profile.shares) == 1:
+        return np.empty((0, s.size))
+    esf, lsf = start.blur.esf_and_lsf(s - profile.positions_px[1])
+    by_width = -profile.shares[1] * start.height * lsf
+    by_fall = -start.height * esf
+    return np.array([by_width, by_fall] if fit_width else [by_fall])
+
+
+def _reweighted(standard: Floats, transition: NDArray[np.bool_]) -> Floats:
+    """Weights of the pixels by their standardised residuals.
+
+    An outlier stands out from pixels like itself. Where many depart together, as in the
+    transition when the model does not yet follow the edge, nobody is one.
+    """
+    bulk = [robust_scale(standard[place]) for place in (transition, ~transition) if place.any()]
+    return outlier_weights(standard / min(max(bulk), 1.0))
+
+
+def _design(directions: lsf_prior.Directions, beside: int) -> Floats:
+    """What every coefficient does to the spline and to the columns beside it.
+
+    The dark level lifts every ESF coefficient alike, because the B-splines sum to one; the tail
+    is the last direction, within the support and beyond.
+    """
+    last = directions.block.size
+    design = np.zeros((CELLS + 3 + beside, last + beside))
+    design[: CELLS + 3, 0] = 1.0
+    design[: CELLS + 3, 1 : last + 1] = directions.esf
+    design[CELLS + 3 :, last:] = np.eye(beside)
+    return design
+
+
+def _prior(start: BlurredEdge, directions: lsf_prior.Directions, steps: int, trends: int) -> Prior:
+    """The prior of all coefficients: dark, mean blur, processes, tail, turn, steps, trends."""
+    last = directions.block.size
+    m = last + 2 + steps + trends
+    block = np.full(m, -1)
+    block[1 : last + 1] = np.where(directions.block >= 2, directions.block - 2, -1)
+    log_amplitude = lsf_prior.LOG_AMPLITUDE
+    if trends:
+        block[last + 2 + steps :] = log_amplitude.size
+        log_amplitude = np.append(log_amplitude, ground.LOG_AMPLITUDE)
+    scale = np.ones(m)
+    # Turn (radians) and steps (pixels, shares) are known to about one before the pixels are seen.
+    scale[last + 1 : last + 2 + steps] = 1 / start.height
+    aperture, aperture_std = lsf_prior.APERTURE_PX
+    mean = np.zeros(m)
+    where = 1 + int(np.flatnonzero(directions.block == 1)[0])
+    scale[where] = aperture_std
+    mean[where] = (aperture - start.blur.aperture_px) * start.height
+    return Prior(
+        block, scale, mean, log_amplitude, lsf_prior.LOG_AMPLITUDE_STD,
+        start.height, _NOISE_FLOOR * start.height,
+    )  # fmt: skip
