@@ -14,7 +14,7 @@ from acutance.fit.noise import Correlation
 from acutance.fit.start import BlurredEdge, fit_blurred_edge
 from acutance.fit.straight import Pixels, Solved, solve
 
-__all__ = ["SplineEdge", "fit_edge"]
+__all__ = ["SplineEdge", "fit_edge", "spline_edge"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
         If the band holds no step.
     """
     pixels = Pixels.of(band.image)
-    return _finish(pixels, solve(pixels, _start(band, pixels), robust=robust))
+    return spline_edge(pixels, solve(pixels, _start(band, pixels), robust=robust))
 
 
 def _start(band: EdgeBand, pixels: Pixels) -> BlurredEdge:
@@ -71,7 +71,7 @@ def _start(band: EdgeBand, pixels: Pixels) -> BlurredEdge:
     )  # fmt: skip
 
 
-def _finish(pixels: Pixels, solved: Solved) -> SplineEdge:
+def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
     """Turn the coefficients into curves about the 50 % point, with their covariance."""
     start, solution, model = solved.start, solved.solution, solved.model
     middle = model.half_point()
