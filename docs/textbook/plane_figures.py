@@ -89,7 +89,7 @@ def _draw_edge(axes: Axes, angle_deg: float, orientation: str) -> None:
     axes.plot(col, row, "o", ms=5, color=GREEN)
     axes.plot([col, col - s * x], [row, row - s * y], color=GREEN, lw=1.6)
     if orientation == "across":
-        place = {"x": col - 0.5 * s * x, "y": row - 0.5 * s * y - 0.7, "ha": "center"}
+        place = {"x": col, "y": row + 0.9, "ha": "center"}
     else:
         place = {"x": col - 0.5, "y": row + 0.3, "ha": "right"}
     axes.text(s=f"s = {s:.1f} px", color=GREEN, va="center", **place)
