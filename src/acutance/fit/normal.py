@@ -93,9 +93,8 @@ def _add_pair(
 ) -> None:
     """Products of two steps' splines, both ways, into the upper triangle."""
     m = CELLS + 3
-    products = np.zeros((m, m))
-    for a in range(4):
-        for b in range(4):
-            sums = np.bincount(cell * CELLS + other, weighted[a] * basis[b], CELLS * CELLS)
-            products[a : a + CELLS, b : b + CELLS] += sums.reshape(CELLS, CELLS)
+    offsets = (np.arange(4)[:, None] * m + np.arange(4)).reshape(16, 1)
+    place = cell * m + other + offsets
+    shares = (weighted[:, None] * basis).reshape(16, -1)
+    products = np.bincount(place.reshape(-1), shares.reshape(-1), m * m).reshape(m, m)
     gram[:m, :m] += np.triu(products + products.T)

@@ -36,8 +36,9 @@ from acutance.fit.start import BlurredEdge
 __all__ = ["Pixels", "Solution", "Solved", "solve"]
 
 _NOISE_FLOOR = 2e-4
-_SETTLED_PX = 1e-3
-_SETTLED_FALL = 1e-4
+_SETTLED_PX = 0.01
+_SETTLED_FALL = 0.003
+"""A linear step this short leaves less than 1e-4 of the edge's height behind."""
 _MAX_PASSES = 10
 
 
