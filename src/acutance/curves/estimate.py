@@ -8,6 +8,8 @@ from statistics import NormalDist
 
 __all__ = ["Estimate"]
 
+_MAX_DIGITS = 6
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -56,5 +58,5 @@ class Estimate:
             return "undefined"
         if not (self.std > 0 and math.isfinite(self.std)):
             return f"{self.value:.4f}"
-        digits = max(0, 1 - math.floor(math.log10(self.std)))
+        digits = min(max(0, 1 - math.floor(math.log10(self.std))), _MAX_DIGITS)
         return f"{self.value:.{digits}f} ± {self.std:.{digits}f}"

@@ -162,14 +162,18 @@ def giqe_h(esf: Esf) -> Estimate:
     """Edge height overshoot H of GIQE 4.
 
     The maximum of ER between 1.0 and 3.0 px from the 50 % point in steps of 0.25 px, or the
-    value at 1.25 px when ER only rises there (Leachtenauer et al. 1997, doi:10.1364/AO.36.008322).
+    value at 1.25 px when ER only rises there, within its standard deviation (Leachtenauer et al. 1997, doi:10.1364/AO.36.008322).
     """
     middle, moves = _level_position(esf, 0.5)
     places = middle + np.arange(1.0, 3.01, 0.25)
     if math.isnan(middle) or places[-1] > esf.distance_px[-1]:
         return _UNDEFINED
     values = np.array([sample(esf.distance_px, esf.value, place) for place in places])
-    chosen = places[1] if np.all(np.diff(values) > 0) else places[int(np.argmax(values))]
+    rises = np.diff(values)
+    moves_apart = np.diff([esf.gradient(place) for place in places], axis=0)
+    # Noise alone makes ER fall here and there: a fall has to be more than two deviations deep.
+    falls = rises < -2 * np.linalg.norm(moves_apart, axis=1)
+    chosen = places[int(np.argmax(values))] if falls.any() else places[1]
     gradient = esf.gradient(chosen)
     tilt = slope(esf.distance_px, esf.value, chosen)
     return _estimate(sample(esf.distance_px, esf.value, chosen), gradient + tilt * moves)

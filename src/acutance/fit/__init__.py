@@ -1,1 +1,1 @@
-"""fit"""
+"""The shared numerics: lines, bands, the spline model of straight targets, its covariance."""

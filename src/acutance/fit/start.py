@@ -67,6 +67,8 @@ def fit_blurred_edge(
         Start of the levels.
     sigma_px : float, optional
         Start of the Gaussian's width.
+    noise : float, optional
+        First guess of the noise, which weighs the priors of aperture and tail.
 
     Raises
     ------

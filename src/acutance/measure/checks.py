@@ -276,14 +276,16 @@ def _saturation(cut: Cut, band: EdgeBand, seen: _Evidence, limits: EdgeLimits) -
 
 
 def _correlation(seen: _Evidence, limits: EdgeLimits) -> Check:
-    noise = seen.noise
+    # On the plateaus alone: across the edge a method's own misfit would pass for correlation.
+    flat = np.abs(seen.s) > seen.far_px
+    residual = seen.residual[flat]
+    noise = 1.4826 * float(np.median(np.abs(residual))) if residual.size else 0.0
     if noise <= 1e-6:
         found, significance = 0.0, 0.0
     else:
-        bounded = np.clip(seen.residual / noise, -4, 4)
-        measured = correlation(
-            bounded, seen.rows.astype(np.intp), seen.cols.astype(np.intp), seen.fit.line.normal
-        )
+        rows, cols = seen.rows[flat].astype(np.intp), seen.cols[flat].astype(np.intp)
+        bounded = np.clip(residual / noise, -4, 4)
+        measured = correlation(bounded, rows, cols, seen.fit.line.normal)
         found, significance = abs(measured.strongest), measured.significance
     value = found if significance >= 4 else 0.0
     return _at_most(

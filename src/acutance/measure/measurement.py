@@ -110,6 +110,31 @@ class Measurement:
     """A measurement of one straight target: numbers, curves, evidence and checks.
 
     The numbers (`mtf_nyquist`, `rer`, `fwhm_px` ...) are those of `response`.
+
+    Parameters
+    ----------
+    kind : str
+        The target: "edge" or "pulse".
+    method : str
+        The estimator.
+    line : Line
+        The edge, or the rising side of a pulse, in pixels of the whole image.
+    response : Response
+        The curves and their metrics.
+    samples : Samples
+        The pixels used, as evidence.
+    snr : float
+        Contrast over the mean standard deviation of the plateaus.
+    checks : sequence of Check
+        What was asked of the target.
+    image : ImageInfo
+        Where the pixels came from.
+    options : dict
+        The options of the measurement.
+    width_px : Estimate, optional
+        Width of a pulse along the normal.
+    measured_at : datetime
+        When (UTC).
     """
 
     kind: str
@@ -121,6 +146,7 @@ class Measurement:
     checks: Sequence[Check] = ()
     image: ImageInfo = ImageInfo()
     options: Mapping[str, Any] = field(default_factory=dict)
+    width_px: Estimate | None = None
     measured_at: datetime = field(default_factory=lambda: datetime.now(UTC))
 
     @property
@@ -187,6 +213,8 @@ class Measurement:
         from acutance import __version__
 
         numbers = {name: number.to_dict() for name, number in self.metrics().items()}
+        if self.width_px is not None:
+            numbers["width_px"] = self.width_px.to_dict()
         return {
             "schema": SCHEMA,
             "kind": self.kind,
