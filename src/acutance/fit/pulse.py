@@ -144,7 +144,10 @@ def fit_blurred_pulse(
     for _ in range(_MAX_STEPS):
         used = jacobian[free]
         gram = used @ used.T
-        gram[np.diag_indices(len(gram))] *= 1 + damping
+        # The ridge holds what the pixels do not: a step at its bound moves nothing.
+        diagonal = np.diag_indices(len(gram))
+        gram[diagonal] *= 1 + damping
+        gram[diagonal] += 1e-12 * np.trace(gram)
         step = np.zeros(7)
         step[free] = np.linalg.solve(gram, used @ residual)
         trial = p + step

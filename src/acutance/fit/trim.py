@@ -18,8 +18,9 @@ from acutance.fit.band import EdgeBand
 from acutance.fit.line import Line
 from acutance.fit.locate import Segment
 from acutance.fit.start import BlurredEdge, fit_blurred_edge
+from acutance.fit.straight import Pixels
 
-__all__ = ["Extent", "trim"]
+__all__ = ["Extent", "Serving", "serving", "trim"]
 
 _MIN_ROWS = 8
 _MIN_SNR = 3.0
@@ -73,30 +74,65 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
     SupportError
         If it is too short, or a side has no plateau.
     """
-    rows, cols = np.nonzero(np.isfinite(image))
-    row, col = rows.astype(float), cols.astype(float)
-    value = image[rows, cols]
-    edge = _first_fit(row, col, value, segment)
-    s = edge.line.normal_distance(row, col)
-    t = edge.line.tangent_distance(row, col)
-    strange = _strange(image, rows, cols, value, s, t, edge, segment)
+    pixels = Pixels.of(image)
+    edge = _first_fit(pixels.row, pixels.col, pixels.value, segment)
+    served = serving(image, pixels, edge, 0.5 * (segment.stop_px - segment.start_px))
+    band = EdgeBand(
+        served.image, served.line, edge.dark, edge.dark + edge.height,
+        edge.blur.sigma_px, edge.noise, edge.blur,
+    )  # fmt: skip
+    return band, served.extent
+
+
+@dataclass(frozen=True, eq=False)
+class Serving:
+    """What of an image serves a target: its pixels (NaN elsewhere), line and extent."""
+
+    image: Floats
+    line: Line
+    extent: Extent
+
+
+def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: float) -> Serving:
+    """The longest and widest stretch of the target whose surroundings look like its plateaus.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+    pixels : Pixels
+        The image's finite pixels.
+    edge : BlurredEdge
+        The plain blurred target: an edge or a pulse.
+    half_length_px : float
+        Half the length over which it was found.
+
+    Raises
+    ------
+    NoEdgeError
+        If the plateaus are too rough for the target's height.
+    SupportError
+        If too few rows serve.
+    """
+    rows, cols = pixels.row.astype(np.intp), pixels.col.astype(np.intp)
+    s = edge.line.normal_distance(pixels.row, pixels.col)
+    t = edge.line.tangent_distance(pixels.row, pixels.col)
+    departure = (pixels.value - edge.dark) / edge.height - edge.profile.response(edge.blur, s)[0]
+    strange = _strange(image.shape, rows, cols, departure, s, t, edge, half_length_px)
     need = 1.5 * edge.blur.width_px + 1.5
-    whole = not strange.any()
-    first, bins, dark_reach, bright_reach = _reaches(s, t, strange, need, edge.blur.width_px)
+    first, bins, dark_reach, bright_reach = _reaches(edge, s, t, strange, need)
     start, stop = _best_run(np.minimum(dark_reach, bright_reach), need)
     length = stop - start
     if length < _MIN_ROWS:
         raise SupportError(
-            f"only {length} rows of the edge have at least {need:.1f} px of plateau on both sides "
-            f"(at least {_MIN_ROWS} are needed): choose a region with more of the edge in it"
+            f"only {length} rows of the target have at least {need:.1f} px of plateau on both "
+            f"sides (at least {_MIN_ROWS} are needed): choose a region with more of it"
         )
+    whole = not strange.any()
     mask = np.zeros(image.shape, bool)
-    if whole:
-        mask[rows, cols] = True
-    else:
-        inside = (bins >= start) & (bins < stop)
-        clear = np.where(s > 0, s < bright_reach[bins], -s < dark_reach[bins])
-        mask[rows, cols] = inside & clear
+    last = edge.profile.positions_px[-1]
+    inside = (bins >= start) & (bins < stop)
+    clear = (-s < dark_reach[bins]) & (s - last < bright_reach[bins])
+    mask[rows, cols] = True if whole else inside & clear
     tenth = length // 10
     dark_px, bright_px = (
         float(np.sort(reach[start:stop])[tenth]) for reach in (dark_reach, bright_reach)
@@ -107,12 +143,9 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
         edge.line.row + x * middle, edge.line.col - y * middle, edge.line.normal_deg,
         length_px=float(length),
     )  # fmt: skip
-    _require_contrast(edge, value[mask[rows, cols]], s[mask[rows, cols]])
-    band = EdgeBand(
-        np.where(mask, image, np.nan), line, edge.dark, edge.dark + edge.height,
-        edge.blur.sigma_px, edge.noise, edge.blur,
-    )  # fmt: skip
-    return band, Extent(dark_px, bright_px, float(length), whole)
+    _require_contrast(edge, departure[mask[rows, cols]])
+    extent = Extent(dark_px, bright_px, float(length), whole)
+    return Serving(np.where(mask, image, np.nan), line, extent)
 
 
 def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> BlurredEdge:
@@ -151,40 +184,40 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
     return edge
 
 
-def _require_contrast(edge: BlurredEdge, value: Floats, s: Floats) -> None:
+def _require_contrast(edge: BlurredEdge, departure: Floats) -> None:
     """Refuse an edge that is lower than its own plateaus are rough."""
-    roughness = float(np.std(value - edge.dark - edge.height * edge.blur.esf(s)))
-    if edge.height < _MIN_SNR * roughness:
+    roughness = float(np.std(departure))
+    if roughness * _MIN_SNR > 1:
         raise NoEdgeError(
-            f"the edge has a height of {edge.height:.4g}, and its sides vary by {roughness:.3g}: "
-            f"a ratio of {edge.height / roughness:.1f} where {_MIN_SNR:g} is the least; choose a "
-            "region whose two sides are uniform"
+            f"the edge has a height of {edge.height:.4g}, and its sides vary by "
+            f"{roughness * edge.height:.3g}: a ratio of {1 / roughness:.1f} where {_MIN_SNR:g} is "
+            "the least; choose a region whose two sides are uniform"
         )
 
 
 def _strange(
-    image: Floats,
+    shape: tuple[int, ...],
     rows: NDArray[np.intp],
     cols: NDArray[np.intp],
-    value: Floats,
+    departure: Floats,
     s: Floats,
     t: Floats,
     edge: BlurredEdge,
-    segment: Segment,
+    half_length_px: float,
 ) -> NDArray[np.bool_]:
     """Which pixels do not look like the plateau of their side, in the mean of 3 x 3 pixels."""
-    departure = np.zeros(image.shape)
-    departure[rows, cols] = (value - edge.dark) / edge.height - edge.blur.esf(s)
-    known = np.zeros(image.shape)
+    field, known = np.zeros(shape), np.zeros(shape)
+    field[rows, cols] = departure
     known[rows, cols] = 1.0
-    smooth = (_box(departure) / np.maximum(_box(known), 1.0))[rows, cols]
+    smooth = (_box(field) / np.maximum(_box(known), 1.0))[rows, cols]
     width = edge.blur.width_px
-    beside = (np.abs(t) < segment.stop_px) & (np.abs(s) > width)
-    beside &= np.abs(s) < _FIRST_REACH_PX + width
+    outside = edge.profile.outside(s)
+    beside = (np.abs(t) < half_length_px) & (outside > width)
+    beside &= outside < _FIRST_REACH_PX + width
     noise = float(np.median(np.abs(smooth[beside]))) / 0.6745 if beside.any() else 0.0
     # Beyond a fifth of the contrast nothing passes for noise, however rough the ground is.
     tolerance = max(_TOLERANCE, min(_SIGNIFICANCE * noise, _MAX_TOLERANCE))
-    near = np.abs(s) < 1.5 * width
+    near = outside < 1.5 * width
     return np.abs(smooth) > np.where(near, max(_NEAR_TOLERANCE, tolerance), tolerance)
 
 
@@ -197,9 +230,9 @@ def _box(values: Floats) -> Floats:
 
 
 def _reaches(
-    s: Floats, t: Floats, strange: NDArray[np.bool_], need: float, blur_px: float
+    edge: BlurredEdge, s: Floats, t: Floats, strange: NDArray[np.bool_], need: float
 ) -> tuple[float, NDArray[np.intp], Floats, Floats]:
-    """How far every row of the edge is clear, on the dark and on the bright side.
+    """How far every row of the target is clear, before its first and behind its last step.
 
     Rows are one pixel long along the edge; the reach of a row ends before the first strange pixel
     of it or of the rows beside it, or at the last pixel there is. What is strange is blurred too:
@@ -209,7 +242,8 @@ def _reaches(
     bins = (t - first).astype(np.intp)
     count = int(bins.max()) + 1
     reaches = []
-    for outwards in (-s, s):
+    blur_px, last_step = edge.blur.width_px, edge.profile.positions_px[-1]
+    for outwards in (-s, s - last_step):
         outside = outwards > 0
         last = np.zeros(count)
         np.maximum.at(last, bins[outside], outwards[outside])
@@ -218,7 +252,8 @@ def _reaches(
             reaches.append(last)
             continue
         stop = np.full(count, np.inf)
-        wrong = strange & (outwards > -0.5)
+        # Within the target a strange pixel spoils its row on both sides.
+        wrong = strange & (outwards > -0.5 - last_step)
         np.minimum.at(stop, bins[wrong], np.maximum(outwards[wrong] - 1.0, 0.0))
         close = _spoiled(stop, 1)
         wary = _spoiled(stop, math.ceil(blur_px)) - blur_px

@@ -16,7 +16,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.fit.band import EdgeBand, EdgeFit
-from acutance.fit.noise import correlation
+from acutance.fit.noise import correlation as noise_correlation
 from acutance.fit.trim import Extent
 from acutance.measure.cut import Cut
 from acutance.measure.measurement import Check
@@ -30,15 +30,18 @@ _MUCH = 999.0
 
 
 @dataclass(frozen=True, eq=False)
-class _Evidence:
+class Evidence:
     """The pixels of a fit with their places, as the checks read them.
 
-    Distances in pixels, values and residuals as shares of the contrast.
+    Distances in pixels, values and residuals as shares of the contrast. `before` and `behind` are
+    the distances outwards from the target's first and last step: of an edge, its dark and its
+    bright side.
     """
 
     rows: Floats
     cols: Floats
-    s: Floats
+    before: Floats
+    behind: Floats
     t: Floats
     value: Floats
     residual: Floats
@@ -46,19 +49,26 @@ class _Evidence:
     fit: EdgeFit
 
     @classmethod
-    def of(cls, band: EdgeBand, fit: EdgeFit) -> _Evidence:
+    def of(cls, band: EdgeBand, fit: EdgeFit, last_px: float = 0.0) -> Evidence:
+        """Evidence of a fit whose last step lies `last_px` behind its first."""
         rows, cols = np.nonzero(np.isfinite(band.image))
         fwhm = fit.response.fwhm_px.value
         return cls(
             rows.astype(float),
             cols.astype(float),
-            fit.distance_px,
+            -fit.distance_px,
+            fit.distance_px - last_px,
             fit.line.tangent_distance(rows, cols),
             fit.value,
             fit.residual,
             fwhm if math.isfinite(fwhm) else 1.0,
             fit,
         )
+
+    @cached_property
+    def outside(self) -> Floats:
+        """Distance from the target's nearest step outwards (negative within a pulse)."""
+        return np.maximum(self.before, self.behind)
 
     @cached_property
     def far_px(self) -> float:
@@ -73,9 +83,15 @@ class _Evidence:
     @cached_property
     def plateau_std(self) -> float:
         """Mean standard deviation of the two plateaus."""
-        sides = (self.value[self.s < -self.far_px], self.value[self.s > self.far_px])
+        sides = (self.value[side > self.far_px] for side in (self.before, self.behind))
         stds = [float(np.std(side)) for side in sides if side.size > 1]
         return sum(stds) / len(stds) if stds else 0.0
+
+    @cached_property
+    def slope(self) -> Floats:
+        """How much every pixel changes when the first step moves by one pixel against s."""
+        lsf = self.fit.response.lsf
+        return np.interp(-self.before, lsf.distance_px, lsf.value, left=0.0, right=0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +115,8 @@ class EdgeChecks(Sequence[Check]):
     by_rows: bool
 
     @cached_property
-    def _seen(self) -> _Evidence:
-        return _Evidence.of(self.band, self.fit)
+    def _seen(self) -> Evidence:
+        return Evidence.of(self.band, self.fit)
 
     @property
     def snr(self) -> float:
@@ -112,19 +128,19 @@ class EdgeChecks(Sequence[Check]):
     def _answers(self) -> tuple[Check, ...]:
         seen, limits = self._seen, self.limits
         return (
-            _contrast(seen, limits),
-            _uniformity(seen, limits, "dark"),
-            _uniformity(seen, limits, "bright"),
-            _angle(self.fit, limits, self.by_rows),
-            _phases(seen, limits),
-            _rows(self.extent, limits),
-            _straightness(seen, limits),
-            _plateau(self.extent, limits, "dark"),
-            _plateau(self.extent, limits, "bright"),
-            _saturation(self.cut, self.band, seen, limits),
-            _correlation(seen, limits),
-            _structure(seen, limits),
-            _outliers(seen, limits),
+            contrast(seen, limits),
+            uniformity(seen, limits, "dark", seen.before),
+            uniformity(seen, limits, "bright", seen.behind),
+            angle(self.fit, limits, self.by_rows),
+            phases(seen, limits),
+            enough_rows(self.extent, limits),
+            straightness(seen, limits),
+            plateau(limits, "dark", self.extent.dark_px),
+            plateau(limits, "bright", self.extent.bright_px),
+            saturation(self.cut, self.band, seen, limits),
+            correlation(seen, limits),
+            structure(seen, limits),
+            outliers(seen, limits),
         )
 
     def __len__(self) -> int:
@@ -148,7 +164,7 @@ def _at_most(name: str, value: float, limit: float, message: str) -> Check:
     return Check(name, value, f"<= {limit:g}", bool(value <= limit), message)
 
 
-def _contrast(seen: _Evidence, limits: EdgeLimits) -> Check:
+def contrast(seen: Evidence, limits: EdgeLimits) -> Check:
     std = seen.plateau_std
     value = min(1 / std, _MUCH) if std > 0 else _MUCH
     return _at_least(
@@ -158,10 +174,9 @@ def _contrast(seen: _Evidence, limits: EdgeLimits) -> Check:
     )  # fmt: skip
 
 
-def _uniformity(seen: _Evidence, limits: EdgeLimits, side: str) -> Check:
+def uniformity(seen: Evidence, limits: EdgeLimits, side: str, outwards: Floats) -> Check:
     """Structure of one plateau: what means over 4 x 4 pixels vary beyond what noise explains."""
-    sign = -1.0 if side == "dark" else 1.0
-    there = sign * seen.s > seen.far_px
+    there = outwards > seen.far_px
     blocks = (seen.rows[there] // 4) * 4096 + seen.cols[there] // 4
     _, block = np.unique(blocks, return_inverse=True)
     count = np.bincount(block)
@@ -181,7 +196,7 @@ def _uniformity(seen: _Evidence, limits: EdgeLimits, side: str) -> Check:
     )  # fmt: skip
 
 
-def _angle(fit: EdgeFit, limits: EdgeLimits, by_rows: bool) -> Check:
+def angle(fit: EdgeFit, limits: EdgeLimits, by_rows: bool) -> Check:
     angle = fit.line.angle_deg
     limit = limits.angle_deg if by_rows else 45.0
     return _at_most(
@@ -200,8 +215,8 @@ def sample_phases(line_distance: Floats, reach_px: float = 2.0) -> float:
     return min(1 / gap, _MUCH) if gap > 0 else _MUCH
 
 
-def _phases(seen: _Evidence, limits: EdgeLimits) -> Check:
-    value = sample_phases(seen.s)
+def phases(seen: Evidence, limits: EdgeLimits) -> Check:
+    value = sample_phases(seen.before)
     return _at_least(
         "sample_phases", value, limits.sample_phases,
         f"the widest gap between samples of the profile is {1 / max(value, 1e-9):.2f} px: "
@@ -209,18 +224,18 @@ def _phases(seen: _Evidence, limits: EdgeLimits) -> Check:
     )  # fmt: skip
 
 
-def _rows(extent: Extent, limits: EdgeLimits) -> Check:
+def enough_rows(extent: Extent, limits: EdgeLimits) -> Check:
     return _at_least(
         "rows", extent.length_px, limits.rows,
         f"{extent.length_px:.0f} rows of the edge serve (KOMPSAT-3 draft 3e: more than 10 to 20)",
     )  # fmt: skip
 
 
-def _straightness(seen: _Evidence, limits: EdgeLimits) -> Check:
+def straightness(seen: Evidence, limits: EdgeLimits) -> Check:
     """Where every eighth of the edge lies beside the line, beyond what noise explains."""
-    lsf = seen.fit.response.lsf
-    slope = np.interp(seen.s, lsf.distance_px, lsf.value, left=0.0, right=0.0)
-    span = float(np.ptp(seen.t[np.abs(seen.s) < 1])) if np.any(np.abs(seen.s) < 1) else 0.0
+    slope = seen.slope
+    steep = np.abs(seen.before) < 1
+    span = float(np.ptp(seen.t[steep])) if steep.any() else 0.0
     parts = max(3, min(12, int(span // 5)))
     first = float(seen.t.min())
     part = np.minimum(((seen.t - first) * parts / max(np.ptp(seen.t), 1e-9)).astype(int), parts - 1)
@@ -243,8 +258,8 @@ def _straightness(seen: _Evidence, limits: EdgeLimits) -> Check:
     )  # fmt: skip
 
 
-def _plateau(extent: Extent, limits: EdgeLimits, side: str) -> Check:
-    value = extent.dark_px if side == "dark" else extent.bright_px
+def plateau(limits: EdgeLimits, side: str, value: float) -> Check:
+    """How far one side is uniform."""
     return _at_least(
         f"plateau_{side}_px", value, limits.plateau_px,
         f"the {side} side is uniform out to {value:.1f} px from the edge (Li et al. 4.2: 7 to 10); "
@@ -252,19 +267,20 @@ def _plateau(extent: Extent, limits: EdgeLimits, side: str) -> Check:
     )  # fmt: skip
 
 
-def _saturation(cut: Cut, band: EdgeBand, seen: _Evidence, limits: EdgeLimits) -> Check:
+def saturation(cut: Cut, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> Check:
     """Pixels at the detector's limit, or a side whose values are all one."""
-    values = band.image[np.isfinite(band.image)]
+    used = np.isfinite(band.image)
+    values = cut.pixels[used]
     share = 0.0
     if cut.saturation_level is not None:
         share = float(np.mean(values >= cut.saturation_level))
+    middle = float(np.median(values))
     spreads = []
-    for there in (seen.s < -seen.far_px, seen.s > seen.far_px):
-        side = values[there]
-        if side.size < 20:
-            continue
-        end = side.max() if there is not None and np.median(seen.s[there]) > 0 else side.min()
-        spreads.append(float(np.mean(side == end)))
+    for outwards in (seen.before, seen.behind):
+        side = values[outwards > seen.far_px]
+        if side.size >= 20:
+            end = side.max() if np.median(side) > middle else side.min()
+            spreads.append(float(np.mean(side == end)))
     # One side piled up at one value while the other is noisy: clipped before it was written.
     if len(spreads) == 2 and max(spreads) > 0.3 and min(spreads) < 0.2:
         share = max(share, max(spreads))
@@ -275,9 +291,9 @@ def _saturation(cut: Cut, band: EdgeBand, seen: _Evidence, limits: EdgeLimits) -
     )  # fmt: skip
 
 
-def _correlation(seen: _Evidence, limits: EdgeLimits) -> Check:
+def correlation(seen: Evidence, limits: EdgeLimits) -> Check:
     # On the plateaus alone: across the edge a method's own misfit would pass for correlation.
-    flat = np.abs(seen.s) > seen.far_px
+    flat = seen.outside > seen.far_px
     residual = seen.residual[flat]
     noise = 1.4826 * float(np.median(np.abs(residual))) if residual.size else 0.0
     if noise <= 1e-6:
@@ -285,7 +301,7 @@ def _correlation(seen: _Evidence, limits: EdgeLimits) -> Check:
     else:
         rows, cols = seen.rows[flat].astype(np.intp), seen.cols[flat].astype(np.intp)
         bounded = np.clip(residual / noise, -4, 4)
-        measured = correlation(bounded, rows, cols, seen.fit.line.normal)
+        measured = noise_correlation(bounded, rows, cols, seen.fit.line.normal)
         found, significance = abs(measured.strongest), measured.significance
     value = found if significance >= 4 else 0.0
     return _at_most(
@@ -296,10 +312,10 @@ def _correlation(seen: _Evidence, limits: EdgeLimits) -> Check:
     )  # fmt: skip
 
 
-def _structure(seen: _Evidence, limits: EdgeLimits) -> Check:
+def structure(seen: Evidence, limits: EdgeLimits) -> Check:
     """Bumps of the ESF where it should be flat: a line, a road, a second edge."""
     esf = seen.fit.response.esf
-    reach = float(np.partition(np.abs(seen.s), int(0.95 * seen.s.size))[int(0.95 * seen.s.size)])
+    reach = float(np.sort(seen.outside)[int(0.95 * seen.outside.size)])
     worst = 0.0
     for sign in (-1.0, 1.0):
         outwards = sign * esf.distance_px
@@ -318,7 +334,7 @@ def _structure(seen: _Evidence, limits: EdgeLimits) -> Check:
     )  # fmt: skip
 
 
-def _outliers(seen: _Evidence, limits: EdgeLimits) -> Check:
+def outliers(seen: Evidence, limits: EdgeLimits) -> Check:
     noise = seen.noise
     many = np.abs(seen.residual) > _OUTLIER_SIGMAS * noise if noise > 1e-6 else np.zeros(1, bool)
     value = float(np.mean(many))
