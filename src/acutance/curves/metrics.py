@@ -162,7 +162,8 @@ def giqe_h(esf: Esf) -> Estimate:
     """Edge height overshoot H of GIQE 4.
 
     The maximum of ER between 1.0 and 3.0 px from the 50 % point in steps of 0.25 px, or the
-    value at 1.25 px when ER only rises there, within its standard deviation (Leachtenauer et al. 1997, doi:10.1364/AO.36.008322).
+    value at 1.25 px when ER only rises there, within its standard deviation (Leachtenauer et al.
+    1997, doi:10.1364/AO.36.008322).
     """
     middle, moves = _level_position(esf, 0.5)
     places = middle + np.arange(1.0, 3.01, 0.25)

@@ -2,20 +2,25 @@
 
 from acutance.measure.edge import METHODS, measure_edge
 from acutance.measure.measurement import Check, ImageInfo, Measurement, Samples
-from acutance.measure.options import EdgeLimits, EdgeOptions
+from acutance.measure.options import EdgeLimits, EdgeOptions, PulseLimits, PulseOptions
+from acutance.measure.pulse import PULSE_METHODS, measure_pulse
 from acutance.measure.target import EdgeGroup, Rejected, TargetResult, measure_edges
 
 __all__ = [
     "METHODS",
+    "PULSE_METHODS",
     "Check",
     "EdgeGroup",
     "EdgeLimits",
     "EdgeOptions",
     "ImageInfo",
     "Measurement",
+    "PulseLimits",
+    "PulseOptions",
     "Rejected",
     "Samples",
     "TargetResult",
     "measure_edge",
     "measure_edges",
+    "measure_pulse",
 ]

@@ -22,7 +22,7 @@ from acutance.measure.cut import Cut
 from acutance.measure.measurement import Check
 from acutance.measure.options import EdgeLimits
 
-__all__ = ["EdgeChecks", "sample_phases"]
+__all__ = ["EdgeChecks", "Evidence", "TargetChecks", "sample_phases"]
 
 _FAR_WIDTHS = 2.0
 _OUTLIER_SIGMAS = 4.5
@@ -94,9 +94,30 @@ class Evidence:
         return np.interp(-self.before, lsf.distance_px, lsf.value, left=0.0, right=0.0)
 
 
+class TargetChecks(Sequence[Check]):
+    """Checks of a target, answered when somebody first asks."""
+
+    @cached_property
+    def answers(self) -> tuple[Check, ...]:
+        """All checks."""
+        raise NotImplementedError
+
+    def __len__(self) -> int:
+        return len(self.answers)
+
+    @overload
+    def __getitem__(self, index: int) -> Check: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Check, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Check | tuple[Check, ...]:
+        return self.answers[index]
+
+
 @dataclass(frozen=True, eq=False)
-class EdgeChecks(Sequence[Check]):
-    """All target checks of an edge, answered when somebody first asks.
+class EdgeChecks(TargetChecks):
+    """All target checks of an edge.
 
     Parameters
     ----------
@@ -125,7 +146,7 @@ class EdgeChecks(Sequence[Check]):
         return 1 / std if std > 0 else math.inf
 
     @cached_property
-    def _answers(self) -> tuple[Check, ...]:
+    def answers(self) -> tuple[Check, ...]:
         seen, limits = self._seen, self.limits
         return (
             contrast(seen, limits),
@@ -142,18 +163,6 @@ class EdgeChecks(Sequence[Check]):
             structure(seen, limits),
             outliers(seen, limits),
         )
-
-    def __len__(self) -> int:
-        return len(self._answers)
-
-    @overload
-    def __getitem__(self, index: int) -> Check: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> tuple[Check, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> Check | tuple[Check, ...]:
-        return self._answers[index]
 
 
 def _at_least(name: str, value: float, limit: float, message: str) -> Check:

@@ -22,7 +22,7 @@ from acutance.measure.options import EdgeOptions
 from acutance.measure.published import PUBLISHED, PUBLISHED_OPTIONS
 from acutance.raster import Gsd, Image
 
-__all__ = ["METHODS", "measure_edge", "measure_segment"]
+__all__ = ["METHODS", "measure_edge", "measure_segment", "require_phases"]
 
 _MIN_PHASES = 2.0
 _WANTED_PHASES = 4.0
@@ -120,9 +120,9 @@ def measure_segment(
     """Measure one segment that was found in a cut; see `measure_edge`."""
     estimate = _method(method)
     band, extent = trim(pixels.pixels, segment)
-    _require_phases(band, band.line)
+    require_phases(band, band.line)
     fit = estimate(band, options)
-    _require_phases(band, fit.line)
+    require_phases(band, fit.line)
     return _measurement(pixels, band, extent, fit, method, options)
 
 
@@ -132,7 +132,7 @@ def _method(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
     return METHODS[name]
 
 
-def _require_phases(band: EdgeBand, line: Line) -> None:
+def require_phases(band: EdgeBand, line: Line) -> None:
     """Refuse an edge whose samples repeat at the same sub-pixel phases."""
     rows, cols = np.nonzero(np.isfinite(band.image))
     phases = sample_phases(line.normal_distance(rows, cols))

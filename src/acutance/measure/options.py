@@ -14,7 +14,7 @@ from acutance.measure.published import (
     SdsuOptions,
 )
 
-__all__ = ["EdgeLimits", "EdgeOptions", "MethodOptions"]
+__all__ = ["EdgeLimits", "EdgeOptions", "MethodOptions", "PulseLimits", "PulseOptions"]
 
 MethodOptions = SdsuOptions | KompsatOptions | Iso12233Options | FermiOptions
 
@@ -60,6 +60,60 @@ class EdgeLimits:
     correlated_noise: float = 0.1
     structure: float = 0.02
     outliers: float = 0.02
+
+
+@dataclass(frozen=True)
+class PulseLimits(EdgeLimits):
+    """Limits of the target checks of a pulse: those of an edge, and four of its own.
+
+    Parameters
+    ----------
+    width_sigmas : float
+        Largest departure of the fitted width from the stated one, in standard deviations.
+    zero_distance_cpp : float
+        Least distance of Nyquist from a zero of the pulse's spectrum (method "sdsu-2005").
+    parallel_deg : float
+        Largest angle between the two sides.
+    ground_step : float
+        Largest difference of the two grounds, as a share of the pulse's height.
+    """
+
+    width_sigmas: float = 3.0
+    zero_distance_cpp: float = 0.08
+    parallel_deg: float = 0.5
+    ground_step: float = 0.25
+
+
+@dataclass(frozen=True)
+class PulseOptions:
+    """Options of a pulse measurement.
+
+    Parameters
+    ----------
+    rer_centre : {"half", "peak"} or None
+        What RER is centred on; None is the 50 % point.
+    robust : bool
+        Bound the weight of outlying pixels (method "spline").
+    limits : PulseLimits
+        Limits of the checks.
+    method_options : SdsuPulseOptions, optional
+        Options of the published method.
+    """
+
+    rer_centre: RerCentre | None = None
+    robust: bool = True
+    limits: PulseLimits = field(default_factory=PulseLimits)
+    method_options: Any = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """All options by name, for JSON."""
+        chosen = self.method_options
+        return {
+            "rer_centre": self.rer_centre,
+            "robust": self.robust,
+            "limits": dict(vars(self.limits)),
+            "method_options": None if chosen is None else dict(vars(chosen)),
+        }
 
 
 @dataclass(frozen=True)

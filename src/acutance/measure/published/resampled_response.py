@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,9 @@ __all__ = [
     "GRID_PX",
     "STEP_PX",
     "SampledEdge",
+    "covariance_factor",
     "crossing_of_half",
+    "draw_rows",
     "edge_fit",
     "fit_with_bootstrap",
     "normalised",
@@ -44,6 +46,7 @@ FREQ_CPP: Floats = np.arange(101.0) * 0.01
 """Frequencies of the OTF."""
 
 Complexes = NDArray[np.complex128]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,19 +181,14 @@ def fit_with_bootstrap(
             "the fitted edge spread function never passes 50 % of its own contrast: "
             "use a region with wider and more even plateaus"
         )
-    draws = rng.multinomial(count, np.full(count, 1.0 / count), size=replicates)
-    drawn = [_measure_again(rows, pipeline, weight.astype(float)) for weight in draws]
-    kept = [replicate for replicate in drawn if replicate is not None]
-    if len(kept) < replicates / 2:
-        raise SupportError(
-            f"only {len(kept)} of {replicates} draws of the {count} rows can be measured, at "
-            "least half are needed for a standard deviation: use a region with more rows"
-        )
+    kept = draw_rows(
+        rows, lambda weight: _on_grid(pipeline(rows, weight)), replicates=replicates, rng=rng
+    )
     esf, lsf, otf = (np.stack(part, axis=1) for part in zip(curves, *kept, strict=True))
     response = Response(
-        Esf(GRID_PX, esf[:, 0], _factor(esf[:, 1:])),
-        Lsf(GRID_PX, lsf[:, 0], _factor(lsf[:, 1:])),
-        Mtf(FREQ_CPP, otf[:, 0], _factor(otf[:, 1:])),
+        Esf(GRID_PX, esf[:, 0], covariance_factor(esf[:, 1:])),
+        Lsf(GRID_PX, lsf[:, 0], covariance_factor(lsf[:, 1:])),
+        Mtf(FREQ_CPP, otf[:, 0], covariance_factor(otf[:, 1:])),
         rer_centre=rer_centre,
     )
     line = rows.frame.line_in_cut(edge.line)
@@ -205,18 +203,47 @@ def fit_with_bootstrap(
     )
 
 
-def _measure_again(
-    rows: LocatedRows, pipeline: Callable[[LocatedRows, Floats], SampledEdge], weight: Floats
-) -> tuple[Floats, Floats, Complexes] | None:
-    """The curves of one draw of the rows, None when that draw cannot be measured."""
-    try:
-        return _on_grid(pipeline(rows, weight))
-    except AcutanceError:
-        return None
+def draw_rows(
+    rows: LocatedRows,
+    measure: Callable[[Floats], T | None],
+    *,
+    replicates: int,
+    rng: np.random.Generator,
+) -> list[T]:
+    """Measure `replicates` draws of the rows, with replacement.
+
+    Parameters
+    ----------
+    rows : LocatedRows
+    measure : callable
+        Takes how often each row counts (n,); ``None`` or an error where that cannot be measured.
+    replicates : int
+    rng : numpy.random.Generator
+
+    Raises
+    ------
+    SupportError
+        If fewer than half of the draws can be measured.
+    """
+    count = rows.row.size
+    kept = []
+    for weight in rng.multinomial(count, np.full(count, 1.0 / count), size=replicates):
+        try:
+            drawn = measure(weight.astype(float))
+        except AcutanceError:
+            continue
+        if drawn is not None:
+            kept.append(drawn)
+    if len(kept) < replicates / 2:
+        raise SupportError(
+            f"only {len(kept)} of {replicates} draws of the {count} rows can be measured, at "
+            "least half are needed for a standard deviation: use a region with more rows"
+        )
+    return kept
 
 
-def _factor(drawn: NDArray[Any]) -> NDArray[Any]:
-    """Factor of the covariance of columns that were drawn, (n, replicates)."""
+def covariance_factor(drawn: NDArray[Any]) -> NDArray[Any]:
+    """Factor of the covariance of columns that were drawn, (n, replicates); (n, 0) for one."""
     if drawn.shape[1] < 2:
         return drawn[:, :0]
     centred: NDArray[Any] = drawn - drawn.mean(axis=1, keepdims=True)

@@ -17,6 +17,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, OptionError, SupportError
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.measure.published.edge_location import fermi_locations
+from acutance.measure.published.local_polynomial import modified_savitzky_golay
 from acutance.measure.published.resampled_response import (
     STEP_PX,
     SampledEdge,
@@ -26,11 +27,9 @@ from acutance.measure.published.resampled_response import (
 )
 from acutance.measure.published.row_profiles import LocatedRows, RowLine, locate_rows
 
-__all__ = ["SdsuOptions", "modified_savitzky_golay", "sdsu_2005"]
+__all__ = ["SdsuOptions", "sdsu_2005"]
 
-_WINDOW_STEPS = 20
 _SMOOTHING_ORDER = 4
-_RIDGE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -172,54 +171,3 @@ def _smooth(lsf: Floats, points: int) -> Floats:
     from scipy.signal import savgol_filter
 
     return np.asarray(savgol_filter(lsf, points, _SMOOTHING_ORDER))
-
-
-def modified_savitzky_golay(
-    distance_px: Floats, value: Floats, weight: Floats, grid_px: Floats, order: int
-) -> Floats:
-    """Local polynomials of unevenly spaced samples, evaluated at the centre of a 1 px window.
-
-    Parameters
-    ----------
-    distance_px, value, weight : (n,) arrays
-        Samples in any order; weight 0 leaves one out.
-    grid_px : (m,) array
-        Centres of the windows, 0.05 px apart.
-    order : int
-        Degree of the polynomial.
-
-    Returns
-    -------
-    (m,) array
-        A window with fewer distinct samples than the polynomial has coefficients gets the
-        flattest polynomial through them.
-
-    Raises
-    ------
-    SupportError
-        If a window holds no sample at all.
-    """
-    size = grid_px.size
-    position = (distance_px - grid_px[0]) / STEP_PX
-    first = np.ceil(position - _WINDOW_STEPS / 2).astype(int)
-    window = first[:, None] + np.arange(_WINDOW_STEPS)
-    offset = (position[:, None] - window) * (2.0 / _WINDOW_STEPS)
-    inside = (window >= 0) & (window < size)
-    window, offset = window[inside], offset[inside]
-    share = np.broadcast_to(weight[:, None], inside.shape)[inside]
-    target = np.broadcast_to(value[:, None], inside.shape)[inside]
-    if np.bincount(window, share, minlength=size).min() <= 0:
-        raise SupportError("a 1 px window of the profile holds no sample: use a larger region")
-    basis = np.polynomial.legendre.legvander(offset, order).T
-    terms = order + 1
-    normal = np.empty((size, terms, terms))
-    moment = np.empty((size, terms, 1))
-    for i in range(terms):
-        weighted = share * basis[i]
-        moment[:, i, 0] = np.bincount(window, weighted * target, minlength=size)
-        for j in range(i, terms):
-            normal[:, i, j] = np.bincount(window, weighted * basis[j], minlength=size)
-            normal[:, j, i] = normal[:, i, j]
-    normal += (_RIDGE * normal[:, :1, :1]) * np.diag([0.0] + [1.0] * order)
-    coefficient = np.linalg.solve(normal, moment)[:, :, 0]
-    return np.asarray(coefficient @ np.polynomial.legendre.legvander(np.zeros(1), order)[0])

@@ -1,0 +1,159 @@
+"""Measure a pulse target: a strip between two grounds, as a tarp on grass, a bridge, a stripe."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves import Estimate
+from acutance.errors import OptionError
+from acutance.fit.band import EdgeFit
+from acutance.fit.find_pulse import find_pulse
+from acutance.fit.locate import find_segments
+from acutance.fit.pulse import PulseBand, fit_pulse
+from acutance.measure.cut import Cut, RoiLike, cut
+from acutance.measure.edge import require_phases
+from acutance.measure.measurement import Measurement, Samples
+from acutance.measure.options import PulseOptions
+from acutance.measure.pulse_checks import PulseChecks
+from acutance.raster import Gsd, Image
+
+__all__ = ["PULSE_METHODS", "measure_pulse"]
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """What a method makes of a pulse."""
+
+    fit: EdgeFit
+    width: Estimate
+    fall: Estimate
+
+
+def _spline(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
+    if options.method_options is not None:
+        raise OptionError("method_options belong to the published methods: leave them out")
+    fit = fit_pulse(band, fit_width=fit_width, robust=options.robust)
+    return _Fitted(fit, fit.pulse_width, fit.fall)
+
+
+PULSE_METHODS: dict[str, Callable[[PulseBand, bool, PulseOptions], _Fitted]] = {
+    "spline": _spline,
+}
+
+
+def measure_pulse(
+    image: Image | ArrayLike,
+    roi: RoiLike = None,
+    *,
+    width_px: float | None = None,
+    width_m: float | None = None,
+    gsd_m: float | Gsd | None = None,
+    fit_width: bool = True,
+    method: str = "spline",
+    options: PulseOptions | None = None,
+) -> Measurement:
+    """Measure the strongest pulse of a region.
+
+    Parameters
+    ----------
+    image : Image or (rows, cols) array_like
+    roi : Region, Box, (row, col, height, width) or None
+        A loose region is normal: the pulse is found in it, and what serves is trimmed.
+    width_px, width_m : float, optional
+        Width of the target along its normal, in pixels or in metres (which needs a GSD); without
+        either it is guessed from the profile and fitted.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres, instead of the image's own.
+    fit_width : bool, optional
+        Whether the width is fitted with the LSF, with its own standard deviation (method
+        "spline"); the stated one is then the start, and a check compares the two.
+    method : {"spline"}, optional
+        The joint fit.
+    options : PulseOptions, optional
+
+    Returns
+    -------
+    Measurement
+        With `width_px`. The MTF is the sensor's, not that of the pulse response.
+
+    Raises
+    ------
+    ImageError, RegionError, OptionError
+        If there are no pixels to measure, or the width makes no sense.
+    NoEdgeError, PhaseError, SupportError
+        If there is no pulse, it is aligned with the grid, or too little of it is there.
+    """
+    chosen = options or PulseOptions()
+    estimate = _method(method)
+    pixels = cut(image, roi, gsd_m)
+    stated_px = _stated_width(pixels, width_px, width_m)
+    free = fit_width or stated_px is None
+    band, extent = find_pulse(pixels.pixels, stated_px, fit_width=free)
+    require_phases(band, band.line)
+    if stated_px is not None:
+        band = replace(band, pulse_width_px=stated_px)
+    found = estimate(band, free, chosen)
+    require_phases(band, found.fit.line)
+    checks = PulseChecks(
+        pixels, band, extent, found.fit, found.width, found.fall, stated_px, chosen.limits,
+        by_ratio=method != "spline",
+    )  # fmt: skip
+    return _measurement(pixels, band, found, checks, method, chosen)
+
+
+def _method(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
+    if name not in PULSE_METHODS:
+        known = ", ".join(PULSE_METHODS)
+        raise OptionError(f"there is no pulse method {name!r}: choose one of {known}")
+    return PULSE_METHODS[name]
+
+
+def _stated_width(pixels: Cut, width_px: float | None, width_m: float | None) -> float | None:
+    """The stated width in pixels along the normal of the region's strongest side."""
+    if width_px is not None and width_m is not None:
+        raise OptionError("the width was given in pixels and in metres: give one of them")
+    if width_m is not None:
+        if pixels.gsd is None:
+            raise OptionError(
+                f"a width of {width_m:g} m needs a GSD, and the image has none: give gsd_m, or "
+                "the width in pixels"
+            )
+        side = next(find_segments(pixels.pixels, 1), None)
+        width_px = width_m / pixels.gsd.along_normal(side.line.normal_deg if side else 0.0)
+    if width_px is not None and not 0.3 <= width_px <= 100:
+        raise OptionError(
+            f"a pulse {width_px:.3g} px wide cannot be measured: widths of 2 to 6 px serve best; "
+            "check the width and the GSD"
+        )
+    return width_px
+
+
+def _measurement(
+    pixels: Cut,
+    band: PulseBand,
+    found: _Fitted,
+    checks: PulseChecks,
+    method: str,
+    options: PulseOptions,
+) -> Measurement:
+    """Put together what a measurement holds; the line moves into the whole image's pixels."""
+    fit = found.fit
+    info = pixels.info(fit.line)
+    response = replace(
+        fit.response,
+        gsd_m=info.gsd_m,
+        rer_centre=options.rer_centre or fit.response.rer_centre,
+    )
+    line = replace(fit.line, row=fit.line.row + pixels.box.row, col=fit.line.col + pixels.box.col)
+    samples = Samples(
+        pixels.pixels, np.isfinite(band.image), fit.distance_px, fit.value, fit.residual,
+        band.sign * fit.dark, band.sign * fit.bright,
+    )  # fmt: skip
+    return Measurement(
+        "pulse", method, line, response, samples, checks.snr, checks, info, options.to_dict(),
+        found.width,
+    )  # fmt: skip

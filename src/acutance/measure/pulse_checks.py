@@ -1,0 +1,165 @@
+"""Is this pulse good enough to tell? The edge's questions, and those of a strip.
+
+Sources: Li et al., "On-orbit MTF estimation methods", 3.2; the pulse reports of 2003 and 2005.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from acutance.curves import Estimate
+from acutance.curves.metrics import NYQUIST_CPP
+from acutance.fit.band import EdgeFit
+from acutance.fit.pulse import PulseBand
+from acutance.fit.trim import Extent
+from acutance.measure import checks
+from acutance.measure.checks import Evidence, TargetChecks
+from acutance.measure.cut import Cut
+from acutance.measure.measurement import Check
+from acutance.measure.options import PulseLimits
+
+__all__ = ["PulseChecks", "zeros_of_pulse"]
+
+_MUCH = 999.0
+
+
+def zeros_of_pulse(width_px: float, up_to_cpp: float = 1.0) -> tuple[float, ...]:
+    """Frequencies at which a pulse of `width_px` has no contrast: k / width, cycles per pixel."""
+    return tuple(k / width_px for k in range(1, math.floor(up_to_cpp * width_px) + 1))
+
+
+@dataclass(frozen=True, eq=False)
+class PulseChecks(TargetChecks):
+    """All target checks of a pulse.
+
+    Parameters
+    ----------
+    cut, band, extent, fit
+        What the measurement went through.
+    width, fall : Estimate
+        Width of the pulse in pixels, and height of its falling side over the rising one's.
+    stated_px : float or None
+        The width as stated.
+    limits : PulseLimits
+    by_ratio : bool
+        Whether the method divides by the pulse's spectrum.
+    """
+
+    cut: Cut
+    band: PulseBand
+    extent: Extent
+    fit: EdgeFit
+    width: Estimate
+    fall: Estimate
+    stated_px: float | None
+    limits: PulseLimits
+    by_ratio: bool
+
+    @cached_property
+    def _seen(self) -> Evidence:
+        return Evidence.of(self.band, self.fit, self.width.value)
+
+    @property
+    def snr(self) -> float:
+        """Peak less mean background, over the background's standard deviation (2005, 3.4.1)."""
+        seen = self._seen
+        std = seen.plateau_std
+        far = seen.outside > seen.far_px
+        if not (std > 0 and far.any()):
+            return math.inf
+        fitted = seen.value - seen.residual
+        return float((fitted.max() - fitted[far].mean()) / std)
+
+    @cached_property
+    def answers(self) -> tuple[Check, ...]:
+        seen, limits = self._seen, self.limits
+        return (
+            self._contrast(),
+            checks.uniformity(seen, limits, "before", seen.before),
+            checks.uniformity(seen, limits, "behind", seen.behind),
+            checks.angle(self.fit, limits, self.by_ratio),
+            checks.phases(seen, limits),
+            checks.enough_rows(self.extent, limits),
+            checks.straightness(seen, limits),
+            checks.plateau(limits, "before", self.extent.dark_px),
+            checks.plateau(limits, "behind", self.extent.bright_px),
+            checks.saturation(self.cut, self.band, seen, limits),
+            checks.correlation(seen, limits),
+            checks.outliers(seen, limits),
+            self._parallel(),
+            self._grounds(),
+            self._width(),
+            self._zeros(),
+        )
+
+    def _contrast(self) -> Check:
+        value, limit = min(self.snr, _MUCH), self.limits.contrast_snr
+        return Check(
+            "contrast_snr", value, f">= {limit:g}", value >= limit,
+            f"the pulse's peak stands {value:.0f} standard deviations of the ground above it "
+            "(the report of 2005, 3.4, asks 50)",
+        )  # fmt: skip
+
+    def _parallel(self) -> Check:
+        """Whether the falling side turns against the rising one, from the residuals beside it."""
+        seen, limit = self._seen, self.limits.parallel_deg
+        lsf = self.fit.response.lsf
+        slope = -self.fall.value * np.interp(
+            seen.behind, lsf.distance_px, lsf.value, left=0.0, right=0.0
+        )
+        # The line's direction is fitted to both sides: half of a turn shows on either.
+        power = float(slope**2 @ seen.t**2)
+        turn = -float((slope * seen.t) @ seen.residual) / power if power > 0 else 0.0
+        std = seen.noise / math.sqrt(power) if power > 0 else 0.0
+        value = 2 * abs(math.degrees(turn)) if abs(turn) > 3 * std else 0.0
+        return Check(
+            "parallel_deg", value, f"<= {limit:g}", value <= limit,
+            f"the two sides are inclined by {value:.2f} degrees to each other (Li et al. 3.2: a "
+            "pulse has parallel sides)",
+        )  # fmt: skip
+
+    def _grounds(self) -> Check:
+        value, limit = abs(1 - self.fall.value), self.limits.ground_step
+        return Check(
+            "ground_step", value, f"<= {limit:g}", value <= limit,
+            f"the two grounds differ by {100 * value:.0f} % of the pulse's height: the joint fit "
+            "allows for it, the ratio to a symmetric pulse does not",
+        )  # fmt: skip
+
+    def _width(self) -> Check:
+        """Whether the stated width agrees with the data."""
+        limit = self.limits.width_sigmas
+        if self.stated_px is None or not self.width.std > 0:
+            return Check(
+                "width_sigmas", 0.0, f"<= {limit:g}", True,
+                f"the width is {self.width} px; no other was stated or none was fitted",
+            )  # fmt: skip
+        away = self.width.value - self.stated_px
+        value = abs(away) / self.width.std
+        return Check(
+            "width_sigmas", value, f"<= {limit:g}", value <= limit,
+            f"the fitted width is {self.width} px, the stated one {self.stated_px:.4f} px: "
+            f"{away:+.4f} px, {value:.1f} standard deviations; measure the target again, and check "
+            "the GSD",
+        )  # fmt: skip
+
+    def _zeros(self) -> Check:
+        limit = self.limits.zero_distance_cpp
+        zeros = zeros_of_pulse(self.width.value)
+        nearest = min(zeros, key=lambda zero: abs(zero - NYQUIST_CPP), default=math.inf)
+        value = min(abs(nearest - NYQUIST_CPP), 1.0)
+        passed = value >= limit or not self.by_ratio
+        advice = (
+            "the ratio is unusable there: use method spline, or a tarp of 3 pixels"
+            if self.by_ratio
+            else "the joint fit bridges it, with wider intervals near it"
+        )
+        return Check(
+            "zero_distance_cpp", value, f">= {limit:g}", passed,
+            f"the pulse's spectrum has a zero at {nearest:.3f} c/px, {value:.3f} from Nyquist: "
+            f"{advice}",
+        )  # fmt: skip
