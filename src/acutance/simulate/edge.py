@@ -13,6 +13,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.fit.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg
+from acutance.simulate.ground import GroundNoise
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 
@@ -37,6 +38,8 @@ class Truth:
         What was added to the image.
     regrid : Regrid, optional
         The resampling the image went through, after the noise.
+    ground_noise : GroundNoise, optional
+        How uneven the ground was, before the sensor.
     """
 
     response: Response
@@ -45,6 +48,7 @@ class Truth:
     bright: float
     noise: Noise | None = None
     regrid: Regrid | None = None
+    ground_noise: GroundNoise | None = None
 
     @property
     def orientation(self) -> Orientation:
@@ -114,6 +118,7 @@ def edge(
     snr: float | None = None,
     noise: Noise | None = None,
     regrid: Regrid | None = None,
+    ground_noise: GroundNoise | None = None,
     rng: np.random.Generator | None = None,
 ) -> tuple[Floats, Truth]:
     """An image of a straight edge, and the truth about it.
@@ -141,6 +146,8 @@ def edge(
     regrid : Regrid, optional
         Resample the noisy image, which correlates its noise. Line, shape and truth are those of
         the resampled image.
+    ground_noise : GroundNoise, optional
+        Uneven ground, which the sensor blurs with the edge.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 
@@ -163,22 +170,19 @@ def edge(
         )
     line = line_through_centre(shape, angle_deg, orientation, polarity).moved(offset_px, 0.0)
     added = noise_of_snr(bright - dark, snr, noise)
+
+    def drawn(at: Line, size: tuple[int, int]) -> Floats:
+        uneven = 0.0 if ground_noise is None else ground_noise.seen_by(sensor, size, rng)
+        return render_edge(sensor, at, size, dark, bright) + uneven
+
     if regrid is None:
-        system, image = sensor, render_edge(sensor, line, shape, dark, bright)
+        system, image = sensor, drawn(line, shape)
         image = image if added is None else added.added_to(image, rng)
     else:
         system = regrid.system(sensor)
-        image = render_regridded(
-            sensor,
-            regrid,
-            line,
-            shape,
-            lambda source, wide: render_edge(sensor, source, wide, dark, bright),
-            added,
-            rng,
-        )
+        image = render_regridded(sensor, regrid, line, shape, drawn, added, rng)
     response = system.response_along(line.normal_deg)
-    return image, Truth(response, line, dark, bright, added, regrid)
+    return image, Truth(response, line, dark, bright, added, regrid, ground_noise)
 
 
 def line_through_centre(

@@ -14,6 +14,7 @@ from acutance.errors import ModelError
 from acutance.fit.line import Line, Orientation
 from acutance.optics.sensor import Sensor
 from acutance.simulate.edge import line_through_centre
+from acutance.simulate.ground import GroundNoise
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 from acutance.simulate.scene import Patch, render_patches
@@ -41,6 +42,8 @@ class PulseTruth:
         What was added to the image.
     regrid : Regrid, optional
         The resampling the image went through, after the noise.
+    ground_noise : GroundNoise, optional
+        How uneven the ground was, before the sensor.
     """
 
     system: Sensor
@@ -51,6 +54,7 @@ class PulseTruth:
     right: float
     noise: Noise | None = None
     regrid: Regrid | None = None
+    ground_noise: GroundNoise | None = None
 
     @cached_property
     def response(self) -> Response:
@@ -194,6 +198,7 @@ def pulse(
     snr: float | None = None,
     noise: Noise | None = None,
     regrid: Regrid | None = None,
+    ground_noise: GroundNoise | None = None,
     rng: np.random.Generator | None = None,
 ) -> tuple[Floats, PulseTruth]:
     """An image of a pulse target, and the truth about it.
@@ -225,6 +230,8 @@ def pulse(
         A full description of the noise, instead of `snr`.
     regrid : Regrid, optional
         Resample the noisy image; line, width, shape and truth are those of the new image.
+    ground_noise : GroundNoise, optional
+        Uneven ground, which the sensor blurs with the pulse.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 
@@ -244,7 +251,8 @@ def pulse(
     added = noise_of_snr(bright - 0.5 * (dark + behind), snr, noise)
 
     def drawn(at: Line, size: tuple[int, int], scale: float = 1.0) -> Floats:
-        return render_pulse(
+        uneven = 0.0 if ground_noise is None else ground_noise.seen_by(sensor, size, rng)
+        return uneven + render_pulse(
             sensor,
             at,
             size,
@@ -264,7 +272,8 @@ def pulse(
         image = render_regridded(
             sensor, regrid, line, shape, lambda at, size: drawn(at, size, scale), added, rng
         )
-    return image, PulseTruth(system, line, width_px, dark, bright, behind, added, regrid)
+    truth = PulseTruth(system, line, width_px, dark, bright, behind, added, regrid, ground_noise)
+    return image, truth
 
 
 def _require_pulse(

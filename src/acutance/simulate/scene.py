@@ -14,13 +14,12 @@ from acutance.errors import ModelError
 from acutance.fit.line import Line
 from acutance.optics.block import require
 from acutance.optics.sensor import Sensor
+from acutance.simulate.ground import alias_bands
 
 __all__ = ["Patch", "Strip", "render_patches", "render_strip", "texture"]
 
 MARGIN_PX = 64
 """Empty ground around the image; light scattered further comes back on the other side."""
-
-MAX_BANDS = 8
 
 
 @dataclass(frozen=True)
@@ -115,7 +114,7 @@ def render_patches(sensor: Sensor, patches: Sequence[Patch], shape: tuple[int, i
     (rows, cols) array
     """
     rows, cols = (size + MARGIN_PX for size in shape)
-    bands = range(-_bands(sensor), _bands(sensor) + 1)
+    bands = range(-alias_bands(sensor), alias_bands(sensor) + 1)
     folded = np.zeros((rows, cols // 2 + 1), complex)
     for band_v in bands:
         v = (np.fft.fftfreq(rows) + band_v)[:, None]
@@ -128,13 +127,6 @@ def render_patches(sensor: Sensor, patches: Sequence[Patch], shape: tuple[int, i
                 ground += patch.spectrum(u, v) * phase_u * phase_v
             folded += ground * sensor.otf(u, v)
     return np.ascontiguousarray(np.fft.irfft2(folded, (rows, cols))[: shape[0], : shape[1]])
-
-
-def _bands(sensor: Sensor) -> int:
-    """Number of alias bands on either side that still carry light."""
-    freq = np.arange(0.5, MAX_BANDS + 0.5, 0.02)
-    strength = np.maximum(np.abs(sensor.otf(freq, 0.0)), np.abs(sensor.otf(0.0, freq)))
-    return max(1, math.ceil(float(np.max(freq[strength > 1e-5], initial=0.5)) - 0.5))
 
 
 def texture(
