@@ -9,7 +9,7 @@ from closed_form_edge import edge_band, gaussian_pixel_mtf
 from acutance.errors import OptionError, SupportError
 from acutance.measure.published import SdsuOptions, sdsu_2005
 from acutance.measure.published.edge_location import fermi_locations
-from acutance.measure.published.sdsu import modified_savitzky_golay
+from acutance.measure.published.local_polynomial import modified_savitzky_golay
 
 NYQUIST = 0.5
 IRRATIONAL_DEG = math.degrees(math.atan((math.sqrt(5) - 1) / 6))
