@@ -1,0 +1,138 @@
+"""The pulse method from pixels to numbers: width, grounds, real bars of the joint fit."""
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance.measure.pulse_checks import zeros_of_pulse
+from acutance.simulate import pulse, reference_systems
+
+SYSTEMS = reference_systems()
+SYSTEM = SYSTEMS["gaussian"]
+
+
+def simulated(seed=0, system=SYSTEM, **changes):
+    options = {"width_px": 3.0, "angle_deg": 6.0, "shape": (45, 45), "snr": 80.0} | changes
+    return pulse(system, rng=np.random.default_rng(seed), **options)
+
+
+def within(estimate, truth, sigmas=4.0):
+    value = getattr(truth, "value", truth)
+    return abs(estimate.value - value) <= sigmas * estimate.std
+
+
+def failed(measurement):
+    return {check.name for check in measurement.failed_checks}
+
+
+@pytest.mark.parametrize("name", ["gaussian", "halo", "asymmetric", "smeared"])
+@pytest.mark.parametrize("width_px", [2.6, 3.0, 3.68])
+def test_noise_free_error_is_below_four_thousandths(name, width_px):
+    for angle_deg in (2.0, 6.0, 14.0):
+        image, truth = pulse(SYSTEMS[name], width_px=width_px, angle_deg=angle_deg, shape=(60, 60))
+        for stated, fit_width in ((1.03 * width_px, True), (width_px, False)):
+            m = ac.measure_pulse(image, width_px=stated, fit_width=fit_width)
+            inside = m.mtf.freq_cpp <= 0.5
+            error = np.abs(m.mtf.value - truth.mtf.value)[inside].max()
+            assert error <= 0.004
+            assert m.width_px.value == pytest.approx(width_px, abs=2e-3)
+
+
+@pytest.mark.parametrize("orientation", ["across", "along"])
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("stated", [None, 3.0])
+def test_finds_and_measures_every_kind_of_strip(orientation, dark, stated):
+    image, truth = simulated(orientation=orientation, angle_deg=9.0, width_px=3.2)
+    m = ac.measure_pulse(2000 - image if dark else image, width_px=stated)
+    assert m.kind == "pulse"
+    assert m.orientation == orientation
+    assert within(m.mtf_nyquist, truth.mtf_nyquist)
+    assert within(m.rer, truth.rer)
+    assert within(m.width_px, 3.2)
+    assert m.samples.bright > m.samples.dark or dark
+
+
+def test_width_is_recovered_and_its_deviation_is_true():
+    errors, z = [], []
+    for seed in range(40):
+        image, _ = simulated(seed, snr=70.0, shape=(40, 40))
+        m = ac.measure_pulse(image, width_px=3.09)
+        errors.append(m.width_px.value - 3.0)
+        z.append(errors[-1] / m.width_px.std)
+    assert np.sqrt(np.mean(np.square(errors))) <= 0.012
+    # Forty draws: the scatter of z is known to 11 %; three times that is allowed.
+    assert 0.67 < np.std(z) < 1.33
+
+
+def test_grounds_may_differ():
+    image, truth = simulated(dark=100.0, bright=1200.0, right_dark=350.0)
+    m = ac.measure_pulse(image, width_px=3.0)
+    assert within(m.mtf_nyquist, truth.mtf_nyquist)
+    assert within(m.width_px, 3.0)
+    step = next(check for check in m.checks if check.name == "ground_step")
+    assert step.value == pytest.approx(250 / 1100, abs=0.02)
+
+
+def test_width_in_metres_follows_the_gsd():
+    image, _ = simulated(width_px=8.83 / 2.8)
+    m = ac.measure_pulse(image, width_m=8.83, gsd_m=2.8)
+    assert within(m.width_px, 8.83 / 2.8)
+    assert m.response.gsd_m == pytest.approx(2.8)
+    with pytest.raises(ac.AcutanceError, match="needs a GSD"):
+        ac.measure_pulse(image, width_m=8.83)
+    with pytest.raises(ac.AcutanceError, match="give one of them"):
+        ac.measure_pulse(image, width_m=8.83, width_px=3.0, gsd_m=2.8)
+    with pytest.raises(ac.AcutanceError, match="check the width"):
+        ac.measure_pulse(image, width_px=-1.0)
+
+
+def test_a_wrong_width_is_detected_and_does_not_hurt():
+    image, truth = simulated()
+    m = ac.measure_pulse(image, width_px=3.15)
+    assert "width_sigmas" in failed(m)
+    assert within(m.mtf_nyquist, truth.mtf_nyquist)
+    held = ac.measure_pulse(image, width_px=3.15, fit_width=False)
+    assert held.width_px.value == 3.15
+    assert held.width_px.std == 0
+
+
+def test_a_zero_at_nyquist_does_not_spoil_the_joint_fit():
+    image, truth = simulated(width_px=4.0, snr=100.0, shape=(60, 60))
+    m = ac.measure_pulse(image, width_px=4.0)
+    assert zeros_of_pulse(4.0) == pytest.approx((0.25, 0.5, 0.75, 1.0))
+    zero = next(check for check in m.checks if check.name == "zero_distance_cpp")
+    assert zero.value == pytest.approx(0.0, abs=0.01)
+    assert zero.passed
+    assert within(m.mtf_nyquist, truth.mtf_nyquist)
+    assert m.mtf_nyquist.std < 0.05
+
+
+def test_sides_that_are_not_parallel_fail_their_check():
+    rows, cols = np.indices((60, 60))
+    profile = SYSTEM.profile(0.0)
+    left = cols - 25 - 0.1 * (rows - 30)
+    right = left - 4.0 - 0.03 * (rows - 30)
+    image = 100 + 1100 * (profile.esf(left) - profile.esf(right))
+    image += np.random.default_rng(0).normal(0, 8, image.shape)
+    assert {"parallel_deg", "straightness_px"} & failed(ac.measure_pulse(image, width_px=4.0))
+
+
+def test_refusals_say_what_to_do():
+    rng = np.random.default_rng(0)
+    with pytest.raises(ac.TargetError):
+        ac.measure_pulse(rng.normal(100, 5, (50, 50)), width_px=3.0)
+    image, _ = simulated(angle_deg=0.0)
+    with pytest.raises(ac.PhaseError, match="more inclined"):
+        ac.measure_pulse(image, width_px=3.0)
+    with pytest.raises(ac.AcutanceError, match="choose one of"):
+        ac.measure_pulse(image, width_px=3.0, method="magic")
+    edge_only, _ = ac.simulate.edge(SYSTEM, shape=(45, 45), snr=80.0, rng=rng)
+    with pytest.raises(ac.TargetError):
+        ac.measure_pulse(edge_only, width_px=3.0)
+
+
+def test_document_names_the_width():
+    image, _ = simulated()
+    document = ac.measure_pulse(image, width_px=3.0).to_dict()
+    assert document["kind"] == "pulse"
+    assert document["width_px"]["std"] > 0
