@@ -1,7 +1,7 @@
-"""Published edge methods, faithful to their papers, biases included.
+"""Published edge and pulse methods, faithful to their papers, biases included.
 
-Every method takes an `EdgeBand` and a frozen dataclass of options and gives an `EdgeFit`, like
-the reference method, so that they can be compared curve by curve.
+Every method takes an `EdgeBand` (a `PulseBand`) and a frozen dataclass of options and gives an
+`EdgeFit`, like the reference method, so that they can be compared curve by curve.
 """
 
 from __future__ import annotations
@@ -13,18 +13,28 @@ from acutance.measure.published.fermi import FermiOptions, fermi
 from acutance.measure.published.iso12233 import Iso12233Options, iso12233
 from acutance.measure.published.kompsat import KompsatOptions, kompsat_2014
 from acutance.measure.published.sdsu import SdsuOptions, sdsu_2005
+from acutance.measure.published.sdsu_pulse import (
+    PublishedPulse,
+    SdsuPulseOptions,
+    sdsu_2005_pulse,
+)
 
 __all__ = [
     "PUBLISHED",
     "PUBLISHED_OPTIONS",
+    "PUBLISHED_PULSE",
+    "PUBLISHED_PULSE_OPTIONS",
     "FermiOptions",
     "Iso12233Options",
     "KompsatOptions",
+    "PublishedPulse",
     "SdsuOptions",
+    "SdsuPulseOptions",
     "fermi",
     "iso12233",
     "kompsat_2014",
     "sdsu_2005",
+    "sdsu_2005_pulse",
 ]
 
 PUBLISHED: dict[str, Callable[..., EdgeFit]] = {
@@ -40,3 +50,7 @@ PUBLISHED_OPTIONS: dict[str, type] = {
     "iso12233": Iso12233Options,
     "fermi": FermiOptions,
 }
+
+PUBLISHED_PULSE: dict[str, Callable[..., PublishedPulse]] = {"sdsu-2005": sdsu_2005_pulse}
+
+PUBLISHED_PULSE_OPTIONS: dict[str, type] = {"sdsu-2005": SdsuPulseOptions}

@@ -18,6 +18,7 @@ __all__ = ["centroid_locations", "cubic_locations", "fermi_locations"]
 _SEARCH_PX = 2.0
 _FERMI_POINTS = 7
 _FERMI_STEPS = 40
+_LARGEST_DAMPING = 1e6
 _NARROWEST_PX, _WIDEST_PX = 0.05, 5.0
 
 
@@ -80,6 +81,7 @@ def _fit_fermi_rows(points: Floats, width_px: float) -> Floats:
     unknown = np.stack((np.zeros_like(low), start_width, high - low, low), axis=1)
     damping = np.full(low.size, 1e-3)
     cost = np.sum((points - _fermi_rows(x, unknown)[0]) ** 2, axis=1)
+    settled, exact = np.zeros(low.size, dtype=bool), 1e-20 * (high - low) ** 2
     for _ in range(_FERMI_STEPS):
         model, jacobian = _fermi_rows(x, unknown)
         normal = np.einsum("npi,npj->nij", jacobian, jacobian)
@@ -91,9 +93,13 @@ def _fit_fermi_rows(points: Floats, width_px: float) -> Floats:
         trial[:, 1] = np.clip(trial[:, 1], np.log(_NARROWEST_PX), np.log(_WIDEST_PX))
         trial_cost = np.sum((points - _fermi_rows(x, trial)[0]) ** 2, axis=1)
         better = trial_cost < cost
+        settled |= better & (cost - trial_cost <= 1e-10 * cost)
         unknown = np.where(better[:, None], trial, unknown)
         damping = np.clip(np.where(better, damping / 5, damping * 5), 1e-12, 1e12)
         cost = np.minimum(cost, trial_cost)
+        settled |= (cost <= exact) | (damping > _LARGEST_DAMPING)
+        if settled.all():
+            break
     return np.asarray(unknown[:, 0])
 
 
