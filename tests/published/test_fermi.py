@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from closed_form_edge import edge_band, gaussian_pixel_mtf
 
+from acutance import simulate
 from acutance.errors import OptionError
 from acutance.fit.band import EdgeBand
 from acutance.measure.published import FermiOptions, fermi
@@ -120,6 +121,17 @@ def test_another_shape_leaves_a_bias_of_some_thousandths():
     assert response.mtf_nyquist.value / gaussian_pixel_mtf(0.5) == pytest.approx(1, abs=0.01)
     one = fermi(edge_band(), FermiOptions(max_terms=1)).response
     assert one.mtf_nyquist.value / gaussian_pixel_mtf(0.5) > 1.02
+
+
+@pytest.mark.parametrize("snr", [None, 100])
+def test_two_shoots_are_found_though_one_alone_does_not_help(snr):
+    sensor = simulate.reference_systems()["sharpened"]
+    rng = np.random.default_rng(7)
+    image, truth = simulate.edge(sensor, angle_deg=7.0, shape=(60, 40), snr=snr, rng=rng)
+    response = fermi(EdgeBand(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)).response
+    assert response.mtf.factor.shape[1] == 2 + 9
+    assert response.overshoot.value == pytest.approx(0.09, abs=0.01)
+    assert response.mtf(0.25).value == pytest.approx(truth.mtf(0.25).value, abs=0.01)
 
 
 @pytest.mark.parametrize("wrong", [{"max_terms": 4}, {"criterion": "aic"}])

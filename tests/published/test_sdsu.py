@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from closed_form_edge import edge_band, gaussian_pixel_mtf
 
-from acutance.errors import OptionError, SupportError
+from acutance import simulate
+from acutance.errors import OptionError, PhaseError, SupportError
+from acutance.fit.band import EdgeBand
 from acutance.measure.published import SdsuOptions, sdsu_2005
 from acutance.measure.published.edge_location import fermi_locations
 from acutance.measure.published.local_polynomial import modified_savitzky_golay
@@ -100,3 +102,24 @@ def test_a_shorter_trim_measures_that_band():
 def test_meaningless_options_are_refused(wrong):
     with pytest.raises(OptionError, match="found"):
         SdsuOptions(**wrong)
+
+
+@pytest.mark.parametrize("beside_deg", [-0.03, 0.0, 0.06])
+def test_quartic_over_four_phases_is_refused_and_a_parabola_is_not(beside_deg):
+    # Measured all the same, the sharpened system is wrong by up to .2 beside tan = 1/4.
+    sensor = simulate.reference_systems()["sharpened"]
+    angle_deg = math.degrees(math.atan(0.25)) + beside_deg
+    image, truth = simulate.edge(sensor, angle_deg=angle_deg, shape=(40, 60), offset_px=0.1)
+    band = EdgeBand(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)
+    with pytest.raises(PhaseError, match=r"gives 4 distinct .* or a polynomial of order 2"):
+        sdsu_2005(band, SdsuOptions(distance="normal", order=4))
+    fit = sdsu_2005(band, SdsuOptions(distance="normal", order=2, replicates=0))
+    assert fit.response.mtf(0.25).value == pytest.approx(truth.mtf(0.25).value, abs=0.015)
+
+
+def test_longer_edge_gives_a_quartic_its_phases_again():
+    sensor = simulate.reference_systems()["sharpened"]
+    image, truth = simulate.edge(sensor, angle_deg=13.9, shape=(110, 70))
+    band = EdgeBand(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)
+    fit = sdsu_2005(band, SdsuOptions(distance="normal", order=4, replicates=0))
+    assert fit.response.mtf(0.25).value == pytest.approx(truth.mtf(0.25).value, abs=2e-3)

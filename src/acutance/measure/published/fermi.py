@@ -149,7 +149,7 @@ class _Pixels:
 
 
 def _best_sum(pixels: _Pixels, band: EdgeBand, options: FermiOptions) -> _Fit:
-    """Add terms as long as the criterion improves."""
+    """The number of terms with the best criterion; each starts from the best with one less."""
     width = max(0.55 * band.width_px, 0.05)
     single = FermiSum(np.array([band.bright - band.dark]), np.zeros(1), np.array([width]))
     best = _fit(pixels, np.concatenate(([0.0, band.dark], single.to_vector())), options)
@@ -158,18 +158,34 @@ def _best_sum(pixels: _Pixels, band: EdgeBand, options: FermiOptions) -> _Fit:
             "no Fermi function rises from dark to bright in the band: use a region with one "
             "edge and more contrast"
         )
-    for _ in range(2, options.max_terms + 1):
-        starts = [np.concatenate((best.unknown[:2], more)) for more in _with_one_more(best.terms)]
-        fits = [_fit(pixels, start, options) for start in starts]
-        richer = min((fit for fit in fits if fit), key=lambda fit: fit.score, default=None)
-        if richer is None or richer.score >= best.score:
-            return best
-        best = richer
+    last = single_fit = best
+    for count in range(2, options.max_terms + 1):
+        starts = _with_one_more(last)
+        if count == 3:
+            # Over- and undershoot of a symmetric system: one of them alone may help nothing.
+            starts.append(_with_both_shoots(single_fit))
+        fits = [fit for start in starts if (fit := _fit(pixels, start, options))]
+        if not fits:
+            continue
+        last = min(fits, key=lambda fit: fit.score)
+        best = min(best, last, key=lambda fit: fit.score)
     return best
 
 
-def _with_one_more(terms: FermiSum) -> list[Floats]:
+def _with_both_shoots(fit: _Fit) -> Floats:
+    """A start with an under- and an overshoot about the largest term."""
+    terms = fit.terms
+    k = int(np.argmax(np.abs(terms.amplitude)))
+    a, m, c = terms.amplitude[k], terms.centre_px[k], terms.width_px[k]
+    shoots = FermiSum(
+        a * np.array([1.2, -0.1, -0.1]), m + 4.0 * c * np.array([0, 1, -1]), c * np.ones(3)
+    )
+    return np.concatenate((fit.unknown[:2], shoots.to_vector()))
+
+
+def _with_one_more(fit: _Fit) -> list[Floats]:
     """Starts with one term more: the largest one split, or an overshoot on either side."""
+    terms = fit.terms
     k = int(np.argmax(np.abs(terms.amplitude)))
     a, m, c = terms.amplitude[k], terms.centre_px[k], terms.width_px[k]
     starts = []
@@ -182,6 +198,7 @@ def _with_one_more(terms: FermiSum) -> list[Floats]:
         starts.append(
             np.concatenate(
                 (
+                    fit.unknown[:2],
                     np.append(amplitude, share * a),
                     np.append(centre, m + shift * c * (1 - share)),
                     np.log(np.append(width, stretch * c)),

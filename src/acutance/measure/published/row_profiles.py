@@ -19,13 +19,25 @@ from acutance.errors import NoEdgeError, PhaseError, SupportError
 from acutance.fit.band import EdgeBand
 from acutance.fit.line import Line
 
-__all__ = ["MIN_ROWS", "Frame", "Locate", "LocatedRows", "RowLine", "crossing_rows", "locate_rows"]
+__all__ = [
+    "MIN_ROWS",
+    "Frame",
+    "Locate",
+    "LocatedRows",
+    "RowLine",
+    "crossing_rows",
+    "locate_rows",
+    "require_phases_for",
+]
 
 MIN_ROWS = 10
 """Fewest rows an edge may have: the lower limit of the KOMPSAT-3 draft, step 3e."""
 
 MAX_PHASE_GAP_PX = 0.3
 """Widest gap between neighbouring sample phases along a row: four phases and a little room."""
+
+_DISTINCT_PX = 0.1
+"""Phases nearer to each other than this are one: the line's own error may part them."""
 
 _REACH_PX = 3
 """Pixels on each side of the edge that must be usable for a row to locate it (seven in all)."""
@@ -279,4 +291,39 @@ def _require_phases(rows: LocatedRows) -> None:
     raise PhaseError(
         f"{found}: the slope repeats after a few rows (tan near 1, 1/2, 1/3 ...); "
         "use an edge of another angle or the method 'fermi'"
+    )
+
+
+def require_phases_for(order: int, rows: LocatedRows) -> None:
+    """Refuse rows whose samples repeat at too few places for a polynomial of that order.
+
+    In a window of 1 px the samples of all rows stand at their phases. Where those repeat after
+    q rows (tan = p/q), a polynomial with q coefficients or more passes through q clumps of
+    samples, and what it does between them follows the error of the line within each clump.
+
+    Parameters
+    ----------
+    order : int
+        Degree of the local polynomial.
+    rows : LocatedRows
+
+    Raises
+    ------
+    PhaseError
+        If the distinct phases are not more than `order` + 1.
+    """
+    line = rows.line()
+    phase = np.sort(line.at(rows.row) % 1.0)
+    distinct, last = 1, phase[0]
+    for place in phase[1:]:
+        if place - last >= _DISTINCT_PX and phase[0] + 1.0 - place >= _DISTINCT_PX:
+            distinct, last = distinct + 1, place
+    if distinct > order + 1:
+        return
+    angle_deg = math.degrees(math.atan(abs(line.slope)))
+    lower = " or a polynomial of order 2" if order > 2 and distinct > 3 else ""
+    raise PhaseError(
+        f"an angle of {angle_deg:.2f} deg over {rows.row.size} rows gives {distinct} distinct "
+        f"sample phases, a local polynomial of order {order} needs {order + 2}: use another "
+        f"angle, more rows{lower}"
     )

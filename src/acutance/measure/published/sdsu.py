@@ -25,7 +25,12 @@ from acutance.measure.published.resampled_response import (
     fit_with_bootstrap,
     normalised,
 )
-from acutance.measure.published.row_profiles import LocatedRows, RowLine, locate_rows
+from acutance.measure.published.row_profiles import (
+    LocatedRows,
+    RowLine,
+    locate_rows,
+    require_phases_for,
+)
 
 __all__ = ["SdsuOptions", "sdsu_2005"]
 
@@ -107,9 +112,11 @@ def sdsu_2005(band: EdgeBand, options: SdsuOptions = _DEFAULT) -> EdgeFit:
     SupportError
         If rows or plateaus do not suffice.
     NoEdgeError, PhaseError
-        See `locate_rows`.
+        See `locate_rows`; PhaseError also where the samples have too few phases for a polynomial
+        of that order.
     """
     rows = locate_rows(band, fermi_locations)
+    require_phases_for(options.order, rows)
 
     def pipeline(rows: LocatedRows, weight: Floats) -> SampledEdge:
         return _sample(rows, weight, options)

@@ -29,7 +29,12 @@ from acutance.measure.published.resampled_response import (
     crossing_of_half,
     draw_rows,
 )
-from acutance.measure.published.row_profiles import LocatedRows, RowLine, locate_rows
+from acutance.measure.published.row_profiles import (
+    LocatedRows,
+    RowLine,
+    locate_rows,
+    require_phases_for,
+)
 
 __all__ = ["PublishedPulse", "SdsuPulseOptions", "sdsu_2005_pulse"]
 
@@ -243,6 +248,7 @@ def sdsu_2005_pulse(band: PulseBand, options: SdsuPulseOptions = _DEFAULT) -> Pu
         phases for a polynomial of that order.
     """
     rows = locate_rows(band, fermi_locations)
+    require_phases_for(options.order, rows)
     profile = _profile(rows, np.ones(rows.row.size), band.pulse_width_px, options)
     curves = _curves(profile)
     drawn = draw_rows(
