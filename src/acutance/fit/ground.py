@@ -14,7 +14,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 
-__all__ = ["LOG_AMPLITUDE", "ground_trends", "is_uneven"]
+__all__ = ["LOG_AMPLITUDE", "ground_trends", "is_sloping", "is_uneven", "steepness"]
 
 LOG_AMPLITUDE: Final = -5.0
 """Hyperprior mean of the trends' amplitude relative to the edge's height, logarithm."""
@@ -25,6 +25,9 @@ _STRETCH_PX = 5.0
 _MIN_PIXELS = 6
 _SIGNIFICANT = 5.0
 _BEYOND_WIDTHS = 1.5
+_FAR_WIDTHS = 3.0
+_TAIL_PX = 0.1
+"""The LSF of an aperture falls as a / s^2: a is 0.065 px for a cutoff of 1 c/px, 0.1 for 0.65."""
 
 
 def ground_trends(sides: Sides, t: Floats) -> Floats:
@@ -70,3 +73,48 @@ def is_uneven(standard: Floats, sides: Sides, t: Floats, width_px: float) -> boo
         chi_square += float(np.sum(total[told] ** 2 / count[told]))
         freedom += int(np.count_nonzero(told))
     return chi_square > freedom + _SIGNIFICANT * math.sqrt(2 * freedom)
+
+
+def is_sloping(value: Floats, noise: float, sides: Sides, width_px: float) -> bool:
+    """Whether a plateau goes on rising or falling far from the target.
+
+    Parameters
+    ----------
+    value : (n,) array
+        Pixels, 0 on the dark and 1 on the bright ground.
+    noise : float
+        Their standard deviation.
+    sides, width_px
+        As in `is_uneven`.
+    """
+    return any(
+        steepness(value, outwards, _FAR_WIDTHS * width_px, noise) > 1 for _, outwards in sides
+    )
+
+
+def steepness(value: Floats, outwards: Floats, from_px: float, noise: float) -> float:
+    """Slope of a plateau's outer half, relative to the tail of a small aperture at that distance.
+
+    Above 1 no diffraction explains it; 0 where noise does.
+
+    Parameters
+    ----------
+    value, outwards : (n,) arrays
+        Pixels, and how far outwards from the target they lie.
+    from_px : float
+        Where the plateau begins.
+    noise : float
+        Standard deviation of the pixels.
+    """
+    plateau = outwards > from_px
+    if np.count_nonzero(plateau) < 4 * _MIN_PIXELS:
+        return 0.0
+    far = outwards > 0.5 * (from_px + float(outwards.max()))
+    place = outwards[far] - outwards[far].mean() if far.any() else np.zeros(0)
+    power = float(place @ place)
+    if power <= 0:
+        return 0.0
+    slope = abs(float(place @ value[far])) / power
+    if slope * math.sqrt(power) < _SIGNIFICANT * noise:
+        return 0.0
+    return slope * float(outwards[far].mean()) ** 2 / _TAIL_PX

@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.errors import NoEdgeError
 from acutance.fit import ground
 from acutance.fit import prior as lsf_prior
-from acutance.fit.ground import ground_trends, is_uneven
+from acutance.fit.ground import ground_trends, is_sloping, is_uneven
 from acutance.fit.lsf_model import LsfModel
 from acutance.fit.noise import (
     Correlation,
@@ -40,6 +41,8 @@ _SETTLED_PX = 0.01
 _SETTLED_FALL = 0.003
 """A linear step this short leaves less than 1e-4 of the edge's height behind."""
 _MAX_PASSES = 10
+_MIN_STEEP = 20
+_SIGNIFICANT = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +119,9 @@ class Solution:
     half_length_px : float
     uneven : bool
         Whether the ground shows trends.
+    roughness : float
+        Noise variance the edge's raggedness adds where the image is steepest, relative to the
+        rest.
     """
 
     posterior: Posterior
@@ -130,6 +136,7 @@ class Solution:
     steps_std: Floats
     half_length_px: float
     uneven: bool
+    roughness: float
 
 
 def solve(
@@ -151,9 +158,11 @@ def solve(
     outlier = np.ones(pixels.value.size)
     whiteness = Correlation(1.0, 0.0, 0.0)
     earlier: Posterior | None = None
-    uneven = False
+    uneven, roughness = False, 0.0
     for _ in range(_MAX_PASSES):
-        solved = _pass(pixels, start, outlier, whiteness.inflation, earlier, uneven, fit_width)
+        solved = _pass(
+            pixels, start, outlier, whiteness.inflation, earlier, uneven, roughness, fit_width
+        )
         standard = solved.residual / solved.noise
         heavy = robust and bool(np.any(np.abs(standard) > 4.0))
         again = _reweighted(standard, solved.transition) if heavy else outlier
@@ -164,12 +173,14 @@ def solve(
             and bool(np.all(np.abs(solved.steps) < _tolerance(fit_width)[: solved.steps.size]))
             and np.max(np.abs(again - outlier)) < 0.05
             and abs(found.inflation / whiteness.inflation - 1) < 0.05
+            and abs(solved.roughness - roughness) < 0.1 * (1 + roughness)
         )
         if settled:
             break
         # With the trends there is one amplitude more: nothing earlier to start it from.
         earlier = solved.posterior if uneven or not solved.uneven else None
         outlier, whiteness, uneven = again, found, uneven or solved.uneven
+        roughness = solved.roughness
         start = _moved(start, solved, fit_width)
     return Solved(start, solved, outlier, whiteness)
 
@@ -180,7 +191,14 @@ def _tolerance(fit_width: bool) -> Floats:
 
 def _moved(start: BlurredEdge, solved: Solution, fit_width: bool) -> BlurredEdge:
     """The start, with the line and the profile moved to where the solution wants them."""
-    line = start.line.moved(0.0, math.degrees(solved.turn_rad))
+    if not (math.isfinite(solved.turn_rad) and np.all(np.isfinite(solved.steps))):
+        raise NoEdgeError(
+            "the fit of the target did not settle: its pixels do not follow one straight line; "
+            "choose a region with one straight target"
+        )
+    # A turn that is too large for the linear model is cut: three pixels at the ends a pass.
+    most = 3.0 / max(solved.half_length_px, 1.0)
+    line = start.line.moved(0.0, math.degrees(float(np.clip(solved.turn_rad, -most, most))))
     if not solved.steps.size:
         return replace(start, line=line)
     width_px, fall = start.profile.positions_px[1], -start.profile.shares[1]
@@ -199,6 +217,7 @@ def _pass(
     inflation: float,
     earlier: Posterior | None,
     uneven: bool,
+    roughness: float,
     fit_width: bool,
 ) -> Solution:
     """Solve for the LSF's departures from the start, the levels, the line and the steps."""
@@ -213,6 +232,9 @@ def _pass(
     floor = (_NOISE_FLOOR * height) ** 2
     scale = 0.5 * (variance_dark + variance_bright) + floor
     relative = (variance_dark + floor + (variance_bright - variance_dark) * share) / scale
+    # A ragged edge moves by fractions of a pixel from row to row: noise where the image is steep.
+    steep = (slope / max(float(np.max(np.abs(slope))), 1e-12)) ** 2
+    relative *= 1 + roughness * steep
 
     sides = profile.sides(blur, s)
     steps = _step_columns(profile, start, s, fit_width)
@@ -250,8 +272,25 @@ def _pass(
         (float(side_noise[0]), float(side_noise[1])),
         float(posterior.beta[turn]), float(np.linalg.norm(posterior.factor[turn])),
         posterior.beta[own], np.linalg.norm(posterior.factor[own], axis=1),
-        float(np.max(np.abs(t))), is_uneven(standard, sides, t, width),
+        float(np.max(np.abs(t))), is_uneven(standard, sides, t, width)
+        or is_sloping(
+            (pixels.value - start.dark) / height, float(np.mean(noise)) / height, sides, width
+        ),
+        _raggedness(standard, np.where(np.abs(standard) < 4, steep, 0.0), roughness),
     )  # fmt: skip
+
+
+def _raggedness(standard: Floats, steep: Floats, assumed: float) -> float:
+    """How much noisier the steep pixels are than the rest, beyond what chance explains."""
+    there = steep > 0.25
+    count = int(np.count_nonzero(there))
+    if count < _MIN_STEEP:
+        return assumed
+    # Per pixel, in units of the noise without raggedness.
+    power = float(np.mean(standard[there] ** 2 * (1 + assumed * steep[there])))
+    if assumed == 0 and power < 1 + _SIGNIFICANT * math.sqrt(2 / count):
+        return 0.0
+    return max((power - 1) / float(np.mean(steep[there])), 0.0)
 
 
 def _beyond(profile: Profile, s: Floats, width: float) -> Floats:

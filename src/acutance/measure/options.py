@@ -41,6 +41,10 @@ class EdgeLimits:
         Least width of either plateau in pixels.
     saturation : float
         Largest share of pixels at the detector's limit.
+    quantisation : float
+        Least noise of the plateaus, in steps of the image's numbers.
+    gradient : float
+        Largest slope of the ground far from the target, relative to a small aperture's tail.
     correlated_noise : float
         Largest correlation of the noise between neighbouring pixels.
     structure : float
@@ -57,6 +61,8 @@ class EdgeLimits:
     straightness_px: float = 0.05
     plateau_px: float = 7.0
     saturation: float = 0.001
+    quantisation: float = 0.3
+    gradient: float = 1.0
     correlated_noise: float = 0.1
     structure: float = 0.02
     outliers: float = 0.02

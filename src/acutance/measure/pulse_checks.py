@@ -16,9 +16,9 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.fit.band import EdgeFit
 from acutance.fit.pulse import PulseBand
 from acutance.fit.trim import Extent
-from acutance.measure import checks
-from acutance.measure.checks import Evidence, TargetChecks
+from acutance.measure import checks, pixel_checks
 from acutance.measure.cut import Cut
+from acutance.measure.evidence import Evidence, TargetChecks
 from acutance.measure.measurement import Check
 from acutance.measure.options import PulseLimits
 
@@ -87,9 +87,11 @@ class PulseChecks(TargetChecks):
             checks.straightness(seen, limits),
             checks.plateau(limits, "before", self.extent.dark_px),
             checks.plateau(limits, "behind", self.extent.bright_px),
-            checks.saturation(self.cut, self.band, seen, limits),
-            checks.correlation(seen, limits),
-            checks.outliers(seen, limits),
+            pixel_checks.saturation(self.cut, self.band, seen, limits),
+            pixel_checks.quantisation(self.cut, self.band, seen, limits),
+            pixel_checks.gradient(seen, limits),
+            pixel_checks.correlation(seen, limits),
+            pixel_checks.outliers(seen, limits),
             self._parallel(),
             self._grounds(),
             self._width(),

@@ -1,0 +1,123 @@
+"""What the checks of a target read, and how they answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import overload
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.fit.band import EdgeBand, EdgeFit
+from acutance.measure.measurement import Check
+
+__all__ = ["MUCH", "Evidence", "TargetChecks", "at_least", "at_most"]
+
+MUCH = 999.0
+"""Stands for a ratio without bound: nothing disturbs."""
+
+_FAR_WIDTHS = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """The pixels of a fit with their places, as the checks read them.
+
+    Distances in pixels, values and residuals as shares of the contrast. `before` and `behind` are
+    the distances outwards from the target's first and last step: of an edge, its dark and its
+    bright side.
+    """
+
+    rows: Floats
+    cols: Floats
+    before: Floats
+    behind: Floats
+    t: Floats
+    value: Floats
+    residual: Floats
+    fwhm_px: float
+    fit: EdgeFit
+
+    @classmethod
+    def of(cls, band: EdgeBand, fit: EdgeFit, last_px: float = 0.0) -> Evidence:
+        """Evidence of a fit whose last step lies `last_px` behind its first."""
+        rows, cols = np.nonzero(np.isfinite(band.image))
+        fwhm = fit.response.fwhm_px.value
+        return cls(
+            rows.astype(float),
+            cols.astype(float),
+            -fit.distance_px,
+            fit.distance_px - last_px,
+            fit.line.tangent_distance(rows, cols),
+            fit.value,
+            fit.residual,
+            fwhm if math.isfinite(fwhm) else 1.0,
+            fit,
+        )
+
+    @cached_property
+    def outside(self) -> Floats:
+        """Distance from the target's nearest step outwards (negative within a pulse)."""
+        return np.maximum(self.before, self.behind)
+
+    @cached_property
+    def far_px(self) -> float:
+        """From here on a plateau is flat for every usual blur."""
+        return max(_FAR_WIDTHS * self.fwhm_px, 2.0)
+
+    @cached_property
+    def noise(self) -> float:
+        """Robust standard deviation of the residuals.
+
+        The larger of two: the median alone is zero or one step for coarsely rounded values.
+        """
+        ordered = np.sort(np.abs(self.residual))
+        bulk = ordered[: max(int(0.95 * ordered.size), 1)]
+        return max(1.4826 * float(ordered[ordered.size // 2]), 1.15 * math.sqrt(np.mean(bulk**2)))
+
+    @cached_property
+    def plateau_std(self) -> float:
+        """Mean standard deviation of the two plateaus."""
+        sides = (self.value[side > self.far_px] for side in (self.before, self.behind))
+        stds = [float(np.std(side)) for side in sides if side.size > 1]
+        return sum(stds) / len(stds) if stds else 0.0
+
+    @cached_property
+    def slope(self) -> Floats:
+        """How much every pixel changes when the first step moves by one pixel against s."""
+        lsf = self.fit.response.lsf
+        return np.interp(-self.before, lsf.distance_px, lsf.value, left=0.0, right=0.0)
+
+
+class TargetChecks(Sequence[Check]):
+    """Checks of a target, answered when somebody first asks."""
+
+    @cached_property
+    def answers(self) -> tuple[Check, ...]:
+        """All checks."""
+        raise NotImplementedError
+
+    def __len__(self) -> int:
+        return len(self.answers)
+
+    @overload
+    def __getitem__(self, index: int) -> Check: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Check, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Check | tuple[Check, ...]:
+        return self.answers[index]
+
+
+def at_least(name: str, value: float, limit: float, message: str) -> Check:
+    """The check that `value` is not below `limit`."""
+    return Check(name, value, f">= {limit:g}", bool(value >= limit), message)
+
+
+def at_most(name: str, value: float, limit: float, message: str) -> Check:
+    """The check that `value` is not above `limit`."""
+    return Check(name, value, f"<= {limit:g}", bool(value <= limit), message)

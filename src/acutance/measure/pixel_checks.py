@@ -1,0 +1,120 @@
+"""Checks of the pixels themselves: their range, steps, noise and outliers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.fit.band import EdgeBand
+from acutance.fit.ground import steepness
+from acutance.fit.noise import correlation as noise_correlation
+from acutance.measure.cut import Cut
+from acutance.measure.evidence import MUCH, Evidence, at_least, at_most
+from acutance.measure.measurement import Check
+from acutance.measure.options import EdgeLimits
+
+__all__ = ["correlation", "gradient", "outliers", "quantisation", "saturation"]
+
+_OUTLIER_SIGMAS = 4.5
+_MISFIT = 3e-4
+"""Residuals below this share of the contrast are the model's own, not noise."""
+
+
+def saturation(cut: Cut, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> Check:
+    """Pixels at the detector's limit, or a side whose values are all one."""
+    used = np.isfinite(band.image)
+    values = cut.pixels[used]
+    share = 0.0
+    if cut.saturation_level is not None:
+        share = float(np.mean(values >= cut.saturation_level))
+    middle = float(np.median(values))
+    for outwards in (seen.before, seen.behind):
+        side = values[outwards > seen.far_px]
+        share = max(share, _piled_up(side, bright=bool(np.median(side) > middle), seen=seen))
+    return at_most(
+        "saturation", share, limits.saturation,
+        f"{100 * share:.1f} % of the pixels are clipped at the end of the scale: the edge's height "
+        "and shape are then not what the sensor saw",
+    )  # fmt: skip
+
+
+def _piled_up(side: Floats, *, bright: bool, seen: Evidence) -> float:
+    """Share of a side's pixels that pile up at its outer end, as clipping before writing does.
+
+    Noise has few pixels at its end. A side without any noise has nothing to clip, unless the
+    transition is noisy.
+    """
+    if side.size < 20:
+        return 0.0
+    _, counts = np.unique(side if bright else -side, return_counts=True)
+    end, beside = int(counts[-1]), int(counts[-2]) if counts.size > 1 else 0
+    contrast = abs(seen.fit.bright - seen.fit.dark)
+    quiet = float(np.std(side)) < 1e-4 * contrast
+    if quiet and float(np.std(seen.residual[seen.outside < 1.0])) < 2e-3:
+        return 0.0
+    return end / side.size if end >= 5 and end > 2 * beside else 0.0
+
+
+def quantisation(cut: Cut, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> Check:
+    """Noise in steps of the image's numbers: with less, rounding is no noise but a distortion."""
+    values = np.unique(cut.pixels[np.isfinite(band.image)])
+    step = float(np.min(np.diff(values))) if values.size > 1 else 0.0
+    contrast = abs(seen.fit.bright - seen.fit.dark)
+    # Steps far below what the curves resolve do no harm, whatever the noise.
+    harmless = step < 1e-4 * contrast
+    noise = seen.plateau_std * contrast
+    value = MUCH if harmless else min(noise / step, MUCH)
+    return at_least(
+        "quantisation", value, limits.quantisation,
+        f"the plateaus' noise is {value:.2f} steps of the image's numbers: below 0.3 the rounding "
+        "is the same for every pixel of a plateau and shifts its level; use data of more bits",
+    )  # fmt: skip
+
+
+def gradient(seen: Evidence, limits: EdgeLimits) -> Check:
+    """Slope of the ground far from the target, steeper than any aperture's tail."""
+    value = max(
+        (
+            steepness(seen.value, outwards, max(seen.far_px, 3 * seen.fwhm_px), seen.noise)
+            for outwards in (seen.before, seen.behind)
+        ),
+        default=0.0,
+    )
+    return at_most(
+        "gradient", value, limits.gradient,
+        f"far from the target the ground slopes {value:.1f} times as much as a small aperture's "
+        "tail does there: the fit allows for it, but cannot tell it from a wide halo for sure; "
+        "choose a region whose sides are flat",
+    )  # fmt: skip
+
+
+def correlation(seen: Evidence, limits: EdgeLimits) -> Check:
+    # On the plateaus alone: across the edge a method's own misfit would pass for correlation.
+    flat = seen.outside > seen.far_px
+    residual = seen.residual[flat]
+    noise = 1.4826 * float(np.median(np.abs(residual))) if residual.size else 0.0
+    if noise <= _MISFIT:
+        found, significance = 0.0, 0.0
+    else:
+        rows, cols = seen.rows[flat].astype(np.intp), seen.cols[flat].astype(np.intp)
+        bounded = np.clip(residual / noise, -4, 4)
+        measured = noise_correlation(bounded, rows, cols, seen.fit.line.normal)
+        found, significance = abs(measured.strongest), measured.significance
+    value = found if significance >= 4 else 0.0
+    return at_most(
+        "correlated_noise", value, limits.correlated_noise,
+        f"neighbouring pixels' noise correlates by {found:.2f} ({significance:.0f} standard "
+        "deviations): a resampled product or textured ground; the intervals allow for it, and "
+        "the MTF is the product's",
+    )  # fmt: skip
+
+
+def outliers(seen: Evidence, limits: EdgeLimits) -> Check:
+    noise = seen.noise
+    many = np.abs(seen.residual) > _OUTLIER_SIGMAS * noise if noise > _MISFIT else np.zeros(1, bool)
+    value = float(np.mean(many))
+    return at_most(
+        "outliers", value, limits.outliers,
+        f"{100 * value:.2f} % of the pixels lie further than {_OUTLIER_SIGMAS:g} standard "
+        "deviations from the fit: objects on the target, or a bad fit",
+    )  # fmt: skip
