@@ -136,3 +136,23 @@ def test_document_names_the_width():
     document = ac.measure_pulse(image, width_px=3.0).to_dict()
     assert document["kind"] == "pulse"
     assert document["width_px"]["std"] > 0
+
+
+def test_the_published_ratio_underestimates_and_says_its_zeros():
+    image, truth = simulated(snr=None, angle_deg=6.0, shape=(60, 60))
+    published = ac.measure_pulse(image, width_px=3.0, method="sdsu-2005")
+    assert published.method == "sdsu-2005"
+    assert published.mtf_nyquist.value < 0.99 * truth.mtf_nyquist.value
+    assert published.width_px.value == pytest.approx(3.0)
+    wide, _ = simulated(width_px=4.0, shape=(60, 60))
+    assert "zero_distance_cpp" in failed(ac.measure_pulse(wide, width_px=4.0, method="sdsu-2005"))
+    from acutance.measure import PulseOptions
+    from acutance.measure.published import SdsuOptions
+
+    with pytest.raises(ac.AcutanceError, match="SdsuPulseOptions"):
+        ac.measure_pulse(
+            image,
+            width_px=3.0,
+            method="sdsu-2005",
+            options=PulseOptions(method_options=SdsuOptions()),
+        )

@@ -12,6 +12,7 @@ from acutance.measure.published import (
     Iso12233Options,
     KompsatOptions,
     SdsuOptions,
+    SdsuPulseOptions,
 )
 
 __all__ = ["EdgeLimits", "EdgeOptions", "MethodOptions", "PulseLimits", "PulseOptions"]
@@ -109,7 +110,7 @@ class PulseOptions:
     rer_centre: RerCentre | None = None
     robust: bool = True
     limits: PulseLimits = field(default_factory=PulseLimits)
-    method_options: Any = None
+    method_options: SdsuPulseOptions | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""

@@ -18,6 +18,7 @@ from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.edge import require_phases
 from acutance.measure.measurement import Measurement, Samples
 from acutance.measure.options import PulseOptions
+from acutance.measure.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
 from acutance.measure.pulse_checks import PulseChecks
 from acutance.raster import Gsd, Image
 
@@ -40,8 +41,22 @@ def _spline(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
     return _Fitted(fit, fit.pulse_width, fit.fall)
 
 
+def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
+    def measure(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
+        chosen, wanted = options.method_options, PUBLISHED_PULSE_OPTIONS[name]
+        if chosen is not None and not isinstance(chosen, wanted):
+            raise OptionError(
+                f"method_options are {type(chosen).__name__}: method {name} takes {wanted.__name__}"
+            )
+        fit = PUBLISHED_PULSE[name](band, wanted() if chosen is None else chosen)
+        return _Fitted(fit, fit.pulse_width, fit.fall)
+
+    return measure
+
+
 PULSE_METHODS: dict[str, Callable[[PulseBand, bool, PulseOptions], _Fitted]] = {
     "spline": _spline,
+    **{name: _published(name) for name in PUBLISHED_PULSE},
 }
 
 
@@ -71,8 +86,9 @@ def measure_pulse(
     fit_width : bool, optional
         Whether the width is fitted with the LSF, with its own standard deviation (method
         "spline"); the stated one is then the start, and a check compares the two.
-    method : {"spline"}, optional
-        The joint fit.
+    method : {"spline", "sdsu-2005"}, optional
+        The joint fit, or the published ratio of spectra with its biases: its width is the stated
+        one, or else the one at which the pulse was found.
     options : PulseOptions, optional
 
     Returns

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from acutance.curves import Mtf
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 from acutance.fit.pulse import SplinePulse
