@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,12 +33,17 @@ def alias_bands(sensor: Sensor) -> int:
     return max(1, math.ceil(float(np.max(freq[strength > NEGLIGIBLE], initial=0.5)) - 0.5))
 
 
-def render_raster(sensor: Sensor, ground: Floats, subpixels: int) -> Floats:
-    """Ground made of small uniform squares, seen through a sensor.
+Drawn = Literal["squares", "points", "means"]
 
-    Exact for such ground: its spectrum is that of its samples times the sinc of a square, times
-    the OTF, summed over the alias bands (those above 1e-5 of contrast, 8 at most). The
-    ground repeats itself beyond its borders.
+
+def render_raster(
+    sensor: Sensor, ground: Floats, subpixels: int, *, drawn: Drawn = "squares"
+) -> Floats:
+    """Ground drawn on a fine grid, seen through a sensor.
+
+    Exact for ground made of uniform squares: its spectrum is that of its samples times the sinc
+    of a square, times the OTF, summed over the alias bands (those above 1e-5 of contrast, 8 at
+    most). The ground repeats itself beyond its borders.
 
     Parameters
     ----------
@@ -46,6 +52,10 @@ def render_raster(sensor: Sensor, ground: Floats, subpixels: int) -> Floats:
         Levels of the squares; `subpixels` of them side by side fill a pixel.
     subpixels : int
         At least 1.
+    drawn : {"squares", "points", "means"}, optional
+        What a sample says of the ground: that it is uniform over the square, its level at the
+        square's centre, or its mean over the square. The last two suppose that the ground holds
+        little beyond ``subpixels / 2`` cycles per pixel.
 
     Returns
     -------
@@ -71,8 +81,9 @@ def render_raster(sensor: Sensor, ground: Floats, subpixels: int) -> Floats:
     u, v = right / cols, down[:, None] / rows
     # The centre of a pixel's first square lies this far before that of the pixel.
     first = 0.5 * (subpixels - 1) / subpixels
-    square_u = np.sinc(u / subpixels) * np.exp(2j * math.pi * first * u)
-    square_v = np.sinc(v / subpixels) * np.exp(2j * math.pi * first * v)
+    power = {"squares": 1, "points": 0, "means": -1}[drawn]
+    square_u = np.sinc(u / subpixels) ** power * np.exp(2j * math.pi * first * u)
+    square_v = np.sinc(v / subpixels) ** power * np.exp(2j * math.pi * first * v)
     # Half of the plane of frequencies is enough for a real image, its border counted half.
     square_u[0] *= 0.5
     spectrum *= sensor.otf(u, v)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -130,6 +131,27 @@ class PulseTruth:
         top, at = float(response[peak]), float(distance[peak])
         rise, fall = (crossing(distance, response, 0.5 * top, at, way) for way in (-1, 1))
         return fall - rise
+
+    def to_dict(self) -> dict[str, Any]:
+        """Geometry, levels, numbers and curves, for JSON."""
+        found = self.response
+        return {
+            "kind": "pulse",
+            "orientation": self.orientation,
+            "line": self.line.to_dict(),
+            "angle_deg": self.line.angle_deg,
+            "width_px": self.width_px,
+            "width_m": self.width_m,
+            "left": self.left,
+            "level": self.level,
+            "right": self.right,
+            "prf_fwhm_px": self.prf_fwhm_px,
+            **{name: number.value for name, number in found.metrics().items()},
+            "mtf": {
+                "freq_cpp": np.round(found.mtf.freq_cpp, 6).tolist(),
+                "value": found.mtf.value.tolist(),
+            },
+        }
 
 
 def render_pulse(

@@ -4,22 +4,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.fit.line import Line
-from acutance.optics.block import require
+from acutance.optics.block import Transfer, require
 from acutance.optics.sensor import Sensor
 from acutance.simulate.ground import alias_bands
 
-__all__ = ["Patch", "Strip", "render_patches", "render_strip", "texture"]
+__all__ = [
+    "Patch",
+    "Point",
+    "Strip",
+    "add_patches",
+    "render_patches",
+    "render_strip",
+    "stamp",
+    "texture",
+]
 
 MARGIN_PX = 64
 """Empty ground around the image; light scattered further comes back on the other side."""
+
+
+_STEP_PX = 16
+_TILE_PX = 1024
+_KERNEL_PX = 64
 
 
 @dataclass(frozen=True)
@@ -93,40 +109,127 @@ def render_strip(sensor: Sensor, strip: Strip, shape: tuple[int, int]) -> Floats
     return np.asarray(strip.contrast * (esf(distance + half) - esf(distance - half)))
 
 
-def render_patches(sensor: Sensor, patches: Sequence[Patch], shape: tuple[int, int]) -> Floats:
-    """Patches above dark ground, each pixel with all the light that reaches it.
+@dataclass(frozen=True)
+class Point:
+    """A source too small to have a shape: a mirror, a lamp.
+
+    Parameters
+    ----------
+    row, col : float
+        Its place in pixels; integers are pixel centres.
+    flux : float
+        Its light: the sum over all pixels of what it adds to the image.
+    """
+
+    row: float
+    col: float
+    flux: float
+
+    def spectrum(self, u: ArrayLike, v: ArrayLike) -> Floats:
+        """Fourier transform about its own place: the flux at every frequency."""
+        return np.full(np.broadcast_shapes(np.shape(u), np.shape(v)), self.flux)
+
+
+def render_patches(
+    sensor: Sensor,
+    patches: Sequence[Patch | Point],
+    shape: tuple[int, int],
+    *,
+    margin_px: int = MARGIN_PX,
+) -> Floats:
+    """Patches and points above dark ground, each pixel with all the light that reaches it.
 
     The spectrum of a rectangle has a closed form, so nothing is drawn on a finer grid: the
     image's spectrum is the sum over all alias bands of patch spectra times the OTF. Corners
-    are as exact as edges. What remains is the light of the copies one period away: at least
-    64 px of empty ground lie between, which leaves below 1e-6 of the contrast for
-    systems without tails, 1e-4 for an aperture's.
+    are as exact as edges. What remains is the light of the copies one period away: with 64 px
+    of empty ground between, below 1e-6 of the contrast for systems without tails, 1e-4 for an
+    aperture's.
 
     Parameters
     ----------
     sensor : Sensor
-    patches : sequence of Patch
-        Inside the image or less than 32 px outside of it.
+    patches : sequence of Patch or Point
+        Inside the image or less than half the margin outside of it.
     shape : (rows, cols)
+    margin_px : int, optional
+        Empty ground between the image and its copies.
 
     Returns
     -------
     (rows, cols) array
     """
-    rows, cols = (size + MARGIN_PX for size in shape)
-    bands = range(-alias_bands(sensor), alias_bands(sensor) + 1)
+    rows, cols = (size + margin_px for size in shape)
     folded = np.zeros((rows, cols // 2 + 1), complex)
-    for band_v in bands:
-        v = (np.fft.fftfreq(rows) + band_v)[:, None]
-        for band_u in bands:
-            u = np.fft.rfftfreq(cols) + band_u
-            ground = np.zeros(folded.shape, complex)
-            for patch in patches:
-                phase_u = np.exp(-2j * math.pi * u * patch.col)
-                phase_v = np.exp(-2j * math.pi * v * patch.row)
-                ground += patch.spectrum(u, v) * phase_u * phase_v
-            folded += ground * sensor.otf(u, v)
+    for u, v, otf in _bands(sensor, rows, cols):
+        ground = np.zeros(folded.shape, complex)
+        for patch in patches:
+            phase_u = np.exp(-2j * math.pi * u * patch.col)
+            phase_v = np.exp(-2j * math.pi * v * patch.row)
+            ground += patch.spectrum(u, v) * (phase_v * phase_u)
+        folded += ground * otf
     return np.ascontiguousarray(np.fft.irfft2(folded, (rows, cols))[: shape[0], : shape[1]])
+
+
+@lru_cache(maxsize=4)
+def _bands(sensor: Sensor, rows: int, cols: int) -> tuple[tuple[Floats, Floats, Transfer], ...]:
+    """Frequencies (u, v) of every alias band of an image, and the OTF at them."""
+    around = range(-alias_bands(sensor), alias_bands(sensor) + 1)
+    right: Floats = np.asarray(np.fft.rfftfreq(cols), np.float64)
+    down: Floats = np.asarray(np.fft.fftfreq(rows)[:, None], np.float64)
+    frequencies = [(right + band_u, down + band_v) for band_v in around for band_u in around]
+    return tuple((u, v, sensor.otf(u, v)) for u, v in frequencies)
+
+
+def add_patches(
+    image: NDArray[Any], sensor: Sensor, patches: Sequence[Patch | Point], *, reach_px: int = 24
+) -> None:
+    """Add patches and points that lie together to a large image, at the cost of a small one.
+
+    Only a window around them is rendered: light that goes further than `reach_px` is left out,
+    below 1e-6 of the contrast for systems without tails, 1e-3 for an aperture's.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        Changed in place: a canvas.
+    sensor : Sensor
+    patches : sequence of Patch or Point
+    reach_px : int, optional
+        Room around them, in pixels.
+    """
+    extents = [
+        0.0 if isinstance(one, Point) else 0.5 * math.hypot(one.width_px, one.height_px)
+        for one in patches
+    ]
+    top, left = (
+        math.floor(min(at - e for at, e in zip(places, extents, strict=True))) - reach_px
+        for places in ([one.row for one in patches], [one.col for one in patches])
+    )
+    bottom, right = (
+        math.ceil(max(at + e for at, e in zip(places, extents, strict=True))) + reach_px
+        for places in ([one.row for one in patches], [one.col for one in patches])
+    )
+    # Whole multiples of a step, so that windows share their frequencies.
+    shape = tuple(-(-size // _STEP_PX) * _STEP_PX for size in (bottom - top, right - left))
+    moved = [replace(one, row=one.row - top, col=one.col - left) for one in patches]
+    stamp(image, render_patches(sensor, moved, (shape[0], shape[1]), margin_px=0), top, left)
+
+
+def stamp(image: NDArray[Any], part: Floats, top: int, left: int) -> None:
+    """Add a small image to a large one in place; what lies outside is cut off.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        Changed in place.
+    part : (m, n) array
+    top, left : int
+        Where the first pixel of `part` goes.
+    """
+    first, last = max(top, 0), min(top + part.shape[0], image.shape[0])
+    begin, end = max(left, 0), min(left + part.shape[1], image.shape[1])
+    if first < last and begin < end:
+        image[first:last, begin:end] += part[first - top : last - top, begin - left : end - left]
 
 
 def texture(
@@ -151,9 +254,34 @@ def texture(
     """
     if not grain_px >= 0.5:
         raise ModelError(f"texture: grain_px is {grain_px:g}, it has to be at least 0.5")
+    if max(shape) > _TILE_PX:
+        return _wide_texture(sensor, shape, std, grain_px, rng)
+    grain, gain = _grain(sensor, shape, grain_px)
+    white = np.fft.rfft2(rng.standard_normal(shape))
+    return np.asarray(std * gain * np.fft.irfft2(white * grain, shape))
+
+
+def _grain(sensor: Sensor, shape: tuple[int, int], grain_px: float) -> tuple[Transfer, float]:
+    """Transfer of a grain seen through the sensor, and what gives it unit variance."""
     u = np.fft.rfftfreq(shape[1])
     v = np.fft.fftfreq(shape[0])[:, None]
     grain = np.exp(-2 * (math.pi * grain_px) ** 2 * (u**2 + v**2)) * sensor.otf(u, v)
     impulse = np.fft.irfft2(grain, shape)
-    white = np.fft.rfft2(rng.standard_normal(shape))
-    return np.asarray(std * np.fft.irfft2(white * grain, shape) / np.sqrt(np.sum(impulse**2)))
+    return grain, float(1 / np.sqrt(np.sum(impulse**2)))
+
+
+def _wide_texture(
+    sensor: Sensor, shape: tuple[int, int], std: float, grain_px: float, rng: np.random.Generator
+) -> Floats:
+    """Texture of a large image, tile after tile, in single precision: tiles overlap and add up."""
+    side = _TILE_PX + _KERNEL_PX
+    grain, gain = _grain(sensor, (side, side), grain_px)
+    total = np.zeros(shape, np.float32)
+    half = _KERNEL_PX // 2
+    for top in range(-half, shape[0] + half, _TILE_PX):
+        for left in range(-half, shape[1] + half, _TILE_PX):
+            white = np.zeros((side, side))
+            white[half:-half, half:-half] = rng.standard_normal((_TILE_PX, _TILE_PX))
+            tile = np.fft.irfft2(np.fft.rfft2(white) * grain, (side, side))
+            stamp(total, std * gain * tile, top - half, left - half)
+    return np.asarray(total)

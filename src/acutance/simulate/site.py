@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import Literal
 
 import numpy as np
 
@@ -13,11 +14,15 @@ from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.fit.line import Line
 from acutance.optics.sensor import Sensor
+from acutance.simulate.bars import BarsTruth
 from acutance.simulate.edge import Truth
 from acutance.simulate.noise import Noise
+from acutance.simulate.points import PointsTruth
+from acutance.simulate.pulse import PulseTruth
 from acutance.simulate.scene import Patch, Strip, render_patches, render_strip, texture
+from acutance.simulate.star import StarTruth
 
-__all__ = ["Scene", "SceneEdge", "checkerboard", "site"]
+__all__ = ["Scene", "SceneEdge", "SceneTarget", "checkerboard", "site"]
 
 GUARD_PX = 3.0
 """Distance a region keeps from the corners of the tiles."""
@@ -41,6 +46,25 @@ class SceneEdge:
 
 
 @dataclass(frozen=True, eq=False)
+class SceneTarget:
+    """A target of a scene that is not one edge.
+
+    Parameters
+    ----------
+    name : str
+    kind : {"pulse", "bars", "star", "points"}
+    region : (4, 2) array
+        Corners of the region around it as (row, col); integers are pixel centres.
+    truth : PulseTruth, BarsTruth, StarTruth or PointsTruth
+    """
+
+    name: str
+    kind: Literal["pulse", "bars", "star", "points"]
+    region: Floats
+    truth: PulseTruth | BarsTruth | StarTruth | PointsTruth
+
+
+@dataclass(frozen=True, eq=False)
 class Scene:
     """A simulated image with all that is known about it.
 
@@ -51,12 +75,15 @@ class Scene:
     sensor : Sensor
     description : str
         One sentence for people.
+    targets : tuple of SceneTarget, optional
+        All that are no edges.
     """
 
     image: Floats
     edges: tuple[SceneEdge, ...]
     sensor: Sensor
     description: str
+    targets: tuple[SceneTarget, ...] = ()
 
 
 def checkerboard(

@@ -1,0 +1,246 @@
+"""Groups of bars, the periodic targets that are read by eye, as a sensor sees them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from acutance.curves import Response
+from acutance.curves.grid import Floats
+from acutance.errors import ModelError
+from acutance.fit.line import Line, Orientation
+from acutance.optics.block import Transfer
+from acutance.optics.sensor import Sensor, normal_direction_deg
+from acutance.simulate.noise import Noise, noise_of_snr
+from acutance.simulate.scene import Patch, add_patches
+
+__all__ = ["BarGroup", "BarsTruth", "bars"]
+
+GAP_PX = 10.0
+HARMONICS = 25
+
+
+@dataclass(frozen=True)
+class BarGroup:
+    """Parallel bars, as wide as the gaps between them.
+
+    Parameters
+    ----------
+    row, col : float
+        Centre of the group in pixels.
+    normal_deg : float
+        Direction across the bars, from the column axis towards the row axis.
+    period_px : float
+        Distance of two bars along the normal.
+    count : int
+        Number of bars.
+    length_px : float
+        Length of the bars.
+    """
+
+    row: float
+    col: float
+    normal_deg: float
+    period_px: float
+    count: int
+    length_px: float
+
+    @property
+    def freq_cpp(self) -> float:
+        """Frequency of the bars in cycles per pixel."""
+        return 1 / self.period_px
+
+    @property
+    def width_px(self) -> float:
+        """From the first bar's outer edge to the last one's."""
+        return (self.count - 0.5) * self.period_px
+
+    @property
+    def region(self) -> Floats:
+        """Corners of the group, (4, 2) as (row, col)."""
+        x, y = Line(self.row, self.col, self.normal_deg).normal
+        corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        across, along = 0.5 * self.width_px, 0.5 * self.length_px
+        return np.array(
+            [
+                (
+                    self.row + a * across * y + b * along * x,
+                    self.col + a * across * x - b * along * y,
+                )
+                for a, b in corners
+            ]
+        )
+
+    def patches(self, contrast: float) -> list[Patch]:
+        """The bars as rectangles of the given level above the ground."""
+        middle = Line(self.row, self.col, self.normal_deg)
+        places = (np.arange(self.count) - 0.5 * (self.count - 1)) * self.period_px
+        lines = [middle.moved(float(place), 0.0) for place in places]
+        half = 0.5 * self.period_px
+        return [
+            Patch(one.row, one.col, half, self.length_px, self.normal_deg, contrast)
+            for one in lines
+        ]
+
+
+@dataclass(frozen=True, eq=False)
+class BarsTruth:
+    """What a perfect measurement of simulated bars would return.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    groups : tuple of BarGroup
+        All with the same normal.
+    dark, bright : float
+        Levels of the ground and of the bars.
+    noise : Noise, optional
+        What was added to the image.
+    """
+
+    sensor: Sensor
+    groups: tuple[BarGroup, ...]
+    dark: float
+    bright: float
+    noise: Noise | None = None
+
+    @property
+    def response(self) -> Response:
+        """The true curves along the bars' normal."""
+        return self.sensor.response_along(self.groups[0].normal_deg)
+
+    @property
+    def freq_cpp(self) -> Floats:
+        """Frequencies of the groups, (n,)."""
+        return np.array([group.freq_cpp for group in self.groups])
+
+    @property
+    def mtf(self) -> Floats:
+        """MTF at the frequencies of the groups, (n,)."""
+        return np.asarray(np.abs(self._otf(self.freq_cpp)))
+
+    @property
+    def ctf(self) -> Floats:
+        """Contrast of endless square bars, where it is read midway on bars and gaps, (n,).
+
+        Coltman's series ``4/pi sum_k (-1)^k Re OTF((2k+1) f) / (2k+1)`` (JOSA 44, 468, 1954), with
+        the phase relative to the LSF's centroid.
+        """
+        odd = 2 * np.arange(HARMONICS) + 1
+        signs = (-1.0) ** np.arange(HARMONICS) / odd
+        return np.asarray(4 / math.pi * self._otf(np.outer(self.freq_cpp, odd)).real @ signs)
+
+    def _otf(self, freq_cpp: Floats) -> Transfer:
+        angle = math.radians(self.groups[0].normal_deg)
+        centroid = self.sensor.profile(self.groups[0].normal_deg).centroid_px
+        otf = self.sensor.otf(freq_cpp * math.cos(angle), freq_cpp * math.sin(angle))
+        return np.asarray(otf * np.exp(2j * math.pi * freq_cpp * centroid))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Groups with their frequencies, MTF and contrast, for JSON."""
+        described = [
+            {
+                "region": group.region.tolist(),
+                "period_px": group.period_px,
+                "freq_cpp": group.freq_cpp,
+                "count": group.count,
+                "mtf": float(mtf),
+                "ctf": float(ctf),
+            }
+            for group, mtf, ctf in zip(self.groups, self.mtf, self.ctf, strict=True)
+        ]
+        return {
+            "kind": "bars",
+            "normal_deg": self.groups[0].normal_deg,
+            "dark": self.dark,
+            "bright": self.bright,
+            "groups": described,
+        }
+
+
+def bars(
+    sensor: Sensor,
+    *,
+    periods_px: Sequence[float] = (8.0, 6.0, 5.0, 4.0, 3.2, 2.5, 2.0),
+    count: int = 5,
+    length_px: float = 24.0,
+    angle_deg: float = 0.0,
+    orientation: Orientation = "across",
+    dark: float = 200.0,
+    bright: float = 1200.0,
+    snr: float | None = None,
+    noise: Noise | None = None,
+    rng: np.random.Generator | None = None,
+) -> tuple[Floats, BarsTruth]:
+    """An image of groups of bars below one another, and the truth about it.
+
+    Every bar is a rectangle rendered by its closed-form spectrum: exact as `render_patches`.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    periods_px : sequence of float, optional
+        Distance of two bars in each group, in pixels.
+    count : int, optional
+        Bars in a group.
+    length_px : float, optional
+        Length of the bars.
+    angle_deg : float, optional
+        Tilt of the bars against the nearer image axis, -45 to 45.
+    orientation : {"across", "along"}, optional
+        The axis their normal is near to: "across" gives nearly vertical bars.
+    dark, bright : float, optional
+        Levels of the ground and of the bars, in image units.
+    snr : float, optional
+        Contrast over the standard deviation of added white noise.
+    noise : Noise, optional
+        A full description of the noise, instead of `snr`.
+    rng : numpy.random.Generator, optional
+        Source of randomness; needed as soon as there is noise.
+
+    Returns
+    -------
+    image : (rows, cols) array of float
+        As large as the groups need.
+    truth : BarsTruth
+
+    Raises
+    ------
+    ModelError
+        If the arguments contradict each other.
+    """
+    if not periods_px or not min(periods_px) > 0 or count < 1 or not length_px > 0:
+        raise ModelError(
+            f"bars of periods {tuple(periods_px)}, {count} of {length_px:g} px in a group: there "
+            "has to be a period, and all have to be above 0"
+        )
+    if not abs(angle_deg) <= 45 or dark == bright:
+        raise ModelError(
+            f"bars tilted by {angle_deg:g} deg of level {bright:g} on {dark:g}: the tilt cannot "
+            "exceed 45, and the levels have to differ"
+        )
+    normal = normal_direction_deg(angle_deg, orientation)
+    pitch = length_px + GAP_PX
+    offsets = (np.arange(len(periods_px)) - 0.5 * (len(periods_px) - 1)) * pitch
+    across = Line(0.0, 0.0, normal).normal
+    loose = [
+        BarGroup(float(t) * across[0], -float(t) * across[1], normal, float(p), count, length_px)
+        for t, p in zip(offsets, periods_px, strict=True)
+    ]
+    corners = np.concatenate([group.region for group in loose])
+    low, high = corners.min(axis=0) - GAP_PX, corners.max(axis=0) + GAP_PX
+    shape = (math.ceil(high[0] - low[0]), math.ceil(high[1] - low[1]))
+    groups = tuple(
+        BarGroup(g.row - low[0], g.col - low[1], normal, g.period_px, count, length_px)
+        for g in loose
+    )
+    image = np.full(shape, dark)
+    for group in groups:
+        add_patches(image, sensor, group.patches(bright - dark))
+    added = noise_of_snr(bright - dark, snr, noise)
+    truth = BarsTruth(sensor, groups, dark, bright, added)
+    return (image if added is None else added.added_to(image, rng)), truth
