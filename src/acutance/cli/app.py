@@ -8,7 +8,7 @@ import typer
 from typer.core import TyperGroup
 
 from acutance import __version__
-from acutance.cli import demo, edge, simulate, sites
+from acutance.cli import demo, edge, pulse, simulate, sites
 from acutance.cli.terminal import fail
 from acutance.errors import AcutanceError
 
@@ -57,6 +57,7 @@ def _main(
 
 
 app.command("edge", epilog=edge.EXAMPLE)(edge.edge)
+app.command("pulse", epilog=pulse.EXAMPLE)(pulse.pulse)
 app.command("sites", epilog=sites.EXAMPLE)(sites.sites)
 app.add_typer(simulate.app, name="simulate")
 app.command("demo", epilog=demo.EXAMPLE)(demo.demo)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from acutance.measure import TargetResult
     from acutance.measure.measurement import Measurement
 
-__all__ = ["Faces", "deliver", "faces_of_comparison", "faces_of_edge", "faces_of_target"]
+__all__ = ["Faces", "deliver", "faces_by_method", "faces_of_target"]
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,8 @@ class Faces:
     csv: Callable[[], str]
 
 
-def faces_of_edge(measurement: Measurement) -> Faces:
-    """Of a single edge."""
+def _faces_of_one(measurement: Measurement) -> Faces:
+    """Of a single target."""
     from acutance import report
 
     return Faces(
@@ -55,8 +55,15 @@ def faces_of_edge(measurement: Measurement) -> Faces:
     )
 
 
-def faces_of_comparison(measurements: Sequence[Measurement]) -> Faces:
-    """Of one edge by several methods."""
+def faces_by_method(measurements: Sequence[Measurement]) -> Faces:
+    """Of one target by one method, or by several side by side."""
+    if len(measurements) == 1:
+        return _faces_of_one(measurements[0])
+    return _faces_of_comparison(measurements)
+
+
+def _faces_of_comparison(measurements: Sequence[Measurement]) -> Faces:
+    """Of one target by several methods."""
     from acutance import report
 
     return Faces(

@@ -1,0 +1,73 @@
+"""What a user may choose of a measurement: methods, limits, the centre of RER."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, TypeVar
+
+from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.curves.metrics import RerCentre
+    from acutance.measure import EdgeLimits
+
+__all__ = ["change_limits", "choose_methods", "choose_rer_centre"]
+
+LimitsT = TypeVar("LimitsT", bound="EdgeLimits")
+RER_CENTRES: dict[str, RerCentre] = {"half": "half", "peak": "peak"}
+SIDES = ("_dark", "_bright", "_before", "_behind")
+
+
+def choose_methods(first: str, compare: str | None, known: Collection[str]) -> list[str]:
+    """The methods of ``--method`` and ``--compare``, each once.
+
+    Raises
+    ------
+    OptionError
+        If one of them is not among `known`.
+    """
+    others = [name.strip() for name in (compare or "").split(",")]
+    wanted = list(dict.fromkeys([first, *(name for name in others if name)]))
+    for name in wanted:
+        if name not in known:
+            raise OptionError(f"there is no method {name!r}: choose from {', '.join(known)}")
+    return wanted
+
+
+def choose_rer_centre(name: str | None) -> RerCentre | None:
+    """The value of ``--rer-centre``.
+
+    Raises
+    ------
+    OptionError
+        If it is neither half nor peak.
+    """
+    if name is not None and name not in RER_CENTRES:
+        raise OptionError(f"--rer-centre {name}: it has to be half or peak")
+    return None if name is None else RER_CENTRES[name]
+
+
+def change_limits(defaults: LimitsT, changes: Sequence[str]) -> LimitsT:
+    """Limits changed as every ``--limit NAME=VALUE`` asks.
+
+    Raises
+    ------
+    OptionError
+        If there is no limit of that name, or the value is not a number.
+    """
+    known = {field.name for field in fields(defaults)}
+    return replace(defaults, **dict(_parse_limit(text, known) for text in changes))
+
+
+def _parse_limit(text: str, known: set[str]) -> tuple[str, float]:
+    name, _, number = text.partition("=")
+    # A limit holds for both sides: the names of a side's check are understood too.
+    for side in SIDES:
+        name = name.replace(side, "")
+    if name not in known:
+        raise OptionError(f"--limit {text}: the limits are {', '.join(sorted(known))}")
+    try:
+        return name, float(number)
+    except ValueError as error:
+        raise OptionError(f"--limit {text}: write a number, as in {name}=10") from error
