@@ -168,7 +168,7 @@ def test_a_point_is_the_psf_with_its_pixel():
 
 def test_a_trail_moves_points_by_the_centroid():
     # Wide enough that its samples have the centroid of the PSF.
-    soft = Sensor([Gaussian(0.7), Exponential(0.4, "across"), Exponential(0.4, "along")])
+    soft = Sensor([Gaussian(1.0), Exponential(0.4, "across"), Exponential(0.4, "along")])
     image, truth = points(soft, positions=[(20.0, 22.0)], fluxes=1000.0, shape=(48, 50))
     light = image - 200
     rows, cols = np.indices(image.shape)
