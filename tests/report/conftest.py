@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from acutance.curves import Esf, Lsf, Mtf, Response
+from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
 from acutance.fit.line import Line
 from acutance.measure import Rejected, TargetResult
 from acutance.measure.measurement import Check, ImageInfo, Measurement, Samples
@@ -111,6 +111,35 @@ def edge_measurement(
         options={"rer_centre": "half", "robust": False, "limits": {"contrast_snr": 50.0}},
         measured_at=datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC),
     )
+
+
+def pulse_measurement(
+    width_px: float = 3.153, width_std: float = 0.005, method: str = "spline", checks: int = 18
+) -> Measurement:
+    """A pulse: the edge of `edge_measurement` less another one `width_px` behind it."""
+    edge = edge_measurement(method=method)
+    samples, esf = edge.samples, edge.esf
+    fitted = np.interp(samples.distance_px, DISTANCE_PX, esf.value) - np.interp(
+        samples.distance_px - width_px, DISTANCE_PX, esf.value
+    )
+    return replace(
+        edge,
+        kind="pulse",
+        samples=replace(samples, value=fitted + samples.residual),
+        checks=tuple(Check(f"check_{i:02d}", 1.0, ">= 1", True, "fine") for i in range(checks)),
+        width_px=Estimate(width_px, width_std),
+    )
+
+
+@pytest.fixture(scope="session")
+def make_pulse():
+    """The builder of pulses, for another width."""
+    return pulse_measurement
+
+
+@pytest.fixture(scope="session")
+def pulse() -> Measurement:
+    return pulse_measurement()
 
 
 @pytest.fixture(scope="session")

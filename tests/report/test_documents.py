@@ -29,6 +29,15 @@ def test_a_measurement_keeps_to_the_schema(measurement, validator):
     validator.validate(json.loads(json_text(measurement.to_dict())))
 
 
+def test_a_pulse_keeps_to_the_schema_and_has_a_width(pulse, validator):
+    document = json.loads(json_text(pulse.to_dict()))
+    validator.validate(document)
+    assert document["width_px"]["value"] == 3.153
+    del document["width_px"]
+    with pytest.raises(ValidationError):
+        validator.validate(document)
+
+
 def test_undefined_numbers_are_null_and_keep_to_the_schema(vague_measurement, validator):
     document = json.loads(json_text(vague_measurement.to_dict()))
     validator.validate(document)
@@ -91,3 +100,14 @@ def test_a_truth_names_its_sensor_and_has_no_standard_deviation():
     assert document["mtf_nyquist"] == pytest.approx(0.2891, abs=1e-3)
     assert document["sensor"]["blocks"][0]["block"] == "Gaussian"
     assert set(document["mtf"]) == {"freq_cpp", "value", "phase_rad"}
+
+
+def test_the_truth_of_a_pulse_has_its_width_and_three_levels():
+    from acutance import optics, simulate
+
+    sensor = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=2.8)
+    _, truth = simulate.pulse(sensor, width_px=3.0, dark=100.0, right_dark=150.0)
+    document = json.loads(json_text(truth_document(truth, sensor)))
+    assert (document["dark"], document["bright"], document["dark_behind"]) == (100, 1200, 150)
+    assert document["width_m"] == pytest.approx(8.4)
+    assert document["prf_fwhm_px"] == pytest.approx(3.0, abs=0.05)

@@ -84,6 +84,58 @@ def test_the_edge_page_shows_every_step(measurement):
         assert title in shown, title
 
 
+def test_the_pulse_page_shows_both_sides_the_width_and_the_zeros(pulse):
+    shown = texts(edge_figure(pulse))
+    for title in (
+        "Pulse by spline",
+        "Pulse response, w = 3.1530 ± 0.0050 px",
+        "into the pulse",
+        "fitted PRF",
+        "1/w",
+        "3/w",
+        "Width on the ground",
+        "All 18 checks passed.",
+    ):
+        assert title in shown, title
+    assert "dark → bright" not in shown
+    assert set(panel_figures(pulse)) == {"mtf", "target", "prf", "lsf"}
+
+
+def test_the_drawn_response_is_the_fitted_one(pulse):
+    axes = panel_figures(pulse)["prf"].axes[0]
+    (line,) = [each for each in axes.lines if each.get_label() == "fitted PRF"]
+    assert np.all(np.diff(line.get_xdata()) >= 0)
+    middle = np.abs(line.get_xdata() - 0.5 * 3.153) < 0.2
+    assert line.get_ydata()[middle] == pytest.approx(1.0, abs=0.02)
+    assert line.get_ydata()[np.abs(line.get_xdata() - 6.0) < 1] == pytest.approx(0.0, abs=0.02)
+
+
+def test_the_zeros_are_at_the_multiples_of_one_over_the_width(make_pulse):
+    axes = panel_figures(make_pulse(4.0))["mtf"].axes[0]
+    dotted = [line.get_xdata()[0] for line in axes.lines if line.get_linestyle() == ":"]
+    assert dotted == pytest.approx([0.25, 0.5, 0.75])
+
+
+@pytest.mark.parametrize("width_px", [1.2, 2.0, 3.0, 6.0, 7.9, 20.0])
+def test_pulses_of_every_width_keep_their_labels_apart(make_pulse, width_px):
+    for figure in (
+        edge_figure(make_pulse(width_px)),
+        *panel_figures(make_pulse(width_px)).values(),
+    ):
+        assert not overlaps(figure)
+        assert not outside(figure)
+
+
+def test_pulses_are_compared_with_the_true_width(pulse, make_pulse, truth):
+    held = make_pulse(3.1, 0.0, "sdsu-2005")
+    figure = comparison_figure([pulse, held], truth=truth, true_width_px=3.15)
+    shown = texts(figure)
+    for number in ("Width [px]", "3.1500", "3.1530 ± 0.0050", "3.1000"):
+        assert number in shown, number
+    assert not overlaps(figure)
+    assert not outside(figure)
+
+
 def test_nothing_overlaps_and_nothing_leaves_the_page(measurement, compared, truth, target):
     figures = {
         "edge": edge_figure(measurement),

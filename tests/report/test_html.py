@@ -32,6 +32,15 @@ def test_the_edge_report_holds_numbers_checks_and_how_to_repeat_it(measurement):
     assert len(re.findall(r"<tr><td class=\"r\">\d\.\d\d</td>", page)) == 51
 
 
+def test_the_report_of_a_pulse_speaks_of_a_pulse(pulse, make_pulse):
+    text = words(edge_report(pulse))
+    assert "Pulse measurement, across" in text
+    assert "A pulse, across: angle" in text
+    assert "Width on the ground" in text
+    assert "acutance pulse scene.tif --roi 100,260,40,36 --gsd 0.7 --width-px 3.153 --me" in text
+    assert "--hold-width" in words(edge_report(make_pulse(width_std=0.0)))
+
+
 def test_nothing_is_loaded_from_elsewhere(measurement, compared, truth, target):
     for page in (
         edge_report(measurement),

@@ -30,6 +30,10 @@ def test_without_a_gsd_there_are_no_cycles_per_metre(vague_measurement):
     assert mtf_csv(vague_measurement).splitlines()[0] == "freq_cpp,mtf,std,low95,high95"
 
 
+def test_pulses_are_counted_as_pulses(pulse):
+    assert mtf_csv_of_many([pulse, pulse]).startswith("pulse,method,orientation,freq_cpp")
+
+
 def test_many_measurements_are_told_apart(measurement, vague_measurement):
     rows = read(mtf_csv_of_many([measurement, vague_measurement]))
     assert len(rows) == 102

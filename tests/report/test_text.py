@@ -15,6 +15,16 @@ def test_the_text_holds_every_number_and_check(measurement):
     assert "scene.tif, band 1, rows 100–139, columns 260–295" in text
 
 
+def test_the_text_of_a_pulse_has_its_width_and_levels(pulse, make_pulse):
+    text = text_report(pulse)
+    assert text.startswith("pulse by spline, across")
+    assert "1208 on 203" in text
+    assert "3.1530" in next(line for line in text.splitlines() if line.startswith("  Width "))
+    both = comparison_text([pulse, make_pulse(method="sdsu-2005", width_std=0.0)])
+    assert both.startswith("pulse by 2 methods")
+    assert next(line for line in both.splitlines() if "Width [px]" in line).count("±") == 1
+
+
 def test_columns_are_aligned(measurement):
     lines = text_report(measurement).splitlines()
     header = next(line for line in lines if "95 % interval" in line)

@@ -52,7 +52,7 @@ def test_a_rounded_zero_has_no_sign():
 
 
 def test_every_metric_has_words():
-    assert set(METRIC_WORDS) == set(METRICS)
+    assert set(METRIC_WORDS) == {*METRICS, "width_px", "width_m"}
     assert metric_words("fwhm_px").label_with_unit == "FWHM [px]"
     assert metric_words("ground_tilt").label == "ground tilt"
 

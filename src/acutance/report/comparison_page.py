@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from acutance.curves import Estimate
 from acutance.report.grids import write_grid
 from acutance.report.page import INK, PALETTE, new_page, split_page, styled
 from acutance.report.panels import band_edges, mark_frequencies
-from acutance.report.wording import describe_image, metric_words, word_estimate
+from acutance.report.wording import MISSING, describe_image, metric_words, numbers_of, word_estimate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from acutance.curves.grid import Floats
     from acutance.measure.measurement import Measurement
 
-__all__ = ["COMPARED", "comparison_figure", "edge_labels"]
+__all__ = ["COMPARED", "comparison_figure", "edge_labels", "true_numbers"]
 
 COMPARED = ("mtf_nyquist", "rer", "fwhm_px", "mtf50_cpp", "mtf_area", "overshoot")
 
@@ -34,7 +35,10 @@ def edge_labels(measurements: Sequence[Measurement]) -> tuple[str, ...]:
 
 
 def comparison_figure(
-    measurements: Sequence[Measurement], *, truth: Response | None = None
+    measurements: Sequence[Measurement],
+    *,
+    truth: Response | None = None,
+    true_width_px: float | None = None,
 ) -> Figure:
     """Several measurements of one target side by side: curves, differences, numbers.
 
@@ -44,6 +48,8 @@ def comparison_figure(
     truth : Response, optional
         The true curves of a simulated target. Differences are taken to it, or to the first
         measurement where the truth is not known.
+    true_width_px : float, optional
+        The true width of a simulated pulse.
     """
     labels = edge_labels(measurements)
     responses = {label: one.response for label, one in zip(labels, measurements, strict=True)}
@@ -57,7 +63,8 @@ def comparison_figure(
         mtf_axes, esf_axes = right.subplots(2, 1)
         _draw_mtf_differences(mtf_axes, responses, reference, name)
         _draw_esf_differences(esf_axes, responses, reference, name)
-        _write_comparison(lower.subplots(), responses, truth)
+        numbers = {label: numbers_of(one) for label, one in zip(labels, measurements, strict=True)}
+        _write_comparison(lower.subplots(), numbers, true_numbers(truth, true_width_px))
         figure.suptitle(
             f"One target measured by {len(labels)} methods: {describe_image(measurements[0])}",
             x=0.012,
@@ -131,19 +138,27 @@ def _esf_at(response: Response, places: Floats) -> tuple[Floats, Floats]:
     return value, np.interp(places, esf.distance_px, esf.std)
 
 
+def true_numbers(truth: Response | None, true_width_px: float | None) -> dict[str, Estimate]:
+    """What is known of a simulated target, under the names its measurements have."""
+    width = {} if true_width_px is None else {"width_px": Estimate(true_width_px)}
+    if true_width_px is not None and truth is not None and truth.gsd_m is not None:
+        width["width_m"] = Estimate(true_width_px * truth.gsd_m)
+    return width if truth is None else {**width, **truth.metrics()}
+
+
 def _write_comparison(
-    axes: Axes, responses: Mapping[str, Response], truth: Response | None
+    axes: Axes, numbers: Mapping[str, Mapping[str, Estimate]], truth: Mapping[str, Estimate]
 ) -> None:
-    rows = [("", "", *(metric_words(name).label_with_unit for name in COMPARED))]
+    pulses = all("width_px" in each for each in numbers.values())
+    names = (*(("width_px",) if pulses else ()), *COMPARED)
+    rows = [("", "", *(metric_words(name).label_with_unit for name in names))]
     marks = [INK]
-    if truth is not None:
-        rows.append(
-            ("–", "truth", *(word_estimate(getattr(truth, name)).value for name in COMPARED))
-        )
+    if truth:
+        known = (word_estimate(truth[name]).value if name in truth else MISSING for name in names)
+        rows.append(("–", "truth", *known))
         marks.append(INK)
-    for (label, response), color in zip(responses.items(), _colors(len(responses)), strict=True):
-        cells = (word_estimate(getattr(response, name)).value_and_std for name in COMPARED)
-        rows.append(("■", label, *cells))
+    for (label, each), color in zip(numbers.items(), _colors(len(numbers)), strict=True):
+        rows.append(("■", label, *(word_estimate(each[name]).value_and_std for name in names)))
         marks.append(color)
-    places = (0.01, 0.03, *np.linspace(0.27, 1.0, len(COMPARED)))
-    write_grid(axes, rows, places=places, align="ll" + "r" * len(COMPARED), marks=marks)
+    places = (0.01, 0.03, *np.linspace(0.27, 1.0, len(names)))
+    write_grid(axes, rows, places=places, align="ll" + "r" * len(names), marks=marks)

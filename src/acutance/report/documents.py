@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from acutance.measure import TargetResult
     from acutance.measure.measurement import Measurement
     from acutance.optics import Sensor
-    from acutance.simulate import Truth
+    from acutance.simulate import PulseTruth, Truth
 
 __all__ = [
     "comparison_document",
@@ -89,10 +89,11 @@ def target_document(result: TargetResult, *, covariance: bool = False) -> dict[s
     }
 
 
-def truth_document(truth: Truth, sensor: Sensor) -> dict[str, Any]:
+def truth_document(truth: Truth | PulseTruth, sensor: Sensor) -> dict[str, Any]:
     """The document ``acutance/truth/1``: what a perfect measurement of a simulation returns.
 
-    Numbers and curves stand under the names they have in a measurement.
+    Numbers and curves stand under the names they have in a measurement; the line of a pulse is its
+    middle.
     """
     numbers = {name: number.value for name, number in truth.response.metrics().items()}
     return {
@@ -104,13 +105,28 @@ def truth_document(truth: Truth, sensor: Sensor) -> dict[str, Any]:
         },
         "line": truth.line.to_dict(),
         "angle_deg": truth.line.angle_deg,
-        "dark": truth.dark,
-        "bright": truth.bright,
+        **_levels(truth),
         "noise": None if truth.noise is None else _fields(truth.noise),
         **numbers,
         "mtf": _without_std(truth.mtf.to_dict()),
         "lsf": _without_std(truth.lsf.to_dict()),
         "esf": _without_std(truth.esf.to_dict()),
+    }
+
+
+def _levels(truth: Truth | PulseTruth) -> dict[str, float | None]:
+    """Levels of a target, and the width of a pulse."""
+    from acutance.simulate import Truth
+
+    if isinstance(truth, Truth):
+        return {"dark": truth.dark, "bright": truth.bright}
+    return {
+        "dark": truth.left,
+        "bright": truth.level,
+        "dark_behind": truth.right,
+        "width_px": truth.width_px,
+        "width_m": truth.width_m,
+        "prf_fwhm_px": truth.prf_fwhm_px,
     }
 
 

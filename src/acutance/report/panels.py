@@ -11,14 +11,16 @@ from numpy.typing import NDArray
 
 from acutance.curves import metrics
 from acutance.curves.grid import Floats, crossing
-from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, SHADE, VERMILION
+from acutance.measure.pulse_checks import zeros_of_pulse
+from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, SHADE, VERMILION
 from acutance.report.wording import word_estimate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from acutance.curves import Lsf, Mtf
-    from acutance.measure.measurement import Measurement
+    from acutance.fit.line import Line
+    from acutance.measure.measurement import Measurement, Samples
 
 __all__ = [
     "band_edges",
@@ -26,6 +28,7 @@ __all__ = [
     "draw_esf",
     "draw_lsf",
     "draw_mtf",
+    "draw_pixels",
     "draw_residuals",
     "mark_frequencies",
     "reach_px",
@@ -33,6 +36,7 @@ __all__ = [
 ]
 
 TWO_SIDED_95 = 1.959964
+MOST_ZEROS_NAMED = 8
 
 
 def band_edges(value: Floats, std: Floats) -> tuple[Floats, Floats]:
@@ -41,7 +45,7 @@ def band_edges(value: Floats, std: Floats) -> tuple[Floats, Floats]:
 
 
 def reach_px(measurement: Measurement) -> float:
-    """How far from the edge a drawing goes: where something still happens, 3 px at least."""
+    """How far from a step a drawing goes: where something still happens, 3 px at least."""
     grid = measurement.lsf.distance_px
     wide = 3.5 * measurement.fwhm_px.value
     end = float(min(-grid[0], grid[-1]))
@@ -75,8 +79,12 @@ def _tick_count(relative_length: float) -> int:
 
 
 def draw_cut(axes: Axes, measurement: Measurement) -> None:
-    """The pixels around the edge, the line, the band used, and an arrow from dark to bright."""
+    """The pixels around the target, its line or sides, the band used, and an arrow across.
+
+    The arrow goes from dark to bright, of a pulse from the ground into it.
+    """
     line = measurement.line
+    pulse_width = measurement.width_px
     rows_shown, cols_shown = _surroundings(measurement.samples.used)
     pixels = measurement.samples.image[rows_shown, cols_shown]
     used = measurement.samples.used[rows_shown, cols_shown]
@@ -92,13 +100,10 @@ def draw_cut(axes: Axes, measurement: Measurement) -> None:
         colors=[ORANGE],
         linewidths=1.3,
     )
+    sides = [line] if pulse_width is None else [line, line.moved(pulse_width.value, 0.0)]
+    for side in sides:
+        _draw_line(axes, side, (row, col), pixels.shape)
     x, y = line.normal
-    run = np.linspace(-height - width, height + width, 4001)
-    columns, rows = line.col - y * run, line.row + x * run
-    inside = (np.abs(columns - col - (width - 1) / 2) <= width / 2) & (
-        np.abs(rows - row - (height - 1) / 2) <= height / 2
-    )
-    axes.plot(columns[inside], rows[inside], color=VERMILION, linewidth=2)
     half = max(0.13 * min(height, width), 0.05 * max(height, width))
     axes.annotate(
         "",
@@ -106,8 +111,21 @@ def draw_cut(axes: Axes, measurement: Measurement) -> None:
         (line.col - half * x, line.row - half * y),
         arrowprops={"arrowstyle": "-|>", "color": BLUE, "linewidth": 2.4, "mutation_scale": 17},
     )
-    _legend_below(axes, [("edge", VERMILION), ("pixels used", ORANGE), ("dark → bright", BLUE)])
+    target, way = ("edge", "dark → bright") if pulse_width is None else ("sides", "into the pulse")
+    _legend_below(axes, [(target, VERMILION), ("pixels used", ORANGE), (way, BLUE)])
     axes.set_title("Target")
+
+
+def _draw_line(axes: Axes, line: Line, origin: tuple[int, int], shape: tuple[int, ...]) -> None:
+    """A line as far as it runs through pixels of a shape, the first of them at `origin`."""
+    (row, col), (height, width) = origin, shape
+    x, y = line.normal
+    run = np.linspace(-height - width, height + width, 4001)
+    columns, rows = line.col - y * run, line.row + x * run
+    inside = (np.abs(columns - col - (width - 1) / 2) <= width / 2) & (
+        np.abs(rows - row - (height - 1) / 2) <= height / 2
+    )
+    axes.plot(columns[inside], rows[inside], color=VERMILION, linewidth=2)
 
 
 def _surroundings(used: NDArray[np.bool_]) -> tuple[slice, slice]:
@@ -134,19 +152,20 @@ def _legend_below(axes: Axes, entries: list[tuple[str, str]]) -> None:
     )
 
 
+def draw_pixels(axes: Axes, samples: Samples) -> None:
+    """Every pixel used, at its distance along the normal."""
+    _dot(axes, samples.distance_px, samples.value, f"{samples.distance_px.size} pixels")
+
+
+def _dot(axes: Axes, places: Floats, values: Floats, label: str | None = None) -> None:
+    style: dict[str, Any] = {"markersize": 3, "alpha": 0.45, "rasterized": True}
+    axes.plot(places, values, ".", color=FAINT, label=label, **style)
+
+
 def draw_esf(axes: Axes, measurement: Measurement) -> None:
     """The samples along the normal and the edge spread function with its 95 % band."""
-    esf, samples, reach = measurement.esf, measurement.samples, reach_px(measurement)
-    axes.plot(
-        samples.distance_px,
-        samples.value,
-        ".",
-        color=FAINT,
-        markersize=3,
-        alpha=0.45,
-        rasterized=True,
-        label=f"{samples.distance_px.size} pixels",
-    )
+    esf, reach = measurement.esf, reach_px(measurement)
+    draw_pixels(axes, measurement.samples)
     low, high = band_edges(esf.value, esf.std)
     axes.fill_between(esf.distance_px, low, high, color=BLUE, alpha=0.3, linewidth=0)
     axes.plot(esf.distance_px, esf.value, color=BLUE, label="ESF, 95 % band")
@@ -155,21 +174,17 @@ def draw_esf(axes: Axes, measurement: Measurement) -> None:
 
 
 def draw_residuals(axes: Axes, measurement: Measurement) -> None:
-    """What the fit leaves of every sample, in percent of the step."""
+    """What the fit leaves of every sample, in percent of the step or of the pulse's height."""
     samples, esf, reach = measurement.samples, measurement.esf, reach_px(measurement)
-    axes.plot(
-        samples.distance_px,
-        100 * samples.residual,
-        ".",
-        color=FAINT,
-        markersize=3,
-        alpha=0.45,
-        rasterized=True,
-    )
-    low, high = band_edges(np.zeros_like(esf.std), 100 * esf.std)
-    axes.fill_between(esf.distance_px, low, high, color=BLUE, alpha=0.3, linewidth=0)
+    _dot(axes, samples.distance_px, 100 * samples.residual)
+    end = reach
+    if measurement.width_px is None:
+        low, high = band_edges(np.zeros_like(esf.std), 100 * esf.std)
+        axes.fill_between(esf.distance_px, low, high, color=BLUE, alpha=0.3, linewidth=0)
+    else:
+        end += measurement.width_px.value
     axes.axhline(0.0, color=BLUE, linewidth=1)
-    axes.set(xlim=(-reach, reach), xlabel="distance along the normal [px]", ylabel="residual [%]")
+    axes.set(xlim=(-reach, end), xlabel="distance along the normal [px]", ylabel="residual [%]")
 
 
 def draw_lsf(axes: Axes, measurement: Measurement) -> None:
@@ -238,7 +253,27 @@ def draw_mtf(axes: Axes, measurement: Measurement) -> None:
             va="top",
             color=color,
         )
+    if measurement.width_px is not None:
+        _mark_zeros(axes, measurement.width_px.value)
     axes.set_title("Modulation transfer function")
+
+
+def _mark_zeros(axes: Axes, width_px: float) -> None:
+    """Where the spectrum of a pulse of this width has its zeros, as thin dotted lines."""
+    zeros = zeros_of_pulse(width_px, 0.99)
+    for k, zero in enumerate(zeros, start=1):
+        axes.axvline(zero, color=PURPLE, linewidth=0.9, linestyle=":", zorder=1)
+        if k == 1 or len(zeros) <= MOST_ZEROS_NAMED:
+            near_end = zero > 0.93
+            axes.text(
+                zero + (-0.006 if near_end else 0.006),
+                0.585,
+                f"{k}/w",
+                transform=axes.get_xaxis_transform(),
+                ha="right" if near_end else "left",
+                color=PURPLE,
+                fontsize=7,
+            )
 
 
 def _mark_point(axes: Axes, mtf: Mtf, freq_cpp: float, color: str) -> None:

@@ -27,7 +27,7 @@ def edge_report(measurement: Measurement, *, command: str | None = None) -> str:
     command : str, optional
         The command line that produced it; made up from the measurement when not given.
     """
-    title = f"Edge measurement, {measurement.orientation}"
+    title = f"{measurement.kind.capitalize()} measurement, {measurement.orientation}"
     return render_report(title, describe_image(measurement), edge_sections(measurement, command))
 
 
@@ -35,10 +35,16 @@ def comparison_report(
     measurements: Sequence[Measurement],
     *,
     truth: Response | None = None,
+    true_width_px: float | None = None,
     command: str | None = None,
 ) -> str:
-    """Several measurements of one target as one HTML page, with the truth where it is known."""
-    sections = comparison_sections(measurements, truth=truth, command=command)
+    """Several measurements of one target as one HTML page, with the truth where it is known.
+
+    `truth` and `true_width_px` are those of `comparison_figure`.
+    """
+    sections = comparison_sections(
+        measurements, truth=truth, true_width_px=true_width_px, command=command
+    )
     return render_report("Methods compared", describe_image(measurements[0]), sections)
 
 

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from acutance.curves import METRICS, Estimate
-from acutance.report.comparison_page import comparison_figure, edge_labels
+from acutance.curves import Estimate
+from acutance.report.comparison_page import comparison_figure, edge_labels, true_numbers
 from acutance.report.edge_page import panel_figures
 from acutance.report.html import Headline, Plate, Section, Table, Verdict
 from acutance.report.tables import mtf_rows
 from acutance.report.target_page import group_rows, target_figure
 from acutance.report.wording import (
+    METRIC_WORDS,
     MISSING,
     count_edges,
     describe_line,
     flatten_options,
     format_number,
     metric_words,
+    numbers_of,
     split_message,
     verdict,
     word_estimate,
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = ["comparison_sections", "edge_sections", "reproducing_section", "target_sections"]
 
-HEADLINES = ("mtf_nyquist", "rer", "fwhm_px", "fwhm_m")
+HEADLINES = ("mtf_nyquist", "rer", "fwhm_px", "fwhm_m", "width_px", "width_m")
 
 CAPTIONS = {
     "mtf": (
@@ -42,26 +44,31 @@ CAPTIONS = {
     ),
     "target": (
         "The pixels and the line",
-        "The cut, the fitted edge, the pixels that entered the fit, the way from dark to bright.",
+        "The cut, the fitted line or both sides of the pulse, the pixels that entered the fit.",
     ),
     "esf": (
         "Edge spread function",
         "Every pixel at its distance along the normal, the fitted ESF, and what it leaves.",
+    ),
+    "prf": (
+        "Pulse response",
+        "Every pixel at its distance from the first side, the fitted response, and what it leaves.",
     ),
     "lsf": ("Line spread function", "The derivative of the ESF, with its full width at half."),
 }
 
 
 def edge_sections(measurement: Measurement, command: str | None = None) -> tuple[Section, ...]:
-    """A single edge: numbers, verdict, drawings, tables, how it was measured."""
+    """A single edge or pulse: numbers, verdict, drawings, tables, how it was measured."""
     plates = tuple(
         Plate.of_figure(figure, *CAPTIONS[name])
         for name, figure in panel_figures(measurement).items()
     )
+    target = "An edge" if measurement.kind == "edge" else f"A {measurement.kind}"
     return (
         Section(
             "Result",
-            paragraphs=(f"An edge, {measurement.orientation}: {describe_line(measurement)}.",),
+            paragraphs=(f"{target}, {measurement.orientation}: {describe_line(measurement)}.",),
             headlines=_headlines(measurement),
             verdicts=(Verdict(measurement.trusted, verdict([measurement])),),
         ),
@@ -74,7 +81,7 @@ def edge_sections(measurement: Measurement, command: str | None = None) -> tuple
 
 
 def _headlines(measurement: Measurement) -> tuple[Headline, ...]:
-    numbers = measurement.metrics()
+    numbers = numbers_of(measurement)
     cards = [_headline(name, numbers[name]) for name in HEADLINES if name in numbers]
     cards.append(Headline("SNR", format_number(measurement.snr, 3), "", ("contrast over noise",)))
     return tuple(cards)
@@ -88,7 +95,7 @@ def _headline(name: str, estimate: Estimate) -> Headline:
 
 def _metrics_table(measurement: Measurement) -> Table:
     rows = []
-    for name, estimate in measurement.metrics().items():
+    for name, estimate in numbers_of(measurement).items():
         words, number = metric_words(name), word_estimate(estimate)
         rows.append(
             (words.label, number.value, number.std, number.interval, words.unit, words.meaning)
@@ -158,6 +165,9 @@ def _command(measurement: Measurement) -> str | None:
         words += ["--band", str(image.band)]
     if image.gsd_m is not None:
         words += ["--gsd", format_number(image.gsd_m, 8)]
+    if measurement.width_px is not None:
+        words += ["--width-px", format_number(measurement.width_px.value, 6)]
+        words += [] if measurement.width_px.std > 0 else ["--hold-width"]
     words += ["--method", measurement.method]
     if measurement.response.rer_centre != "half":
         words += ["--rer-centre", measurement.response.rer_centre]
@@ -168,12 +178,13 @@ def comparison_sections(
     measurements: Sequence[Measurement],
     *,
     truth: Response | None = None,
+    true_width_px: float | None = None,
     command: str | None = None,
 ) -> tuple[Section, ...]:
     """One target by several methods: drawings, all numbers, verdicts."""
     labels = edge_labels(measurements)
     plate = Plate.of_figure(
-        comparison_figure(measurements, truth=truth),
+        comparison_figure(measurements, truth=truth, true_width_px=true_width_px),
         "MTFs, their differences and the differences of the ESFs",
         "Bands are 95 % intervals. Differences are taken to the truth, or to the first method.",
         wide=True,
@@ -189,30 +200,33 @@ def comparison_sections(
             paragraphs=(f"One target by {', '.join(labels)}{first}.",),
             plates=(plate,),
         ),
-        Section("Numbers", tables=(_comparison_table(measurements, labels, truth),)),
+        Section(
+            "Numbers",
+            tables=(_comparison_table(measurements, labels, true_numbers(truth, true_width_px)),),
+        ),
         Section("Checks", verdicts=verdicts),
         reproducing_section(measurements[0], command),
     )
 
 
 def _comparison_table(
-    measurements: Sequence[Measurement], labels: Sequence[str], truth: Response | None
+    measurements: Sequence[Measurement], labels: Sequence[str], truth: Mapping[str, Estimate]
 ) -> Table:
-    known = () if truth is None else ("truth",)
+    known = ("truth",) if truth else ()
     rows = []
-    for name in METRICS:
-        numbers = [one.metrics().get(name) for one in measurements]
+    for name in METRIC_WORDS:
+        numbers = [numbers_of(one).get(name) for one in measurements]
         if any(number is None for number in numbers):
             continue
-        true = () if truth is None else (_true_value(truth, name),)
+        true = (_true_value(truth, name),) if truth else ()
         cells = (word_estimate(number).value_and_std for number in numbers if number is not None)
         rows.append((metric_words(name).label_with_unit, *true, *cells))
     columns = ("Metric", *known, *labels)
     return Table(columns, tuple(rows), "l" + "r" * (len(columns) - 1))
 
 
-def _true_value(truth: Response, name: str) -> str:
-    number = truth.metrics().get(name)
+def _true_value(truth: Mapping[str, Estimate], name: str) -> str:
+    number = truth.get(name)
     return MISSING if number is None else word_estimate(number).value
 
 

@@ -57,14 +57,14 @@ def mtf_csv(measurement: Measurement) -> str:
 
 
 def mtf_csv_of_many(measurements: Sequence[Measurement]) -> str:
-    """Several MTFs as one CSV, with the columns edge, method and orientation put first.
+    """Several MTFs as one CSV, with the target, method and orientation put first.
 
-    Column edge counts the measurements from 1. The column freq_cpm is there when all of them
-    know their GSD.
+    The first column, edge or pulse, counts the measurements from 1. The column freq_cpm is there
+    when all of them know their GSD.
     """
     in_metres = all(one.response.gsd_m is not None for one in measurements)
     columns = _header(measurements[0])[: 6 if in_metres else 5]
-    lines = [",".join(("edge", "method", "orientation", *columns))]
+    lines = [",".join((measurements[0].kind, "method", "orientation", *columns))]
     for number, one in enumerate(measurements, start=1):
         start = (str(number), one.method, one.orientation)
         lines += [",".join((*start, *cells[: len(columns)])) for cells in _cells(one)]

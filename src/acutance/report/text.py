@@ -13,6 +13,7 @@ from acutance.report.wording import (
     describe_line,
     format_number,
     metric_words,
+    numbers_of,
     verdict,
     word_estimate,
 )
@@ -61,7 +62,7 @@ def text_report(measurement: Measurement) -> str:
     """
     title = f"{measurement.kind} by {measurement.method}, {measurement.orientation}"
     numbers = [("", "value", "std", "95 % interval", "")]
-    for name, estimate in measurement.metrics().items():
+    for name, estimate in numbers_of(measurement).items():
         words, number = metric_words(name), word_estimate(estimate)
         numbers.append((words.label, number.value, number.std, number.interval, words.unit))
     blocks = [
@@ -82,8 +83,8 @@ def comparison_text(measurements: Sequence[Measurement]) -> str:
     """Several measurements of one target as text: one column a method."""
     labels = edge_labels(measurements)
     rows = [("", *labels)]
-    for name, first in measurements[0].metrics().items():
-        cells = (one.metrics().get(name, first) for one in measurements)
+    for name, first in numbers_of(measurements[0]).items():
+        cells = (numbers_of(one).get(name, first) for one in measurements)
         words = (word_estimate(cell).value_and_std for cell in cells)
         rows.append((metric_words(name).label_with_unit, *words))
     verdicts = (
@@ -91,7 +92,7 @@ def comparison_text(measurements: Sequence[Measurement]) -> str:
     )
     return "\n\n".join(
         (
-            f"edge by {len(labels)} methods, {measurements[0].orientation}\n"
+            f"{measurements[0].kind} by {len(labels)} methods, {measurements[0].orientation}\n"
             f"  {describe_image(measurements[0])}",
             align_columns(rows, "l" + "r" * len(labels)),
             "\n".join(verdicts),

@@ -23,6 +23,7 @@ __all__ = [
     "flatten_options",
     "format_number",
     "metric_words",
+    "numbers_of",
     "split_message",
     "verdict",
     "word_estimate",
@@ -65,6 +66,8 @@ METRIC_WORDS = {
     ),
     "fwhm_px": MetricWords("FWHM", "px", "Full width of the LSF at half of its maximum."),
     "fwhm_m": MetricWords("FWHM on the ground", "m", "The same width in metres."),
+    "width_px": MetricWords("Width", "px", "Width of the pulse along its normal."),
+    "width_m": MetricWords("Width on the ground", "m", "The same width in metres."),
     "mtf50_cpp": MetricWords("MTF50", "c/px", "Lowest frequency where the MTF falls to 0.5."),
     "mtf30_cpp": MetricWords("MTF30", "c/px", "Lowest frequency where the MTF falls to 0.3."),
     "mtf_area": MetricWords("MTF area", "c/px", "Area under the MTF from 0 to Nyquist."),
@@ -81,6 +84,15 @@ METRIC_WORDS = {
     "undershoot": MetricWords("Undershoot", "", "Shortfall of the ESF under the dark plateau."),
     "giqe_h": MetricWords("GIQE H", "", "Edge height overshoot of the GIQE 4 equation."),
 }
+
+
+def numbers_of(measurement: Measurement) -> dict[str, Estimate]:
+    """All numbers by name: the metrics, and before them the width of a pulse."""
+    width, gsd_m = measurement.width_px, measurement.response.gsd_m
+    found = {} if width is None else {"width_px": width}
+    if width is not None and gsd_m is not None:
+        found["width_m"] = width.scaled(gsd_m)
+    return {**found, **measurement.metrics()}
 
 
 def metric_words(name: str) -> MetricWords:
@@ -161,13 +173,16 @@ def describe_image(measurement: Measurement) -> str:
 
 
 def describe_line(measurement: Measurement) -> str:
-    """The edge itself, in one line: angle, length, contrast and noise."""
+    """The target itself, in one line: angle, length, levels and noise."""
     angle = word_estimate(measurement.angle_deg)
     parts = [f"angle {angle.value_and_std}°"]
     if math.isfinite(measurement.line.length_px):
         parts.append(f"{measurement.line.length_px:.0f} px long")
     dark, bright = measurement.samples.dark, measurement.samples.bright
-    parts.append(f"from {format_number(dark)} to {format_number(bright)}")
+    if measurement.width_px is None:
+        parts.append(f"from {format_number(dark)} to {format_number(bright)}")
+    else:
+        parts.append(f"{format_number(bright)} on {format_number(dark)}")
     parts.append(f"SNR {format_number(measurement.snr, 3)}")
     return ", ".join(parts)
 
