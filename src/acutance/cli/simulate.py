@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from acutance.cli.output import check_output
-from acutance.cli.terminal import say
+from acutance.cli import scenes
+from acutance.cli.scenes import SimulatedFiles, parse_size
+from acutance.cli.sensor import BUDGET_EXAMPLE, named_sensor, sensor_budget
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -47,6 +48,13 @@ def edge(
             metavar="NAME",
             help="A ready system instead of the blocks below: gaussian, wide, diffraction, halo, "
             "sharpened, asymmetric, smeared or defocused.",
+        ),
+    ] = None,
+    sensor: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE|NAME",
+            help="A sensor in a .toml file, or generic-2005, ikonos-like or quickbird-like.",
         ),
     ] = None,
     gaussian: Annotated[
@@ -93,9 +101,8 @@ def edge(
     seed: Annotated[int, typer.Option(metavar="N", help="Of the random numbers.")] = 0,
 ) -> None:
     """Render a straight edge as a sensor sees it, and write what a perfect measurement finds."""
-    target = check_output("--out", out, (".tif", ".tiff"))
-    truth_file = check_output("--out", str(target.path.with_suffix(".truth.json")), (".json",))
-    shape = _parse_size(size)
+    files = SimulatedFiles.of(out)
+    shape = parse_size(size)
     blocks = {
         "gaussian": gaussian,
         "detector": detector,
@@ -105,16 +112,21 @@ def edge(
         "diffraction": diffraction,
         "obscuration": obscuration,
     }
-    sensor = _sensor({name: size for name, size in blocks.items() if size is not None}, system, gsd)
+    sizes = {name: size for name, size in blocks.items() if size is not None}
+    if sensor is None:
+        sensor_seen = _sensor(sizes, system, gsd)
+    elif sizes or system is not None or gsd is not None:
+        raise OptionError(f"--sensor {sensor} stands alone: leave out blocks, --system and --gsd")
+    else:
+        sensor_seen = named_sensor(sensor)
 
     import numpy as np
 
     from acutance import simulate
-    from acutance.raster import write_geotiff
-    from acutance.report import json_text, truth_document
+    from acutance.report import truth_document
 
     pixels, truth = simulate.edge(
-        sensor,
+        sensor_seen,
         angle_deg=angle,
         orientation="along" if along else "across",
         shape=shape,
@@ -123,20 +135,8 @@ def edge(
         snr=snr,
         rng=np.random.default_rng(seed),
     )
-    write_geotiff(target.path, pixels.astype(np.float32), gsd_m=gsd)
-    truth_file.write(json_text({**truth_document(truth, sensor), "seed": seed}))
-    say(f"wrote {target.path}\nwrote {truth_file.path}")
+    files.write(pixels, sensor_seen, truth_document(truth, sensor_seen), seed)
     typer.echo(f"true MTF at Nyquist {truth.mtf_nyquist}, RER {truth.rer}, FWHM {truth.fwhm_px} px")
-
-
-def _parse_size(text: str) -> tuple[int, int]:
-    try:
-        rows, cols = (int(part) for part in text.split(","))
-    except ValueError as error:
-        raise OptionError(f"--size {text}: write rows and columns, as in 60,40") from error
-    if min(rows, cols) < 1:
-        raise OptionError(f"--size {text}: rows and columns have to be 1 or more")
-    return rows, cols
 
 
 def _sensor(sizes: dict[str, float], system: str | None, gsd_m: float | None) -> Sensor:
@@ -168,3 +168,14 @@ def _sensor(sizes: dict[str, float], system: str | None, gsd_m: float | None) ->
     if "butterworth" in sizes:
         blocks.append(optics.Butterworth(sizes["butterworth"]))
     return optics.Sensor(blocks, gsd_m=gsd_m)
+
+
+for _name, _command in (
+    ("pulse", scenes.pulse),
+    ("bars", scenes.bars),
+    ("star", scenes.star),
+    ("points", scenes.points),
+    ("site", scenes.site),
+):
+    app.command(_name, epilog=f"\b\nExample:\n{scenes.EXAMPLES[_name]}")(_command)
+app.command("sensor-budget", epilog=BUDGET_EXAMPLE)(sensor_budget)

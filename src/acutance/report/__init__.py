@@ -1,5 +1,11 @@
 """Faces of a measurement on paper: text, figures, HTML, CSV and JSON."""
 
+from acutance.report.budget import (
+    budget_document,
+    budget_figure,
+    budget_text,
+    sensor_document,
+)
 from acutance.report.comparison_page import comparison_figure
 from acutance.report.documents import (
     comparison_document,
@@ -12,11 +18,15 @@ from acutance.report.documents import (
 from acutance.report.edge_page import edge_figure, panel_figures
 from acutance.report.page import save_figure
 from acutance.report.reports import comparison_report, edge_report, target_report
+from acutance.report.scene_truth import scene_document, target_truth_document
 from acutance.report.tables import mtf_csv, mtf_csv_of_many
 from acutance.report.target_page import target_figure
 from acutance.report.text import comparison_text, target_text, text_report
 
 __all__ = [
+    "budget_document",
+    "budget_figure",
+    "budget_text",
     "comparison_document",
     "comparison_figure",
     "comparison_report",
@@ -30,10 +40,13 @@ __all__ = [
     "mtf_csv_of_many",
     "panel_figures",
     "save_figure",
+    "scene_document",
+    "sensor_document",
     "target_document",
     "target_figure",
     "target_report",
     "target_text",
+    "target_truth_document",
     "text_report",
     "truth_document",
 ]

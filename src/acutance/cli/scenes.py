@@ -1,0 +1,351 @@
+"""``acutance simulate pulse | bars | star | points | site``: the image, and its truth beside it."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from acutance.cli.output import OutputFile, check_output
+from acutance.cli.sensor import SensorName, named_sensor
+from acutance.cli.terminal import say
+from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.curves.grid import Floats
+    from acutance.optics import Sensor
+
+__all__ = ["EXAMPLES", "SimulatedFiles", "bars", "parse_size", "points", "pulse", "site", "star"]
+
+EXAMPLES = {
+    "pulse": "  acutance simulate pulse --sensor generic-2005 --width 3 --snr 70 --out pulse.tif",
+    "bars": "  acutance simulate bars --periods 8,4,3,2 --angle 6 --out bars.tif",
+    "star": "  acutance simulate star --square --sensor my-sensor.toml --out star.tif",
+    "points": "  acutance simulate points --peak 1500 --snr 80 --out mirrors.tif",
+    "site": "  acutance simulate site --out site.tif\n"
+    "  acutance simulate site --targets 1000 --size 4000,4000 --out scene.tif",
+}
+
+Out = Annotated[
+    str,
+    typer.Option(metavar="FILE", help="The image, .tif; the truth goes beside it as .truth.json."),
+]
+Angle = Annotated[
+    float, typer.Option(metavar="DEG", help="Tilt against the nearer image axis, -45 to 45.")
+]
+Along = Annotated[bool, typer.Option("--along", help="Nearly horizontal: the MTF along track.")]
+Dark = Annotated[float, typer.Option(metavar="DN", help="Level of the ground.")]
+Bright = Annotated[float, typer.Option(metavar="DN", help="Level of the target.")]
+Snr = Annotated[
+    float | None,
+    typer.Option(metavar="RATIO", help="Contrast over noise; no noise if not given."),
+]
+Seed = Annotated[int, typer.Option(metavar="N", help="Of the random numbers.")]
+
+
+@dataclass(frozen=True)
+class SimulatedFiles:
+    """An image and the truth beside it, found writable before anything is rendered.
+
+    Parameters
+    ----------
+    image, truth : OutputFile
+    """
+
+    image: OutputFile
+    truth: OutputFile
+
+    @classmethod
+    def of(cls, out: str) -> SimulatedFiles:
+        """The files for ``--out``, refused if they cannot be written."""
+        image = check_output("--out", out, (".tif", ".tiff"))
+        truth = check_output("--out", str(image.path.with_suffix(".truth.json")), (".json",))
+        return cls(image, truth)
+
+    def write(self, pixels: Floats, sensor: Sensor, document: dict[str, Any], seed: int) -> None:
+        """Write both: pixels in single precision, the truth with the seed that made them."""
+        import numpy as np
+
+        from acutance.raster import Gsd, write_geotiff
+        from acutance.report.documents import json_text
+
+        gsd = None if sensor.pixel_m is None else Gsd(*sensor.pixel_m)
+        write_geotiff(self.image.path, pixels.astype(np.float32), gsd_m=gsd)
+        self.truth.write(json_text({**document, "seed": seed}))
+        say(f"wrote {self.image.path}\nwrote {self.truth.path}")
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Rows and columns of an image, typed as ``60,40``.
+
+    Raises
+    ------
+    OptionError
+        If they are not two numbers above 0.
+    """
+    try:
+        rows, cols = (int(part) for part in text.split(","))
+    except ValueError as error:
+        raise OptionError(f"--size {text}: write rows and columns, as in 60,40") from error
+    if min(rows, cols) < 1:
+        raise OptionError(f"--size {text}: rows and columns have to be 1 or more")
+    return rows, cols
+
+
+def pulse(
+    out: Out,
+    sensor: SensorName = "generic-2005",
+    width: Annotated[
+        float | None, typer.Option(metavar="PX", help="Width in pixels; 3 if not given.")
+    ] = None,
+    width_m: Annotated[
+        float | None, typer.Option(metavar="M", help="Width in metres, instead of pixels.")
+    ] = None,
+    length: Annotated[
+        float | None, typer.Option(metavar="PX", help="Length; endless if not given.")
+    ] = None,
+    angle: Angle = 6.0,
+    along: Along = False,
+    size: Annotated[
+        str, typer.Option(metavar="ROWS,COLS", help="Size of the image in pixels.")
+    ] = "60,40",
+    dark: Dark = 100.0,
+    right_dark: Annotated[
+        float | None,
+        typer.Option(metavar="DN", help="Level of the ground behind the pulse, if it differs."),
+    ] = None,
+    bright: Bright = 1200.0,
+    snr: Snr = None,
+    ground_noise: Annotated[
+        bool,
+        typer.Option("--ground-noise", help="Uneven ground: 20 grains of variance 100 each."),
+    ] = False,
+    seed: Seed = 0,
+) -> None:
+    """Render a pulse target: a bright strip between two grounds."""
+    files, shape = SimulatedFiles.of(out), parse_size(size)
+    system = named_sensor(sensor)
+
+    import numpy as np
+
+    from acutance import simulate
+    from acutance.report.scene_truth import target_truth_document
+
+    pixels, truth = simulate.pulse(
+        system,
+        width_px=_width_px(system, width, width_m, angle, along),
+        length_px=length,
+        angle_deg=angle,
+        orientation="along" if along else "across",
+        shape=shape,
+        dark=dark,
+        right_dark=right_dark,
+        bright=bright,
+        snr=snr,
+        ground_noise=simulate.GroundNoise() if ground_noise else None,
+        rng=np.random.default_rng(seed),
+    )
+    files.write(pixels, system, target_truth_document(truth, system), seed)
+    typer.echo(
+        f"true width {truth.width_px:.4f} px, MTF at Nyquist {truth.mtf_nyquist}, RER {truth.rer}, "
+        f"FWHM {truth.fwhm_px} px"
+    )
+
+
+def _width_px(
+    system: Sensor, width: float | None, width_m: float | None, angle: float, along: bool
+) -> float:
+    from acutance.optics.sensor import normal_direction_deg
+
+    if width_m is None:
+        return 3.0 if width is None else width
+    if width is not None:
+        raise OptionError(f"--width {width:g} and --width-m {width_m:g} were both given: use one")
+    normal = normal_direction_deg(angle, "along" if along else "across")
+    gsd_m = system.gsd_along_normal_m(normal)
+    if gsd_m is None:
+        raise OptionError(f"--width-m {width_m:g} needs a sensor with a GSD: use --width in pixels")
+    return width_m / gsd_m
+
+
+def bars(
+    out: Out,
+    sensor: SensorName = "generic-2005",
+    periods: Annotated[
+        str, typer.Option(metavar="PX,PX,...", help="Distance of two bars in each group.")
+    ] = "8,6,5,4,3.2,2.5,2",
+    count: Annotated[int, typer.Option(metavar="N", help="Bars in a group.")] = 5,
+    length: Annotated[float, typer.Option(metavar="PX", help="Length of the bars.")] = 24.0,
+    angle: Angle = 0.0,
+    along: Along = False,
+    dark: Dark = 200.0,
+    bright: Bright = 1200.0,
+    snr: Snr = None,
+    seed: Seed = 0,
+) -> None:
+    """Render groups of bars below one another."""
+    files, system = SimulatedFiles.of(out), named_sensor(sensor)
+    try:
+        distances = tuple(float(part) for part in periods.split(","))
+    except ValueError as error:
+        raise OptionError(f"--periods {periods}: write numbers, as in 8,6,4") from error
+
+    import numpy as np
+
+    from acutance import simulate
+    from acutance.report.scene_truth import target_truth_document
+
+    pixels, truth = simulate.bars(
+        system,
+        periods_px=distances,
+        count=count,
+        length_px=length,
+        angle_deg=angle,
+        orientation="along" if along else "across",
+        dark=dark,
+        bright=bright,
+        snr=snr,
+        rng=np.random.default_rng(seed),
+    )
+    files.write(pixels, system, target_truth_document(truth, system), seed)
+    for freq, mtf in zip(truth.freq_cpp, truth.mtf, strict=True):
+        typer.echo(f"true MTF at {freq:.4f} cycles per pixel {mtf:.4f}")
+
+
+def star(
+    out: Out,
+    sensor: SensorName = "generic-2005",
+    cycles: Annotated[int, typer.Option(metavar="N", help="Periods in a full turn.")] = 36,
+    radius: Annotated[float, typer.Option(metavar="PX", help="Outer radius.")] = 52.0,
+    square: Annotated[
+        bool, typer.Option("--square", help="Bright and dark spokes instead of a sine.")
+    ] = False,
+    start: Annotated[float, typer.Option(metavar="DEG", help="Where a fan begins.")] = 0.0,
+    sweep: Annotated[float, typer.Option(metavar="DEG", help="How far it goes.")] = 360.0,
+    size: Annotated[
+        str, typer.Option(metavar="ROWS,COLS", help="Size of the image in pixels.")
+    ] = "128,128",
+    dark: Annotated[float, typer.Option(metavar="DN", help="Lowest level of the spokes.")] = 200.0,
+    bright: Annotated[float, typer.Option(metavar="DN", help="Highest level.")] = 1200.0,
+    snr: Snr = None,
+    seed: Seed = 0,
+) -> None:
+    """Render a Siemens star."""
+    files, shape, system = SimulatedFiles.of(out), parse_size(size), named_sensor(sensor)
+
+    import numpy as np
+
+    from acutance import simulate
+    from acutance.report.scene_truth import target_truth_document
+
+    pixels, truth = simulate.star(
+        system,
+        cycles=cycles,
+        shape=shape,
+        radius_px=radius,
+        wave="square" if square else "sine",
+        start_deg=start,
+        sweep_deg=sweep,
+        dark=dark,
+        bright=bright,
+        snr=snr,
+        rng=np.random.default_rng(seed),
+    )
+    files.write(pixels, system, target_truth_document(truth, system), seed)
+    typer.echo(f"true mean MTF at Nyquist {float(truth.mtf_mean(0.5)):.4f}")
+
+
+def points(
+    out: Out,
+    sensor: SensorName = "generic-2005",
+    layout: Annotated[
+        str,
+        typer.Option(metavar="NAME", help="columns: 20 mirrors in two; square: 4 by 4 of them."),
+    ] = "columns",
+    peak: Annotated[
+        float, typer.Option(metavar="DN", help="What a centred mirror adds to its pixel.")
+    ] = 1000.0,
+    background: Annotated[float, typer.Option(metavar="DN", help="Level of the ground.")] = 200.0,
+    snr: Annotated[
+        float | None,
+        typer.Option(metavar="RATIO", help="Peak over noise; no noise if not given."),
+    ] = None,
+    seed: Seed = 0,
+) -> None:
+    """Render an array of mirrors."""
+    files, system = SimulatedFiles.of(out), named_sensor(sensor)
+
+    import numpy as np
+
+    from acutance import simulate
+    from acutance.report.scene_truth import target_truth_document
+
+    first = (12.0, 12.0)
+    layouts = {
+        "columns": simulate.mirror_columns(first),
+        "square": simulate.mirror_square(first),
+    }
+    if layout not in layouts:
+        raise OptionError(f"--layout {layout}: the layouts are {', '.join(layouts)}")
+    pixels, truth = simulate.points(
+        system,
+        positions=layouts[layout],
+        peak=peak,
+        background=background,
+        snr=snr,
+        rng=np.random.default_rng(seed),
+    )
+    files.write(pixels, system, target_truth_document(truth, system), seed)
+    across, along = truth.response("across").mtf_nyquist, truth.response("along").mtf_nyquist
+    typer.echo(
+        f"{len(truth.positions)} mirrors, true MTF at Nyquist {across} across, {along} along"
+    )
+
+
+def site(
+    out: Out,
+    sensor: SensorName = "generic-2005",
+    targets: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Fill the image with N tarps instead of one campaign."),
+    ] = None,
+    size: Annotated[
+        str, typer.Option(metavar="ROWS,COLS", help="Size of the image; with --targets.")
+    ] = "1000,1000",
+    turn: Annotated[float, typer.Option(metavar="DEG", help="Turn of the targets.")] = 6.0,
+    texture: Annotated[
+        float, typer.Option(metavar="DN", help="Standard deviation of the grass.")
+    ] = 14.0,
+    read_noise: Annotated[
+        float, typer.Option(metavar="DN", help="Standard deviation of the noise.")
+    ] = 8.0,
+    seed: Seed = 0,
+) -> None:
+    """Render a campaign on grass: edge and pulse tarps, mirrors, bars, a star."""
+    files, shape, system = SimulatedFiles.of(out), parse_size(size), named_sensor(sensor)
+
+    import numpy as np
+
+    from acutance import simulate
+    from acutance.report.scene_truth import scene_document
+
+    rng, noise = np.random.default_rng(seed), simulate.Noise(read=read_noise)
+    if targets is None:
+        scene = simulate.brookings(system, rng, turn_deg=turn, texture_std=texture, noise=noise)
+    else:
+        tarps = simulate.tarp_rows(shape, targets, turn_deg=turn)
+        with typer.progressbar(length=targets, label="rendering", file=sys.stderr) as bar:
+            scene = simulate.render_site(
+                system,
+                tarps,
+                shape,
+                texture_std=texture,
+                noise=noise,
+                rng=rng,
+                progress=lambda done, total: bar.update(1),
+                description=f"{targets} tarps on grass, turned by {turn:g} deg",
+            )
+    files.write(scene.image, system, scene_document(scene), seed)
+    typer.echo(f"{scene.description}: {len(scene.edges)} edges, {len(scene.targets)} other targets")
