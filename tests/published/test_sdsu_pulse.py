@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from acutance import simulate
-from acutance.errors import NoEdgeError, OptionError, SupportError
+from acutance.errors import NoEdgeError, OptionError, PhaseError, SupportError
 from acutance.fit.pulse import PulseBand
 from acutance.measure.published import (
     PUBLISHED_PULSE,
@@ -15,6 +15,8 @@ from acutance.measure.published import (
     SdsuPulseOptions,
     sdsu_2005_pulse,
 )
+from acutance.measure.published.pulse_gains import sdsu_pulse_gains
+from acutance.measure.pulse_width import width_error_gain
 from acutance.optics.preset import preset
 
 SENSOR = preset("generic-2005")
@@ -154,3 +156,45 @@ def test_flat_ground_holds_no_pulse():
 def test_meaningless_options_are_refused(wrong):
     with pytest.raises(OptionError, match="found"):
         SdsuPulseOptions(**wrong)
+
+
+def test_gains_of_the_steps_explain_the_printed_error():
+    mtf = SENSOR.response(6.0).mtf
+    gains = sdsu_pulse_gains(mtf, 6.0, 3.0)
+    parts = [float(100 * (gain[0] - 1)) for gain in (gains.window, gains.row_distance, gains.width)]
+    assert parts == pytest.approx([-1.98, -1.49, -0.58], abs=0.01)
+    assert gains.total[0] == pytest.approx(1 - 0.0401, abs=2e-4)
+    assert gains.to_dict()["total"] == gains.total.tolist()
+
+
+@pytest.mark.parametrize("angle_deg", [4.0, 6.0, 9.0, 12.7])
+@pytest.mark.parametrize(
+    "options", [{}, {"order": 4}, {"width": "axis"}, {"distance": "normal"}], ids=str
+)
+def test_pipeline_errs_by_the_product_of_its_gains(angle_deg, options):
+    # Whole cycles of the phases, over many phases: what sampling adds goes out of the mean.
+    slope = math.tan(math.radians(angle_deg))
+    rows = round(round(100 * slope) / slope)
+    errors = [
+        error_at_nyquist(angle_deg, rows=rows, offset_px=offset, **options)
+        for offset in np.arange(6) / 6
+    ]
+    mtf = SENSOR.response(angle_deg).mtf
+    gains = sdsu_pulse_gains(mtf, angle_deg, 3.0, options=SdsuPulseOptions(**options))
+    assert np.mean(errors) == pytest.approx(gains.total[0] - 1, abs=4e-3)
+
+
+def test_quartic_over_four_phases_is_refused():
+    with pytest.raises(PhaseError, match="polynomial of order 2"):
+        measured(14.05, rows=40, order=4)
+
+
+@pytest.mark.parametrize(
+    ("old_m", "new_m", "old", "new", "percent"),
+    [(8.77, 8.85, 0.3333, 0.3399, 1.98), (8.83, 8.95, 0.3687, 0.3809, 3.30)],
+)
+def test_printed_corrections_of_the_tarp_width(old_m, new_m, old, new, percent):
+    # Table 3.3, QuickBird in 2002, 2.8 m: MTF at Nyquist before and after.
+    gain = float(width_error_gain(old_m / 2.8, new_m / 2.8, 0.5))
+    assert round(100 * (gain - 1), 2) == percent
+    assert round(old * gain, 4) == pytest.approx(new, abs=1.01e-4)
