@@ -13,7 +13,7 @@ HEAVY = ("numpy", "scipy", "matplotlib", "rasterio", "jinja2", "rich", "pydantic
 
 
 @pytest.mark.parametrize(
-    "words", [(), ("edge",), ("sites",), ("simulate",), ("simulate", "edge"), ("demo",)]
+    "words", [(), ("edge",), ("pulse",), ("sites",), ("simulate",), ("simulate", "edge"), ("demo",)]
 )
 def test_every_help_ends_with_an_example(acutance, words):
     result = acutance(*words, "--help")

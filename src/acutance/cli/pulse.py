@@ -99,7 +99,7 @@ def pulse(
         limits=change_limits(PulseLimits(), limit or []),
     )
     source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site)
-    if width_m is not None and source.gsd is None:
+    if width_m is not None and source.gsd() is None:
         raise OptionError("--width-m needs a GSD, and the image has none: add --gsd or --width-px")
     measurements = [
         measure_pulse(

@@ -1,0 +1,149 @@
+"""``acutance pulse``: width, text, JSON, files, checks and refusals."""
+
+import json
+
+import numpy as np
+import pytest
+from jsonschema import Draft202012Validator
+
+from acutance import optics, simulate
+from acutance.measure import PULSE_METHODS
+from acutance.raster import write_geotiff
+from acutance.report import measurement_schema
+
+SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=2.8)
+WIDTH_M = 8.83
+
+
+@pytest.fixture(scope="module")
+def pulse_image(tmp_path_factory):
+    """60 x 40 pixels of 2.8 m, a tarp of 8.83 m at 6 degrees, SNR 80."""
+    pixels, _ = simulate.pulse(
+        SENSOR, width_px=WIDTH_M / 2.8, snr=80, rng=np.random.default_rng(5), right_dark=130.0
+    )
+    path = tmp_path_factory.mktemp("images") / "pulse.tif"
+    write_geotiff(path, pixels.astype(np.float32), gsd_m=2.8)
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def bare_image(tmp_path_factory):
+    """The same kind of pulse as an array without a GSD."""
+    pixels, _ = simulate.pulse(SENSOR, snr=80, rng=np.random.default_rng(5))
+    path = tmp_path_factory.mktemp("images") / "pulse.npy"
+    np.save(path, pixels)
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def validator():
+    return Draft202012Validator(measurement_schema())
+
+
+def test_the_text_report_has_the_width_and_goes_to_stdout(acutance, pulse_image):
+    result = acutance("pulse", pulse_image, "--width-m", WIDTH_M)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert result.stdout.startswith("pulse by spline, across")
+    assert "Width on the ground" in result.stdout
+
+
+@pytest.mark.parametrize("width", [("--width-m", WIDTH_M), ("--width-px", 3.1), ()])
+def test_json_keeps_to_the_schema_and_holds_the_true_width(acutance, pulse_image, validator, width):
+    result = acutance("pulse", pulse_image, *width, "--json", "--covariance")
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    validator.validate(document)
+    assert document["kind"] == "pulse"
+    assert document["width_px"]["std"] > 0
+    assert document["width_px"]["value"] == pytest.approx(WIDTH_M / 2.8, abs=0.03)
+    assert document["mtf_nyquist"]["value"] == pytest.approx(0.289, abs=0.03)
+    assert "factor_real" in document["mtf"]
+
+
+def test_a_held_width_has_no_deviation(acutance, pulse_image):
+    result = acutance("pulse", pulse_image, "--width-px", 3.15, "--hold-width", "--json")
+    assert result.exit_code == 0, result.stderr
+    width = json.loads(result.stdout)["width_px"]
+    assert (width["value"], width["std"]) == (3.15, 0.0)
+
+
+def test_region_gsd_and_limits_reach_the_measurement(acutance, pulse_image):
+    result = acutance(
+        *("pulse", pulse_image, "--roi", "5,4,48,32", "--gsd", 2.4, "--width-px", 3.15, "--json"),
+        *("--limit", "plateau_behind_px=3", "--limit", "ground_step=0.5", "--rer-centre", "peak"),
+    )
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["image"]["roi"][0] >= 5
+    assert document["image"]["gsd_m"] == pytest.approx(2.4)
+    limits = document["options"]["limits"]
+    assert (limits["plateau_px"], limits["ground_step"]) == (3.0, 0.5)
+    assert document["rer_centre"] == "peak"
+
+
+@pytest.mark.parametrize("method", PULSE_METHODS)
+def test_every_method_is_named_in_the_help_and_writes_its_files(
+    acutance, pulse_image, tmp_path, method
+):
+    assert method in acutance("pulse", "--help").stdout
+    result = acutance(
+        *("pulse", pulse_image, "--width-m", WIDTH_M, "--method", method),
+        *("--figure", tmp_path / "p.png", "--report", tmp_path / "p.html"),
+        *("--csv", tmp_path / "p.csv"),
+    )
+    assert result.exit_code == 0, result.stderr
+    assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
+    page = (tmp_path / "p.html").read_text(encoding="utf-8")
+    assert "Pulse measurement, across" in page
+    assert "Pulse response" in page
+    assert len((tmp_path / "p.csv").read_text().splitlines()) == 52
+
+
+def test_methods_are_compared(acutance, pulse_image, tmp_path):
+    others = ",".join(PULSE_METHODS)
+    words = ("pulse", pulse_image, "--width-m", WIDTH_M, "--compare", others)
+    result = acutance(*words, "--json", "--report", tmp_path / "c.html")
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    found = document.get("measurements", [document])
+    assert [one["method"] for one in found] == list(PULSE_METHODS)
+
+
+def test_strict_is_exit_3_after_the_result(acutance, pulse_image):
+    words = ("pulse", pulse_image, "--width-px", 3.6, "--strict", "--json")
+    result = acutance(*words)
+    assert result.exit_code == 3
+    failed = [one for one in json.loads(result.stdout)["checks"] if not one["passed"]]
+    assert [one["name"] for one in failed] == ["width_sigmas"]
+    assert "check failed" in result.stderr
+    assert acutance(*words, "--limit", "width_sigmas=1000").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--width-m", "8.83", "--width-px", "3"), "give one of them"),
+        (("--width-m", "8.83"), "add --gsd or --width-px"),
+        (("--hold-width",), "needs a width"),
+        (("--width-px", "-3"), "cannot be measured"),
+        (("--width-px", "wide"), "--width-px"),
+        (("--covariance",), "add --json"),
+        (("--method", "magic"), "magic"),
+        (("--compare", "magic"), "magic"),
+        (("--limit", "nonsense=1"), "width_sigmas"),
+        (("--limit", "ground_step=much"), "write a number"),
+        (("--rer-centre", "middle"), "half or peak"),
+        (("--figure", "pulse.doc"), "has to be .png or .svg or .pdf"),
+        (("--roi", "0,0,60,9"), "strip"),
+    ],
+)
+def test_what_means_nothing_is_exit_2_with_a_message(
+    acutance, bare_image, tmp_path, monkeypatch, words, message
+):
+    monkeypatch.chdir(tmp_path)
+    result = acutance("pulse", bare_image, *words)
+    assert result.exit_code == 2, result.stdout
+    assert result.stdout == ""
+    assert message in result.stderr
+    assert "Traceback" not in result.stderr
+    assert list(tmp_path.iterdir()) == []
