@@ -58,6 +58,7 @@ class EdgeChecks(TargetChecks):
 
     @cached_property
     def answers(self) -> tuple[Check, ...]:
+        """All checks of an edge."""
         seen, limits = self._seen, self.limits
         return (
             contrast(seen, limits),
@@ -79,6 +80,7 @@ class EdgeChecks(TargetChecks):
 
 
 def contrast(seen: Evidence, limits: EdgeLimits) -> Check:
+    """Contrast over the noise of the plateaus."""
     std = seen.plateau_std
     value = min(1 / std, MUCH) if std > 0 else MUCH
     return at_least(
@@ -111,6 +113,7 @@ def uniformity(seen: Evidence, limits: EdgeLimits, side: str, outwards: Floats) 
 
 
 def angle(fit: EdgeFit, limits: EdgeLimits, by_rows: bool) -> Check:
+    """Angle between the edge and the grid."""
     angle = fit.line.angle_deg
     limit = limits.angle_deg if by_rows else 45.0
     return at_most(
@@ -130,6 +133,7 @@ def sample_phases(line_distance: Floats, reach_px: float = 2.0) -> float:
 
 
 def phases(seen: Evidence, limits: EdgeLimits) -> Check:
+    """Sub-pixel phases of the samples."""
     value = sample_phases(seen.before)
     return at_least(
         "sample_phases", value, limits.sample_phases,
@@ -139,6 +143,7 @@ def phases(seen: Evidence, limits: EdgeLimits) -> Check:
 
 
 def enough_rows(extent: Extent, limits: EdgeLimits) -> Check:
+    """Length of the edge in rows."""
     return at_least(
         "rows", extent.length_px, limits.rows,
         f"{extent.length_px:.0f} rows of the edge serve (KOMPSAT-3 draft 3e: more than 10 to 20)",

@@ -89,6 +89,7 @@ def gradient(seen: Evidence, limits: EdgeLimits) -> Check:
 
 
 def correlation(seen: Evidence, limits: EdgeLimits) -> Check:
+    """Correlation of the noise between neighbouring pixels."""
     # On the plateaus alone: across the edge a method's own misfit would pass for correlation.
     flat = seen.outside > seen.far_px
     residual = seen.residual[flat]
@@ -110,6 +111,7 @@ def correlation(seen: Evidence, limits: EdgeLimits) -> Check:
 
 
 def outliers(seen: Evidence, limits: EdgeLimits) -> Check:
+    """Share of the pixels that lie far from the fit."""
     noise = seen.noise
     many = np.abs(seen.residual) > _OUTLIER_SIGMAS * noise if noise > _MISFIT else np.zeros(1, bool)
     value = float(np.mean(many))

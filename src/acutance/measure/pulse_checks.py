@@ -76,6 +76,7 @@ class PulseChecks(TargetChecks):
 
     @cached_property
     def answers(self) -> tuple[Check, ...]:
+        """All checks of a pulse."""
         seen, limits = self._seen, self.limits
         return (
             self._contrast(),
