@@ -136,6 +136,20 @@ def test_pulses_are_compared_with_the_true_width(pulse, make_pulse, truth):
     assert not outside(figure)
 
 
+def test_spikes_at_the_zeros_do_not_flatten_the_curves(pulse, truth):
+    spiky = pulse.mtf.otf.copy()
+    spiky[32] = 10.0
+    ratio = replace(
+        pulse,
+        method="sdsu-2005",
+        response=replace(pulse.response, mtf=replace(pulse.mtf, otf=spiky)),
+    )
+    assert panel_figures(ratio)["mtf"].axes[0].get_ylim()[1] < 1.5
+    mtfs, differences = comparison_figure([pulse, ratio], truth=truth).axes[:2]
+    assert mtfs.get_ylim()[1] < 1.5
+    assert max(np.abs(differences.get_ylim())) <= 0.2
+
+
 def test_nothing_overlaps_and_nothing_leaves_the_page(measurement, compared, truth, target):
     figures = {
         "edge": edge_figure(measurement),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import numpy as np
 from acutance.curves import Estimate
 from acutance.report.grids import write_grid
 from acutance.report.page import INK, PALETTE, new_page, split_page, styled
-from acutance.report.panels import band_edges, mark_frequencies
+from acutance.report.panels import TOP_BESIDE_ZEROS, band_edges, mark_frequencies, mark_zeros
 from acutance.report.wording import MISSING, describe_image, metric_words, numbers_of, word_estimate
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["COMPARED", "comparison_figure", "edge_labels", "true_numbers"]
 
+MOST_BESIDE_ZEROS = 0.2
 COMPARED = ("mtf_nyquist", "rer", "fwhm_px", "mtf50_cpp", "mtf_area", "overshoot")
 
 
@@ -59,9 +61,15 @@ def comparison_figure(
         figure = new_page(13.0, 6.4 + table_in)
         upper, lower = split_page(figure, 2, 1, heights=(6.4, table_in))
         left, right = split_page(upper, 1, 2, widths=(1.15, 1.0))
-        _draw_mtfs(left.subplots(), responses, truth)
+        width = measurements[0].width_px
+        mtfs = left.subplots()
+        _draw_mtfs(mtfs, responses, truth, math.inf if width is None else TOP_BESIDE_ZEROS)
         mtf_axes, esf_axes = right.subplots(2, 1)
         _draw_mtf_differences(mtf_axes, responses, reference, name)
+        if width is not None:
+            mark_zeros(mtfs, width.value)
+            low, high = mtf_axes.get_ylim()
+            mtf_axes.set_ylim(max(low, -MOST_BESIDE_ZEROS), min(high, MOST_BESIDE_ZEROS))
         _draw_esf_differences(esf_axes, responses, reference, name)
         numbers = {label: numbers_of(one) for label, one in zip(labels, measurements, strict=True)}
         _write_comparison(lower.subplots(), numbers, true_numbers(truth, true_width_px))
@@ -74,9 +82,11 @@ def comparison_figure(
     return figure
 
 
-def _draw_mtfs(axes: Axes, responses: Mapping[str, Response], truth: Response | None) -> None:
+def _draw_mtfs(
+    axes: Axes, responses: Mapping[str, Response], truth: Response | None, most: float
+) -> None:
     top = max(float(response.mtf.value.max()) for response in responses.values())
-    mark_frequencies(axes, next(iter(responses.values())).gsd_m, top)
+    mark_frequencies(axes, next(iter(responses.values())).gsd_m, min(top, most))
     for (label, response), color in zip(responses.items(), _colors(len(responses)), strict=True):
         mtf = response.mtf
         low, high = band_edges(mtf.value, mtf.std)

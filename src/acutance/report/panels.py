@@ -31,12 +31,15 @@ __all__ = [
     "draw_pixels",
     "draw_residuals",
     "mark_frequencies",
+    "mark_zeros",
     "reach_px",
     "show_pixels",
 ]
 
 TWO_SIDED_95 = 1.959964
 MOST_ZEROS_NAMED = 8
+TOP_BESIDE_ZEROS = 1.2
+"""A ratio of spectra has spikes at the zeros of the pulse's; they are not drawn whole."""
 
 
 def band_edges(value: Floats, std: Floats) -> tuple[Floats, Floats]:
@@ -226,7 +229,10 @@ def draw_mtf(axes: Axes, measurement: Measurement) -> None:
     """The MTF from 0 to 1 c/px with its 95 % band, Nyquist, MTF50 and the aliased region."""
     mtf = measurement.mtf
     low, high = band_edges(mtf.value, mtf.std)
-    mark_frequencies(axes, measurement.response.gsd_m, top=float(np.max(high)))
+    top = float(np.max(high))
+    if measurement.width_px is not None:
+        top = min(top, TOP_BESIDE_ZEROS)
+    mark_frequencies(axes, measurement.response.gsd_m, top)
     axes.fill_between(mtf.freq_cpp, low, high, color=BLUE, alpha=0.3, linewidth=0)
     axes.plot(mtf.freq_cpp, mtf.value, color=BLUE)
     _mark_point(axes, mtf, metrics.NYQUIST_CPP, VERMILION)
@@ -254,11 +260,11 @@ def draw_mtf(axes: Axes, measurement: Measurement) -> None:
             color=color,
         )
     if measurement.width_px is not None:
-        _mark_zeros(axes, measurement.width_px.value)
+        mark_zeros(axes, measurement.width_px.value)
     axes.set_title("Modulation transfer function")
 
 
-def _mark_zeros(axes: Axes, width_px: float) -> None:
+def mark_zeros(axes: Axes, width_px: float) -> None:
     """Where the spectrum of a pulse of this width has its zeros, as thin dotted lines."""
     zeros = zeros_of_pulse(width_px, 0.99)
     for k, zero in enumerate(zeros, start=1):

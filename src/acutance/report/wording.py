@@ -58,6 +58,8 @@ class MetricWords:
 
 
 METRIC_WORDS = {
+    "width_px": MetricWords("Width", "px", "Width of the pulse along its normal."),
+    "width_m": MetricWords("Width on the ground", "m", "The same width in metres."),
     "mtf_nyquist": MetricWords(
         "MTF at Nyquist", "", "Contrast left at 0.5 cycles per pixel, the sampling limit."
     ),
@@ -66,8 +68,6 @@ METRIC_WORDS = {
     ),
     "fwhm_px": MetricWords("FWHM", "px", "Full width of the LSF at half of its maximum."),
     "fwhm_m": MetricWords("FWHM on the ground", "m", "The same width in metres."),
-    "width_px": MetricWords("Width", "px", "Width of the pulse along its normal."),
-    "width_m": MetricWords("Width on the ground", "m", "The same width in metres."),
     "mtf50_cpp": MetricWords("MTF50", "c/px", "Lowest frequency where the MTF falls to 0.5."),
     "mtf30_cpp": MetricWords("MTF30", "c/px", "Lowest frequency where the MTF falls to 0.3."),
     "mtf_area": MetricWords("MTF area", "c/px", "Area under the MTF from 0 to Nyquist."),
