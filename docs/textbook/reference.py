@@ -25,6 +25,7 @@ PACKAGES = (
     "simulate",
     "measure",
     "measure.published",
+    "studies",
     "report",
 )
 
@@ -33,6 +34,9 @@ COMMANDS: dict[str, list[str]] = {
     "edge": ["edge"],
     "sites": ["sites"],
     "simulate-edge": ["simulate", "edge"],
+    "study": ["study"],
+    "plan-edge": ["plan", "edge"],
+    "plan-pulse": ["plan", "pulse"],
     "demo": ["demo"],
 }
 

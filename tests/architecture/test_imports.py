@@ -10,11 +10,22 @@ import pytest
 from package_source import MODULES, ROOT, Import, all_imports, imports_of
 
 # From the roof to the ground. A floor imports itself and what stands after it.
-FLOORS = ("cli", "report", "measure", "simulate", "raster", "fit", "optics", "curves", "errors")
+FLOORS = (
+    "cli",
+    "report",
+    "studies",
+    "measure",
+    "simulate",
+    "raster",
+    "fit",
+    "optics",
+    "curves",
+    "errors",
+)
 
 # Libraries, and the floors that may use them.
 LIBRARIES = {
-    "numpy": {"cli", "report", "measure", "simulate", "raster", "fit", "optics", "curves"},
+    "numpy": set(FLOORS) - {"errors"},
     "scipy": {"measure", "simulate", "fit", "optics"},
     "rasterio": {"raster"},
     "matplotlib": {"report"},
@@ -106,7 +117,9 @@ def test_importing_acutance_loads_nothing_heavy() -> None:
     assert not loaded & {"numpy", "scipy", "matplotlib", "rasterio", "pydantic", "jinja2", "typer"}
 
 
-@pytest.mark.parametrize("command", [[], ["edge"], ["simulate", "edge"], ["sites"], ["demo"]])
+@pytest.mark.parametrize(
+    "command", [[], ["edge"], ["simulate", "edge"], ["sites"], ["study"], ["demo"]]
+)
 def test_help_loads_nothing_heavy(command: list[str]) -> None:
     arguments = [*command, "--help"]
     loaded = loaded_after(

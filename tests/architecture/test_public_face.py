@@ -17,7 +17,16 @@ from package_source import MODULES, ROOT, dotted_name
 import acutance
 from acutance import errors
 
-PACKAGES = ("curves", "optics", "raster", "simulate", "measure", "measure.published", "report")
+PACKAGES = (
+    "curves",
+    "optics",
+    "raster",
+    "simulate",
+    "measure",
+    "measure.published",
+    "studies",
+    "report",
+)
 LONGEST = 400
 VAGUE = ("util", "helper", "common", "manager", "factory", "registry", "misc", "tools", "base")
 

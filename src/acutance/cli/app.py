@@ -8,7 +8,7 @@ import typer
 from typer.core import TyperGroup
 
 from acutance import __version__
-from acutance.cli import demo, edge, pulse, simulate, sites
+from acutance.cli import demo, edge, plan, pulse, simulate, sites, study
 from acutance.cli.terminal import fail
 from acutance.errors import AcutanceError
 
@@ -60,6 +60,8 @@ app.command("edge", epilog=edge.EXAMPLE)(edge.edge)
 app.command("pulse", epilog=pulse.EXAMPLE)(pulse.pulse)
 app.command("sites", epilog=sites.EXAMPLE)(sites.sites)
 app.add_typer(simulate.app, name="simulate")
+app.command("study", epilog=study.EXAMPLE)(study.study)
+app.add_typer(plan.app, name="plan")
 app.command("demo", epilog=demo.EXAMPLE)(demo.demo)
 
 

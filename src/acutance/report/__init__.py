@@ -19,6 +19,7 @@ from acutance.report.edge_page import edge_figure, panel_figures
 from acutance.report.page import save_figure
 from acutance.report.reports import comparison_report, edge_report, target_report
 from acutance.report.scene_truth import scene_document, target_truth_document
+from acutance.report.study_figures import plan_text, study_figure, study_text
 from acutance.report.tables import mtf_csv, mtf_csv_of_many
 from acutance.report.target_page import target_figure
 from acutance.report.text import comparison_text, target_text, text_report
@@ -39,9 +40,12 @@ __all__ = [
     "mtf_csv",
     "mtf_csv_of_many",
     "panel_figures",
+    "plan_text",
     "save_figure",
     "scene_document",
     "sensor_document",
+    "study_figure",
+    "study_text",
     "target_document",
     "target_figure",
     "target_report",

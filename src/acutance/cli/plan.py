@@ -1,0 +1,211 @@
+"""``acutance plan``: which accuracy to expect of a target, before it is bought."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from acutance.cli.output import OutputFile, check_output
+from acutance.cli.sensor import SensorName, named_sensor
+from acutance.cli.study import WorkersOption, execution_of, progress_bar
+from acutance.cli.terminal import say
+from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.optics import Sensor
+
+__all__ = ["EXAMPLE", "app", "plan_edge", "plan_pulse"]
+
+EXAMPLE = (
+    "\b\nExample:\n"
+    "  acutance plan edge --gsd 0.7 --snr 100 --rows 40 --angle 6 --sensor generic-2005\n"
+    "  acutance plan pulse --width-m 8.83 --gsd 2.8 --snr 70 --accuracy 0.005"
+)
+
+app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="Plan a target: what accuracy to expect of it.",
+    epilog=EXAMPLE,
+)
+
+GsdOption = Annotated[
+    float | None,
+    typer.Option(metavar="M", help="Ground sampling distance, if not the sensor's own."),
+]
+SnrOption = Annotated[
+    float | None,
+    typer.Option(metavar="RATIO", help="Contrast over noise; 100 if nothing else says it."),
+]
+ContrastOption = Annotated[
+    float | None, typer.Option(metavar="DN", help="Height of the target; needs --noise.")
+]
+NoiseOption = Annotated[
+    float | None,
+    typer.Option(metavar="DN", help="Standard deviation of the noise; needs --contrast."),
+]
+RowsOption = Annotated[
+    str,
+    typer.Option(metavar="N,...", help="Image rows across the target; several are compared."),
+]
+AngleOption = Annotated[
+    str,
+    typer.Option(metavar="DEG,...", help="Tilt against the columns; several are compared."),
+]
+DrawsOption = Annotated[
+    int, typer.Option(metavar="N", min=0, help="Simulated images a design; 0 for bounds alone.")
+]
+AccuracyOption = Annotated[
+    float | None,
+    typer.Option(metavar="STD", help="Wanted for the MTF at Nyquist: how many rows?"),
+]
+SeedOption = Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")]
+CsvOption = Annotated[str | None, typer.Option(metavar="FILE", help="Write the table: .csv.")]
+FigureOption = Annotated[
+    str | None, typer.Option(metavar="FILE", help="Draw the table: .png, .svg or .pdf.")
+]
+JsonOption = Annotated[
+    bool, typer.Option("--json", help="Print the JSON document, and nothing else, to stdout.")
+]
+
+
+@app.callback()
+def _plan() -> None:
+    """Plan a target: the standard deviations to expect, by theory and by simulation."""
+
+
+@app.command("edge", epilog=EXAMPLE)
+def plan_edge(
+    sensor: SensorName = "generic-2005",
+    gsd: GsdOption = None,
+    snr: SnrOption = None,
+    contrast: ContrastOption = None,
+    noise: NoiseOption = None,
+    rows: RowsOption = "40",
+    angle: AngleOption = "6",
+    accuracy: AccuracyOption = None,
+    draws: DrawsOption = 200,
+    seed: SeedOption = 2005,
+    workers: WorkersOption = None,
+    csv: CsvOption = None,
+    figure: FigureOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Plan an edge: how many rows, which angle."""
+    _answer(
+        "edge", _sensor(sensor, gsd), _snr(snr, contrast, noise), rows, angle, (3.0,),
+        accuracy=accuracy, draws=draws, seed=seed, workers=workers, csv=csv, figure=figure,
+        as_json=as_json,
+    )  # fmt: skip
+
+
+@app.command("pulse", epilog=EXAMPLE)
+def plan_pulse(
+    width_px: Annotated[
+        str | None,
+        typer.Option(metavar="PX,...", help="Width of the pulse; 3 if not given."),
+    ] = None,
+    width_m: Annotated[
+        str | None, typer.Option(metavar="M,...", help="The same in metres; needs a GSD.")
+    ] = None,
+    sensor: SensorName = "generic-2005",
+    gsd: GsdOption = None,
+    snr: SnrOption = None,
+    contrast: ContrastOption = None,
+    noise: NoiseOption = None,
+    rows: RowsOption = "40",
+    angle: AngleOption = "6",
+    accuracy: AccuracyOption = None,
+    draws: DrawsOption = 200,
+    seed: SeedOption = 2005,
+    workers: WorkersOption = None,
+    csv: CsvOption = None,
+    figure: FigureOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Plan a pulse: which width of tarp, how many rows, which angle."""
+    system = _sensor(sensor, gsd)
+    _answer(
+        "pulse", system, _snr(snr, contrast, noise), rows, angle,
+        _widths(width_px, width_m, system), accuracy=accuracy, draws=draws, seed=seed,
+        workers=workers, csv=csv, figure=figure, as_json=as_json,
+    )  # fmt: skip
+
+
+def _sensor(name: str, gsd_m: float | None) -> Sensor:
+    """The sensor, with another GSD if one is given: its blur stays the same in pixels."""
+    sensor = named_sensor(name)
+    return sensor if gsd_m is None else replace(sensor, gsd_m=gsd_m, gsd_along_m=None)
+
+
+def _snr(snr: float | None, contrast: float | None, noise: float | None) -> float:
+    if contrast is None and noise is None:
+        return 100.0 if snr is None else snr
+    if contrast is None or noise is None or snr is not None:
+        raise OptionError("give --contrast and --noise together, or --snr without them")
+    if not (contrast > 0 and noise > 0):
+        raise OptionError(f"--contrast {contrast:g} and --noise {noise:g}: both have to be above 0")
+    return contrast / noise
+
+
+def _widths(width_px: str | None, width_m: str | None, sensor: Sensor) -> tuple[float, ...]:
+    if width_px is not None and width_m is not None:
+        raise OptionError("--width-px and --width-m say the same: give one of them")
+    if width_m is None:
+        return _numbers("--width-px", width_px or "3")
+    if sensor.gsd_m is None:
+        raise OptionError(f"--width-m {width_m} needs the ground sampling distance: add --gsd")
+    return tuple(width / sensor.gsd_m for width in _numbers("--width-m", width_m))
+
+
+def _numbers(option: str, text: str) -> tuple[float, ...]:
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError as error:
+        raise OptionError(f"{option} {text}: write numbers with commas, as in 20,40") from error
+
+
+def _answer(
+    target: Literal["edge", "pulse"],
+    sensor: Sensor,
+    snr: float,
+    rows: str,
+    angle: str,
+    widths_px: Sequence[float],
+    *,
+    accuracy: float | None,
+    draws: int,
+    seed: int,
+    workers: int | None,
+    csv: str | None,
+    figure: str | None,
+    as_json: bool,
+) -> None:
+    from acutance.report import json_text
+    from acutance.report.page import figure_bytes
+    from acutance.report.study_figures import plan_text, study_figure
+    from acutance.studies import PlanOptions, plan_target
+
+    table = None if csv is None else check_output("--csv", csv, (".csv",))
+    drawing = None if figure is None else check_output("--figure", figure, (".png", ".svg", ".pdf"))
+    options = PlanOptions(
+        target=target, sensor=sensor, snr=snr,
+        rows=tuple(int(count) for count in _numbers("--rows", rows)),
+        angles_deg=_numbers("--angle", angle), widths_px=tuple(widths_px), draws=draws,
+        accuracy=accuracy,
+    )  # fmt: skip
+    with progress_bar(f"plan {target}") as progress:
+        result: Any = plan_target(options, execution_of(seed, workers, None, progress))
+    if table is not None:
+        _write(table, result.table.to_csv())
+    if drawing is not None:
+        _write(drawing, figure_bytes(study_figure(result), drawing.ending))
+    typer.echo(json_text(result.to_dict()) if as_json else plan_text(result))
+
+
+def _write(target: OutputFile, content: str | bytes) -> None:
+    target.write(content)
+    say(f"wrote {target.path}")

@@ -1,0 +1,184 @@
+"""``acutance study``: the studies that characterise targets and estimators."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from acutance.cli.output import OutputFile, check_output
+from acutance.cli.terminal import say
+from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.studies import Execution, StudyResult
+
+__all__ = ["EXAMPLE", "WorkersOption", "execution_of", "progress_bar", "study", "write_result"]
+
+EXAMPLE = "\b\nExample:\n  acutance study angle --out studies --set places=3"
+STUDIES_HELP = "snr, ground-noise, angle, width, width-correction or all"
+
+WorkersOption = Annotated[
+    int | None, typer.Option(metavar="N", min=1, help="Processes; all cores if not given.")
+]
+
+
+def study(
+    name: Annotated[str, typer.Argument(metavar="NAME", help=f"{STUDIES_HELP}.")],
+    out: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Write tables (CSV), document (JSON) and figure (PNG) here, and keep finished "
+            "trials, so that an interrupted study goes on where it was.",
+        ),
+    ] = None,
+    changes: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="OPTION=VALUE", help="Another value than the paper's; repeatable."
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005,
+    workers: WorkersOption = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the JSON document, and nothing else, to stdout.")
+    ] = False,
+) -> None:
+    """Run a study of the pulse and edge methods, by the published estimator and by ours.
+
+    Defaults are the parameters of the 2005 report on the generic sensor.
+    """
+    from acutance.studies import STUDIES, run_study
+
+    if name != "all" and name not in STUDIES:
+        raise OptionError(f"there is no study {name!r}: the studies are {', '.join(STUDIES)}, all")
+    if name == "all" and (changes or as_json):
+        raise OptionError("--set and --json belong to one study: name it instead of all")
+    wanted = list(STUDIES) if name == "all" else [name]
+    options = {one: _options(STUDIES[one].options, changes or []) for one in wanted}
+    folder = None if out is None else _folder(out)
+    for one in wanted:
+        with progress_bar(one) as progress:
+            how = execution_of(seed, workers, folder, progress)
+            result = run_study(one, options[one], how)
+        _deliver(result, folder, as_json)
+
+
+def execution_of(
+    seed: int,
+    workers: int | None,
+    folder: Path | None,
+    progress: Callable[[int, int], None] | None,
+) -> Execution:
+    """How the options of the command line want a study to be run."""
+    from acutance.studies import Execution
+
+    return Execution(seed=seed, workers=workers, folder=folder, progress=progress)
+
+
+def progress_bar(title: str) -> AbstractContextManager[Callable[[int, int], None] | None]:
+    """A bar of finished trials on stderr; nothing where nobody is watching."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    return _Bar(title, console) if console.is_terminal else nullcontext()
+
+
+class _Bar(AbstractContextManager[Callable[[int, int], None]]):
+    def __init__(self, title: str, console: Any) -> None:
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+        from rich.progress import TimeRemainingColumn as Remaining
+
+        columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), Remaining())
+        self._progress = Progress(*columns, console=console, transient=True)
+
+    def __enter__(self) -> Callable[[int, int], None]:
+        self._progress.start()
+        task = self._progress.add_task("", total=None)
+        return lambda done, total: self._progress.update(task, completed=done, total=total)
+
+    def __exit__(self, *_: object) -> None:
+        self._progress.stop()
+
+
+def _folder(name: str) -> Path:
+    folder = Path(name)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OptionError(f"--out {name} cannot be made ({reason}): name a folder") from error
+    return folder
+
+
+def _options(kind: type[Any], changes: Sequence[str]) -> Any:
+    """The study's options, changed as every ``--set OPTION=VALUE`` asks."""
+    known = {field.name for field in fields(kind)}
+    changed = {}
+    for text in changes:
+        option, _, value = text.partition("=")
+        if option not in known:
+            raise OptionError(f"--set {text}: the options are {', '.join(sorted(known))}")
+        changed[option] = _value(option, value, text)
+    defaults = kind()
+    for option, value in changed.items():
+        expected = getattr(defaults, option)
+        if isinstance(expected, float) and isinstance(value, int):
+            changed[option] = float(value)
+        elif isinstance(expected, tuple) and not isinstance(value, tuple):
+            changed[option] = (value,)
+        elif type(value) is not type(expected):
+            raise OptionError(
+                f"--set {option}={value}: it is a {type(expected).__name__}, as in "
+                f"{option}={expected!r}"
+            )
+    return kind(**changed)
+
+
+def _value(option: str, value: str, text: str) -> Any:
+    if option == "sensor":
+        from acutance.cli.sensor import named_sensor
+
+        return named_sensor(value)
+    try:
+        return ast.literal_eval(value)
+    except (ValueError, SyntaxError) as error:
+        raise OptionError(
+            f"--set {text}: write a number or several with commas, as in {option}=1,2"
+        ) from error
+
+
+def _deliver(result: StudyResult, folder: Path | None, as_json: bool) -> None:
+    from acutance.report import json_text
+    from acutance.report.study_figures import study_text
+
+    if folder is not None:
+        write_result(result, folder)
+    typer.echo(json_text(result.to_dict()) if as_json else study_text(result))
+
+
+def write_result(result: StudyResult, folder: Path) -> None:
+    """Tables as CSV, everything as JSON, and the figure."""
+    from acutance.report import json_text
+    from acutance.report.page import figure_bytes
+    from acutance.report.study_figures import study_figure
+
+    def named(ending: str) -> OutputFile:
+        return check_output("--out", str(folder / f"{result.name}{ending}"), (Path(ending).suffix,))
+
+    files: dict[str, str | bytes] = {
+        ".csv" if name == result.name else f"-{name}.csv": table.to_csv()
+        for name, table in result.tables.items()
+    }
+    files[".json"] = json_text(result.to_dict())
+    files[".png"] = figure_bytes(study_figure(result), ".png")
+    for ending, content in files.items():
+        target = named(ending)
+        target.write(content)
+        say(f"wrote {target.path}")

@@ -1,0 +1,162 @@
+"""Cramér-Rao bounds of a planned target: what no unbiased estimator can beat.
+
+Two bounds, for white noise:
+
+- of a blur of known shape: the image is a Gaussian of unknown width through a pixel, on a line
+  and between levels that are unknown too (and, of a pulse, with unknown width and fall). The
+  inverse of that model's information matrix bounds every metric; it is optimistic, because no
+  real system's shape is known.
+- of a free LSF: nothing is known of the LSF but that it ends within a window. For an edge
+  ``std M(f) = 2 pi f sqrt(W / (2 n)) / SNR``, for a pulse, whose response is divided by that of
+  the ground, ``pi f / |sin(pi w f)| sqrt(W / (2 n)) / SNR``, with W the window's length and n
+  the samples per pixel of distance: the rows over the cosine of the angle. Estimators that use
+  the smoothness of real LSFs come below it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from acutance.curves import Esf, Lsf, Mtf, Response
+from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
+from acutance.fit.blur import Blur
+from acutance.optics import Sensor
+from acutance.optics.sensor import DISTANCE_PX, FREQ_CPP
+
+__all__ = ["Design", "MetricBound", "equivalent_blur", "free_bound", "shape_bound"]
+
+_STEP_PX = 1e-4
+_ZERO = 1e-9
+
+
+@dataclass(frozen=True)
+class Design:
+    """A planned target.
+
+    Parameters
+    ----------
+    target : {"edge", "pulse"}
+    rows : int
+        How many image rows cross it.
+    angle_deg : float
+        Tilt against the image's columns.
+    width_px : float
+        Of a pulse; an edge has none.
+    cols : int
+        Length of every row.
+    """
+
+    target: Literal["edge", "pulse"]
+    rows: int
+    angle_deg: float
+    width_px: float = math.nan
+    cols: int = 40
+
+
+@dataclass(frozen=True)
+class MetricBound:
+    """Least standard deviations, in the units of the names; NaN where there is no such number."""
+
+    mtf_nyquist: float
+    rer: float
+    fwhm_px: float
+    width_px: float
+
+
+def equivalent_blur(sensor: Sensor, angle_deg: float) -> Blur:
+    """The Gaussian through a pixel whose LSF has the FWHM of the sensor's.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    angle_deg : float
+    """
+    wanted = sensor.response(angle_deg).fwhm_px.value
+    low, high = 0.05, 8.0
+    for _ in range(40):
+        sigma = math.sqrt(low * high)
+        narrow = _response(Blur(sigma)).fwhm_px.value < wanted
+        low, high = (sigma, high) if narrow else (low, sigma)
+    return Blur(math.sqrt(low * high))
+
+
+def shape_bound(blur: Blur, design: Design, snr: float) -> MetricBound:
+    """Bound of a blur of known shape, by the information matrix of all unknowns.
+
+    Parameters
+    ----------
+    blur : Blur
+    design : Design
+    snr : float
+        Height of the target over the noise's standard deviation.
+    """
+    jacobian = _jacobian(blur, design)
+    scale = np.linalg.norm(jacobian, axis=1, keepdims=True)
+    covariance = np.linalg.inv((jacobian / scale) @ (jacobian / scale).T)
+    std = np.sqrt(np.diag(covariance)) / scale[:, 0] / snr
+    by_sigma = (
+        _numbers(Blur(blur.sigma_px + _STEP_PX)) - _numbers(Blur(blur.sigma_px - _STEP_PX))
+    ) / (2 * _STEP_PX)
+    mtf, rer, fwhm = (np.abs(by_sigma) * std[4]).tolist()
+    width = float(std[5]) if design.target == "pulse" else math.nan
+    return MetricBound(mtf, rer, fwhm, width)
+
+
+def free_bound(design: Design, snr: float, window_px: float = 10.0) -> float:
+    """Bound of the MTF at Nyquist with a free LSF.
+
+    Parameters
+    ----------
+    design : Design
+    snr : float
+    window_px : float, optional
+        Length of the window the LSF, or the pulse's response, lies in.
+    """
+    samples = design.rows / math.cos(math.radians(design.angle_deg))
+    per_edge = math.sqrt(window_px / (2 * samples)) / snr
+    if design.target == "edge":
+        return 2 * math.pi * NYQUIST_CPP * per_edge
+    lobe = abs(math.sin(math.pi * design.width_px * NYQUIST_CPP))
+    return math.pi * NYQUIST_CPP / lobe * per_edge if lobe > _ZERO else math.inf
+
+
+def _jacobian(blur: Blur, design: Design) -> Floats:
+    """Derivatives of the image by level, height, offset, turn, sigma, and width and fall."""
+    angle = math.radians(design.angle_deg)
+    row = np.arange(design.rows)[:, None] - 0.5 * (design.rows - 1)
+    col = np.arange(design.cols)[None, :] - 0.5 * (design.cols - 1)
+    s = (math.cos(angle) * col + math.sin(angle) * row).ravel()
+    t = (math.cos(angle) * row - math.sin(angle) * col).ravel()
+    if design.target == "edge":
+        esf, lsf, by_sigma, _ = blur.esf_and_slopes(s)
+        return np.array([np.ones(s.size), esf, -lsf, lsf * t, by_sigma])
+    half = 0.5 * design.width_px
+    rise, rise_slope, rise_sigma, _ = blur.esf_and_slopes(s + half)
+    down, down_slope, down_sigma, _ = blur.esf_and_slopes(s - half)
+    slope = rise_slope - down_slope
+    return np.array(
+        [
+            np.ones(s.size), rise - down, -slope, slope * t, rise_sigma - down_sigma,
+            0.5 * (rise_slope + down_slope), -down,
+        ]
+    )  # fmt: skip
+
+
+def _numbers(blur: Blur) -> Floats:
+    response = _response(blur)
+    return np.array([response.mtf_nyquist.value, response.rer.value, response.fwhm_px.value])
+
+
+def _response(blur: Blur) -> Response:
+    """The curves of a plain blur."""
+    nothing = np.zeros((DISTANCE_PX.size, 0))
+    return Response(
+        Esf(DISTANCE_PX, blur.esf(DISTANCE_PX), nothing),
+        Lsf(DISTANCE_PX, blur.lsf(DISTANCE_PX), nothing),
+        Mtf(FREQ_CPP, blur.otf(FREQ_CPP).astype(complex), np.zeros((FREQ_CPP.size, 0), complex)),
+    )

@@ -1,0 +1,168 @@
+"""Trials of a study over all cores: the only module that starts processes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from acutance.errors import OptionError
+from acutance.studies.journal import Journal, journal_key
+
+__all__ = ["Execution", "Measure", "Record", "run_trials", "trial_rng"]
+
+Options = TypeVar("Options")
+Trial = TypeVar("Trial")
+
+Record = dict[str, Any]
+Measure = Callable[[Options, Trial, np.random.Generator], Record]
+
+_LIBRARIES = ("OPENBLAS", "OMP", "MKL")
+_CHUNKS_PER_WORKER = 8
+_MOST_IN_A_CHUNK = 16
+
+
+@dataclass(frozen=True)
+class Execution:
+    """How a study is run; nothing here changes its results but the seed.
+
+    Parameters
+    ----------
+    seed : int, optional
+        Every trial draws from its own stream of this seed.
+    workers : int, optional
+        Processes; 1 stays in this process. All cores unless given. With more than one, a script
+        has to guard its own start by ``if __name__ == "__main__"``.
+    folder : Path, optional
+        Where finished trials are kept, so that an interrupted study goes on.
+    progress : function of (done, total), optional
+        Called whenever trials have finished.
+    """
+
+    seed: int = 2005
+    workers: int | None = None
+    folder: Path | None = None
+    progress: Callable[[int, int], None] | None = None
+
+    def __post_init__(self) -> None:
+        if self.seed < 0 or (self.workers is not None and self.workers < 1):
+            raise OptionError(
+                f"seed is {self.seed} and workers is {self.workers}: the seed has to be 0 or "
+                "more, and there has to be a worker"
+            )
+
+
+def trial_rng(seed: int, index: int) -> np.random.Generator:
+    """The stream of random numbers of one trial, whatever process it runs in."""
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index,)))
+
+
+def run_trials(
+    study: str,
+    options: Options,
+    trials: Sequence[Trial],
+    measure: Measure[Options, Trial],
+    execution: Execution,
+) -> list[Record]:
+    """Results of `measure` for all trials, in their order.
+
+    Parameters
+    ----------
+    study : str
+        Names the journal.
+    options : frozen dataclass
+        Handed to `measure`, and part of the journal's key.
+    trials : sequence
+        What differs between trials.
+    measure : function of (options, trial, rng)
+        At the top of a module, so that other processes find it; gives numbers by name.
+    execution : Execution
+    """
+    from acutance import __version__
+
+    journal: Any = nullcontext()
+    if execution.folder is not None:
+        key = journal_key(study, options, execution.seed, __version__)
+        journal = Journal(execution.folder, study, key)
+    with journal as kept:
+        done: dict[int, Record] = {} if kept is None else dict(kept.done)
+        todo = [i for i in range(len(trials)) if i not in done]
+        _tell(execution, len(trials) - len(todo), len(trials))
+        for finished in _finished(options, trials, measure, execution, todo):
+            for index, record in finished:
+                done[index] = record
+                if kept is not None:
+                    kept.append(index, record)
+            _tell(execution, len(done), len(trials))
+    return [done[i] for i in range(len(trials))]
+
+
+def _tell(execution: Execution, done: int, total: int) -> None:
+    if execution.progress is not None:
+        execution.progress(done, total)
+
+
+def _finished(
+    options: Options,
+    trials: Sequence[Trial],
+    measure: Measure[Options, Trial],
+    execution: Execution,
+    todo: Sequence[int],
+) -> Iterator[list[tuple[int, Record]]]:
+    """Chunks of finished trials, as they come."""
+    workers = execution.workers or os.cpu_count() or 1
+    workers = min(workers, len(todo))
+    seed = execution.seed
+    if workers <= 1:
+        for i in todo:
+            yield _work(options, measure, seed, [(i, trials[i])])
+        return
+    size = max(1, min(_MOST_IN_A_CHUNK, len(todo) // (_CHUNKS_PER_WORKER * workers)))
+    chunks = [todo[k : k + size] for k in range(0, len(todo), size)]
+    # Fresh processes read the number of threads when they load the libraries.
+    with (
+        _one_thread_each(),
+        ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool,
+    ):
+        futures: list[Future[list[tuple[int, Record]]]] = [
+            pool.submit(_work, options, measure, seed, [(i, trials[i]) for i in chunk])
+            for chunk in chunks
+        ]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _work(
+    options: Options,
+    measure: Measure[Options, Trial],
+    seed: int,
+    chunk: Sequence[tuple[int, Trial]],
+) -> list[tuple[int, Record]]:
+    return [(i, measure(options, trial, trial_rng(seed, i))) for i, trial in chunk]
+
+
+@contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """The environment in which processes keep to one core each; afterwards as it was."""
+    names = [f"{library}_NUM_THREADS" for library in _LIBRARIES]
+    earlier = {name: os.environ.get(name) for name in names}
+    os.environ.update(dict.fromkeys(names, "1"))
+    try:
+        yield
+    finally:
+        for name, value in earlier.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value

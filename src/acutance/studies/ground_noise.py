@@ -1,0 +1,167 @@
+"""Uneven ground: how large a contrast a pulse needs (Table 3.2, Figure 3.11)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from acutance.errors import OptionError
+from acutance.optics import Sensor, preset
+from acutance.simulate import GroundNoise, pulse
+from acutance.studies.execution import Execution, Record, run_trials
+from acutance.studies.result import Finding, StudyResult
+from acutance.studies.scatter import error_columns, minimum_snr
+from acutance.studies.table import Cell, Table
+from acutance.studies.targets import ESTIMATORS, measure_both_pulses
+
+__all__ = ["GroundNoiseOptions", "study_ground_noise"]
+
+LEVELS_DN = (
+    (1100.0, 400.0), (1000.0, 500.0), (950.0, 550.0), (900.0, 600.0), (850.0, 650.0),
+    (825.0, 675.0), (800.0, 700.0), (790.0, 710.0), (780.0, 720.0), (775.0, 725.0),
+    (770.0, 730.0),
+)  # fmt: skip
+"""Table 3.2: level of the pulse and of the ground."""
+
+_PUBLISHED_MINIMUM = 50.0
+_PUBLISHED_BIAS_PERCENT = -6.0
+
+
+@dataclass(frozen=True)
+class GroundNoiseOptions:
+    """The paper's parameters; what it does not print is the image's size.
+
+    Every image has its target somewhere else on the pixel grid.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    levels_dn : tuple of (pulse, ground)
+    runs : int
+        Images a contrast, each with ground of its own.
+    limit_percent : float
+        Largest error of the MTF at Nyquist, rms, that is good enough.
+    ground : GroundNoise
+        Twenty white fields of 1 to 20 sub-pixels, variance 100 each.
+    angle_deg, width_px : float
+    shape : (rows, cols)
+    """
+
+    sensor: Sensor = field(default_factory=lambda: preset("generic-2005"))
+    levels_dn: tuple[tuple[float, float], ...] = LEVELS_DN
+    runs: int = 20
+    limit_percent: float = 5.0
+    ground: GroundNoise = field(default_factory=GroundNoise)
+    angle_deg: float = 6.0
+    width_px: float = 3.0
+    shape: tuple[int, int] = (60, 40)
+
+    def __post_init__(self) -> None:
+        if not self.levels_dn or self.runs < 1:
+            raise OptionError(
+                f"levels_dn is {self.levels_dn} and runs is {self.runs}: there have to be a "
+                "contrast and a run"
+            )
+
+
+def study_ground_noise(
+    options: GroundNoiseOptions | None = None, execution: Execution | None = None
+) -> StudyResult:
+    """Measure a pulse on uneven ground, by both estimators.
+
+    Parameters
+    ----------
+    options : GroundNoiseOptions, optional
+    execution : Execution, optional
+
+    Returns
+    -------
+    StudyResult
+        Table "ground-noise" has a row for each contrast, its SNR by the noise that such ground
+        makes in images; "trials" every measurement.
+    """
+    chosen, how = options or GroundNoiseOptions(), execution or Execution()
+    trials = [levels for levels in chosen.levels_dn for _ in range(chosen.runs)]
+    records = run_trials("ground-noise", chosen, trials, measure_ground_trial, how)
+    measured = Table.of_rows(
+        {"pulse_dn": levels[0], "ground_dn": levels[1], **record}
+        for levels, record in zip(trials, records, strict=True)
+    )
+    noise_dn = chosen.ground.std_seen_by(chosen.sensor)
+    table = Table.of_rows(
+        _contrast(measured.where(pulse_dn=bright, ground_dn=dark), bright, dark, noise_dn)
+        for bright, dark in chosen.levels_dn
+    )
+    return StudyResult(
+        "ground-noise", "Uneven ground and the MTF at Nyquist", chosen, how.seed,
+        {"ground-noise": table, "trials": measured}, _findings(chosen, table),
+    )  # fmt: skip
+
+
+def measure_ground_trial(
+    options: GroundNoiseOptions, levels: tuple[float, float], rng: np.random.Generator
+) -> Record:
+    """One image by both estimators, with its true signal and MTF at Nyquist."""
+    bright, dark = levels
+    image, truth = pulse(
+        options.sensor, width_px=options.width_px, angle_deg=options.angle_deg,
+        shape=options.shape, dark=dark, bright=bright, offset_px=float(rng.uniform(-0.5, 0.5)),
+        ground_noise=options.ground, rng=rng,
+    )  # fmt: skip
+    found = measure_both_pulses(image, width_px=options.width_px)
+    signal_dn = float(truth.prf(0.0)) * (bright - dark)
+    return {"signal_dn": signal_dn, "truth": truth.mtf_nyquist.value, **found}
+
+
+def _contrast(measured: Table, bright: float, dark: float, noise_dn: float) -> dict[str, Cell]:
+    truth = float(measured["truth"][0])
+    row: dict[str, Cell] = {
+        "pulse_dn": bright,
+        "ground_dn": dark,
+        "difference_dn": bright - dark,
+        "snr": float(measured["signal_dn"][0]) / noise_dn,
+        "truth": truth,
+    }
+    for name in ESTIMATORS:
+        row |= error_columns(name, measured[f"{name}_mtf_nyquist"], truth)
+    return row
+
+
+def _findings(options: GroundNoiseOptions, table: Table) -> tuple[Finding, ...]:
+    found = []
+    for name in ESTIMATORS:
+        rms = table[f"{name}_rms_percent"]
+        least = minimum_snr(table["snr"], rms, options.limit_percent)
+        reached = (
+            f"an SNR of {least:.0f}"
+            if np.isfinite(least)
+            else f"more than the {table['snr'].max():.0f} that were tried"
+        )
+        found.append(
+            Finding(
+                f"minimum_snr_{name}",
+                least,
+                f"{name} estimator: an rms error below {options.limit_percent:g} % needs {reached}",
+                _PUBLISHED_MINIMUM if name == "published" else None,
+            )
+        )
+        calm = minimum_snr(table["snr"], table[f"{name}_std_percent"], options.limit_percent)
+        found.append(
+            Finding(
+                f"minimum_snr_scatter_{name}",
+                calm,
+                f"{name} estimator: a scatter below {options.limit_percent:g} %, whatever the "
+                f"bias, needs an SNR of {calm:.0f}",
+            )
+        )
+        bias = float(table[f"{name}_bias_percent"][int(np.argmax(table["snr"]))])
+        found.append(
+            Finding(
+                f"bias_{name}_percent",
+                bias,
+                f"{name} estimator: a bias of {bias:+.1f} % at the highest contrast",
+                _PUBLISHED_BIAS_PERCENT if name == "published" else None,
+            )
+        )
+    return tuple(found)

@@ -1,0 +1,250 @@
+"""Plan a target: which accuracy to expect of an edge or a pulse before it is bought."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+
+from acutance.curves import Estimate
+from acutance.errors import OptionError, TargetError
+from acutance.measure import measure_edge, measure_pulse
+from acutance.optics import Sensor, preset
+from acutance.simulate import edge, pulse
+from acutance.studies.bound import Design, equivalent_blur, free_bound, shape_bound
+from acutance.studies.execution import Execution, Record, run_trials
+from acutance.studies.result import Finding, StudyResult
+from acutance.studies.table import Cell, Table
+
+__all__ = ["PLAN_METRICS", "PlanOptions", "plan_target"]
+
+PLAN_METRICS = ("mtf_nyquist", "rer", "fwhm_px", "width_px")
+_ROWS_SHARES = (0.5, 1.0, 1.5, 2.0)
+_FEWEST_ROWS = 20
+_ROOM_PX = 10.0
+_OVER_THE_BEST = 0.1
+
+
+@dataclass(frozen=True)
+class PlanOptions:
+    """What is planned, and what it is varied by; the first of each tuple is the plan itself.
+
+    Parameters
+    ----------
+    target : {"edge", "pulse"}
+    sensor : Sensor
+    snr : float
+        Height of the target over the standard deviation of the noise.
+    rows : tuple of int
+        Image rows that cross the target. A single number is varied from half to twice.
+    angles_deg : tuple of float
+        Tilts against the image's columns. A single number is compared with the usual ones.
+    widths_px : tuple of float
+        Widths of the pulse. A single number is compared with others from 1.5 to 4 px.
+    draws : int
+        Simulated images a design; 0 leaves the simulation out.
+    window_px : float
+        Of the bound of a free LSF.
+    accuracy : float, optional
+        Wanted standard deviation of the MTF at Nyquist: answered by a number of rows.
+    """
+
+    target: Literal["edge", "pulse"] = "edge"
+    sensor: Sensor = field(default_factory=lambda: preset("generic-2005"))
+    snr: float = 100.0
+    rows: tuple[int, ...] = (40,)
+    angles_deg: tuple[float, ...] = (6.0,)
+    widths_px: tuple[float, ...] = (3.0,)
+    draws: int = 200
+    window_px: float = 10.0
+    accuracy: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.target not in ("edge", "pulse"):
+            raise OptionError(f'the target is {self.target!r}: it has to be "edge" or "pulse"')
+        if not (self.snr > 0 and self.draws >= 0 and self.window_px > 0):
+            raise OptionError(
+                f"snr is {self.snr:g}, draws {self.draws} and window_px {self.window_px:g}: SNR "
+                "and window have to be above 0"
+            )
+        if not self.rows or min(self.rows) < _FEWEST_ROWS:
+            raise OptionError(
+                f"rows are {self.rows}: a target needs at least {_FEWEST_ROWS} to be measured"
+            )
+        if not self.angles_deg or not all(0 < angle <= 30 for angle in self.angles_deg):
+            raise OptionError(
+                f"angles_deg are {self.angles_deg}: an edge without tilt has no sub-pixel phases, "
+                "and more than 30 degrees is not planned; 5 to 10 serve best"
+            )
+        if not self.widths_px or not all(0.5 <= width <= 20 for width in self.widths_px):
+            raise OptionError(
+                f"widths_px are {self.widths_px}: a pulse is 0.5 to 20 px wide, 3 serves best; "
+                "check the width and the GSD"
+            )
+        if self.accuracy is not None and not self.accuracy > 0:
+            raise OptionError(f"accuracy is {self.accuracy:g}: it has to be above 0")
+
+
+def plan_target(
+    options: PlanOptions | None = None, execution: Execution | None = None
+) -> StudyResult:
+    """Expected standard deviations of MTF at Nyquist, RER, FWHM and of a pulse's width.
+
+    Parameters
+    ----------
+    options : PlanOptions, optional
+    execution : Execution, optional
+
+    Returns
+    -------
+    StudyResult
+        Table "plan" has a row for each design: the plan, then rows, angle and width varied one
+        at a time. Of every metric the Cramér-Rao bound of a blur of known shape (``_bound``),
+        the scatter of our estimator (``_std``), its rms error (``_rms``) and what it states
+        itself (``_stated``); of the MTF at Nyquist also the bound of a free LSF (``_free``).
+    """
+    chosen, how = options or PlanOptions(), execution or Execution()
+    listed = list(_designs(chosen))
+    # The plan comes once in every list: its images are simulated once.
+    designs = list({repr(design): design for _, design in listed}.values())
+    trials = [design for design in designs for _ in range(chosen.draws)]
+    records = run_trials("plan", chosen, trials, measure_plan_trial, how)
+    rows = {
+        repr(design): _row(chosen, design, records[i * chosen.draws : (i + 1) * chosen.draws])
+        for i, design in enumerate(designs)
+    }
+    table = Table.of_rows({"varied": varied, **rows[repr(design)]} for varied, design in listed)
+    title = f"Plan of {'an edge' if chosen.target == 'edge' else 'a pulse'}"
+    return StudyResult("plan", title, chosen, how.seed, {"plan": table}, _findings(chosen, table))
+
+
+def _designs(options: PlanOptions) -> Iterator[tuple[str, Design]]:
+    """The plan, then every design that differs from it in one thing, by that thing's name."""
+    rows, angle, width = options.rows[0], options.angles_deg[0], options.widths_px[0]
+    is_pulse = options.target == "pulse"
+    plan = Design(options.target, rows, angle, width if is_pulse else math.nan)
+    yield "plan", _wide_enough(plan, options.sensor)
+    more_rows = options.rows[1:] or [
+        max(_FEWEST_ROWS, round(share * rows)) for share in _ROWS_SHARES
+    ]
+    more_angles = options.angles_deg[1:] or (2.0, 4.0, 6.0, 8.0, 11.0, 14.0)
+    more_widths = options.widths_px[1:] or (1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
+    for count in sorted({rows, *more_rows}):
+        yield "rows", _wide_enough(replace(plan, rows=count), options.sensor)
+    for tilt in sorted({angle, *more_angles}):
+        yield "angle", _wide_enough(replace(plan, angle_deg=tilt), options.sensor)
+    for size in sorted({width, *more_widths}) if is_pulse else ():
+        yield "width", _wide_enough(replace(plan, width_px=size), options.sensor)
+
+
+def _wide_enough(design: Design, sensor: Sensor) -> Design:
+    """The design in rows that reach 10 px, or three blurs, beyond the target."""
+    room = max(_ROOM_PX, 3 * sensor.response(design.angle_deg).fwhm_px.value)
+    across = 0.0 if math.isnan(design.width_px) else design.width_px
+    leaning = design.rows * math.tan(math.radians(design.angle_deg))
+    return replace(design, cols=math.ceil(leaning + across + 2 * room))
+
+
+def measure_plan_trial(options: PlanOptions, design: Design, rng: np.random.Generator) -> Record:
+    """One simulated target of a design by our estimator, somewhere on the pixel grid."""
+    shape, offset = (design.rows, design.cols), float(rng.uniform(-0.5, 0.5))
+    try:
+        if options.target == "edge":
+            image, edge_truth = edge(
+                options.sensor, angle_deg=design.angle_deg, shape=shape, offset_px=offset,
+                snr=options.snr, rng=rng,
+            )  # fmt: skip
+            found, truth = measure_edge(image), edge_truth.response
+        else:
+            image, pulse_truth = pulse(
+                options.sensor, width_px=design.width_px, angle_deg=design.angle_deg,
+                shape=shape, offset_px=offset, snr=options.snr, rng=rng,
+            )  # fmt: skip
+            found, truth = measure_pulse(image, width_px=design.width_px), pulse_truth.response
+    except TargetError:
+        return {f"{name}_{part}": math.nan for name in PLAN_METRICS for part in ("error", "std")}
+    width = found.width_px or Estimate(math.nan, math.nan)
+    pairs = {
+        "mtf_nyquist": (found.mtf_nyquist, truth.mtf_nyquist.value),
+        "rer": (found.rer, truth.rer.value),
+        "fwhm_px": (found.fwhm_px, truth.fwhm_px.value),
+        "width_px": (width, design.width_px),
+    }
+    return {f"{name}_error": one.value - true for name, (one, true) in pairs.items()} | {
+        f"{name}_std": one.std for name, (one, _) in pairs.items()
+    }
+
+
+def _row(options: PlanOptions, design: Design, records: list[Record]) -> dict[str, Cell]:
+    gsd_m = options.sensor.gsd_along_normal_m(design.angle_deg) or math.nan
+    bound = shape_bound(equivalent_blur(options.sensor, design.angle_deg), design, options.snr)
+    row: dict[str, Cell] = {
+        "rows": design.rows,
+        "length_m": design.rows * gsd_m / math.cos(math.radians(design.angle_deg)),
+        "angle_deg": design.angle_deg,
+        "target_width_px": design.width_px,
+        "target_width_m": design.width_px * gsd_m,
+        "mtf_nyquist_free": free_bound(design, options.snr, options.window_px),
+    }
+    for name in PLAN_METRICS:
+        error = np.array([record[f"{name}_error"] for record in records])
+        stated = np.array([record[f"{name}_std"] for record in records])
+        known = np.isfinite(error)
+        several = np.count_nonzero(known) > 1
+        row |= {
+            f"{name}_bound": float(getattr(bound, name)),
+            f"{name}_std": float(error[known].std(ddof=1)) if several else math.nan,
+            f"{name}_rms": float(np.sqrt(np.mean(error[known] ** 2))) if several else math.nan,
+            f"{name}_stated": float(stated[known].mean()) if several else math.nan,
+        }
+    row["refused"] = sum(math.isnan(record["mtf_nyquist_error"]) for record in records)
+    return row
+
+
+def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
+    """The answers: what to expect, how many rows, which angle, which width."""
+    simulated = options.draws > 1
+    kind = "mtf_nyquist_rms" if simulated else "mtf_nyquist_free"
+    expected = float(table[kind][0])
+    rows = int(table["rows"][0])
+    how = "rms error of our estimator" if simulated else "bound of a free LSF"
+    found = [
+        Finding(
+            "expected_mtf_nyquist",
+            expected,
+            f"MTF at Nyquist: {expected:.4f} ({how}) from {rows} rows at "
+            f"{options.angles_deg[0]:g} deg and an SNR of {options.snr:g}",
+        )
+    ]
+    if options.accuracy is not None:
+        needed = math.ceil(rows * (expected / options.accuracy) ** 2)
+        found.append(
+            Finding(
+                "rows_needed",
+                needed,
+                f"rows: a standard deviation of {options.accuracy:g} needs about {needed} of them "
+                "(it falls with their square root)",
+            )
+        )
+    # So many draws know their own rms to one part in the root of twice their number.
+    slack = 1 + max(_OVER_THE_BEST, 2 / math.sqrt(options.draws) if simulated else 0.0)
+    varied = {"angle": ("angle_deg", "deg"), "width": ("target_width_px", "px")}
+    for name, (column, unit) in varied.items():
+        own = table.where(varied=name)
+        if not len(own):
+            continue
+        value, choice = own[kind], own[column]
+        best = float(choice[int(np.nanargmin(value))])
+        good = ", ".join(f"{one:.3g}" for one in choice[value <= slack * np.nanmin(value)])
+        found.append(
+            Finding(
+                f"best_{column}",
+                best,
+                f"{name}: {best:.3g} {unit} has the smallest error; within "
+                f"{100 * (slack - 1):.0f} % of it: {good} {unit}",
+            )
+        )
+    return tuple(found)

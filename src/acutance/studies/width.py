@@ -1,0 +1,191 @@
+"""Width of a pulse: measured wrong, or laid out wrong (Figures 3.13-3.19, 3.24)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from acutance.curves.metrics import NYQUIST_CPP
+from acutance.errors import OptionError
+from acutance.measure import measure_pulse
+from acutance.measure.pulse_spectrum import width_error_gain
+from acutance.optics import Sensor, preset
+from acutance.simulate import pulse
+from acutance.studies.execution import Execution, Record, run_trials
+from acutance.studies.result import Finding, StudyResult
+from acutance.studies.table import Table
+from acutance.studies.targets import ESTIMATORS, measure_published_pulse
+
+__all__ = ["WIDTH_FREQ_CPP", "WidthOptions", "WidthTrial", "study_width"]
+
+WIDTH_FREQ_CPP: tuple[float, ...] = tuple(round(0.01 * i, 2) for i in range(51))
+"""Frequencies of the curves, to Nyquist."""
+
+_TOLD_CPP = (0.3, 0.4, NYQUIST_CPP)
+"""Where the paper looks: on either side of the spectrum's first zero, and at Nyquist."""
+
+
+@dataclass(frozen=True)
+class WidthTrial:
+    """One pulse.
+
+    Parameters
+    ----------
+    error : {"measured", "true"}
+        Which of the two widths is not the nominal one: "measured" is the human measurement
+        error (3.6.1), "true" the systematic width error (3.6.2).
+    width_px : float
+        The other width.
+    """
+
+    error: Literal["measured", "true"]
+    width_px: float
+
+    def widths_px(self, nominal_px: float) -> tuple[float, float]:
+        """True and stated width."""
+        if self.error == "measured":
+            return nominal_px, self.width_px
+        return self.width_px, nominal_px
+
+
+@dataclass(frozen=True)
+class WidthOptions:
+    """The paper's parameters; what it does not print is the image's size.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    widths_px : tuple of float
+        2.75 to 3.25 px in steps of 0.05.
+    nominal_px : float
+    angle_deg : float
+    shape : (rows, cols)
+    pulse_dn : (dark, bright)
+    """
+
+    sensor: Sensor = field(default_factory=lambda: preset("generic-2005"))
+    widths_px: tuple[float, ...] = tuple(round(2.75 + 0.05 * i, 2) for i in range(11))
+    nominal_px: float = 3.0
+    angle_deg: float = 6.0
+    shape: tuple[int, int] = (60, 40)
+    pulse_dn: tuple[float, float] = (100.0, 1200.0)
+
+    def __post_init__(self) -> None:
+        if not self.widths_px or min(*self.widths_px, self.nominal_px) <= 0:
+            raise OptionError(
+                f"widths_px are {self.widths_px} and nominal_px is {self.nominal_px:g}: there has "
+                "to be a width, all above 0"
+            )
+
+
+def study_width(
+    options: WidthOptions | None = None, execution: Execution | None = None
+) -> StudyResult:
+    """Measure noise-free pulses whose stated and true widths differ, by both estimators.
+
+    Parameters
+    ----------
+    options : WidthOptions, optional
+    execution : Execution, optional
+
+    Returns
+    -------
+    StudyResult
+        Table "width" has a row for each pulse: MTF at 0.3, 0.4 and 0.5 c/px by both
+        estimators, the closed form of the ratio, and the width our joint fit found. "curves"
+        has the MTF of every pulse, a row for each frequency.
+    """
+    chosen, how = options or WidthOptions(), execution or Execution()
+    trials = [
+        WidthTrial(error, width) for error in ("measured", "true") for width in chosen.widths_px
+    ]
+    records = run_trials("width", chosen, trials, measure_width_trial, how)
+    table = Table.of_rows(
+        _row(chosen, trial, record) for trial, record in zip(trials, records, strict=True)
+    )
+    curves: dict[str, list[float]] = {"freq_cpp": list(WIDTH_FREQ_CPP), "truth": _truth(chosen)}
+    for trial, record in zip(trials, records, strict=True):
+        for name in ESTIMATORS:
+            curves[f"{name}_{trial.error}_{trial.width_px:g}"] = record[name]
+    return StudyResult(
+        "width", "Width of the pulse and the MTF", chosen, how.seed,
+        {"width": table, "curves": Table(curves)}, _findings(chosen, table),
+    )  # fmt: skip
+
+
+def measure_width_trial(
+    options: WidthOptions, trial: WidthTrial, rng: np.random.Generator
+) -> Record:
+    """One noise-free pulse by both estimators: curves to Nyquist, and the fitted width."""
+    del rng
+    true_px, stated_px = trial.widths_px(options.nominal_px)
+    dark, bright = options.pulse_dn
+    image, _ = pulse(
+        options.sensor, width_px=true_px, angle_deg=options.angle_deg, shape=options.shape,
+        dark=dark, bright=bright,
+    )  # fmt: skip
+    published = measure_published_pulse(image, width_px=stated_px)
+    ours = measure_pulse(image, width_px=stated_px)
+    assert ours.width_px is not None
+    return {
+        "published": [published.response.mtf(freq).value for freq in WIDTH_FREQ_CPP],
+        "ours": [ours.mtf(freq).value for freq in WIDTH_FREQ_CPP],
+        "ours_width_px": ours.width_px.value,
+        "ours_width_std_px": ours.width_px.std,
+    }
+
+
+def _truth(options: WidthOptions) -> list[float]:
+    mtf = options.sensor.mtf(options.angle_deg)
+    return [mtf(freq).value for freq in WIDTH_FREQ_CPP]
+
+
+def _row(options: WidthOptions, trial: WidthTrial, record: Record) -> dict[str, float | str]:
+    true_px, stated_px = trial.widths_px(options.nominal_px)
+    gain = width_error_gain(true_px, stated_px, _TOLD_CPP)
+    row: dict[str, float | str] = {
+        "error": trial.error,
+        "true_px": true_px,
+        "stated_px": stated_px,
+        "ours_width_px": record["ours_width_px"],
+        "ours_width_std_px": record["ours_width_std_px"],
+    }
+    truth = _truth(options)
+    for freq, one in zip(_TOLD_CPP, gain.tolist(), strict=True):
+        at = WIDTH_FREQ_CPP.index(freq)
+        row |= {
+            f"truth_{freq:g}": truth[at],
+            f"published_{freq:g}": record["published"][at],
+            f"ours_{freq:g}": record["ours"][at],
+            f"ratio_gain_{freq:g}": one,
+        }
+    return row
+
+
+def _findings(options: WidthOptions, table: Table) -> tuple[Finding, ...]:
+    found = []
+    for error in ("measured", "true"):
+        rows = table.where(error=error)
+        nominal = int(np.argmin(np.abs(rows["true_px"] - rows["stated_px"])))
+        for freq in _TOLD_CPP:
+            value = rows[f"published_{freq:g}"]
+            change = 100 * (value / value[nominal] - 1)
+            found.append(
+                Finding(
+                    f"published_{error}_{freq:g}_percent",
+                    float(np.max(np.abs(change))),
+                    f"{error} width wrong: the published MTF at {freq:g} c/px changes by "
+                    f"{change.min():+.1f} to {change.max():+.1f} %",
+                )
+            )
+    off = float(np.max(np.abs(table["ours_width_px"] - table["true_px"])))
+    worst = max(
+        float(np.max(np.abs(table[f"ours_{f:g}"] - table[f"truth_{f:g}"]))) for f in _TOLD_CPP
+    )
+    found += [
+        Finding("ours_width_px", off, f"our joint fit finds the true width to {off:.4f} px"),
+        Finding("ours_worst", worst, f"and the MTF at these frequencies to {worst:.5f}"),
+    ]
+    return tuple(found)
