@@ -45,8 +45,8 @@ TAIL_WIDTH: Final = 1.0
 LOG_AMPLITUDE: Final[Floats] = np.array([-4.4, -2.5, -4.1, -4.0])
 LOG_AMPLITUDE_STD: Final = 1.2
 """Amplitudes of SHAPE, DETAIL, HALO and TAIL relative to the edge's height: 1 to 2 % (detail
-8 %), within a factor 3.3 either way. Chosen once, over systems of many shapes, so that the intervals
-hold the truth as often as they say (benchmarks/coverage.py)."""
+8 %), within a factor 3.3 either way. Chosen once, over systems of many shapes, so that the
+intervals hold the truth as often as they say (benchmarks/coverage.py)."""
 APERTURE_PX: Final = (1.0, 0.18)
 """Mean and standard deviation of the detector's aperture: fill factors are near one."""
 
