@@ -170,7 +170,8 @@ def write_result(result: StudyResult, folder: Path) -> None:
     from acutance.report.study_figures import study_figure
 
     def named(ending: str) -> OutputFile:
-        return check_output("--out", str(folder / f"{result.name}{ending}"), (Path(ending).suffix,))
+        name = folder / f"{result.name}{ending}"
+        return check_output("--out", str(name), (name.suffix,))
 
     files: dict[str, str | bytes] = {
         ".csv" if name == result.name else f"-{name}.csv": table.to_csv()

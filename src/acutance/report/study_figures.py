@@ -65,10 +65,13 @@ def plan_text(result: StudyResult) -> str:
         "target_width_px": "width px", "target_width_m": "width m",
         "mtf_nyquist_free": "free LSF", "mtf_nyquist_bound": "shape",
         "mtf_nyquist_rms": "MTF", "rer_rms": "RER", "fwhm_px_rms": "FWHM px",
-        "width_px_rms": "width px ",
+        "width_px_rms": "found px",
     }  # fmt: skip
     if not is_pulse:
         head = {name: words for name, words in head.items() if "width" not in name}
+    simulated = result.options.draws > 1
+    if not simulated:
+        head = {name: words for name, words in head.items() if not name.endswith("_rms")}
     rows = [list(head.values())]
     for row in table.rows():
         rows.append([_cell(name, row[name]) for name in head])
@@ -77,11 +80,16 @@ def plan_text(result: StudyResult) -> str:
         "  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
         for row in rows
     ]
-    caption = (
-        "Bounds of the MTF at Nyquist: of a free LSF, and of a blur of known shape. Then the rms "
-        f"error of our estimator in {result.options.draws} simulated images."
-    )
-    return "\n".join([study_text(result), "", *lines, "", caption])
+    caption = [
+        "free LSF, shape: bounds of the std of the MTF at Nyquist with a free LSF and with a blur "
+        "of known shape."
+    ]
+    if simulated:
+        caption.append(
+            f"MTF, RER, FWHM{', found' if is_pulse else ''}: rms error of our estimator in "
+            f"{result.options.draws} simulated images."
+        )
+    return "\n".join([study_text(result), "", *lines, "", *caption])
 
 
 def _cell(name: str, value: float | int | str) -> str:

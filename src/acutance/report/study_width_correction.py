@@ -63,8 +63,8 @@ def _draw_widths(axes: Axes, trials: Table, gsd_m: float, stated_m: float, true_
     for name, width in widths.items():
         words, color = _CORRECTED[name]
         axes.hist(width, bins=bins.tolist(), color=color, alpha=0.6, label=words)
-    axes.axvline(true_m, color=INK, linewidth=1.4, label="true")
-    axes.axvline(stated_m, color=VERMILION, linewidth=1.4, dashes=(4, 2), label="stated")
+    axes.axvline(true_m, ymax=0.84, color=INK, linewidth=1.4, label="true")
+    axes.axvline(stated_m, ymax=0.84, color=VERMILION, linewidth=1.4, dashes=(4, 2), label="stated")
     top = axes.get_ylim()[1]
     axes.set(xlabel="width of the tarp [m]", ylabel="images", ylim=(0, 1.3 * top))
     axes.legend(loc="upper center", ncols=4, fontsize=8, columnspacing=1.0, handlelength=1.3)

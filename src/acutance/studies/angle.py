@@ -55,9 +55,11 @@ class AngleOptions:
     def __post_init__(self) -> None:
         angles_known = self.angles_deg and all(0 < angle <= 30 for angle in self.angles_deg)
         if not angles_known or self.places < 1:
+            least, most = min(self.angles_deg, default=0.0), max(self.angles_deg, default=0.0)
             raise OptionError(
-                f"angles_deg are {self.angles_deg} and places is {self.places}: there has to be an "
-                "angle, all above 0 and at most 30, and a place"
+                f"there are {len(self.angles_deg)} angles, from {least:g} to {most:g} deg, and "
+                f"{self.places} places: there has to be a place and an angle, all above 0 and at "
+                "most 30"
             )
 
 

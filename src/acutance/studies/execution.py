@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import signal
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -129,7 +131,9 @@ def _finished(
     # Fresh processes read the number of threads when they load the libraries.
     with (
         _one_thread_each(),
-        ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool,
+        ProcessPoolExecutor(
+            workers, mp_context=get_context("spawn"), initializer=_obey_parent
+        ) as pool,
     ):
         futures: list[Future[list[tuple[int, Record]]]] = [
             pool.submit(_work, options, measure, seed, [(i, trials[i]) for i in chunk])
@@ -141,6 +145,19 @@ def _finished(
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
+
+
+def _obey_parent() -> None:
+    """Leave interrupts to the parent process, and end when it has ended, however it did."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _work(

@@ -11,9 +11,9 @@ from acutance.optics import Sensor, preset
 from acutance.simulate import GroundNoise, pulse
 from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
-from acutance.studies.scatter import error_columns, minimum_snr
+from acutance.studies.scatter import error_columns, minimum_snr, word_minimum
 from acutance.studies.table import Cell, Table
-from acutance.studies.targets import ESTIMATORS, measure_both_pulses
+from acutance.studies.targets import ESTIMATOR_WORDS, ESTIMATORS, measure_both_pulses
 
 __all__ = ["GroundNoiseOptions", "study_ground_noise"]
 
@@ -129,38 +129,44 @@ def _contrast(measured: Table, bright: float, dark: float, noise_dn: float) -> d
 
 
 def _findings(options: GroundNoiseOptions, table: Table) -> tuple[Finding, ...]:
-    found = []
-    for name in ESTIMATORS:
-        rms = table[f"{name}_rms_percent"]
-        least = minimum_snr(table["snr"], rms, options.limit_percent)
-        reached = (
-            f"an SNR of {least:.0f}"
-            if np.isfinite(least)
-            else f"more than the {table['snr'].max():.0f} that were tried"
+    noise_dn = options.ground.std_seen_by(options.sensor)
+    highest_snr = float(table["snr"].max())
+    found = [
+        Finding(
+            "highest_snr",
+            highest_snr,
+            f"ground that varies by {options.ground.std:.1f} DN makes a noise of {noise_dn:.1f} DN "
+            f"in images, so the highest contrast has an SNR of {highest_snr:.0f}",
         )
+    ]
+    for name in ESTIMATORS:
+        who, limit = ESTIMATOR_WORDS[name], options.limit_percent
+        least = minimum_snr(table["snr"], table[f"{name}_rms_percent"], limit)
         found.append(
             Finding(
                 f"minimum_snr_{name}",
                 least,
-                f"{name} estimator: an rms error below {options.limit_percent:g} % needs {reached}",
+                f"{who}: an rms error below {limit:g} % needs {word_minimum(least, table['snr'])}",
                 _PUBLISHED_MINIMUM if name == "published" else None,
             )
         )
-        calm = minimum_snr(table["snr"], table[f"{name}_std_percent"], options.limit_percent)
+        calm = minimum_snr(table["snr"], table[f"{name}_std_percent"], limit)
         found.append(
             Finding(
                 f"minimum_snr_scatter_{name}",
                 calm,
-                f"{name} estimator: a scatter below {options.limit_percent:g} %, whatever the "
-                f"bias, needs an SNR of {calm:.0f}",
+                f"{who}: a scatter below {limit:g} %, whatever the bias, needs "
+                f"{word_minimum(calm, table['snr'])}",
             )
         )
-        bias = float(table[f"{name}_bias_percent"][int(np.argmax(table["snr"]))])
+        highest = int(np.argmax(table["snr"]))
+        bias = float(table[f"{name}_bias_percent"][highest])
+        known = table[f"{name}_std_percent"][highest] / np.sqrt(options.runs)
         found.append(
             Finding(
                 f"bias_{name}_percent",
                 bias,
-                f"{name} estimator: a bias of {bias:+.1f} % at the highest contrast",
+                f"{who}: a bias of {bias:+.1f} ± {known:.1f} % at the highest contrast",
                 _PUBLISHED_BIAS_PERCENT if name == "published" else None,
             )
         )

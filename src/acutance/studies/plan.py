@@ -211,15 +211,13 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
     expected = float(table[kind][0])
     rows = int(table["rows"][0])
     how = "rms error of our estimator" if simulated else "bound of a free LSF"
-    found = [
-        Finding(
-            "expected_mtf_nyquist",
-            expected,
-            f"MTF at Nyquist: {expected:.4f} ({how}) from {rows} rows at "
-            f"{options.angles_deg[0]:g} deg and an SNR of {options.snr:g}",
-        )
-    ]
-    if options.accuracy is not None:
+    design = f"{rows} rows at {options.angles_deg[0]:g} deg and an SNR of {options.snr:g}"
+    if math.isfinite(expected):
+        answer = f"MTF at Nyquist: {expected:.4f} ({how}) from {design}"
+    else:
+        answer = f"MTF at Nyquist: no number ({how}) from {design}: choose another design"
+    found = [Finding("expected_mtf_nyquist", expected, answer)]
+    if options.accuracy is not None and math.isfinite(expected):
         needed = math.ceil(rows * (expected / options.accuracy) ** 2)
         found.append(
             Finding(
@@ -234,16 +232,18 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
     varied = {"angle": ("angle_deg", "deg"), "width": ("target_width_px", "px")}
     for name, (column, unit) in varied.items():
         own = table.where(varied=name)
-        if not len(own):
+        if not (len(own) and np.isfinite(own[kind]).any()):
             continue
         value, choice = own[kind], own[column]
         best = float(choice[int(np.nanargmin(value))])
         good = ", ".join(f"{one:.3g}" for one in choice[value <= slack * np.nanmin(value)])
+        metres = float(own["target_width_m"][int(np.nanargmin(value))])
+        on_ground = f" ({metres:.3g} m)" if name == "width" and math.isfinite(metres) else ""
         found.append(
             Finding(
                 f"best_{column}",
                 best,
-                f"{name}: {best:.3g} {unit} has the smallest error; within "
+                f"{name}: {best:.3g} {unit}{on_ground} has the smallest error; within "
                 f"{100 * (slack - 1):.0f} % of it: {good} {unit}",
             )
         )

@@ -9,7 +9,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.studies.table import Cell
 
-__all__ = ["error_columns", "falling_fit", "minimum_snr"]
+__all__ = ["error_columns", "falling_fit", "minimum_snr", "word_minimum"]
 
 
 def error_columns(name: str, value: Floats, truth: float) -> dict[str, Cell]:
@@ -20,12 +20,14 @@ def error_columns(name: str, value: Floats, truth: float) -> dict[str, Cell]:
     name : str
         Of the estimator; the columns' names begin with it.
     value : (n,) array
-        ``nan`` where the estimator refused.
+        ``nan`` where the estimator refused. Where it refused more than half, the rest is luck
+        and there are no numbers.
     truth : float
     """
     known = value[np.isfinite(value)]
     error = 100 * (known / truth - 1)
-    some, several = known.size > 0, known.size > 1
+    some = 2 * known.size >= max(value.size, 1)
+    several = some and known.size > 1
     return {
         f"{name}_mean": float(known.mean()) if some else math.nan,
         f"{name}_bias_percent": float(error.mean()) if some else math.nan,
@@ -72,3 +74,10 @@ def minimum_snr(snr: Floats, rms_percent: Floats, limit_percent: float) -> float
     square = falling_fit(rms_percent[known][order] ** 2)
     good = np.flatnonzero(square <= limit_percent**2)
     return float(levels[good[0]]) if good.size else math.nan
+
+
+def word_minimum(least: float, snr: Floats) -> str:
+    """What to say of a minimum SNR that `minimum_snr` found among some levels."""
+    if math.isfinite(least):
+        return f"an SNR of {least:.0f}"
+    return f"more than the SNR of {snr.max():.0f} that was tried"

@@ -12,9 +12,14 @@ from acutance.optics import Sensor, preset
 from acutance.simulate import Noise, edge, pulse
 from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
-from acutance.studies.scatter import error_columns, minimum_snr
+from acutance.studies.scatter import error_columns, minimum_snr, word_minimum
 from acutance.studies.table import Cell, Table
-from acutance.studies.targets import ESTIMATORS, measure_both_edges, measure_both_pulses
+from acutance.studies.targets import (
+    ESTIMATOR_WORDS,
+    ESTIMATORS,
+    measure_both_edges,
+    measure_both_pulses,
+)
 
 __all__ = ["SnrOptions", "SnrTrial", "study_snr"]
 
@@ -58,7 +63,8 @@ class SnrOptions:
     def __post_init__(self) -> None:
         if not self.noise_dn or min(self.noise_dn) <= 0 or self.draws < 1:
             raise OptionError(
-                f"noise_dn is {self.noise_dn} and draws is {self.draws}: every level has to be "
+                f"there are {len(self.noise_dn)} levels of noise, the least "
+                f"{min(self.noise_dn, default=0):g}, and {self.draws} draws: every level has to be "
                 "above 0, and there has to be a draw"
             )
 
@@ -151,28 +157,24 @@ def _findings(options: SnrOptions, table: Table) -> tuple[Finding, ...]:
     for target in _TARGETS:
         rows = table.where(target=target)
         for name in ESTIMATORS:
-            least = minimum_snr(rows["snr"], rows[f"{name}_rms_percent"], options.limit_percent)
-            reached = (
-                f"an SNR of {least:.0f}"
-                if np.isfinite(least)
-                else f"more than the {rows['snr'].max():.0f} that were tried"
-            )
+            who, limit = ESTIMATOR_WORDS[name], options.limit_percent
+            least = minimum_snr(rows["snr"], rows[f"{name}_rms_percent"], limit)
             found.append(
                 Finding(
                     f"minimum_snr_{target}_{name}",
                     least,
-                    f"{target}, {name} estimator: an rms error below "
-                    f"{options.limit_percent:g} % needs {reached}",
+                    f"{target}, {who}: an rms error below {limit:g} % needs "
+                    f"{word_minimum(least, rows['snr'])}",
                     _PUBLISHED_MINIMUM[target] if name == "published" else None,
                 )
             )
-            calm = minimum_snr(rows["snr"], rows[f"{name}_std_percent"], options.limit_percent)
+            calm = minimum_snr(rows["snr"], rows[f"{name}_std_percent"], limit)
             found.append(
                 Finding(
                     f"minimum_snr_scatter_{target}_{name}",
                     calm,
-                    f"{target}, {name} estimator: a scatter below {options.limit_percent:g} %, "
-                    f"whatever the bias, needs an SNR of {calm:.0f}",
+                    f"{target}, {who}: a scatter below {limit:g} %, whatever the bias, needs "
+                    f"{word_minimum(calm, rows['snr'])}",
                 )
             )
             quiet = rows["snr"] >= min(_HIGH_SNR, float(rows["snr"].max()))
@@ -181,7 +183,7 @@ def _findings(options: SnrOptions, table: Table) -> tuple[Finding, ...]:
                 Finding(
                     f"bias_{target}_{name}_percent",
                     bias,
-                    f"{target}, {name} estimator: a bias of {bias:+.1f} % at high SNR",
+                    f"{target}, {who}: a bias of {bias:+.1f} % at high SNR",
                 )
             )
     return tuple(found)

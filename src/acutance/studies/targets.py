@@ -21,6 +21,7 @@ from acutance.studies.execution import Record
 
 __all__ = [
     "ESTIMATORS",
+    "ESTIMATOR_WORDS",
     "Estimator",
     "measure_both_edges",
     "measure_both_pulses",
@@ -29,6 +30,10 @@ __all__ = [
 
 Estimator = Literal["published", "ours"]
 ESTIMATORS: tuple[Estimator, ...] = ("published", "ours")
+ESTIMATOR_WORDS: dict[Estimator, str] = {
+    "published": "the published estimator",
+    "ours": "our estimator",
+}
 
 _SDSU = EdgeOptions(method_options=SdsuOptions(replicates=0))
 

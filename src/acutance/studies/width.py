@@ -27,6 +27,9 @@ _TOLD_CPP = (0.3, 0.4, NYQUIST_CPP)
 """Where the paper looks: on either side of the spectrum's first zero, and at Nyquist."""
 
 
+_WORDS = {"measured": "stated", "true": "true"}
+
+
 @dataclass(frozen=True)
 class WidthTrial:
     """One pulse.
@@ -176,7 +179,7 @@ def _findings(options: WidthOptions, table: Table) -> tuple[Finding, ...]:
                 Finding(
                     f"published_{error}_{freq:g}_percent",
                     float(np.max(np.abs(change))),
-                    f"{error} width wrong: the published MTF at {freq:g} c/px changes by "
+                    f"a wrong {_WORDS[error]} width: the published MTF at {freq:g} c/px changes by "
                     f"{change.min():+.1f} to {change.max():+.1f} %",
                 )
             )

@@ -1,0 +1,58 @@
+"""The Cramér-Rao bounds against closed forms and against fits of simulated images."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from acutance import optics, simulate
+from acutance.fit.blur import Blur
+from acutance.fit.pulse import PulseBand, fit_blurred_pulse
+from acutance.fit.straight import Pixels
+from acutance.studies import Design, equivalent_blur, free_bound, shape_bound
+from acutance.studies.bound import _numbers
+
+SENSOR = optics.Sensor([optics.Gaussian(0.45), optics.Detector()])
+EDGE = Design("edge", 40, 6.0)
+PULSE = Design("pulse", 40, 6.0, 3.0)
+
+
+def test_the_known_values_of_40_rows_at_snr_100():
+    assert free_bound(EDGE, 100.0) == pytest.approx(0.0111, abs=5e-5)
+    assert shape_bound(Blur(0.4), EDGE, 100.0).mtf_nyquist == pytest.approx(0.0045, abs=3e-4)
+
+
+def test_a_pulse_of_three_pixels_needs_half_the_snr_of_an_edge():
+    assert free_bound(PULSE, 50.0) == pytest.approx(free_bound(EDGE, 100.0))
+    assert free_bound(replace(PULSE, width_px=2.0), 100.0) == math.inf
+
+
+def test_bounds_scale_with_noise_and_rows():
+    one, four = shape_bound(Blur(0.4), EDGE, 100.0), shape_bound(Blur(0.4), EDGE, 25.0)
+    assert four.rer == pytest.approx(4 * one.rer)
+    more = shape_bound(Blur(0.4), replace(EDGE, rows=160, cols=60), 100.0)
+    assert more.fwhm_px == pytest.approx(one.fwhm_px / 2, rel=0.03)
+
+
+def test_the_equivalent_blur_is_the_sensors_own():
+    assert equivalent_blur(SENSOR, 0.0).sigma_px == pytest.approx(0.45, abs=1e-3)
+
+
+def test_a_fit_of_the_bounds_own_model_reaches_them():
+    """The blurred pulse fitted to 400 images: its scatter is the bound of sigma and width."""
+    rng = np.random.default_rng(8)
+    bound = shape_bound(Blur(0.45), PULSE, 50.0)
+    sigma, width = [], []
+    clean, truth = simulate.pulse(SENSOR, shape=(40, 40), dark=0.0, bright=1.0)
+    line = truth.line.moved(-1.5, 0.0)
+    for _ in range(400):
+        image = clean + rng.normal(scale=1 / 50, size=clean.shape)
+        band = PulseBand(image, line, 0.0, 1.0, 0.45, 0.02)
+        fit = fit_blurred_pulse(Pixels.of(image), band, width_px=3.0)
+        sigma.append(fit.blur.sigma_px)
+        width.append(fit.profile.positions_px[1])
+    slope = (_numbers(Blur(0.4501)) - _numbers(Blur(0.4499)))[0] / 0.0002
+    # The slice of the pixel at 6 degrees is no plain box, and 400 draws know a std to 3.5 %.
+    assert abs(slope) * np.std(sigma) == pytest.approx(bound.mtf_nyquist, rel=0.12)
+    assert np.std(width) == pytest.approx(bound.width_px, rel=0.12)

@@ -1,0 +1,88 @@
+"""The studies of noise: what the paper found, and what our estimator makes of it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from acutance import OptionError
+from acutance.studies import (
+    Execution,
+    GroundNoiseOptions,
+    SnrOptions,
+    run_study,
+    study_ground_noise,
+    study_snr,
+)
+
+ALONE = Execution(seed=3, workers=1)
+
+
+@pytest.fixture(scope="module")
+def snr():
+    levels = (5.0, 10.0, 14.0, 20.0, 28.0, 40.0, 60.0)
+    return study_snr(SnrOptions(noise_dn=levels, draws=12), ALONE)
+
+
+def test_snr_has_a_row_for_each_level_and_target(snr):
+    assert len(snr.table) == 14
+    assert len(snr.tables["trials"]) == 168
+    edge = snr.table.where(target="edge", noise_dn=10.0)
+    assert edge["snr"][0] == pytest.approx(100.0)
+    assert edge["truth"][0] == pytest.approx(0.267, abs=5e-4)
+
+
+def test_a_pulse_needs_about_half_the_snr_of_an_edge_the_published_way(snr):
+    need = {t: snr.finding(f"minimum_snr_scatter_{t}_published").value for t in ("edge", "pulse")}
+    assert 50 <= need["edge"] <= 100
+    assert 0.3 <= need["pulse"] / need["edge"] <= 0.75
+
+
+def test_ours_needs_less_and_has_no_bias(snr):
+    for target in ("edge", "pulse"):
+        quiet = snr.table.where(target=target, noise_dn=5.0)
+        assert quiet["ours_rms_percent"][0] < 0.6 * quiet["published_rms_percent"][0]
+        assert abs(snr.finding(f"bias_{target}_ours_percent").value) < 0.8
+    ours = snr.finding("minimum_snr_edge_ours").value
+    assert ours < 0.7 * snr.finding("minimum_snr_edge_published").value
+    assert snr.finding("bias_pulse_published_percent").value == pytest.approx(-4.0, abs=0.8)
+
+
+def test_ours_states_its_scatter(snr):
+    loud = snr.table.where(target="edge")
+    ratio = loud["ours_std_percent"] / loud["ours_stated_percent"]
+    assert 0.75 < float(np.exp(np.mean(np.log(ratio)))) < 1.25
+
+
+def test_the_limit_decides(snr):
+    strict = SnrOptions(noise_dn=(10.0, 20.0), draws=2, limit_percent=0.01)
+    assert math.isnan(study_snr(strict, ALONE).finding("minimum_snr_edge_ours").value)
+
+
+@pytest.fixture(scope="module")
+def ground():
+    options = GroundNoiseOptions(levels_dn=((1100.0, 400.0), (900.0, 600.0)), runs=8)
+    return study_ground_noise(options, ALONE)
+
+
+def test_ground_noise_falls_with_contrast(ground):
+    assert ground.table["difference_dn"].tolist() == [700.0, 300.0]
+    assert ground.table["snr"][0] == pytest.approx(52.2, abs=0.5)
+    strong, weak = ground.table["ours_rms_percent"]
+    assert strong < 3 < weak < 15
+
+
+def test_ground_noise_shows_the_published_bias(ground):
+    assert ground.finding("bias_published_percent").value == pytest.approx(-4.3, abs=1.5)
+    assert abs(ground.finding("bias_ours_percent").value) < 2.0
+
+
+def test_impossible_options_are_refused():
+    with pytest.raises(OptionError, match="there has to be a draw"):
+        SnrOptions(draws=0)
+    with pytest.raises(OptionError, match="contrast and a run"):
+        GroundNoiseOptions(runs=0)
+    with pytest.raises(OptionError, match="the studies are"):
+        run_study("snow")
+    with pytest.raises(OptionError, match="takes SnrOptions"):
+        run_study("snr", GroundNoiseOptions())

@@ -1,0 +1,71 @@
+"""Plans: bounds below simulations, and the questions of a team answered."""
+
+import math
+
+import numpy as np
+import pytest
+
+from acutance import OptionError
+from acutance.studies import Execution, PlanOptions, plan_target
+
+ALONE = Execution(seed=3, workers=1)
+
+
+@pytest.fixture(scope="module")
+def pulse():
+    options = PlanOptions(
+        target="pulse", rows=(30, 60), angles_deg=(6.0,), widths_px=(3.0, 1.5), draws=40,
+        accuracy=0.005,
+    )  # fmt: skip
+    return plan_target(options, ALONE)
+
+
+def test_simulation_lies_between_the_bounds(pulse):
+    rows = pulse.table.where(varied="rows")
+    assert np.all(rows["mtf_nyquist_rms"] > 0.85 * rows["mtf_nyquist_bound"])
+    assert np.all(rows["mtf_nyquist_rms"] < rows["mtf_nyquist_free"])
+    assert rows["mtf_nyquist_stated"] == pytest.approx(rows["mtf_nyquist_rms"], rel=0.4)
+    assert rows["width_px_rms"] == pytest.approx(rows["width_px_bound"], rel=0.5)
+
+
+def test_the_plan_is_the_same_in_every_list(pulse):
+    plans = [row for row in pulse.table.rows() if row["rows"] == 30 and row["angle_deg"] == 6.0]
+    three = [row["mtf_nyquist_rms"] for row in plans if row["target_width_px"] == 3.0]
+    assert len(three) == 4
+    assert len(set(three)) == 1
+
+
+def test_the_questions_are_answered(pulse):
+    assert pulse.finding("best_target_width_px").value == 3.0
+    expected = pulse.finding("expected_mtf_nyquist").value
+    rows = pulse.finding("rows_needed").value
+    assert rows == math.ceil(30 * (expected / 0.005) ** 2)
+
+
+def test_an_edge_without_simulation_has_bounds_alone():
+    plan = plan_target(PlanOptions(draws=0), ALONE)
+    assert set(plan.table.columns["varied"]) == {"plan", "rows", "angle"}
+    assert np.all(np.isnan(plan.table["mtf_nyquist_rms"]))
+    assert plan.finding("expected_mtf_nyquist").value == pytest.approx(0.0111, abs=1e-4)
+
+
+def test_the_simulation_can_refuse():
+    plan = plan_target(PlanOptions(rows=(20,), angles_deg=(6.0,), snr=1.0, draws=2), ALONE)
+    assert plan.table["refused"][0] == 2
+    assert math.isnan(plan.finding("expected_mtf_nyquist").value)
+    assert [found.name for found in plan.findings] == ["expected_mtf_nyquist"]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"rows": (5,)}, "at least 20"),
+        ({"angles_deg": (0.0,)}, "no sub-pixel phases"),
+        ({"widths_px": (80.0,)}, "check the width and the GSD"),
+        ({"snr": 0.0}, "above 0"),
+        ({"target": "star"}, "edge"),
+    ],
+)
+def test_impossible_plans_are_refused(wrong, words):
+    with pytest.raises(OptionError, match=words):
+        PlanOptions(**wrong)
