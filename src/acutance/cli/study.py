@@ -23,6 +23,8 @@ __all__ = ["EXAMPLE", "WorkersOption", "execution_of", "progress_bar", "study", 
 EXAMPLE = "\b\nExample:\n  acutance study angle --out studies --set places=3"
 STUDIES_HELP = "snr, ground-noise, angle, width, width-correction or all"
 
+_KINDS = {int: "a whole number", float: "a number", tuple: "several numbers"}
+
 WorkersOption = Annotated[
     int | None, typer.Option(metavar="N", min=1, help="Processes; all cores if not given.")
 ]
@@ -45,7 +47,9 @@ def study(
         ),
     ] = None,
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005,
-    workers: WorkersOption = None,
+    workers: _KINDS = {int: "a whole number", float: "a number", tuple: "several numbers"}
+
+WorkersOption = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print the JSON document, and nothing else, to stdout.")
     ] = False,
@@ -135,8 +139,8 @@ def _options(kind: type[Any], changes: Sequence[str]) -> Any:
             changed[option] = (value,)
         elif type(value) is not type(expected):
             raise OptionError(
-                f"--set {option}={value}: it is a {type(expected).__name__}, as in "
-                f"{option}={expected!r}"
+                f"--set {option}={value}: {option} is {_KINDS.get(type(expected), 'of another kind')}"
+                f", as in {option}={expected}"
             )
     return kind(**changed)
 
