@@ -47,9 +47,7 @@ def study(
         ),
     ] = None,
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005,
-    workers: _KINDS = {int: "a whole number", float: "a number", tuple: "several numbers"}
-
-WorkersOption = None,
+    workers: WorkersOption = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print the JSON document, and nothing else, to stdout.")
     ] = False,
@@ -138,9 +136,9 @@ def _options(kind: type[Any], changes: Sequence[str]) -> Any:
         elif isinstance(expected, tuple) and not isinstance(value, tuple):
             changed[option] = (value,)
         elif type(value) is not type(expected):
+            wanted = _KINDS.get(type(expected), "of another kind")
             raise OptionError(
-                f"--set {option}={value}: {option} is {_KINDS.get(type(expected), 'of another kind')}"
-                f", as in {option}={expected}"
+                f"--set {option}={value}: {option} is {wanted}, as in {option}={expected}"
             )
     return kind(**changed)
 
