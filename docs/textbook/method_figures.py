@@ -71,11 +71,11 @@ def gains_of_steps() -> Figure:
 
 
 def errors_of_methods() -> Figure:
-    """Error of every method on edges without noise: 6 and 14 degrees, four systems."""
+    """Error of every method on edges without noise: 6 and 13 degrees, four systems."""
     systems = ac.simulate.reference_systems()
     figure = new_page(10.4, 7.2)
     panels = figure.subplots(2, 4, sharex=True, sharey="row")
-    for row, angle in zip(panels, (6.0, 14.0), strict=True):
+    for row, angle in zip(panels, (6.0, 13.0), strict=True):
         for axes, name in zip(row, ("gaussian", "halo", "sharpened", "diffraction"), strict=True):
             image, truth = ac.simulate.edge(systems[name], angle_deg=angle, shape=(60, 60))
             for i, method in enumerate(METHODS):

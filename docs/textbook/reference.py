@@ -21,10 +21,12 @@ PACKAGES = (
     "fit.line",
     "fit.band",
     "fit.edge",
+    "fit.pulse",
     "raster",
     "simulate",
     "measure",
     "measure.published",
+    "measure.pulse_width",
     "studies",
     "report",
 )
@@ -32,6 +34,7 @@ PACKAGES = (
 COMMANDS: dict[str, list[str]] = {
     "acutance": [],
     "edge": ["edge"],
+    "pulse": ["pulse"],
     "sites": ["sites"],
     "simulate-edge": ["simulate", "edge"],
     "study": ["study"],
