@@ -9,7 +9,15 @@ from matplotlib.figure import Figure
 
 from acutance.report import save_figure
 from acutance.report.page import styled
-from textbook import benchmarks, edge_figures, method_figures, plane_figures, reference, tables
+from textbook import (
+    benchmarks,
+    edge_figures,
+    method_figures,
+    plane_figures,
+    reference,
+    study_figures,
+    tables,
+)
 
 __all__ = ["write_all"]
 
@@ -22,6 +30,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
     "step-gains": method_figures.gains_of_steps,
     "method-errors": method_figures.errors_of_methods,
     "reference-systems": plane_figures.reference_systems,
+    **study_figures.FIGURES,
 }
 
 TEXTS: dict[str, Callable[[], str]] = {
@@ -37,6 +46,7 @@ TEXTS: dict[str, Callable[[], str]] = {
     "sites.inc": tables.sites,
     "top-names.inc": reference.top_names,
     **reference.help_texts(),
+    **study_figures.TEXTS,
 }
 
 
