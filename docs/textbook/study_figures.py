@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
+from textwrap import fill
 
 from matplotlib.figure import Figure
 
@@ -23,7 +24,9 @@ def _figure(name: str) -> Figure:
 
 
 def _text(name: str) -> str:
-    return study_text(_result(name)) + "\n"
+    lines = study_text(_result(name)).splitlines()
+    wrapped = (fill(line, 92, subsequent_indent="      ") for line in lines)
+    return "\n".join(wrapped) + "\n"
 
 
 FIGURES: dict[str, Callable[[], Figure]] = {
