@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import acutance as ac
-from acutance.measure.pulse_checks import zeros_of_pulse
+from acutance.measure.pulse_spectrum import zeros_cpp
 from acutance.simulate import pulse, reference_systems
 
 SYSTEMS = reference_systems()
@@ -99,7 +99,7 @@ def test_a_wrong_width_is_detected_and_does_not_hurt():
 def test_a_zero_at_nyquist_does_not_spoil_the_joint_fit():
     image, truth = simulated(width_px=4.0, snr=100.0, shape=(60, 60))
     m = ac.measure_pulse(image, width_px=4.0)
-    assert zeros_of_pulse(4.0) == pytest.approx((0.25, 0.5, 0.75, 1.0))
+    assert zeros_cpp(4.0) == pytest.approx((0.25, 0.5, 0.75, 1.0))
     zero = next(check for check in m.checks if check.name == "zero_distance_cpp")
     assert zero.value == pytest.approx(0.0, abs=0.01)
     assert zero.passed

@@ -1,8 +1,8 @@
 """Curves and the metrics that read them: the ground floor, numpy only."""
 
 from acutance.curves.estimate import Estimate
-from acutance.curves.response import METRICS, Response
+from acutance.curves.response import METRICS, HasResponse, Response
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
 
-__all__ = ["METRICS", "Esf", "Estimate", "Lsf", "Mtf", "Response"]
+__all__ = ["METRICS", "Esf", "Estimate", "HasResponse", "Lsf", "Mtf", "Response"]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from acutance.curves import metrics
 from acutance.curves.estimate import Estimate
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
 
-__all__ = ["METRICS", "Response"]
+__all__ = ["METRICS", "HasResponse", "Response"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +103,45 @@ class Response:
         """All numbers by name, in the order a report prints them."""
         found = {name: getattr(self, name) for name in METRICS}
         return {name: number for name, number in found.items() if number is not None}
+
+
+class HasResponse:
+    """Shortcuts of whatever holds a `response`: a measurement, or the truth of a simulation."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def response(self) -> Response: ...
+
+    @property
+    def esf(self) -> Esf:
+        """Edge spread function along the normal."""
+        return self.response.esf
+
+    @property
+    def lsf(self) -> Lsf:
+        """Line spread function along the normal."""
+        return self.response.lsf
+
+    @property
+    def mtf(self) -> Mtf:
+        """The MTF; call it with a frequency in cycles per pixel."""
+        return self.response.mtf
+
+    @property
+    def mtf_nyquist(self) -> Estimate:
+        """MTF at 0.5 cycles per pixel."""
+        return self.response.mtf_nyquist
+
+    @property
+    def rer(self) -> Estimate:
+        """Relative edge response."""
+        return self.response.rer
+
+    @property
+    def fwhm_px(self) -> Estimate:
+        """Full width of the LSF at half maximum, pixels."""
+        return self.response.fwhm_px
 
 
 METRICS = (

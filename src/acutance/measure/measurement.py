@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
+from acutance.curves import Estimate, HasResponse, Response
 from acutance.curves.grid import Floats
 from acutance.fit.line import Line, Orientation
 
@@ -106,7 +106,7 @@ class Samples:
 
 
 @dataclass(frozen=True, eq=False)
-class Measurement:
+class Measurement(HasResponse):
     """A measurement of one straight target: numbers, curves, evidence and checks.
 
     The numbers (`mtf_nyquist`, `rer`, `fwhm_px` ...) are those of `response`.
@@ -153,36 +153,6 @@ class Measurement:
     def orientation(self) -> Orientation:
         """Which direction the MTF belongs to: "across" or "along"."""
         return self.line.orientation
-
-    @property
-    def esf(self) -> Esf:
-        """Edge spread function along the normal."""
-        return self.response.esf
-
-    @property
-    def lsf(self) -> Lsf:
-        """Line spread function along the normal."""
-        return self.response.lsf
-
-    @property
-    def mtf(self) -> Mtf:
-        """The MTF; call it with a frequency in cycles per pixel."""
-        return self.response.mtf
-
-    @property
-    def mtf_nyquist(self) -> Estimate:
-        """MTF at 0.5 cycles per pixel."""
-        return self.response.mtf_nyquist
-
-    @property
-    def rer(self) -> Estimate:
-        """Relative edge response."""
-        return self.response.rer
-
-    @property
-    def fwhm_px(self) -> Estimate:
-        """Full width of the LSF at half maximum, pixels."""
-        return self.response.fwhm_px
 
     @property
     def fwhm_m(self) -> Estimate | None:

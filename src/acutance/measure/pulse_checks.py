@@ -21,15 +21,11 @@ from acutance.measure.cut import Cut
 from acutance.measure.evidence import Evidence, TargetChecks
 from acutance.measure.measurement import Check
 from acutance.measure.options import PulseLimits
+from acutance.measure.pulse_spectrum import zeros_cpp
 
-__all__ = ["PulseChecks", "zeros_of_pulse"]
+__all__ = ["PulseChecks"]
 
 _MUCH = 999.0
-
-
-def zeros_of_pulse(width_px: float, up_to_cpp: float = 1.0) -> tuple[float, ...]:
-    """Frequencies at which a pulse of `width_px` has no contrast: k / width, cycles per pixel."""
-    return tuple(k / width_px for k in range(1, math.floor(up_to_cpp * width_px) + 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +148,7 @@ class PulseChecks(TargetChecks):
 
     def _zeros(self) -> Check:
         limit = self.limits.zero_distance_cpp
-        zeros = zeros_of_pulse(self.width.value)
+        zeros = zeros_cpp(self.width.value).tolist()
         nearest = min(zeros, key=lambda zero: abs(zero - NYQUIST_CPP), default=math.inf)
         value = min(abs(nearest - NYQUIST_CPP), 1.0)
         passed = value >= limit or not self.by_ratio

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from acutance.curves import metrics
 from acutance.curves.grid import Floats, crossing
-from acutance.measure.pulse_checks import zeros_of_pulse
+from acutance.measure.pulse_spectrum import zeros_cpp
 from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, SHADE, VERMILION
 from acutance.report.wording import word_estimate
 
@@ -266,7 +266,7 @@ def draw_mtf(axes: Axes, measurement: Measurement) -> None:
 
 def mark_zeros(axes: Axes, width_px: float) -> None:
     """Where the spectrum of a pulse of this width has its zeros, as thin dotted lines."""
-    zeros = zeros_of_pulse(width_px, 0.99)
+    zeros = zeros_cpp(width_px, 0.99).tolist()
     for k, zero in enumerate(zeros, start=1):
         axes.axvline(zero, color=PURPLE, linewidth=0.9, linestyle=":", zorder=1)
         if k == 1 or len(zeros) <= MOST_ZEROS_NAMED:

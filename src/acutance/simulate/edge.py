@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
+from acutance.curves import HasResponse, Response
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.fit.line import Line, Orientation
@@ -23,7 +23,7 @@ Polarity = Literal["rising", "falling"]
 
 
 @dataclass(frozen=True, eq=False)
-class Truth:
+class Truth(HasResponse):
     """What a perfect measurement of a simulated edge would return.
 
     Parameters
@@ -54,30 +54,6 @@ class Truth:
     def orientation(self) -> Orientation:
         """The image axis the MTF belongs to."""
         return self.line.orientation
-
-    @property
-    def esf(self) -> Esf:
-        return self.response.esf
-
-    @property
-    def lsf(self) -> Lsf:
-        return self.response.lsf
-
-    @property
-    def mtf(self) -> Mtf:
-        return self.response.mtf
-
-    @property
-    def mtf_nyquist(self) -> Estimate:
-        return self.response.mtf_nyquist
-
-    @property
-    def rer(self) -> Estimate:
-        return self.response.rer
-
-    @property
-    def fwhm_px(self) -> Estimate:
-        return self.response.fwhm_px
 
 
 def render_edge(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
+from acutance.curves import HasResponse, Response
 from acutance.curves.grid import Floats, crossing
 from acutance.errors import ModelError
 from acutance.fit.line import Line, Orientation
@@ -24,7 +24,7 @@ __all__ = ["PulseTruth", "pulse", "render_pulse"]
 
 
 @dataclass(frozen=True, eq=False)
-class PulseTruth:
+class PulseTruth(HasResponse):
     """What a perfect measurement of a simulated pulse would return.
 
     Parameters
@@ -66,36 +66,6 @@ class PulseTruth:
     def orientation(self) -> Orientation:
         """The image axis the MTF belongs to."""
         return self.line.orientation
-
-    @property
-    def esf(self) -> Esf:
-        """Edge spread function of the system."""
-        return self.response.esf
-
-    @property
-    def lsf(self) -> Lsf:
-        """Line spread function of the system."""
-        return self.response.lsf
-
-    @property
-    def mtf(self) -> Mtf:
-        """MTF of the system."""
-        return self.response.mtf
-
-    @property
-    def mtf_nyquist(self) -> Estimate:
-        """MTF of the system at 0.5 cycles per pixel."""
-        return self.response.mtf_nyquist
-
-    @property
-    def rer(self) -> Estimate:
-        """Relative edge response of the system."""
-        return self.response.rer
-
-    @property
-    def fwhm_px(self) -> Estimate:
-        """Width of the system's LSF at half of its maximum."""
-        return self.response.fwhm_px
 
     @property
     def width_m(self) -> float | None:
