@@ -1,8 +1,19 @@
 """Curves and the metrics that read them: the ground floor, numpy only."""
 
 from acutance.curves.estimate import Estimate
+from acutance.curves.plane import Otf2d, OtfModel
 from acutance.curves.response import METRICS, HasResponse, Response
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
 
-__all__ = ["METRICS", "Esf", "Estimate", "HasResponse", "Lsf", "Mtf", "Response"]
+__all__ = [
+    "METRICS",
+    "Esf",
+    "Estimate",
+    "HasResponse",
+    "Lsf",
+    "Mtf",
+    "Otf2d",
+    "OtfModel",
+    "Response",
+]

@@ -2,6 +2,7 @@
 
 from acutance.measure.edge import METHODS, measure_edge
 from acutance.measure.measurement import Check, ImageInfo, Measurement, Samples
+from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.options import EdgeLimits, EdgeOptions, PulseLimits, PulseOptions
 from acutance.measure.pulse import PULSE_METHODS, measure_pulse
 from acutance.measure.target import EdgeGroup, Rejected, TargetResult, measure_edges
@@ -15,6 +16,7 @@ __all__ = [
     "EdgeOptions",
     "ImageInfo",
     "Measurement",
+    "Measurement2d",
     "PulseLimits",
     "PulseOptions",
     "Rejected",

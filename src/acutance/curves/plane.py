@@ -1,0 +1,168 @@
+"""The 2-D transfer function: slices in any direction, and the point spread function."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats, crossing
+from acutance.curves.response import Response
+from acutance.curves.spread import Esf, Lsf
+from acutance.curves.transfer import Mtf
+
+__all__ = ["Otf2d", "OtfModel"]
+
+Complexes = NDArray[np.complex128]
+
+_FREQ_CPP: Floats = np.asarray(np.arange(101) * 0.01)
+_DISTANCE_PX: Floats = np.asarray(np.arange(-200, 201) * 0.05)
+
+PERIOD_PX = 64
+"""Length over which the curves of a slice repeat: light must have died away within half of it."""
+
+
+class OtfModel(Protocol):
+    """An OTF over the plane of frequencies, with its covariance.
+
+    Frequencies are in cycles per pixel: `u_cpp` across (along the rows of pixels, x), `v_cpp`
+    along (down the columns, y).
+    """
+
+    @property
+    def band_cpp(self) -> float:
+        """Frequency beyond which nothing is transferred."""
+        ...
+
+    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """OTF, (n,), exactly 1 at zero frequency."""
+        ...
+
+    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Factor of its covariance, (n, k), exactly 0 at zero frequency."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Otf2d:
+    """A 2-D OTF, from which the curves of every direction follow.
+
+    Parameters
+    ----------
+    model : OtfModel
+        The OTF and its covariance at any frequencies.
+    gsd_m : (float, float), optional
+        Distance from row to row and from column to column in metres.
+    """
+
+    model: OtfModel
+    gsd_m: tuple[float, float] | None = None
+
+    def response(self, normal_deg: float) -> Response:
+        """ESF, LSF and MTF along a direction: an edge whose normal points there would show them.
+
+        The MTF is the slice of the OTF, and the LSF its inverse Fourier transform: the PSF
+        integrated over the other axis (projection-slice theorem).
+
+        Parameters
+        ----------
+        normal_deg : float
+            From the column axis (0: across) towards the row axis (90: along).
+        """
+        freq = np.asarray(np.arange(round(PERIOD_PX * self.model.band_cpp) + 1) / PERIOD_PX)
+        otf, factor = self._slice(normal_deg, freq)
+        centroid = self._centroid(normal_deg)
+        turn = np.exp(2j * math.pi * freq * centroid)
+        esf, lsf, esf_factor, lsf_factor = _spread(freq, otf * turn, factor * turn[:, None])
+        shown, shown_factor = self._slice(normal_deg, _FREQ_CPP)
+        turn = np.exp(2j * math.pi * _FREQ_CPP * centroid)
+        return Response(
+            Esf(_DISTANCE_PX, esf, esf_factor),
+            Lsf(_DISTANCE_PX, lsf, lsf_factor),
+            Mtf(_FREQ_CPP, shown * turn, shown_factor * turn[:, None]),
+            gsd_m=self._gsd_along(normal_deg),
+        )
+
+    def psf(self, half_width_px: float = 5.0, step_px: float = 0.1) -> tuple[Floats, Floats]:
+        """Point spread function around its origin, pixel area included.
+
+        Parameters
+        ----------
+        half_width_px, step_px : float, optional
+            Half the width of the returned square and the spacing of its grid.
+
+        Returns
+        -------
+        distance_px : (n,) array
+            Places along either axis.
+        psf : (n, n) array
+            Light per square pixel at (row, column) distances; its integral over the plane is 1.
+        """
+        reach = round(half_width_px / step_px)
+        distance: Floats = np.asarray(np.arange(-reach, reach + 1) * step_px)
+        period = 2 * (math.ceil(half_width_px) + 8)
+        half = np.arange(round(period * self.model.band_cpp) + 1) / period
+        u, v = half, np.concatenate([-half[:0:-1], half])
+        plane = self.model.otf(np.tile(u, v.size), np.repeat(v, u.size)).reshape(v.size, u.size)
+        weights = np.where(u == 0, 1.0, 2.0) / period**2
+        down = np.exp(2j * math.pi * np.outer(distance, v))
+        across = np.exp(2j * math.pi * np.outer(u, distance)) * weights[:, None]
+        return distance, np.asarray((down @ plane @ across).real)
+
+    def _slice(self, normal_deg: float, freq_cpp: Floats) -> tuple[Complexes, Complexes]:
+        u, v = _along(normal_deg, freq_cpp)
+        return self.model.otf(u, v), self.model.factor(u, v)
+
+    def _centroid(self, normal_deg: float) -> float:
+        """Centroid of the LSF, from the slope of the phase at zero frequency."""
+        step = 1e-5
+        phase = np.angle(self.model.otf(*_along(normal_deg, np.array([step]))))
+        return -float(phase[0]) / (2 * math.pi * step)
+
+    def _gsd_along(self, normal_deg: float) -> float | None:
+        if self.gsd_m is None:
+            return None
+        row_m, col_m = self.gsd_m
+        angle = math.radians(normal_deg)
+        return 1.0 / math.hypot(math.cos(angle) / col_m, math.sin(angle) / row_m)
+
+
+def _along(normal_deg: float, freq_cpp: Floats) -> tuple[Floats, Floats]:
+    angle = math.radians(normal_deg)
+    return freq_cpp * math.cos(angle), freq_cpp * math.sin(angle)
+
+
+def _spread(
+    freq: Floats, otf: Complexes, factor: Complexes
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """ESF and LSF about the 50 % point, with their covariance factors.
+
+    Sums over a regular grid of frequencies: the integral of the repeated LSF, whose mean is taken
+    out and put back as a straight line.
+    """
+    everything = np.column_stack([otf, factor])
+    esf = _integrated(_DISTANCE_PX, freq, everything)
+    half = crossing(_DISTANCE_PX, esf[:, 0], 0.5, float(_DISTANCE_PX[_steep(esf[:, 0])]))
+    places = _DISTANCE_PX + (0.0 if math.isnan(half) else half)
+    esf = _integrated(places, freq, everything)
+    turns = np.exp(2j * math.pi * np.outer(places, freq[1:]))
+    lsf = 2 * (turns @ everything[1:]).real / PERIOD_PX
+    lsf[:, 0] += 1 / PERIOD_PX
+    return esf[:, 0], lsf[:, 0], esf[:, 1:], lsf[:, 1:]
+
+
+def _integrated(places: Floats, freq: Floats, everything: Complexes) -> Floats:
+    turns = np.exp(2j * math.pi * np.outer(places, freq[1:])) / (2j * math.pi * freq[1:])
+    esf = 2 * (turns @ everything[1:]).real / PERIOD_PX
+    esf[:, 0] += 0.5 + places / PERIOD_PX
+    return np.asarray(esf)
+
+
+def _steep(esf: Floats) -> int:
+    """A place on the dark side of the steepest rise, from where 50 % is the next crossing."""
+    steepest = int(np.argmax(np.diff(esf)))
+    below = np.flatnonzero(esf[: steepest + 2] < 0.5)
+    return int(below[-1]) if below.size else 0
