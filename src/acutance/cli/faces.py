@@ -15,10 +15,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from acutance.curves.grid import Floats
-    from acutance.measure import TargetResult
+    from acutance.measure import Measurement2d, TargetResult
     from acutance.measure.measurement import Measurement
+    from acutance.report import PlanePanel
+    from acutance.report.html import Section
 
-__all__ = ["Faces", "deliver", "faces_by_method", "faces_of_target"]
+__all__ = ["Faces", "deliver", "faces_by_method", "faces_of_plane", "faces_of_target"]
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,30 @@ def faces_of_target(result: TargetResult, backdrop: Floats, origin: tuple[int, i
             result, backdrop=backdrop, origin=origin, command=command_line()
         ),
         csv=lambda: report.mtf_csv_of_many(result.measurements),
+    )
+
+
+def faces_of_plane(
+    measurement: Measurement2d,
+    *,
+    panels: Callable[[], Sequence[PlanePanel]] = tuple,
+    sections: Callable[[], Sequence[Section]] = tuple,
+    blocks: Callable[[], Sequence[str]] = tuple,
+) -> Faces:
+    """Of a 2-D measurement, with what its method adds to the figure, the report and the text."""
+    from acutance import report
+
+    return Faces(
+        text=lambda: report.plane_text(measurement, blocks()),
+        document=lambda covariance: report.plane_document(measurement, covariance=covariance),
+        figure=lambda: report.plane_figure(measurement, panels()),
+        report=lambda: report.plane_report(
+            measurement,
+            command=command_line(),
+            extra_panels=panels(),
+            extra_sections=sections(),
+        ),
+        csv=lambda: report.plane_csv(measurement),
     )
 
 

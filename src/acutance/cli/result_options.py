@@ -13,6 +13,7 @@ from acutance.cli.terminal import FAILED_CHECK, say
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
+    from acutance.measure import Measurement2d
     from acutance.measure.measurement import Measurement
 
 __all__ = [
@@ -105,7 +106,7 @@ class ResultOptions:
         self.csv = _checked("--csv", csv, (".csv",), image)
         self.as_json, self.covariance, self.strict = as_json, covariance, strict
 
-    def deliver(self, measurements: Sequence[Measurement], faces: Faces) -> None:
+    def deliver(self, measurements: Sequence[Measurement | Measurement2d], faces: Faces) -> None:
         """Write and print what was asked for; under ``--strict`` a failed check is exit code 3."""
         deliver(
             faces,

@@ -17,6 +17,10 @@ from acutance.report.documents import (
 )
 from acutance.report.edge_page import edge_figure, panel_figures
 from acutance.report.page import save_figure
+from acutance.report.plane_page import plane_figure, plane_panels
+from acutance.report.plane_panels import PlanePanel
+from acutance.report.plane_report import plane_report, plane_sections
+from acutance.report.plane_text import plane_csv, plane_document, plane_text
 from acutance.report.reports import comparison_report, edge_report, target_report
 from acutance.report.scene_truth import scene_document, target_truth_document
 from acutance.report.study_figures import plan_text, study_figure, study_text
@@ -25,6 +29,7 @@ from acutance.report.target_page import target_figure
 from acutance.report.text import comparison_text, target_text, text_report
 
 __all__ = [
+    "PlanePanel",
     "budget_document",
     "budget_figure",
     "budget_text",
@@ -41,6 +46,13 @@ __all__ = [
     "mtf_csv_of_many",
     "panel_figures",
     "plan_text",
+    "plane_csv",
+    "plane_document",
+    "plane_figure",
+    "plane_panels",
+    "plane_report",
+    "plane_sections",
+    "plane_text",
     "save_figure",
     "scene_document",
     "sensor_document",

@@ -30,10 +30,16 @@ from acutance.report.wording import (
 if TYPE_CHECKING:
     from acutance.curves import Response
     from acutance.curves.grid import Floats
-    from acutance.measure import TargetResult
+    from acutance.measure import Measurement2d, TargetResult
     from acutance.measure.measurement import Measurement
 
-__all__ = ["comparison_sections", "edge_sections", "reproducing_section", "target_sections"]
+__all__ = [
+    "checks_sections",
+    "comparison_sections",
+    "edge_sections",
+    "reproducing_section",
+    "target_sections",
+]
 
 HEADLINES = ("mtf_nyquist", "rer", "fwhm_px", "fwhm_m", "width_px", "width_m")
 
@@ -74,9 +80,9 @@ def edge_sections(measurement: Measurement, command: str | None = None) -> tuple
         ),
         Section("Curves", plates=plates),
         Section("Numbers", tables=(_metrics_table(measurement),)),
-        *_checks_sections(measurement),
+        *checks_sections(measurement),
         Section("MTF in steps of 0.02 cycles per pixel", tables=(_mtf_table(measurement),)),
-        reproducing_section(measurement, command),
+        reproducing_section(measurement, command or _command(measurement)),
     )
 
 
@@ -104,7 +110,8 @@ def _metrics_table(measurement: Measurement) -> Table:
     return Table(columns, tuple(rows), "lrrrll")
 
 
-def _checks_sections(measurement: Measurement) -> tuple[Section, ...]:
+def checks_sections(measurement: Measurement | Measurement2d) -> tuple[Section, ...]:
+    """What was asked of the target; nothing where nothing was."""
     if not measurement.checks:
         return ()
     rows, alerts = [], set()
@@ -138,7 +145,9 @@ def _mtf_table(measurement: Measurement) -> Table:
     return Table(columns, tuple(rows), "r" * len(columns), parts=3)
 
 
-def reproducing_section(measurement: Measurement, command: str | None = None) -> Section:
+def reproducing_section(
+    measurement: Measurement | Measurement2d, command: str | None = None
+) -> Section:
     """Options, software, time, and the command that measures the same again."""
     from acutance import __version__
 
@@ -151,7 +160,7 @@ def reproducing_section(measurement: Measurement, command: str | None = None) ->
     return Section(
         "How it was measured",
         tables=(Table(("Option", "Value"), tuple(rows), "ll"),),
-        command=command or _command(measurement),
+        command=command,
     )
 
 
@@ -205,7 +214,7 @@ def comparison_sections(
             tables=(_comparison_table(measurements, labels, true_numbers(truth, true_width_px)),),
         ),
         Section("Checks", verdicts=verdicts),
-        reproducing_section(measurements[0], command),
+        reproducing_section(measurements[0], command or _command(measurements[0])),
     )
 
 
@@ -271,7 +280,7 @@ def target_sections(
         sections.append(
             Section("Rejected", tables=(Table(("Stage", "Why"), rows, "ll"),)),
         )
-    return (*sections, reproducing_section(measurements[0], command))
+    return (*sections, reproducing_section(measurements[0], command or _command(measurements[0])))
 
 
 def _mean_sections(result: TargetResult) -> list[Section]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from acutance.curves import Estimate
+    from acutance.measure import Measurement2d
     from acutance.measure.measurement import Check, Measurement
 
 __all__ = [
@@ -20,6 +21,8 @@ __all__ = [
     "count_failed_checks",
     "describe_image",
     "describe_line",
+    "describe_plane",
+    "describe_plane_image",
     "flatten_options",
     "format_number",
     "metric_words",
@@ -172,6 +175,29 @@ def describe_image(measurement: Measurement) -> str:
     return ", ".join(parts)
 
 
+def describe_plane(measurement: Measurement2d) -> str:
+    """What a 2-D measurement is, in one line: target, method, SNR."""
+    parts = [f"{measurement.kind.capitalize()} by {measurement.method}"]
+    if math.isfinite(measurement.snr):
+        parts.append(f"SNR {format_number(measurement.snr, 3)}")
+    return ", ".join(parts)
+
+
+def describe_plane_image(measurement: Measurement2d) -> str:
+    """Where the pixels of a 2-D measurement came from, in one line."""
+    image = measurement.image
+    row, col, height, width = image.roi
+    parts = [image.path or "array in memory", f"band {image.band}"]
+    if height and width:
+        parts.append(f"rows {row}–{row + height - 1}, columns {col}–{col + width - 1}")
+    gsd_m = measurement.otf.gsd_m
+    if gsd_m is not None:
+        same = format_number(gsd_m[0]) == format_number(gsd_m[1])
+        across = "" if same else f" along, {format_number(gsd_m[1])} m across"
+        parts.append(f"GSD {format_number(gsd_m[0])} m{across}")
+    return ", ".join(parts)
+
+
 def describe_line(measurement: Measurement) -> str:
     """The target itself, in one line: angle, length, levels and noise."""
     angle = word_estimate(measurement.angle_deg)
@@ -187,7 +213,7 @@ def describe_line(measurement: Measurement) -> str:
     return ", ".join(parts)
 
 
-def count_failed_checks(measurements: Sequence[Measurement]) -> str:
+def count_failed_checks(measurements: Sequence[Measurement | Measurement2d]) -> str:
     """How many checks passed or failed, as a sentence."""
     total = sum(len(one.checks) for one in measurements)
     failed = sum(len(one.failed_checks) for one in measurements)
@@ -198,7 +224,7 @@ def count_failed_checks(measurements: Sequence[Measurement]) -> str:
     return "The only check passed." if total == 1 else f"All {total} checks passed."
 
 
-def verdict(measurements: Sequence[Measurement]) -> str:
+def verdict(measurements: Sequence[Measurement | Measurement2d]) -> str:
     """What the checks say, with the names of those that failed."""
     counted = count_failed_checks(measurements)
     names = sorted({check.name for one in measurements for check in one.failed_checks})
