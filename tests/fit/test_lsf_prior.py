@@ -25,7 +25,7 @@ def test_mean_directions_are_the_blur_and_its_slopes(blur):
     found = directions(blur)
     u = np.linspace(-3, 3, 61)
     s = u * blur.width_px
-    by_place, by_sigma, by_aperture = blur.lsf_slopes(s)
+    _, by_place, by_sigma, by_aperture = blur.lsf_slopes(s)
     for column, shape in enumerate((blur.lsf(s), by_sigma, -by_place, by_aperture)):
         lsf = combine(*line_weights(u), found.esf[:, column]) / blur.width_px
         assert np.max(np.abs(lsf - shape)) < 0.02 * np.max(np.abs(shape))

@@ -61,8 +61,9 @@ def test_slopes_of_the_esf(blur):
 
 @pytest.mark.parametrize("blur", BLURS)
 def test_slopes_of_the_lsf(blur):
-    by_place, by_sigma, by_aperture = blur.lsf_slopes(S)
+    lsf, by_place, by_sigma, by_aperture = blur.lsf_slopes(S)
     sigma, aperture = numerical_slopes(lambda b: b.lsf(S), blur)
+    assert np.max(np.abs(lsf - blur.lsf(S))) < 1e-14
     place = (blur.lsf(S + STEP) - blur.lsf(S - STEP)) / (2 * STEP)
     assert np.max(np.abs(by_place - place)) < 1e-7
     assert np.max(np.abs(by_sigma - sigma)) < 1e-7

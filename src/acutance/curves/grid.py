@@ -52,13 +52,13 @@ def crossing(grid: Floats, values: Floats, level: float, start: float, direction
 
     Returns ``nan`` when it never does.
     """
-    origin = int(np.searchsorted(grid, start))
+    origin = int(grid.searchsorted(start))
     side = values[origin:] if direction > 0 else values[: origin + 1][::-1]
     places = grid[origin:] if direction > 0 else grid[: origin + 1][::-1]
     if side.size < 2:
         return math.nan
     above = side > level
-    changes = np.flatnonzero(above[1:] != above[:-1])
+    changes = (above[1:] != above[:-1]).nonzero()[0]
     if changes.size == 0:
         return math.nan
     i = int(changes[0])

@@ -37,7 +37,7 @@ _UNDEFINED = Estimate(math.nan, math.nan)
 
 
 def _estimate(value: float, gradient: Floats) -> Estimate:
-    return Estimate(float(value), float(np.sqrt(gradient @ gradient)))
+    return Estimate(float(value), math.sqrt(float(gradient @ gradient)))
 
 
 def _level_position(esf: Esf, level: float) -> tuple[float, Floats]:
@@ -55,8 +55,8 @@ def _level_position(esf: Esf, level: float) -> tuple[float, Floats]:
 
 def _start(esf: Esf) -> float:
     """A place on the dark side within the steep part, from where 50 % is the next crossing."""
-    steepest = int(np.argmax(np.diff(esf.value)))
-    below = np.flatnonzero(esf.value[: steepest + 2] < 0.5)
+    steepest = int(np.argmax(esf.value[1:] - esf.value[:-1]))
+    below = (esf.value[: steepest + 2] < 0.5).nonzero()[0]
     return float(esf.distance_px[below[-1]]) if below.size else float(esf.distance_px[0])
 
 

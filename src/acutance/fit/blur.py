@@ -6,6 +6,7 @@ LSF: what the free spline adds is the departure from it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,13 +16,18 @@ from acutance.curves.grid import Floats
 
 __all__ = ["Blur", "gaussian"]
 
-_ROOT_TWO_PI = np.sqrt(2 * np.pi)
+_PEAK = 1 / math.sqrt(2 * math.pi)
+_ROOT_TWELVE = math.sqrt(12)
 FWHM_OF_SIGMA = 2.3548200450309493
 
 
 def gaussian(z: Floats) -> Floats:
     """Standard normal density."""
-    return np.asarray(np.exp(-0.5 * z * z) / _ROOT_TWO_PI)
+    power = z * z
+    power *= -0.5
+    np.exp(power, out=power)
+    power *= _PEAK
+    return np.asarray(power)
 
 
 @dataclass(frozen=True)
@@ -34,26 +40,24 @@ class Blur:
     @property
     def width_px(self) -> float:
         """FWHM of the Gaussian with the same variance: the unit of distance of a fit."""
-        return FWHM_OF_SIGMA * float(np.hypot(self.sigma_px, self.aperture_px / np.sqrt(12)))
+        return FWHM_OF_SIGMA * math.hypot(self.sigma_px, self.aperture_px / _ROOT_TWELVE)
 
     def lsf(self, s: Floats) -> Floats:
         """Line spread function at normal distances `s`, 1/px."""
-        high, low = self._ends(s)
-        return np.asarray((ndtr(high) - ndtr(low)) / self.aperture_px)
+        cdf = ndtr(self._ends(s))
+        return np.asarray((cdf[0] - cdf[1]) / self.aperture_px)
 
     def esf(self, s: Floats) -> Floats:
         """Edge spread function at normal distances `s`."""
-        high, low = self._ends(s)
-        ramp = high * ndtr(high) + gaussian(high) - low * ndtr(low) - gaussian(low)
-        return np.asarray(self.sigma_px / self.aperture_px * ramp)
+        ends = self._ends(s)
+        return self._ramp(ends, ndtr(ends), gaussian(ends))
 
     def esf_and_lsf(self, s: Floats) -> tuple[Floats, Floats]:
         """Edge and line spread function at normal distances `s`."""
-        high, low = self._ends(s)
-        cdf_high, cdf_low = ndtr(high), ndtr(low)
-        ramp = high * cdf_high + gaussian(high) - low * cdf_low - gaussian(low)
-        esf = self.sigma_px / self.aperture_px * ramp
-        return np.asarray(esf), np.asarray((cdf_high - cdf_low) / self.aperture_px)
+        ends = self._ends(s)
+        cdf = ndtr(ends)
+        esf = self._ramp(ends, cdf, gaussian(ends))
+        return esf, np.asarray((cdf[0] - cdf[1]) / self.aperture_px)
 
     def otf(self, freq_cpp: Floats) -> Floats:
         """Transfer function at frequencies in cycles per pixel (real: the blur is symmetric)."""
@@ -62,26 +66,35 @@ class Blur:
 
     def esf_and_slopes(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """ESF with its derivatives by s (the LSF), by sigma and by aperture, each like `s`."""
-        high, low = self._ends(s)
-        cdf_high, cdf_low = ndtr(high), ndtr(low)
-        pdf_high, pdf_low = gaussian(high), gaussian(low)
-        ramp = high * cdf_high + pdf_high - low * cdf_low - pdf_low
-        esf = self.sigma_px / self.aperture_px * ramp
-        lsf = (cdf_high - cdf_low) / self.aperture_px
-        by_sigma = (pdf_high - pdf_low) / self.aperture_px
-        by_aperture = (0.5 * (cdf_high + cdf_low) - esf) / self.aperture_px
+        ends = self._ends(s)
+        cdf, pdf = ndtr(ends), gaussian(ends)
+        esf = self._ramp(ends, cdf, pdf)
+        lsf = (cdf[0] - cdf[1]) / self.aperture_px
+        by_sigma = (pdf[0] - pdf[1]) / self.aperture_px
+        by_aperture = (0.5 * (cdf[0] + cdf[1]) - esf) / self.aperture_px
         return esf, lsf, by_sigma, by_aperture
 
-    def lsf_slopes(self, s: Floats) -> tuple[Floats, Floats, Floats]:
-        """Derivatives of the LSF by s, by sigma and by aperture."""
-        high, low = self._ends(s)
-        pdf_high, pdf_low = gaussian(high), gaussian(low)
+    def lsf_slopes(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """LSF with its derivatives by s, by sigma and by aperture, each like `s`."""
+        ends = self._ends(s)
+        cdf, pdf = ndtr(ends), gaussian(ends)
         scale = 1 / (self.sigma_px * self.aperture_px)
-        lsf = (ndtr(high) - ndtr(low)) / self.aperture_px
-        by_sigma = -(high * pdf_high - low * pdf_low) * scale
-        by_aperture = 0.5 * (pdf_high + pdf_low) * scale - lsf / self.aperture_px
-        return (pdf_high - pdf_low) * scale, by_sigma, by_aperture
+        lsf = (cdf[0] - cdf[1]) / self.aperture_px
+        by_sigma = (ends[1] * pdf[1] - ends[0] * pdf[0]) * scale
+        by_aperture = 0.5 * (pdf[0] + pdf[1]) * scale - lsf / self.aperture_px
+        return lsf, (pdf[0] - pdf[1]) * scale, by_sigma, by_aperture
 
-    def _ends(self, s: Floats) -> tuple[Floats, Floats]:
+    def _ends(self, s: Floats) -> Floats:
+        """The two ends of the aperture as standard normal variables, (2, n)."""
+        ends = np.empty((2, s.size))
         half = 0.5 * self.aperture_px
-        return (s + half) / self.sigma_px, (s - half) / self.sigma_px
+        np.add(s, half, out=ends[0])
+        np.subtract(s, half, out=ends[1])
+        ends *= 1 / self.sigma_px
+        return ends
+
+    def _ramp(self, ends: Floats, cdf: Floats, pdf: Floats) -> Floats:
+        """The ESF: the integral of the normal distribution between the ends."""
+        ramp = ends * cdf
+        ramp += pdf
+        return np.asarray((self.sigma_px / self.aperture_px) * (ramp[0] - ramp[1]))

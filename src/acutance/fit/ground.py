@@ -13,13 +13,12 @@ from typing import Final
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.fit.profile import Sides
 
 __all__ = ["LOG_AMPLITUDE", "ground_trends", "is_sloping", "is_uneven", "steepness"]
 
 LOG_AMPLITUDE: Final = -5.0
 """Hyperprior mean of the trends' amplitude relative to the edge's height, logarithm."""
-
-Sides = tuple[tuple[Floats, Floats], ...]
 
 _STRETCH_PX = 5.0
 _MIN_PIXELS = 6

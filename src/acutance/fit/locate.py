@@ -16,10 +16,13 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.fit.line import Line
+from acutance.fit.noise import median
 
 __all__ = ["Segment", "find_segments"]
 
 _BIN_DEG = 5.0
+_BINS = int(360 / _BIN_DEG)
+_BEFORE, _AFTER = np.arange(_BINS) - 1, (np.arange(_BINS) + 1) % _BINS
 _WINDOW_DEG = 20.0
 _REACH_PX = 2.5
 _MIN_LENGTH_PX = 6.0
@@ -94,7 +97,7 @@ def _gradient_votes(image: Floats) -> _Votes:
     if not known.any():
         return _Votes(*(np.empty(0) for _ in range(4)))
     strongest = float(magnitude[known].max())
-    typical = float(np.median(magnitude[known]))
+    typical = median(magnitude[known])
     rows, cols = np.nonzero(known & (magnitude > max(0.2 * strongest, 2 * typical, 1e-300)))
     x, y = by_col[rows, cols], by_row[rows, cols]
     direction = np.degrees(np.arctan2(y, x))
@@ -112,7 +115,9 @@ def _strongest(votes: _Votes) -> tuple[Segment, NDArray[np.bool_]] | None:
         first = float(offset.min())
         profile = np.bincount((offset - first).astype(np.intp), votes.magnitude[near])
         # Three bins together: the votes of a line lie within the blur's width.
-        runs = np.convolve(profile, np.ones(3), "same")
+        runs = profile.copy()
+        runs[1:] += profile[:-1]
+        runs[:-1] += profile[1:]
         place = int(np.argmax(runs))
         if best is None or runs[place] > best[0]:
             best = float(runs[place]), direction, first + place + 0.5
@@ -123,11 +128,10 @@ def _strongest(votes: _Votes) -> tuple[Segment, NDArray[np.bool_]] | None:
 
 def _favoured_directions(votes: _Votes, most: int = 4) -> list[float]:
     """Directions with the most votes, as peaks of the smoothed circular histogram."""
-    bins = int(360 / _BIN_DEG)
-    number = ((votes.direction_deg + 180.0) / _BIN_DEG).astype(np.intp) % bins
-    histogram = np.bincount(number, votes.magnitude, bins)
-    smooth = histogram + np.roll(histogram, 1) + np.roll(histogram, -1)
-    peaks = (smooth >= np.roll(smooth, 1)) & (smooth > np.roll(smooth, -1)) & (smooth > 0)
+    number = ((votes.direction_deg + 180.0) / _BIN_DEG).astype(np.intp) % _BINS
+    histogram = np.bincount(number, votes.magnitude, _BINS)
+    smooth = histogram + histogram[_BEFORE] + histogram[_AFTER]
+    peaks = (smooth >= smooth[_BEFORE]) & (smooth > smooth[_AFTER]) & (smooth > 0)
     order = np.flatnonzero(peaks)
     order = order[np.argsort(smooth[order])[::-1][:most]]
     return [float((k + 0.5) * _BIN_DEG - 180.0) for k in order]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 
-__all__ = ["Correlation", "correlation", "outlier_weights", "robust_scale", "side_variances"]
+__all__ = ["Correlation", "correlation", "median", "outlier_weights", "robust_scale", "side_variances"]
 
 _HARMLESS = 3.0
 _UNHEARD_OF = 4.5
@@ -40,17 +40,24 @@ def side_variances(residual: Floats, esf: Floats) -> tuple[float, float]:
 
 def _variance(residual: Floats) -> float:
     """Variance, without what lies beyond reach of Gaussian noise."""
-    variance, farthest = float(np.var(residual)), float(np.max(np.abs(residual - residual.mean())))
-    if farthest**2 < 16 * variance:
+    power = (residual - np.add.reduce(residual) / residual.size) ** 2
+    variance = float(np.add.reduce(power)) / residual.size
+    if float(power.max()) < 16 * variance:
         return variance
-    centred = residual - np.median(residual)
+    centred = residual - median(residual)
     usual = residual[np.abs(centred) <= _UNHEARD_OF * robust_scale(centred)]
     return float(np.var(usual)) if usual.size else variance
 
 
 def robust_scale(residual: Floats) -> float:
     """Standard deviation of the bulk of the residuals, by their median modulus."""
-    return 1.4826 * float(np.median(np.abs(residual)))
+    return 1.4826 * median(np.abs(residual))
+
+
+def median(values: Floats) -> float:
+    """The middle one of some values, the upper of two: what `numpy.median` does, but quicker."""
+    middle = values.size // 2
+    return float(np.partition(values, middle)[middle])
 
 
 def outlier_weights(standard: Floats) -> Floats:

@@ -22,7 +22,11 @@ __all__ = ["Evidence", "Posterior", "Prior", "Whitened", "evidence_of", "regress
 
 _MAX_STEPS = 12
 _CURVATURE_FLOOR = 0.05
-_potrf, _trtri = get_lapack_funcs(("potrf", "trtri"), (np.empty((1, 1)),))
+_LONGEST_DOWN, _LONGEST_UP = 2.0, 1.0
+_SETTLED_NOISE = 0.02
+_SETTLED_AMPLITUDE = 0.1
+"""A last step this short is taken to first order."""
+_potrf, _trtri, _syev = get_lapack_funcs(("potrf", "trtri", "syev"), (np.empty((1, 1)),))
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +63,16 @@ class Prior:
     def members(self) -> Floats:
         """(m, k): 1 where a coefficient belongs to a block, else 0."""
         return np.asarray(self.block[:, None] == np.arange(self.log_amplitude.size), float)
+
+    @cached_property
+    def sizes(self) -> Floats:
+        """Number of coefficients in every block, (k,)."""
+        return np.asarray(np.add.reduce(self.members))
+
+    @cached_property
+    def own_scale(self) -> Floats:
+        """Standard deviations in data units, (m,), where every amplitude is one."""
+        return self.height * self.scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,15 +128,18 @@ def regress(
         evidence = evidence_of(white, prior, log_amplitude)
         step = evidence.step()
         beta = white.sigma * white.mean
-        freedom = float(beta.size - np.trace(white.covariance))
-        misfit = normal.data - 2 * beta @ normal.projection + beta @ normal.gram @ beta
-        updated = max(float(misfit) / max(normal.count - freedom, 1.0), floor)
-        if abs(updated / variance - 1) < 0.01 and bool(np.all(np.abs(step) < 0.05)):
+        freedom = beta.size - white.spread
+        misfit = normal.data + float(beta @ (normal.gram @ beta - 2 * normal.projection))
+        updated = max(misfit / max(normal.count - freedom, 1.0), floor)
+        settled = abs(updated / variance - 1) < _SETTLED_NOISE
+        variance, log_amplitude = updated, log_amplitude + step
+        if settled and float(np.abs(step).max()) < _SETTLED_AMPLITUDE:
             break
-        variance = updated
-        log_amplitude = log_amplitude + step
-    moves = evidence.moves @ evidence.spread()
-    factor = white.sigma[:, None] * np.hstack([white.root, moves])
+    beta += white.sigma * (evidence.moves @ step)
+    m = beta.size
+    factor = np.empty((m, m + step.size))
+    factor[:, :m], factor[:, m:] = white.root, evidence.moves @ evidence.spread()
+    factor *= white.sigma[:, None]
     return Posterior(beta, factor, log_amplitude, variance, freedom)
 
 
@@ -145,11 +162,22 @@ class Whitened:
     covariance: Floats
     root: Floats
 
+    @property
+    def variances(self) -> Floats:
+        """Variances of the whitened coefficients, (m,): 1 for what the data do not determine."""
+        return self.covariance.diagonal()
+
+    @property
+    def spread(self) -> float:
+        """Sum of the variances: how many coefficients the data leave undetermined."""
+        return float(np.add.reduce(self.variances))
+
 
 def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Whitened:
     """Posterior mean and covariance at given amplitudes and noise variance, by one Cholesky."""
-    sigma = prior.height * prior.scale * np.exp(prior.members @ log_amplitude)
-    precision = normal.gram * (sigma[:, None] * (sigma / noise))
+    sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
+    precision = sigma[:, None] * normal.gram
+    precision *= sigma / noise
     precision.reshape(-1)[:: sigma.size + 1] += 1.0
     # The transpose is laid out as Fortran wants it: nothing is copied.
     lower, _ = _potrf(precision.T, lower=1, clean=1, overwrite_a=1)
@@ -179,15 +207,22 @@ class Evidence:
     moves: Floats
     floor: float
 
+    @cached_property
+    def _axes(self) -> tuple[Floats, Floats]:
+        """Principal curvatures of the evidence, turned positive at a maximum, and their axes."""
+        power, axes, _ = _syev(-self.hessian)
+        return power, axes
+
     def step(self) -> Floats:
         """One bounded Newton step of the log amplitudes, uphill also where it is not concave."""
-        power, axes = np.linalg.eigh(-self.hessian)
+        power, axes = self._axes
         power = np.maximum(np.abs(power), _CURVATURE_FLOOR)
-        return np.asarray(np.clip(axes @ ((axes.T @ self.gradient) / power), -1.0, 1.0))
+        step = axes @ ((self.gradient @ axes) / power)
+        return np.asarray(np.minimum(np.maximum(step, -_LONGEST_DOWN), _LONGEST_UP))
 
     def spread(self) -> Floats:
         """Factor of the covariance of the log amplitudes (Laplace), (k, k)."""
-        power, axes = np.linalg.eigh(-self.hessian)
+        power, axes = self._axes
         return np.asarray(axes / np.sqrt(np.maximum(power, self.floor)))
 
 
@@ -205,9 +240,8 @@ def evidence_of(white: Whitened, prior: Prior, log_amplitude: Floats) -> Evidenc
     members, precision = prior.members, 1 / prior.log_amplitude_std**2
     own = members * white.mean[:, None]
     moves = 2 * white.covariance @ own
-    explained = (white.mean**2 + white.covariance.diagonal()) @ members
-    gradient = explained - members.sum(axis=0)
-    gradient -= (log_amplitude - prior.log_amplitude) * precision
+    explained = (white.mean**2 + white.variances) @ members
+    gradient = explained - prior.sizes - (log_amplitude - prior.log_amplitude) * precision
     hessian = 2 * own.T @ moves + 2 * members.T @ white.covariance**2 @ members
     hessian.reshape(-1)[:: gradient.size + 1] -= 2 * explained + precision
     return Evidence(gradient, hessian, moves, precision / 4)

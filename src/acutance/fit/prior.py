@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.fit.blur import Blur
-from acutance.fit.spline import CENTRES, HALF_SUPPORT, esf_from_lsf, quasi_interpolant
+from acutance.fit.spline import CENTRES, HALF_SUPPORT, SIZE, esf_from_lsf, quasi_interpolant
 
 __all__ = [
     "APERTURE_PX",
@@ -93,10 +93,11 @@ def tail_otf(freq: Floats) -> Floats:
 
 @cache
 def _fixed() -> tuple[Floats, NDArray[np.intp]]:
+    """All directions, with room for the four of the mean blur in front, and their blocks."""
     processes = [_process(*scales) for scales in (_SHAPE, _DETAIL, _HALO)]
     tail = quasi_interpolant(tail_lsf(CENTRES))
-    lsf = np.hstack([*processes, tail[:, None]])
-    block = np.repeat([2, 3, 4, 5], [*(p.shape[1] for p in processes), 1])
+    lsf = np.hstack([np.zeros((SIZE, 4)), *processes, tail[:, None]])
+    block = np.repeat([0, 1, 2, 3, 4, 5], [3, 1, *(p.shape[1] for p in processes), 1])
     esf = esf_from_lsf(lsf)
     esf[:, -1] += float(tail_esf(np.array(-HALF_SUPPORT)))
     return esf, block
@@ -109,8 +110,8 @@ def directions(blur: Blur) -> Directions:
     """
     esf, block = _fixed()
     width = blur.width_px
-    s = CENTRES * width
-    by_place, by_sigma, by_aperture = blur.lsf_slopes(s)
-    shapes = np.stack([blur.lsf(s), by_sigma, -by_place, by_aperture], axis=1)
-    mean = esf_from_lsf(quasi_interpolant(width * shapes))
-    return Directions(np.hstack([mean, esf]), np.concatenate([[0, 0, 0, 1], block]))
+    lsf, by_place, by_sigma, by_aperture = blur.lsf_slopes(CENTRES * width)
+    shapes = np.stack([lsf, by_sigma, -by_place, by_aperture], axis=1)
+    everything = esf.copy()
+    everything[:, :4] = esf_from_lsf(quasi_interpolant(width * shapes))
+    return Directions(everything, block)

@@ -10,7 +10,10 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.fit.blur import Blur
 
-__all__ = ["EDGE", "Profile", "pulse_profile"]
+__all__ = ["EDGE", "Profile", "Sides", "pulse_profile"]
+
+Sides = tuple[tuple[Floats, Floats], ...]
+"""Of either plateau, how much of every pixel sees it, and how far outwards the pixel lies."""
 
 
 @dataclass(frozen=True)
@@ -36,18 +39,28 @@ class Profile:
         """Normal distance from every step, (n,) each."""
         return [s - position if position else s for position in self.positions_px]
 
-    def response(self, blur: Blur, s: Floats) -> tuple[Floats, Floats]:
-        """What a plain blur makes of the profile, and its derivative by s, (n,) each."""
-        value, slope = blur.esf_and_lsf(s)
-        for position, share in zip(self.positions_px[1:], self.shares[1:], strict=True):
-            esf, lsf = blur.esf_and_lsf(s - position)
+    def seen(self, blur: Blur, s: Floats) -> list[tuple[Floats, Floats]]:
+        """ESF and LSF of a plain blur at the distances from every step, (n,) each."""
+        return [blur.esf_and_lsf(distance) for distance in self.distances(s)]
+
+    def response(self, seen: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+        """What a blur makes of the profile, and its derivative by s, (n,) each."""
+        value, slope = seen[0]
+        for share, (esf, lsf) in zip(self.shares[1:], seen[1:], strict=True):
             value, slope = value + share * esf, slope + share * lsf
         return value, slope
 
-    def sides(self, blur: Blur, s: Floats) -> tuple[tuple[Floats, Floats], ...]:
+    def mean(self, blur: Blur, s: Floats) -> Floats:
+        """What a plain blur makes of the profile, (n,)."""
+        value = blur.esf(s)
+        for position, share in zip(self.positions_px[1:], self.shares[1:], strict=True):
+            value += share * blur.esf(s - position)
+        return value
+
+    def sides(self, seen: list[tuple[Floats, Floats]], s: Floats) -> Sides:
         """The two outermost plateaus: how much of a pixel sees each, and how far out it lies."""
-        last = s - self.positions_px[-1]
-        return (1 - blur.esf(s), -s), (blur.esf(last), last)
+        last = self.positions_px[-1]
+        return (1 - seen[0][0], -s), (seen[-1][0], s - last if last else s)
 
     def outside(self, s: Floats) -> Floats:
         """Distance from the profile's nearest end, negative within it."""

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import get_lapack_funcs
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
@@ -22,6 +23,7 @@ _REACH_WIDTHS = 2.5
 _MIN_SIGMA_PX = 0.35
 _TAIL_STD = 0.1
 _APERTURE_STEP_PX = 1.0
+(_gesv,) = get_lapack_funcs(("gesv",), (np.empty((1, 1)),))
 # Parameters: dark, height, offset, turn, sigma, aperture, tail.
 _EXPECTED: Floats = np.array([0.0, 0.0, 0.0, 0.0, 0.0, APERTURE_PX[0], 0.0])
 _LOWEST: Floats = np.array([*[-np.inf] * 4, _MIN_SIGMA_PX, 0.2, 0.0])
@@ -148,14 +150,16 @@ def _gauss_newton(
 
 def _bounded_solution(gram: Floats, gradient: Floats, low: Floats, high: Floats) -> Floats:
     """The minimum of a quadratic form within bounds, found by holding what would leave them."""
-    step = np.linalg.solve(gram, gradient)
+    step = _gesv(gram, gradient)[2]
     held = np.zeros(step.size, bool)
     while (outside := ((step < low) | (step > high)) & ~held).any():
         held |= outside
         free = ~held
-        step[held] = np.clip(step[held], low[held], high[held])
+        step[held] = np.minimum(np.maximum(step, low), high)[held]
+        if not free.any():
+            break
         rest = gradient[free] - gram[np.ix_(free, held)] @ step[held]
-        step[free] = np.linalg.solve(gram[np.ix_(free, free)], rest)
+        step[free] = _gesv(gram[np.ix_(free, free)], rest)[2]
     return np.asarray(step, float)
 
 
@@ -173,7 +177,7 @@ def _linearise(
     u = distance / width
     beyond = tail_esf(u) - esf
     step = esf + tail * beyond
-    residual = value - dark - height * step
+    residual = value - (dark + height * step)
     within, far = height * (1 - tail), height * tail / width * tail_lsf(u)
     # The tail scales with the width, whose square is that of sigma and aperture / sqrt(12) added.
     stretch = -far * u * (FWHM_OF_SIGMA**2 / width)

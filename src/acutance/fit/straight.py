@@ -225,19 +225,20 @@ def _pass(
     width = blur.width_px
     s = line.normal_distance(pixels.row, pixels.col)
     t = line.tangent_distance(pixels.row, pixels.col)
-    mean, slope = profile.response(blur, s)
+    seen = profile.seen(blur, s)
+    mean, slope = profile.response(seen)
     departure = pixels.value - start.dark - height * mean
-    share = np.clip(mean, 0.0, 1.0)
     variance_dark, variance_bright = side_variances(departure * np.sqrt(outlier), mean)
     floor = (_NOISE_FLOOR * height) ** 2
     scale = 0.5 * (variance_dark + variance_bright) + floor
+    share = np.minimum(np.maximum(mean, 0.0), 1.0)
     relative = (variance_dark + floor + (variance_bright - variance_dark) * share) / scale
     # A ragged edge moves by fractions of a pixel from row to row: noise where the image is steep.
     steep = (slope / max(float(np.max(np.abs(slope))), 1e-12)) ** 2
     relative *= 1 + roughness * steep
 
-    sides = profile.sides(blur, s)
-    steps = _step_columns(profile, start, s, fit_width)
+    sides = profile.sides(seen, s)
+    steps = _step_columns(profile, height, seen, fit_width)
     trends = height * ground_trends(sides, t) if uneven else np.empty((0, s.size))
     columns = np.vstack([_beyond(profile, s, width), height * t * slope, steps, trends])
     stencils = []
@@ -303,13 +304,15 @@ def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
     return total
 
 
-def _step_columns(profile: Profile, start: BlurredEdge, s: Floats, fit_width: bool) -> Floats:
+def _step_columns(
+    profile: Profile, height: float, seen: list[tuple[Floats, Floats]], fit_width: bool
+) -> Floats:
     """Derivatives of the mean by a pulse's width (if free) and by its fall, (k, n)."""
-    if len(profile.shares) == 1:
-        return np.empty((0, s.size))
-    esf, lsf = start.blur.esf_and_lsf(s - profile.positions_px[1])
-    by_width = -profile.shares[1] * start.height * lsf
-    by_fall = -start.height * esf
+    if len(seen) == 1:
+        return np.empty((0, seen[0][0].size))
+    esf, lsf = seen[1]
+    by_width = -profile.shares[1] * height * lsf
+    by_fall = -height * esf
     return np.array([by_width, by_fall] if fit_width else [by_fall])
 
 

@@ -17,6 +17,7 @@ from acutance.errors import NoEdgeError, SupportError
 from acutance.fit.band import EdgeBand
 from acutance.fit.line import Line
 from acutance.fit.locate import Segment
+from acutance.fit.noise import median
 from acutance.fit.start import BlurredEdge, fit_blurred_edge
 from acutance.fit.straight import Pixels
 
@@ -116,7 +117,7 @@ def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: fl
     rows, cols = pixels.row.astype(np.intp), pixels.col.astype(np.intp)
     s = edge.line.normal_distance(pixels.row, pixels.col)
     t = edge.line.tangent_distance(pixels.row, pixels.col)
-    departure = (pixels.value - edge.dark) / edge.height - edge.profile.response(edge.blur, s)[0]
+    departure = (pixels.value - edge.dark) / edge.height - edge.profile.mean(edge.blur, s)
     strange = _strange(image.shape, rows, cols, departure, s, t, edge, half_length_px)
     need = 1.5 * edge.blur.width_px + 1.5
     first, bins, dark_reach, bright_reach = _reaches(edge, s, t, strange, need)
@@ -128,11 +129,13 @@ def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: fl
             f"sides (at least {_MIN_ROWS} are needed): choose a region with more of it"
         )
     whole = not strange.any()
-    mask = np.zeros(image.shape, bool)
-    last = edge.profile.positions_px[-1]
-    inside = (bins >= start) & (bins < stop)
-    clear = (-s < dark_reach[bins]) & (s - last < bright_reach[bins])
-    mask[rows, cols] = True if whole else inside & clear
+    used = np.ones(s.size, bool)
+    if not whole:
+        last = edge.profile.positions_px[-1]
+        used = (bins >= start) & (bins < stop)
+        used &= (-s < dark_reach[bins]) & (s - last < bright_reach[bins])
+        image = image.copy()
+        image[rows[~used], cols[~used]] = np.nan
     tenth = length // 10
     dark_px, bright_px = (
         float(np.sort(reach[start:stop])[tenth]) for reach in (dark_reach, bright_reach)
@@ -143,9 +146,9 @@ def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: fl
         edge.line.row + x * middle, edge.line.col - y * middle, edge.line.normal_deg,
         length_px=float(length),
     )  # fmt: skip
-    _require_contrast(edge, departure[mask[rows, cols]])
+    _require_contrast(edge, departure[used])
     extent = Extent(dark_px, bright_px, float(length), whole)
-    return Serving(np.where(mask, image, np.nan), line, extent)
+    return Serving(image, line, extent)
 
 
 def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> BlurredEdge:
@@ -163,7 +166,7 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
                 f"on its bright side between {0.5 * reach:.1f} and {reach:.1f} px from it: choose "
                 "a region that reaches further to both sides of the edge"
             )
-        levels = float(np.median(dark)), float(np.median(bright))
+        levels = median(dark), median(bright)
         if not levels[1] > levels[0]:
             raise NoEdgeError(
                 f"the strongest edge separates levels of {levels[0]:.4g} and {levels[1]:.4g}, "
@@ -186,7 +189,7 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
 
 def _require_contrast(edge: BlurredEdge, departure: Floats) -> None:
     """Refuse an edge that is lower than its own plateaus are rough."""
-    roughness = float(np.std(departure))
+    roughness = math.sqrt(float(departure @ departure) / departure.size)
     if roughness * _MIN_SNR > 1:
         raise NoEdgeError(
             f"the edge has a height of {edge.height:.4g}, and its sides vary by "
@@ -214,7 +217,7 @@ def _strange(
     outside = edge.profile.outside(s)
     beside = (np.abs(t) < half_length_px) & (outside > width)
     beside &= outside < _FIRST_REACH_PX + width
-    noise = float(np.median(np.abs(smooth[beside]))) / 0.6745 if beside.any() else 0.0
+    noise = median(np.abs(smooth[beside])) / 0.6745 if beside.any() else 0.0
     # Beyond a fifth of the contrast nothing passes for noise, however rough the ground is.
     tolerance = max(_TOLERANCE, min(_SIGNIFICANCE * noise, _MAX_TOLERANCE))
     near = outside < 1.5 * width
@@ -242,13 +245,14 @@ def _reaches(
     bins = (t - first).astype(np.intp)
     count = int(bins.max()) + 1
     reaches = []
+    nothing = not strange.any()
     blur_px, last_step = edge.blur.width_px, edge.profile.positions_px[-1]
     for outwards in (-s, s - last_step):
         outside = outwards > 0
         last = np.zeros(count)
         np.maximum.at(last, bins[outside], outwards[outside])
         last = np.minimum(last + 0.5, _MAX_HALF_WIDTH_PX)
-        if not strange.any():
+        if nothing:
             reaches.append(last)
             continue
         stop = np.full(count, np.inf)
@@ -273,10 +277,11 @@ def _best_run(reach: Floats, need: float) -> tuple[int, int]:
     Asking for a wider plateau shortens the run; twice the need is worth a third of the rows.
     """
     best, best_score = (0, 0), 0.0
+    padded = np.zeros(reach.size + 2, np.int8)
     for times in (1.0, 1.5, 2.0, 3.0, 4.0):
-        clear = np.concatenate([[0], (reach >= times * need).astype(np.int8), [0]])
-        edges = np.diff(clear)
-        starts, stops = np.flatnonzero(edges > 0), np.flatnonzero(edges < 0)
+        padded[1:-1] = reach >= times * need
+        edges = padded[1:] - padded[:-1]
+        starts, stops = (edges > 0).nonzero()[0], (edges < 0).nonzero()[0]
         if starts.size == 0:
             break
         longest = int(np.argmax(stops - starts))

@@ -122,7 +122,6 @@ def measure_segment(
     band, extent = trim(pixels.pixels, segment)
     require_phases(band, band.line)
     fit = estimate(band, options)
-    require_phases(band, fit.line)
     return _measurement(pixels, band, extent, fit, method, options)
 
 

@@ -31,32 +31,46 @@ class Evidence:
     bright side.
     """
 
-    rows: Floats
-    cols: Floats
+    band: EdgeBand
+    fit: EdgeFit
     before: Floats
     behind: Floats
-    t: Floats
-    value: Floats
-    residual: Floats
-    fwhm_px: float
-    fit: EdgeFit
 
     @classmethod
     def of(cls, band: EdgeBand, fit: EdgeFit, last_px: float = 0.0) -> Evidence:
         """Evidence of a fit whose last step lies `last_px` behind its first."""
-        rows, cols = np.nonzero(np.isfinite(band.image))
-        fwhm = fit.response.fwhm_px.value
-        return cls(
-            rows.astype(float),
-            cols.astype(float),
-            -fit.distance_px,
-            fit.distance_px - last_px,
-            fit.line.tangent_distance(rows, cols),
-            fit.value,
-            fit.residual,
-            fwhm if math.isfinite(fwhm) else 1.0,
-            fit,
-        )
+        return cls(band, fit, -fit.distance_px, fit.distance_px - last_px)
+
+    @cached_property
+    def rows(self) -> Floats:
+        """Rows of the pixels."""
+        return np.asarray(np.nonzero(np.isfinite(self.band.image))[0], float)
+
+    @cached_property
+    def cols(self) -> Floats:
+        """Columns of the pixels."""
+        return np.asarray(np.nonzero(np.isfinite(self.band.image))[1], float)
+
+    @cached_property
+    def t(self) -> Floats:
+        """Distance of the pixels along the target."""
+        return self.fit.line.tangent_distance(self.rows, self.cols)
+
+    @property
+    def value(self) -> Floats:
+        """The pixels, 0 on the dark and 1 on the bright ground."""
+        return self.fit.value
+
+    @property
+    def residual(self) -> Floats:
+        """What the fit leaves of the pixels, as a share of the contrast."""
+        return self.fit.residual
+
+    @property
+    def fwhm_px(self) -> float:
+        """FWHM of the LSF; 1 where it is undefined."""
+        fwhm = self.fit.response.fwhm_px.value
+        return fwhm if math.isfinite(fwhm) else 1.0
 
     @cached_property
     def outside(self) -> Floats:
