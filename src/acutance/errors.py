@@ -7,6 +7,8 @@
     ├── RegionError         (ValueError)  a region lies outside the image or holds too few pixels
     ├── TargetError         (ValueError)  the pixels hold no target that can be measured
     │   ├── NoEdgeError                   no straight edge stands out of the noise
+    │   ├── NoBarsError                   no groups of bars, or not as described
+    │   ├── NoStarError                   no Siemens star, or not with that number of cycles
     │   ├── PhaseError                    the edge is aligned with the grid: no sub-pixel phases
     │   └── SupportError                  too few rows or too narrow plateaus
     ├── OptionError         (ValueError)  an option has a value that means nothing
@@ -20,7 +22,9 @@ __all__ = [
     "AcutanceError",
     "ImageError",
     "ModelError",
+    "NoBarsError",
     "NoEdgeError",
+    "NoStarError",
     "OptionError",
     "PhaseError",
     "RegionError",
@@ -47,6 +51,14 @@ class TargetError(AcutanceError, ValueError):
 
 class NoEdgeError(TargetError):
     """No straight edge stands out of the noise."""
+
+
+class NoBarsError(TargetError):
+    """No groups of bars, or not as they were described."""
+
+
+class NoStarError(TargetError):
+    """No Siemens star, or not with the number of cycles it was said to have."""
 
 
 class PhaseError(TargetError):
