@@ -38,8 +38,7 @@ COMMANDS: dict[str, list[str]] = {
     "sites": ["sites"],
     "simulate-edge": ["simulate", "edge"],
     "study": ["study"],
-    "plan-edge": ["plan", "edge"],
-    "plan-pulse": ["plan", "pulse"],
+    "plan": ["plan"],
     "demo": ["demo"],
 }
 

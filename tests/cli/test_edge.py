@@ -57,6 +57,17 @@ def test_region_band_and_gsd_reach_the_measurement(acutance, edge_image):
     )
 
 
+def test_along_track_may_be_the_x_axis(acutance, edge_image, validator):
+    result = acutance("edge", edge_image, "--along-track", "x", "--json")
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    validator.validate(document)
+    assert (document["orientation"], document["image"]["along_track"]) == ("along", "x")
+    refused = acutance("edge", edge_image, "--along-track", "up")
+    assert refused.exit_code == 2
+    assert "--along-track up: it has to be x or y" in refused.stderr
+
+
 @pytest.mark.parametrize("method", ["sdsu-2005", "kompsat-2014", "iso12233", "fermi"])
 def test_every_method_measures(acutance, edge_image, method):
     result = acutance("edge", edge_image, "--method", method, "--json")

@@ -56,6 +56,8 @@ def test_json_keeps_to_the_schema_and_holds_the_true_width(acutance, pulse_image
     assert document["kind"] == "pulse"
     assert document["width_px"]["std"] > 0
     assert document["width_px"]["value"] == pytest.approx(WIDTH_M / 2.8, abs=0.03)
+    stated = {"--width-m": WIDTH_M / 2.8, "--width-px": 3.1}[width[0]] if width else None
+    assert document["stated_width_px"] == (stated and pytest.approx(stated, abs=1e-3))
     assert document["mtf_nyquist"]["value"] == pytest.approx(0.289, abs=0.03)
     assert "factor_real" in document["mtf"]
 

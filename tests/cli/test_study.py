@@ -105,6 +105,8 @@ def test_a_pulse_is_planned_in_metres(acutance):
         (("pulse", "--width-px", "3", "--width-m", "8"), "give one of them"),
         (("pulse", "--width-m", "8", "--sensor", "gaussian"), "add --gsd"),
         (("edge", "--csv", "plan.txt"), "has to be .csv"),
+        (("edge", "--width-px", "3"), "an edge has no width"),
+        (("bars",), "it has to be edge or pulse"),
     ],
 )
 def test_impossible_plans_are_refused(acutance, words, message):

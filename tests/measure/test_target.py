@@ -70,3 +70,15 @@ def test_weighted_mean_and_chi_square():
     agreeing, small = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)])
     assert small < 1
     assert agreeing.std == pytest.approx(0.1 / math.sqrt(2))
+
+
+def test_a_scene_may_declare_that_along_track_is_the_x_axis(scene):
+    as_taken = ac.measure_edges(scene.image)
+    turned = ac.measure_edges(ac.Image.from_array(scene.image, along_track="x"))
+    for name, other in (("across", "along"), ("along", "across")):
+        mean, same = as_taken.groups[name].metrics["rer"], turned.groups[other].metrics["rer"]
+        assert same == mean
+        assert {m.orientation for m in turned.groups[other].measurements} == {other}
+        assert turned.groups[other].measurements[0].to_dict()["line"]["orientation"] == other
+    with pytest.raises(ac.OptionError, match="along_track is 'z'"):
+        ac.Image.from_array(scene.image, along_track="z")

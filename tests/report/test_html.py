@@ -37,8 +37,18 @@ def test_the_report_of_a_pulse_speaks_of_a_pulse(pulse, make_pulse):
     assert "Pulse measurement, across" in text
     assert "A pulse, across: angle" in text
     assert "Width on the ground" in text
-    assert "acutance pulse scene.tif --roi 100,260,40,36 --gsd 0.7 --width-px 3.153 --me" in text
-    assert "--hold-width" in words(edge_report(make_pulse(width_std=0.0)))
+    # Nothing was stated: the command that repeats it states nothing.
+    assert "acutance pulse scene.tif --roi 100,260,40,36 --gsd 0.7 --method" in text
+    stated = replace(pulse, stated_width_px=3.1500000)
+    assert "--gsd 0.7 --width-px 3.15 --method" in words(edge_report(stated))
+    held = replace(make_pulse(width_std=0.0), stated_width_px=3.153)
+    assert "--width-px 3.153 --hold-width --method" in words(edge_report(held))
+
+
+def test_the_command_says_which_axis_is_along_track(measurement):
+    turned = replace(measurement, image=replace(measurement.image, along_track="x"))
+    assert "Edge measurement, along" in words(edge_report(turned))
+    assert "--along-track x --method" in words(edge_report(turned))
 
 
 def test_nothing_is_loaded_from_elsewhere(measurement, compared, truth, target):

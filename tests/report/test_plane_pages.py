@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from jsonschema import Draft202012Validator, ValidationError
 
 from acutance import optics
 from acutance.curves import Otf2d
-from acutance.measure import Check, Measurement2d
+from acutance.measure import Check, ImageInfo, Measurement2d
 from acutance.optics import Sensor
 from acutance.report import (
     PlanePanel,
@@ -99,3 +99,9 @@ def test_extra_panels_are_drawn_and_widen_the_page(plane):
     assert len(drawn) == 2
     assert more.get_figheight() == pytest.approx(plain.get_figheight() + 4.3 + 3.0)
     assert figure_bytes(plain, ".png") == figure_bytes(plane_figure(plane), ".png")
+
+
+def test_directions_change_places_when_along_track_is_the_x_axis(plane):
+    turned = replace(plane, image=ImageInfo(along_track="x"))
+    assert turned.across.mtf_nyquist.value == plane.along.mtf_nyquist.value
+    assert turned.along.gsd_m == plane.across.gsd_m

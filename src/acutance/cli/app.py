@@ -61,7 +61,7 @@ app.command("pulse", epilog=pulse.EXAMPLE)(pulse.pulse)
 app.command("sites", epilog=sites.EXAMPLE)(sites.sites)
 app.add_typer(simulate.app, name="simulate")
 app.command("study", epilog=study.EXAMPLE)(study.study)
-app.add_typer(plan.app, name="plan")
+app.command("plan", epilog=plan.EXAMPLE)(plan.plan)
 app.command("demo", epilog=demo.EXAMPLE)(demo.demo)
 
 

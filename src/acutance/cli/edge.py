@@ -23,6 +23,7 @@ from acutance.cli.result_options import (
     StrictOption,
 )
 from acutance.cli.target import (
+    AlongTrackOption,
     BandOption,
     GsdOption,
     ImageArgument,
@@ -49,6 +50,7 @@ def edge(
     site: SiteOption = None,
     band: BandOption = 1,
     gsd: GsdOption = None,
+    along_track: AlongTrackOption = "y",
     method: Annotated[str, typer.Option(metavar="METHOD", help=f"{METHODS_HELP}.")] = "spline",
     compare: CompareOption = None,
     all_edges: Annotated[
@@ -88,7 +90,9 @@ def edge(
         robust=robust,
         limits=change_limits(EdgeLimits(), limit or []),
     )
-    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site)
+    source, region = open_target(
+        image, band=band, gsd=gsd, roi=roi, site=site, along_track=along_track
+    )
     if all_edges:
         wanted.deliver(*_measure_all(source, region, method, options))
         return

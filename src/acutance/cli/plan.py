@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from acutance.cli.output import OutputFile, check_output
+from acutance.cli.result_options import JsonOption
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.cli.study import WorkersOption, execution_of, progress_bar
 from acutance.cli.terminal import say
@@ -17,7 +17,7 @@ from acutance.errors import OptionError
 if TYPE_CHECKING:
     from acutance.optics import Sensor
 
-__all__ = ["EXAMPLE", "app", "plan_edge", "plan_pulse"]
+__all__ = ["EXAMPLE", "plan"]
 
 EXAMPLE = (
     "\b\nExample:\n"
@@ -25,85 +25,11 @@ EXAMPLE = (
     "  acutance plan pulse --width-m 8.83 --gsd 2.8 --snr 70 --accuracy 0.005"
 )
 
-app = typer.Typer(
-    no_args_is_help=True,
-    rich_markup_mode=None,
-    help="Plan a target: what accuracy to expect of it.",
-    epilog=EXAMPLE,
-)
-
-GsdOption = Annotated[
-    float | None,
-    typer.Option(metavar="M", help="Ground sampling distance, if not the sensor's own."),
-]
-SnrOption = Annotated[
-    float | None,
-    typer.Option(metavar="RATIO", help="Contrast over noise; 100 if nothing else says it."),
-]
-ContrastOption = Annotated[
-    float | None, typer.Option(metavar="DN", help="Height of the target; needs --noise.")
-]
-NoiseOption = Annotated[
-    float | None,
-    typer.Option(metavar="DN", help="Standard deviation of the noise; needs --contrast."),
-]
-RowsOption = Annotated[
-    str,
-    typer.Option(metavar="N,...", help="Image rows across the target; several are compared."),
-]
-AngleOption = Annotated[
-    str,
-    typer.Option(metavar="DEG,...", help="Tilt against the columns; several are compared."),
-]
-DrawsOption = Annotated[
-    int, typer.Option(metavar="N", min=0, help="Simulated images a design; 0 for bounds alone.")
-]
-AccuracyOption = Annotated[
-    float | None,
-    typer.Option(metavar="STD", help="Wanted for the MTF at Nyquist: how many rows?"),
-]
-SeedOption = Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")]
-CsvOption = Annotated[str | None, typer.Option(metavar="FILE", help="Write the table: .csv.")]
-FigureOption = Annotated[
-    str | None, typer.Option(metavar="FILE", help="Draw the table: .png, .svg or .pdf.")
-]
-JsonOption = Annotated[
-    bool, typer.Option("--json", help="Print the JSON document, and nothing else, to stdout.")
-]
+_TARGETS: dict[str, Literal["edge", "pulse"]] = {"edge": "edge", "pulse": "pulse"}
 
 
-@app.callback()
-def _plan() -> None:
-    """Plan a target: the standard deviations to expect, by theory and by simulation."""
-
-
-@app.command("edge", epilog=EXAMPLE)
-def plan_edge(
-    sensor: SensorName = "generic-2005",
-    gsd: GsdOption = None,
-    snr: SnrOption = None,
-    contrast: ContrastOption = None,
-    noise: NoiseOption = None,
-    rows: RowsOption = "40",
-    angle: AngleOption = "6",
-    accuracy: AccuracyOption = None,
-    draws: DrawsOption = 200,
-    seed: SeedOption = 2005,
-    workers: WorkersOption = None,
-    csv: CsvOption = None,
-    figure: FigureOption = None,
-    as_json: JsonOption = False,
-) -> None:
-    """Plan an edge: how many rows, which angle."""
-    _answer(
-        "edge", _sensor(sensor, gsd), _snr(snr, contrast, noise), rows, angle, (3.0,),
-        accuracy=accuracy, draws=draws, seed=seed, workers=workers, csv=csv, figure=figure,
-        as_json=as_json,
-    )  # fmt: skip
-
-
-@app.command("pulse", epilog=EXAMPLE)
-def plan_pulse(
+def plan(
+    target: Annotated[str, typer.Argument(metavar="edge|pulse", help="What is to be laid out.")],
     width_px: Annotated[
         str | None,
         typer.Option(metavar="PX,...", help="Width of the pulse; 3 if not given."),
@@ -112,27 +38,74 @@ def plan_pulse(
         str | None, typer.Option(metavar="M,...", help="The same in metres; needs a GSD.")
     ] = None,
     sensor: SensorName = "generic-2005",
-    gsd: GsdOption = None,
-    snr: SnrOption = None,
-    contrast: ContrastOption = None,
-    noise: NoiseOption = None,
-    rows: RowsOption = "40",
-    angle: AngleOption = "6",
-    accuracy: AccuracyOption = None,
-    draws: DrawsOption = 200,
-    seed: SeedOption = 2005,
+    gsd: Annotated[
+        float | None,
+        typer.Option(metavar="M", help="Ground sampling distance, if not the sensor's own."),
+    ] = None,
+    snr: Annotated[
+        float | None,
+        typer.Option(metavar="RATIO", help="Contrast over noise; 100 if nothing else says it."),
+    ] = None,
+    contrast: Annotated[
+        float | None, typer.Option(metavar="DN", help="Height of the target; needs --noise.")
+    ] = None,
+    noise: Annotated[
+        float | None,
+        typer.Option(metavar="DN", help="Standard deviation of the noise; needs --contrast."),
+    ] = None,
+    rows: Annotated[
+        str,
+        typer.Option(metavar="N,...", help="Image rows across the target; several are compared."),
+    ] = "40",
+    angle: Annotated[
+        str,
+        typer.Option(metavar="DEG,...", help="Tilt against the columns; several are compared."),
+    ] = "6",
+    accuracy: Annotated[
+        float | None,
+        typer.Option(metavar="STD", help="Wanted for the MTF at Nyquist: how many rows?"),
+    ] = None,
+    draws: Annotated[
+        int,
+        typer.Option(metavar="N", min=0, help="Simulated images a design; 0 for bounds alone."),
+    ] = 200,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005,
     workers: WorkersOption = None,
-    csv: CsvOption = None,
-    figure: FigureOption = None,
+    csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the table: .csv.")] = None,
+    figure: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw the table: .png, .svg or .pdf.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Plan a pulse: which width of tarp, how many rows, which angle."""
+    """Plan a target: the standard deviations to expect, by theory and by simulation.
+
+    An edge: how many rows, which angle. A pulse: which width of tarp, too.
+    """
+    from acutance.report import json_text
+    from acutance.report.page import figure_bytes
+    from acutance.report.study_figures import plan_text, study_figure
+    from acutance.studies import PlanOptions, plan_target
+
+    if target not in _TARGETS:
+        raise OptionError(f"acutance plan {target}: it has to be edge or pulse")
+    if target == "edge" and (width_px is not None or width_m is not None):
+        raise OptionError("--width-px and --width-m belong to a pulse: an edge has no width")
+    table = None if csv is None else check_output("--csv", csv, (".csv",))
+    drawing = None if figure is None else check_output("--figure", figure, (".png", ".svg", ".pdf"))
     system = _sensor(sensor, gsd)
-    _answer(
-        "pulse", system, _snr(snr, contrast, noise), rows, angle,
-        _widths(width_px, width_m, system), accuracy=accuracy, draws=draws, seed=seed,
-        workers=workers, csv=csv, figure=figure, as_json=as_json,
+    options = PlanOptions(
+        target=_TARGETS[target], sensor=system, snr=_snr(snr, contrast, noise),
+        rows=tuple(int(count) for count in _numbers("--rows", rows)),
+        angles_deg=_numbers("--angle", angle), widths_px=_widths(width_px, width_m, system),
+        draws=draws, accuracy=accuracy,
     )  # fmt: skip
+    with progress_bar(f"plan {target}") as progress:
+        result: Any = plan_target(options, execution_of(seed, workers, None, progress))
+    if table is not None:
+        _write(table, result.table.to_csv())
+    if drawing is not None:
+        _write(drawing, figure_bytes(study_figure(result), drawing.ending))
+    typer.echo(json_text(result.to_dict()) if as_json else plan_text(result))
 
 
 def _sensor(name: str, gsd_m: float | None) -> Sensor:
@@ -166,44 +139,6 @@ def _numbers(option: str, text: str) -> tuple[float, ...]:
         return tuple(float(part) for part in text.split(","))
     except ValueError as error:
         raise OptionError(f"{option} {text}: write numbers with commas, as in 20,40") from error
-
-
-def _answer(
-    target: Literal["edge", "pulse"],
-    sensor: Sensor,
-    snr: float,
-    rows: str,
-    angle: str,
-    widths_px: Sequence[float],
-    *,
-    accuracy: float | None,
-    draws: int,
-    seed: int,
-    workers: int | None,
-    csv: str | None,
-    figure: str | None,
-    as_json: bool,
-) -> None:
-    from acutance.report import json_text
-    from acutance.report.page import figure_bytes
-    from acutance.report.study_figures import plan_text, study_figure
-    from acutance.studies import PlanOptions, plan_target
-
-    table = None if csv is None else check_output("--csv", csv, (".csv",))
-    drawing = None if figure is None else check_output("--figure", figure, (".png", ".svg", ".pdf"))
-    options = PlanOptions(
-        target=target, sensor=sensor, snr=snr,
-        rows=tuple(int(count) for count in _numbers("--rows", rows)),
-        angles_deg=_numbers("--angle", angle), widths_px=tuple(widths_px), draws=draws,
-        accuracy=accuracy,
-    )  # fmt: skip
-    with progress_bar(f"plan {target}") as progress:
-        result: Any = plan_target(options, execution_of(seed, workers, None, progress))
-    if table is not None:
-        _write(table, result.table.to_csv())
-    if drawing is not None:
-        _write(drawing, figure_bytes(study_figure(result), drawing.ending))
-    typer.echo(json_text(result.to_dict()) if as_json else plan_text(result))
 
 
 def _write(target: OutputFile, content: str | bytes) -> None:

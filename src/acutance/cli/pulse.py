@@ -22,6 +22,7 @@ from acutance.cli.result_options import (
     StrictOption,
 )
 from acutance.cli.target import (
+    AlongTrackOption,
     BandOption,
     GsdOption,
     ImageArgument,
@@ -59,6 +60,7 @@ def pulse(
     site: SiteOption = None,
     band: BandOption = 1,
     gsd: GsdOption = None,
+    along_track: AlongTrackOption = "y",
     method: Annotated[str, typer.Option(metavar="METHOD", help=f"{METHODS_HELP}.")] = "spline",
     compare: CompareOption = None,
     figure: FigureOption = None,
@@ -98,7 +100,9 @@ def pulse(
         robust=robust,
         limits=change_limits(PulseLimits(), limit or []),
     )
-    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site)
+    source, region = open_target(
+        image, band=band, gsd=gsd, roi=roi, site=site, along_track=along_track
+    )
     if width_m is not None and source.gsd() is None:
         raise OptionError("--width-m needs a GSD, and the image has none: add --gsd or --width-px")
     measurements = [

@@ -10,8 +10,10 @@ from acutance.errors import OptionError
 
 if TYPE_CHECKING:
     from acutance.raster import Gsd, Image, Region
+    from acutance.raster.image import AlongTrack
 
 __all__ = [
+    "AlongTrackOption",
     "BandOption",
     "GsdOption",
     "ImageArgument",
@@ -20,6 +22,8 @@ __all__ = [
     "open_target",
     "parse_gsd",
 ]
+
+_AXES: dict[str, AlongTrack] = {"x": "x", "y": "y"}
 
 ImageArgument = Annotated[
     str, typer.Argument(metavar="IMAGE", help="Any raster GDAL reads, or a .npy array.")
@@ -43,6 +47,11 @@ GsdOption = Annotated[
         help="Ground sampling distance in metres, or ROW,COL distances where they differ. "
         "That of the file without it.",
     ),
+]
+
+AlongTrackOption = Annotated[
+    str,
+    typer.Option(metavar="x|y", help="The image axis along track: y, down the columns, or x."),
 ]
 
 
@@ -73,7 +82,13 @@ def parse_gsd(text: str | None) -> float | Gsd | None:
 
 
 def open_target(
-    path: str, *, band: int, gsd: str | None, roi: str | None, site: str | None
+    path: str,
+    *,
+    band: int,
+    gsd: str | None,
+    roi: str | None,
+    site: str | None,
+    along_track: str = "y",
 ) -> tuple[Image, Region | None]:
     """Open the image and find the region the options ask for.
 
@@ -84,11 +99,13 @@ def open_target(
     """
     if roi is not None and site is not None:
         raise OptionError("--roi and --site both name a region: give one of them")
+    if along_track not in _AXES:
+        raise OptionError(f"--along-track {along_track}: it has to be x or y")
     gsd_m = parse_gsd(gsd)
     from acutance.raster import find_site, open_image, parse_roi, site_region
 
     place = None if site is None else find_site(site)
-    image = open_image(path, band, gsd_m)
+    image = open_image(path, band, gsd_m, along_track=_AXES[along_track])
     if place is not None:
         return image, site_region(place, image)
     return image, None if roi is None else parse_roi(roi, image)

@@ -47,8 +47,9 @@ class Cut:
         """What a measurement records of its image; the GSD is that along the line's normal."""
         gsd_m = None if self.gsd is None else self.gsd.along_normal(line.normal_deg)
         return ImageInfo(
-            self.image.path, self.image.band, gsd_m, self.box.as_tuple(), self.image.crs
-        )
+            self.image.path, self.image.band, gsd_m, self.box.as_tuple(), self.image.crs,
+            self.image.along_track,
+        )  # fmt: skip
 
 
 def cut(image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None = None) -> Cut:

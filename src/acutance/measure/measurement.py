@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from acutance.curves import Estimate, HasResponse, Response
 from acutance.curves.grid import Floats
 from acutance.fit.line import Line, Orientation
+from acutance.raster.image import AlongTrack
 
 __all__ = ["Check", "ImageInfo", "Measurement", "Samples"]
 
@@ -57,7 +58,8 @@ class Check:
 class ImageInfo:
     """Where the pixels came from.
 
-    `roi` is (row, col, height, width) of the cut, in pixels of the whole image.
+    `roi` is (row, col, height, width) of the cut, in pixels of the whole image; `along_track` the
+    axis the satellite flew along.
     """
 
     path: str | None = None
@@ -65,6 +67,7 @@ class ImageInfo:
     gsd_m: float | None = None
     roi: tuple[int, int, int, int] = (0, 0, 0, 0)
     crs: str | None = None
+    along_track: AlongTrack = "y"
 
     def to_dict(self) -> dict[str, Any]:
         return {
@@ -73,6 +76,7 @@ class ImageInfo:
             "gsd_m": self.gsd_m,
             "roi": list(self.roi),
             "crs": self.crs,
+            "along_track": self.along_track,
         }
 
 
@@ -133,6 +137,8 @@ class Measurement(HasResponse):
         The options of the measurement.
     width_px : Estimate, optional
         Width of a pulse along the normal.
+    stated_width_px : float, optional
+        Width of a pulse as it was stated; ``None`` where it was guessed from the image.
     measured_at : datetime
         When (UTC).
     """
@@ -147,12 +153,15 @@ class Measurement(HasResponse):
     image: ImageInfo = ImageInfo()
     options: Mapping[str, Any] = field(default_factory=dict)
     width_px: Estimate | None = None
+    stated_width_px: float | None = None
     measured_at: datetime = field(default_factory=lambda: datetime.now(UTC))
 
     @property
     def orientation(self) -> Orientation:
-        """Which direction the MTF belongs to: "across" or "along"."""
-        return self.line.orientation
+        """Which direction the MTF belongs to: across or along track."""
+        if self.image.along_track == "y":
+            return self.line.orientation
+        return "along" if self.line.orientation == "across" else "across"
 
     @property
     def fwhm_m(self) -> Estimate | None:
@@ -183,20 +192,23 @@ class Measurement(HasResponse):
         from acutance import __version__
 
         numbers = {name: number.to_dict() for name, number in self.metrics().items()}
+        stated: dict[str, float | None] = {}
         if self.width_px is not None:
             numbers["width_px"] = self.width_px.to_dict()
+            stated = {"stated_width_px": self.stated_width_px}
         return {
             "schema": SCHEMA,
             "kind": self.kind,
             "method": self.method,
             "orientation": self.orientation,
             "image": self.image.to_dict(),
-            "line": self.line.to_dict(),
+            "line": {**self.line.to_dict(), "orientation": self.orientation},
             "angle_deg": self.angle_deg.to_dict(),
             "snr": self.snr if math.isfinite(self.snr) else None,
             "dark": self.samples.dark,
             "bright": self.samples.bright,
             **numbers,
+            **stated,
             "rer_centre": self.response.rer_centre,
             "mtf": self.mtf.to_dict(),
             "lsf": self.lsf.to_dict(),

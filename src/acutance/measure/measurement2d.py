@@ -51,13 +51,13 @@ class Measurement2d:
 
     @cached_property
     def across(self) -> Response:
-        """The curves and numbers across track: along the rows of pixels."""
-        return self.otf.response(0.0)
+        """The curves and numbers across track: along the rows of pixels, if not declared else."""
+        return self.otf.response(0.0 if self.image.along_track == "y" else 90.0)
 
     @cached_property
     def along(self) -> Response:
-        """The curves and numbers along track: down the columns of pixels."""
-        return self.otf.response(90.0)
+        """The curves and numbers along track: down the columns of pixels, if not declared else."""
+        return self.otf.response(90.0 if self.image.along_track == "y" else 0.0)
 
     def response_at(self, angle_deg: float) -> Response:
         """The curves of any direction, from the column axis (0) towards the row axis (90)."""

@@ -118,7 +118,7 @@ def measure_pulse(
         pixels, band, extent, found.fit, found.width, found.fall, stated_px, chosen.limits,
         by_ratio=method != "spline",
     )  # fmt: skip
-    return _measurement(pixels, band, found, checks, method, chosen)
+    return _measurement(pixels, band, found, checks, method, chosen, stated_px)
 
 
 def _method(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
@@ -155,6 +155,7 @@ def _measurement(
     checks: PulseChecks,
     method: str,
     options: PulseOptions,
+    stated_px: float | None,
 ) -> Measurement:
     """Put together what a measurement holds; the line moves into the whole image's pixels."""
     fit = found.fit
@@ -171,5 +172,5 @@ def _measurement(
     )  # fmt: skip
     return Measurement(
         "pulse", method, line, response, samples, checks.snr, checks, info, options.to_dict(),
-        found.width,
+        found.width, stated_px,
     )  # fmt: skip

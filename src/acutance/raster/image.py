@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.grid import Floats
-from acutance.errors import ImageError
+from acutance.errors import ImageError, OptionError
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
 from acutance.raster.pixels import ArrayPixels, NpyPixels, PixelSource, require_image_array
 from acutance.raster.region import Box
 
-__all__ = ["Image", "open_image"]
+__all__ = ["AlongTrack", "Image", "open_image"]
+
+AlongTrack = Literal["x", "y"]
+"""The image axis the satellite flew along: x is that of the columns' numbers, y of the rows'."""
 
 # Names that GDAL understands and the file system does not: "/vsizip/a.zip/b.tif",
 # "https://host/a.tif", "HDF5:a.h5://band". One letter and a colon is a Windows drive.
@@ -53,6 +56,8 @@ class Image:
     own_gsd : Gsd or None
         The GSD given by the caller or declared by the file (`write_geotiff`); it goes before
         the geolocation's.
+    along_track : {"y", "x"}
+        The axis along track: y, down the columns, of an image as a pushbroom scanner takes it.
     """
 
     path: str | None
@@ -64,6 +69,14 @@ class Image:
     saturation_level: float | None = None
     geolocation: Geolocation | None = None
     own_gsd: Gsd | None = None
+    along_track: AlongTrack = "y"
+
+    def __post_init__(self) -> None:
+        if self.along_track not in ("x", "y"):
+            raise OptionError(
+                f"along_track is {self.along_track!r}: it has to be 'y' (down the columns) or 'x' "
+                "(along the rows)"
+            )
 
     @classmethod
     def from_array(
@@ -71,6 +84,7 @@ class Image:
         array: ArrayLike | np.ma.MaskedArray[Any, Any],
         gsd_m: float | Gsd | None = None,
         nodata: float | None = None,
+        along_track: AlongTrack = "y",
     ) -> Image:
         """An array in memory as an image.
 
@@ -82,6 +96,8 @@ class Image:
             Ground sampling distance in metres, the same both ways unless a `Gsd` is given.
         nodata : float, optional
             A value that marks unusable pixels.
+        along_track : {"y", "x"}, optional
+            The axis along track.
 
         Raises
         ------
@@ -101,6 +117,7 @@ class Image:
             source=ArrayPixels(values, nodata),
             saturation_level=_largest(values.dtype),
             own_gsd=_as_gsd(gsd_m),
+            along_track=along_track,
         )
 
     @property
@@ -158,6 +175,7 @@ def open_image(
     band: int = 1,
     gsd_m: float | Gsd | None = None,
     nodata: float | None = None,
+    along_track: AlongTrack = "y",
 ) -> Image:
     """Open one band of an image file.
 
@@ -174,6 +192,9 @@ def open_image(
     nodata : float, optional
         The stored value of unusable pixels; it replaces the one the file declares. Masks and
         alpha bands keep their say.
+    along_track : {"y", "x"}, optional
+        The axis along track, after which results are called across and along: y, down the
+        columns, unless the image was turned.
 
     Returns
     -------
@@ -191,10 +212,11 @@ def open_image(
     name = os.fspath(path)
     _require_file(name)
     if name.lower().endswith(".npy"):
-        return _open_npy(name, band, gsd, nodata)
+        opened = _open_npy(name, band, gsd, nodata)
+        return replace(opened, along_track=along_track)
     from acutance.raster.dataset import open_dataset
 
-    return open_dataset(name, band, gsd, nodata)
+    return replace(open_dataset(name, band, gsd, nodata), along_track=along_track)
 
 
 def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Image:

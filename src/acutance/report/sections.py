@@ -174,8 +174,10 @@ def _command(measurement: Measurement) -> str | None:
         words += ["--band", str(image.band)]
     if image.gsd_m is not None:
         words += ["--gsd", format_number(image.gsd_m, 8)]
-    if measurement.width_px is not None:
-        words += ["--width-px", format_number(measurement.width_px.value, 6)]
+    if image.along_track != "y":
+        words += ["--along-track", image.along_track]
+    if measurement.stated_width_px is not None and measurement.width_px is not None:
+        words += ["--width-px", format_number(measurement.stated_width_px, 8)]
         words += [] if measurement.width_px.std > 0 else ["--hold-width"]
     words += ["--method", measurement.method]
     if measurement.response.rer_centre != "half":
