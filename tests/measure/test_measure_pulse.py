@@ -156,3 +156,9 @@ def test_the_published_ratio_underestimates_and_says_its_zeros():
             method="sdsu-2005",
             options=PulseOptions(method_options=SdsuOptions()),
         )
+
+
+def test_uneven_grounds_are_no_correlated_noise_by_the_published_method():
+    image, _ = simulated(right_dark=200.0)
+    m = ac.measure_pulse(image, width_px=3.0, method="sdsu-2005")
+    assert not failed(m) & {"correlated_noise", "outliers"}

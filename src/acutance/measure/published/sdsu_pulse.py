@@ -269,8 +269,10 @@ def sdsu_2005_pulse(band: PulseBand, options: SdsuPulseOptions = _DEFAULT) -> Pu
     height = profile.height
     value = (band.image[row, col] - profile.left) / (profile.bright - profile.left)
     place = distance * profile.px_per_normal + rising_px - profile.middle_px
-    model = np.interp(place, profile.distance_px, profile.value, 0.0, 0.0)
-    model += 0.5 * (profile.right - profile.left)
+    # Beyond the trimmed profile lie the two grounds, which may differ.
+    step = profile.right - profile.left
+    model = np.interp(place, profile.distance_px, profile.value, -0.5 * step, 0.5 * step)
+    model += 0.5 * step
     return PublishedPulse(
         line=line,
         response=response,
