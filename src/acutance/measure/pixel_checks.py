@@ -90,9 +90,14 @@ def gradient(seen: Evidence, limits: EdgeLimits) -> Check:
 
 def correlation(seen: Evidence, limits: EdgeLimits) -> Check:
     """Correlation of the noise between neighbouring pixels."""
-    # On the plateaus alone: across the edge a method's own misfit would pass for correlation.
+    # On the plateaus alone, each about its own level: across the edge a method's own misfit would
+    # pass for correlation, and so would a level that a published method takes from few pixels.
     flat = seen.outside > seen.far_px
     residual = seen.residual[flat]
+    behind = seen.behind[flat] > 0
+    for side in (behind, ~behind):
+        if side.any():
+            residual[side] -= np.mean(residual[side])
     noise = 1.4826 * float(np.median(np.abs(residual))) if residual.size else 0.0
     if noise <= _MISFIT:
         found, significance = 0.0, 0.0
