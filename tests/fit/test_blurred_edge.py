@@ -6,7 +6,7 @@ import pytest
 from acutance.errors import NoEdgeError
 from acutance.fit.blur import Blur
 from acutance.fit.line import Line
-from acutance.fit.start import _EXPECTED, _bounded_solution, _linearise, fit_blurred_edge
+from acutance.fit.start import _EXPECTED, _bounded_solution, _Trial, fit_blurred_edge
 
 ROWS, COLS = (places.ravel().astype(float) for places in np.indices((40, 40)))
 LINE = Line(19.5, 19.5, 6.0)
@@ -76,18 +76,18 @@ def test_jacobian_is_the_derivative_of_the_model():
     value = rng.standard_normal(200)
     p = np.array([3.0, 40.0, 0.1, 0.01, 0.6, 1.2, 0.15])
     penalty = np.zeros(7)
-    jacobian = _linearise(s, t, value, p, penalty)[1]
+    jacobian = _Trial.of(s, t, value, p, penalty).jacobian(t)
     for k, step in enumerate(1e-6 * np.eye(7)):
-        high, low = (_linearise(s, t, value, p + sign * step, penalty)[2] for sign in (1, -1))
+        high, low = (_Trial.of(s, t, value, p + sign * step, penalty).residual for sign in (1, -1))
         assert np.max(np.abs(jacobian[k] - (low - high) / 2e-6)) < 1e-5
 
 
 def test_penalties_count_in_the_cost():
     s = np.linspace(-5, 5, 50)
     p = _EXPECTED + np.array([0.0, 1.0, 0.0, 0.0, 0.5, 0.2, 0.1])
-    plain = _linearise(s, s, s, p, np.zeros(7))[0]
+    plain = _Trial.of(s, s, s, p, np.zeros(7)).cost
     penalty = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 100.0, 1000.0])
-    assert _linearise(s, s, s, p, penalty)[0] - plain == pytest.approx(4.0 + 10.0)
+    assert _Trial.of(s, s, s, p, penalty).cost - plain == pytest.approx(4.0 + 10.0)
 
 
 def test_bounded_solution_obeys_its_bounds_and_is_the_minimum_within_them():

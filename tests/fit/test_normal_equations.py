@@ -14,7 +14,7 @@ COLUMNS = RNG.standard_normal((2, N))
 
 
 def test_sums_are_those_of_the_dense_design():
-    found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS)
+    found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS, N)
     design = np.hstack([spread(*edge_weights(U)), COLUMNS.T])
     assert np.allclose(found.gram, design.T @ (WEIGHT[:, None] * design), rtol=0, atol=1e-10)
     assert np.allclose(found.projection, design.T @ (WEIGHT * Y), rtol=0, atol=1e-10)
@@ -23,7 +23,7 @@ def test_sums_are_those_of_the_dense_design():
 
 
 def test_combined_equations_are_those_of_the_combined_design():
-    found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS)
+    found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS, N)
     directions = RNG.standard_normal((found.projection.size, 6))
     design = np.hstack([spread(*edge_weights(U)), COLUMNS.T]) @ directions
     combined = found.combined(directions)
@@ -33,7 +33,7 @@ def test_combined_equations_are_those_of_the_combined_design():
 
 
 def test_no_further_columns():
-    found = accumulate([edge_weights(U)], Y, WEIGHT, np.empty((0, N)))
+    found = accumulate([edge_weights(U)], Y, WEIGHT, np.empty((0, N)), N)
     dense = spread(*edge_weights(U))
     assert np.allclose(found.gram, dense.T @ (WEIGHT[:, None] * dense), rtol=0, atol=1e-10)
 
@@ -43,6 +43,6 @@ def test_two_steps_match_the_dense_design():
     other, other_basis = edge_weights(U - 2.3)
     stencils = [(cell, basis), (other, -0.8 * other_basis)]
     dense = np.vstack([(spread(cell, basis) + spread(other, -0.8 * other_basis)).T, COLUMNS]).T
-    found = accumulate(stencils, Y, WEIGHT, COLUMNS)
+    found = accumulate(stencils, Y, WEIGHT, COLUMNS, N)
     np.testing.assert_allclose(found.gram, dense.T @ (WEIGHT[:, None] * dense), atol=1e-10)
     np.testing.assert_allclose(found.projection, dense.T @ (WEIGHT * Y), atol=1e-10)

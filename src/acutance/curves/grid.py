@@ -13,17 +13,16 @@ __all__ = ["Floats", "crossing", "sample", "slope"]
 Floats = NDArray[np.float64]
 
 
-def _stencil(start: float, step: float, size: int, at: float) -> tuple[slice, Floats]:
-    """The four grid points around `at` and their cubic Lagrange weights."""
+def _cell(grid: Floats, at: float) -> tuple[slice, float, float]:
+    """The four grid points around `at`, its place among them (0 to 3) and the grid's step."""
+    start, size = grid.item(0), grid.size
+    step = grid.item(1) - start
     position = (at - start) / step
     if not -1e-9 <= position <= size - 1 + 1e-9:
         stop = start + step * (size - 1)
         raise ValueError(f"{at:g} lies outside the curve, which runs from {start:g} to {stop:g}")
     first = min(max(math.floor(position) - 1, 0), size - 4)
-    t = position - first
-    a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
-    weights = np.array([-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0])
-    return slice(first, first + 4), weights
+    return slice(first, first + 4), position - first, step
 
 
 def sample(grid: Floats, values: NDArray[Any], at: float) -> Any:
@@ -36,15 +35,25 @@ def sample(grid: Floats, values: NDArray[Any], at: float) -> Any:
     ValueError
         If `at` lies outside the grid.
     """
-    window, weights = _stencil(float(grid[0]), float(grid[1] - grid[0]), grid.size, at)
+    window, t, _ = _cell(grid, at)
+    a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
+    weights = np.array([-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0])
     return weights @ values[window]
 
 
 def slope(grid: Floats, values: Floats, at: float) -> float:
-    """Derivative of the interpolated curve at one place (central difference inside a cell)."""
-    h = float(grid[1] - grid[0]) / 4
-    low, high = max(at - h, float(grid[0])), min(at + h, float(grid[-1]))
-    return float(sample(grid, values, high) - sample(grid, values, low)) / (high - low)
+    """Derivative of the interpolated curve at one place."""
+    window, t, step = _cell(grid, at)
+    a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
+    weights = np.array(
+        [
+            -(c * d + b * d + b * c) / 6.0,
+            (c * d + a * d + a * c) / 2.0,
+            -(b * d + a * d + a * b) / 2.0,
+            (b * c + a * c + a * b) / 6.0,
+        ]
+    )
+    return float(weights @ values[window]) / step
 
 
 def crossing(grid: Floats, values: Floats, level: float, start: float, direction: int = 1) -> float:

@@ -44,20 +44,22 @@ class Blur:
 
     def lsf(self, s: Floats) -> Floats:
         """Line spread function at normal distances `s`, 1/px."""
-        cdf = ndtr(self._ends(s))
-        return np.asarray((cdf[0] - cdf[1]) / self.aperture_px)
+        return self.esf_and_lsf(s)[1]
 
     def esf(self, s: Floats) -> Floats:
         """Edge spread function at normal distances `s`."""
-        ends = self._ends(s)
-        return self._ramp(ends, ndtr(ends), gaussian(ends))
+        return self.esf_and_lsf(s)[0]
 
     def esf_and_lsf(self, s: Floats) -> tuple[Floats, Floats]:
         """Edge and line spread function at normal distances `s`."""
-        ends = self._ends(s)
+        esf, lsf = np.asarray(s > 0, float), np.zeros(s.shape)
+        # Beyond nine deviations from the aperture's ends nothing is left but 0 and 1.
+        near = np.abs(s) < 0.5 * self.aperture_px + 9.0 * self.sigma_px
+        ends = self._ends(s[near])
         cdf = ndtr(ends)
-        esf = self._ramp(ends, cdf, gaussian(ends))
-        return esf, np.asarray((cdf[0] - cdf[1]) / self.aperture_px)
+        esf[near] = self._ramp(ends, cdf, gaussian(ends))
+        lsf[near] = (cdf[0] - cdf[1]) / self.aperture_px
+        return esf, lsf
 
     def otf(self, freq_cpp: Floats) -> Floats:
         """Transfer function at frequencies in cycles per pixel (real: the blur is symmetric)."""

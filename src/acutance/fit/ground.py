@@ -109,11 +109,13 @@ def steepness(value: Floats, outwards: Floats, from_px: float, noise: float) -> 
     if np.count_nonzero(plateau) < 4 * _MIN_PIXELS:
         return 0.0
     far = outwards > 0.5 * (from_px + float(outwards.max()))
-    place = outwards[far] - outwards[far].mean() if far.any() else np.zeros(0)
+    place = outwards[far]
+    middle = float(place.sum()) / max(place.size, 1)
+    place -= middle
     power = float(place @ place)
     if power <= 0:
         return 0.0
     slope = abs(float(place @ value[far])) / power
     if slope * math.sqrt(power) < _SIGNIFICANT * noise:
         return 0.0
-    return slope * float(outwards[far].mean()) ** 2 / _TAIL_PX
+    return slope * middle**2 / _TAIL_PX

@@ -118,18 +118,17 @@ class LsfModel:
     def _otf(self, freq_cpp: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Normalised OTF about the LSF's centroid, and its design."""
         freq = freq_cpp * self.blur.width_px
-        about = self._turn_to_centroid(freq_cpp) / self.height
-        design = transform(freq, further=1)
-        design[:, -1] = tail_otf(freq)
-        design *= about[:, None]
+        about = np.exp(2j * np.pi * freq * self._centroid()) / self.height
+        design = transform(freq, about, further=1)
+        design[:, -1] = tail_otf(freq) * about
+        # Two real products: a complex one of this size would wake the threads of BLAS.
+        coefficients = np.append(self.spline, self.tail)
         value = self.level * self.blur.otf(freq_cpp) * about
-        # A complex product of this size would wake the threads of BLAS: einsum does not.
-        value += np.einsum("ij,j->i", design, np.append(self.spline, self.tail))
+        value += design.real @ coefficients + 1j * (design.imag @ coefficients)
         design[:, -2:] -= (value / self.height)[:, None]
         return value, design
 
-    def _turn_to_centroid(self, freq_cpp: Floats) -> NDArray[np.complex128]:
-        """What moving the origin to the LSF's centroid multiplies the OTF by."""
+    def _centroid(self) -> float:
+        """Centroid of the LSF in widths."""
         shares = np.diff(self.spline[2 : 3 + SIZE])
-        centroid = self.blur.width_px * float(shares @ CENTRES) / self.height
-        return np.asarray(np.exp(2j * np.pi * freq_cpp * centroid))
+        return float(shares @ CENTRES) / self.height

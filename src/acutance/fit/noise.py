@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 
-__all__ = ["Correlation", "correlation", "median", "outlier_weights", "robust_scale", "side_variances"]
+__all__ = [
+    "Correlation",
+    "correlation",
+    "median",
+    "outlier_weights",
+    "robust_scale",
+    "side_variances",
+]
 
 _HARMLESS = 3.0
 _UNHEARD_OF = 4.5
@@ -111,8 +118,9 @@ def correlation(
     height, width = int(rows.max()) + 1, int(cols.max()) + 1
     field = np.zeros((height + _LAGS, width + 2 * _LAGS))
     known = np.zeros_like(field)
-    field[rows, cols + _LAGS] = residual
-    known[rows, cols + _LAGS] = 1.0
+    place = rows * field.shape[1] + cols + _LAGS
+    field.reshape(-1)[place] = residual
+    known.reshape(-1)[place] = 1.0
     power = float(residual @ residual) / residual.size
     nearest = [_lagged(field, known, lag) for lag in _NEAREST]
     strongest, significance = 0.0, 0.0

@@ -43,7 +43,9 @@ class Normal:
         return Normal(gram, directions.T @ self.projection, self.data, self.count)
 
 
-def accumulate(stencils: Sequence[Stencil], y: Floats, weight: Floats, columns: Floats) -> Normal:
+def accumulate(
+    stencils: Sequence[Stencil], y: Floats, weight: Floats, columns: Floats, count: float
+) -> Normal:
     """Sum the pixels into the normal equations of ``y = sum of ESFs + columns^T a``.
 
     Parameters
@@ -55,6 +57,8 @@ def accumulate(stencils: Sequence[Stencil], y: Floats, weight: Floats, columns: 
         Value, and inverse variance (any common scale) of the pixels.
     columns : (q, n) array
         Further regressors, one row each.
+    count : float
+        Number of pixels; an outlier counts for less.
     """
     m, q = CELLS + 3, columns.shape[0]
     gram = np.zeros((m + q, m + q))
@@ -70,10 +74,12 @@ def accumulate(stencils: Sequence[Stencil], y: Floats, weight: Floats, columns: 
             projection[here] += np.bincount(cell, weighted[a] * y, CELLS)
             for j, column in enumerate(columns):
                 gram[here, m + j] += np.bincount(cell, weighted[a] * column, CELLS)
-    gram[m:, m:] = np.triu(weighted_columns @ columns.T)
-    gram += np.triu(gram, 1).T
+    diagonal = gram.diagonal().copy()
+    gram += gram.T
+    gram.reshape(-1)[:: m + q + 1] = diagonal
+    gram[m:, m:] = weighted_columns @ columns.T
     projection[m:] = weighted_columns @ y
-    return Normal(gram, projection, float(np.dot(weight * y, y)), y.size)
+    return Normal(gram, projection, float(np.dot(weight * y, y)), count)
 
 
 def _add_own(gram: Floats, cell: NDArray[np.intp], basis: Floats, weighted: Floats) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.fit.blur import Blur
@@ -61,6 +62,13 @@ class Profile:
         """The two outermost plateaus: how much of a pixel sees each, and how far out it lies."""
         last = self.positions_px[-1]
         return (1 - seen[0][0], -s), (seen[-1][0], s - last if last else s)
+
+    def near(self, s: Floats, reach_px: float) -> NDArray[np.bool_]:
+        """Which pixels lie nearer than `reach_px` to a step."""
+        first, *others = (np.abs(distance) < reach_px for distance in self.distances(s))
+        for close in others:
+            first |= close
+        return first
 
     def outside(self, s: Floats) -> Floats:
         """Distance from the profile's nearest end, negative within it."""

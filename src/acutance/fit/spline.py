@@ -48,8 +48,10 @@ CENTRES: Final[Floats] = np.asarray(-HALF_SUPPORT + CELL * (np.arange(SIZE) + 1.
 
 def _cells(u: Floats) -> tuple[NDArray[np.intp], Floats]:
     """Cell number and place within the cell (0..1) of every distance, clipped to the support."""
-    position = np.clip((u + HALF_SUPPORT) * (1 / CELL), 0.0, CELLS)
-    cell = np.minimum(position.astype(np.intp), CELLS - 1)
+    position = (u + HALF_SUPPORT) * (1 / CELL)
+    np.minimum(np.maximum(position, 0.0, out=position), CELLS, out=position)
+    cell = position.astype(np.intp)
+    np.minimum(cell, CELLS - 1, out=cell)
     return cell, position - cell
 
 
@@ -69,20 +71,25 @@ def edge_weights(u: Floats) -> tuple[NDArray[np.intp], Floats]:
         ESF(u) = sum_a weights[a] * e[cell + a].
     """
     cell, t = _cells(u)
-    rest = 1.0 - t
-    t2, t3 = t * t, t * t * t
-    first, last = rest * rest * rest / 6.0, t3 / 6.0
-    second = 0.5 * t3 - t2 + 2.0 / 3.0
-    return cell, np.stack([first, second, 1.0 - first - second - last, last])
+    weights = np.empty((4, t.size))
+    rest, square = 1.0 - t, t * t
+    np.multiply(rest * rest, rest * (1 / 6), out=weights[0])
+    np.multiply(square, t * (1 / 6), out=weights[3])
+    np.add(square * (0.5 * t - 1.0), 2 / 3, out=weights[1])
+    np.subtract(1.0 - weights[0], weights[1] + weights[3], out=weights[2])
+    return cell, weights
 
 
 def line_weights(u: Floats) -> tuple[NDArray[np.intp], Floats]:
     """The derivative of `edge_weights`: LSF(u) = sum_a weights[a] * e[cell + a]."""
     cell, t = _cells(u)
-    rest = 1.0 - t
-    first, last = -0.5 * rest * rest, 0.5 * t * t
-    second = t * (1.5 * t - 2.0)
-    return cell, np.stack([first, second, -first - second - last, last]) * (1 / CELL)
+    weights = np.empty((4, t.size))
+    rest, scaled = 1.0 - t, t * (1 / CELL)
+    np.multiply(rest, (-0.5 / CELL) * rest, out=weights[0])
+    np.multiply(t, 0.5 * scaled, out=weights[3])
+    np.multiply(scaled, 1.5 * t - 2.0, out=weights[1])
+    np.subtract(-weights[0], weights[1] + weights[3], out=weights[2])
+    return cell, weights
 
 
 def spread(cell: NDArray[np.intp], weights: Floats, further: int = 0) -> Floats:
@@ -123,7 +130,9 @@ def quasi_interpolant(values: Floats) -> Floats:
     return coefficients
 
 
-def transform(freq: Floats, further: int = 0) -> NDArray[np.complex128]:
+def transform(
+    freq: Floats, scale: NDArray[np.complex128] | float = 1.0, further: int = 0
+) -> NDArray[np.complex128]:
     """Fourier transform of the LSF by ESF coefficients, (n, CELLS + 3 + further).
 
     The OTF is ``transform(freq) @ e`` where e starts with zeros and ends level, as an ESF does.
@@ -131,24 +140,25 @@ def transform(freq: Floats, further: int = 0) -> NDArray[np.complex128]:
     Parameters
     ----------
     freq : (n,) array
-        A regular grid of frequencies from 0, in cycles per width.
+        Frequencies in cycles per width.
+    scale : (n,) complex array or float, optional
+        What to multiply every frequency by.
     further : int, optional
         Number of columns to leave room for.
     """
-    n = freq.size
-    columns = np.zeros((n, CELLS + 3 + further), complex)
-    # Doubling: frequencies m .. 2m - 1 are the first m, turned by m steps.
-    turns = columns[:, 3 : 3 + SIZE]
-    step = np.exp(-2j * np.pi * freq[1] * CENTRES)
-    turns[0] = 1.0
-    done = 1
-    while done < n:
-        more = min(done, n - done)
-        np.multiply(turns[:more], turns[done - 1] * step, out=turns[done : done + more])
-        done += more
+    columns = np.zeros((CELLS + 3 + further, freq.size), complex)
+    turns = columns[3 : 3 + SIZE]
+    phase = -2j * np.pi * freq
+    turn = np.exp(CELL * phase)
+    smooth = scale * np.sinc(freq * CELL) ** 3
     # Coefficient e_m lifts the LSF's c_(m - 3) and lowers c_(m - 2), one cell further on; the
     # last one only lifts.
-    smooth = np.sinc(freq * CELL) ** 3
-    turns[:, :-1] *= (smooth * (1 - np.exp(-2j * np.pi * freq * CELL)))[:, None]
-    turns[:, -1] *= smooth
-    return columns
+    turns[0] = smooth * (1 - turn) * np.exp(CENTRES[0] * phase)
+    # Doubling: coefficients m .. 2m - 1 are the first m, moved by m cells.
+    done = 1
+    while done < SIZE:
+        more = min(done, SIZE - done)
+        np.multiply(turns[:more], turn, out=turns[done : done + more])
+        turn, done = turn * turn, done + more
+    turns[-1] = smooth * np.exp(CENTRES[-1] * phase)
+    return columns.T

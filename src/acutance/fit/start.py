@@ -18,7 +18,8 @@ from acutance.fit.profile import EDGE, Profile
 __all__ = ["BlurredEdge", "fit_blurred_edge"]
 
 _MAX_STEPS = 30
-_SETTLED = 1e-3
+_SETTLED = 3e-3
+_DAMPING = 1e-3
 _REACH_WIDTHS = 2.5
 _MIN_SIGMA_PX = 0.35
 _TAIL_STD = 0.1
@@ -114,13 +115,15 @@ def _gauss_newton(
 
     Returns the parameters and the standard deviation of what they leave.
     """
-    p, damping = start, 1e-3
+    damping = _DAMPING
     # The priors of aperture and tail: two more data.
     penalty = np.array([0.0, 0.0, 0.0, 0.0, 0.0, aperture_weight**2, tail_weight**2])
-    cost, jacobian, residual = _linearise(s, t, value, p, penalty)
+    best = _Trial.of(s, t, value, start, penalty)
+    jacobian = best.jacobian(t)
+    p = start
     for _ in range(_MAX_STEPS):
         gram = jacobian @ jacobian.T
-        gradient = jacobian @ residual + penalty * (_EXPECTED - p)
+        gradient = jacobian @ best.residual + penalty * (_EXPECTED - p)
         diagonal = gram.diagonal() + penalty
         gram.reshape(-1)[::8] = np.where(diagonal > 0, diagonal * (1 + damping), 1.0)
         longest = np.array([*[np.inf] * 4, p[4], _APERTURE_STEP_PX, 1.0])
@@ -130,22 +133,29 @@ def _gauss_newton(
             np.maximum(_LOWEST - p, -0.5 * longest),
             np.minimum(_HIGHEST - p, longest),
         )
-        trial = p + step
+        # A step that nothing damps or bounds gains its product with the gradient: the last one is
+        # not tried.
+        gain = float(gradient @ step)
+        enough = _SETTLED * best.cost + 1e-18 * p[1] ** 2 * s.size
+        settled = damping < 2 * _DAMPING and 0 <= gain <= enough
         # A wider aperture at the same variance leaves less to the Gaussian.
         variance = p[4] ** 2 + 2 * p[4] * step[4] - step[5] ** 2 / 12
-        trial[4] = math.sqrt(max(variance, _MIN_SIGMA_PX**2))
-        new_cost, new_jacobian, new_residual = _linearise(s, t, value, trial, penalty)
-        if new_cost <= cost:
-            gain = cost - new_cost
-            p, cost, jacobian, residual = trial, new_cost, new_jacobian, new_residual
+        moved = p + step
+        moved[4] = math.sqrt(max(variance, _MIN_SIGMA_PX**2))
+        if settled:
+            p = moved
+            break
+        trial = _Trial.of(s, t, value, moved, penalty)
+        if trial.cost <= best.cost:
+            best, p = trial, moved
             damping *= 0.1
-            if gain <= _SETTLED * cost + 1e-18 * p[1] ** 2 * s.size:
-                break
+            jacobian = best.jacobian(t)
         else:
             damping = max(damping, 1e-4) * 10
             if damping > 1e6:
                 break
-    return p, math.sqrt(float(residual @ residual) / max(s.size - 7, 1))
+    left = float(best.residual @ best.residual) / max(s.size - 7, 1)
+    return p, math.sqrt(left)
 
 
 def _bounded_solution(gram: Floats, gradient: Floats, low: Floats, high: Floats) -> Floats:
@@ -163,31 +173,56 @@ def _bounded_solution(gram: Floats, gradient: Floats, low: Floats, high: Floats)
     return np.asarray(step, float)
 
 
-def _linearise(
-    s: Floats, t: Floats, value: Floats, p: Floats, penalty: Floats
-) -> tuple[float, Floats, Floats]:
-    """Cost, Jacobian of the model (7, n) and residual at parameters p."""
-    dark, height, offset, turn, sigma, aperture, tail = p.tolist()
-    blur = Blur(sigma, aperture)
-    width = blur.width_px
-    # Turning the normal by a small angle moves a pixel at t by -t * angle along it: the line
-    # turns about its own point.
-    distance = s - offset + t * turn
-    esf, lsf, by_sigma, by_aperture = blur.esf_and_slopes(distance)
-    u = distance / width
-    beyond = tail_esf(u) - esf
-    step = esf + tail * beyond
-    residual = value - (dark + height * step)
-    within, far = height * (1 - tail), height * tail / width * tail_lsf(u)
-    # The tail scales with the width, whose square is that of sigma and aperture / sqrt(12) added.
-    stretch = -far * u * (FWHM_OF_SIGMA**2 / width)
-    jacobian = np.empty((7, s.size))
-    jacobian[0] = 1.0
-    jacobian[1] = step
-    jacobian[2] = -within * lsf - far
-    jacobian[3] = -jacobian[2] * t
-    jacobian[4] = within * by_sigma + sigma * stretch
-    jacobian[5] = within * by_aperture + aperture / 12 * stretch
-    jacobian[6] = height * beyond
-    cost = float(residual @ residual) + float(penalty @ (p - _EXPECTED) ** 2)
-    return cost, jacobian, residual
+@dataclass(frozen=True, eq=False)
+class _Trial:
+    """The blurred edge at one set of parameters, compared with the pixels.
+
+    Attributes
+    ----------
+    p : (7,) array
+    cost : float
+        Squared residuals and penalties.
+    residual : (n,) array
+    """
+
+    p: Floats
+    cost: float
+    residual: Floats
+    u: Floats
+    step: Floats
+    beyond: Floats
+    slopes: tuple[Floats, Floats, Floats]
+
+    @classmethod
+    def of(cls, s: Floats, t: Floats, value: Floats, p: Floats, penalty: Floats) -> _Trial:
+        dark, height, offset, turn, sigma, aperture, tail = p.tolist()
+        blur = Blur(sigma, aperture)
+        # Turning the normal by a small angle moves a pixel at t by -t * angle along it: the line
+        # turns about its own point.
+        distance = s - offset + t * turn
+        esf, *slopes = blur.esf_and_slopes(distance)
+        u = distance / blur.width_px
+        beyond = tail_esf(u) - esf
+        step = esf + tail * beyond
+        residual = value - (dark + height * step)
+        cost = float(residual @ residual) + float(penalty @ (p - _EXPECTED) ** 2)
+        return cls(p, cost, residual, u, step, beyond, (slopes[0], slopes[1], slopes[2]))
+
+    def jacobian(self, t: Floats) -> Floats:
+        """Derivatives of the model by the parameters, (7, n)."""
+        _, height, _, _, sigma, aperture, tail = self.p.tolist()
+        width = Blur(sigma, aperture).width_px
+        lsf, by_sigma, by_aperture = self.slopes
+        within, far = height * (1 - tail), height * tail / width * tail_lsf(self.u)
+        # The tail scales with the width, whose square is that of sigma and aperture / sqrt(12)
+        # added.
+        stretch = far * self.u * (-(FWHM_OF_SIGMA**2) / width)
+        jacobian = np.empty((7, self.u.size))
+        jacobian[0] = 1.0
+        jacobian[1] = self.step
+        jacobian[2] = -within * lsf - far
+        np.multiply(jacobian[2], -t, out=jacobian[3])
+        jacobian[4] = within * by_sigma + sigma * stretch
+        jacobian[5] = within * by_aperture + aperture / 12 * stretch
+        np.multiply(self.beyond, height, out=jacobian[6])
+        return jacobian

@@ -43,6 +43,7 @@ _SETTLED_FALL = 0.003
 _MAX_PASSES = 10
 _MIN_STEEP = 20
 _SIGNIFICANT = 4.0
+_OUTLYING = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,9 +165,9 @@ def solve(
             pixels, start, outlier, whiteness.inflation, earlier, uneven, roughness, fit_width
         )
         standard = solved.residual / solved.noise
-        heavy = robust and bool(np.any(np.abs(standard) > 4.0))
+        heavy = robust and float(np.abs(standard).max()) > _OUTLYING
         again = _reweighted(standard, solved.transition) if heavy else outlier
-        found = correlation(np.clip(standard, -4, 4), rows, cols, start.line.normal)
+        found = correlation(_bounded(standard), rows, cols, start.line.normal)
         settled = (
             (uneven or not solved.uneven)
             and abs(solved.turn_rad) * solved.half_length_px < _SETTLED_PX
@@ -252,9 +253,9 @@ def _pass(
         columns = np.vstack([columns, np.ones(s.size)])
         design = np.vstack([design, np.zeros(design.shape[1])])
         design[: CELLS + 3, 0], design[-1, 0] = 0.0, 1.0
-    normal = accumulate(stencils, departure, outlier / relative, columns).combined(design)
-    # What an outlier does not weigh, it does not count.
-    normal = replace(normal, count=float(np.sum(outlier)))
+    normal = accumulate(
+        stencils, departure, outlier / relative, columns, float(np.add.reduce(outlier))
+    ).combined(design)
     prior = _prior(start, directions, len(steps), len(trends))
     posterior = regress(normal, prior, scale, inflation, earlier)
 
@@ -263,13 +264,13 @@ def _pass(
     for cell, basis in stencils:
         fitted = fitted + combine(cell, basis, coefficients[: CELLS + 3])
     noise = np.sqrt(posterior.variance * relative)
-    standard = np.clip((departure - fitted) / noise, -4, 4)
+    standard = _bounded((departure - fitted) / noise)
     side_noise = np.sqrt(posterior.variance / scale * np.array([variance_dark, variance_bright]))
     turn = directions.block.size + 1
     own = slice(turn + 1, turn + 1 + len(steps))
     return Solution(
         posterior, directions, departure - fitted, noise,
-        np.min([np.abs(d) for d in profile.distances(s)], axis=0) < width,
+        profile.near(s, width),
         (float(side_noise[0]), float(side_noise[1])),
         float(posterior.beta[turn]), float(np.linalg.norm(posterior.factor[turn])),
         posterior.beta[own], np.linalg.norm(posterior.factor[own], axis=1),
@@ -277,7 +278,7 @@ def _pass(
         or is_sloping(
             (pixels.value - start.dark) / height, float(np.mean(noise)) / height, sides, width
         ),
-        _raggedness(standard, np.where(np.abs(standard) < 4, steep, 0.0), roughness),
+        _raggedness(standard, np.where(np.abs(standard) < _OUTLYING, steep, 0.0), roughness),
     )  # fmt: skip
 
 
@@ -298,10 +299,16 @@ def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
     """What the tail adds beyond the spline's support, (n,)."""
     total = np.zeros(s.size)
     for distance, share in zip(profile.distances(s), profile.shares, strict=True):
-        u = distance / width
-        inside = np.clip(u, -HALF_SUPPORT, HALF_SUPPORT)
-        total += share * (lsf_prior.tail_esf(u) - lsf_prior.tail_esf(inside))
+        far = np.abs(distance) > HALF_SUPPORT * width
+        u = distance[far] / width
+        end = lsf_prior.tail_esf(np.array([-HALF_SUPPORT, HALF_SUPPORT]))
+        total[far] += share * (lsf_prior.tail_esf(u) - np.where(u < 0, *end))
     return total
+
+
+def _bounded(standard: Floats) -> Floats:
+    """Residuals in standard deviations, outliers bounded."""
+    return np.minimum(np.maximum(standard, -_OUTLYING), _OUTLYING)
 
 
 def _step_columns(

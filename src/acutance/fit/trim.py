@@ -210,9 +210,10 @@ def _strange(
 ) -> NDArray[np.bool_]:
     """Which pixels do not look like the plateau of their side, in the mean of 3 x 3 pixels."""
     field, known = np.zeros(shape), np.zeros(shape)
-    field[rows, cols] = departure
-    known[rows, cols] = 1.0
-    smooth = (_box(field) / np.maximum(_box(known), 1.0))[rows, cols]
+    place = rows * shape[1] + cols
+    field.reshape(-1)[place] = departure
+    known.reshape(-1)[place] = 1.0
+    smooth: Floats = (_box(field) / np.maximum(_box(known), 1.0)).reshape(-1)[place]
     width = edge.blur.width_px
     outside = edge.profile.outside(s)
     beside = (np.abs(t) < half_length_px) & (outside > width)
