@@ -8,6 +8,7 @@ from acutance.curves.grid import Floats, crossing
 from acutance.errors import NoEdgeError, SupportError, TargetError
 from acutance.fit.band import EdgeBand
 from acutance.fit.locate import Segment, find_segments
+from acutance.fit.noise import median
 from acutance.fit.pulse import PulseBand, fit_blurred_pulse
 from acutance.fit.straight import Pixels
 from acutance.fit.trim import Extent, serving
@@ -75,7 +76,7 @@ def _at(
             f"{0.5 * reach:g} and {reach:g} px from it, at least {_MIN_PIXELS} are needed: choose "
             "a region that reaches further to both sides"
         )
-    left, right, level = (float(np.median(part)) for part in (*grounds, strip))
+    left, right, level = (median(part) for part in (*grounds, strip))
     if not (level > left and level > right):
         raise NoEdgeError(
             f"the strongest line separates levels of {sign * left:.4g}, {sign * level:.4g} and "
@@ -117,7 +118,7 @@ def _guessed_width(s: Floats, value: Floats) -> float:
         raise SupportError(
             "the region ends at the strip's first side: choose one that holds both sides"
         )
-    ground = float(np.median(level[grid < -1.0])) if (grid < -1.0).any() else float(level[0])
+    ground = median(level[grid < -1.0]) if (grid < -1.0).any() else float(level[0])
     # The first top behind the rising side, not the scene's brightest place.
     falling = np.flatnonzero(np.diff(level[behind]) < 0)
     top = float(level[behind][int(falling[0])]) if falling.size else float(level.max())

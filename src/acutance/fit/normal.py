@@ -74,16 +74,14 @@ def accumulate(
             projection[here] += np.bincount(cell, weighted[a] * y, CELLS)
             for j, column in enumerate(columns):
                 gram[here, m + j] += np.bincount(cell, weighted[a] * column, CELLS)
-    diagonal = gram.diagonal().copy()
     gram += gram.T
-    gram.reshape(-1)[:: m + q + 1] = diagonal
     gram[m:, m:] = weighted_columns @ columns.T
     projection[m:] = weighted_columns @ y
     return Normal(gram, projection, float(np.dot(weight * y, y)), count)
 
 
 def _add_own(gram: Floats, cell: NDArray[np.intp], basis: Floats, weighted: Floats) -> None:
-    """Products of one step's spline with itself, into the upper triangle."""
+    """Products of one step's spline with itself: the upper triangle, and half the diagonal."""
     # Entries (cell + a, cell + b) lie on one diagonal: a strided slice of the flat matrix.
     size = gram.shape[0]
     flat, stride = gram.reshape(-1), size + 1
@@ -91,16 +89,16 @@ def _add_own(gram: Floats, cell: NDArray[np.intp], basis: Floats, weighted: Floa
         for b in range(a, 4):
             start = a * size + b
             diagonal = flat[start : start + CELLS * stride : stride]
-            diagonal += np.bincount(cell, weighted[a] * basis[b], CELLS)
+            products = np.bincount(cell, weighted[a] * basis[b], CELLS)
+            diagonal += products if a < b else 0.5 * products
 
 
 def _add_pair(
     gram: Floats, cell: NDArray[np.intp], weighted: Floats, other: NDArray[np.intp], basis: Floats
 ) -> None:
-    """Products of two steps' splines, both ways, into the upper triangle."""
+    """Products of two steps' splines, one way: its transpose is the other."""
     m = CELLS + 3
     offsets = (np.arange(4)[:, None] * m + np.arange(4)).reshape(16, 1)
     place = cell * m + other + offsets
     shares = (weighted[:, None] * basis).reshape(16, -1)
-    products = np.bincount(place.reshape(-1), shares.reshape(-1), m * m).reshape(m, m)
-    gram[:m, :m] += np.triu(products + products.T)
+    gram[:m, :m] += np.bincount(place.reshape(-1), shares.reshape(-1), m * m).reshape(m, m)

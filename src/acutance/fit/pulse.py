@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import get_lapack_funcs
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
@@ -20,6 +21,9 @@ from acutance.fit.straight import Pixels, Solved, solve
 __all__ = ["PulseBand", "SplinePulse", "fit_blurred_pulse", "fit_pulse"]
 
 _MAX_STEPS = 60
+_SETTLED = 1e-3
+_DAMPING = 1e-3
+(_gesv,) = get_lapack_funcs(("gesv",), (np.empty((1, 1)),))
 _MIN_SIGMA_PX, _MAX_SIGMA_PX = 0.3, 6.0
 _REACH_WIDTHS = 2.5
 
@@ -81,9 +85,7 @@ def fit_pulse(band: PulseBand, *, fit_width: bool = True, robust: bool = True) -
         If no pulse survives the fit.
     """
     pixels = Pixels.of(band.image)
-    start = fit_blurred_pulse(
-        pixels, band, width_px=band.pulse_width_px, fall=band.fall, fit_width=fit_width
-    )
+    start = _start(band, pixels, fit_width)
     solved = solve(pixels, start, robust=robust, fit_width=fit_width)
     edge = spline_edge(pixels, solved)
     return SplinePulse(
@@ -93,6 +95,18 @@ def fit_pulse(band: PulseBand, *, fit_width: bool = True, robust: bool = True) -
             -solved.start.profile.shares[1] + float(solved.solution.steps[-1]),
             float(solved.solution.steps_std[-1]),
         ),
+    )
+
+
+def _start(band: PulseBand, pixels: Pixels, fit_width: bool) -> BlurredEdge:
+    """The plain blurred pulse the linear model departs from."""
+    if band.blur is None:
+        return fit_blurred_pulse(
+            pixels, band, width_px=band.pulse_width_px, fall=band.fall, fit_width=fit_width
+        )
+    profile = pulse_profile(band.pulse_width_px, band.fall)
+    return BlurredEdge(
+        band.line, band.blur, band.dark, band.bright - band.dark, band.noise, profile
     )
 
 
@@ -139,7 +153,7 @@ def fit_blurred_pulse(
     reach = max(6.0, 3 * _REACH_WIDTHS * band.width_px)
     near = (s > -reach) & (s < width_px + reach)
     s, t, value = s[near], t[near], pixels.value[near]
-    damping = 1e-3
+    damping = _DAMPING
     cost, jacobian, residual = _linearise(s, t, value, p)
     for _ in range(_MAX_STEPS):
         used = jacobian[free]
@@ -149,17 +163,20 @@ def fit_blurred_pulse(
         gram[diagonal] *= 1 + damping
         gram[diagonal] += 1e-12 * np.trace(gram)
         step = np.zeros(7)
-        step[free] = np.linalg.solve(gram, used @ residual)
+        gradient = used @ residual
+        step[free] = _gesv(gram, gradient)[2]
+        # A step that nothing damps gains its product with the gradient: the last one is not tried.
+        gain = float(gradient @ step[free])
         trial = p + step
         trial[4] = np.clip(trial[4], max(_MIN_SIGMA_PX, 0.5 * p[4]), min(_MAX_SIGMA_PX, 2 * p[4]))
         trial[5] = np.clip(trial[5], 0.5 * width_px, 2.0 * width_px)
+        if damping < 2 * _DAMPING and 0 <= gain <= _SETTLED * cost + 1e-18 * p[1] ** 2 * s.size:
+            p = trial
+            break
         new_cost, new_jacobian, new_residual = _linearise(s, t, value, trial)
         if new_cost <= cost:
-            gain = cost - new_cost
             p, cost, jacobian, residual = trial, new_cost, new_jacobian, new_residual
             damping *= 0.1
-            if gain <= 1e-4 * cost + 1e-18 * p[1] ** 2 * s.size:
-                break
         else:
             damping = max(damping, 1e-4) * 10
             if damping > 1e6:
@@ -188,15 +205,12 @@ def _linearise(s: Floats, t: Floats, value: Floats, p: Floats) -> tuple[float, F
     shape = rise - fall * down
     residual = value - dark - height * shape
     slope = rise_slope - fall * down_slope
-    jacobian = np.array(
-        [
-            np.ones(s.size),
-            shape,
-            -height * slope,
-            height * slope * t,
-            height * (rise_sigma - fall * down_sigma),
-            height * fall * down_slope,
-            -height * down,
-        ]
-    )
+    jacobian = np.empty((7, s.size))
+    jacobian[0] = 1.0
+    jacobian[1] = shape
+    np.multiply(slope, -height, out=jacobian[2])
+    np.multiply(jacobian[2], -t, out=jacobian[3])
+    np.multiply(rise_sigma - fall * down_sigma, height, out=jacobian[4])
+    np.multiply(down_slope, height * fall, out=jacobian[5])
+    np.multiply(down, -height, out=jacobian[6])
     return float(residual @ residual), jacobian, residual

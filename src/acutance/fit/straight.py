@@ -171,7 +171,7 @@ def solve(
         settled = (
             (uneven or not solved.uneven)
             and abs(solved.turn_rad) * solved.half_length_px < _SETTLED_PX
-            and bool(np.all(np.abs(solved.steps) < _tolerance(fit_width)[: solved.steps.size]))
+            and _are_short(solved, fit_width)
             and np.max(np.abs(again - outlier)) < 0.05
             and abs(found.inflation / whiteness.inflation - 1) < 0.05
             and abs(solved.roughness - roughness) < 0.1 * (1 + roughness)
@@ -186,8 +186,17 @@ def solve(
     return Solved(start, solved, outlier, whiteness)
 
 
-def _tolerance(fit_width: bool) -> Floats:
-    return np.array([_SETTLED_PX, _SETTLED_FALL] if fit_width else [_SETTLED_FALL])
+def _are_short(solved: Solution, fit_width: bool) -> bool:
+    """Whether a pulse's width and fall are so near their end that the linear model serves.
+
+    What a linear step in the width leaves behind is about its square in pixels, of a step in the
+    fall a twentieth: it has to be small beside the standard deviation.
+    """
+    steps, stds = np.abs(solved.steps), solved.steps_std
+    tolerance = np.maximum(_SETTLED_FALL, 3.0 * stds)
+    if fit_width:
+        tolerance[0] = max(_SETTLED_PX, math.sqrt(0.06 * stds[0]))
+    return bool(np.all(steps < tolerance))
 
 
 def _moved(start: BlurredEdge, solved: Solution, fit_width: bool) -> BlurredEdge:

@@ -110,10 +110,9 @@ def measure_pulse(
     free = fit_width or stated_px is None
     band, extent = find_pulse(pixels.pixels, stated_px, fit_width=free)
     require_phases(band, band.line)
-    if stated_px is not None:
+    if stated_px is not None and method in PUBLISHED_PULSE:
         band = replace(band, pulse_width_px=stated_px)
     found = estimate(band, free, chosen)
-    require_phases(band, found.fit.line)
     checks = PulseChecks(
         pixels, band, extent, found.fit, found.width, found.fall, stated_px, chosen.limits,
         by_ratio=method != "spline",
