@@ -5,11 +5,14 @@ from acutance.measure.measurement import Check, ImageInfo, Measurement, Samples
 from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.options import EdgeLimits, EdgeOptions, PulseLimits, PulseOptions
 from acutance.measure.pulse import PULSE_METHODS, measure_pulse
+from acutance.measure.star import STAR_METHODS, Rings, StarMeasurement, measure_star
+from acutance.measure.star_options import StarLimits, StarOptions
 from acutance.measure.target import EdgeGroup, Rejected, TargetResult, measure_edges
 
 __all__ = [
     "METHODS",
     "PULSE_METHODS",
+    "STAR_METHODS",
     "Check",
     "EdgeGroup",
     "EdgeLimits",
@@ -20,9 +23,14 @@ __all__ = [
     "PulseLimits",
     "PulseOptions",
     "Rejected",
+    "Rings",
     "Samples",
+    "StarLimits",
+    "StarMeasurement",
+    "StarOptions",
     "TargetResult",
     "measure_edge",
     "measure_edges",
     "measure_pulse",
+    "measure_star",
 ]

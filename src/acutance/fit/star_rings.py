@@ -1,0 +1,117 @@
+"""A star's geometry, and its pixels ring by ring."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+
+__all__ = ["Flags", "FoundStar", "members_of", "ring_modulations", "rings_of"]
+
+Flags = NDArray[np.bool_]
+
+_RING_STEP_PX = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class FoundStar:
+    """A star as it was found.
+
+    Attributes
+    ----------
+    row, col : float
+        Centre in pixels.
+    cycles : int
+        Periods in a full turn.
+    alpha_rad : float
+        Phase: the spokes are ``cos(cycles * phi + alpha)``.
+    rim_px : float
+        Radius at which the spokes end.
+    first_deg, sweep_deg : float
+        Where the spokes begin, from the column axis towards the row axis, and how far they go.
+    """
+
+    row: float
+    col: float
+    cycles: int
+    alpha_rad: float
+    rim_px: float
+    first_deg: float = 0.0
+    sweep_deg: float = 360.0
+
+    def polar(self, rows: Floats, cols: Floats) -> tuple[Floats, Floats]:
+        """Radius and direction (radians) of some places."""
+        y, x = rows - self.row, cols - self.col
+        return np.hypot(x, y), np.arctan2(y, x)
+
+    def holds(self, angle_rad: Floats, margin_rad: Floats | float = 0.0) -> Flags:
+        """Whether directions lie within the sweep, `margin_rad` away from its ends."""
+        if self.sweep_deg >= 360:
+            return np.ones(np.shape(angle_rad), bool)
+        half = 0.5 * math.radians(self.sweep_deg)
+        off = angle_rad - math.radians(self.first_deg) - half
+        return np.asarray(np.abs((off + math.pi) % (2 * math.pi) - math.pi) < half - margin_rad)
+
+    def radius_at(self, freq_cpp: float) -> float:
+        """Radius at which the spokes have a frequency."""
+        return self.cycles / (2 * math.pi * freq_cpp)
+
+
+def rings_of(
+    smooth: Floats, usable: Flags, row: float, col: float, first: float, last: float
+) -> list[tuple[float, Floats, Floats]]:
+    """Rings of pixels: radius, direction and value of every pixel in them."""
+    rows, cols = np.nonzero(usable)
+    radius = np.hypot(rows - row, cols - col)
+    angle = np.arctan2(rows - row, cols - col)
+    value = smooth[usable]
+    ring = np.floor((radius - first) / _RING_STEP_PX).astype(np.intp)
+    order = np.argsort(ring, kind="stable")
+    ring, radius, angle, value = ring[order], radius[order], angle[order], value[order]
+    found = []
+    for number in range(max(int((last - first) / _RING_STEP_PX), 0)):
+        start, stop = np.searchsorted(ring, [number, number + 1]).tolist()
+        here = slice(start, stop)
+        if stop - start >= 12:
+            found.append((float(np.mean(radius[here])), angle[here], value[here]))
+    return found
+
+
+def members_of(sector: NDArray[np.intp], among: Flags, count: int) -> list[NDArray[np.intp]]:
+    """Which pixels belong to each of some parts, counting only those `among`."""
+    return [np.flatnonzero((sector == number) & among) for number in range(count)]
+
+
+def ring_modulations(
+    image: Floats, star: FoundStar, inner_px: float, outer_px: float
+) -> tuple[Floats, Floats, Floats]:
+    """The plain reading: a + b cos + c sin of the spokes in every ring, by least squares.
+
+    Returns
+    -------
+    freq_cpp, modulation, std : (n,) arrays
+        Frequency of the ring, amplitude of the wave in image units, and its standard deviation.
+    """
+    rows, cols = np.nonzero(np.isfinite(image))
+    radius, angle = star.polar(rows.astype(float), cols.astype(float))
+    value = image[rows, cols]
+    kept = star.holds(angle, 2.0 / np.maximum(radius, 1.0))
+    found = []
+    for low in np.arange(inner_px, outer_px - 0.5, 1.0):
+        here = kept & (radius >= low) & (radius < low + 1)
+        if np.count_nonzero(here) < 12:
+            continue
+        phase = star.cycles * angle[here] + star.alpha_rad
+        design = np.stack([np.ones(phase.size), np.cos(phase), np.sin(phase)], axis=1)
+        fit, *_ = np.linalg.lstsq(design, value[here], rcond=None)
+        rest = value[here] - design @ fit
+        noise = float(rest @ rest) / max(phase.size - 3, 1)
+        spread = noise * float(np.linalg.pinv(design.T @ design)[1, 1])
+        mean_radius = float(np.mean(radius[here]))
+        found.append((star.cycles / (2 * math.pi * mean_radius), fit[1], math.sqrt(spread)))
+    table = np.array(found, float).reshape(-1, 3)
+    return table[:, 0], table[:, 1], table[:, 2]

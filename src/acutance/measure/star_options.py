@@ -1,0 +1,108 @@
+"""What a caller may change of a star measurement, and the limits its checks hold it to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from acutance.errors import OptionError
+from acutance.fit.star import Levels
+from acutance.fit.star_waves import Wave
+
+__all__ = ["StarLimits", "StarOptions"]
+
+
+@dataclass(frozen=True)
+class StarLimits:
+    """Limits of the target checks of a star.
+
+    Parameters
+    ----------
+    contrast_snr : float
+        Least ratio of the spokes' contrast to noise.
+    level : float
+        Largest relative standard deviation of the spokes' contrast before the sensor: it scales
+        the whole MTF.
+    coarsest_cpp : float
+        Largest frequency of the spokes at the rim.
+    finest_cpp : float
+        Least frequency of the spokes near the centre.
+    sweep_deg : float
+        Least angle of the star.
+    wave : float
+        Largest third harmonic that the stated wave does not explain, as a share of the contrast.
+    saturation : float
+        Largest share of pixels at the end of the scale.
+    correlated_noise : float
+        Largest correlation of the residuals between neighbouring pixels.
+    outliers : float
+        Largest share of outlying pixels.
+    """
+
+    contrast_snr: float = 50.0
+    level: float = 0.01
+    coarsest_cpp: float = 0.15
+    finest_cpp: float = 0.5
+    sweep_deg: float = 90.0
+    wave: float = 0.01
+    saturation: float = 0.001
+    correlated_noise: float = 0.1
+    outliers: float = 0.02
+
+
+@dataclass(frozen=True)
+class StarOptions:
+    """Options of a star measurement.
+
+    Parameters
+    ----------
+    wave : {"sine", "square"}
+        Form of the spokes.
+    dark, bright : float, optional
+        Levels of dark and bright spokes before the sensor, from wide patches of the same
+        materials, in image units. Without them the contrast is fitted, which the spokes at the
+        rim allow to some per cent only.
+    level_std : float
+        Standard deviation of ``bright - dark``.
+    centre : (float, float), optional
+        (row, col) of the centre to some pixels, where it is not to be searched for.
+    inner_px : float, optional
+        Pixels nearer to the centre are left out.
+    robust : bool
+        Bound the weight of outlying pixels.
+    limits : StarLimits
+        Limits of the checks.
+    """
+
+    wave: Wave = "sine"
+    dark: float | None = None
+    bright: float | None = None
+    level_std: float = 0.0
+    centre: tuple[float, float] | None = None
+    inner_px: float | None = None
+    robust: bool = True
+    limits: StarLimits = field(default_factory=StarLimits)
+
+    def __post_init__(self) -> None:
+        if self.wave not in ("sine", "square"):
+            raise OptionError(f"wave is {self.wave!r}: it has to be 'sine' or 'square'")
+        if (self.dark is None) != (self.bright is None):
+            raise OptionError("one level of the spokes was given: give dark and bright, or neither")
+        if self.dark is not None and self.bright is not None and not self.dark < self.bright:
+            raise OptionError(
+                f"dark is {self.dark:g} and bright {self.bright:g}: dark has to be the lower one"
+            )
+        if not self.level_std >= 0:
+            raise OptionError(f"level_std is {self.level_std:g}, it has to be 0 or more")
+
+    @property
+    def levels(self) -> Levels | None:
+        """Both levels, if they are known."""
+        if self.dark is None or self.bright is None:
+            return None
+        return Levels(self.dark, self.bright, self.level_std)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All options by name, for JSON."""
+        chosen = {name: value for name, value in vars(self).items() if name != "limits"}
+        return {**chosen, "limits": dict(vars(self.limits))}
