@@ -6,10 +6,11 @@ import numpy as np
 
 from acutance.curves.grid import Floats, crossing
 from acutance.errors import NoEdgeError, SupportError, TargetError
-from acutance.fit.band import EdgeBand
 from acutance.fit.locate import Segment, find_segments
 from acutance.fit.noise import median
-from acutance.fit.pulse import PulseBand, fit_blurred_pulse
+from acutance.fit.profile import pulse_profile
+from acutance.fit.pulse import PulseBand
+from acutance.fit.start import fit_blurred_edge
 from acutance.fit.straight import Pixels
 from acutance.fit.trim import Extent, serving
 
@@ -83,10 +84,11 @@ def _at(
             f"{sign * right:.4g}: no strip of {width_px:.2f} px between two like grounds; choose "
             "a region with one strip, or state another width"
         )
-    start = EdgeBand(image, segment.line, left, level, 0.6, 0.0)
-    near = Pixels(*(part[beside] for part in (pixels.row, pixels.col, pixels.value)))
-    fall = (level - right) / (level - left)
-    pulse = fit_blurred_pulse(near, start, width_px=width_px, fall=fall, fit_width=fit_width)
+    pulse = fit_blurred_edge(
+        *(part[beside] for part in (pixels.row, pixels.col, pixels.value)), segment.line,
+        dark=left, bright=level, profile=pulse_profile(width_px, (level - right) / (level - left)),
+        fit_width=fit_width,
+    )  # fmt: skip
     if pulse.height < _MIN_SNR * pulse.noise:
         raise NoEdgeError(
             f"the strongest strip has a height of {pulse.height:.4g} in noise of "

@@ -2,30 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-import numpy as np
-from scipy.linalg import get_lapack_funcs
-
 from acutance.curves import Estimate
-from acutance.curves.grid import Floats
-from acutance.errors import NoEdgeError
 from acutance.fit.band import EdgeBand
-from acutance.fit.blur import Blur
 from acutance.fit.edge import SplineEdge, spline_edge
 from acutance.fit.profile import pulse_profile
-from acutance.fit.start import BlurredEdge
+from acutance.fit.start import BlurredEdge, fit_blurred_edge
 from acutance.fit.straight import Pixels, Solved, solve
 
-__all__ = ["PulseBand", "SplinePulse", "fit_blurred_pulse", "fit_pulse"]
-
-_MAX_STEPS = 60
-_SETTLED = 1e-3
-_DAMPING = 1e-3
-(_gesv,) = get_lapack_funcs(("gesv",), (np.empty((1, 1)),))
-_MIN_SIGMA_PX, _MAX_SIGMA_PX = 0.3, 6.0
-_REACH_WIDTHS = 2.5
+__all__ = ["PulseBand", "SplinePulse", "fit_pulse"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,14 +86,15 @@ def fit_pulse(band: PulseBand, *, fit_width: bool = True, robust: bool = True) -
 
 def _start(band: PulseBand, pixels: Pixels, fit_width: bool) -> BlurredEdge:
     """The plain blurred pulse the linear model departs from."""
-    if band.blur is None:
-        return fit_blurred_pulse(
-            pixels, band, width_px=band.pulse_width_px, fall=band.fall, fit_width=fit_width
-        )
     profile = pulse_profile(band.pulse_width_px, band.fall)
-    return BlurredEdge(
-        band.line, band.blur, band.dark, band.bright - band.dark, band.noise, profile
-    )
+    if band.blur is not None:
+        height = band.bright - band.dark
+        return BlurredEdge(band.line, band.blur, band.dark, height, band.noise, profile)
+    return fit_blurred_edge(
+        pixels.row, pixels.col, pixels.value, band.line,
+        dark=band.dark, bright=band.bright, sigma_px=band.width_px, noise=band.noise,
+        profile=profile, fit_width=fit_width,
+    )  # fmt: skip
 
 
 def _width(solved: Solved, fit_width: bool) -> Estimate:
@@ -116,101 +103,3 @@ def _width(solved: Solved, fit_width: bool) -> Estimate:
         return Estimate(width_px)
     solution = solved.solution
     return Estimate(width_px + float(solution.steps[0]), float(solution.steps_std[0]))
-
-
-def fit_blurred_pulse(
-    pixels: Pixels, band: EdgeBand, *, width_px: float, fall: float = 1.0, fit_width: bool = True
-) -> BlurredEdge:
-    """Fit line, Gaussian blur, levels and steps of a pulse by damped Gauss-Newton.
-
-    The aperture is held at one pixel: a pulse a few pixels wide does not tell it from the rest of
-    the blur.
-
-    Parameters
-    ----------
-    pixels : Pixels
-    band : EdgeBand
-        Where line, levels and blur start.
-    width_px, fall : float
-        Where the steps start.
-    fit_width : bool, optional
-
-    Raises
-    ------
-    NoEdgeError
-        If no step survives.
-    """
-    line = band.line
-    s, t = (
-        distance(pixels.row, pixels.col)
-        for distance in (line.normal_distance, line.tangent_distance)
-    )
-    # dark, height, offset, turn, sigma, width, fall
-    p = np.array(
-        [band.dark, band.bright - band.dark, 0.0, 0.0, max(band.width_px, 0.4), width_px, fall]
-    )
-    free = np.array([True] * 5 + [fit_width, True])
-    reach = max(6.0, 3 * _REACH_WIDTHS * band.width_px)
-    near = (s > -reach) & (s < width_px + reach)
-    s, t, value = s[near], t[near], pixels.value[near]
-    damping = _DAMPING
-    cost, jacobian, residual = _linearise(s, t, value, p)
-    for _ in range(_MAX_STEPS):
-        used = jacobian[free]
-        gram = used @ used.T
-        # The ridge holds what the pixels do not: a step at its bound moves nothing.
-        diagonal = np.diag_indices(len(gram))
-        gram[diagonal] *= 1 + damping
-        gram[diagonal] += 1e-12 * np.trace(gram)
-        step = np.zeros(7)
-        gradient = used @ residual
-        step[free] = _gesv(gram, gradient)[2]
-        # A step that nothing damps gains its product with the gradient: the last one is not tried.
-        gain = float(gradient @ step[free])
-        trial = p + step
-        trial[4] = np.clip(trial[4], max(_MIN_SIGMA_PX, 0.5 * p[4]), min(_MAX_SIGMA_PX, 2 * p[4]))
-        trial[5] = np.clip(trial[5], 0.5 * width_px, 2.0 * width_px)
-        if damping < 2 * _DAMPING and 0 <= gain <= _SETTLED * cost + 1e-18 * p[1] ** 2 * s.size:
-            p = trial
-            break
-        new_cost, new_jacobian, new_residual = _linearise(s, t, value, trial)
-        if new_cost <= cost:
-            p, cost, jacobian, residual = trial, new_cost, new_jacobian, new_residual
-            damping *= 0.1
-        else:
-            damping = max(damping, 1e-4) * 10
-            if damping > 1e6:
-                break
-    dark, height, offset, turn, sigma, width_px, fall = p.tolist()
-    noise = math.sqrt(cost / max(s.size - 7, 1))
-    if not (height > 0 and fall > 0 and math.isfinite(cost)) or height < noise:
-        raise NoEdgeError(
-            f"no pulse was found: the best fit rises by {height:.3g} and falls by "
-            f"{fall * height:.3g} in noise of {noise:.3g}; choose a region with one bright strip "
-            "between two darker sides, and state its width"
-        )
-    return BlurredEdge(
-        line.moved(offset, math.degrees(turn)), Blur(sigma), dark, height, noise,
-        pulse_profile(width_px, fall),
-    )  # fmt: skip
-
-
-def _linearise(s: Floats, t: Floats, value: Floats, p: Floats) -> tuple[float, Floats, Floats]:
-    """Cost, Jacobian of the model (7, n) and residual at parameters p."""
-    dark, height, offset, turn, sigma, width_px, fall = p.tolist()
-    blur = Blur(sigma)
-    distance = s - offset + t * turn
-    rise, rise_slope, rise_sigma, _ = blur.esf_and_slopes(distance)
-    down, down_slope, down_sigma, _ = blur.esf_and_slopes(distance - width_px)
-    shape = rise - fall * down
-    residual = value - dark - height * shape
-    slope = rise_slope - fall * down_slope
-    jacobian = np.empty((7, s.size))
-    jacobian[0] = 1.0
-    jacobian[1] = shape
-    np.multiply(slope, -height, out=jacobian[2])
-    np.multiply(jacobian[2], -t, out=jacobian[3])
-    np.multiply(rise_sigma - fall * down_sigma, height, out=jacobian[4])
-    np.multiply(down_slope, height * fall, out=jacobian[5])
-    np.multiply(down, -height, out=jacobian[6])
-    return float(residual @ residual), jacobian, residual

@@ -1,4 +1,4 @@
-"""The plain blurred edge fitted to the pixels: where the reference estimator starts."""
+"""The plain blurred target fitted to the pixels: where the reference estimator starts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from acutance.errors import NoEdgeError
 from acutance.fit.blur import FWHM_OF_SIGMA, Blur
 from acutance.fit.line import Line
 from acutance.fit.prior import APERTURE_PX, tail_esf, tail_lsf
-from acutance.fit.profile import EDGE, Profile
+from acutance.fit.profile import EDGE, Profile, pulse_profile
 
 __all__ = ["BlurredEdge", "fit_blurred_edge"]
 
@@ -25,15 +25,15 @@ _MIN_SIGMA_PX = 0.35
 _TAIL_STD = 0.1
 _APERTURE_STEP_PX = 1.0
 (_gesv,) = get_lapack_funcs(("gesv",), (np.empty((1, 1)),))
-# Parameters: dark, height, offset, turn, sigma, aperture, tail.
-_EXPECTED: Floats = np.array([0.0, 0.0, 0.0, 0.0, 0.0, APERTURE_PX[0], 0.0])
-_LOWEST: Floats = np.array([*[-np.inf] * 4, _MIN_SIGMA_PX, 0.2, 0.0])
-_HIGHEST: Floats = np.array([*[np.inf] * 4, np.inf, 4.0, 0.5])
+# Parameters: dark, height, offset, turn, sigma, aperture, tail; of a pulse also width and fall.
+_EXPECTED: Floats = np.array([0.0, 0.0, 0.0, 0.0, 0.0, APERTURE_PX[0], 0.0, 0.0, 0.0])
+_LOWEST: Floats = np.array([*[-np.inf] * 4, _MIN_SIGMA_PX, 0.2, 0.0, 0.0, 0.0])
+_HIGHEST: Floats = np.array([*[np.inf] * 4, np.inf, 4.0, 0.5, np.inf, np.inf])
 
 
 @dataclass(frozen=True)
 class BlurredEdge:
-    """A Gaussian-and-detector edge fitted to the pixels.
+    """A target blurred by a Gaussian and a detector, fitted to the pixels.
 
     `height` is that of the first step (bright minus dark for an edge); `noise` the standard
     deviation of what the model leaves.
@@ -57,8 +57,10 @@ def fit_blurred_edge(
     bright: float,
     sigma_px: float = 0.6,
     noise: float | None = None,
+    profile: Profile = EDGE,
+    fit_width: bool = False,
 ) -> BlurredEdge:
-    """Fit line, blur and levels by damped Gauss-Newton.
+    """Fit line, blur, levels and, of a pulse, its steps by damped Gauss-Newton.
 
     Parameters
     ----------
@@ -72,6 +74,10 @@ def fit_blurred_edge(
         Start of the Gaussian's width.
     noise : float, optional
         First guess of the noise, which weighs the priors of aperture and tail.
+    profile : Profile, optional
+        An edge, or where a pulse's steps start.
+    fit_width : bool, optional
+        Whether a pulse's width is unknown (its fall always is).
 
     Raises
     ------
@@ -80,16 +86,21 @@ def fit_blurred_edge(
     """
     t = line.tangent_distance(row, col)
     s = line.normal_distance(row, col)
-    p = np.array([dark, bright - dark, 0.0, 0.0, sigma_px, APERTURE_PX[0], 0.0])
+    p = np.array([dark, bright - dark, 0.0, 0.0, sigma_px, APERTURE_PX[0], 0.0, *_steps(profile)])
     scale = noise if noise else 0.02 * abs(bright - dark)
     reach = max(6.0, 4 * _REACH_WIDTHS * sigma_px)
+    lowest, highest = _LOWEST[: p.size].copy(), _HIGHEST[: p.size].copy()
+    if p.size > 7:
+        # A pulse does not tell the aperture from its own width.
+        lowest[5] = highest[5] = p[5]
+        lowest[7], highest[7] = (0.5 * p[7], 2.0 * p[7]) if fit_width else (p[7], p[7])
     for _ in range(4):
-        near = np.abs(s - p[2] + t * p[3]) < reach
+        near = profile.outside(s - p[2] + t * p[3]) < reach
         p, left = _gauss_newton(
-            s[near], t[near], value[near], p, scale / APERTURE_PX[1], scale / _TAIL_STD
-        )
-        dark, height, offset, turn, sigma, aperture, _ = p.tolist()
-        blur = Blur(sigma, aperture)
+            s[near], t[near], value[near], p, scale / APERTURE_PX[1], scale / _TAIL_STD,
+            lowest, highest,
+        )  # fmt: skip
+        blur, height = Blur(float(p[4]), float(p[5])), float(p[1])
         scale = max(left, 1e-6 * abs(height))
         wanted = _REACH_WIDTHS * blur.width_px
         if wanted <= reach * 1.05:
@@ -97,10 +108,17 @@ def fit_blurred_edge(
         reach = 1.2 * wanted
     if not (height > 0 and math.isfinite(height)) or height < scale:
         raise NoEdgeError(
-            f"no straight edge was found: the best fit is a step of {height:.3g} in noise of "
-            f"{scale:.3g}; choose a region with one bright and one dark side"
+            f"no straight target was found: the best fit is a step of {height:.3g} in noise of "
+            f"{scale:.3g}; choose a region with one edge, or one strip, between uniform grounds"
         )
-    return BlurredEdge(line.moved(offset, math.degrees(turn)), blur, dark, height, scale)
+    found = profile if p.size == 7 else pulse_profile(float(p[7]), float(p[8]))
+    moved = line.moved(float(p[2]), math.degrees(float(p[3])))
+    return BlurredEdge(moved, blur, float(p[0]), height, scale, found)
+
+
+def _steps(profile: Profile) -> tuple[float, ...]:
+    """The free parameters of a profile: a pulse's width and fall."""
+    return (profile.positions_px[1], -profile.shares[1]) if len(profile.shares) > 1 else ()
 
 
 def _gauss_newton(
@@ -110,28 +128,33 @@ def _gauss_newton(
     start: Floats,
     aperture_weight: float,
     tail_weight: float,
+    lowest: Floats,
+    highest: Floats,
 ) -> tuple[Floats, float]:
-    """Minimise the squared residuals and the penalties over the seven parameters.
+    """Minimise the squared residuals and the penalties over the parameters.
 
     Returns the parameters and the standard deviation of what they leave.
     """
-    damping = _DAMPING
+    damping, size = _DAMPING, start.size
     # The priors of aperture and tail: two more data.
-    penalty = np.array([0.0, 0.0, 0.0, 0.0, 0.0, aperture_weight**2, tail_weight**2])
+    penalty = np.zeros(size)
+    penalty[5], penalty[6] = aperture_weight**2, tail_weight**2
+    longest = np.full(size, np.inf)
+    longest[5], longest[6] = _APERTURE_STEP_PX, 1.0
     best = _Trial.of(s, t, value, start, penalty)
     jacobian = best.jacobian(t)
     p = start
     for _ in range(_MAX_STEPS):
         gram = jacobian @ jacobian.T
-        gradient = jacobian @ best.residual + penalty * (_EXPECTED - p)
+        gradient = jacobian @ best.residual + penalty * (_EXPECTED[:size] - p)
         diagonal = gram.diagonal() + penalty
-        gram.reshape(-1)[::8] = np.where(diagonal > 0, diagonal * (1 + damping), 1.0)
-        longest = np.array([*[np.inf] * 4, p[4], _APERTURE_STEP_PX, 1.0])
+        gram.reshape(-1)[:: size + 1] = np.where(diagonal > 0, diagonal * (1 + damping), 1.0)
+        longest[4] = p[4]
         step = _bounded_solution(
             gram,
             gradient,
-            np.maximum(_LOWEST - p, -0.5 * longest),
-            np.minimum(_HIGHEST - p, longest),
+            np.maximum(lowest - p, -0.5 * longest),
+            np.minimum(highest - p, longest),
         )
         # A step that nothing damps or bounds gains its product with the gradient: the last one is
         # not tried.
@@ -154,7 +177,7 @@ def _gauss_newton(
             damping = max(damping, 1e-4) * 10
             if damping > 1e6:
                 break
-    left = float(best.residual @ best.residual) / max(s.size - 7, 1)
+    left = float(best.residual @ best.residual) / max(s.size - size, 1)
     return p, math.sqrt(left)
 
 
@@ -175,14 +198,20 @@ def _bounded_solution(gram: Floats, gradient: Floats, low: Floats, high: Floats)
 
 @dataclass(frozen=True, eq=False)
 class _Trial:
-    """The blurred edge at one set of parameters, compared with the pixels.
+    """The blurred target at one set of parameters, compared with the pixels.
 
     Attributes
     ----------
-    p : (7,) array
+    p : (7,) or (9,) array
     cost : float
         Squared residuals and penalties.
     residual : (n,) array
+    u : (m,) array
+        Distances from the steps in widths: n from the first, n from the second if there is one.
+    step, beyond : (m,) arrays
+        Response to a unit step at those distances, and what the tail's part of it has more.
+    slopes : three (m,) arrays
+        Derivatives of the blur's response by distance, sigma and aperture.
     """
 
     p: Floats
@@ -195,34 +224,48 @@ class _Trial:
 
     @classmethod
     def of(cls, s: Floats, t: Floats, value: Floats, p: Floats, penalty: Floats) -> _Trial:
-        dark, height, offset, turn, sigma, aperture, tail = p.tolist()
+        dark, height, offset, turn, sigma, aperture, tail, *steps = p.tolist()
         blur = Blur(sigma, aperture)
         # Turning the normal by a small angle moves a pixel at t by -t * angle along it: the line
         # turns about its own point.
         distance = s - offset + t * turn
+        if steps:
+            distance = np.concatenate([distance, distance - steps[0]])
         esf, *slopes = blur.esf_and_slopes(distance)
         u = distance / blur.width_px
         beyond = tail_esf(u) - esf
         step = esf + tail * beyond
-        residual = value - (dark + height * step)
-        cost = float(residual @ residual) + float(penalty @ (p - _EXPECTED) ** 2)
+        residual = value - (dark + height * _profiled(step, p))
+        cost = float(residual @ residual) + float(penalty @ (p - _EXPECTED[: p.size]) ** 2)
         return cls(p, cost, residual, u, step, beyond, (slopes[0], slopes[1], slopes[2]))
 
     def jacobian(self, t: Floats) -> Floats:
-        """Derivatives of the model by the parameters, (7, n)."""
-        _, height, _, _, sigma, aperture, tail = self.p.tolist()
+        """Derivatives of the model by the parameters, (7 or 9, n)."""
+        _, height, _, _, sigma, aperture, tail, *steps = self.p.tolist()
         width = Blur(sigma, aperture).width_px
         lsf, by_sigma, by_aperture = self.slopes
         within, far = height * (1 - tail), height * tail / width * tail_lsf(self.u)
         # The tail scales with the width, whose square is that of sigma and aperture / sqrt(12)
         # added.
         stretch = far * self.u * (-(FWHM_OF_SIGMA**2) / width)
-        jacobian = np.empty((7, self.u.size))
+        by_distance = within * lsf + far
+        jacobian = np.empty((self.p.size, t.size))
         jacobian[0] = 1.0
-        jacobian[1] = self.step
-        jacobian[2] = -within * lsf - far
+        jacobian[1] = _profiled(self.step, self.p)
+        jacobian[2] = -_profiled(by_distance, self.p)
         np.multiply(jacobian[2], -t, out=jacobian[3])
-        jacobian[4] = within * by_sigma + sigma * stretch
-        jacobian[5] = within * by_aperture + aperture / 12 * stretch
-        np.multiply(self.beyond, height, out=jacobian[6])
+        jacobian[4] = _profiled(within * by_sigma + sigma * stretch, self.p)
+        jacobian[5] = _profiled(within * by_aperture + aperture / 12 * stretch, self.p)
+        np.multiply(_profiled(self.beyond, self.p), height, out=jacobian[6])
+        if steps:
+            np.multiply(by_distance[t.size :], steps[1], out=jacobian[7])
+            np.multiply(self.step[t.size :], -height, out=jacobian[8])
         return jacobian
+
+
+def _profiled(response: Floats, p: Floats) -> Floats:
+    """Responses at the distances from every step, put together to the profile's, (n,)."""
+    if p.size == 7:
+        return response
+    n = response.size // 2
+    return np.asarray(response[:n] - p[8] * response[n:])

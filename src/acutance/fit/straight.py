@@ -193,7 +193,7 @@ def _are_short(solved: Solution, fit_width: bool) -> bool:
     fall a twentieth: it has to be small beside the standard deviation.
     """
     steps, stds = np.abs(solved.steps), solved.steps_std
-    tolerance = np.maximum(_SETTLED_FALL, 3.0 * stds)
+    tolerance = np.maximum(_SETTLED_FALL, 6.0 * stds)
     if fit_width:
         tolerance[0] = max(_SETTLED_PX, math.sqrt(0.06 * stds[0]))
     return bool(np.all(steps < tolerance))
