@@ -85,7 +85,7 @@ def _at(
             "a region with one strip, or state another width"
         )
     pulse = fit_blurred_edge(
-        *(part[beside] for part in (pixels.row, pixels.col, pixels.value)), segment.line,
+        pixels.row[beside], pixels.col[beside], pixels.value[beside], segment.line,
         dark=left, bright=level, profile=pulse_profile(width_px, (level - right) / (level - left)),
         fit_width=fit_width,
     )  # fmt: skip
