@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from acutance import optics, report, simulate
     from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
     from acutance.measure import (
+        BiresolutionLimits,
+        BiresolutionMeasurement,
+        BiresolutionOptions,
         EdgeLimits,
         EdgeOptions,
         Measurement,
@@ -40,6 +43,7 @@ if TYPE_CHECKING:
         StarMeasurement,
         StarOptions,
         TargetResult,
+        measure_biresolution,
         measure_edge,
         measure_edges,
         measure_pulse,
@@ -53,6 +57,9 @@ __version__ = "0.1.0"
 # Where a public name lives. Modules are loaded when a name is first used, so that
 # `import acutance` stays quick.
 _HOMES = {
+    "BiresolutionLimits": "acutance.measure",
+    "BiresolutionMeasurement": "acutance.measure",
+    "BiresolutionOptions": "acutance.measure",
     "Box": "acutance.raster",
     "EdgeLimits": "acutance.measure",
     "EdgeOptions": "acutance.measure",
@@ -72,6 +79,7 @@ _HOMES = {
     "StarMeasurement": "acutance.measure",
     "StarOptions": "acutance.measure",
     "TargetResult": "acutance.measure",
+    "measure_biresolution": "acutance.measure",
     "measure_edge": "acutance.measure",
     "measure_edges": "acutance.measure",
     "measure_pulse": "acutance.measure",
@@ -83,6 +91,9 @@ _MODULES = ("optics", "report", "simulate")
 
 __all__ = [
     "AcutanceError",
+    "BiresolutionLimits",
+    "BiresolutionMeasurement",
+    "BiresolutionOptions",
     "Box",
     "EdgeLimits",
     "EdgeOptions",
@@ -113,6 +124,7 @@ __all__ = [
     "TargetError",
     "TargetResult",
     "__version__",
+    "measure_biresolution",
     "measure_edge",
     "measure_edges",
     "measure_pulse",

@@ -1,5 +1,9 @@
 """Measurements: an image in, a `Measurement` out."""
 
+from acutance.measure.biresolution import BIRESOLUTION_METHODS, measure_biresolution
+from acutance.measure.biresolution_measurement import BiresolutionMeasurement
+from acutance.measure.biresolution_options import BiresolutionLimits, BiresolutionOptions
+from acutance.measure.biresolution_reference import MeasuredCurves
 from acutance.measure.edge import METHODS, measure_edge
 from acutance.measure.measurement import Check, ImageInfo, Measurement, Samples
 from acutance.measure.measurement2d import Measurement2d
@@ -10,14 +14,19 @@ from acutance.measure.star_options import StarLimits, StarOptions
 from acutance.measure.target import EdgeGroup, Rejected, TargetResult, measure_edges
 
 __all__ = [
+    "BIRESOLUTION_METHODS",
     "METHODS",
     "PULSE_METHODS",
     "STAR_METHODS",
+    "BiresolutionLimits",
+    "BiresolutionMeasurement",
+    "BiresolutionOptions",
     "Check",
     "EdgeGroup",
     "EdgeLimits",
     "EdgeOptions",
     "ImageInfo",
+    "MeasuredCurves",
     "Measurement",
     "Measurement2d",
     "PulseLimits",
@@ -29,6 +38,7 @@ __all__ = [
     "StarMeasurement",
     "StarOptions",
     "TargetResult",
+    "measure_biresolution",
     "measure_edge",
     "measure_edges",
     "measure_pulse",

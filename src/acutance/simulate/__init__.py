@@ -5,6 +5,7 @@ from acutance.simulate.campaign import Placed, brookings, render_site
 from acutance.simulate.edge import Truth, edge, render_edge
 from acutance.simulate.ground import GroundNoise, alias_bands, render_raster
 from acutance.simulate.noise import Noise
+from acutance.simulate.pair import Landscape, PairTruth, landscape, pair
 from acutance.simulate.points import PointsTruth, mirror_columns, mirror_square, points
 from acutance.simulate.pulse import PulseTruth, pulse, render_pulse
 from acutance.simulate.resample import Regrid, resample
@@ -28,7 +29,9 @@ __all__ = [
     "BarsTruth",
     "EdgeTarps",
     "GroundNoise",
+    "Landscape",
     "Noise",
+    "PairTruth",
     "Patch",
     "Placed",
     "Point",
@@ -50,8 +53,10 @@ __all__ = [
     "brookings",
     "checkerboard",
     "edge",
+    "landscape",
     "mirror_columns",
     "mirror_square",
+    "pair",
     "points",
     "pulse",
     "reference_systems",

@@ -1,0 +1,269 @@
+"""The second estimator: the ratio of cross spectrum to power spectrum, weighted by coherence.
+
+With L and R the spectra of the low and of the high image in windows of the same ground,
+``T = <L R*> / <|R|^2>`` is the kernel's transfer: what is aliased in the low image, or seen by one
+sensor alone, has no fixed phase against the reference and averages out. The coherence
+``g^2 = |<L R*>|^2 / (<|L|^2> <|R|^2>)`` gives the variance ``(1 - g^2) / (g^2 K) |T|^2`` of N
+windows, half of it in phase (Bendat and Piersol, Random Data, chapter 9). The kernel is the one of
+`fit.kernel_basis`, fitted to T at all frequencies of the plane up to the reference's Nyquist.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import uniform_filter
+
+from acutance.curves.grid import Floats
+from acutance.errors import TargetError
+from acutance.fit.bi_noise import WHITE
+from acutance.fit.bi_tile import PAD_PX, Complexes, PairTile, TapAxis, TapGrid, core, first_of_cell
+from acutance.fit.kernel_basis import LOG_AMPLITUDE_STD
+from acutance.fit.kernel_fit import KernelFit
+from acutance.fit.kernel_start import BlurFit
+from acutance.fit.normal import Normal
+from acutance.fit.posterior import Prior, regress
+
+__all__ = ["PairSpectra", "fit_spectra", "pair_spectra"]
+
+_LEAST_WINDOWS = 8
+_MISSING = 0.05
+_LOWEST_BINS = 1.5
+_LEAST_COHERENCE = 1e-4
+_MOST_NOISE = 0.5
+_LEAKAGE = 0.005
+"""Relative error that the window's leakage leaves where both images agree perfectly."""
+_OVERLAP = 4.0
+"""Windows overlap by half both ways: four times as many numbers as pixels."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairSpectra:
+    """Averaged spectra of windows of both images.
+
+    Frequencies in cycles per low pixel up to the reference's Nyquist; phases are relative to the
+    parametric kernel's centre.
+
+    Parameters
+    ----------
+    u_cpp, v_cpp : (m,) and (n,) arrays
+        Frequencies across and along, ascending.
+    cross : (n, m) complex array
+    low, high : (n, m) arrays
+        Power; that of the low image repeats itself with its sampling.
+    windows : int
+    size_px : int
+        Side of a window in low pixels.
+    """
+
+    u_cpp: Floats
+    v_cpp: Floats
+    cross: Complexes
+    low: Floats
+    high: Floats
+    windows: int
+    size_px: int
+
+    @property
+    def transfer(self) -> Complexes:
+        """The kernel's transfer with its gain, (n, m)."""
+        return self.cross / np.maximum(self.high, 1e-300)
+
+    @property
+    def coherence(self) -> Floats:
+        """Squared coherence over neighbouring frequencies, (n, m), less its bias."""
+        cross = _smooth(self.cross.real) + 1j * _smooth(self.cross.imag)
+        power = _smooth(self.low) * _smooth(self.high)
+        found = np.abs(cross) ** 2 / np.maximum(power, 1e-300)
+        bias = 1 / (9 * self.windows / _OVERLAP + 1)
+        return np.clip((found - bias) / (1 - bias), 0.0, 1.0)
+
+    def along_axis(self, axis: str) -> tuple[Floats, Floats]:
+        """Frequencies from 0 and squared coherence across or along, over a strip of 5 bins."""
+        coherence = self.coherence
+        middle_v, middle_u = self.v_cpp.size // 2, self.u_cpp.size // 2
+        if axis == "across":
+            return self.u_cpp[middle_u:], coherence[middle_v - 2 : middle_v + 3].mean(0)[middle_u:]
+        return self.v_cpp[middle_v:], coherence[:, middle_u - 2 : middle_u + 3].mean(1)[middle_v:]
+
+
+def _smooth(field: Floats) -> Floats:
+    return np.asarray(uniform_filter(field, 3, mode="nearest"))
+
+
+def pair_spectra(
+    tiles: Iterable[PairTile],
+    residuals: Iterable[Floats],
+    grid: TapGrid,
+    blur: BlurFit,
+    size_px: int,
+) -> PairSpectra | None:
+    """Spectra of all windows with both images whole; None where there are too few of them.
+
+    Parameters
+    ----------
+    tiles : iterable of PairTile
+    residuals : iterable of (h, w) arrays
+        Of the kernel fit, NaN where a pixel was left out.
+    grid : TapGrid
+    blur : BlurFit
+    size_px : int
+        Side of a window in low pixels, even.
+    """
+    down = _Window(grid.down, blur.down.shift_px, size_px)
+    across = _Window(grid.across, blur.across.shift_px, size_px)
+    cross = np.zeros((down.order.size, across.order.size), complex)
+    low, high = np.zeros(cross.shape), np.zeros(cross.shape)
+    count = 0
+    for tile, residual in zip(tiles, residuals, strict=True):
+        for pixels, samples in _windows(tile, residual, grid, size_px):
+            a = _spectrum(pixels, down.low_taper, across.low_taper)
+            b = _spectrum(samples, down.high_taper, across.high_taper)
+            a = a[np.ix_(down.order % size_px, across.order % size_px)]
+            b = b[np.ix_(down.order % samples.shape[0], across.order % samples.shape[1])]
+            b = b / (grid.down.per_px * grid.across.per_px)
+            cross += a * np.conj(b)
+            low += np.abs(a) ** 2
+            high += np.abs(b) ** 2
+            count += 1
+    if count < _LEAST_WINDOWS:
+        return None
+    turn = down.turn[:, None] * across.turn
+    return PairSpectra(
+        across.order / size_px, down.order / size_px, cross * turn / count, low / count,
+        high / count, count, size_px,
+    )  # fmt: skip
+
+
+class _Window:
+    """Tapers of a window along one axis, on the same ground, and the phase between the samples."""
+
+    def __init__(self, axis: TapAxis, shift_px: float, size: int) -> None:
+        most = size * axis.per_px // 2
+        self.order = np.arange(-most + 1, most)
+        samples = np.arange(size * axis.per_px) + first_of_cell(axis)
+        places = samples / axis.per_px + axis.offset_px + shift_px
+        self.low_taper = _hann(np.arange(size, dtype=float), size)
+        self.high_taper = _hann(places, size)
+        # From the first sample's place to that of the low pixel, as the content is displaced.
+        self.turn = np.exp(2j * math.pi * self.order / size * places[0])
+
+
+def _hann(places_px: Floats, size: int) -> Floats:
+    inside = np.clip((places_px + 0.5) / size, 0.0, 1.0)
+    return np.asarray(np.sin(math.pi * inside) ** 2)
+
+
+def _windows(
+    tile: PairTile, residual: Floats, grid: TapGrid, size: int
+) -> Iterator[tuple[Floats, Floats]]:
+    """Low pixels, the few that were left out filled, and the samples under them."""
+    low, rest = core(tile.low), core(residual)
+    known = np.isfinite(rest)
+    values = np.where(known, low, np.nan)
+    axes = (grid.down, grid.across)
+    for i in range(0, low.shape[0] - size + 1, size // 2):
+        for j in range(0, low.shape[1] - size + 1, size // 2):
+            pixels = values[i : i + size, j : j + size]
+            holes = ~np.isfinite(pixels)
+            if holes.mean() > _MISSING:
+                continue
+            if holes.any():
+                pixels = np.where(holes, _neighbours(pixels), pixels)
+            starts = [
+                axis.half + axis.per_px * (first + pad) + first_of_cell(axis)
+                for axis, first, pad in zip(axes, (i, j), (PAD_PX, PAD_PX), strict=True)
+            ]
+            rows, cols = (size * axis.per_px for axis in axes)
+            samples = tile.fine[starts[0] : starts[0] + rows, starts[1] : starts[1] + cols]
+            yield pixels, samples
+
+
+def _neighbours(pixels: Floats) -> Floats:
+    """Mean of the known pixels around each, or of all where there are none."""
+    known = np.isfinite(pixels)
+    share = uniform_filter(known.astype(float), 3, mode="constant")
+    total = uniform_filter(np.where(known, pixels, 0.0), 3, mode="constant")
+    return np.asarray(np.where(share > 0.05, total / np.maximum(share, 0.05), pixels[known].mean()))
+
+
+def _spectrum(field: Floats, down: Floats, across: Floats) -> Complexes:
+    taper = down[:, None] * across
+    mean = float(np.sum(taper * field) / np.sum(taper))
+    return np.asarray(np.fft.fft2(taper * (field - mean)))
+
+
+def fit_spectra(
+    spectra: PairSpectra, fit: KernelFit, blur: BlurFit, *, noise_high: float
+) -> KernelFit:
+    """The kernel that fits the ratio of spectra, weighted by coherence.
+
+    Parameters
+    ----------
+    spectra : PairSpectra
+    fit : KernelFit
+        The fit to the pixels: the basis is its own, and so are noise and counts.
+    blur : BlurFit
+    noise_high : float
+        Standard deviation of the reference's noise in a sample.
+
+    Raises
+    ------
+    TargetError
+        If no frequency is coherent.
+    """
+    basis = fit.basis
+    v, u = (grid.ravel() for grid in np.meshgrid(spectra.v_cpp, spectra.u_cpp, indexing="ij"))
+    coherence = spectra.coherence.ravel()
+    # One of each pair of opposite frequencies, without those next to zero in either image: the
+    # mean was taken out there.
+    chosen = (v > 0) | ((v == 0) & (u > 0))
+    chosen &= np.hypot(u - np.round(u), v - np.round(v)) * spectra.size_px > _LOWEST_BINS
+    chosen &= coherence > _LEAST_COHERENCE
+    if chosen.sum() < 50:
+        raise TargetError(
+            f"only {int(chosen.sum())} frequencies are coherent between the two images, 50 are "
+            "needed: they show different things, or little detail; use method kernel-fit"
+        )
+    high = spectra.high.ravel()[chosen]
+    low = spectra.low.ravel()[chosen]
+    transfer = spectra.cross.ravel()[chosen] / high
+    share = np.minimum(_noise_power(spectra, noise_high, basis.grid) / high, _MOST_NOISE)
+    transfer = transfer / (1 - share)
+    u, v = u[chosen], v[chosen]
+    variance = (1 - coherence[chosen]) * low / high * _OVERLAP / (2 * spectra.windows)
+    variance = variance + (_LEAKAGE * np.abs(transfer)) ** 2
+    turn = np.exp(2j * math.pi * (u * basis.across.shift_px + v * basis.down.shift_px))
+    design = basis.transfer(u, v) * turn[:, None] / np.sqrt(variance)[:, None]
+    data = transfer / np.sqrt(variance)
+    x = np.vstack([design.real, design.imag])
+    y = np.concatenate([data.real, data.imag])
+    mean = np.zeros(basis.size)
+    mean[0] = blur.gain
+    prior = Prior(
+        block=np.asarray(basis.blocks, float),
+        scale=basis.scale,
+        mean=mean,
+        log_amplitude=basis.log_amplitude,
+        log_amplitude_std=LOG_AMPLITUDE_STD,
+        height=abs(blur.gain),
+        noise_floor=1e-3,
+    )
+    posterior = regress(Normal(x.T @ x, x.T @ y, float(y @ y), float(y.size)), prior, 1.0)
+    k = basis.size
+    return KernelFit(
+        grid=fit.grid, basis=basis, posterior=posterior, noise_factor=np.zeros(k),
+        scores=np.zeros((k, 0)), white_factor=np.zeros((k, 0)), whitening=WHITE,
+        noise=fit.noise, used=fit.used, left_out=fit.left_out,
+        robust=fit.robust,
+    )  # fmt: skip
+
+
+def _noise_power(spectra: PairSpectra, noise: float, grid: TapGrid) -> float:
+    """Power of the reference's noise in a window's spectrum."""
+    samples = spectra.size_px**2 * grid.down.per_px * grid.across.per_px
+    hann = (3 / 8) ** 2
+    return noise**2 * samples * hann / (grid.down.per_px * grid.across.per_px) ** 2

@@ -1,0 +1,284 @@
+"""Measure the MTF of a sensor from two images of the same ground at two resolutions.
+
+The low image is ``gain * D(h * shift(high)) + offset``: the high image's samples, blurred by a
+kernel h and sampled at the low pixels. The transfer of h is exactly MTF_low / MTF_high up to the
+high image's Nyquist frequency, as far as that image is not aliased; times the high image's own
+OTF it is the low sensor's.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves import Estimate, Otf2d
+from acutance.curves.grid import Floats
+from acutance.errors import OptionError, TargetError
+from acutance.fit.bi_local import fit_regions
+from acutance.fit.bi_register import Registration, register
+from acutance.fit.bi_spectrum import PairSpectra, fit_spectra, pair_spectra
+from acutance.fit.bi_tile import FAR_PX
+from acutance.fit.kernel_fit import KernelFit, fit_kernel
+from acutance.fit.kernel_otf import KernelOtf
+from acutance.fit.kernel_start import BlurFit, fit_blur
+from acutance.measure.biresolution_checks import PairEvidence, check_pair
+from acutance.measure.biresolution_grid import PairGrid, pair_grid
+from acutance.measure.biresolution_measurement import BiresolutionMeasurement
+from acutance.measure.biresolution_options import BiresolutionOptions
+from acutance.measure.biresolution_reference import ReferenceLike, reference_otf
+from acutance.measure.biresolution_tiles import PairTiles
+from acutance.measure.cut import RoiLike
+from acutance.measure.measurement import ImageInfo
+from acutance.raster import Box, Image, Region
+
+__all__ = ["BIRESOLUTION_METHODS", "measure_biresolution"]
+
+BIRESOLUTION_METHODS = ("kernel-fit", "spectral-ratio")
+_LONG_REACH_PX = 7.0
+_SHORT_REACH_PX = 4.5
+_ROOM_PX = 56
+_SIZE_PX = (32, 16)
+_SHOWN_PX = 384
+
+
+def measure_biresolution(
+    low: Image | ArrayLike,
+    high: Image | ArrayLike,
+    *,
+    ratio: float | None = None,
+    roi: RoiLike = None,
+    reference_mtf: ReferenceLike = None,
+    method: str = "kernel-fit",
+    options: BiresolutionOptions | None = None,
+) -> BiresolutionMeasurement:
+    """Measure the MTF of the low image's sensor against a finer image of the same ground.
+
+    Parameters
+    ----------
+    low, high : Image or (rows, cols) array_like
+        The image whose sensor is measured, and the reference. With geotransforms they tell how
+        the images lie on each other; without, the first corners of both coincide.
+    ratio : float, optional
+        GSD of the low image over that of the high one; without it, that of the geotransforms or
+        of the shapes.
+    roi : Region, Box, (row, col, height, width) or None
+        Where to look, in pixels of the low image.
+    reference_mtf : Sensor, Measurement, Measurement2d, MeasuredCurves, Response, Mtf or float
+        The high image's own MTF, in its own pixels; a number is its value at Nyquist. Without it
+        the result is MTF_low / MTF_high, and a check says so.
+    method : {"kernel-fit", "spectral-ratio"}, optional
+        Least squares on the pixels, or the ratio of spectra weighted by coherence.
+    options : BiresolutionOptions, optional
+
+    Returns
+    -------
+    BiresolutionMeasurement
+        Frequencies in cycles per pixel of the LOW image.
+
+    Raises
+    ------
+    ImageError, OptionError
+        If there are no images, or the ratio or another option makes no sense.
+    RegionError
+        If the images do not overlap, or too few low pixels have the high image around them.
+    TargetError
+        If the images hold no structure, or nothing in common.
+    """
+    if method not in BIRESOLUTION_METHODS:
+        known = ", ".join(BIRESOLUTION_METHODS)
+        raise OptionError(f"there is no bi-resolution method {method!r}: choose one of {known}")
+    chosen = options or BiresolutionOptions()
+    coarse, fine = _as_image(low), _as_image(high)
+    geometry = pair_grid(coarse, fine, ratio)
+    reference = reference_otf(reference_mtf, geometry.across.ratio, geometry.down.ratio)
+    tiles, match = _registered(coarse, fine, geometry, _as_region(roi, coarse), chosen)
+    noise = tiles.high_noise if chosen.noise_high is None else chosen.noise_high
+    blur = fit_blur(
+        tiles, tiles.taps,
+        stop_change=chosen.stop_change, max_steps=chosen.max_steps, robust=chosen.robust,
+    )  # fmt: skip
+    _require_gain(blur, match)
+    pixel_fit = fit_kernel(
+        tiles, tiles.taps, blur,
+        processes=3 if tiles.reach_px > 0.5 * (_LONG_REACH_PX + _SHORT_REACH_PX) else 2,
+        noise_high=noise, robust=chosen.robust,
+    )  # fmt: skip
+    spectra = _spectra(tiles, pixel_fit, blur)
+    fit = pixel_fit
+    if method == "spectral-ratio":
+        if spectra is None:
+            raise TargetError(
+                "the region has too few whole windows of 16 low pixels for spectra: choose a "
+                "larger one, or method kernel-fit"
+            )
+        fit = fit_spectra(spectra, pixel_fit, blur, noise_high=noise)
+    shown = _Residuals(tiles.box)
+    local = fit_regions(tiles, tiles.taps, blur, pixel_fit, tiles.map_shape, shown.keep)
+    model = KernelOtf(fit, tiles.grid.across.band_cpp, tiles.grid.down.band_cpp, reference)
+    seen = PairEvidence(
+        tiles.grid, blur, pixel_fit, model, spectra, local, _saturated(tiles), match.inverted,
+        chosen.stop_change,
+    )  # fmt: skip
+    gsd = coarse.gsd(*_middle(tiles.box))
+    return BiresolutionMeasurement(
+        kind="biresolution",
+        method=method,
+        otf=Otf2d(model, None if gsd is None else (gsd.row_m, gsd.col_m)),
+        snr=_snr(blur, pixel_fit),
+        checks=check_pair(seen, chosen.limits),
+        image=_info(coarse, tiles.box),
+        options={**chosen.to_dict(), "ratio": ratio, "reference_given": reference is not None},
+        high=_info(fine, Box.whole(fine.shape)),
+        grid=tiles.grid,
+        shift_px=_shifts(blur, fit),
+        gain=blur.gain,
+        offset=blur.offset,
+        blur=blur,
+        fit=fit,
+        pixel_fit=pixel_fit,
+        spectra=spectra,
+        local=local,
+        residual=shown.field,
+        residual_step=shown.step,
+        share_read=tiles.share_read,
+        high_noise=noise,
+        reference_known=reference is not None,
+    )
+
+
+def _as_image(image: Image | ArrayLike) -> Image:
+    return image if isinstance(image, Image) else Image.from_array(image)
+
+
+def _as_region(roi: RoiLike, image: Image) -> Region | None:
+    if roi is None or isinstance(roi, Region):
+        return roi
+    box = roi if isinstance(roi, Box) else Box(*roi)
+    box.require_inside(image.shape)
+    return Region.from_box(box)
+
+
+def _registered(
+    low: Image, high: Image, grid: PairGrid, region: Region | None, options: BiresolutionOptions
+) -> tuple[PairTiles, Registration]:
+    """Tiles whose taps follow the displacement of the low content, found in steps of a pixel."""
+
+    def tiles_at(place: PairGrid, reach_px: float) -> PairTiles:
+        return PairTiles(low, high, place, region, reach_px, options.max_pixels)
+
+    first = tiles_at(grid, _SHORT_REACH_PX)
+    found = _matched(first, options.max_shift_px)
+    if found.correlation <= 0:
+        raise TargetError(
+            "the two images have no structure in common within "
+            f"{options.max_shift_px} low pixels: one is uniform, or they show different ground; "
+            "check the pair, the ratio and the geotransforms"
+        )
+    placed = grid.shifted((round(found.shift_px[0]), round(found.shift_px[1])))
+    reach = options.reach_px
+    if reach is None:
+        long = placed.down.inner(_LONG_REACH_PX), placed.across.inner(_LONG_REACH_PX)
+        wanted = first.box if region is None else region.box(low.shape)
+        room = min(
+            min(stop, start_px + size) - max(start, start_px)
+            for (start, stop), start_px, size in zip(
+                long, (wanted.row, wanted.col), wanted.shape, strict=True
+            )
+        )
+        reach = _LONG_REACH_PX if room >= _ROOM_PX else _SHORT_REACH_PX
+    return tiles_at(placed, reach), found
+
+
+def _matched(tiles: PairTiles, max_shift_px: int) -> Registration:
+    """The best match over some tiles: that of the tile where it is the clearest."""
+    best = Registration((0.0, 0.0), 0.0, False)
+    for tile in tiles.some(9):
+        height, width = tile.low.shape
+        under = tile.wide[FAR_PX : FAR_PX + height, FAR_PX : FAR_PX + width]
+        if np.isfinite(tile.low).sum() < 64:
+            continue
+        found = register(tile.low, under, max_shift_px)
+        if found.correlation > best.correlation:
+            best = found
+    return best
+
+
+def _require_gain(blur: BlurFit, match: Registration) -> None:
+    if blur.gain > 0 and blur.correlation > 0.05:
+        return
+    raise TargetError(
+        f"the low image follows the high one with gain {blur.gain:.3g} and correlation "
+        f"{blur.correlation:.3f}"
+        + (", brighter where that is darker" if match.inverted or blur.gain < 0 else "")
+        + ": bands, dates or places differ too much for a measurement; choose a similar band"
+    )
+
+
+def _spectra(tiles: PairTiles, fit: KernelFit, blur: BlurFit) -> PairSpectra | None:
+    for size in _SIZE_PX:
+        found = pair_spectra(tiles(), fit.residuals(tiles), tiles.taps, blur, size)
+        if found is not None:
+            return found
+    return None
+
+
+def _shifts(blur: BlurFit, fit: KernelFit) -> tuple[Estimate, Estimate]:
+    """Displacement of the kernel: that of its centre, with its standard deviation."""
+    step = 1e-4
+    nothing, some = np.zeros(2), np.array([0.0, step])
+    stds = []
+    for u, v in ((nothing, some), (some, nothing)):
+        transfer = fit.basis.transfer(u, v)
+        value = transfer @ fit.beta
+        moves = (transfer[1] / value[1] - transfer[0] / value[0]).imag / (2 * np.pi * step)
+        stds.append(float(np.linalg.norm(moves @ fit.posterior.factor)))
+    return Estimate(blur.down.shift_px, stds[0]), Estimate(blur.across.shift_px, stds[1])
+
+
+def _snr(blur: BlurFit, fit: KernelFit) -> float:
+    """Standard deviation of the low image's detail over that of the residuals."""
+    if not fit.noise > 0:
+        return float("inf")
+    return blur.signal / fit.noise
+
+
+def _saturated(tiles: PairTiles) -> float:
+    """Share of the low pixels at the end of the scale."""
+    level = tiles.low.saturation_level
+    if level is None:
+        return 0.0
+    clipped = known = 0
+    for tile in tiles():
+        usable = tile.low[np.isfinite(tile.low)]
+        clipped += int(np.count_nonzero(usable >= level))
+        known += usable.size
+    return clipped / max(known, 1)
+
+
+def _middle(box: Box) -> tuple[float, float]:
+    return box.row + box.height / 2, box.col + box.width / 2
+
+
+def _info(image: Image, box: Box) -> ImageInfo:
+    gsd = image.gsd(*_middle(box))
+    gsd_m = None if gsd is None else gsd.col_m
+    return ImageInfo(image.path, image.band, gsd_m, box.as_tuple(), image.crs)
+
+
+class _Residuals:
+    """Residuals of all tiles in one thinned field."""
+
+    def __init__(self, box: Box) -> None:
+        self.box = box
+        self.step = max(1, -(-max(box.shape) // _SHOWN_PX))
+        self.field: Floats = np.full([-(-size // self.step) for size in box.shape], np.nan)
+
+    def keep(self, place: tuple[int, int], residual: Floats) -> None:
+        """Put a tile's residual in its place."""
+        rows = np.arange(residual.shape[0]) + place[0] - self.box.row
+        cols = np.arange(residual.shape[1]) + place[1] - self.box.col
+        down = (rows >= 0) & (rows < self.box.height) & (rows % self.step == 0)
+        across = (cols >= 0) & (cols < self.box.width) & (cols % self.step == 0)
+        part = residual[np.ix_(down, across)]
+        places = np.ix_(rows[down] // self.step, cols[across] // self.step)
+        self.field[places] = np.where(np.isfinite(part), part, self.field[places])

@@ -1,0 +1,290 @@
+"""The same ground seen by two sensors of different GSD: a pair for the bi-resolution method."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+from acutance.curves import Response
+from acutance.curves.grid import Floats
+from acutance.errors import ModelError
+from acutance.fit.line import Orientation
+from acutance.optics import Rescaled, Sensor
+from acutance.optics.block import Block, Transfer, require
+from acutance.simulate.ground import alias_bands
+from acutance.simulate.noise import Noise, noise_of_snr
+
+__all__ = ["Landscape", "PairTruth", "landscape", "pair"]
+
+MARGIN_PX = 8
+"""Ground rendered beyond the low image on every side: what is scattered further comes back from
+the other side."""
+
+MAX_SAMPLES = 40_000_000
+
+Complexes = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Landscape:
+    """Fields with straight borders, and a texture whose power falls like a power of frequency.
+
+    Parameters
+    ----------
+    fields : int, optional
+        Number of straight borders drawn across the ground; none leaves the texture alone.
+    texture : float, optional
+        Standard deviation of the texture as a share of the contrast between the fields.
+    slope : float, optional
+        Exponent of the texture's power spectrum, ``f^-slope``; natural scenes have 2 to 3.
+    """
+
+    fields: int = 12
+    texture: float = 0.15
+    slope: float = 2.4
+
+    def __post_init__(self) -> None:
+        require(self, 0.0, 40.0, fields=self.fields)
+        require(self, texture=self.texture, slope=self.slope)
+        if self.fields == 0 and self.texture == 0:
+            raise ModelError("Landscape: no fields and no texture leave uniform ground")
+
+
+@dataclass(frozen=True, eq=False)
+class PairTruth:
+    """What a perfect measurement of a simulated pair would return.
+
+    Frequencies and distances are in pixels of the low image.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        The one of the low image.
+    reference : Sensor
+        The one of the high image, in its own pixels.
+    ratio : float
+        GSD of the low image over that of the high one.
+    shift_px : (float, float)
+        By how much, (row, col) in low pixels, the low image's content is displaced.
+    gain, offset : float
+        Of the low image's radiometry against the high one's.
+    noise_low, noise_high : Noise, optional
+        What was added to either image.
+    """
+
+    sensor: Sensor
+    reference: Sensor
+    ratio: float
+    shift_px: tuple[float, float]
+    gain: float
+    offset: float
+    noise_low: Noise | None = None
+    noise_high: Noise | None = None
+
+    @property
+    def reference_in_low_px(self) -> Block:
+        """The reference sensor in pixels of the low image."""
+        return Rescaled(self.reference, self.ratio)
+
+    def ratio_otf(self, u: Floats, v: Floats) -> Transfer:
+        """OTF of the low sensor over that of the reference: what the pair alone can tell."""
+        return np.asarray(self.sensor.otf(u, v) / self.reference_in_low_px.otf(u, v))
+
+    def response(self, orientation: Orientation = "across") -> Response:
+        """True curves of the low sensor, across or along."""
+        return self.sensor.response(0.0, orientation)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The geometry and the true curves of both directions, for JSON."""
+        directions: dict[str, Any] = {}
+        for orientation, angle in (("across", 0.0), ("along", math.pi / 2)):
+            found = self.response("across" if angle == 0.0 else "along")
+            numbers = {name: number.value for name, number in found.metrics().items()}
+            freq: Floats = found.mtf.freq_cpp[found.mtf.freq_cpp <= self.ratio / 2]
+            quotient = np.abs(self.ratio_otf(freq * math.cos(angle), freq * math.sin(angle)))
+            directions[orientation] = {
+                **numbers,
+                "mtf": {
+                    "freq_cpp": np.round(found.mtf.freq_cpp, 6).tolist(),
+                    "value": found.mtf.value.tolist(),
+                },
+                "mtf_over_reference": {
+                    "freq_cpp": np.round(freq, 6).tolist(),
+                    "value": quotient.tolist(),
+                },
+            }
+        return {
+            "kind": "biresolution",
+            "ratio": self.ratio,
+            "shift_px": list(self.shift_px),
+            "gain": self.gain,
+            "offset": self.offset,
+            **directions,
+        }
+
+
+def pair(
+    sensor: Sensor,
+    reference: Sensor,
+    *,
+    ratio: float = 2.0,
+    shape: tuple[int, int] = (128, 128),
+    shift_px: tuple[float, float] = (0.0, 0.0),
+    gain: float = 1.0,
+    offset: float = 0.0,
+    ground: Landscape | None = None,
+    dark: float = 200.0,
+    bright: float = 1200.0,
+    snr: float | None = None,
+    noise_low: Noise | None = None,
+    noise_high: Noise | None = None,
+    rng: np.random.Generator,
+) -> tuple[Floats, Floats, PairTruth]:
+    """Two images of one landscape, and the truth about them.
+
+    The ground is a Fourier series, so both images are exact: its coefficients times either OTF,
+    at the pixels' own places, with all aliasing. Pixel corners of the two images coincide.
+
+    Parameters
+    ----------
+    sensor, reference : Sensor
+        Of the low and of the high image, each in its own pixels.
+    ratio : float, optional
+        GSD of the low image over that of the high one, in quarters: 2, 2.5, 2.75.
+    shape : (rows, cols), optional
+        Of the low image.
+    shift_px : (float, float), optional
+        Displacement (row, col) of the low image's content in low pixels: an error of the
+        registration.
+    gain, offset : float, optional
+        The low image is ``gain * radiance + offset``.
+    ground : Landscape, optional
+    dark, bright : float, optional
+        Levels of the darkest and of the brightest field in the high image.
+    snr : float, optional
+        ``bright - dark`` over the standard deviation of white noise added to both images.
+    noise_low, noise_high : Noise, optional
+        Full descriptions, instead of `snr`, in units of either image.
+    rng : numpy.random.Generator
+        Draws the ground and the noise.
+
+    Returns
+    -------
+    low : (rows, cols) array
+    high : (rows * ratio, cols * ratio) array
+    truth : PairTruth
+
+    Raises
+    ------
+    ModelError
+        If the ratio is no number of quarters above 1, the high image has no whole pixels, or the
+        images are too large to be rendered at once.
+    """
+    quarters = round(4 * ratio)
+    if not (1 < ratio <= 16 and abs(4 * ratio - quarters) < 1e-9):
+        raise ModelError(f"the ratio is {ratio:g}, it has to be 1.25 to 16 in steps of a quarter")
+    wide = tuple(_whole(size + 2 * MARGIN_PX, quarters) for size in shape)
+    if wide[0] * wide[1] * quarters**2 > MAX_SAMPLES:
+        raise ModelError(
+            f"{shape[0]} by {shape[1]} pixels at ratio {ratio:g} need more than "
+            f"{MAX_SAMPLES:,} samples of the ground: render a smaller pair"
+        )
+    chosen = ground or Landscape()
+    radiance = landscape((wide[0] * quarters, wide[1] * quarters), quarters, chosen, rng)
+    spectrum = fft.fft2(dark + (bright - dark) * radiance)
+    low = gain * _seen(spectrum, sensor, quarters, wide, shift_px) + offset
+    high = _seen(spectrum, reference, 4, tuple(n * quarters // 4 for n in wide), (0.0, 0.0))
+    low = low[: MARGIN_PX + shape[0], : MARGIN_PX + shape[1]][MARGIN_PX:, MARGIN_PX:]
+    first = MARGIN_PX * quarters // 4
+    rows, cols = (math.floor(size * ratio + 1e-9) for size in shape)
+    high = high[first : first + rows, first : first + cols]
+    added_low = noise_of_snr(gain * (bright - dark), snr, noise_low)
+    added_high = noise_of_snr(bright - dark, snr, noise_high)
+    truth = PairTruth(
+        sensor, reference, ratio, shift_px, gain, offset, added_low, added_high
+    )  # fmt: skip
+    return (
+        low.copy() if added_low is None else added_low.added_to(low, rng),
+        high.copy() if added_high is None else added_high.added_to(high, rng),
+        truth,
+    )
+
+
+def _whole(size: int, quarters: int) -> int:
+    """The next size whose ground is quick to transform and holds whole pixels of both images."""
+    while fft.next_fast_len(size) != size or (size * quarters) % 4:
+        size += 1
+    return size
+
+
+def landscape(
+    shape: tuple[int, int], period: int, ground: Landscape, rng: np.random.Generator
+) -> Floats:
+    """Samples of a landscape, 0 in the darkest field and 1 in the brightest, texture added.
+
+    Parameters
+    ----------
+    shape : (rows, cols)
+    period : int
+        Samples in a low pixel; the texture levels off at periods longer than 64 of these.
+    ground : Landscape
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    (rows, cols) array
+    """
+    rows = np.arange(shape[0])[:, None] / max(shape)
+    cols = np.arange(shape[1])[None, :] / max(shape)
+    cell = np.zeros(shape, np.int64)
+    for _ in range(ground.fields):
+        angle, place = rng.uniform(0, math.pi), rng.uniform(-0.45, 0.45)
+        across = (cols - 0.5) * math.cos(angle) + (rows - 0.5) * math.sin(angle)
+        cell = 2 * cell + (across > place)
+    _, number = np.unique(cell, return_inverse=True)
+    count = int(number.max()) + 1
+    level = rng.permutation(np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5]))
+    radiance: Floats = level[number.reshape(shape)]
+    if ground.texture > 0:
+        v = fft.fftfreq(shape[0])[:, None] * period
+        u = fft.rfftfreq(shape[1])[None, :] * period
+        amplitude = (np.hypot(u, v) ** 2 + (1 / 64) ** 2) ** (-ground.slope / 4)
+        noise = fft.irfft2(fft.rfft2(rng.standard_normal(shape)) * amplitude, shape)
+        radiance = radiance + ground.texture * noise / noise.std()
+    return radiance
+
+
+def _seen(
+    spectrum: Complexes,
+    sensor: Sensor,
+    samples: int,
+    shape: tuple[int, ...],
+    shift_px: tuple[float, float],
+) -> Floats:
+    """An image of `shape` pixels of `samples` ground samples each, all alias bands folded in."""
+    rows, cols = shape
+    reach = min(alias_bands(sensor) + 0.5, samples / 2)
+    down, across = (_orders(size, samples, reach) for size in shape)
+    v, u = down[:, None] / rows, across[None, :] / cols
+    # The first pixel's centre lies half a pixel from the corner, the first sample's half a sample.
+    place = 0.5 - 0.5 / samples
+    turn_down = np.exp(2j * math.pi * v * (place - shift_px[0]))
+    turn_across = np.exp(2j * math.pi * u * (place - shift_px[1]))
+    part = spectrum[np.ix_(down % spectrum.shape[0], across % spectrum.shape[1])]
+    part = part * sensor.otf(u, v) * turn_down * turn_across
+    folded = np.zeros((rows, part.shape[1]), complex)
+    np.add.at(folded, down % rows, part)
+    image = np.zeros((rows, cols), complex)
+    np.add.at(image.T, across % cols, folded.T)
+    return np.asarray(fft.ifft2(image).real / samples**2)
+
+
+def _orders(size: int, samples: int, reach: float) -> NDArray[np.intp]:
+    """Orders of the Fourier series that a sensor passes, each once."""
+    most = min(math.ceil(reach * size), size * samples // 2 - 1)
+    return np.arange(-most, most + 1)
