@@ -8,7 +8,7 @@ import typer
 from typer.core import TyperGroup
 
 from acutance import __version__
-from acutance.cli import demo, edge, plan, pulse, simulate, sites, study
+from acutance.cli import biresolution, demo, edge, plan, points, pulse, simulate, sites, study
 from acutance.cli.terminal import fail
 from acutance.errors import AcutanceError
 
@@ -56,8 +56,10 @@ def _main(
     """
 
 
+app.command("biresolution", epilog=biresolution.EXAMPLE)(biresolution.biresolution)
 app.command("edge", epilog=edge.EXAMPLE)(edge.edge)
 app.command("pulse", epilog=pulse.EXAMPLE)(pulse.pulse)
+app.command("points", epilog=points.EXAMPLE)(points.points)
 app.command("sites", epilog=sites.EXAMPLE)(sites.sites)
 app.add_typer(simulate.app, name="simulate")
 app.command("study", epilog=study.EXAMPLE)(study.study)

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import fields, replace
-from typing import TYPE_CHECKING, TypeVar
+from dataclasses import Field, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
     from acutance.curves.metrics import RerCentre
-    from acutance.measure import EdgeLimits
 
 __all__ = ["change_limits", "choose_methods", "choose_rer_centre"]
 
-LimitsT = TypeVar("LimitsT", bound="EdgeLimits")
+
+class _Limits(Protocol):
+    """Limits of any target's checks: a dataclass of numbers."""
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+
+LimitsT = TypeVar("LimitsT", bound=_Limits)
 RER_CENTRES: dict[str, RerCentre] = {"half": "half", "peak": "peak"}
-SIDES = ("_dark", "_bright", "_before", "_behind")
+SIDES = ("_dark", "_bright", "_before", "_behind", "_strip")
 
 
 def choose_methods(first: str, compare: str | None, known: Collection[str]) -> list[str]:

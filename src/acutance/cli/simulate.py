@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from acutance.cli import scenes
+from acutance.cli import scenes, simulate_pair
 from acutance.cli.scenes import SimulatedFiles, parse_size
 from acutance.cli.sensor import BUDGET_EXAMPLE, named_sensor, sensor_budget
 from acutance.errors import OptionError
@@ -178,4 +178,5 @@ for _name, _command in (
     ("site", scenes.site),
 ):
     app.command(_name, epilog=f"\b\nExample:\n{scenes.EXAMPLES[_name]}")(_command)
+app.command("pair", epilog=f"\b\nExample:\n{simulate_pair.PAIR_EXAMPLE}")(simulate_pair.pair)
 app.command("sensor-budget", epilog=BUDGET_EXAMPLE)(sensor_budget)

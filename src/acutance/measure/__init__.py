@@ -3,11 +3,15 @@
 from acutance.measure.biresolution import BIRESOLUTION_METHODS, measure_biresolution
 from acutance.measure.biresolution_measurement import BiresolutionMeasurement
 from acutance.measure.biresolution_options import BiresolutionLimits, BiresolutionOptions
-from acutance.measure.biresolution_reference import MeasuredCurves
+from acutance.measure.biresolution_reference import MeasuredCurves, measured_reference
 from acutance.measure.edge import METHODS, measure_edge
 from acutance.measure.measurement import Check, ImageInfo, Measurement, Samples
 from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.options import EdgeLimits, EdgeOptions, PulseLimits, PulseOptions
+from acutance.measure.points import POINTS_METHODS, PointsMeasurement, measure_points
+from acutance.measure.points_evidence import PointSource
+from acutance.measure.points_options import PointsLimits, PointsOptions
+from acutance.measure.points_survey import SurveyErrors, survey_errors
 from acutance.measure.pulse import PULSE_METHODS, measure_pulse
 from acutance.measure.star import STAR_METHODS, Rings, StarMeasurement, measure_star
 from acutance.measure.star_options import StarLimits, StarOptions
@@ -16,6 +20,7 @@ from acutance.measure.target import EdgeGroup, Rejected, TargetResult, measure_e
 __all__ = [
     "BIRESOLUTION_METHODS",
     "METHODS",
+    "POINTS_METHODS",
     "PULSE_METHODS",
     "STAR_METHODS",
     "BiresolutionLimits",
@@ -29,6 +34,10 @@ __all__ = [
     "MeasuredCurves",
     "Measurement",
     "Measurement2d",
+    "PointSource",
+    "PointsLimits",
+    "PointsMeasurement",
+    "PointsOptions",
     "PulseLimits",
     "PulseOptions",
     "Rejected",
@@ -37,10 +46,14 @@ __all__ = [
     "StarLimits",
     "StarMeasurement",
     "StarOptions",
+    "SurveyErrors",
     "TargetResult",
     "measure_biresolution",
     "measure_edge",
     "measure_edges",
+    "measure_points",
     "measure_pulse",
     "measure_star",
+    "measured_reference",
+    "survey_errors",
 ]

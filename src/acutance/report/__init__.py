@@ -1,5 +1,7 @@
 """Faces of a measurement on paper: text, figures, HTML, CSV and JSON."""
 
+from acutance.report.biresolution_panels import biresolution_panels
+from acutance.report.biresolution_words import biresolution_blocks, biresolution_sections
 from acutance.report.budget import (
     budget_document,
     budget_figure,
@@ -21,6 +23,8 @@ from acutance.report.plane_page import plane_figure, plane_panels
 from acutance.report.plane_panels import PlanePanel
 from acutance.report.plane_report import plane_report, plane_sections
 from acutance.report.plane_text import plane_csv, plane_document, plane_text
+from acutance.report.points_panels import points_panels
+from acutance.report.points_tables import points_blocks, points_sections, sources_csv
 from acutance.report.reports import comparison_report, edge_report, target_report
 from acutance.report.scene_truth import scene_document, target_truth_document
 from acutance.report.study_figures import plan_text, study_figure, study_text
@@ -30,6 +34,9 @@ from acutance.report.text import comparison_text, target_text, text_report
 
 __all__ = [
     "PlanePanel",
+    "biresolution_blocks",
+    "biresolution_panels",
+    "biresolution_sections",
     "budget_document",
     "budget_figure",
     "budget_text",
@@ -53,9 +60,13 @@ __all__ = [
     "plane_report",
     "plane_sections",
     "plane_text",
+    "points_blocks",
+    "points_panels",
+    "points_sections",
     "save_figure",
     "scene_document",
     "sensor_document",
+    "sources_csv",
     "study_figure",
     "study_text",
     "target_document",
