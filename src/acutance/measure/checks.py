@@ -15,7 +15,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.fit.trim import Extent
-from acutance.measure import pixel_checks
+from acutance.measure import pixel_checks, structure_checks
 from acutance.measure.cut import Cut
 from acutance.measure.evidence import MUCH, Evidence, TargetChecks, at_least, at_most
 from acutance.measure.measurement import Check
@@ -62,8 +62,8 @@ class EdgeChecks(TargetChecks):
         seen, limits = self._seen, self.limits
         return (
             contrast(seen, limits),
-            uniformity(seen, limits, "dark", seen.before),
-            uniformity(seen, limits, "bright", seen.behind),
+            structure_checks.uniformity(seen, limits, "dark", seen.before),
+            structure_checks.uniformity(seen, limits, "bright", seen.behind),
             angle(self.fit, limits, self.by_rows),
             phases(seen, limits),
             enough_rows(self.extent, limits),
@@ -74,7 +74,9 @@ class EdgeChecks(TargetChecks):
             pixel_checks.quantisation(self.cut, self.band, seen, limits),
             pixel_checks.gradient(seen, limits),
             pixel_checks.correlation(seen, limits),
-            structure(seen, limits),
+            structure_checks.structure(seen, limits),
+            structure_checks.lopsided(seen, limits),
+            structure_checks.profile(seen, limits, 0.0, self.by_rows),
             pixel_checks.outliers(seen, limits),
         )
 
@@ -87,28 +89,6 @@ def contrast(seen: Evidence, limits: EdgeLimits) -> Check:
         "contrast_snr", value, limits.contrast_snr,
         f"bright less dark is {value:.0f} times the plateaus' mean standard deviation "
         "(KOMPSAT-3 draft 3c asks 50; below it the intervals widen)",
-    )  # fmt: skip
-
-
-def uniformity(seen: Evidence, limits: EdgeLimits, side: str, outwards: Floats) -> Check:
-    """Structure of one plateau: what means over 4 x 4 pixels vary beyond what noise explains."""
-    there = outwards > seen.far_px
-    blocks = (seen.rows[there] // 4) * 4096 + seen.cols[there] // 4
-    _, block = np.unique(blocks, return_inverse=True)
-    count = np.bincount(block)
-    mean = np.bincount(block, seen.value[there]) / np.maximum(count, 1)
-    full = count >= 8
-    value = MUCH
-    if np.count_nonzero(full) >= 3:
-        within = np.bincount(block, (seen.value[there] - mean[block]) ** 2)[full].sum()
-        noise = within / np.maximum((count[full] - 1).sum(), 1)
-        structure = float(np.var(mean[full], ddof=1)) - float(noise * np.mean(1 / count[full]))
-        if structure > 0:
-            value = min(1 / math.sqrt(structure), MUCH)
-    return at_least(
-        f"uniformity_{side}", value, limits.uniformity,
-        f"the {side} side varies by {100 / value:.1f} % of the contrast from place to place "
-        "(KOMPSAT-3 draft 3b: contrast at least 50 times the variation)",
     )  # fmt: skip
 
 
@@ -183,26 +163,4 @@ def plateau(limits: EdgeLimits, side: str, value: float) -> Check:
         f"plateau_{side}_px", value, limits.plateau_px,
         f"the {side} side is uniform out to {value:.1f} px from the edge (Li et al. 4.2: 7 to 10); "
         "what lies further of a halo is not seen and raises the MTF",
-    )  # fmt: skip
-
-
-def structure(seen: Evidence, limits: EdgeLimits) -> Check:
-    """Bumps of the ESF where it should be flat: a line, a road, a second edge."""
-    esf = seen.fit.response.esf
-    reach = float(np.sort(seen.outside)[int(0.95 * seen.outside.size)])
-    worst = 0.0
-    for sign in (-1.0, 1.0):
-        outwards = sign * esf.distance_px
-        there = (outwards > 2.5 * seen.fwhm_px) & (outwards < reach)
-        if np.count_nonzero(there) < 3:
-            continue
-        coarse = esf.value[there][::10]
-        detour = float(np.abs(np.diff(coarse)).sum() - abs(coarse[-1] - coarse[0])) / 2
-        noise = 2.0 * float(np.median(esf.std[there]))
-        worst = max(worst, detour - noise)
-    value = max(worst, 0.0)
-    return at_most(
-        "structure", value, limits.structure,
-        f"beside the edge the profile goes up and down by {100 * value:.1f} % of the contrast: "
-        "something else lies there, and its spectrum is taken for the sensor's",
     )  # fmt: skip

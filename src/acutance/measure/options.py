@@ -50,6 +50,10 @@ class EdgeLimits:
         Largest correlation of the noise between neighbouring pixels.
     structure : float
         Largest structure beside the edge, as a share of the contrast.
+    lopsided : float
+        Largest difference of the light in the far feet of the LSF (edges).
+    profile : float
+        Largest rms of what the fit leaves alike all along the target, as a share of the contrast.
     outliers : float
         Largest share of outlying pixels.
     """
@@ -66,6 +70,8 @@ class EdgeLimits:
     gradient: float = 1.0
     correlated_noise: float = 0.1
     structure: float = 0.02
+    lopsided: float = 0.01
+    profile: float = 0.0005
     outliers: float = 0.02
 
 

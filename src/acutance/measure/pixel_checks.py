@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.fit.band import EdgeBand
-from acutance.fit.ground import steepness
 from acutance.fit.noise import correlation as noise_correlation
 from acutance.measure.cut import Cut
 from acutance.measure.evidence import MUCH, Evidence, at_least, at_most
@@ -16,6 +17,10 @@ from acutance.measure.options import EdgeLimits
 __all__ = ["correlation", "gradient", "outliers", "quantisation", "saturation"]
 
 _OUTLIER_SIGMAS = 4.5
+_SIGNIFICANT = 3.5
+_MIN_SIDE = 24
+_TAIL_PX = 0.1
+"""The LSF of an aperture falls as a / s^2: a is 0.065 px for a cutoff of 1 c/px, 0.1 for 0.65."""
 _MISFIT = 3e-4
 """Residuals below this share of the contrast are the model's own, not noise."""
 
@@ -72,20 +77,44 @@ def quantisation(cut: Cut, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -
 
 
 def gradient(seen: Evidence, limits: EdgeLimits) -> Check:
-    """Slope of the ground far from the target, steeper than any aperture's tail."""
-    value = max(
-        (
-            steepness(seen.value, outwards, max(seen.far_px, 3 * seen.fwhm_px), seen.noise)
-            for outwards in (seen.before, seen.behind)
-        ),
-        default=0.0,
-    )
+    """Slope of the ground far from the target, beyond what an aperture's tail explains.
+
+    Outwards the tail of an aperture falls, alike on both sides, and no steeper than a small
+    aperture's: a slope of 0 to 1 in that unit. One below 0 counts as 1 and what it lacks.
+    """
+    near = max(seen.far_px, 3 * seen.fwhm_px)
+    slope, std, tail = _fall(seen, near)
+    value = 1 - slope / tail if slope < -_SIGNIFICANT * std else 0.0
+    slope, std, tail = _fall(seen, 0.5 * (near + float(seen.outside.max())))
+    if slope - tail > _SIGNIFICANT * std:
+        value = max(value, slope / tail)
     return at_most(
         "gradient", value, limits.gradient,
-        f"far from the target the ground slopes {value:.1f} times as much as a small aperture's "
-        "tail does there: the fit allows for it, but cannot tell it from a wide halo for sure; "
+        f"far from the target the ground slopes, {value:.1f} in units of a small aperture's tail, "
+        "which falls outwards (0 to 1): the fit cannot tell a slope from a wide halo for sure; "
         "choose a region whose sides are flat",
     )  # fmt: skip
+
+
+def _fall(seen: Evidence, from_px: float) -> tuple[float, float, float]:
+    """How fast the sides come to their levels outwards, 1/px; its std; a small aperture's."""
+    covariance, power, weighed = 0.0, 0.0, 0.0
+    for outwards in (seen.before, seen.behind):
+        there = outwards > from_px
+        if np.count_nonzero(there) < _MIN_SIDE:
+            continue
+        place, value = outwards[there], seen.value[there]
+        # A bright side rises to its level, a dark one falls to it.
+        sign = 1.0 if float(np.median(value)) > 0.5 else -1.0
+        offset = place - place.mean()
+        own = float(offset @ offset)
+        most = _OUTLIER_SIGMAS * seen.noise
+        covariance += sign * float(offset @ np.clip(value - np.median(value), -most, most))
+        power += own
+        weighed += own * _TAIL_PX / float(place.mean()) ** 2
+    if power <= 0:
+        return 0.0, 0.0, 1.0
+    return covariance / power, max(seen.noise, _MISFIT) / math.sqrt(power), weighed / power
 
 
 def correlation(seen: Evidence, limits: EdgeLimits) -> Check:

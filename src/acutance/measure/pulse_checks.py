@@ -16,7 +16,7 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.fit.band import EdgeFit
 from acutance.fit.pulse import PulseBand
 from acutance.fit.trim import Extent
-from acutance.measure import checks, pixel_checks
+from acutance.measure import checks, pixel_checks, structure_checks
 from acutance.measure.cut import Cut
 from acutance.measure.evidence import Evidence, TargetChecks
 from acutance.measure.measurement import Check
@@ -76,8 +76,9 @@ class PulseChecks(TargetChecks):
         seen, limits = self._seen, self.limits
         return (
             self._contrast(),
-            checks.uniformity(seen, limits, "before", seen.before),
-            checks.uniformity(seen, limits, "behind", seen.behind),
+            structure_checks.uniformity(seen, limits, "before", seen.before),
+            structure_checks.uniformity(seen, limits, "behind", seen.behind),
+            structure_checks.strip(seen, limits),
             checks.angle(self.fit, limits, self.by_ratio),
             checks.phases(seen, limits),
             checks.enough_rows(self.extent, limits),
@@ -88,6 +89,7 @@ class PulseChecks(TargetChecks):
             pixel_checks.quantisation(self.cut, self.band, seen, limits),
             pixel_checks.gradient(seen, limits),
             pixel_checks.correlation(seen, limits),
+            structure_checks.profile(seen, limits, self.width.value, self.by_ratio),
             pixel_checks.outliers(seen, limits),
             self._parallel(),
             self._grounds(),
