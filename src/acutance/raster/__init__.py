@@ -3,6 +3,7 @@
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import Image, open_image
+from acutance.raster.positions import read_positions
 from acutance.raster.region import Box, Region
 from acutance.raster.roi import parse_roi
 from acutance.raster.site import Site, find_site, site_region, sites
@@ -18,6 +19,7 @@ __all__ = [
     "find_site",
     "open_image",
     "parse_roi",
+    "read_positions",
     "site_region",
     "sites",
     "write_geotiff",

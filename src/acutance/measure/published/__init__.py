@@ -13,6 +13,13 @@ from acutance.measure.published.fermi import FermiOptions, fermi
 from acutance.measure.published.iso12233 import Iso12233Options, iso12233
 from acutance.measure.published.kompsat import KompsatOptions, kompsat_2014
 from acutance.measure.published.sdsu import SdsuOptions, sdsu_2005
+from acutance.measure.published.sdsu_mirrors import (
+    GaussianPsf,
+    MirrorFit,
+    PublishedMirrors,
+    SdsuMirrorsOptions,
+    sdsu_2003_mirrors,
+)
 from acutance.measure.published.sdsu_pulse import (
     PublishedPulse,
     SdsuPulseOptions,
@@ -25,14 +32,19 @@ __all__ = [
     "PUBLISHED_PULSE",
     "PUBLISHED_PULSE_OPTIONS",
     "FermiOptions",
+    "GaussianPsf",
     "Iso12233Options",
     "KompsatOptions",
+    "MirrorFit",
+    "PublishedMirrors",
     "PublishedPulse",
+    "SdsuMirrorsOptions",
     "SdsuOptions",
     "SdsuPulseOptions",
     "fermi",
     "iso12233",
     "kompsat_2014",
+    "sdsu_2003_mirrors",
     "sdsu_2005",
     "sdsu_2005_pulse",
 ]

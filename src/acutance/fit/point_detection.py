@@ -1,0 +1,288 @@
+"""Where the point sources of an image are, and which of its bright spots are none.
+
+A spot is a local maximum of the image, smoothed a little, that stands out of the noise. Whether
+it serves is asked one question after the other; what does not serve is kept with its reason:
+
+- ``edge``: pixels around it are missing;
+- ``saturated``: a pixel reached the detector's limit;
+- ``hot pixel``: one pixel alone is bright, no light reached its neighbours;
+- ``cosmic ray``: narrower than the other spots in one direction, so no optics made it;
+- ``blended``: another source is too near, or it is much wider than the others;
+- ``faint``: its peak is too low.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter, map_coordinates, maximum_filter
+
+from acutance.curves.grid import Floats
+from acutance.fit.noise import robust_scale
+
+__all__ = ["RejectedSpot", "Spot", "find_spots", "sort_spots"]
+
+CLEAR_PX: Final = 3
+"""Pixels that have to be there on all sides of a source."""
+_SMOOTHING_PX: Final = 0.7
+_BLOCK_PX: Final = 24
+_STANDS_OUT: Final = 6.0
+_MOST_SPOTS: Final = 2000
+_LEAST_NEIGHBOURS: Final = 0.12
+"""Light of the eight neighbours over that of the pixel: a Gaussian of 0.25 px seen through the
+pixel right in its middle gives 0.19."""
+_LEAST_COMPARED: Final = 4
+_NARROW, _WIDE = 0.55, 1.9
+_LESSER_BLEND: Final = 0.05
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A bright spot.
+
+    Parameters
+    ----------
+    row, col : float
+        Its centroid.
+    peak : float
+        Its brightest pixel above the background.
+    snr : float
+        The same over the noise.
+    narrow_px2, wide_px2 : float
+        Its variances along its minor and its major axis.
+    """
+
+    row: float
+    col: float
+    peak: float
+    snr: float
+    narrow_px2: float
+    wide_px2: float
+
+
+@dataclass(frozen=True)
+class RejectedSpot:
+    """A bright spot, or a place that was given, that does not serve.
+
+    Parameters
+    ----------
+    row, col : float
+    reason : str
+        One of the reasons this module's page names, or "no source".
+    message : str
+        What was found there.
+    """
+
+    row: float
+    col: float
+    reason: str
+    message: str
+
+
+def find_spots(
+    image: Floats, places: Floats | None = None
+) -> tuple[tuple[Spot, ...], tuple[RejectedSpot, ...], Floats, float]:
+    """All bright spots, or those near given places.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        NaN where there is no data.
+    places : (n, 2) array, optional
+        Approximate (row, col), to 1.5 px; all spots of the image without them.
+
+    Returns
+    -------
+    spots : tuple of Spot
+        Brightest first, or in the order of `places`.
+    rejected : tuple of RejectedSpot
+        Places at which there is no spot.
+    residual : (rows, cols) array
+        The image less its background.
+    noise : float
+        Standard deviation of the background's noise.
+    """
+    known = np.isfinite(image)
+    residual = np.where(known, image - _background(image), 0.0)
+    noise = max(robust_scale(residual[known]), 1e-9 * float(np.abs(image[known]).max()), 1e-300)
+    smooth = gaussian_filter(residual, _SMOOTHING_PX)
+    tops = (smooth == maximum_filter(smooth, 3)) & known
+    # Smoothing leaves this share of white noise.
+    level = _STANDS_OUT * noise / (2 * np.sqrt(np.pi) * _SMOOTHING_PX)
+    rows, cols = np.nonzero(tops & (smooth > level))
+    order = np.argsort(-smooth[rows, cols])[:_MOST_SPOTS]
+    middles = np.stack([rows[order], cols[order]], axis=1)
+    if places is None:
+        found = [_spot(residual, middle, noise) for middle in middles]
+        return tuple(found), (), residual, noise
+    spots, missing = [], []
+    for row, col in places.tolist():
+        near = np.hypot(middles[:, 0] - row, middles[:, 1] - col)
+        if near.size and near.min() <= 1.5:
+            spots.append(_spot(residual, middles[int(near.argmin())], noise))
+        else:
+            missing.append(
+                RejectedSpot(row, col, "no source", "no light stands out of the noise there")
+            )
+    return tuple(spots), tuple(missing), residual, noise
+
+
+def _background(image: Floats) -> Floats:
+    """Medians of blocks, joined by bilinear interpolation."""
+    height, width = image.shape
+    rows = _borders(height)
+    cols = _borders(width)
+    table = np.empty((rows.size - 1, cols.size - 1))
+    whole = float(np.median(image[np.isfinite(image)]))
+    for i, (top, bottom) in enumerate(pairwise(rows)):
+        for j, (left, right) in enumerate(pairwise(cols)):
+            block = image[top:bottom, left:right]
+            usable = block[np.isfinite(block)]
+            table[i, j] = np.median(usable) if usable.size else whole
+    places = np.meshgrid(
+        _in_blocks(height, rows), _in_blocks(width, cols), indexing="ij", sparse=False
+    )
+    return np.asarray(map_coordinates(table, places, order=1, mode="nearest"))
+
+
+def _borders(length: int) -> NDArray[np.intp]:
+    return np.linspace(0, length, max(round(length / _BLOCK_PX), 1) + 1).astype(np.intp)
+
+
+def _in_blocks(length: int, borders: NDArray[np.intp]) -> Floats:
+    """Every pixel's place counted in blocks, from the centre of the first one."""
+    centres = 0.5 * (borders[:-1] + borders[1:] - 1)
+    return np.interp(np.arange(length), centres, np.arange(centres.size))
+
+
+def _spot(residual: Floats, middle: NDArray[np.intp], noise: float) -> Spot:
+    """Centroid and variances of what is within two pixels of the brightest pixel nearby."""
+    row, col = (int(number) for number in middle)
+    window = residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2]
+    up, left = np.unravel_index(int(np.argmax(window)), window.shape)
+    row, col = max(row - 1, 0) + int(up), max(col - 1, 0) + int(left)
+    top, side = max(row - 2, 0), max(col - 2, 0)
+    part = residual[top : row + 3, side : col + 3]
+    rows, cols = np.indices(part.shape) + np.array([top, side])[:, None, None]
+    light = np.where(part > 2 * noise, part, 0.0)
+    total = max(float(light.sum()), 1e-300)
+    y, x = float((rows * light).sum()) / total, float((cols * light).sum()) / total
+    yy, xx = (rows - y) ** 2 * light, (cols - x) ** 2 * light
+    xy = float(((rows - y) * (cols - x) * light).sum()) / total
+    axes = np.linalg.eigvalsh(
+        np.array([[float(xx.sum()) / total, xy], [xy, float(yy.sum()) / total]])
+    )
+    peak = float(residual[row, col])
+    return Spot(y, x, peak, peak / noise, float(axes[0]), float(axes[1]))
+
+
+def sort_spots(
+    image: Floats,
+    residual: Floats,
+    spots: Sequence[Spot],
+    *,
+    saturation: float | None,
+    noise: float,
+    min_snr: float,
+    min_distance_px: float,
+    rivals: Sequence[Spot] | None = None,
+) -> tuple[tuple[Spot, ...], tuple[RejectedSpot, ...]]:
+    """The spots that serve, and the others with their reasons.
+
+    Parameters
+    ----------
+    image, residual : (rows, cols) arrays
+        As `find_spots` takes and gives them.
+    spots : sequence of Spot
+    saturation : float or None
+        The detector's limit; without it, the largest value where several pixels share it.
+    noise : float
+    min_snr : float
+        Least peak over the noise.
+    min_distance_px : float
+        Least distance to another source that is not much fainter.
+    rivals : sequence of Spot, optional
+        All spots of the image, if `spots` are only some of them.
+    """
+    limit = _limit(image) if saturation is None else saturation
+    others = spots if rivals is None else rivals
+    single = [_own_fault(image, residual, one, limit, noise) for one in spots]
+    whole = [one for one, fault in zip(spots, single, strict=True) if fault is None]
+    usual = [one for one in whole if one.snr >= min_snr]
+    shapes = np.array([(one.narrow_px2, one.wide_px2) for one in usual]).reshape(-1, 2)
+    kept, rejected = [], []
+    for one, fault in zip(spots, single, strict=True):
+        reason = fault
+        if reason is None and one.snr < min_snr:
+            reason = "faint", f"its peak is {one.snr:.1f} times the noise, {min_snr:g} are asked"
+        if reason is None and len(usual) >= _LEAST_COMPARED:
+            reason = _compared(one, *np.median(shapes, axis=0).tolist())
+        if reason is None:
+            reason = _crowded(one, others, min_distance_px)
+        if reason is None:
+            kept.append(one)
+        else:
+            rejected.append(RejectedSpot(one.row, one.col, *reason))
+    return tuple(kept), tuple(rejected)
+
+
+def _limit(image: Floats) -> float:
+    """The largest value, where three pixels have it: a detector's limit."""
+    known = image[np.isfinite(image)]
+    top = float(known.max())
+    return top if np.count_nonzero(known == top) >= 3 else np.inf
+
+
+def _own_fault(
+    image: Floats, residual: Floats, one: Spot, limit: float, noise: float
+) -> tuple[str, str] | None:
+    """What is wrong with a spot by itself."""
+    row, col = round(one.row), round(one.col)
+    near = image[max(row - 2, 0) : row + 3, max(col - 2, 0) : col + 3]
+    if np.any(near >= limit):
+        return "saturated", f"a pixel reached {limit:g}, the detector's limit"
+    clear = image[max(row - CLEAR_PX, 0) : row + CLEAR_PX + 1]
+    clear = clear[:, max(col - CLEAR_PX, 0) : col + CLEAR_PX + 1]
+    side = 2 * CLEAR_PX + 1
+    if clear.shape != (side, side) or not np.isfinite(clear).all():
+        return "edge", f"pixels within {CLEAR_PX} px of it are missing"
+    part = residual[row - 2 : row + 3, col - 2 : col + 3]
+    up, left = np.unravel_index(int(np.argmax(part)), part.shape)
+    row, col = row - 2 + int(up), col - 2 + int(left)
+    peak = float(residual[row, col])
+    around = residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2]
+    neighbours = float(around.sum()) - peak
+    if neighbours + 3 * np.sqrt(8.0) * noise < _LEAST_NEIGHBOURS * peak or (
+        neighbours < _LEAST_NEIGHBOURS * peak and one.snr > 30
+    ):
+        share = 100 * neighbours / peak
+        return "hot pixel", f"its neighbours together hold {share:.0f} % of the brightest pixel"
+    return None
+
+
+def _compared(one: Spot, narrow: float, wide: float) -> tuple[str, str] | None:
+    """What is wrong with a spot beside the others."""
+    if one.narrow_px2 < _NARROW * narrow:
+        return (
+            "cosmic ray",
+            f"its minor axis has a variance of {one.narrow_px2:.2f} px², the others {narrow:.2f}",
+        )
+    if one.wide_px2 > _WIDE * wide:
+        return (
+            "blended",
+            f"its major axis has a variance of {one.wide_px2:.2f} px², the others {wide:.2f}",
+        )
+    return None
+
+
+def _crowded(one: Spot, others: Sequence[Spot], distance_px: float) -> tuple[str, str] | None:
+    for other in others:
+        away = float(np.hypot(one.row - other.row, one.col - other.col))
+        if 0.5 < away < distance_px and other.peak > _LESSER_BLEND * one.peak:
+            return "blended", f"another source is {away:.1f} px away, {distance_px:g} px are asked"
+    return None

@@ -1,0 +1,329 @@
+"""The reference estimator of points: one joint fit of all sources, their PSF free.
+
+Every pixel sees ``background + sum_k flux_k * PSF(x - x_k, y - y_k)``. The PSF is that of a plain
+blur (`fit.point_start`) plus the directions of its prior (`fit.psf_prior`), whose amplitudes the
+data decide (`fit.posterior`). Flux, place, background and slope of every source are unknowns of
+the same linear problem (`fit.point_blocks`), solved again where they have moved.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.fit.noise import Correlation, correlation, outlier_weights, robust_scale
+from acutance.fit.normal import Normal
+from acutance.fit.point_blocks import Blocks, eliminate
+from acutance.fit.point_ground import Ground, ground_levels
+from acutance.fit.point_stamps import Stamps
+from acutance.fit.point_start import BlurredPoints, own_columns
+from acutance.fit.posterior import Posterior, Prior, regress, whiten
+from acutance.fit.psf_model import PsfModel
+from acutance.fit.psf_prior import LOG_AMPLITUDE, LOG_AMPLITUDE_STD, START_AMPLITUDE, PsfDirections
+
+__all__ = ["PointsFit", "fit_points"]
+
+_MAX_PASSES = 14
+_NEGLIGIBLE = 0.15
+"""Share of the noise that the errors of second order may have."""
+_SHAPE_ERROR = 0.004
+_MODEL_ERROR = 0.02
+"""Share of a source's light in a pixel that may be left before noise, and before an outlier, is
+seen in it."""
+_NOISE_FLOOR = 4e-5
+"""The least noise the arithmetic allows for, as a share of the brightest source's peak."""
+_SIGNIFICANT = 3.0
+_BEND = 3.0
+"""Half of a peak's curvature, in peaks per square pixel, for a rather sharp system."""
+_LONGEST_STEP_PX = 0.15
+_WORST = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class PointsFit:
+    """Sources and their common PSF.
+
+    Parameters
+    ----------
+    stamps : Stamps
+        The pixels used.
+    model : PsfModel
+        The PSF with its covariance.
+    places, places_std : (k, 2) arrays
+        Sources as (row, col).
+    fluxes, fluxes_std : (k,) arrays
+        Light of each, summed over all pixels, seen or not.
+    grounds : (k, 3) array
+        Background at the pixel nearest to a source, and its slopes down and to the right per px.
+    grounds_std : (k,) array
+        Standard deviation of the background.
+    fitted : (n,) array
+        What the model gives every pixel.
+    weight : (n,) array
+        1 where a pixel is no outlier.
+    noise : float
+        Standard deviation of the background's noise.
+    gain : float
+        Variance of the noise per unit of light, 0 where the noise does not grow with it.
+    correlation : Correlation
+        Of the noise between neighbouring pixels.
+    """
+
+    stamps: Stamps
+    model: PsfModel
+    places: Floats
+    places_std: Floats
+    fluxes: Floats
+    fluxes_std: Floats
+    grounds: Floats
+    grounds_std: Floats
+    fitted: Floats
+    weight: Floats
+    noise: float
+    gain: float
+    correlation: Correlation
+
+    @property
+    def residual(self) -> Floats:
+        """What the model leaves of every pixel, (n,)."""
+        return self.stamps.value - self.fitted
+
+    @property
+    def peaks(self) -> Floats:
+        """What each source would add to a pixel right under it, (k,)."""
+        nought = np.zeros(1)
+        return self.fluxes * float(self.model.psf(nought, nought)[0])
+
+
+def fit_points(stamps: Stamps, start: BlurredPoints, *, robust: bool = True) -> PointsFit:
+    """Fit all sources with one free PSF.
+
+    Parameters
+    ----------
+    stamps : Stamps
+    start : BlurredPoints
+        Where the plain blur found them.
+    robust : bool, optional
+        Bound the weight of outlying pixels.
+    """
+    directions = PsfDirections(start.blur)
+    nothing = np.zeros(directions.size)
+    model = PsfModel(directions, nothing, nothing[:, None])
+    fluxes = start.fluxes * (1 + start.foot * directions.foot_share)
+    state = _State(model, start.places, fluxes, start.grounds, start.residual)
+    noise = _Noise(np.ones(stamps.value.size), 0.0, Correlation(1.0, 0.0, 0.0))
+    peaks = start.fluxes * start.blur.peak
+    least = _NOISE_FLOOR * float(peaks.max())
+    floor = max(least, _misfit(stamps, start, peaks))
+    ground = Ground.of(stamps, start)
+    earlier: Posterior | None = None
+    for _ in range(_MAX_PASSES):
+        # Until the sources are in place, the linear problem leaves errors of second order: they
+        # are taken for noise, lest the PSF explain them.
+        prior = _prior(directions, ground, floor)
+        blocks, posterior, moves = _solve(stamps, state, prior, noise, ground, earlier)
+        tried = _moved(stamps, state, ground, blocks, posterior)
+        if tried.rms > 1.05 * max(state.rms, floor) and floor < _WORST * float(peaks.max()):
+            floor, earlier = 4 * floor, None
+            continue
+        state, earlier = tried, posterior
+        bend = _BEND * float((peaks * np.minimum(moves, _LONGEST_STEP_PX) ** 2).max())
+        quiet = noise if bend > state.rms else _noise_of(stamps, state, robust=robust)
+        enough = max(least, _NEGLIGIBLE * state.rms)
+        if bend < enough and floor < max(2 * least, state.rms) and noise.agrees(quiet):
+            break
+        floor, noise = max(least, bend), quiet
+    return _found(stamps, state, ground, blocks, posterior, noise)
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """Where the fit stands: PSF for unit flux of the mean blur, and the sources."""
+
+    model: PsfModel
+    places: Floats
+    fluxes: Floats
+    grounds: Floats
+    residual: Floats
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the residuals."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Noise:
+    """Outliers' weights, variance per unit of light over that of the background, correlation."""
+
+    outlier: Floats
+    growth: float
+    correlation: Correlation
+
+    def weight(self, light: Floats) -> Floats:
+        """Inverse variance of every pixel, 1 on the background."""
+        return np.asarray(self.outlier / (1 + self.growth * np.maximum(light, 0.0)))
+
+    def agrees(self, other: _Noise) -> bool:
+        """Whether a fit with the other noise would find about the same."""
+        same = math.isclose(self.growth, other.growth, rel_tol=0.2, abs_tol=1e-12)
+        even = math.isclose(self.correlation.inflation, other.correlation.inflation, rel_tol=0.1)
+        return same and even and float(np.abs(self.outlier - other.outlier).mean()) < 0.004
+
+
+def _misfit(stamps: Stamps, start: BlurredPoints, peaks: Floats) -> float:
+    """The errors of second order to expect of the start, in image units.
+
+    What the plain blur leaves of a source beyond noise, as a share of its peak, is about how far
+    off its place may be in pixels.
+    """
+    power = np.bincount(stamps.owner, start.residual**2, peaks.size)
+    count = np.bincount(stamps.owner, minlength=peaks.size)
+    excess = np.maximum(power - count * robust_scale(start.residual) ** 2, 0.0)
+    away = np.minimum(np.sqrt(excess) / peaks, _LONGEST_STEP_PX)
+    return _BEND * float((peaks * away**2).max())
+
+
+def _prior(directions: PsfDirections, ground: Ground, noise_floor: float) -> Prior:
+    block = np.concatenate([directions.block, np.full(ground.scale.size, -1)])
+    return Prior(
+        block.astype(float), np.concatenate([directions.scale, ground.scale]),
+        np.zeros(block.size), LOG_AMPLITUDE, LOG_AMPLITUDE_STD, 1.0, noise_floor,
+    )  # fmt: skip
+
+
+def _light(stamps: Stamps, state: _State) -> Floats:
+    """What the sources add to every pixel."""
+    return stamps.seen(state.places, state.fluxes, lambda x, y: state.model.with_slopes(x, y)[0])
+
+
+def _solve(
+    stamps: Stamps,
+    state: _State,
+    prior: Prior,
+    noise: _Noise,
+    ground: Ground,
+    earlier: Posterior | None,
+) -> tuple[Blocks, Posterior, Floats]:
+    """One linear solution about the state, and how far every source moves, in pixels."""
+    directions = state.model.directions
+    psf = state.model.with_slopes(*stamps.offsets(state.places))
+    own = own_columns(stamps, state.places, state.fluxes, psf)
+    mean = stamps.seen(state.places, state.fluxes, directions.blur.psf)
+    shared = stamps.seen(state.places, state.fluxes, directions.evaluate)
+    light = state.fluxes[stamps.owner] * psf[0]
+    weight = noise.weight(light)
+    shared = np.hstack([shared, ground.columns])
+    variance = max(float(weight @ state.residual**2) / stamps.value.size, prior.noise_floor**2)
+    tie = ground.tie(math.sqrt(variance))
+    blocks = eliminate(own, shared, stamps.value - mean, weight, stamps.starts, tie)
+    posterior = _likelier(blocks.normal(), prior, variance, noise.correlation.inflation, earlier)
+    own_found = blocks.own(posterior.beta)
+    return blocks, posterior, np.abs(own_found[:, 1:3]).max(axis=1)
+
+
+def _likelier(
+    normal: Normal, prior: Prior, variance: float, inflation: float, earlier: Posterior | None
+) -> Posterior:
+    """The posterior at the higher of the evidence's modes.
+
+    There can be two: light in the wings, or none and a more crooked core. One is looked for from
+    large amplitudes, the other from those of before, or from small ones.
+    """
+    nothing = np.zeros(prior.block.size)
+    above = Posterior(nothing, nothing[:, None], START_AMPLITUDE, variance, 0.0)
+    found = [regress(normal, prior, variance, inflation, start) for start in (above, earlier)]
+    return max(found, key=lambda one: _log_evidence(normal, prior, one, inflation))
+
+
+def _log_evidence(normal: Normal, prior: Prior, found: Posterior, inflation: float) -> float:
+    """Logarithm of the evidence at a posterior's amplitudes and noise, hyperprior included."""
+    noise = found.variance * inflation
+    white = whiten(normal, prior, found.log_amplitude, noise)
+    explained = float(white.mean @ (white.sigma * normal.projection)) / noise
+    volume = float(np.sum(np.log(np.diagonal(white.root))))
+    away = (found.log_amplitude - prior.log_amplitude) / prior.log_amplitude_std
+    count = normal.count / inflation
+    return (
+        0.5 * (explained - normal.data / noise - count * math.log(noise))
+        + volume
+        - 0.5 * float(away @ away)
+    )
+
+
+def _moved(
+    stamps: Stamps, state: _State, ground: Ground, blocks: Blocks, posterior: Posterior
+) -> _State:
+    own = blocks.own(posterior.beta)
+    size = state.model.directions.size
+    moved = _State(
+        PsfModel(state.model.directions, posterior.beta[:size], posterior.factor[:size]),
+        state.places + np.clip(own[:, [2, 1]], -_LONGEST_STEP_PX, _LONGEST_STEP_PX),
+        state.fluxes * (1 + np.clip(own[:, 0] / state.fluxes, -0.3, 0.3)),
+        own[:, 3:] + ground.common(posterior.beta[size:]),
+        state.residual,
+    )
+    level = ground_levels(stamps, moved.places, moved.grounds)
+    return replace(moved, residual=stamps.value - _light(stamps, moved) - level)
+
+
+def _noise_of(stamps: Stamps, state: _State, *, robust: bool) -> _Noise:
+    """What the residuals say of the noise."""
+    light = state.fluxes[stamps.owner] * state.model.with_slopes(*stamps.offsets(state.places))[0]
+    residual = state.residual
+    least = _NOISE_FLOOR * float(light.max())
+    growth = _growth(residual, light, least)
+    standard = residual / np.sqrt(1 + growth * np.maximum(light, 0.0))
+    scale = math.hypot(robust_scale(standard), least)
+    standard = standard / np.hypot(scale, _MODEL_ERROR * light)
+    outlier = outlier_weights(standard) if robust else np.ones(standard.size)
+    if state.rms < 3 * least:
+        return _Noise(outlier, growth, Correlation(1.0, 0.0, 0.0))
+    bounded = np.clip(standard, -3, 3)
+    rows, cols = stamps.row.astype(np.intp), stamps.col.astype(np.intp)
+    rows, cols = rows - rows.min(), cols - cols.min()
+    found = [correlation(bounded, rows, cols, normal) for normal in ((1.0, 0.0), (0.0, 1.0))]
+    return _Noise(outlier, growth, max(found, key=lambda one: one.inflation))
+
+
+def _growth(residual: Floats, light: Floats, least: float) -> float:
+    """Variance per unit of light over the background's variance; 0 unless it is significant."""
+    peak = float(light.max())
+    bright = light > 0.05 * peak
+    if bright.sum() < 20 or (~bright).sum() < 20:
+        return 0.0
+    base = robust_scale(residual[~bright]) ** 2 + least**2
+    own = light[bright]
+    excess = np.minimum(residual[bright] ** 2, 100 * base) - base - (_SHAPE_ERROR * own) ** 2
+    growth = float(own @ excess) / float(own @ own) / base
+    doubt = math.sqrt(2 / float(own @ own))
+    return growth if growth > _SIGNIFICANT * doubt else 0.0
+
+
+def _found(
+    stamps: Stamps,
+    state: _State,
+    ground: Ground,
+    blocks: Blocks,
+    posterior: Posterior,
+    noise: _Noise,
+) -> PointsFit:
+    model = state.model
+    std = math.sqrt(posterior.variance * noise.correlation.inflation)
+    alone, shared = blocks.own_factor(std, posterior.factor)
+    both = np.concatenate([alone, shared], axis=2)
+    both[:, 3, alone.shape[2] :] += ground.common_factor(posterior.factor[model.weights.size :])
+    flux_shared = model.volume * shared[:, 0] + state.fluxes[:, None] * model.volume_gradient
+    flux_std = np.sqrt(
+        (model.volume * alone[:, 0]) ** 2 @ np.ones(alone.shape[2])
+        + np.einsum("ij,ij->i", flux_shared, flux_shared)
+    )
+    own_std = np.sqrt(np.einsum("kij,kij->ki", both, both))
+    return PointsFit(
+        stamps, model, state.places, own_std[:, [2, 1]], state.fluxes * model.volume, flux_std,
+        state.grounds, own_std[:, 3], stamps.value - state.residual, noise.outlier,
+        math.sqrt(posterior.variance), noise.growth * posterior.variance, noise.correlation,
+    )  # fmt: skip

@@ -1,0 +1,115 @@
+"""The pixels around point sources, each given to its nearest source, with who shines into them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.spatial import cKDTree
+
+from acutance.curves.grid import Floats
+
+__all__ = ["Stamps", "cut_stamps"]
+
+_Indices = NDArray[np.intp]
+LIT_PX = 12.0
+"""A source's light is followed into other sources' pixels up to this distance."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stamps:
+    """Pixels of all sources, one source after the other, (n,) each.
+
+    Parameters
+    ----------
+    row, col : (n,) arrays
+        Integers at pixel centres.
+    value : (n,) array
+    owner : (n,) int array
+        Which source a pixel belongs to, ascending.
+    pair_pixel, pair_source : (p,) int arrays
+        Which pixel is lit by which other source.
+    """
+
+    row: Floats
+    col: Floats
+    value: Floats
+    owner: _Indices
+    pair_pixel: _Indices
+    pair_source: _Indices
+
+    @cached_property
+    def starts(self) -> _Indices:
+        """Where each source's pixels start, and the end, (sources + 1,)."""
+        return np.searchsorted(self.owner, np.arange(self.owner[-1] + 2))
+
+    @cached_property
+    def _onto(self) -> csr_array:
+        """Sums the values of pairs into pixels, (n, p)."""
+        pairs = np.arange(self.pair_pixel.size)
+        shape = (self.value.size, pairs.size)
+        return csr_array((np.ones(pairs.size), (self.pair_pixel, pairs)), shape=shape)
+
+    def offsets(self, places: Floats) -> tuple[Floats, Floats]:
+        """Distances x, y of every pixel from its own source at `places` (row, col), (n,)."""
+        return self.col - places[self.owner, 1], self.row - places[self.owner, 0]
+
+    def seen(
+        self, places: Floats, fluxes: Floats, function: Callable[[Floats, Floats], Floats]
+    ) -> Floats:
+        """What all sources together add to every pixel: ``sum flux * function(x, y)``.
+
+        `function` gives (n,) or (n, m) for places x, y (n,).
+        """
+        whole = _times(fluxes[self.owner], function(*self.offsets(places)))
+        if self.pair_pixel.size:
+            source = self.pair_source
+            x = self.col[self.pair_pixel] - places[source, 1]
+            y = self.row[self.pair_pixel] - places[source, 0]
+            whole += self._onto @ _times(fluxes[source], function(x, y))
+        return whole
+
+
+def _times(weights: Floats, values: Floats) -> Floats:
+    return np.asarray(weights.reshape(-1, *(1,) * (values.ndim - 1)) * values)
+
+
+def cut_stamps(image: Floats, places: Floats, radius_px: float) -> Stamps:
+    """The finite pixels within `radius_px` of a source, each given to the nearest one.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        NaN where there is no data.
+    places : (n, 2) array
+        Sources as (row, col).
+    radius_px : float
+    """
+    reach = np.arange(-int(radius_px) - 1, int(radius_px) + 2)
+    down, right = (grid.ravel() for grid in np.meshgrid(reach, reach, indexing="ij"))
+    middle = np.rint(places).astype(np.intp)
+    rows, cols = middle[:, :1] + down, middle[:, 1:] + right
+    inside = (rows >= 0) & (cols >= 0) & (rows < image.shape[0]) & (cols < image.shape[1])
+    inside &= np.hypot(rows - places[:, :1], cols - places[:, 1:]) <= radius_px
+    source = np.broadcast_to(np.arange(places.shape[0])[:, None], rows.shape)[inside]
+    pixels = np.stack([rows[inside], cols[inside]], axis=1)
+    tree = cKDTree(places)
+    kept = (tree.query(pixels)[1] == source) & np.isfinite(image[pixels[:, 0], pixels[:, 1]])
+    pixels, source = pixels[kept], source[kept]
+    lit = tree.query_ball_point(pixels, LIT_PX)
+    counts = np.array([len(one) for one in lit], dtype=np.intp)
+    pair_pixel = np.repeat(np.arange(counts.size), counts)
+    pair_source = np.concatenate([np.asarray(one, np.intp) for one in lit])
+    others = pair_source != source[pair_pixel]
+    return Stamps(
+        pixels[:, 0].astype(float),
+        pixels[:, 1].astype(float),
+        image[pixels[:, 0], pixels[:, 1]],
+        source,
+        pair_pixel[others],
+        pair_source[others],
+    )

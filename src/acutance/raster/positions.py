@@ -1,0 +1,168 @@
+"""Places of point sources as a person writes them: CSV or GeoJSON, in pixels or on the map."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.errors import RegionError
+from acutance.raster.geolocation import LONLAT_CRS
+from acutance.raster.image import Image
+
+__all__ = ["read_positions"]
+
+_PIXELS = "pixel"
+_COLUMNS = {
+    "pixel": (("row", "col"), ("row", "column"), ("y_px", "x_px")),
+    "map": (("y", "x"), ("northing", "easting"), ("north", "east")),
+    "lonlat": (("lat", "lon"), ("latitude", "longitude")),
+}
+
+
+def read_positions(path: str, image: Image) -> Floats:
+    """Places as (row, col) in the pixels of an image, (n, 2), in the order of the file.
+
+    Parameters
+    ----------
+    path : str
+        One of
+
+        - a CSV file with a header that names two columns: ``row,col`` (pixels, integers being
+          pixel centres), ``lon,lat`` (degrees on WGS 84) or ``x,y``, ``easting,northing`` (the
+          image's own map); a file without a header holds row and column. Other columns are
+          ignored;
+        - a GeoJSON file of Points (or MultiPoints). Its coordinates are in the CRS of its "crs"
+          member; the name "pixel" there means pixels (x the column, y the row). With no such
+          member they are longitude and latitude if the image has a CRS, and pixels if not.
+    image : Image
+
+    Returns
+    -------
+    (n, 2) array
+
+    Raises
+    ------
+    RegionError
+        If the file is neither, holds no places, or they cannot be related to the image.
+    """
+    name = Path(path)
+    if not name.is_file():
+        raise RegionError(f"{path}: there is no such file; positions come as .csv or .geojson")
+    try:
+        text = name.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise RegionError(f"{path} cannot be read as text: give a .csv or .geojson file") from error
+    if text.lstrip().startswith("{"):
+        places = _of_geojson(path, text, image)
+    else:
+        places = _of_csv(path, text, image)
+    if places.shape[0] == 0:
+        raise RegionError(f"{path} holds no positions")
+    if not np.isfinite(places).all():
+        raise RegionError(f"{path} holds positions that are not finite, or off the map")
+    return places
+
+
+def _of_csv(path: str, text: str, image: Image) -> Floats:
+    rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
+    if not rows:
+        return np.empty((0, 2))
+    header = [cell.strip().lower() for cell in rows[0]]
+    found = _columns(header)
+    if found is None:
+        if not _are_numbers(rows[0][:2]):
+            raise RegionError(
+                f"{path} has the columns {', '.join(header)}: name two of them row,col (pixels), "
+                "lon,lat (degrees) or x,y (the image's map)"
+            )
+        kind, places, body = "pixel", (0, 1), rows
+    else:
+        (kind, places), body = found, rows[1:]
+    numbers = []
+    for line, row in enumerate(body, start=len(rows) - len(body) + 1):
+        try:
+            numbers.append([float(row[place]) for place in places])
+        except (ValueError, IndexError) as error:
+            raise RegionError(
+                f"{path}, line {line}: {','.join(row)} holds no two numbers there"
+            ) from error
+    down, right = np.array(numbers).reshape(-1, 2).T
+    return _in_pixels(path, kind, right, down, image)
+
+
+def _columns(header: list[str]) -> tuple[str, tuple[int, int]] | None:
+    """What kind of coordinates a header names, and where the vertical and horizontal ones are."""
+    for kind, pairs in _COLUMNS.items():
+        for down, right in pairs:
+            if down in header and right in header:
+                return kind, (header.index(down), header.index(right))
+    return None
+
+
+def _are_numbers(cells: list[str]) -> bool:
+    try:
+        return len([float(cell) for cell in cells]) == 2
+    except ValueError:
+        return False
+
+
+def _of_geojson(path: str, text: str, image: Image) -> Floats:
+    try:
+        document: Any = json.loads(text)
+    except ValueError as error:
+        raise RegionError(f"{path} is not GeoJSON ({error})") from error
+    points = list(_points(document))
+    try:
+        pairs = np.array([(float(one[0]), float(one[1])) for one in points]).reshape(-1, 2)
+    except (TypeError, ValueError, IndexError) as error:
+        raise RegionError(f"{path} holds a Point without two numbers") from error
+    named = document.get("crs") or {}
+    crs = (named.get("properties") or {}).get("name") if isinstance(named, dict) else None
+    if crs is None:
+        kind = "lonlat" if image.crs is not None else "pixel"
+    elif str(crs).lower() == _PIXELS:
+        kind = "pixel"
+    else:
+        kind = str(crs)
+    return _in_pixels(path, kind, pairs[:, 0], pairs[:, 1], image)
+
+
+def _points(document: Any) -> Iterator[Any]:
+    """Coordinates of all Points of a GeoJSON document."""
+    if not isinstance(document, dict):
+        return
+    kind = document.get("type")
+    if kind == "FeatureCollection":
+        for feature in document.get("features") or []:
+            yield from _points(feature)
+    elif kind == "Feature":
+        yield from _points(document.get("geometry"))
+    elif kind == "GeometryCollection":
+        for geometry in document.get("geometries") or []:
+            yield from _points(geometry)
+    elif kind == "Point":
+        yield document.get("coordinates")
+    elif kind == "MultiPoint":
+        yield from document.get("coordinates") or []
+
+
+def _in_pixels(path: str, kind: str, right: Floats, down: Floats, image: Image) -> Floats:
+    if kind == "pixel":
+        return np.stack([down, right], axis=1)
+    place = image.geolocation
+    if place is None:
+        raise RegionError(
+            f"{path} holds coordinates on the ground, and the image has no georeference: give "
+            "row and column in pixels"
+        )
+    if kind == "map":
+        row, col = place.from_map(right, down)
+    else:
+        row, col = place.from_crs(right, down, LONLAT_CRS if kind == "lonlat" else kind)
+    return np.stack([np.asarray(row, float), np.asarray(col, float)], axis=1)
