@@ -250,7 +250,9 @@ def _with_covariance(residual: Callable[[Floats], Floats], start: Floats) -> tup
     found = least_squares(residual, start, x_scale=scale, method="lm")
     freedom = max(found.fun.size - start.size, 1)
     variance = float(found.fun @ found.fun) / freedom
-    return np.asarray(found.x, float), np.asarray(variance * np.linalg.pinv(found.jac.T @ found.jac))
+    return np.asarray(found.x, float), np.asarray(
+        variance * np.linalg.pinv(found.jac.T @ found.jac)
+    )
 
 
 def _pool(x: Floats, y: Floats, value: Floats) -> tuple[GaussianPsf, Floats]:
