@@ -20,6 +20,7 @@ from acutance.measure.measurement import Measurement, Samples
 from acutance.measure.options import PulseOptions
 from acutance.measure.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
 from acutance.measure.pulse_checks import PulseChecks
+from acutance.measure.pulse_foot import with_uncertain_foot
 from acutance.raster import Gsd, Image
 
 __all__ = ["PULSE_METHODS", "measure_pulse"]
@@ -38,7 +39,8 @@ def _spline(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
     if options.method_options is not None:
         raise OptionError("method_options belong to the published methods: leave them out")
     fit = fit_pulse(band, fit_width=fit_width, robust=options.robust)
-    return _Fitted(fit, fit.pulse_width, fit.fall)
+    told = replace(fit, response=with_uncertain_foot(fit.response))
+    return _Fitted(told, fit.pulse_width, fit.fall)
 
 
 def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
