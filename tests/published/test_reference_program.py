@@ -5,6 +5,7 @@ that polynomial bends by 0.1 px where the edge is straight to 0.01 px, and takes
 """
 
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -94,7 +95,7 @@ def test_its_bend_is_that_of_the_window_and_not_of_the_edge(band):
     m, pixels = ours(band), chart(band).read()
     bends = [bend_px(m, pixels, half_px) for half_px in (6.0, 12.0, 25.0, 60.0)]
     assert bends[0] < 0.005
-    assert all(wider > 2 * narrower for narrower, wider in zip(bends, bends[1:], strict=False))
+    assert all(wider > 2 * narrower for narrower, wider in pairwise(bends))
     assert bends[-1] > 0.08
 
 
