@@ -15,6 +15,7 @@ __all__ = ["Registration", "register"]
 
 _LOCAL_PX = 9
 _BOUND_SIGMAS = 3.0
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,8 @@ def _detail(image: Floats) -> Floats:
     share = uniform_filter(usable.astype(float), _LOCAL_PX, mode="constant")
     mean = uniform_filter(filled, _LOCAL_PX, mode="constant") / np.maximum(share, 1e-9)
     detail = np.where(usable & (share > 0.3), image - mean, 0.0)
+    # What rounding leaves of a uniform image is no structure.
+    detail[np.abs(detail) < _ROUNDING * float(np.abs(filled).max())] = 0.0
     some = np.abs(detail[detail != 0])
     if some.size == 0:
         return detail

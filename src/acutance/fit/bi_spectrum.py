@@ -20,7 +20,7 @@ from scipy.ndimage import uniform_filter
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
 from acutance.fit.bi_noise import WHITE
-from acutance.fit.bi_tile import PAD_PX, Complexes, PairTile, TapAxis, TapGrid, core, first_of_cell
+from acutance.fit.bi_tile import PAD_PX, Complexes, PairTile, TapAxis, TapGrid, first_of_cell
 from acutance.fit.kernel_basis import LOG_AMPLITUDE_STD
 from acutance.fit.kernel_fit import KernelFit
 from acutance.fit.kernel_start import BlurFit
@@ -29,15 +29,17 @@ from acutance.fit.posterior import Prior, regress
 
 __all__ = ["PairSpectra", "fit_spectra", "pair_spectra"]
 
-_LEAST_WINDOWS = 8
+_LEAST_WINDOWS = 2
 _MISSING = 0.05
 _LOWEST_BINS = 1.5
 _LEAST_COHERENCE = 1e-4
 _MOST_NOISE = 0.5
-_LEAKAGE = 0.005
+_PARTS = 5
+_LEAKAGE = 0.003
 """Relative error that the window's leakage leaves where both images agree perfectly."""
 _OVERLAP = 4.0
-"""Windows overlap by half both ways: four times as many numbers as pixels."""
+"""Neighbouring frequencies and windows share their pixels: a tapered window holds a quarter as many
+independent numbers as frequencies, and half overlapping windows as many as there are pixels."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +59,8 @@ class PairSpectra:
     windows : int
     size_px : int
         Side of a window in low pixels.
+    part_cross, part_high : (g, n, m) arrays
+        Shares of `cross` and `high` from separate parts of the images; they sum to the whole.
     """
 
     u_cpp: Floats
@@ -66,6 +70,8 @@ class PairSpectra:
     high: Floats
     windows: int
     size_px: int
+    part_cross: Complexes
+    part_high: Floats
 
     @property
     def transfer(self) -> Complexes:
@@ -75,23 +81,36 @@ class PairSpectra:
     @property
     def coherence(self) -> Floats:
         """Squared coherence over neighbouring frequencies, (n, m), less its bias."""
-        cross = _smooth(self.cross.real) + 1j * _smooth(self.cross.imag)
-        power = _smooth(self.low) * _smooth(self.high)
+        return self._coherence((3, 3))
+
+    def _coherence(self, around: tuple[int, int]) -> Floats:
+        """Over so many frequencies along and across."""
+        cross = _smooth(self.cross.real, around) + 1j * _smooth(self.cross.imag, around)
+        power = _smooth(self.low, around) * _smooth(self.high, around)
         found = np.abs(cross) ** 2 / np.maximum(power, 1e-300)
-        bias = 1 / (9 * self.windows / _OVERLAP + 1)
+        bias = 1 / (math.prod(around) * self.windows / _OVERLAP + 1)
         return np.clip((found - bias) / (1 - bias), 0.0, 1.0)
 
+    @property
+    def noise(self) -> Floats:
+        """Power of the low image that the high one does not explain, (n, m), in one window.
+
+        Smooth over neighbouring frequencies: single ones would be weighted by their own chance.
+        """
+        share = uniform_filter(1 - self.coherence, 3, mode="nearest")
+        floor = (_LEAKAGE * np.abs(self.cross)) ** 2 / np.maximum(self.high, 1e-300)
+        return np.asarray(share * _smooth(self.low) + _smooth(floor))
+
     def along_axis(self, axis: str) -> tuple[Floats, Floats]:
-        """Frequencies from 0 and squared coherence across or along, over a strip of 5 bins."""
-        coherence = self.coherence
+        """Frequencies from 0 and squared coherence across or along, over a strip of 7 bins."""
         middle_v, middle_u = self.v_cpp.size // 2, self.u_cpp.size // 2
         if axis == "across":
-            return self.u_cpp[middle_u:], coherence[middle_v - 2 : middle_v + 3].mean(0)[middle_u:]
-        return self.v_cpp[middle_v:], coherence[:, middle_u - 2 : middle_u + 3].mean(1)[middle_v:]
+            return self.u_cpp[middle_u:], self._coherence((7, 3))[middle_v, middle_u:]
+        return self.v_cpp[middle_v:], self._coherence((3, 7))[middle_v:, middle_u]
 
 
-def _smooth(field: Floats) -> Floats:
-    return np.asarray(uniform_filter(field, 3, mode="nearest"))
+def _smooth(field: Floats, around: tuple[int, int] = (3, 3)) -> Floats:
+    return np.asarray(uniform_filter(field, around, mode="nearest"))
 
 
 def pair_spectra(
@@ -115,26 +134,29 @@ def pair_spectra(
     """
     down = _Window(grid.down, blur.down.shift_px, size_px)
     across = _Window(grid.across, blur.across.shift_px, size_px)
-    cross = np.zeros((down.order.size, across.order.size), complex)
-    low, high = np.zeros(cross.shape), np.zeros(cross.shape)
-    count = 0
+    shape = down.order.size, across.order.size
+    cross, high = np.zeros((_PARTS**2, *shape), complex), np.zeros((_PARTS**2, *shape))
+    low, count = np.zeros(shape), 0
     for tile, residual in zip(tiles, residuals, strict=True):
-        for pixels, samples in _windows(tile, residual, grid, size_px):
+        for place, pixels, samples in _windows(tile, residual, grid, size_px):
             a = _spectrum(pixels, down.low_taper, across.low_taper)
             b = _spectrum(samples, down.high_taper, across.high_taper)
             a = a[np.ix_(down.order % size_px, across.order % size_px)]
             b = b[np.ix_(down.order % samples.shape[0], across.order % samples.shape[1])]
             b = b / (grid.down.per_px * grid.across.per_px)
-            cross += a * np.conj(b)
+            part = (place[0] // size_px % _PARTS) * _PARTS + place[1] // size_px % _PARTS
+            cross[part] += a * np.conj(b)
+            high[part] += np.abs(b) ** 2
             low += np.abs(a) ** 2
-            high += np.abs(b) ** 2
             count += 1
     if count < _LEAST_WINDOWS:
         return None
     turn = down.turn[:, None] * across.turn
+    seen = high.any(axis=(1, 2))
+    cross, high = cross[seen] * turn / count, high[seen] / count
     return PairSpectra(
-        across.order / size_px, down.order / size_px, cross * turn / count, low / count,
-        high / count, count, size_px,
+        across.order / size_px, down.order / size_px, cross.sum(axis=0), low / count,
+        high.sum(axis=0), count, size_px, cross, high,
     )  # fmt: skip
 
 
@@ -159,27 +181,54 @@ def _hann(places_px: Floats, size: int) -> Floats:
 
 def _windows(
     tile: PairTile, residual: Floats, grid: TapGrid, size: int
-) -> Iterator[tuple[Floats, Floats]]:
-    """Low pixels, the few that were left out filled, and the samples under them."""
-    low, rest = core(tile.low), core(residual)
-    known = np.isfinite(rest)
-    values = np.where(known, low, np.nan)
+) -> Iterator[tuple[tuple[int, int], Floats, Floats]]:
+    """Places in the low image, low pixels there, and the samples under them, both flattened."""
+    values = np.where(np.isfinite(residual), tile.low, np.nan)
     axes = (grid.down, grid.across)
-    for i in range(0, low.shape[0] - size + 1, size // 2):
-        for j in range(0, low.shape[1] - size + 1, size // 2):
-            pixels = values[i : i + size, j : j + size]
+    for i in _starts(values.shape[0], size):
+        for j in _starts(values.shape[1], size):
+            pixels = values[i - 1 : i + size + 1, j - 1 : j + size + 1]
             holes = ~np.isfinite(pixels)
             if holes.mean() > _MISSING:
                 continue
             if holes.any():
                 pixels = np.where(holes, _neighbours(pixels), pixels)
-            starts = [
-                axis.half + axis.per_px * (first + pad) + first_of_cell(axis)
-                for axis, first, pad in zip(axes, (i, j), (PAD_PX, PAD_PX), strict=True)
-            ]
-            rows, cols = (size * axis.per_px for axis in axes)
-            samples = tile.fine[starts[0] : starts[0] + rows, starts[1] : starts[1] + cols]
-            yield pixels, samples
+            top, left = (
+                axis.half + axis.per_px * (first - 1) + first_of_cell(axis)
+                for axis, first in zip(axes, (i, j), strict=True)
+            )
+            rows, cols = ((size + 2) * axis.per_px for axis in axes)
+            samples = tile.fine[top : top + rows, left : left + cols]
+            place = tile.place[0] + i, tile.place[1] + j
+            flat = _flattened(samples, grid.down.per_px, grid.across.per_px)
+            yield place, _flattened(pixels, 1, 1), flat
+
+
+def _starts(length: int, size: int) -> list[int]:
+    """Where windows with a border of one pixel begin: half overlapping, spread evenly."""
+    first, last = PAD_PX + 1, length - size - 1
+    if last < first:
+        return []
+    count = 1 + round((last - first) / (size / 2))
+    return [round(place) for place in np.linspace(first, last, count).tolist()]
+
+
+def _flattened(field: Floats, down: int, across: int) -> Floats:
+    """A field less the mean of its neighbours a low pixel away, where it has all four.
+
+    The same filter on the ground for both images: their ratio stays, but the spectrum of a
+    landscape, steep as it is, becomes flat enough for windows to keep frequencies apart.
+    """
+    rows, cols = slice(down, -down), slice(across, -across)
+    beside = field[rows, : -2 * across] + field[rows, 2 * across :]
+    return np.asarray(
+        field[rows, cols] - 0.25 * (field[: -2 * down, cols] + field[2 * down :, cols] + beside)
+    )
+
+
+def _flattening(u_cpp: Floats, v_cpp: Floats) -> Floats:
+    """Transfer of `_flattened`."""
+    return np.asarray(1 - 0.5 * (np.cos(2 * math.pi * u_cpp) + np.cos(2 * math.pi * v_cpp)))
 
 
 def _neighbours(pixels: Floats) -> Floats:
@@ -228,19 +277,23 @@ def fit_spectra(
             f"only {int(chosen.sum())} frequencies are coherent between the two images, 50 are "
             "needed: they show different things, or little detail; use method kernel-fit"
         )
-    high = spectra.high.ravel()[chosen]
-    low = spectra.low.ravel()[chosen]
-    transfer = spectra.cross.ravel()[chosen] / high
-    share = np.minimum(_noise_power(spectra, noise_high, basis.grid) / high, _MOST_NOISE)
-    transfer = transfer / (1 - share)
-    u, v = u[chosen], v[chosen]
-    variance = (1 - coherence[chosen]) * low / high * _OVERLAP / (2 * spectra.windows)
-    variance = variance + (_LEAKAGE * np.abs(transfer)) ** 2
+    u, v, high = u[chosen], v[chosen], spectra.high.ravel()[chosen]
+    # Of a single frequency; half of the noise is in phase.
+    precision = 2 * spectra.windows / spectra.noise.ravel()[chosen]
+    clean = np.maximum(
+        high - _noise_power(spectra, noise_high, basis.grid) * _flattening(u, v) ** 2,
+        _MOST_NOISE * high,
+    )
     turn = np.exp(2j * math.pi * (u * basis.across.shift_px + v * basis.down.shift_px))
-    design = basis.transfer(u, v) * turn[:, None] / np.sqrt(variance)[:, None]
-    data = transfer / np.sqrt(variance)
-    x = np.vstack([design.real, design.imag])
-    y = np.concatenate([data.real, data.imag])
+    design = basis.transfer(u, v) * turn[:, None]
+    cross = spectra.cross.ravel()[chosen]
+    weighted = np.conj(design) * precision[:, None]
+    normal = Normal(
+        ((weighted * clean[:, None]).T @ design).real,
+        (weighted.T @ cross).real,
+        float(precision @ (np.abs(cross) ** 2 / clean)),
+        2.0 * u.size,
+    )
     mean = np.zeros(basis.size)
     mean[0] = blur.gain
     prior = Prior(
@@ -252,13 +305,22 @@ def fit_spectra(
         height=abs(blur.gain),
         noise_floor=1e-3,
     )
-    posterior = regress(Normal(x.T @ x, x.T @ y, float(y @ y), float(y.size)), prior, 1.0)
+    posterior = regress(normal, prior, 1.0, _OVERLAP)
     k = basis.size
+    noise = _OVERLAP * posterior.variance
+    response = posterior.factor[:, :k] @ posterior.factor[:, :k].T / noise
+    seen = design @ posterior.beta * (clean / high)
+    rest = [
+        part.ravel()[chosen] - power.ravel()[chosen] * seen
+        for part, power in zip(spectra.part_cross, spectra.part_high, strict=True)
+    ]
+    power, axes = np.linalg.eigh(normal.gram)
+    root = axes * np.sqrt(np.maximum(power, 0.0))
     return KernelFit(
         grid=fit.grid, basis=basis, posterior=posterior, noise_factor=np.zeros(k),
-        scores=np.zeros((k, 0)), white_factor=np.zeros((k, 0)), whitening=WHITE,
-        noise=fit.noise, used=fit.used, left_out=fit.left_out,
-        robust=fit.robust,
+        scores=response @ (weighted.T @ np.stack(rest, axis=1)).real,
+        white_factor=np.sqrt(noise) * response @ root, whitening=WHITE,
+        noise=fit.noise, used=fit.used, left_out=fit.left_out, robust=fit.robust,
     )  # fmt: skip
 
 

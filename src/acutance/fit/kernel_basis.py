@@ -44,7 +44,7 @@ SCALES_PX: Final = ((0.8, 0.3), (1.6, 0.7), (4.0, 1.8))
 """Extent L and smoothness l of CORE, FLANK and HALO in low pixels."""
 TAIL_PX: Final = 0.5
 """Radius within which TAIL is flat."""
-LOG_AMPLITUDE: Final[Floats] = np.log([0.1, 0.01, 0.001, 0.02])
+LOG_AMPLITUDE: Final[Floats] = np.log([0.1, 0.01, 0.001, 0.1])
 LOG_AMPLITUDE_STD: Final = 0.7
 """Amplitudes relative to a kernel of volume 1, within a factor of 2: of the processes per square
 pixel, of TAIL its own volume."""

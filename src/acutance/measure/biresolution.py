@@ -37,7 +37,7 @@ BIRESOLUTION_METHODS = ("kernel-fit", "spectral-ratio")
 _LONG_REACH_PX = 7.0
 _SHORT_REACH_PX = 4.5
 _ROOM_PX = 56
-_SIZE_PX = (32, 16)
+_LARGEST_PX, _SMALLEST_PX = 64, 16
 _SHOWN_PX = 384
 
 
@@ -108,7 +108,7 @@ def measure_biresolution(
     if method == "spectral-ratio":
         if spectra is None:
             raise TargetError(
-                "the region has too few whole windows of 16 low pixels for spectra: choose a "
+                "the region has too few whole windows for spectra: choose a "
                 "larger one, or method kernel-fit"
             )
         fit = fit_spectra(spectra, pixel_fit, blur, noise_high=noise)
@@ -209,17 +209,18 @@ def _require_gain(blur: BlurFit, match: Registration) -> None:
     raise TargetError(
         f"the low image follows the high one with gain {blur.gain:.3g} and correlation "
         f"{blur.correlation:.3f}"
-        + (", brighter where that is darker" if match.inverted or blur.gain < 0 else "")
+        + (", brighter where that is darker" if blur.gain < 0 else "")
         + ": bands, dates or places differ too much for a measurement; choose a similar band"
     )
 
 
 def _spectra(tiles: PairTiles, fit: KernelFit, blur: BlurFit) -> PairSpectra | None:
-    for size in _SIZE_PX:
-        found = pair_spectra(tiles(), fit.residuals(tiles), tiles.taps, blur, size)
-        if found is not None:
-            return found
-    return None
+    """Spectra in the largest windows of which two fit into a tile either way."""
+    side = min(min(box.shape) for box in tiles.boxes)
+    size = min(_LARGEST_PX, 2 * (side // 3))
+    if size < _SMALLEST_PX:
+        return None
+    return pair_spectra(tiles(), fit.residuals(tiles), tiles.taps, blur, size)
 
 
 def _shifts(blur: BlurFit, fit: KernelFit) -> tuple[Estimate, Estimate]:

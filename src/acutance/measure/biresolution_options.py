@@ -48,7 +48,7 @@ class BiresolutionLimits:
     ratio: float = 2.0
     reference_mtf: float = 0.5
     correlation: float = 0.9
-    coherence: float = 0.2
+    coherence: float = 0.1
     pixels: float = 2000.0
     left_out: float = 0.2
     registration_px: float = 0.1

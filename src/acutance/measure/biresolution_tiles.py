@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -19,8 +20,8 @@ from acutance.raster import Box, Image, Region
 
 __all__ = ["PairTiles"]
 
-_TILE_PX: Final = 64
-_REGION_PX: Final = 16
+_TILE_PX: Final = 96
+_REGION_PX: Final = 24
 _MOST_REGIONS: Final = 8
 _HOLE_PX: Final = 3.0
 """Distance within which a missing sample of the reference spoils a low pixel."""
@@ -106,12 +107,16 @@ class PairTiles:
     def boxes(self) -> tuple[Box, ...]:
         """The low pixels of every tile that is read."""
         box = self.box
+        parts = [-(-size // _TILE_PX) for size in box.shape]
+        edges = [
+            [first + _share(k, size, count) for k in range(count + 1)]
+            for first, size, count in zip((box.row, box.col), box.shape, parts, strict=True)
+        ]
         every = tuple(
-            Box(row, col, min(_TILE_PX, box.row + box.height - row),
-                min(_TILE_PX, box.col + box.width - col))
-            for row in range(box.row, box.row + box.height, _TILE_PX)
-            for col in range(box.col, box.col + box.width, _TILE_PX)
-        )  # fmt: skip
+            Box(top, left, bottom - top, right - left)
+            for top, bottom in pairwise(edges[0])
+            for left, right in pairwise(edges[1])
+        )
         most = max(1, self.max_pixels // _TILE_PX**2)
         if len(every) <= most:
             return every
