@@ -8,7 +8,17 @@ import typer
 from typer.core import TyperGroup
 
 from acutance import __version__
-from acutance.cli import biresolution, demo, edge, plan, points, pulse, simulate, sites, study
+from acutance.cli import (
+    biresolution,
+    demo,
+    edge,
+    plan_mirrors,
+    points,
+    pulse,
+    simulate,
+    sites,
+    study,
+)
 from acutance.cli.terminal import fail
 from acutance.errors import AcutanceError
 
@@ -63,7 +73,7 @@ app.command("points", epilog=points.EXAMPLE)(points.points)
 app.command("sites", epilog=sites.EXAMPLE)(sites.sites)
 app.add_typer(simulate.app, name="simulate")
 app.command("study", epilog=study.EXAMPLE)(study.study)
-app.command("plan", epilog=plan.EXAMPLE)(plan.plan)
+app.add_typer(plan_mirrors.app, name="plan")
 app.command("demo", epilog=demo.EXAMPLE)(demo.demo)
 
 

@@ -15,14 +15,14 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.fit.noise import Correlation, correlation, outlier_weights, robust_scale
-from acutance.fit.normal import Normal
 from acutance.fit.point_blocks import Blocks, eliminate
+from acutance.fit.point_evidence import averaged_posterior, likelier_posterior
 from acutance.fit.point_ground import Ground, ground_levels
 from acutance.fit.point_stamps import Stamps
 from acutance.fit.point_start import BlurredPoints, own_columns
-from acutance.fit.posterior import Posterior, Prior, regress, whiten
+from acutance.fit.posterior import Posterior, Prior
 from acutance.fit.psf_model import PsfModel
-from acutance.fit.psf_prior import LOG_AMPLITUDE, LOG_AMPLITUDE_STD, START_AMPLITUDE, PsfDirections
+from acutance.fit.psf_prior import LOG_AMPLITUDE, LOG_AMPLITUDE_STD, PsfDirections
 
 __all__ = ["PointsFit", "fit_points"]
 
@@ -119,7 +119,7 @@ def fit_points(stamps: Stamps, start: BlurredPoints, *, robust: bool = True) -> 
     least = _NOISE_FLOOR * float(peaks.max())
     floor = max(least, _misfit(stamps, start, peaks))
     ground = Ground.of(stamps, start)
-    earlier: Posterior | None = None
+    before, earlier = state, None
     for _ in range(_MAX_PASSES):
         # Until the sources are in place, the linear problem leaves errors of second order: they
         # are taken for noise, lest the PSF explain them.
@@ -129,13 +129,15 @@ def fit_points(stamps: Stamps, start: BlurredPoints, *, robust: bool = True) -> 
         if tried.rms > 1.05 * max(state.rms, floor) and floor < _WORST * float(peaks.max()):
             floor, earlier = 4 * floor, None
             continue
-        state, earlier = tried, posterior
+        before, state, earlier = state, tried, posterior
         bend = _BEND * float((peaks * np.minimum(moves, _LONGEST_STEP_PX) ** 2).max())
         quiet = noise if bend > state.rms else _noise_of(stamps, state, robust=robust)
         enough = max(least, _NEGLIGIBLE * state.rms)
         if bend < enough and floor < max(2 * least, state.rms) and noise.agrees(quiet):
             break
         floor, noise = max(least, bend), quiet
+    posterior = averaged_posterior(blocks.normal(), prior, noise.correlation.inflation, posterior)
+    state = _moved(stamps, before, ground, blocks, posterior)
     return _found(stamps, state, ground, blocks, posterior, noise)
 
 
@@ -220,38 +222,11 @@ def _solve(
     variance = max(float(weight @ state.residual**2) / stamps.value.size, prior.noise_floor**2)
     tie = ground.tie(math.sqrt(variance))
     blocks = eliminate(own, shared, stamps.value - mean, weight, stamps.starts, tie)
-    posterior = _likelier(blocks.normal(), prior, variance, noise.correlation.inflation, earlier)
+    posterior = likelier_posterior(
+        blocks.normal(), prior, variance, noise.correlation.inflation, earlier
+    )
     own_found = blocks.own(posterior.beta)
     return blocks, posterior, np.abs(own_found[:, 1:3]).max(axis=1)
-
-
-def _likelier(
-    normal: Normal, prior: Prior, variance: float, inflation: float, earlier: Posterior | None
-) -> Posterior:
-    """The posterior at the higher of the evidence's modes.
-
-    There can be two: light in the wings, or none and a more crooked core. One is looked for from
-    large amplitudes, the other from those of before, or from small ones.
-    """
-    nothing = np.zeros(prior.block.size)
-    above = Posterior(nothing, nothing[:, None], START_AMPLITUDE, variance, 0.0)
-    found = [regress(normal, prior, variance, inflation, start) for start in (above, earlier)]
-    return max(found, key=lambda one: _log_evidence(normal, prior, one, inflation))
-
-
-def _log_evidence(normal: Normal, prior: Prior, found: Posterior, inflation: float) -> float:
-    """Logarithm of the evidence at a posterior's amplitudes and noise, hyperprior included."""
-    noise = found.variance * inflation
-    white = whiten(normal, prior, found.log_amplitude, noise)
-    explained = float(white.mean @ (white.sigma * normal.projection)) / noise
-    volume = float(np.sum(np.log(np.diagonal(white.root))))
-    away = (found.log_amplitude - prior.log_amplitude) / prior.log_amplitude_std
-    count = normal.count / inflation
-    return (
-        0.5 * (explained - normal.data / noise - count * math.log(noise))
-        + volume
-        - 0.5 * float(away @ away)
-    )
 
 
 def _moved(

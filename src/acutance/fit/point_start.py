@@ -9,15 +9,15 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.fit.point_blocks import eliminate
 from acutance.fit.point_stamps import Stamps
-from acutance.fit.psf_blur import FOOT_WIDTHS, PlaneBlur
+from acutance.fit.psf_blur import FOOT_WIDTHS, BlurSlopes, PlaneBlur
 
 __all__ = ["BlurredPoints", "fit_blurred_points", "own_columns"]
 
 _MAX_STEPS = 25
-_SETTLED = 1e-4
+_SETTLED = 3e-4
 _LONGEST_STEP_PX = 0.4
 _FOOT = (-0.6, 1.5)
-_SIGMAS_PX = (0.25, 0.4, 0.6, 0.9, 1.3, 1.9, 2.8)
+_SIGMAS_PX = (0.4, 0.7, 1.2, 2.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +48,11 @@ class BlurredPoints:
 
     def slopes(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
         """The PSF, not normalised, and its slopes by x and y at places (x, y), (n,)."""
-        core, wide = self.blur.slopes(x, y), self.blur.widened(FOOT_WIDTHS).slopes(x, y)
-        psf, by_x, by_y = (core[i] + self.foot * wide[i] for i in range(3))
+        return self.both(self.blur.slopes(x, y), self.blur.widened(FOOT_WIDTHS).slopes(x, y))
+
+    def both(self, core: BlurSlopes, foot: BlurSlopes) -> tuple[Floats, Floats, Floats]:
+        """PSF and slopes, from those of core and foot."""
+        psf, by_x, by_y = (core[i] + self.foot * foot[i] for i in range(3))
         return psf, by_x, by_y
 
     def psf(self, x: Floats, y: Floats) -> Floats:
@@ -121,9 +124,10 @@ def _seen(stamps: Stamps, found: BlurredPoints) -> BlurredPoints:
 def _step(stamps: Stamps, found: BlurredPoints) -> tuple[Floats, Floats]:
     """One Gauss-Newton step: of Sigma and foot, (4,), and of every source's unknowns, (k, 6)."""
     x, y = stamps.offsets(found.places)
-    own = own_columns(stamps, found.places, found.fluxes, found.slopes(x, y))
+    core, foot = found.blur.slopes(x, y), found.blur.widened(FOOT_WIDTHS).slopes(x, y)
+    own = own_columns(stamps, found.places, found.fluxes, found.both(core, foot))
     flux = found.fluxes[stamps.owner]
-    columns = [*found.blur.slopes(x, y)[3:6], found.blur.widened(FOOT_WIDTHS).psf(x, y)]
+    columns = [*core[3:6], foot.psf]
     shared = np.stack(columns, axis=1) * flux[:, None]
     blocks = eliminate(own, shared, found.residual, np.ones(flux.size), stamps.starts)
     normal = blocks.normal()

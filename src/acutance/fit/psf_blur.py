@@ -19,6 +19,8 @@ from acutance.fit.blur import FWHM_OF_SIGMA, gaussian
 
 __all__ = ["FOOT_WIDTHS", "LEAST_SIGMA_PX", "BlurSlopes", "PlaneBlur"]
 
+_REACH = 7.0
+"""So many standard deviations from its edge the aperture sees nothing."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 FOOT_WIDTHS: Final = 2.0
 """How many times as wide as the core a foot is."""
@@ -112,6 +114,14 @@ class PlaneBlur:
         half of a second derivative by place: a difference of integrands at the aperture's ends.
         """
         half = 0.5 * self.aperture_px
+        near = np.abs(x) < half + _REACH * math.sqrt(self.xx)
+        near &= np.abs(y) < half + _REACH * math.sqrt(self.yy)
+        found = np.zeros((len(BlurSlopes._fields), x.size))
+        found[:, near] = self._slopes_near(x[near], y[near])
+        return BlurSlopes(*found)
+
+    def _slopes_near(self, x: Floats, y: Floats) -> tuple[Floats, ...]:
+        half = 0.5 * self.aperture_px
         nodes = y[None, :] + half * _NODES[:, None]
         inner = self._inner(x, nodes)
         weights = half * _WEIGHTS
@@ -119,7 +129,7 @@ class PlaneBlur:
         top, bottom = self._inner(x, y + half), self._inner(x, y - half)
         area = self.aperture_px**2
         psf = psf / area
-        return BlurSlopes(
+        return (
             psf,
             by_x / area,
             (top[0] - bottom[0]) / area,

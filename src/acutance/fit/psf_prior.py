@@ -36,7 +36,6 @@ from acutance.fit.psf_blur import FOOT_WIDTHS, BlurSlopes, PlaneBlur
 __all__ = [
     "LOG_AMPLITUDE",
     "LOG_AMPLITUDE_STD",
-    "START_AMPLITUDE",
     "PsfDirections",
     "tail_otf",
     "tail_psf",
@@ -93,8 +92,6 @@ LOG_AMPLITUDE: Final[Floats] = np.array([-5.0, -4.0, -4.6, -4.5, -3.0, -3.5, -2.
 LOG_AMPLITUDE_STD: Final = 1.5
 """Amplitudes of SHAPE, DETAIL, HALO, TAIL, APERTURE, FOOT and AIRY relative to the source's
 flux (of APERTURE, relative to the pixel), within a factor 4.5 either way."""
-START_AMPLITUDE: Final[Floats] = np.array([-3.0, -3.0, -2.5, -1.5, -2.0, -2.0, -0.3])
-"""Where the search for the amplitudes begins."""
 _GAUGE_STEP: Final = 0.3
 _GAUGE_REACH: Final = 4.5
 

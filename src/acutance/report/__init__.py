@@ -18,6 +18,7 @@ from acutance.report.documents import (
     truth_document,
 )
 from acutance.report.edge_page import edge_figure, panel_figures
+from acutance.report.mirrors_page import mirror_plan_figure, mirror_plan_text
 from acutance.report.page import save_figure
 from acutance.report.plane_page import plane_figure, plane_panels
 from acutance.report.plane_panels import PlanePanel
@@ -49,6 +50,8 @@ __all__ = [
     "json_text",
     "measurement_document",
     "measurement_schema",
+    "mirror_plan_figure",
+    "mirror_plan_text",
     "mtf_csv",
     "mtf_csv_of_many",
     "panel_figures",

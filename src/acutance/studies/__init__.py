@@ -5,6 +5,13 @@ from acutance.studies.bound import Design, MetricBound, equivalent_blur, free_bo
 from acutance.studies.catalogue import STUDIES, Study, run_study
 from acutance.studies.execution import Execution, run_trials
 from acutance.studies.ground_noise import GroundNoiseOptions, study_ground_noise
+from acutance.studies.mirrors import (
+    MirrorLayout,
+    MirrorPlan,
+    MirrorPlanOptions,
+    lay_out_mirrors,
+    plan_mirrors,
+)
 from acutance.studies.plan import PlanOptions, plan_target
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.scatter import minimum_snr
@@ -27,6 +34,9 @@ __all__ = [
     "Finding",
     "GroundNoiseOptions",
     "MetricBound",
+    "MirrorLayout",
+    "MirrorPlan",
+    "MirrorPlanOptions",
     "PlanOptions",
     "SnrOptions",
     "Study",
@@ -37,7 +47,9 @@ __all__ = [
     "WidthOptions",
     "equivalent_blur",
     "free_bound",
+    "lay_out_mirrors",
     "minimum_snr",
+    "plan_mirrors",
     "plan_target",
     "run_study",
     "run_trials",

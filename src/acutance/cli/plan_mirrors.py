@@ -1,0 +1,123 @@
+"""``acutance plan mirrors``: where to put convex mirrors, and which."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from acutance.cli.output import check_output
+from acutance.cli.plan import EXAMPLE as TARGETS_EXAMPLE
+from acutance.cli.plan import plan
+from acutance.cli.result_options import JsonOption
+from acutance.cli.sensor import SensorName, named_sensor
+from acutance.cli.study import WorkersOption, execution_of, progress_bar
+from acutance.cli.terminal import say
+from acutance.errors import OptionError
+
+__all__ = ["EXAMPLE", "app", "plan_mirrors"]
+
+EXAMPLE = (
+    "\b\nExample:\n"
+    "  acutance plan mirrors --count 20 --gsd 0.7 --sensor quickbird-like --csv mirrors.csv"
+)
+_OTHERS = "edge|pulse"
+
+
+class _Targets(TyperGroup):
+    """Edges and pulses are planned by one command, which reads the target's name itself."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[Any, Any, list[str]]:
+        if args[0] == "mirrors":
+            return super().resolve_command(ctx, args)
+        return "", self.commands[_OTHERS], args
+
+
+app = typer.Typer(
+    cls=_Targets,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    context_settings={"ignore_unknown_options": True},
+    help="Plan a target: the accuracy to expect of it, where its parts have to stand.",
+    epilog=f"{TARGETS_EXAMPLE}\n{EXAMPLE.splitlines()[-1]}",
+)
+app.command(_OTHERS, epilog=TARGETS_EXAMPLE)(plan)
+
+
+@app.command("mirrors", epilog=EXAMPLE)
+def plan_mirrors(
+    count: Annotated[int, typer.Option(metavar="N", help="Number of mirrors.")] = 20,
+    arrangement: Annotated[
+        str, typer.Option(metavar="columns|square", help="Slanted columns, or a square.")
+    ] = "columns",
+    columns: Annotated[int, typer.Option(metavar="N", help="Number of columns.")] = 2,
+    spacing: Annotated[
+        float | None,
+        typer.Option(
+            metavar="PX", help="Least distance of neighbours: 10 in columns, 5 in a square."
+        ),
+    ] = None,
+    sensor: SensorName = "generic-2005",
+    gsd: Annotated[
+        float | None,
+        typer.Option(metavar="M", help="Ground sampling distance, if not the sensor's own."),
+    ] = None,
+    snr: Annotated[
+        float, typer.Option(metavar="RATIO", help="Peak over the background's noise.")
+    ] = 80.0,
+    level: Annotated[
+        float,
+        typer.Option(
+            metavar="R", help="Brightest pixel, as the reflectance of ground as bright as it."
+        ),
+    ] = 0.5,
+    ground: Annotated[float, typer.Option(metavar="R", help="Reflectance of the ground.")] = 0.1,
+    mirror: Annotated[float, typer.Option(metavar="R", help="Reflectance of the mirrors.")] = 0.85,
+    sun_zenith: Annotated[float, typer.Option(metavar="DEG", help="Of the sun.")] = 40.0,
+    view_zenith: Annotated[float, typer.Option(metavar="DEG", help="Of the satellite.")] = 10.0,
+    draws: Annotated[
+        int, typer.Option(metavar="N", min=0, help="Simulated images; 0 for the layout alone.")
+    ] = 20,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005,
+    workers: WorkersOption = None,
+    csv: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write the mirrors' places: .csv.")
+    ] = None,
+    figure: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw the layout: .png, .svg or .pdf.")
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Lay out convex mirrors: spacing, angle, phases, radius, and the accuracy to expect.
+
+    Mirrors spread over the sub-pixel phases sample the PSF finer than the pixels do.
+    """
+    from acutance.report import json_text, mirror_plan_figure, mirror_plan_text
+    from acutance.report.page import figure_bytes
+    from acutance.studies import MirrorPlanOptions
+    from acutance.studies import plan_mirrors as lay_out
+
+    if arrangement not in ("columns", "square"):
+        raise OptionError(f"--arrangement {arrangement}: it has to be columns or square")
+    table = None if csv is None else check_output("--csv", csv, (".csv",))
+    drawing = None if figure is None else check_output("--figure", figure, (".png", ".svg", ".pdf"))
+    system = named_sensor(sensor)
+    if gsd is not None:
+        system = replace(system, gsd_m=gsd, gsd_along_m=None)
+    options = MirrorPlanOptions(
+        sensor=system, count=count,
+        arrangement="square" if arrangement == "square" else "columns", columns=columns,
+        spacing_px=spacing, snr=snr, level=level, ground=ground, mirror=mirror,
+        sun_zenith_deg=sun_zenith, view_zenith_deg=view_zenith, draws=draws,
+    )  # fmt: skip
+    with progress_bar("plan mirrors") as progress:
+        result = lay_out(options, execution_of(seed, workers, None, progress))
+    if table is not None:
+        table.write(result.to_csv())
+        say(f"wrote {table.path}")
+    if drawing is not None:
+        drawing.write(figure_bytes(mirror_plan_figure(result), drawing.ending))
+        say(f"wrote {drawing.path}")
+    typer.echo(json_text(result.to_dict()) if as_json else mirror_plan_text(result))

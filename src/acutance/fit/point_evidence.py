@@ -1,0 +1,114 @@
+"""Which prior amplitudes of the PSF the data favour, and what follows where they do not say.
+
+The evidence can have several modes: the same pixels may show the wings of an aperture, or none and
+a more crooked core. While the sources still move, the likeliest mode is followed; at the end the
+amplitudes of the wings are integrated over, so that what is not seen enters the uncertainty.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.fit.normal import Normal
+from acutance.fit.posterior import Posterior, Prior, Whitened, regress, whiten
+
+__all__ = ["averaged_posterior", "likelier_posterior"]
+
+# SHAPE, DETAIL, HALO, TAIL, APERTURE, FOOT, AIRY as in `psf_prior`: where the search begins.
+_LIGHT_FAR_OUT: Final[Floats] = np.array([-3.5, -4.0, -6.0, -4.5, -3.0, -2.0, -0.3])
+_HALO, _TAIL = 2, 3
+_GRID: Final = (-6.0, -5.2, -4.4, -3.6, -2.8, -2.0, -1.2)
+_SMALL: Final = -4.5
+_LEAST_WEIGHT: Final = 0.003
+
+
+def likelier_posterior(
+    normal: Normal, prior: Prior, variance: float, inflation: float, earlier: Posterior | None
+) -> Posterior:
+    """The likelier one of two modes: that near an `earlier` one, and that with light far out.
+
+    The parameters are those of `acutance.fit.posterior.regress`.
+    """
+    starts = [_from(prior, variance, _LIGHT_FAR_OUT), earlier]
+    found = [regress(normal, prior, variance, inflation, start) for start in starts]
+    return max(found, key=lambda one: _evidence_of(normal, prior, one, inflation))
+
+
+def averaged_posterior(
+    normal: Normal, prior: Prior, inflation: float, likeliest: Posterior
+) -> Posterior:
+    """The posterior with the amplitudes of HALO and TAIL integrated over.
+
+    At the likeliest amplitudes alone, wings that the data neither show nor exclude would be taken
+    for absent. Either amplitude runs over a grid, each point weighted by its evidence; what the
+    other amplitudes leave open stays as in `likeliest`.
+
+    Parameters
+    ----------
+    normal, prior, inflation
+        As `acutance.fit.posterior.regress` takes them.
+    likeliest : Posterior
+        What it found.
+    """
+    noise = likeliest.variance * inflation
+    mode = likeliest.log_amplitude
+    points = [mode, *(_at(mode, _HALO, _TAIL, a) for a in _GRID)]
+    points += [_at(mode, _TAIL, _HALO, a) for a in _GRID]
+    white = [whiten(normal, prior, point, noise) for point in points]
+    evidence = np.array(
+        [
+            _log_evidence(normal, prior, one, point, noise)
+            for one, point in zip(white, points, strict=True)
+        ]
+    )
+    weights = np.exp(evidence - evidence.max())
+    weights[weights < _LEAST_WEIGHT * weights.sum()] = 0.0
+    weights /= weights.sum()
+    kept = [(w, one) for w, one in zip(weights.tolist(), white, strict=True) if w > 0]
+    mean = np.asarray(sum(w * one.sigma * one.mean for w, one in kept))
+    covariance = np.zeros((mean.size, mean.size))
+    for w, one in kept:
+        covariance += w * one.covariance * np.outer(one.sigma, one.sigma)
+        away = one.sigma * one.mean - mean
+        covariance += w * np.outer(away, away)
+    moves = likeliest.factor[:, mean.size :].copy()
+    moves[:, [_HALO, _TAIL]] = 0.0
+    power, axes = np.linalg.eigh(covariance)
+    factor = axes * np.sqrt(np.maximum(power, 0.0))
+    return Posterior(mean, np.hstack([factor, moves]), mode, likeliest.variance, likeliest.freedom)
+
+
+def _at(mode: Floats, varied: int, other: int, log_amplitude: float) -> Floats:
+    """The mode with one amplitude of the wings set, and the other one small."""
+    point = mode.copy()
+    point[varied] = log_amplitude
+    point[other] = min(float(mode[other]), _SMALL)
+    return point
+
+
+def _from(prior: Prior, variance: float, log_amplitude: Floats) -> Posterior:
+    """A posterior that says nothing but where to begin."""
+    nothing = np.zeros(prior.block.size)
+    return Posterior(nothing, nothing[:, None], log_amplitude, variance, 0.0)
+
+
+def _log_evidence(
+    normal: Normal, prior: Prior, white: Whitened, log_amplitude: Floats, noise: float
+) -> float:
+    """Logarithm of the evidence at given amplitudes and noise variance, hyperprior included."""
+    explained = float(white.mean @ (white.sigma * normal.projection)) / noise
+    volume = float(np.sum(np.log(np.diagonal(white.root))))
+    away = (log_amplitude - prior.log_amplitude) / prior.log_amplitude_std
+    return 0.5 * (explained - normal.data / noise - float(away @ away)) + volume
+
+
+def _evidence_of(normal: Normal, prior: Prior, found: Posterior, inflation: float) -> float:
+    """The same at a posterior's amplitudes and noise, which may differ between posteriors."""
+    noise = found.variance * inflation
+    white = whiten(normal, prior, found.log_amplitude, noise)
+    level = 0.5 * normal.count / inflation * math.log(noise)
+    return _log_evidence(normal, prior, white, found.log_amplitude, noise) - level

@@ -1,0 +1,109 @@
+"""A plan of mirrors in words and as a drawing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from acutance.report.page import BLUE, FAINT, INK, new_page, styled
+from acutance.report.text import align_columns
+from acutance.report.wording import MISSING, format_number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from acutance.curves.grid import Floats
+    from acutance.studies import MirrorPlan
+
+__all__ = ["mirror_plan_figure", "mirror_plan_text"]
+
+NUMBERS = {
+    "mtf_nyquist": "MTF at Nyquist",
+    "rer": "RER",
+    "fwhm_px": "FWHM [px]",
+    "position_px": "place [px]",
+}
+
+
+def mirror_plan_text(plan: MirrorPlan) -> str:
+    """A plan of mirrors as text: layout, mirrors, phases, what to expect."""
+    layout, options = plan.layout, plan.options
+    along_m, across_m = layout.pixel_m
+    if options.arrangement == "columns":
+        where = (
+            f"{options.count} mirrors in {options.columns} columns, {layout.apart_px:.2f} px "
+            f"({layout.apart_px * across_m:.2f} m) apart"
+        )
+        steps = (
+            f"steps of {layout.step_px[1]:g} px across and {layout.step_px[0]:g} px along "
+            f"({layout.step_px[1] * across_m:.2f} by {layout.step_px[0] * along_m:.2f} m), "
+            f"{layout.angle_deg:.1f} degrees against the image's columns"
+        )
+    else:
+        where = f"{options.count} mirrors in a square"
+        steps = (
+            f"pitch {layout.step_px[0]:g} px ({layout.step_px[0] * across_m:.2f} m across, "
+            f"{layout.step_px[0] * along_m:.2f} m along)"
+        )
+    changes = (-0.05, -0.02, 0.0, 0.02, 0.05)
+    gaps = ", ".join(f"{layout.gap_px(change):.2f} ({change:+.0%})" for change in changes)
+    blocks = [
+        f"{where}\n  {steps}\n  largest gap of the phases, px, if the GSD is other than planned: "
+        f"{gaps}",
+        f"mirrors: radius of curvature {plan.radius_m:.2f} m, cap at least {plan.diameter_m:.2f} m "
+        f"across\n  for a brightest pixel as bright as ground of reflectance {options.level:g} on "
+        f"ground of {options.ground:g};\n  the brightest pixel holds {100 * plan.peak_share:.0f} % "
+        "of a mirror's light",
+        _expected(plan),
+    ]
+    return "\n\n".join(blocks)
+
+
+def _expected(plan: MirrorPlan) -> str:
+    bound = f"{plan.position_std_px:.4f}"
+    if not plan.std:
+        return f"place of a mirror at SNR {plan.options.snr:g}: no better than ± {bound} px"
+    rows: list[tuple[str, ...]] = [("to expect (std)", "stated", "", "scatter", "")]
+    rows.append(("", "across", "along", "across", "along"))
+    for name, words in NUMBERS.items():
+        cells = [
+            format_number(numbers.get(f"{name} {direction}", float("nan")), 2) or MISSING
+            for numbers in (plan.std, plan.scatter)
+            for direction in ("across", "along")
+        ]
+        rows.append((words, *cells))
+    return (
+        align_columns(rows, "lrrrr", indent="")
+        + f"\n  at SNR {plan.options.snr:g}, {plan.options.draws} simulated images; places no "
+        f"better than ± {bound} px"
+    )
+
+
+def mirror_plan_figure(plan: MirrorPlan) -> Figure:
+    """The mirrors on the ground, and their phases within the pixel."""
+    layout = plan.layout
+    with styled():
+        figure = new_page(9.6, 4.8)
+        ground, phases = figure.subplots(1, 2)
+        metres = layout.places_m
+        ground.plot(metres[:, 1], metres[:, 0], "o", color=BLUE)
+        _number(ground, metres)
+        ground.set(xlabel="across [m]", ylabel="along [m]", aspect="equal", title="On the ground")
+        ground.margins(0.15)
+        ground.invert_yaxis()
+        places = layout.phases
+        phases.plot([0, 1, 1, 0, 0], [0, 0, 1, 1, 0], color=FAINT, lw=1)
+        phases.plot(places[:, 1], places[:, 0], "o", color=BLUE)
+        _number(phases, places)
+        phases.set(
+            xlim=(-0.08, 1.08), ylim=(1.08, -0.08), aspect="equal", xlabel="across [px]",
+            ylabel="along [px]", title=f"Phases: largest gap {layout.gap_px():.2f} px",
+        )  # fmt: skip
+    return figure
+
+
+def _number(axes: Axes, places: Floats) -> None:
+    for number, (down, right) in enumerate(places.tolist(), start=1):
+        axes.annotate(
+            str(number), (right, down), (5, 3), textcoords="offset points", fontsize=7, color=INK
+        )

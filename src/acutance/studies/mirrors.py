@@ -1,0 +1,383 @@
+"""Lay out an array of convex mirrors: places, sub-pixel phases, radius, and what to expect.
+
+Mirrors in slanted columns step by an integer plus 1/p pixels across and an integer plus 1/q along,
+with p and q coprime: after p q mirrors every combination of phases was seen once. 20 mirrors give
+p = 4 and q = 5: steps of 1.25 by 10.2 GSD, 7 degrees, as in Brookings in 2003 (QuickBird report,
+5.7.2). A square of n by n mirrors has one pitch, an integer plus 1/n: 4 by 4 at 5.25 px, as Li et
+al. (2.2) show it.
+
+A convex mirror of radius of curvature R sends the sun's beam evenly into all directions: its
+radiant intensity is ``rho E R^2 / 4`` under the irradiance E (normal to the beam) and the
+reflectance rho. Lambertian ground of reflectance r and area A has ``r E cos(zenith) A / pi``. So a
+mirror is as bright as ground of reflectance ``pi rho R^2 / (4 A cos(zenith))`` that fills one pixel
+of area A; the air takes as much from both, and skylight is left out. The satellite sees the sun in
+the mirror where the mirror's normal halves the angle between both, so a cap that lies level must
+reach to half of the sum of both zenith angles. (Own derivation: the reports give no formula.)
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from acutance.curves import Estimate
+from acutance.curves.grid import Floats
+from acutance.errors import OptionError, TargetError
+from acutance.measure import measure_points
+from acutance.measure.points_checks import phase_gap_px
+from acutance.optics import Sensor
+from acutance.simulate import points
+from acutance.studies.execution import Execution, Record, run_trials
+
+__all__ = ["MirrorLayout", "MirrorPlan", "MirrorPlanOptions", "lay_out_mirrors", "plan_mirrors"]
+
+Arrangement = Literal["columns", "square"]
+_LEAST_SPACING = 5.0
+_MARGIN_PX = 14.0
+_GSD_CHANGES = (-0.05, -0.02, 0.0, 0.02, 0.05)
+POSITION_BOUND = 0.80
+"""Standard deviation of a place times the peak's SNR, in pixels: a well sampled Gaussian's."""
+
+
+@dataclass(frozen=True)
+class MirrorPlanOptions:
+    """What an array of mirrors is planned for.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        With its GSD.
+    count : int
+        Number of mirrors.
+    arrangement : {"columns", "square"}
+        Slanted columns, or a square.
+    columns : int
+        Number of columns.
+    spacing_px : float
+        Least distance of neighbours in a column, or in a row of the square.
+    snr : float
+        Peak over the noise of the background.
+    level : float
+        Wanted brightest pixel, as a reflectance of ground that would look as bright.
+    ground : float
+        Reflectance of the ground.
+    mirror : float
+        Reflectance of the mirrors.
+    sun_zenith_deg, view_zenith_deg : float
+        Zenith angles of the sun and of the satellite.
+    draws : int
+        Simulated images; 0 for the layout alone.
+
+    Raises
+    ------
+    OptionError
+        If a number makes no sense.
+    """
+
+    sensor: Sensor
+    count: int = 20
+    arrangement: Arrangement = "columns"
+    columns: int = 2
+    spacing_px: float | None = None
+    snr: float = 80.0
+    level: float = 0.5
+    ground: float = 0.1
+    mirror: float = 0.85
+    sun_zenith_deg: float = 40.0
+    view_zenith_deg: float = 10.0
+    draws: int = 20
+
+    def __post_init__(self) -> None:
+        if self.sensor.gsd_m is None:
+            raise OptionError("mirrors need a ground sampling distance: give the sensor's GSD")
+        if self.arrangement not in ("columns", "square"):
+            raise OptionError(
+                f"arrangement is {self.arrangement!r}: it has to be 'columns' or 'square'"
+            )
+        bounds = {
+            "count": (self.count, 1, 400),
+            "columns": (self.columns, 1, self.count),
+            "spacing_px": (self.least_spacing_px, _LEAST_SPACING, 100.0),
+            "snr": (self.snr, 1.0, 1e6),
+            "ground": (self.ground, 0.0, 0.95),
+            "level": (self.level, self.ground + 0.01, 100.0),
+            "mirror": (self.mirror, 0.05, 1.0),
+            "sun_zenith_deg": (self.sun_zenith_deg, 0.0, 80.0),
+            "view_zenith_deg": (self.view_zenith_deg, 0.0, 60.0),
+            "draws": (self.draws, 0, 10_000),
+        }
+        for name, (value, low, high) in bounds.items():
+            if not low <= value <= high:
+                raise OptionError(f"{name} is {value:g}: it has to be {low:g} to {high:g}")
+
+    @property
+    def least_spacing_px(self) -> float:
+        """The spacing asked for, or 10 px in columns and 5 px in a square."""
+        if self.spacing_px is not None:
+            return self.spacing_px
+        return 10.0 if self.arrangement == "columns" else _LEAST_SPACING
+
+
+@dataclass(frozen=True, eq=False)
+class MirrorLayout:
+    """Where the mirrors stand, relative to the first one.
+
+    Parameters
+    ----------
+    places_px : (n, 2) array
+        (along, across) in pixels: rows downwards, columns to the right.
+    step_px : (float, float)
+        (along, across) from one mirror of a column to the next; of a square, its pitch both ways.
+    apart_px : float
+        Distance of the columns; of a square, its pitch.
+    pixel_m : (float, float)
+        GSD (along, across) in metres.
+    """
+
+    places_px: Floats
+    step_px: tuple[float, float]
+    apart_px: float
+    pixel_m: tuple[float, float]
+
+    @property
+    def places_m(self) -> Floats:
+        """The same in metres, (n, 2)."""
+        return np.asarray(self.places_px * np.array(self.pixel_m))
+
+    @property
+    def angle_deg(self) -> float:
+        """Angle of a column against the image's columns."""
+        return math.degrees(math.atan2(self.step_px[1], self.step_px[0]))
+
+    @property
+    def phases(self) -> Floats:
+        """Sub-pixel places (along, across), 0 to 1, (n, 2)."""
+        return np.asarray(np.mod(self.places_px + 1e-9, 1.0))
+
+    @property
+    def spacing_px(self) -> float:
+        """Distance of the two nearest mirrors."""
+        if self.places_px.shape[0] < 2:
+            return math.inf
+        away = np.linalg.norm(self.places_px[:, None] - self.places_px, axis=2)
+        return float(away[away > 0].min())
+
+    def gap_px(self, gsd_change: float = 0.0) -> float:
+        """Largest gap of the phases, when the GSD is larger by a share than planned."""
+        return phase_gap_px(self.places_px / (1 + gsd_change))
+
+
+def lay_out_mirrors(
+    count: int,
+    *,
+    pixel_m: tuple[float, float],
+    arrangement: Arrangement = "columns",
+    columns: int = 2,
+    spacing_px: float = 10.0,
+) -> MirrorLayout:
+    """Places of mirrors whose phases fill the pixel evenly.
+
+    Parameters
+    ----------
+    count : int
+    pixel_m : (float, float)
+        GSD (along, across) in metres.
+    arrangement : {"columns", "square"}, optional
+    columns : int, optional
+        Number of slanted columns.
+    spacing_px : float, optional
+        Least distance along a column, or pitch of the square.
+    """
+    if arrangement == "square":
+        side = math.ceil(math.sqrt(count))
+        pitch = math.ceil(spacing_px - 1e-9) + (1 / side if side > 1 else 0.0)
+        rows, cols = np.divmod(np.arange(count), side)
+        places = np.stack([rows, cols], axis=1) * pitch
+        return MirrorLayout(places, (pitch, 0.0), pitch, pixel_m)
+    across, along = _coprime_phases(count)
+    step = (math.ceil(spacing_px - 1e-9) + 1 / along, 1 + 1 / across)
+    rows_each = math.ceil(count / columns)
+    # The next column goes on where the phases of the one before ended.
+    place = np.arange(count) % rows_each
+    column = np.arange(count) // rows_each
+    shift = np.array([math.fmod(rows_each * one, 1.0) for one in step])
+    apart = max(math.ceil(spacing_px - 1e-9) + 1 + shift[1], _LEAST_SPACING)
+    places = np.stack(
+        [place * step[0] + column * shift[0], place * step[1] + column * apart], axis=1
+    )
+    return MirrorLayout(places, step, float(apart), pixel_m)
+
+
+def _coprime_phases(count: int) -> tuple[int, int]:
+    """Numbers of phases across and along: coprime, alike, their product enough for all."""
+    pairs = [
+        (p, q)
+        for q in range(1, count + 2)
+        for p in range(1, q + 1)
+        if math.gcd(p, q) == 1 and p * q >= count
+    ]
+    return min(pairs, key=lambda pair: (pair[0] * pair[1] - count + 2 * (pair[1] - pair[0]), pair))
+
+
+@dataclass(frozen=True, eq=False)
+class MirrorPlan:
+    """A layout with its mirrors, and what to expect of it.
+
+    Parameters
+    ----------
+    options : MirrorPlanOptions
+    layout : MirrorLayout
+    radius_m : float
+        Radius of curvature that gives the wanted signal.
+    diameter_m : float
+        Least diameter of a mirror's cap that lies level.
+    peak_share : float
+        What the brightest pixel holds of a mirror's light, averaged over the phases.
+    std : dict of float
+        Standard deviations that measurements of simulated images state, by name and direction
+        ("mtf_nyquist across"); empty without draws.
+    scatter : dict of float
+        Root mean square errors of the same measurements against the truth.
+    """
+
+    options: MirrorPlanOptions
+    layout: MirrorLayout
+    radius_m: float
+    diameter_m: float
+    peak_share: float
+    std: dict[str, float]
+    scatter: dict[str, float]
+
+    @property
+    def position_std_px(self) -> float:
+        """Standard deviation of a place that no method beats, by the peak's SNR."""
+        return POSITION_BOUND / self.options.snr
+
+    def to_dict(self) -> dict[str, Any]:
+        """The plan for JSON."""
+        layout, options = self.layout, self.options
+        return {
+            "schema": "acutance/mirror-plan/1",
+            "arrangement": options.arrangement,
+            "count": options.count,
+            "pixel_m": list(layout.pixel_m),
+            "step_px": list(layout.step_px),
+            "step_m": [s * m for s, m in zip(layout.step_px, layout.pixel_m, strict=True)],
+            "apart_px": layout.apart_px,
+            "apart_m": layout.apart_px * layout.pixel_m[1],
+            "angle_deg": layout.angle_deg,
+            "spacing_px": layout.spacing_px if math.isfinite(layout.spacing_px) else None,
+            "phase_gap_px": {f"{change:+.2f}": layout.gap_px(change) for change in _GSD_CHANGES},
+            "mirrors": [
+                {"along_m": m[0], "across_m": m[1], "along_phase": p[0], "across_phase": p[1]}
+                for m, p in zip(layout.places_m.tolist(), layout.phases.tolist(), strict=True)
+            ],
+            "radius_m": self.radius_m,
+            "diameter_m": self.diameter_m,
+            "peak_share": self.peak_share,
+            "snr": options.snr,
+            "position_std_px": self.position_std_px,
+            "draws": options.draws,
+            "std": dict(self.std),
+            "scatter": dict(self.scatter),
+        }
+
+    def to_csv(self) -> str:
+        """The mirrors' places as CSV, metres and pixels from the first one."""
+        lines = ["mirror,along_m,across_m,row,col,row_phase,col_phase"]
+        rows = zip(
+            self.layout.places_m.tolist(),
+            self.layout.places_px.tolist(),
+            self.layout.phases.tolist(),
+            strict=True,
+        )
+        for number, (metres, pixels, phases) in enumerate(rows, start=1):
+            cells = [*(f"{m:.3f}" for m in metres), *(f"{p:.4f}" for p in (*pixels, *phases))]
+            lines.append(",".join([str(number), *cells]))
+        return "\n".join(lines) + "\n"
+
+
+def plan_mirrors(options: MirrorPlanOptions, execution: Execution | None = None) -> MirrorPlan:
+    """Lay out mirrors and say what a measurement of them will be worth.
+
+    Parameters
+    ----------
+    options : MirrorPlanOptions
+    execution : Execution, optional
+        How the simulated images are measured.
+    """
+    gsd_m = options.sensor.gsd_m or 1.0
+    along_m = options.sensor.gsd_along_m or gsd_m
+    layout = lay_out_mirrors(
+        options.count, pixel_m=(along_m, gsd_m), arrangement=options.arrangement,
+        columns=options.columns, spacing_px=options.least_spacing_px,
+    )  # fmt: skip
+    share = _peak_share(options.sensor, layout)
+    light = (options.level - options.ground) / share
+    zenith = math.cos(math.radians(options.sun_zenith_deg))
+    radius = 2 * math.sqrt(light * gsd_m * along_m * zenith / (math.pi * options.mirror))
+    half = math.radians(0.5 * (options.sun_zenith_deg + options.view_zenith_deg))
+    std, scatter = _expected(options, execution or Execution(workers=1))
+    return MirrorPlan(options, layout, radius, 2 * radius * math.sin(half), share, std, scatter)
+
+
+def _images_places(layout: MirrorLayout, rng: np.random.Generator | None) -> Floats:
+    """The mirrors in an image with a margin, at a random phase of the first one."""
+    first = np.full(2, _MARGIN_PX) - layout.places_px.min(axis=0)
+    return np.asarray(layout.places_px + first + (0.0 if rng is None else rng.uniform(0, 1, 2)))
+
+
+def _peak_share(sensor: Sensor, layout: MirrorLayout) -> float:
+    """Mean share of a source's light in its brightest pixel."""
+    places = _images_places(layout, None)
+    image, _ = points(sensor, positions=places, fluxes=1.0, background=0.0)
+    near = np.rint(places).astype(int)
+    return float(np.mean([image[r - 1 : r + 2, c - 1 : c + 2].max() for r, c in near.tolist()]))
+
+
+def _draw(options: MirrorPlanOptions, _: int, rng: np.random.Generator) -> Record:
+    """Errors and stated deviations of one simulated image; nan where it is refused."""
+    layout = lay_out_mirrors(
+        options.count, pixel_m=(1.0, 1.0), arrangement=options.arrangement,
+        columns=options.columns, spacing_px=options.least_spacing_px,
+    )  # fmt: skip
+    places = _images_places(layout, rng)
+    image, truth = points(options.sensor, positions=places, snr=options.snr, rng=rng)
+    found: Record = {}
+    try:
+        measured = measure_points(image, positions=places)
+    except TargetError:
+        return {"refused": 1.0}
+    for direction, response in (("across", measured.across), ("along", measured.along)):
+        true = truth.response("across" if direction == "across" else "along")
+        for name in ("mtf_nyquist", "rer", "fwhm_px"):
+            estimate: Estimate = getattr(response, name)
+            found[f"{name} {direction}"] = estimate.value - getattr(true, name).value
+            found[f"{name} {direction} std"] = estimate.std
+    error = measured.positions - places
+    error -= error.mean(axis=0)
+    found["position_px across"], found["position_px along"] = np.sqrt(
+        np.mean(error[:, ::-1] ** 2, axis=0)
+    ).tolist()
+    found["position_px across std"] = float(np.mean([one.col.std for one in measured.sources]))
+    found["position_px along std"] = float(np.mean([one.row.std for one in measured.sources]))
+    return found
+
+
+def _expected(
+    options: MirrorPlanOptions, execution: Execution
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Mean stated deviations and root mean square errors over the draws."""
+    if options.draws == 0:
+        return {}, {}
+    records = run_trials("mirrors", options, list(range(options.draws)), _draw, execution)
+    kept = [one for one in records if "refused" not in one]
+    if not kept:
+        return {}, {}
+    names = [name for name in kept[0] if not name.endswith(" std")]
+    std = {name: float(np.mean([one[f"{name} std"] for one in kept])) for name in names}
+    scatter = {name: float(np.sqrt(np.mean([one[name] ** 2 for one in kept]))) for name in names}
+    return std, scatter
