@@ -120,8 +120,7 @@ def _draw_residual(axes: Axes, measurement: BiresolutionMeasurement) -> None:
     from matplotlib import colormaps
 
     noise = measurement.pixel_fit.noise or 1.0
-    colors = colormaps["RdBu_r"].copy()
-    colors.set_bad("#f4d03f")
+    colors = colormaps["RdBu_r"].with_extremes(bad="#f4d03f")
     row, col, height, width = measurement.image.roi
     shown = axes.imshow(
         np.ma.masked_invalid(measurement.residual / noise), cmap=colors, vmin=-_MOST_SIGMAS,

@@ -1,0 +1,146 @@
+"""``acutance simulate pair`` and ``acutance biresolution``: files, faces, limits and refusals."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from jsonschema import Draft202012Validator
+
+from acutance import optics
+from acutance.optics import write_sensor
+from acutance.raster import open_image, write_geotiff
+from acutance.report import measurement_schema
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("pair")
+
+
+@pytest.fixture(scope="module")
+def pair(folder):
+    """84 x 80 low pixels of 20 m at SNR 100, displaced by a fraction of a pixel."""
+    from typer.testing import CliRunner
+
+    from acutance.cli.app import app
+
+    low, high = folder / "low.tif", folder / "high.tif"
+    words = ["simulate", "pair", "--sensor", "smeared", "--size", "84,80", "--snr", "100",
+             "--shift", "0.4,-1.2", "--out", low, "--high", high, "--seed", "3"]  # fmt: skip
+    result = CliRunner().invoke(app, [str(word) for word in words])
+    assert result.exit_code == 0, result.stderr
+    assert "true MTF at Nyquist 0.2060" in result.stdout
+    return low, high
+
+
+def test_the_pair_is_georeferenced_with_its_truth(pair):
+    low, high = (open_image(path) for path in pair)
+    assert (low.shape, high.shape) == ((84, 80), (168, 160))
+    assert low.gsd().col_m == 2 * high.gsd().col_m == 20
+    truth = json.loads(pair[0].with_suffix(".truth.json").read_text())
+    assert truth["kind"] == "biresolution"
+    assert truth["across"]["mtf_nyquist"] == pytest.approx(0.2060, abs=1e-4)
+    assert truth["shift_px"] == [0.4, -1.2]
+
+
+def test_text(acutance, pair):
+    result = acutance("biresolution", *pair, "--reference", 0.2891)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert result.stdout.startswith("Biresolution by kernel-fit")
+    assert "2, by the geotransforms" in result.stdout
+    assert "px down" in result.stdout
+    assert "the high image's MTF was divided out" in result.stdout
+
+
+def test_json_keeps_to_the_schema_and_holds_the_truth(acutance, pair):
+    result = acutance("biresolution", *pair, "--reference", 0.2891, "--json", "--covariance")
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    Draft202012Validator(measurement_schema()).validate(document)
+    assert document["kind"] == "biresolution"
+    assert document["quantity"] == "mtf_low"
+    assert document["ratio"]["from"] == "geotransform"
+    assert document["across"]["mtf_nyquist"]["value"] == pytest.approx(0.206, abs=0.02)
+    assert document["shift_px"]["columns"]["value"] == pytest.approx(-1.2, abs=0.02)
+    assert len(document["iterations"]) > 2
+    assert np.shape(document["map"]["residual"]) == (2, 2)
+
+
+def test_files(acutance, pair, folder):
+    figure, report, table = (folder / f"m.{ending}" for ending in ("png", "html", "csv"))
+    result = acutance(
+        "biresolution", *pair, "--method", "spectral-ratio", "--figure", figure, "--report",
+        report, "--csv", table,
+    )  # fmt: skip
+    assert result.exit_code == 0, result.stderr
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    page = report.read_text()
+    assert "Iterations of the parametric fit" in page
+    assert "Map of local statistics" in page
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    assert {row["direction"] for row in rows} == {"across", "along"}
+
+
+def test_a_measurement_as_the_reference(acutance, pair, folder):
+    document = acutance("biresolution", *pair, "--json").stdout
+    path = folder / "reference.json"
+    path.write_text(document)
+    result = acutance("biresolution", *pair, "--reference", path, "--json")
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)["across"]["mtf_nyquist"]
+    assert found["std"] > json.loads(document)["across"]["mtf_nyquist"]["std"] * 0.5
+    sensor = folder / "sensor.toml"
+    write_sensor(optics.Sensor([optics.Gaussian(0.4), optics.Detector()]), sensor)
+    assert acutance("biresolution", *pair, "--reference", sensor).exit_code == 0
+
+
+def test_strict_and_limits(acutance, pair):
+    assert acutance("biresolution", *pair, "--strict").exit_code == 3
+    eased = ("--limit", "reference_mtf=0", "--limit", "coherence=0")
+    assert acutance("biresolution", *pair, "--strict", *eased).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--ratio", 3), "geotransforms say 2"),
+        (("--reference", "nothing.json"), "cannot be read"),
+        (("--reference", "sharp"), "give a sensor"),
+        (("--reference", "0.8"), "between 0 and 0.637"),
+        (("--method", "magic"), "kernel-fit, spectral-ratio"),
+        (("--stop", 2), "between 0 and 1"),
+        (("--limit", "edges=3"), "the limits are"),
+        (("--high-band", 2), "band 2"),
+        (("--roi", "0,0,12,12"), "larger"),
+        (("--covariance",), "add --json"),
+    ],
+)
+def test_refusals(acutance, pair, words, message):
+    result = acutance("biresolution", *pair, *words)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert message in " ".join(result.stderr.split())
+
+
+def test_images_the_wrong_way_round(acutance, pair):
+    result = acutance("biresolution", *pair[::-1])
+    assert result.exit_code == 2
+    assert "the low image comes first" in " ".join(result.stderr.split())
+
+
+def test_uniform_image(acutance, pair, folder):
+    path = folder / "flat.tif"
+    write_geotiff(path, np.full((42, 40), 7, np.uint16))
+    plain = folder / "plain.tif"
+    write_geotiff(plain, np.full((84, 80), 9, np.uint16))
+    result = acutance("biresolution", path, plain)
+    assert result.exit_code == 2
+    assert "no structure in common" in " ".join(result.stderr.split())
+
+
+def test_simulate_refuses(acutance, folder):
+    words = ("simulate", "pair", "--out", folder / "a.tif")
+    assert acutance(*words, "--high", folder / "a.tif").exit_code == 2
+    assert acutance(*words, "--high", folder / "b.tif", "--shift", "1").exit_code == 2
+    assert acutance(*words, "--high", folder / "b.tif", "--ratio", "2.1").exit_code == 2
