@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoStarError
+from acutance.fit.levels import Levels, with_level
 from acutance.fit.noise import Correlation, correlation, outlier_weights, robust_scale
 from acutance.fit.normal import Normal
 from acutance.fit.posterior import Posterior, Prior, regress
@@ -34,7 +35,7 @@ from acutance.fit.star_modes import (
 from acutance.fit.star_rings import FoundStar, ring_modulations
 from acutance.fit.star_waves import HIGHEST_CPP, Wave, star_table
 
-__all__ = ["Levels", "PlaneModel", "StarSolution", "solve_star"]
+__all__ = ["PlaneModel", "StarSolution", "solve_star"]
 
 RIM_MARGIN_PX: Final = 3.0
 """Pixels nearer to the star's rim are left out: what lies beyond is not known."""
@@ -48,18 +49,6 @@ _LEAST_PIXELS: Final = 400
 _GROUND: Final = 6
 
 
-@dataclass(frozen=True)
-class Levels:
-    """Levels of the dark and of the bright spokes where they are wide, image units.
-
-    `std` is the standard deviation of their difference.
-    """
-
-    dark: float
-    bright: float
-    std: float
-
-
 @dataclass(frozen=True, eq=False)
 class PlaneModel:
     """An OTF over the plane, with its covariance (`acutance.curves.OtfModel`).
@@ -69,7 +58,8 @@ class PlaneModel:
     blur : PlaneBlur
         Mean of the OTF.
     beta : (m,) array
-        Coefficients of the modes; their sum at zero frequency is the level.
+        Coefficients of the modes, or of the mean's alone; their sum at zero frequency is the
+        level.
     spread : (m, k) array
         Factor of the covariance of beta.
     """
@@ -109,8 +99,10 @@ class PlaneModel:
         return np.asarray(self._modes(np.zeros(1), np.zeros(1))[0].real)
 
     def _modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        states = ProcessModes(self.blur.width_px).plane(u_cpp, v_cpp)
-        return np.hstack([self.blur.modes(u_cpp, v_cpp), states])
+        mean = self.blur.modes(u_cpp, v_cpp)
+        if self.beta.size == MEAN_MODES:
+            return mean
+        return np.hstack([mean, ProcessModes(self.blur.width_px).plane(u_cpp, v_cpp)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,17 +187,17 @@ def solve_star(
     outlier = np.ones(pixels.value.size)
     whiteness = Correlation(1.0, 0.0, 0.0)
     earlier: Posterior | None = None
+    noise = 0.0
     for _ in range(_MAX_PASSES):
         solved = _pass(
             pixels, star, blur, level, wave, levels, outlier, whiteness.inflation, earlier,
-            (inner, outer),
+            (inner, outer), noise,
         )  # fmt: skip
         standard = solved.residual / solved.noise
         again = _reweighted(standard) if robust else outlier
         found = correlation(np.clip(standard, -4, 4), pixels.rows, pixels.cols, (0.8, 0.6))
         move, turn, model = solved.move_px, solved.turn_rad, solved.model
-        limit = 0.25 * star.rim_px
-        if not (np.all(np.isfinite(move)) and np.max(np.abs(move)) < limit):
+        if not (np.all(np.isfinite(move)) and np.max(np.abs(move)) < 0.25 * star.rim_px):
             raise NoStarError(
                 "the fit of the star did not settle: the pixels do not follow spokes about one "
                 "centre; check the number of cycles, the wave (sine or square) and the region"
@@ -215,6 +207,7 @@ def solve_star(
             float(np.max(np.abs(move))) < 0.003
             and abs(turn) < 0.003
             and not changed
+            and (levels is None or abs(solved.noise - noise) < 0.03 * noise)
             and float(np.max(np.abs(again - outlier))) < 0.05
             and abs(found.inflation / whiteness.inflation - 1) < 0.05
         )
@@ -226,7 +219,7 @@ def solve_star(
         )  # fmt: skip
         earlier = None if changed else solved.posterior
         blur, level = wider, max(model.level, 1e-3 * level)
-        outlier, whiteness = again, found
+        outlier, whiteness, noise = again, found, solved.noise
     std = solved.move_std_px
     return StarSolution(
         star, (float(std[1]), float(std[0])), solved.model, pixels.rows, pixels.cols,
@@ -284,11 +277,10 @@ def _rounded(value: float) -> float:
 def _moved_blur(blur: PlaneBlur, model: PlaneModel) -> tuple[PlaneBlur, bool]:
     """The mean blur where the data want it, in coarse steps: the regression takes up the rest."""
     level = float(model.beta[0])
-    xx, xy, yy = (
-        value + float(np.clip(model.beta[j] / level, -0.15, 0.15))
-        for j, value in ((1, blur.xx), (2, blur.xy), (3, blur.yy))
-    )
-    xx, yy = max(xx, 0.02), max(yy, 0.02)
+    # A wider aperture by w is a Gaussian wider by w / 6: the two share out what they explain.
+    change = model.beta[1:4] / level + np.array([model.beta[6], 0.0, model.beta[7]]) / (6 * level)
+    xx, xy, yy = np.array([blur.xx, blur.xy, blur.yy]) + np.clip(change, -0.15, 0.15)
+    xx, yy = max(float(xx), 0.02), max(float(yy), 0.02)
     limit = 0.9 * math.sqrt(xx * yy)
     moved = PlaneBlur(_rounded(xx), _rounded(float(np.clip(xy, -limit, limit))), _rounded(yy))
     shift = max(abs(moved.xx - blur.xx), abs(moved.xy - blur.xy), abs(moved.yy - blur.yy))
@@ -322,8 +314,9 @@ def _pass(
     inflation: float,
     earlier: Posterior | None,
     reach: tuple[float, float],
+    noise: float,
 ) -> _Pass:
-    """One regression about a centre."""
+    """One regression about a centre; `noise` is that of the last one, 0 before the first."""
     radius, angle = star.polar(pixels.rows.astype(float), pixels.cols.astype(float))
     table = star_table(
         blur, star.cycles, wave, math.floor(reach[0]) - 1.0, math.ceil(reach[1]) + 2.0,
@@ -343,25 +336,21 @@ def _pass(
     first = _GROUND + 1
     prior = _prior(states, first, level, unseen=levels is None)
     variance = _first_variance(pixels.value, gram, projection, data, count, first)
+    normal = Normal(gram, projection, data, count)
     if levels is not None:
-        # A measured level is one more observation, weighted by its own standard deviation.
+        variance = noise**2 if noise > 0 else variance
         model = PlaneModel(blur, np.zeros(modes.shape[1]), np.zeros((modes.shape[1], 1)))
         row = np.zeros(columns.shape[0])
         row[first:] = model.at_zero
-        wanted = _amplitude(levels, wave)
-        std = _amplitude(Levels(0.0, max(levels.std, 1e-4 * wanted), 0.0), wave)
-        strength = variance * inflation / std**2
-        gram = gram + strength * np.outer(row, row)
-        projection = projection + strength * wanted * row
-        data += strength * wanted**2
-    posterior = regress(Normal(gram, projection, data, count), prior, variance, inflation, earlier)
+        std = _amplitude(Levels(0.0, levels.std, 0.0), wave)
+        normal = with_level(normal, row, _amplitude(levels, wave), std, variance * inflation)
+    posterior = regress(normal, prior, variance, inflation, earlier)
     beta, factor = posterior.beta, posterior.factor
-    residual = pixels.value - columns.T @ beta
     model = PlaneModel(blur, beta[first:], factor[first:])
     # The modes of the place move the image; the centre moves with it.
     place = slice(first + 4, first + 6)
     return _Pass(
-        posterior, model, residual, math.sqrt(posterior.variance),
+        posterior, model, pixels.value - columns.T @ beta, math.sqrt(posterior.variance),
         beta[place] / level, np.linalg.norm(factor[place], axis=1) / level,
         float(beta[_GROUND]),
     )  # fmt: skip

@@ -54,7 +54,7 @@ class Process:
 PROCESSES: Final = (Process(1.2, 0.6, 12), Process(0.7, 0.17, 10), Process(3.0, 1.2, 10))
 """SHAPE, DETAIL and HALO of `fit.prior`."""
 
-LOG_AMPLITUDE: Final[Floats] = np.array([-4.9, -3.0, -4.6, -6.4, -4.5, -6.1, -4.0])
+LOG_AMPLITUDE: Final[Floats] = np.array([-4.6, -2.8, -4.3, -5.9, -4.0, -5.6, -4.0])
 LOG_AMPLITUDE_STD: Final = 1.2
 """Amplitudes of the processes' round states, of the other ones, and of the tail, relative to the
 star's: as along an edge (`fit.prior`), shared out over the plane; blur is mostly round."""

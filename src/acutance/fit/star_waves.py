@@ -17,19 +17,18 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Final, Literal, TypeVar
+from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import jv
 
 from acutance.curves.grid import Floats
+from acutance.fit.lookup import CubicLookup
 from acutance.fit.star_modes import MEAN_MODES, Complexes, PlaneBlur, ProcessModes
 
 __all__ = ["HIGHEST_CPP", "StarTable", "Wave", "star_table"]
 
 Wave = Literal["sine", "square"]
-_Number = TypeVar("_Number", np.float64, np.complex128)
 
 HIGHEST_CPP: Final = 2.5
 """Nothing a star shows comes from beyond."""
@@ -138,7 +137,7 @@ class StarTable:
         by_phase : (n,) array
             Derivative of the first column (the mean itself) by the phase.
         """
-        take = _Lookup.of(radius_px, self._radii)
+        take = CubicLookup.of(radius_px, self._radii)
         orders = ProcessModes(self.blur.width_px).orders
         mean = np.zeros((radius_px.size, MEAN_MODES))
         by_phase = np.zeros(radius_px.size)
@@ -213,26 +212,3 @@ def star_table(
 ) -> StarTable:
     """The table of a star; that of the same star is kept."""
     return StarTable(blur, cycles, wave, inner_px, outer_px, rim_px)
-
-
-@dataclass(frozen=True, eq=False)
-class _Lookup:
-    """Cubic interpolation of radial tables at some radii."""
-
-    first: NDArray[np.intp]
-    weights: Floats
-
-    @classmethod
-    def of(cls, radius: Floats, radii: Floats) -> _Lookup:
-        position = (radius - radii[0]) / _STEP_PX
-        first = np.clip(np.floor(position).astype(np.intp) - 1, 0, radii.size - 4)
-        t = position - first
-        a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
-        weights = np.stack([-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6])
-        return cls(first, weights)
-
-    def __call__(self, table: NDArray[_Number]) -> NDArray[_Number]:
-        total: NDArray[_Number] = self.weights[0][:, None] * table[self.first]
-        for k in range(1, 4):
-            total += self.weights[k][:, None] * table[self.first + k]
-        return total

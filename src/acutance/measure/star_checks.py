@@ -13,7 +13,7 @@ from acutance.measure.evidence import MUCH, at_least, at_most
 from acutance.measure.measurement import Check
 from acutance.measure.star_options import StarLimits
 
-__all__ = ["star_checks", "third_harmonic"]
+__all__ = ["piled_up", "star_checks", "third_harmonic"]
 
 _PILED_UP = 5
 
@@ -103,10 +103,10 @@ def _clipped(pixels: Cut, solved: StarSolution) -> float:
     share = 0.0
     if pixels.saturation_level is not None:
         share = float(np.mean(values >= pixels.saturation_level))
-    return max(share, _piled_up(values), _piled_up(-values))
+    return max(share, piled_up(values), piled_up(-values))
 
 
-def _piled_up(values: Floats) -> float:
+def piled_up(values: Floats) -> float:
     """Share of the values that equal the largest, where that is more than chance."""
     _, counts = np.unique(values, return_counts=True)
     last, before = int(counts[-1]), int(counts[-2]) if counts.size > 1 else 0

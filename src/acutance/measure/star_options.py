@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.errors import OptionError
-from acutance.fit.star import Levels
+from acutance.fit.levels import Levels
 from acutance.fit.star_waves import Wave
 
 __all__ = ["StarLimits", "StarOptions"]
