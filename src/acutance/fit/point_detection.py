@@ -24,6 +24,7 @@ from scipy.ndimage import gaussian_filter, map_coordinates, maximum_filter
 
 from acutance.curves.grid import Floats
 from acutance.fit.noise import robust_scale
+from acutance.fit.point_shape import SpotShape, spot_shape
 
 __all__ = ["RejectedSpot", "Spot", "find_spots", "sort_spots"]
 
@@ -34,10 +35,13 @@ _BLOCK_PX: Final = 24
 _STANDS_OUT: Final = 6.0
 _MOST_SPOTS: Final = 2000
 _LEAST_NEIGHBOURS: Final = 0.12
-"""Light of the eight neighbours over that of the pixel: a Gaussian of 0.25 px seen through the
-pixel right in its middle gives 0.19."""
+"""Light of the eight neighbours, or what is missing there, over that of the pixel: a Gaussian of
+0.3 px seen through the pixel right in its middle gives 0.22."""
 _LEAST_COMPARED: Final = 4
-_NARROW, _WIDE = 0.55, 1.9
+_NARROW, _WIDE = 0.75, 1.9
+_LEAST_LACK_PX2: Final = 0.06
+"""So much less than the others a cosmic ray's variance is in any case: where optics leave next to
+none, ratios say nothing."""
 _LESSER_BLEND: Final = 0.05
 
 
@@ -47,22 +51,27 @@ class Spot:
 
     Parameters
     ----------
-    row, col : float
-        Its centroid.
+    shape : SpotShape
+        Where it is, and how wide.
     peak : float
         Its brightest pixel above the background.
     snr : float
         The same over the noise.
-    narrow_px2, wide_px2 : float
-        Its variances along its minor and its major axis.
     """
 
-    row: float
-    col: float
+    shape: SpotShape
     peak: float
     snr: float
-    narrow_px2: float
-    wide_px2: float
+
+    @property
+    def row(self) -> float:
+        """Row of its centroid."""
+        return self.shape.row
+
+    @property
+    def col(self) -> float:
+        """Column of its centroid."""
+        return self.shape.col
 
 
 @dataclass(frozen=True)
@@ -120,15 +129,19 @@ def find_spots(
     if places is None:
         found = [_spot(residual, middle, noise) for middle in middles]
         return tuple(found), (), residual, noise
-    spots, missing = [], []
+    spots, missing, taken = [], [], set()
     for row, col in places.tolist():
         near = np.hypot(middles[:, 0] - row, middles[:, 1] - col)
-        if near.size and near.min() <= 1.5:
-            spots.append(_spot(residual, middles[int(near.argmin())], noise))
+        nearest = int(near.argmin()) if near.size else -1
+        if not near.size or near[nearest] > 1.5:
+            fault = "no light stands out of the noise there"
+        elif nearest in taken:
+            fault = "the source there was named by an earlier place"
         else:
-            missing.append(
-                RejectedSpot(row, col, "no source", "no light stands out of the noise there")
-            )
+            spots.append(_spot(residual, middles[nearest], noise))
+            taken.add(nearest)
+            continue
+        missing.append(RejectedSpot(row, col, "no source", fault))
     return tuple(spots), tuple(missing), residual, noise
 
 
@@ -161,24 +174,13 @@ def _in_blocks(length: int, borders: NDArray[np.intp]) -> Floats:
 
 
 def _spot(residual: Floats, middle: NDArray[np.intp], noise: float) -> Spot:
-    """Centroid and variances of what is within two pixels of the brightest pixel nearby."""
+    """Peak and shape of what is around the brightest pixel nearby."""
     row, col = (int(number) for number in middle)
     window = residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2]
     up, left = np.unravel_index(int(np.argmax(window)), window.shape)
     row, col = max(row - 1, 0) + int(up), max(col - 1, 0) + int(left)
-    top, side = max(row - 2, 0), max(col - 2, 0)
-    part = residual[top : row + 3, side : col + 3]
-    rows, cols = np.indices(part.shape) + np.array([top, side])[:, None, None]
-    light = np.where(part > 2 * noise, part, 0.0)
-    total = max(float(light.sum()), 1e-300)
-    y, x = float((rows * light).sum()) / total, float((cols * light).sum()) / total
-    yy, xx = (rows - y) ** 2 * light, (cols - x) ** 2 * light
-    xy = float(((rows - y) * (cols - x) * light).sum()) / total
-    axes = np.linalg.eigvalsh(
-        np.array([[float(xx.sum()) / total, xy], [xy, float(yy.sum()) / total]])
-    )
     peak = float(residual[row, col])
-    return Spot(y, x, peak, peak / noise, float(axes[0]), float(axes[1]))
+    return Spot(spot_shape(residual, (row, col), noise), peak, peak / noise)
 
 
 def sort_spots(
@@ -214,7 +216,8 @@ def sort_spots(
     single = [_own_fault(image, residual, one, limit, noise) for one in spots]
     whole = [one for one, fault in zip(spots, single, strict=True) if fault is None]
     usual = [one for one in whole if one.snr >= min_snr]
-    shapes = np.array([(one.narrow_px2, one.wide_px2) for one in usual]).reshape(-1, 2)
+    shapes = np.array([(one.shape.narrow_px2, one.shape.wide_px2) for one in usual])
+    shapes = shapes.reshape(-1, 2)
     kept, rejected = [], []
     for one, fault in zip(spots, single, strict=True):
         reason = fault
@@ -243,39 +246,47 @@ def _own_fault(
 ) -> tuple[str, str] | None:
     """What is wrong with a spot by itself."""
     row, col = round(one.row), round(one.col)
-    near = image[max(row - 2, 0) : row + 3, max(col - 2, 0) : col + 3]
-    if np.any(near >= limit):
-        return "saturated", f"a pixel reached {limit:g}, the detector's limit"
+    part = residual[max(row - 2, 0) : row + 3, max(col - 2, 0) : col + 3]
+    up, left = np.unravel_index(int(np.argmax(part)), part.shape)
+    row, col = max(row - 2, 0) + int(up), max(col - 2, 0) + int(left)
     clear = image[max(row - CLEAR_PX, 0) : row + CLEAR_PX + 1]
     clear = clear[:, max(col - CLEAR_PX, 0) : col + CLEAR_PX + 1]
     side = 2 * CLEAR_PX + 1
-    if clear.shape != (side, side) or not np.isfinite(clear).all():
-        return "edge", f"pixels within {CLEAR_PX} px of it are missing"
-    part = residual[row - 2 : row + 3, col - 2 : col + 3]
-    up, left = np.unravel_index(int(np.argmax(part)), part.shape)
-    row, col = row - 2 + int(up), col - 2 + int(left)
+    whole = clear.shape == (side, side) and bool(np.isfinite(clear).all())
+    # A hot pixel may be at the limit as well; a source at the limit lights its neighbours.
     peak = float(residual[row, col])
-    around = residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2]
-    neighbours = float(around.sum()) - peak
-    if neighbours + 3 * np.sqrt(8.0) * noise < _LEAST_NEIGHBOURS * peak or (
-        neighbours < _LEAST_NEIGHBOURS * peak and one.snr > 30
-    ):
-        share = 100 * neighbours / peak
+    around = np.abs(residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2])
+    # Eight moduli of noise have this mean, and two of their standard deviations are taken off.
+    neighbours = float(around.sum()) - abs(peak) - (8 * 0.80 - 2 * np.sqrt(8.0) * 0.60) * noise
+    if whole and neighbours < _LEAST_NEIGHBOURS * peak:
+        share = 100 * max(neighbours / peak, 0.0)
         return "hot pixel", f"its neighbours together hold {share:.0f} % of the brightest pixel"
+    if np.any(clear[1:-1, 1:-1] >= limit):
+        return "saturated", f"a pixel reached {limit:g}, the detector's limit"
+    if not whole:
+        return "edge", f"pixels within {CLEAR_PX} px of it are missing"
     return None
 
 
 def _compared(one: Spot, narrow: float, wide: float) -> tuple[str, str] | None:
     """What is wrong with a spot beside the others."""
-    if one.narrow_px2 < _NARROW * narrow:
+    shape = one.shape
+    if shape.narrow_at_most_px2 < min(_NARROW * narrow, narrow - _LEAST_LACK_PX2):
+        if shape.wide_px2 < narrow:
+            return (
+                "hot pixel",
+                f"it is as narrow as one pixel: variances of {shape.narrow_px2:.2f} and "
+                f"{shape.wide_px2:.2f} px² along its axes, those of the others are at least "
+                f"{narrow:.2f}",
+            )
         return (
             "cosmic ray",
-            f"its minor axis has a variance of {one.narrow_px2:.2f} px², the others {narrow:.2f}",
+            f"its minor axis has a variance of {shape.narrow_px2:.2f} px², the others {narrow:.2f}",
         )
-    if one.wide_px2 > _WIDE * wide:
+    if shape.wide_at_least_px2 > _WIDE * wide:
         return (
             "blended",
-            f"its major axis has a variance of {one.wide_px2:.2f} px², the others {wide:.2f}",
+            f"its major axis has a variance of {shape.wide_px2:.2f} px², the others {wide:.2f}",
         )
     return None
 

@@ -1,0 +1,64 @@
+"""The impulse method of 2003: its own numbers, and its biases."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from acutance.curves import Otf2d
+from acutance.measure import survey_errors
+from acutance.measure.published import GaussianPsf, SdsuMirrorsOptions, sdsu_2003_mirrors
+
+# Tables 5.13 and 5.14: FWHM across and along, MTF at Nyquist across and along.
+CAMPAIGNS = {
+    "2003-08-23": (1.796, 1.764, 0.06, 0.06),
+    "2003-09-15": (1.566, 1.610, 0.12, 0.10),
+    "2003-10-21": (1.666, 1.647, 0.09, 0.09),
+}
+# Table 5.9, August 23, mirrors 1 to 20, cm.
+ACROSS_CM = [0, 12, -2.4, -2.4, 4, 1.8, 2.4, 1.2, 1.8, -1.8, 0, 2.4, 2.4, -1.2, -1.8, -0.6, 1.8,
+             -1.2, 1.8, -1.2]  # fmt: skip
+ALONG_CM = [0, 3, -2.4, 1.8, -2.4, 3.6, -1.8, -1.8, -1.8, -1.8, 2.4, 3, 2.4, 1.8, 1.8, 3.6, 2.4,
+            1.8, -1.8, 2.4]  # fmt: skip
+NO_ERROR = ((0.0, 0.0), (0.0, 0.0))
+
+
+@pytest.mark.parametrize("date", CAMPAIGNS)
+def test_published_widths_give_the_published_mtf(date):
+    across, along, mtf_across, mtf_along = CAMPAIGNS[date]
+    psf = Otf2d(GaussianPsf(across / 2.3548, along / 2.3548, NO_ERROR))
+    for angle, width, mtf in ((0.0, across, mtf_across), (90.0, along, mtf_along)):
+        response = psf.response(angle)
+        assert response.fwhm_px.value == pytest.approx(width, abs=1e-3)
+        assert response.mtf_nyquist.value == pytest.approx(mtf, abs=0.0075)
+
+
+def test_the_survey_table_has_the_published_rmse():
+    """The table gives 3.16 cm across and 2.35 along; 3.31 and 2.31 were printed."""
+    surveyed = np.stack([np.arange(20) * 10.2, np.arange(20) * 1.25], axis=1)
+    error = np.stack([ALONG_CM, ACROSS_CM], axis=1) / 70.0
+    found = survey_errors(surveyed + error, surveyed, pixel_m=(0.7, 0.7), reference="first")
+    assert found.errors_cm is not None
+    assert found.errors_cm[0] == pytest.approx(ACROSS_CM, abs=1e-6)
+    assert found.rmse_cm == pytest.approx((3.31, 2.31), abs=0.17)
+
+
+def test_gaussians_sampled_as_points_are_found_exactly():
+    """The model's own images: sigma 0.7 by 0.8 px, twenty phases."""
+    places = np.stack([12 + np.arange(6) * 10.2, 12 + np.arange(6) * 1.25], axis=1)
+    rows, cols = np.indices((80, 32))
+    image = np.full(rows.shape, 100.0)
+    for row, col in places:
+        image += 900 * np.exp(-0.5 * (((cols - col) / 0.7) ** 2 + ((rows - row) / 0.8) ** 2))
+    found = sdsu_2003_mirrors(image, np.rint(places))
+    assert found.psf.sigma_x_px == pytest.approx(0.7, abs=1e-4)
+    assert found.psf.sigma_y_px == pytest.approx(0.8, abs=1e-4)
+    assert [one.row for one in found.mirrors] == pytest.approx(places[:, 0], abs=1e-4)
+    assert found.peak_over_background == pytest.approx(9.0, rel=0.01)
+
+
+def test_windows_have_odd_sides():
+    from acutance import OptionError
+
+    with pytest.raises(OptionError, match="window_px is 4"):
+        SdsuMirrorsOptions(window_px=4)

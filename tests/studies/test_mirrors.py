@@ -1,0 +1,56 @@
+"""Layouts of mirrors: those of the reports, and their phases."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from acutance import optics
+from acutance.studies import MirrorPlanOptions, lay_out_mirrors, plan_mirrors
+
+PIXEL_M = (0.7, 0.7)
+SENSOR = optics.Sensor([optics.Gaussian(0.45), optics.Detector()], gsd_m=0.7)
+
+
+def test_twenty_mirrors_stand_as_in_brookings():
+    layout = lay_out_mirrors(20, pixel_m=PIXEL_M)
+    assert layout.step_px == pytest.approx((10.2, 1.25))
+    assert layout.angle_deg == pytest.approx(7.0, abs=0.05)
+    assert layout.apart_px * 0.7 == pytest.approx(8.0, abs=0.1)
+    phases = {(round(row, 3), round(col, 3)) for row, col in layout.phases.tolist()}
+    assert phases == {(i / 5, j / 4) for i in range(5) for j in range(4)}
+    assert layout.spacing_px >= 5
+
+
+def test_sixteen_diffusers_stand_as_li_draws_them():
+    layout = lay_out_mirrors(16, pixel_m=PIXEL_M, arrangement="square", spacing_px=5.0)
+    assert layout.step_px[0] == 5.25
+    phases = {(round(row, 3), round(col, 3)) for row, col in layout.phases.tolist()}
+    assert len(phases) == 16
+
+
+@pytest.mark.parametrize("count", [1, 2, 6, 12, 15, 20, 30])
+def test_columns_use_every_phase_once(count):
+    layout = lay_out_mirrors(count, pixel_m=PIXEL_M, columns=1)
+    assert len({(round(r, 4), round(c, 4)) for r, c in layout.phases.tolist()}) == count
+
+
+def test_a_mirror_is_as_bright_as_asked():
+    """The intensity of a convex mirror against Lambertian ground that fills a pixel."""
+    options = MirrorPlanOptions(SENSOR, draws=0, level=0.6, ground=0.1, mirror=0.9)
+    plan = plan_mirrors(options)
+    intensity = 0.9 * plan.radius_m**2 / 4
+    ground = 0.7 * 0.7 * math.cos(math.radians(40.0)) / math.pi
+    assert plan.peak_share * intensity / ground == pytest.approx(0.5)
+    assert plan.diameter_m == pytest.approx(2 * plan.radius_m * math.sin(math.radians(25.0)))
+    brighter = plan_mirrors(MirrorPlanOptions(SENSOR, draws=0, level=1.1, ground=0.1, mirror=0.9))
+    assert brighter.radius_m == pytest.approx(math.sqrt(2) * plan.radius_m)
+
+
+def test_the_expected_deviations_are_those_of_measurements():
+    plan = plan_mirrors(MirrorPlanOptions(SENSOR, draws=3, snr=60.0))
+    assert plan.std["mtf_nyquist across"] == pytest.approx(0.008, rel=0.6)
+    assert np.isfinite(list(plan.scatter.values())).all()
+    assert plan.position_std_px == pytest.approx(0.8 / 60)
