@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from acutance import optics, report, simulate
     from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
     from acutance.measure import (
+        BarsLimits,
+        BarsMeasurement,
+        BarsOptions,
         BiresolutionLimits,
         BiresolutionMeasurement,
         BiresolutionOptions,
@@ -46,6 +49,7 @@ if TYPE_CHECKING:
         StarMeasurement,
         StarOptions,
         TargetResult,
+        measure_bars,
         measure_biresolution,
         measure_edge,
         measure_edges,
@@ -61,6 +65,9 @@ __version__ = "0.1.0"
 # Where a public name lives. Modules are loaded when a name is first used, so that
 # `import acutance` stays quick.
 _HOMES = {
+    "BarsLimits": "acutance.measure",
+    "BarsMeasurement": "acutance.measure",
+    "BarsOptions": "acutance.measure",
     "BiresolutionLimits": "acutance.measure",
     "BiresolutionMeasurement": "acutance.measure",
     "BiresolutionOptions": "acutance.measure",
@@ -86,6 +93,7 @@ _HOMES = {
     "StarMeasurement": "acutance.measure",
     "StarOptions": "acutance.measure",
     "TargetResult": "acutance.measure",
+    "measure_bars": "acutance.measure",
     "measure_biresolution": "acutance.measure",
     "measure_edge": "acutance.measure",
     "measure_edges": "acutance.measure",
@@ -99,6 +107,9 @@ _MODULES = ("optics", "report", "simulate")
 
 __all__ = [
     "AcutanceError",
+    "BarsLimits",
+    "BarsMeasurement",
+    "BarsOptions",
     "BiresolutionLimits",
     "BiresolutionMeasurement",
     "BiresolutionOptions",
@@ -135,6 +146,7 @@ __all__ = [
     "TargetError",
     "TargetResult",
     "__version__",
+    "measure_bars",
     "measure_biresolution",
     "measure_edge",
     "measure_edges",

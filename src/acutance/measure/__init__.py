@@ -1,5 +1,7 @@
 """Measurements: an image in, a `Measurement` out."""
 
+from acutance.measure.bars import BARS_METHODS, BarsGroup, BarsMeasurement, measure_bars
+from acutance.measure.bars_options import BarsLimits, BarsOptions
 from acutance.measure.biresolution import BIRESOLUTION_METHODS, measure_biresolution
 from acutance.measure.biresolution_measurement import BiresolutionMeasurement
 from acutance.measure.biresolution_options import BiresolutionLimits, BiresolutionOptions
@@ -18,11 +20,16 @@ from acutance.measure.star_options import StarLimits, StarOptions
 from acutance.measure.target import EdgeGroup, Rejected, TargetResult, measure_edges
 
 __all__ = [
+    "BARS_METHODS",
     "BIRESOLUTION_METHODS",
     "METHODS",
     "POINTS_METHODS",
     "PULSE_METHODS",
     "STAR_METHODS",
+    "BarsGroup",
+    "BarsLimits",
+    "BarsMeasurement",
+    "BarsOptions",
     "BiresolutionLimits",
     "BiresolutionMeasurement",
     "BiresolutionOptions",
@@ -48,6 +55,7 @@ __all__ = [
     "StarOptions",
     "SurveyErrors",
     "TargetResult",
+    "measure_bars",
     "measure_biresolution",
     "measure_edge",
     "measure_edges",

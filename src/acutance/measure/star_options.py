@@ -9,7 +9,7 @@ from acutance.errors import OptionError
 from acutance.fit.levels import Levels
 from acutance.fit.star_waves import Wave
 
-__all__ = ["StarLimits", "StarOptions"]
+__all__ = ["StarLimits", "StarOptions", "require_levels"]
 
 
 @dataclass(frozen=True)
@@ -86,14 +86,7 @@ class StarOptions:
     def __post_init__(self) -> None:
         if self.wave not in ("sine", "square"):
             raise OptionError(f"wave is {self.wave!r}: it has to be 'sine' or 'square'")
-        if (self.dark is None) != (self.bright is None):
-            raise OptionError("one level of the spokes was given: give dark and bright, or neither")
-        if self.dark is not None and self.bright is not None and not self.dark < self.bright:
-            raise OptionError(
-                f"dark is {self.dark:g} and bright {self.bright:g}: dark has to be the lower one"
-            )
-        if not self.level_std >= 0:
-            raise OptionError(f"level_std is {self.level_std:g}, it has to be 0 or more")
+        require_levels(self.dark, self.bright, self.level_std)
 
     @property
     def levels(self) -> Levels | None:
@@ -106,3 +99,19 @@ class StarOptions:
         """All options by name, for JSON."""
         chosen = {name: value for name, value in vars(self).items() if name != "limits"}
         return {**chosen, "limits": dict(vars(self.limits))}
+
+
+def require_levels(dark: float | None, bright: float | None, std: float) -> None:
+    """Refuse levels that mean nothing.
+
+    Raises
+    ------
+    OptionError
+        If there is but one, dark is not the lower one, or the standard deviation is negative.
+    """
+    if (dark is None) != (bright is None):
+        raise OptionError("one level was given: give dark and bright, or neither")
+    if dark is not None and bright is not None and not dark < bright:
+        raise OptionError(f"dark is {dark:g} and bright {bright:g}: dark has to be the lower one")
+    if not std >= 0:
+        raise OptionError(f"level_std is {std:g}, it has to be 0 or more")

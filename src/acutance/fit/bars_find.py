@@ -1,0 +1,223 @@
+"""Where the groups of bars of an image are, how many bars each has, and their period.
+
+A group stands out of the ground as a whole, also where its bars are too fine to be seen. Its
+direction is that of its gradients; number and period come from comparing its profile with those
+of finite groups, blurred plainly.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.special import ndtr
+
+from acutance.curves.grid import Floats
+from acutance.errors import NoBarsError
+from acutance.fit.bars_group import Bars
+
+__all__ = ["FoundBars", "find_bars"]
+
+_CLOSE_PX = (2.0, 3.5, 6.0)
+_STANDS_OUT = 0.2
+_LEAST_PX = 40
+_COUNTS = range(2, 16)
+_BLURS_PX = (0.5, 0.8)
+_COMMON_DEG = 12.0
+_SURE = 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class FoundBars:
+    """Groups of bars as they were found.
+
+    Attributes
+    ----------
+    groups : tuple of Bars
+        The widest period first.
+    contrast : float
+        Bars less ground, before the sensor.
+    """
+
+    groups: tuple[Bars, ...]
+    contrast: float
+
+
+def find_bars(image: Floats, count: int | None = None) -> FoundBars:
+    """Find the groups of bars of an image.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        NaN where there is nothing to use.
+    count : int, optional
+        Number of bars in every group; counted unless given.
+
+    Raises
+    ------
+    NoBarsError
+        If nothing in the image is a group of bars.
+    """
+    known = np.isfinite(image)
+    ground = float(np.median(image[known]))
+    departure = np.where(known, image - ground, 0.0)
+    low, high = (float(x) for x in np.quantile(departure[known], [0.002, 0.998]))
+    sign = 1.0 if high >= -low else -1.0
+    height = max(high, -low)
+    if not height > 0:
+        raise NoBarsError("the region is uniform: there are no bars to be seen in it")
+    bright = sign * departure / height
+    for close in _CLOSE_PX:
+        groups = [
+            found for blob in _blobs(bright, close)
+            if (found := _measured(bright, blob, count)) is not None
+        ]  # fmt: skip
+        if groups:
+            return FoundBars(_of_one_kind(groups), sign * height)
+    raise NoBarsError(
+        "no group of parallel bars stands out of the ground: choose a region that holds the "
+        "groups and some ground around them, or state where they are (groups)"
+    )
+
+
+def _blobs(bright: Floats, close_px: float) -> list[NDArray[np.bool_]]:
+    """Parts of the image that stand out of the ground once gaps are closed."""
+    whole = ndimage.gaussian_filter(bright, close_px) > _STANDS_OUT
+    labels, number = ndimage.label(whole)
+    return [
+        labels == one for one in range(1, number + 1) if np.count_nonzero(labels == one) > _LEAST_PX
+    ]
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    bars: Bars
+    sureness: float
+
+
+def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Candidate | None:
+    """The group a blob holds; nothing if it is no group."""
+    near = ndimage.binary_dilation(blob, iterations=2)
+    # Differences of neighbours would turn the direction: they see fine structure too weakly.
+    down = ndimage.gaussian_filter(bright, 1.0, order=(1, 0))
+    right = ndimage.gaussian_filter(bright, 1.0, order=(0, 1))
+    xx, yy = float(np.sum(right[near] ** 2)), float(np.sum(down[near] ** 2))
+    xy = float(np.sum(right[near] * down[near]))
+    sureness = math.hypot(xx - yy, 2 * xy) / max(xx + yy, 1e-300)
+    normal = 0.5 * math.degrees(math.atan2(2 * xy, xx - yy))
+    normal = normal + 180 if normal <= -45 else normal
+    best: tuple[float, Bars] | None = None
+    # A group wider than its bars are long may show its ends more than its bars.
+    for angle in (normal, normal - 90 if normal > 45 else normal + 90):
+        found = _profile_fit(bright, blob, angle, count)
+        if found is not None and (best is None or found[0] < best[0]):
+            best = found
+        if best is not None and sureness > _SURE:
+            break
+    if best is None or best[0] > 0.35:
+        return None
+    return _Candidate(best[1], sureness)
+
+
+def _profile_fit(
+    bright: Floats, blob: NDArray[np.bool_], normal_deg: float, count: int | None
+) -> tuple[float, Bars] | None:
+    """Share of the profile's variance that the best group leaves, and that group."""
+    rows, cols = np.nonzero(ndimage.binary_dilation(blob, iterations=4))
+    centre = Bars(float(rows.mean()), float(cols.mean()), normal_deg, 1.0, 1, 1.0)
+    across, along = centre.across_and_along(rows.astype(float), cols.astype(float))
+    value = bright[rows, cols]
+    middle, length = _span(along, value)
+    if not length > 6:
+        return None
+    central = np.abs(along - middle) < 0.3 * length
+    bins = np.round(across[central] / 0.25).astype(np.intp)
+    start = int(bins.min())
+    total = np.bincount(bins - start, value[central])
+    number = np.bincount(bins - start)
+    kept = number > 0
+    places = np.asarray(0.25 * (np.flatnonzero(kept) + start), float)
+    profile = np.asarray(total[kept] / number[kept], float)
+    offset, width = _span(across[central], value[central])
+    if not width > 3 or np.ptp(profile) == 0:
+        return None
+    best = (math.inf, 0.0, 0.0, 0)
+    for bars in _COUNTS if count is None else (count,):
+        for period in np.linspace(0.9, 1.1, 17) * width / (bars - 0.5):
+            if period < 1.4:
+                continue
+            for move in np.linspace(-0.4, 0.4, 9) * min(period, 6.0):
+                for blur in _BLURS_PX:
+                    rest = _rest(places, profile, offset + float(move), float(period), bars, blur)
+                    if rest < best[0]:
+                        best = (rest, offset + float(move), float(period), bars)
+    rest, place, period, bars = best
+    if not bars:
+        return None
+    angle = math.radians(normal_deg)
+    row = centre.row + place * math.sin(angle) + middle * math.cos(angle)
+    col = centre.col + place * math.cos(angle) - middle * math.sin(angle)
+    return rest, Bars(row, col, normal_deg, period, bars, length)
+
+
+def _span(places: Floats, value: Floats) -> tuple[float, float]:
+    """Middle and width of what stands out along one direction, at half of its height."""
+    bins = np.round(places).astype(np.intp)
+    start = int(bins.min())
+    number = np.bincount(bins - start)
+    mean = np.bincount(bins - start, value) / np.maximum(number, 1)
+    # Bars and gaps make one plateau.
+    peak = ndimage.maximum_filter1d(mean, 3)
+    level = 0.5 * float(np.quantile(peak, 0.85))
+    above = np.flatnonzero(mean > level)
+    if above.size < 2 or level <= 0:
+        return 0.0, 0.0
+    first = _crossing(mean, int(above[0]), -1, level)
+    last = _crossing(mean, int(above[-1]), 1, level)
+    return start + 0.5 * (first + last), last - first
+
+
+def _crossing(mean: Floats, inside: int, step: int, level: float) -> float:
+    outside = inside + step
+    if not 0 <= outside < mean.size:
+        return float(inside)
+    fall = float(mean[inside] - mean[outside])
+    return inside + step * (float(mean[inside]) - level) / fall if fall > 0 else float(inside)
+
+
+def _rest(
+    places: Floats, profile: Floats, offset: float, period: float, count: int, blur: float
+) -> float:
+    """Share of a profile's variance that a blurred group leaves."""
+    centres = offset + (np.arange(count) - 0.5 * (count - 1)) * period
+    scale = 1 / math.hypot(blur, 0.29)
+    edge = 0.25 * period
+    away = places[:, None] - centres
+    model = np.sum(ndtr((away + edge) * scale) - ndtr((away - edge) * scale), axis=1)
+    model = model - np.mean(model)
+    own = profile - np.mean(profile)
+    power = float(own @ own)
+    shared = float(model @ own)
+    size = float(model @ model)
+    if not (power > 0 and size > 0 and shared > 0):
+        return 1.0
+    return 1 - shared**2 / (size * power)
+
+
+def _of_one_kind(found: list[_Candidate]) -> tuple[Bars, ...]:
+    """Groups with one common direction where they have nearly the same, the widest period first."""
+    groups = []
+    for one in found:
+        mates = [
+            other for other in found
+            if abs(other.bars.normal_deg - one.bars.normal_deg) < _COMMON_DEG
+        ]  # fmt: skip
+        weights = np.array([max(mate.sureness, 0.05) * mate.bars.period_px**2 for mate in mates])
+        angles = np.array([mate.bars.normal_deg for mate in mates])
+        common = float(weights @ angles / weights.sum())
+        bars = one.bars
+        groups.append(Bars(bars.row, bars.col, common, bars.period_px, bars.count, bars.length_px))
+    return tuple(sorted(groups, key=lambda bars: -bars.period_px))

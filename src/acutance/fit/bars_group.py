@@ -1,0 +1,158 @@
+"""A group of bars: where it is, what its profile's spectrum is, and its plain readings."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+
+__all__ = ["Bars", "GroupReading", "central", "coltman_mtf", "read_group"]
+
+_ALIASED_CPP = 0.03
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Parallel bars, as wide as the gaps between them.
+
+    Parameters
+    ----------
+    row, col : float
+        Centre of the group in pixels.
+    normal_deg : float
+        Direction across the bars, from the column axis towards the row axis.
+    period_px : float
+        Distance of two bars along the normal.
+    count : int
+        Number of bars.
+    length_px : float
+        Length of the bars.
+    """
+
+    row: float
+    col: float
+    normal_deg: float
+    period_px: float
+    count: int
+    length_px: float
+
+    @property
+    def freq_cpp(self) -> float:
+        """Frequency of the bars in cycles per pixel."""
+        return 1 / self.period_px
+
+    @property
+    def width_px(self) -> float:
+        """From the first bar's outer edge to the last one's."""
+        return (self.count - 0.5) * self.period_px
+
+    def across_and_along(self, rows: Floats, cols: Floats) -> tuple[Floats, Floats]:
+        """Distances from the centre along the normal and along the bars, in pixels."""
+        angle = math.radians(self.normal_deg)
+        x, y = cols - self.col, rows - self.row
+        across = x * math.cos(angle) + y * math.sin(angle)
+        return across, -x * math.sin(angle) + y * math.cos(angle)
+
+    def spectrum(self, freq_cpp: Floats) -> Floats:
+        """Fourier transform of the profile (1 on the bars, 0 beside them), which is real."""
+        places = (np.arange(self.count) - 0.5 * (self.count - 1)) * self.period_px
+        turns = np.cos(2 * math.pi * np.outer(freq_cpp, places)).sum(axis=1)
+        half = 0.5 * self.period_px
+        return np.asarray(turns * half * np.sinc(freq_cpp * half))
+
+    def to_dict(self) -> dict[str, float]:
+        """Place, direction, period, number and length, for JSON."""
+        return dict(vars(self))
+
+
+@dataclass(frozen=True)
+class GroupReading:
+    """The plain reading of a group: sinusoids at its frequency, by least squares.
+
+    Attributes
+    ----------
+    modulation, modulation_std : float
+        Amplitude of the sinusoid over that of square bars (2 / pi of the contrast): the MTF as
+        far as a finite group shows one frequency, and its standard deviation by noise alone.
+    ctf, ctf_std : float
+        Contrast of the bars midway on bars and gaps over that of wide bars.
+    """
+
+    modulation: float
+    modulation_std: float
+    ctf: float
+    ctf_std: float
+
+
+def read_group(
+    bars: Bars, across_px: Floats, value: Floats, contrast: float, noise: float
+) -> GroupReading:
+    """Fit the fundamental and, where sampling tells it apart, the third harmonic of a group.
+
+    Parameters
+    ----------
+    bars : Bars
+    across_px, value : (n,) arrays
+        Pixels between the middle of the first bar and that of the last one.
+    contrast : float
+        Bright less dark, before the sensor.
+    noise : float
+        Standard deviation of the noise.
+    """
+    middle = 0.0 if bars.count % 2 else 0.5 * bars.period_px
+    phase = 2 * math.pi * bars.freq_cpp * (across_px - middle)
+    columns = [np.ones(value.size), np.cos(phase), np.sin(phase)]
+    if _tells_apart(bars):
+        columns += [np.cos(3 * phase), np.sin(3 * phase)]
+    design = np.stack(columns, axis=1)
+    gram = design.T @ design
+    inverse = np.linalg.pinv(gram, rcond=1e-8)
+    fit = inverse @ (design.T @ value)
+    spread = noise**2 * inverse
+    first = 2 / math.pi * contrast
+    modulation, modulation_std = fit[1] / first, math.sqrt(spread[1, 1]) / abs(first)
+    ctf, variance = 2 * fit[1], 4 * spread[1, 1]
+    if fit.size > 3:
+        ctf += 2 * fit[3]
+        variance += 4 * (spread[3, 3] + 2 * spread[1, 3])
+    return GroupReading(
+        float(modulation), float(modulation_std), float(ctf / contrast),
+        math.sqrt(max(float(variance), 0.0)) / abs(contrast),
+    )  # fmt: skip
+
+
+def _tells_apart(bars: Bars) -> bool:
+    """Whether the third harmonic, sampled, is not the fundamental again nor a constant."""
+    f = bars.freq_cpp
+    if 3 * f > 1.0:
+        return False
+    cos = max(
+        abs(math.cos(math.radians(bars.normal_deg))), abs(math.sin(math.radians(bars.normal_deg)))
+    )
+    folded = abs(3 * f * cos - round(3 * f * cos))
+    own = abs(f * cos - round(f * cos))
+    return abs(folded - own) > _ALIASED_CPP and folded > _ALIASED_CPP
+
+
+def coltman_mtf(freq_cpp: Floats, ctf: Floats) -> Floats:
+    """MTF from the contrast of square bars at some frequencies, ascending.
+
+    ``M(f) = pi/4 [C(f) + C(3f)/3 - C(5f)/5 + C(7f)/7 + C(11f)/11 - C(13f)/13 ...]`` (Coltman,
+    JOSA 44, 468, 1954); between the frequencies C is interpolated, beyond the last it is 0.
+    """
+    signs: dict[int, float] = {1: 1, 3: 1, 5: -1, 7: 1, 11: 1, 13: -1, 15: -1, 17: -1, 19: 1}
+    total = np.zeros(freq_cpp.size)
+    for harmonic, sign in signs.items():
+        wanted = harmonic * freq_cpp
+        found = np.interp(wanted, freq_cpp, ctf, right=0.0)
+        total += sign / harmonic * found
+    return np.asarray(math.pi / 4 * total)
+
+
+def central(bars: Bars, across_px: Floats) -> NDArray[np.bool_]:
+    """Places between the middle of the first bar and that of the last one."""
+    return np.asarray(np.abs(across_px) <= 0.5 * (bars.count - 1) * bars.period_px)
