@@ -7,6 +7,7 @@ equations in the shared ones, after which the own ones follow.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +25,10 @@ class Blocks:
 
     Parameters
     ----------
-    shared : (n, m) array
-        Weighted shared columns, without what the own ones explain.
-    data : (n,) array
+    shared : (n + k q, m) array
+        Weighted shared columns, without what the own ones explain; the pixels first, then the
+        rows that tie the own unknowns to zero.
+    data : (n + k q,) array
         Weighted data, likewise.
     inverse : (k, q, q) array
         Inverses of the triangular factors.
@@ -34,6 +36,8 @@ class Blocks:
         How much the own unknowns fall for every unit of the shared ones.
     own_data : (k, q) array
         The own unknowns when the shared ones are zero.
+    leverage : (n,) array
+        How much of a pixel's own noise the own unknowns take up, 0 to 1.
     count : int
         Number of pixels less that of the free own unknowns.
     """
@@ -43,8 +47,10 @@ class Blocks:
     inverse: Floats
     own_shared: Floats
     own_data: Floats
+    leverage: Floats
     count: int
 
+    @cached_property
     def normal(self) -> Normal:
         """Normal equations of the shared unknowns."""
         gram = self.shared.T @ self.shared
@@ -105,11 +111,13 @@ def eliminate(
     inverse = np.empty((count, q, q))
     own_shared = np.empty((count, q, shared.shape[1]))
     own_data = np.empty((count, q))
+    leverage = np.empty(root.size)
     unit = np.eye(q)
     for k, (first, last) in enumerate(zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True)):
         ties = slice(root.size + q * k, root.size + q * (k + 1))
         axes, triangle = np.linalg.qr(np.vstack([own[first:last], bound]))
         pixel_axes, tie_axes = axes[: last - first], axes[last - first :]
+        leverage[first:last] = np.einsum("ij,ij->i", pixel_axes, pixel_axes)
         inverse[k] = solve_triangular(triangle, unit)
         along, along_data = pixel_axes.T @ shared[first:last], pixel_axes.T @ data[first:last]
         shared[first:last] -= pixel_axes @ along
@@ -118,4 +126,4 @@ def eliminate(
         data[ties] -= tie_axes @ along_data
         own_shared[k], own_data[k] = inverse[k] @ along, inverse[k] @ along_data
     free = q if tie is None else int(np.count_nonzero(tie == 0))
-    return Blocks(shared, data, inverse, own_shared, own_data, root.size - count * free)
+    return Blocks(shared, data, inverse, own_shared, own_data, leverage, root.size - count * free)

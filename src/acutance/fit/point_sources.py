@@ -9,15 +9,16 @@ the same linear problem (`fit.point_blocks`), solved again where they have moved
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.fit.noise import Correlation, correlation, outlier_weights, robust_scale
+from acutance.fit.noise import Correlation, robust_scale
 from acutance.fit.point_blocks import Blocks, eliminate
 from acutance.fit.point_evidence import averaged_posterior, likelier_posterior
 from acutance.fit.point_ground import Ground, ground_levels
+from acutance.fit.point_noise import NOISE_FLOOR, PointNoise, noise_around
 from acutance.fit.point_stamps import Stamps
 from acutance.fit.point_start import BlurredPoints, own_columns
 from acutance.fit.posterior import Posterior, Prior
@@ -29,13 +30,6 @@ __all__ = ["PointsFit", "fit_points"]
 _MAX_PASSES = 14
 _NEGLIGIBLE = 0.15
 """Share of the noise that the errors of second order may have."""
-_SHAPE_ERROR = 0.004
-_MODEL_ERROR = 0.02
-"""Share of a source's light in a pixel that may be left before noise, and before an outlier, is
-seen in it."""
-_NOISE_FLOOR = 4e-5
-"""The least noise the arithmetic allows for, as a share of the brightest source's peak."""
-_SIGNIFICANT = 3.0
 _BEND = 3.0
 """Half of a peak's curvature, in peaks per square pixel, for a rather sharp system."""
 _LONGEST_STEP_PX = 0.15
@@ -113,10 +107,10 @@ def fit_points(stamps: Stamps, start: BlurredPoints, *, robust: bool = True) -> 
     nothing = np.zeros(directions.size)
     model = PsfModel(directions, nothing, nothing[:, None])
     fluxes = start.fluxes * (1 + start.foot * directions.foot_share)
-    state = _State(model, start.places, fluxes, start.grounds, start.residual)
-    noise = _Noise(np.ones(stamps.value.size), 0.0, Correlation(1.0, 0.0, 0.0))
+    state = _seen(stamps, model, start.places, fluxes, start.grounds)
+    noise = PointNoise.white(stamps.value.size)
     peaks = start.fluxes * start.blur.peak
-    least = _NOISE_FLOOR * float(peaks.max())
+    least = NOISE_FLOOR * float(peaks.max())
     floor = max(least, _misfit(stamps, start, peaks))
     ground = Ground.of(stamps, start)
     before, earlier = state, None
@@ -131,49 +125,34 @@ def fit_points(stamps: Stamps, start: BlurredPoints, *, robust: bool = True) -> 
             continue
         before, state, earlier = state, tried, posterior
         bend = _BEND * float((peaks * np.minimum(moves, _LONGEST_STEP_PX) ** 2).max())
-        quiet = noise if bend > state.rms else _noise_of(stamps, state, robust=robust)
+        quiet = noise
+        if bend <= state.rms:
+            leverage = _leverage(blocks, posterior, state.light)
+            quiet = noise_around(stamps, state.residual, state.light, leverage, robust=robust)
         enough = max(least, _NEGLIGIBLE * state.rms)
         if bend < enough and floor < max(2 * least, state.rms) and noise.agrees(quiet):
             break
         floor, noise = max(least, bend), quiet
-    posterior = averaged_posterior(blocks.normal(), prior, noise.correlation.inflation, posterior)
+    posterior = averaged_posterior(blocks.normal, prior, noise.correlation.inflation, posterior)
     state = _moved(stamps, before, ground, blocks, posterior)
     return _found(stamps, state, ground, blocks, posterior, noise)
 
 
 @dataclass(frozen=True, eq=False)
 class _State:
-    """Where the fit stands: PSF for unit flux of the mean blur, and the sources."""
+    """Where the fit stands: PSF for unit flux of the mean blur, sources, light and residuals."""
 
     model: PsfModel
     places: Floats
     fluxes: Floats
     grounds: Floats
+    light: Floats
     residual: Floats
 
     @property
     def rms(self) -> float:
         """Root mean square of the residuals."""
         return float(np.sqrt(np.mean(self.residual**2)))
-
-
-@dataclass(frozen=True, eq=False)
-class _Noise:
-    """Outliers' weights, variance per unit of light over that of the background, correlation."""
-
-    outlier: Floats
-    growth: float
-    correlation: Correlation
-
-    def weight(self, light: Floats) -> Floats:
-        """Inverse variance of every pixel, 1 on the background."""
-        return np.asarray(self.outlier / (1 + self.growth * np.maximum(light, 0.0)))
-
-    def agrees(self, other: _Noise) -> bool:
-        """Whether a fit with the other noise would find about the same."""
-        same = math.isclose(self.growth, other.growth, rel_tol=0.2, abs_tol=1e-12)
-        even = math.isclose(self.correlation.inflation, other.correlation.inflation, rel_tol=0.1)
-        return same and even and float(np.abs(self.outlier - other.outlier).mean()) < 0.004
 
 
 def _misfit(stamps: Stamps, start: BlurredPoints, peaks: Floats) -> float:
@@ -197,16 +176,11 @@ def _prior(directions: PsfDirections, ground: Ground, noise_floor: float) -> Pri
     )  # fmt: skip
 
 
-def _light(stamps: Stamps, state: _State) -> Floats:
-    """What the sources add to every pixel."""
-    return stamps.seen(state.places, state.fluxes, lambda x, y: state.model.with_slopes(x, y)[0])
-
-
 def _solve(
     stamps: Stamps,
     state: _State,
     prior: Prior,
-    noise: _Noise,
+    noise: PointNoise,
     ground: Ground,
     earlier: Posterior | None,
 ) -> tuple[Blocks, Posterior, Floats]:
@@ -214,16 +188,15 @@ def _solve(
     directions = state.model.directions
     psf = state.model.with_slopes(*stamps.offsets(state.places))
     own = own_columns(stamps, state.places, state.fluxes, psf)
-    mean = stamps.seen(state.places, state.fluxes, directions.blur.psf)
-    shared = stamps.seen(state.places, state.fluxes, directions.evaluate)
-    light = state.fluxes[stamps.owner] * psf[0]
-    weight = noise.weight(light)
-    shared = np.hstack([shared, ground.columns])
+    columns, blur = directions.with_mean(*stamps.all_offsets(state.places))
+    mean = stamps.summed(state.fluxes, blur)
+    shared = np.hstack([stamps.summed(state.fluxes, columns), ground.columns])
+    weight = noise.weight(state.light)
     variance = max(float(weight @ state.residual**2) / stamps.value.size, prior.noise_floor**2)
     tie = ground.tie(math.sqrt(variance))
     blocks = eliminate(own, shared, stamps.value - mean, weight, stamps.starts, tie)
     posterior = likelier_posterior(
-        blocks.normal(), prior, variance, noise.correlation.inflation, earlier
+        blocks.normal, prior, variance, noise.correlation.inflation, earlier
     )
     own_found = blocks.own(posterior.beta)
     return blocks, posterior, np.abs(own_found[:, 1:3]).max(axis=1)
@@ -234,48 +207,32 @@ def _moved(
 ) -> _State:
     own = blocks.own(posterior.beta)
     size = state.model.directions.size
-    moved = _State(
+    return _seen(
+        stamps,
         PsfModel(state.model.directions, posterior.beta[:size], posterior.factor[:size]),
         state.places + np.clip(own[:, [2, 1]], -_LONGEST_STEP_PX, _LONGEST_STEP_PX),
         state.fluxes * (1 + np.clip(own[:, 0] / state.fluxes, -0.3, 0.3)),
         own[:, 3:] + ground.common(posterior.beta[size:]),
-        state.residual,
     )
-    level = ground_levels(stamps, moved.places, moved.grounds)
-    return replace(moved, residual=stamps.value - _light(stamps, moved) - level)
 
 
-def _noise_of(stamps: Stamps, state: _State, *, robust: bool) -> _Noise:
-    """What the residuals say of the noise."""
-    light = state.fluxes[stamps.owner] * state.model.with_slopes(*stamps.offsets(state.places))[0]
-    residual = state.residual
-    least = _NOISE_FLOOR * float(light.max())
-    growth = _growth(residual, light, least)
-    standard = residual / np.sqrt(1 + growth * np.maximum(light, 0.0))
-    scale = math.hypot(robust_scale(standard), least)
-    standard = standard / np.hypot(scale, _MODEL_ERROR * light)
-    outlier = outlier_weights(standard) if robust else np.ones(standard.size)
-    if state.rms < 3 * least:
-        return _Noise(outlier, growth, Correlation(1.0, 0.0, 0.0))
-    bounded = np.clip(standard, -3, 3)
-    rows, cols = stamps.row.astype(np.intp), stamps.col.astype(np.intp)
-    rows, cols = rows - rows.min(), cols - cols.min()
-    found = [correlation(bounded, rows, cols, normal) for normal in ((1.0, 0.0), (0.0, 1.0))]
-    return _Noise(outlier, growth, max(found, key=lambda one: one.inflation))
+def _seen(
+    stamps: Stamps, model: PsfModel, places: Floats, fluxes: Floats, grounds: Floats
+) -> _State:
+    """The state with its light and its residuals."""
+    psf = model.directions.sum(*stamps.all_offsets(places), model.weights)
+    residual = stamps.value - stamps.summed(fluxes, psf) - ground_levels(stamps, places, grounds)
+    light = fluxes[stamps.owner] * psf[: stamps.value.size]
+    return _State(model, places, fluxes, grounds, light, residual)
 
 
-def _growth(residual: Floats, light: Floats, least: float) -> float:
-    """Variance per unit of light over the background's variance; 0 unless it is significant."""
-    peak = float(light.max())
-    bright = light > 0.05 * peak
-    if bright.sum() < 20 or (~bright).sum() < 20:
-        return 0.0
-    base = robust_scale(residual[~bright]) ** 2 + least**2
-    own = light[bright]
-    excess = np.minimum(residual[bright] ** 2, 100 * base) - base - (_SHAPE_ERROR * own) ** 2
-    growth = float(own @ excess) / float(own @ own) / base
-    doubt = math.sqrt(2 / float(own @ own))
-    return growth if growth > _SIGNIFICANT * doubt else 0.0
+def _leverage(blocks: Blocks, posterior: Posterior, light: Floats) -> Floats:
+    """How much of its own noise the fit took up in every pixel; of dark ones, the sources' part."""
+    leverage = blocks.leverage.copy()
+    bright = np.flatnonzero(light > 0.01 * light.max())
+    found = blocks.shared[bright] @ posterior.factor
+    leverage[bright] += np.einsum("ij,ij->i", found, found) / posterior.variance
+    return np.asarray(np.minimum(leverage, 1.0))
 
 
 def _found(
@@ -284,7 +241,7 @@ def _found(
     ground: Ground,
     blocks: Blocks,
     posterior: Posterior,
-    noise: _Noise,
+    noise: PointNoise,
 ) -> PointsFit:
     model = state.model
     std = math.sqrt(posterior.variance * noise.correlation.inflation)

@@ -65,12 +65,24 @@ class Stamps:
 
         `function` gives (n,) or (n, m) for places x, y (n,).
         """
-        whole = _times(fluxes[self.owner], function(*self.offsets(places)))
+        return self.summed(fluxes, function(*self.all_offsets(places)))
+
+    def all_offsets(self, places: Floats) -> tuple[Floats, Floats]:
+        """Distances x, y of every pixel from its own source, then those of all pairs, (n + p,)."""
+        x, y = self.offsets(places)
+        pixel, source = self.pair_pixel, self.pair_source
+        pair_x, pair_y = self.col[pixel] - places[source, 1], self.row[pixel] - places[source, 0]
+        return np.concatenate([x, pair_x]), np.concatenate([y, pair_y])
+
+    def summed(self, fluxes: Floats, values: Floats) -> Floats:
+        """What all sources add to every pixel, from `values` for unit flux at `all_offsets`.
+
+        Values (n + p,) or (n + p, m) give sums (n,) or (n, m).
+        """
+        size = self.value.size
+        whole = _times(fluxes[self.owner], values[:size])
         if self.pair_pixel.size:
-            source = self.pair_source
-            x = self.col[self.pair_pixel] - places[source, 1]
-            y = self.row[self.pair_pixel] - places[source, 0]
-            whole += self._onto @ _times(fluxes[source], function(x, y))
+            whole += self._onto @ _times(fluxes[self.pair_source], values[size:])
         return whole
 
 

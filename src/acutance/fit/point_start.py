@@ -57,7 +57,8 @@ class BlurredPoints:
 
     def psf(self, x: Floats, y: Floats) -> Floats:
         """The PSF, not normalised, at places (x, y), (n,)."""
-        return self.slopes(x, y)[0]
+        core = self.blur.psf(x, y)
+        return core + self.foot * self.blur.widened(FOOT_WIDTHS).psf(x, y) if self.foot else core
 
 
 def own_columns(
@@ -102,10 +103,9 @@ def _cost(found: BlurredPoints) -> float:
 def _levels(stamps: Stamps, places: Floats, sigma_px: float) -> BlurredPoints:
     """Fluxes and backgrounds for a round blur at given places."""
     blur = PlaneBlur(sigma_px**2, 0.0, sigma_px**2)
-    slopes = blur.slopes(*stamps.offsets(places))
+    psf = blur.psf(*stamps.offsets(places))
     ones = np.ones(places.shape[0])
-    columns = own_columns(stamps, places, ones, (slopes.psf, slopes.by_x, slopes.by_y))
-    columns = columns[:, [0, 3, 4, 5]]
+    columns = own_columns(stamps, places, ones, (psf, psf, psf))[:, [0, 3, 4, 5]]
     empty = np.empty((stamps.value.size, 0))
     flat = np.ones(stamps.value.size)
     own = eliminate(columns, empty, stamps.value, flat, stamps.starts).own(np.empty(0))
@@ -130,7 +130,7 @@ def _step(stamps: Stamps, found: BlurredPoints) -> tuple[Floats, Floats]:
     columns = [*core[3:6], foot.psf]
     shared = np.stack(columns, axis=1) * flux[:, None]
     blocks = eliminate(own, shared, found.residual, np.ones(flux.size), stamps.starts)
-    normal = blocks.normal()
+    normal = blocks.normal
     ridge = 1e-6 * normal.gram.diagonal() + 1e-300
     step = np.asarray(np.linalg.solve(normal.gram + np.diag(ridge), normal.projection), float)
     return step, blocks.own(step)

@@ -14,6 +14,7 @@ from acutance.optics import Diffraction
 __all__ = ["Airy"]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_PLANE = 0.25 * np.outer(_WEIGHTS, _WEIGHTS).ravel()
 _NARROWNESS = 1.03 / 2.3548200450309493
 """Cut-off times the standard deviation of a Gaussian with the Airy pattern's FWHM."""
 _STEP_PX = 0.005
@@ -45,19 +46,19 @@ class Airy:
 
     def slopes(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
         """Light per square pixel at places (x, y), (n,), and its derivatives by x and y."""
-        half = 0.5 * self.aperture_px
-        across = x[None, :] + half * np.repeat(_NODES, _NODES.size)[:, None]
-        down = y[None, :] + half * np.tile(_NODES, _NODES.size)[:, None]
-        weight = 0.25 * np.outer(_WEIGHTS, _WEIGHTS).ravel()
-        place = np.minimum(np.hypot(across, down), _REACH_PX - 1) * (1 / _STEP_PX)
-        cell = place.astype(np.intp)
-        rest = place - cell
-        light, slope = (table[cell] * (1 - rest) + table[cell + 1] * rest for table in self._tables)
-        return weight @ light, weight @ (slope * across), weight @ (slope * down)
+        across, down = self._nodes(x, y)
+        light, slope = (_read(table, across, down) for table in self._tables)
+        return _PLANE @ light, _PLANE @ (slope * across), _PLANE @ (slope * down)
 
     def psf(self, x: Floats, y: Floats) -> Floats:
         """Light per square pixel at places (x, y), (n,)."""
-        return self.slopes(x, y)[0]
+        return np.asarray(_PLANE @ _read(self._tables[0], *self._nodes(x, y)))
+
+    def _nodes(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """Places within the aperture, (nodes, n)."""
+        half = 0.5 * self.aperture_px
+        across = x[None, :] + half * np.repeat(_NODES, _NODES.size)[:, None]
+        return across, y[None, :] + half * np.tile(_NODES, _NODES.size)[:, None]
 
     @cached_property
     def _tables(self) -> tuple[Floats, Floats]:
@@ -74,3 +75,13 @@ class Airy:
         """Transfer function at frequencies in cycles per pixel."""
         box = np.sinc(self.aperture_px * u) * np.sinc(self.aperture_px * v)
         return np.asarray(Diffraction(self.cutoff_cpp, self.obscuration).otf(u, v) * box)
+
+
+def _read(table: Floats, x: Floats, y: Floats) -> Floats:
+    """A table over the radius at places (x, y), by linear interpolation."""
+    place = np.minimum(np.sqrt(x * x + y * y) * (1 / _STEP_PX), (_REACH_PX - 1) / _STEP_PX)
+    cell = place.astype(np.intp)
+    place -= cell
+    low = table.take(cell)
+    cell += 1
+    return np.asarray(low + place * (table.take(cell) - low))

@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
@@ -104,7 +105,13 @@ class PlaneBlur:
 
     def psf(self, x: Floats, y: Floats) -> Floats:
         """The PSF at places (x, y), (n,)."""
-        return self.slopes(x, y).psf
+        half = 0.5 * self.aperture_px
+        found = np.zeros(x.size)
+        near = self._near(x, y)
+        nodes = y[near] + half * _NODES[:, None]
+        row, high, low, _ = self._ends(x[near], nodes)
+        found[near] = (half / self.aperture_px**2) * _WEIGHTS @ (row * (ndtr(high) - ndtr(low)))
+        return found
 
     def slopes(self, x: Floats, y: Floats) -> BlurSlopes:
         """The PSF and all of its derivatives at places (x, y), (n,).
@@ -113,12 +120,17 @@ class PlaneBlur:
         form, given y. The Gaussian solves the heat equation, so that its derivative by Sigma is
         half of a second derivative by place: a difference of integrands at the aperture's ends.
         """
+        found = np.zeros((len(BlurSlopes._fields), x.size))
+        near = self._near(x, y)
+        found[:, near] = self._slopes_near(x[near], y[near])
+        return BlurSlopes(*found)
+
+    def _near(self, x: Floats, y: Floats) -> NDArray[np.intp]:
+        """Which places see any light."""
         half = 0.5 * self.aperture_px
         near = np.abs(x) < half + _REACH * math.sqrt(self.xx)
         near &= np.abs(y) < half + _REACH * math.sqrt(self.yy)
-        found = np.zeros((len(BlurSlopes._fields), x.size))
-        found[:, near] = self._slopes_near(x[near], y[near])
-        return BlurSlopes(*found)
+        return np.flatnonzero(near)
 
     def _slopes_near(self, x: Floats, y: Floats) -> tuple[Floats, ...]:
         half = 0.5 * self.aperture_px
@@ -145,19 +157,27 @@ class PlaneBlur:
 
         Plain; derived by x once and twice; mean of its values at both ends; derived by t.
         """
-        half = 0.5 * self.aperture_px
-        sigma_y = math.sqrt(self.yy)
         lean = self.xy / self.yy
-        sigma_x = math.sqrt(max(self.xx - lean * self.xy, 1e-12))
-        row = gaussian(t / sigma_y) / sigma_y
-        high = (x - lean * t + half) / sigma_x
-        low = (x - lean * t - half) / sigma_x
+        row, high, low, sigma_x = self._ends(x, t)
         pdf_high, pdf_low = gaussian(high) / sigma_x, gaussian(low) / sigma_x
         plain = row * (ndtr(high) - ndtr(low))
         by_x = row * (pdf_high - pdf_low)
         by_xx = row * (low * pdf_low - high * pdf_high) / sigma_x
         ends = 0.5 * row * (pdf_high + pdf_low)
         return plain, by_x, by_xx, ends, -plain * t / self.yy - lean * by_x
+
+    def _ends(self, x: Floats, t: Floats) -> tuple[Floats, Floats, Floats, float]:
+        """The Gaussian's marginal at height t, the aperture's ends in x in units of its width.
+
+        The last number is that width: the standard deviation across, given the height.
+        """
+        half = 0.5 * self.aperture_px
+        sigma_y = math.sqrt(self.yy)
+        lean = self.xy / self.yy
+        sigma_x = math.sqrt(max(self.xx - lean * self.xy, 1e-12))
+        row = gaussian(t / sigma_y) / sigma_y
+        middle = x - lean * t
+        return row, (middle + half) / sigma_x, (middle - half) / sigma_x, sigma_x
 
     def otf(self, u: Floats, v: Floats) -> Floats:
         """Transfer function at frequencies in cycles per pixel (real: the blur is symmetric)."""

@@ -63,7 +63,7 @@ class PsfModel:
 
     def psf(self, x: Floats, y: Floats) -> Floats:
         """Light per square pixel at places (x, y) from the source, pixel area included, (n,)."""
-        return self.with_slopes(x, y)[0] / self.volume
+        return self.directions.sum(x, y, self.weights) / self.volume
 
     def with_slopes(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
         """The PSF of a mean blur of unit flux, and its derivatives by x and y."""

@@ -176,10 +176,29 @@ class PsfDirections:
 
     def evaluate(self, x: Floats, y: Floats) -> Floats:
         """Every direction at places (x, y) in pixels, (n, size)."""
+        return self.with_mean(x, y)[0]
+
+    def with_mean(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """Every direction at places (x, y), (n, size), and the mean blur there, (n,)."""
         slopes = self.blur.slopes(x, y)
         found = self._raw(x, y, self._explicit(x, y, slopes))
         found -= np.stack(slopes[:3], axis=1) @ self._gauge
-        return found
+        return found, slopes.psf
+
+    def sum(self, x: Floats, y: Floats, weights: Floats) -> Floats:
+        """Mean blur plus ``evaluate(x, y) @ weights``, (n,)."""
+        if not weights.any():
+            return self.blur.psf(x, y)
+        slopes = self.blur.slopes(x, y)
+        gauge = self._gauge @ weights
+        psf = slopes.psf - gauge @ np.stack(slopes[:3])
+        for weight, part in zip(weights.tolist(), self._explicit(x, y, slopes), strict=False):
+            psf += weight * part
+        for table, (scale_x, scale_y) in self._mixtures(weights):
+            order = table.shape[0] - 1
+            along = table @ hermite(y / scale_y, order)
+            psf += np.einsum("ij,ij->j", hermite(x / scale_x, order), along)
+        return np.asarray(psf + weights[-1] * tail_psf(np.hypot(x, y), self.half_width_px))
 
     def _raw(self, x: Floats, y: Floats, explicit: tuple[Floats, ...]) -> Floats:
         columns = np.empty((self.size, x.size))
@@ -201,9 +220,23 @@ class PsfDirections:
         wide, high = self.blur.widths_px
         return [(one, (one.scale * wide, one.scale * high)) for one in _PROCESSES]
 
+    def _mixtures(self, weights: Floats) -> list[tuple[Floats, tuple[float, float]]]:
+        """For every process, weights of the products of Hermite functions, and their scales."""
+        first, area = _EXPLICIT, math.prod(self.blur.widths_px)
+        found = []
+        for process, scales in self._scaled():
+            i, j = process.orders
+            table = np.zeros((process.order + 1, process.order + 1))
+            table[i, j] = weights[first : first + i.size] * process.sizes / area
+            first += i.size
+            found.append((table, scales))
+        return found
+
     def sum_with_slopes(self, x: Floats, y: Floats, weights: Floats) -> tuple[Floats, ...]:
         """Mean blur plus ``evaluate(x, y) @ weights`` and its derivatives by x and y."""
         slopes = self.blur.slopes(x, y)
+        if not weights.any():
+            return slopes[:3]
         gauge = self._gauge @ weights
         step = 1e-4
         beside = [self.blur.slopes(x + step, y), self.blur.slopes(x, y + step)]
@@ -225,15 +258,9 @@ class PsfDirections:
             psf, by_x, by_y = (
                 whole + weight * part for whole, part in zip((psf, by_x, by_y), other, strict=True)
             )
-        first = _EXPLICIT
-        area = math.prod(self.blur.widths_px)
-        for process, (scale_x, scale_y) in self._scaled():
-            i, j = process.orders
-            table = np.zeros((process.order + 1, process.order + 1))
-            table[i, j] = weights[first : first + i.size] * process.sizes / area
-            first += i.size
-            across = hermite(x / scale_x, process.order + 1)
-            along = hermite(y / scale_y, process.order + 1)
+        for table, (scale_x, scale_y) in self._mixtures(weights):
+            across = hermite(x / scale_x, table.shape[0])
+            along = hermite(y / scale_y, table.shape[0])
             mixed = table @ along[:-1]
             psf = psf + np.einsum("ij,ij->j", across[:-1], mixed)
             by_x = by_x + np.einsum("ij,ij->j", _hermite_slopes(across), mixed) / scale_x
