@@ -39,6 +39,9 @@ def test_the_covariance_is_added_when_asked(acutance, edge_image, validator):
     document = json.loads(acutance("edge", edge_image, "--json", "--covariance").stdout)
     validator.validate(document)
     assert len(document["mtf"]["factor_real"]) == len(document["mtf"]["freq_cpp"])
+    for name in ("esf", "lsf"):
+        factor = np.array(document[name]["factor"])
+        assert np.linalg.norm(factor, axis=1) == pytest.approx(document[name]["std"], abs=1e-9)
 
 
 def test_region_band_and_gsd_reach_the_measurement(acutance, edge_image):

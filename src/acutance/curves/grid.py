@@ -3,14 +3,29 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Floats", "crossing", "sample", "slope"]
+__all__ = ["Floats", "Rows", "crossing", "sample", "slope"]
 
 Floats = NDArray[np.float64]
+
+
+class Rows(Protocol):
+    """A matrix (n, k) that makes its rows when somebody asks: most of a factor is never read."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of the whole matrix."""
+
+    def __getitem__(self, rows: slice, /) -> Floats: ...
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats: ...
+
+    def with_column(self, column: Floats, /) -> Rows:
+        """The matrix with one more column, (n,), at its end."""
 
 
 def _cell(grid: Floats, at: float) -> tuple[slice, float, float]:
@@ -25,7 +40,7 @@ def _cell(grid: Floats, at: float) -> tuple[slice, float, float]:
     return slice(first, first + 4), position - first, step
 
 
-def sample(grid: Floats, values: NDArray[Any], at: float) -> Any:
+def sample(grid: Floats, values: NDArray[Any] | Rows, at: float) -> Any:
     """Cubic interpolation of `values` (n,) or (n, k), given on a regular `grid` (n,).
 
     Interpolation is linear in the values, so it carries a covariance factor as well.

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from acutance.curves.estimate import Estimate
-from acutance.curves.grid import Floats, sample
+from acutance.curves.grid import Floats, Rows, sample
 
 __all__ = ["Esf", "Lsf"]
 
@@ -24,7 +24,7 @@ class _SpreadCurve:
         towards the bright side.
     value : (n,) array
         The curve.
-    factor : (n, k) array
+    factor : (n, k) array or Rows
         Factor of the covariance: the curve's error is ``factor @ z`` with z standard normal.
         All curves of one measurement share the same z. A truth has k = 0.
     latent : (k, m) array, optional
@@ -34,12 +34,12 @@ class _SpreadCurve:
 
     distance_px: Floats
     value: Floats
-    factor: Floats
+    factor: Floats | Rows
     latent: Floats | None = None
 
     def __post_init__(self) -> None:
         n = self.distance_px.shape
-        if self.value.shape != n or self.factor.ndim != 2 or self.factor.shape[:1] != n:
+        if self.value.shape != n or len(self.factor.shape) != 2 or self.factor.shape[:1] != n:
             raise ValueError(
                 f"a curve needs (n,) distances, (n,) values and an (n, k) factor, found shapes "
                 f"{n}, {self.value.shape} and {self.factor.shape}"
@@ -54,7 +54,8 @@ class _SpreadCurve:
     @cached_property
     def covariance_factor(self) -> Floats:
         """All of the covariance's factor, (n, m): its square is the curve's covariance."""
-        return self.factor if self.latent is None else self.factor @ self.latent
+        factor = np.asarray(self.factor)
+        return factor if self.latent is None else factor @ self.latent
 
     def gradient(self, distance_px: float) -> Floats:
         """The row of `covariance_factor` at any distance, (m,)."""

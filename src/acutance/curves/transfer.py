@@ -55,6 +55,13 @@ class Mtf:
         """Factor of the covariance of the MTF itself, (n, m)."""
         return self._along_and_quadrature[0]
 
+    @property
+    def otf_factor(self) -> Complexes:
+        """All of the covariance's factor of the OTF itself, (n, m)."""
+        if self.latent is None:
+            return self.factor
+        return np.asarray(self.factor.real @ self.latent + 1j * (self.factor.imag @ self.latent))
+
     @cached_property
     def value(self) -> Floats:
         """The MTF, (n,): modulus of the OTF, less what noise in quadrature adds to a modulus.

@@ -92,7 +92,7 @@ def _gradient_votes(image: Floats) -> _Votes:
     right = image[:, :-2] + 2 * image[:, 1:-1] + image[:, 2:]
     by_col = (down[:, 2:] - down[:, :-2]) / 8
     by_row = (right[2:] - right[:-2]) / 8
-    magnitude = np.hypot(by_col, by_row)
+    magnitude = np.sqrt(by_col * by_col + by_row * by_row)
     known = np.isfinite(magnitude)
     if not known.any():
         return _Votes(*(np.empty(0) for _ in range(4)))
@@ -187,7 +187,7 @@ def _refined(
 def _longest_stretch(along: Floats, gap_px: float = 4.0) -> tuple[float, float] | None:
     """The longest stretch of positions without a gap."""
     ordered = np.sort(along)
-    breaks = np.flatnonzero(np.diff(ordered) > gap_px)
+    breaks = (ordered[1:] - ordered[:-1] > gap_px).nonzero()[0]
     starts = np.concatenate([[0], breaks + 1])
     stops = np.concatenate([breaks, [ordered.size - 1]])
     lengths = ordered[stops] - ordered[starts]

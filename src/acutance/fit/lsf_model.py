@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves import Esf, Lsf, Mtf, Response
-from acutance.curves.grid import Floats, crossing
+from acutance.curves.grid import Floats, crossing, sample
 from acutance.fit.blur import Blur
 from acutance.fit.prior import tail_esf, tail_lsf, tail_otf
 from acutance.fit.spline import (
     CENTRES,
     HALF_SUPPORT,
     SIZE,
+    SplineRows,
     combine,
     edge_weights,
     line_weights,
-    spread,
     transform,
 )
 
@@ -28,7 +28,7 @@ __all__ = ["LsfModel"]
 _FREQ_CPP: Floats = np.asarray(np.arange(101) * 0.01)
 _STEP_PX = 0.05
 _MIN_HALF_PX = 10.0
-_Linear = tuple[Floats, Floats]
+_Linear = tuple[Floats, SplineRows]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ class LsfModel:
         """Normal distance of the 50 % point."""
         s = np.asarray(np.arange(-40, 41) * (0.05 * self.blur.width_px))
         value = self.esf(s)
-        steep = int(np.argmax(np.diff(value)))
+        steep = int(np.argmax(value[1:] - value[:-1]))
         return crossing(s, value, 0.5, float(s[max(steep - 8, 0)]))
 
     def response(self, middle: float) -> Response:
@@ -91,7 +91,8 @@ class LsfModel:
 
     def half_point_std(self, response: Response) -> float:
         """Standard deviation of the 50 % point of a `response` about it."""
-        return response.esf(0.0).std / abs(response.lsf(0.0).value)
+        steepness = float(sample(response.lsf.distance_px, response.lsf.value, 0.0))
+        return response.esf(0.0).std / abs(steepness)
 
     def _esf_and_lsf(self, s: Floats) -> tuple[_Linear, _Linear]:
         """Normalised ESF, and LSF per pixel."""
@@ -109,11 +110,11 @@ class LsfModel:
         height = self.height
         value = self.level * blurred + combine(cell, weights, self.spline) + self.tail * tail
         value /= height
-        design = spread(cell, weights / height, further=1)
-        design[:, -1] = tail / height
-        # What lifts the height lowers the curve.
-        design[:, -2:] -= (value / height)[:, None]
-        return value, design
+        # What lifts the height lowers the curve: so do the last coefficient and the tail.
+        dense = np.empty((value.size, 2))
+        np.multiply(value, -1 / height, out=dense[:, 0])
+        np.add(dense[:, 0], tail * (1 / height), out=dense[:, 1])
+        return value, SplineRows(cell, weights * (1 / height), dense, further=1)
 
     def _otf(self, freq_cpp: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Normalised OTF about the LSF's centroid, and its design."""
@@ -121,10 +122,10 @@ class LsfModel:
         about = np.exp(2j * np.pi * freq * self._centroid()) / self.height
         design = transform(freq, about, further=1)
         design[:, -1] = tail_otf(freq) * about
-        # Two real products: a complex one of this size would wake the threads of BLAS.
+        # A real product: a complex one of this size would wake the threads of BLAS.
         coefficients = np.append(self.spline, self.tail)
         value = self.level * self.blur.otf(freq_cpp) * about
-        value += design.real @ coefficients + 1j * (design.imag @ coefficients)
+        value += (coefficients @ design.T.view(float)).view(complex)
         design[:, -2:] -= (value / self.height)[:, None]
         return value, design
 

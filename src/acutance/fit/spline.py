@@ -14,7 +14,8 @@ the support. The Fourier transform of the LSF is closed form:
 
 from __future__ import annotations
 
-from typing import Final
+from dataclasses import dataclass
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,7 @@ __all__ = [
     "CENTRES",
     "HALF_SUPPORT",
     "SIZE",
+    "SplineRows",
     "combine",
     "edge_weights",
     "esf_from_lsf",
@@ -100,6 +102,43 @@ def spread(cell: NDArray[np.intp], weights: Floats, further: int = 0) -> Floats:
     for a in range(4):
         matrix.reshape(-1)[first + a] = weights[a]
     return matrix
+
+
+@dataclass(frozen=True, eq=False)
+class SplineRows:
+    """``spread(cell, weights, further)`` with `dense` added to its last columns, row by row.
+
+    Attributes
+    ----------
+    cell, weights : (n,) int and (4, n) arrays
+        As `edge_weights` or `line_weights` gives them.
+    dense : (n, q) array
+    further : int
+        How many columns come after those of the spline.
+    """
+
+    cell: NDArray[np.intp]
+    weights: Floats
+    dense: Floats
+    further: int
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of the whole matrix."""
+        return self.cell.size, CELLS + 3 + self.further
+
+    def __getitem__(self, rows: slice) -> Floats:
+        some = spread(self.cell[rows], self.weights[:, rows], self.further)
+        some[:, -self.dense.shape[1] :] += self.dense[rows]
+        return some
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats:
+        return np.asarray(self[:], dtype)
+
+    def with_column(self, column: Floats) -> SplineRows:
+        """The matrix with one more column, (n,), at its end."""
+        dense = np.column_stack([self.dense, column])
+        return SplineRows(self.cell, self.weights, dense, self.further + 1)
 
 
 def combine(cell: NDArray[np.intp], weights: Floats, coefficients: Floats) -> Floats:

@@ -18,7 +18,7 @@ from acutance.fit.profile import EDGE, Profile, pulse_profile
 __all__ = ["BlurredEdge", "fit_blurred_edge"]
 
 _MAX_STEPS = 30
-_SETTLED = 3e-3
+_SETTLED = 0.02
 _DAMPING = 1e-3
 _REACH_WIDTHS = 2.5
 _MIN_SIGMA_PX = 0.35

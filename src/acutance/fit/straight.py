@@ -281,8 +281,8 @@ def _pass(
         posterior, directions, departure - fitted, noise,
         profile.near(s, width),
         (float(side_noise[0]), float(side_noise[1])),
-        float(posterior.beta[turn]), float(np.linalg.norm(posterior.factor[turn])),
-        posterior.beta[own], np.linalg.norm(posterior.factor[own], axis=1),
+        float(posterior.beta[turn]), _norm(posterior.factor[turn]),
+        posterior.beta[own], np.array([_norm(row) for row in posterior.factor[own]]),
         float(np.max(np.abs(t))), is_uneven(standard, sides, t, width)
         or is_sloping(
             (pixels.value - start.dark) / height, float(np.mean(noise)) / height, sides, width
@@ -313,6 +313,11 @@ def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
         end = lsf_prior.tail_esf(np.array([-HALF_SUPPORT, HALF_SUPPORT]))
         total[far] += share * (lsf_prior.tail_esf(u) - np.where(u < 0, *end))
     return total
+
+
+def _norm(row: Floats) -> float:
+    """Standard deviation that a row of a factor stands for."""
+    return math.sqrt(float(row @ row))
 
 
 def _bounded(standard: Floats) -> Floats:

@@ -108,7 +108,7 @@ def sample_phases(line_distance: Floats, reach_px: float = 2.0) -> float:
     ordered = np.sort(line_distance[np.abs(line_distance) < reach_px])
     if ordered.size < 2:
         return 0.0
-    gap = float(np.max(np.diff(ordered)))
+    gap = float((ordered[1:] - ordered[:-1]).max())
     return min(1 / gap, MUCH) if gap > 0 else MUCH
 
 

@@ -96,7 +96,7 @@ class Evidence:
     def plateau_std(self) -> float:
         """Mean standard deviation of the two plateaus."""
         sides = (self.value[side > self.far_px] for side in (self.before, self.behind))
-        stds = [float(np.std(side)) for side in sides if side.size > 1]
+        stds = [_std(side) for side in sides if side.size > 1]
         return sum(stds) / len(stds) if stds else 0.0
 
     @cached_property
@@ -104,6 +104,12 @@ class Evidence:
         """How much every pixel changes when the first step moves by one pixel against s."""
         lsf = self.fit.response.lsf
         return np.interp(-self.before, lsf.distance_px, lsf.value, left=0.0, right=0.0)
+
+
+def _std(values: Floats) -> float:
+    """What `numpy.std` gives, but quicker."""
+    centred = values - float(np.add.reduce(values)) / values.size
+    return math.sqrt(float(centred @ centred) / values.size)
 
 
 class TargetChecks(Sequence[Check]):

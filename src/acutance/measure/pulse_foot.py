@@ -9,7 +9,7 @@ defocus (documentation, "Pulses"). Every LSF is therefore uncertain by a share o
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -72,7 +72,11 @@ def with_uncertain_foot(response: Response, share: float = FOOT_SHARE) -> Respon
 
 def _with_cause(curve: Curve, error: Floats) -> Curve:
     """A curve with one more column of its factor, and one more latent variable."""
-    factor = np.column_stack([curve.factor, error])
+    factor: Any
+    if isinstance(curve.factor, np.ndarray):
+        factor = np.column_stack([curve.factor, error])
+    else:
+        factor = curve.factor.with_column(error)
     if curve.latent is None:
         return replace(curve, factor=factor)
     k, m = curve.latent.shape

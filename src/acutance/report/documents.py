@@ -41,13 +41,13 @@ def measurement_document(measurement: Measurement, *, covariance: bool = False) 
     """
     document = measurement.to_dict()
     if covariance:
-        transfer = measurement.mtf.factor
+        transfer = measurement.mtf.otf_factor
         document["mtf"] |= {
             "factor_real": transfer.real.tolist(),
             "factor_imag": transfer.imag.tolist(),
         }
-        document["lsf"] |= {"factor": measurement.lsf.factor.tolist()}
-        document["esf"] |= {"factor": measurement.esf.factor.tolist()}
+        document["lsf"] |= {"factor": measurement.lsf.covariance_factor.tolist()}
+        document["esf"] |= {"factor": measurement.esf.covariance_factor.tolist()}
     return document
 
 

@@ -96,11 +96,11 @@ def plane_document(measurement: Measurement2d, *, covariance: bool = False) -> d
     document = measurement.to_dict()
     if covariance:
         for name, response in (("across", measurement.across), ("along", measurement.along)):
-            transfer = response.mtf.factor
+            transfer = response.mtf.otf_factor
             document[name]["mtf"] |= {
                 "factor_real": transfer.real.tolist(),
                 "factor_imag": transfer.imag.tolist(),
             }
-            document[name]["lsf"] |= {"factor": response.lsf.factor.tolist()}
-            document[name]["esf"] |= {"factor": response.esf.factor.tolist()}
+            document[name]["lsf"] |= {"factor": response.lsf.covariance_factor.tolist()}
+            document[name]["esf"] |= {"factor": response.esf.covariance_factor.tolist()}
     return document
