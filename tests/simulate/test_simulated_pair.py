@@ -9,7 +9,7 @@ import pytest
 
 from acutance import ModelError, optics
 from acutance.report.documents import json_text
-from acutance.simulate import Landscape, Noise, landscape, pair, reference_systems
+from acutance.simulate import Landscape, NativeGrid, Noise, landscape, pair, reference_systems
 
 SENSORS = reference_systems()
 
@@ -89,3 +89,43 @@ def test_refusals(changes: dict[str, object], message: str) -> None:
     sensor = SENSORS["gaussian"]
     with pytest.raises(ModelError, match=message):
         pair(sensor, sensor, **{"rng": np.random.default_rng(0), **changes})  # type: ignore[arg-type]
+
+
+class TestProducts:
+    def test_transfer(self) -> None:
+        """A half at the native Nyquist frequency, nothing lost well below it."""
+        grid = NativeGrid(turn_deg=0.0, pitch_row_px=1.0, pitch_col_px=1.0)
+        half, nothing = np.array([0.5]), np.zeros(1)
+        assert grid.otf(half, nothing)[0] == pytest.approx(0.493, abs=0.001)
+        assert grid.otf(0.4 * half, nothing)[0] > 0.99
+        assert grid.otf(nothing, nothing)[0] == 1.0
+
+    def test_same_grid_changes_nothing(self) -> None:
+        """Native pixels on those of the product, but for the phase: a shift of the same image."""
+        wide = optics.Sensor([optics.Gaussian(0.9), optics.Detector(1.0)])
+        grid = NativeGrid(turn_deg=0.0, pitch_row_px=1.0, pitch_col_px=1.0)
+        sampled, _, _ = pair(wide, wide, shape=(30, 26), rng=np.random.default_rng(6))
+        product, _, truth = pair(
+            wide, wide, shape=(30, 26), native=grid, rng=np.random.default_rng(6)
+        )
+        assert np.abs(product - sampled).max() < 2e-3 * np.ptp(sampled)
+        assert truth.sensor.blocks[-1] == grid
+
+    def test_turned_grid(self) -> None:
+        wide = optics.Sensor([optics.Gaussian(0.9), optics.Detector(1.0)])
+        sampled, fine, _ = pair(wide, wide, shape=(30, 26), rng=np.random.default_rng(6))
+        product, other, _ = pair(
+            wide, wide, shape=(30, 26), native=NativeGrid(), rng=np.random.default_rng(6)
+        )
+        assert np.abs(product - sampled).max() < 6e-3 * np.ptp(sampled)
+        assert other.shape == fine.shape
+
+    def test_noise_is_interpolated(self) -> None:
+        """Its power is what the spline leaves of it: less than was added, and correlated."""
+        wide = optics.Sensor([optics.Gaussian(0.9), optics.Detector(1.0)])
+        clean, _, _ = pair(wide, wide, native=NativeGrid(), rng=np.random.default_rng(7))
+        noisy, _, _ = pair(
+            wide, wide, native=NativeGrid(), noise_low=Noise(read=10.0),
+            rng=np.random.default_rng(7),
+        )  # fmt: skip
+        assert 7.0 < np.std(noisy - clean) < 9.0

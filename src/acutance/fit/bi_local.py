@@ -92,7 +92,8 @@ def fit_regions(
         usable = np.isfinite(rest)
         if not usable.any():
             continue
-        field = core(filtered(tile, grid, blur.down.taps(grid.down), blur.across.taps(grid.across)))
+        slopes = blur.down.taps(grid.down)[:, :3], blur.across.taps(grid.across)[:, :3]
+        field = core(filtered(tile, grid, *slopes))
         pairs = ((0, 0), (1, 0), (0, 1), (2, 0), (0, 2))
         columns = np.stack([field[usable][:, i, j] for i, j in pairs], axis=1) * blur.gain
         columns = np.column_stack([columns, np.ones(columns.shape[0])])

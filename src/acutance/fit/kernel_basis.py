@@ -11,7 +11,9 @@ centre and vary over l pixels. Three of them, each with an amplitude that the da
 A fourth function, TAIL, falls like 1 / r^3 without end, as diffraction does. It belongs to the
 kernel's volume, which normalises the OTF. Beyond the taps it acts on means of low pixels.
 
-The parameters of the mean kernel stay free: each has a function of its own.
+The parameters of the mean kernel stay free: each has a function of its own. So has the
+interpolation of a product onto the grid of a map: its transfer falls from near 1 to near 0 between
+0.35 and 0.65 cycles per pixel, which no smooth process does.
 """
 
 from __future__ import annotations
@@ -48,8 +50,15 @@ LOG_AMPLITUDE: Final[Floats] = np.log([0.1, 0.01, 0.001, 0.1])
 LOG_AMPLITUDE_STD: Final = 0.7
 """Amplitudes relative to a kernel of volume 1, within a factor of 2: of the processes per square
 pixel, of TAIL its own volume."""
-PARAMETER_STD: Final[Floats] = np.array([10.0, 1.0, 1.0, 1.0, 1.0, 0.3, 0.3])
-"""Volume, shifts (px), variances (px^2) and widths of the detector (px): all but the last free."""
+PARAMETER_STD: Final[Floats] = np.array([10.0, 1.0, 1.0, 1.0, 1.0, 0.3, 0.3, 1.0, 1.0, 1.0])
+"""Volume, shifts (px), variances (px^2), widths of the detector (px); and how far the low image is
+interpolated along rows, columns and both: 0 as it was sampled, 1 a product. All but the widths are
+as good as free."""
+_PARAMETERS: Final = (
+    np.array([0, 1, 0, 2, 0, 3, 0, 4, 0, 4]),
+    np.array([0, 0, 1, 0, 2, 0, 3, 0, 4, 4]),
+)
+"""Which columns of `AxisBlur.taps` along rows and columns make the parameters' functions."""
 _NEGLIGIBLE = 1e-3
 
 
@@ -75,12 +84,12 @@ class KernelBasis:
     def _axes(self) -> tuple[Floats, Floats, list[tuple[int, NDArray[np.intp], NDArray[np.intp]]]]:
         """Kernels along rows, along columns, and which pairs of them every process takes.
 
-        The first four of either are the parametric kernel and its slopes.
+        The first five of either are the parametric kernel and its slopes.
         """
         down = [self.down.taps(self.grid.down)]
         across = [self.across.taps(self.grid.across)]
-        pairs = [(-1, np.array([0, 1, 0, 2, 0, 3, 0]), np.array([0, 0, 1, 0, 2, 0, 3]))]
-        first = [4, 4]
+        pairs = [(-1, *_PARAMETERS)]
+        first = [down[0].shape[1], across[0].shape[1]]
         for block, (extent, smooth) in enumerate(SCALES_PX[: self.processes]):
             own_down, power_down = _process(self.grid.down, self.down.shift_px, extent, smooth)
             own_across, power_across = _process(

@@ -199,7 +199,7 @@ def _accumulate(
     power = weights = moved = tall = wide = both = 0.0
     sizes: list[Floats] = []
     for tile in tiles():
-        field = filtered(tile, grid, down.taps(grid.down), across.taps(grid.across))
+        field = filtered(tile, grid, down.taps(grid.down)[:, :3], across.taps(grid.across)[:, :3])
         low, columns = core(tile.low), core(field)
         usable = np.isfinite(low)
         if usable.sum() < 8:

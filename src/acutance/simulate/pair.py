@@ -17,6 +17,7 @@ from acutance.fit.line import Orientation
 from acutance.optics import Rescaled, Sensor
 from acutance.optics.block import Block, Transfer, require
 from acutance.simulate.ground import alias_bands
+from acutance.simulate.native import NativeGrid
 from acutance.simulate.noise import Noise, noise_of_snr
 
 __all__ = ["Landscape", "PairTruth", "landscape", "pair"]
@@ -143,6 +144,7 @@ def pair(
     snr: float | None = None,
     noise_low: Noise | None = None,
     noise_high: Noise | None = None,
+    native: NativeGrid | None = None,
     rng: np.random.Generator,
 ) -> tuple[Floats, Floats, PairTruth]:
     """Two images of one landscape, and the truth about them.
@@ -170,6 +172,9 @@ def pair(
         ``bright - dark`` over the standard deviation of white noise added to both images.
     noise_low, noise_high : Noise, optional
         Full descriptions, instead of `snr`, in units of either image.
+    native : NativeGrid, optional
+        The grid that either sensor samples on, in pixels of its product: both images are
+        interpolated from there, noise and all, and the truth is that of the products.
     rng : numpy.random.Generator
         Draws the ground and the noise.
 
@@ -197,22 +202,36 @@ def pair(
     chosen = ground or Landscape()
     radiance = landscape((wide[0] * quarters, wide[1] * quarters), quarters, chosen, rng)
     spectrum = fft.fft2(dark + (bright - dark) * radiance)
-    low = gain * _seen(spectrum, sensor, quarters, wide, shift_px) + offset
-    high = _seen(spectrum, reference, 4, tuple(n * quarters // 4 for n in wide), (0.0, 0.0))
-    low = low[: MARGIN_PX + shape[0], : MARGIN_PX + shape[1]][MARGIN_PX:, MARGIN_PX:]
-    first = MARGIN_PX * quarters // 4
-    rows, cols = (math.floor(size * ratio + 1e-9) for size in shape)
-    high = high[first : first + rows, first : first + cols]
     added_low = noise_of_snr(gain * (bright - dark), snr, noise_low)
     added_high = noise_of_snr(bright - dark, snr, noise_high)
+    rows, cols = (math.floor(size * ratio + 1e-9) for size in shape)
+
+    def image(
+        seen_by: Sensor, samples: int, size: tuple[int, int], level: tuple[float, float],
+        moved_px: tuple[float, float], noise: Noise | None,
+    ) -> Floats:  # fmt: skip
+        whole = tuple(n * quarters // samples for n in wide)
+        first = MARGIN_PX * quarters // samples
+        inner = slice(first, first + size[0]), slice(first, first + size[1])
+        if native is not None:
+            scene = level[0] * _blurred(spectrum, seen_by, samples, moved_px) + level[1]
+            return native.product(scene, samples, whole, noise, rng)[inner]
+        field = level[0] * _seen(spectrum, seen_by, samples, whole, moved_px)[inner] + level[1]
+        return field if noise is None else noise.added_to(field, rng)
+
+    low = image(sensor, quarters, shape, (gain, offset), shift_px, added_low)
+    high = image(reference, 4, (rows, cols), (1.0, 0.0), (0.0, 0.0), added_high)
     truth = PairTruth(
-        sensor, reference, ratio, shift_px, gain, offset, added_low, added_high
+        _of_product(sensor, native), _of_product(reference, native), ratio, shift_px, gain,
+        offset, added_low, added_high,
     )  # fmt: skip
-    return (
-        low.copy() if added_low is None else added_low.added_to(low, rng),
-        high.copy() if added_high is None else added_high.added_to(high, rng),
-        truth,
-    )
+    return low, high, truth
+
+
+def _of_product(sensor: Sensor, native: NativeGrid | None) -> Sensor:
+    if native is None:
+        return sensor
+    return Sensor([*sensor.blocks, native], sensor.gsd_m, sensor.gsd_along_m)
 
 
 def _whole(size: int, quarters: int) -> int:
@@ -282,6 +301,17 @@ def _seen(
     image = np.zeros((rows, cols), complex)
     np.add.at(image.T, across % cols, folded.T)
     return np.asarray(fft.ifft2(image).real / samples**2)
+
+
+def _blurred(
+    spectrum: Complexes, sensor: Sensor, samples: int, shift_px: tuple[float, float]
+) -> Floats:
+    """The ground as a sensor blurs it, not yet sampled: `samples` of these in a pixel."""
+    v, u = (fft.fftfreq(size) * samples for size in spectrum.shape)
+    turn_down = np.exp(-2j * math.pi * v[:, None] * shift_px[0])
+    turn_across = np.exp(-2j * math.pi * u * shift_px[1])
+    otf = sensor.otf(u, v[:, None])
+    return np.asarray(fft.ifft2(spectrum * otf * turn_down * turn_across).real)
 
 
 def _orders(size: int, samples: int, reach: float) -> NDArray[np.intp]:
