@@ -1,10 +1,12 @@
 """Time of one 40 x 40 region: the method "spline" beside a plain 4x-binned e-SFR, interleaved.
 
-One process on one core, the images in memory. Timed for the package: `measure_edge` from the
-pixels and the numbers a user reads, each with its standard deviation. The plain e-SFR is what
-comparable programs do and no more: row centroids, line, quarter-pixel bins, difference,
-Hamming window, Fourier transform; it finds no edge, trims nothing and knows no uncertainty.
-`iso12233` is the package's method of that name without its resampled standard deviations.
+One process on one core, the images in memory. Every method measures every image five times in a
+row: the shortest is what the computation takes, the first what somebody waits who has just
+measured something else (and whatever else the machine did meanwhile). Timed for the package:
+`measure_edge` from the pixels and the numbers a user reads, each with its standard deviation. The
+plain e-SFR is what comparable programs do and no more: row centroids, line, quarter-pixel bins,
+difference, Hamming window, Fourier transform; it finds no edge, trims nothing and knows no
+uncertainty. `iso12233` is the package's method of that name without its resampled deviations.
 """
 
 from __future__ import annotations
@@ -57,6 +59,8 @@ def iso12233(image: np.ndarray) -> float:
     return found.mtf_nyquist.value + found.rer.value + found.fwhm_px.value
 
 
+REPEATS = 5
+
 CONTENDERS = {
     "spline, with standard deviations": spline,
     "iso12233, without": iso12233,
@@ -71,7 +75,7 @@ class Race:
 
 
 def lap_times(race: Race) -> np.ndarray:
-    """Seconds of every contender on every image, (draws, contenders)."""
+    """Seconds of every contender on every image, every time, (draws, contenders, repeats)."""
     rng = np.random.default_rng(race.seed)
     ranges = Ranges((40, 40), (100.0, 100.0), (3.0, 12.0), 0.5)
     sensors = list(ac.simulate.reference_systems().values())
@@ -82,9 +86,12 @@ def lap_times(race: Race) -> np.ndarray:
         image = image if truth.orientation == "across" else np.ascontiguousarray(image.T)
         laps = []
         for measure in CONTENDERS.values():
-            start = time.perf_counter()
-            measure(image)
-            laps.append(time.perf_counter() - start)
+            own = []
+            for _ in range(REPEATS):
+                start = time.perf_counter()
+                measure(image)
+                own.append(time.perf_counter() - start)
+            laps.append(own)
         if draw >= 0:
             taken.append(laps)
     return np.array(taken)
@@ -94,23 +101,26 @@ def main() -> None:
     arguments = command(__doc__.partition("\n")[0], draws=400).parse_args()
     race = Race(arguments.draws, arguments.seed)
     (taken,) = work_through(lap_times, [race], 1, "races")
-    plain = taken[:, -1]
+    shortest, first = taken.min(axis=2), taken[:, :, 0]
+    plain = shortest[:, -1]
     rows = []
     for number, name in enumerate(CONTENDERS):
-        own = taken[:, number]
+        own = shortest[:, number]
         low, high = np.quantile(own, [0.1, 0.9])
         rows.append(
             [
                 name,
                 f"{1e3 * np.median(own):.2f}",
                 f"{1e3 * low:.2f} to {1e3 * high:.2f}",
+                f"{1e3 * np.median(first[:, number]):.2f}",
                 f"{np.median(own / plain):.2f}",
             ]
         )
-    head = ["method", "median / ms", "10 to 90 % / ms", "ratio to plain"]
+    head = ["method", "median / ms", "10 to 90 % / ms", "first time / ms", "ratio to plain"]
     parts = [
         "One region of 40 x 40 px, SNR 100, the reference systems in turn, angles 3 to 12 "
-        "degrees; one core. The ratio is the median over the images.",
+        "degrees; one core. Of every image the shortest of five times counts; beside it the first. "
+        "The ratio is the median over the images.",
         table(head, rows),
     ]
     publish("Time of one region", parts, arguments)
