@@ -38,6 +38,8 @@ class Blocks:
         The own unknowns when the shared ones are zero.
     leverage : (n,) array
         How much of a pixel's own noise the own unknowns take up, 0 to 1.
+    log_volume : float
+        Logarithm of the volume of the own unknowns' posterior at unit noise, but for a constant.
     count : int
         Number of pixels less that of the free own unknowns.
     """
@@ -48,6 +50,7 @@ class Blocks:
     own_shared: Floats
     own_data: Floats
     leverage: Floats
+    log_volume: float
     count: int
 
     @cached_property
@@ -126,4 +129,7 @@ def eliminate(
         data[ties] -= tie_axes @ along_data
         own_shared[k], own_data[k] = inverse[k] @ along, inverse[k] @ along_data
     free = q if tie is None else int(np.count_nonzero(tie == 0))
-    return Blocks(shared, data, inverse, own_shared, own_data, leverage, root.size - count * free)
+    log_volume = float(np.log(np.abs(np.einsum("kii->ki", inverse))).sum())
+    return Blocks(
+        shared, data, inverse, own_shared, own_data, leverage, log_volume, root.size - count * free
+    )

@@ -8,15 +8,17 @@ amplitudes of the wings are integrated over, so that what is not seen enters the
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.fit.normal import Normal
+from acutance.fit.point_blocks import Blocks
 from acutance.fit.posterior import Posterior, Prior, Whitened, regress, whiten
 
-__all__ = ["averaged_posterior", "likelier_posterior"]
+__all__ = ["averaged_posterior", "likelier_growth", "likelier_posterior"]
 
 # SHAPE, DETAIL, HALO, TAIL, APERTURE, FOOT, AIRY as in `psf_prior`: where the search begins.
 _LIGHT_FAR_OUT: Final[Floats] = np.array([-3.5, -4.0, -6.0, -4.5, -3.0, -2.0, -0.3])
@@ -24,6 +26,9 @@ _HALO, _TAIL = 2, 3
 _GRID: Final = (-6.0, -5.2, -4.4, -3.6, -2.8, -2.0, -1.2)
 _SMALL: Final = -4.5
 _LEAST_WEIGHT: Final = 0.003
+_BRIGHTEST_OVER_DARK: Final = (0.5, 1.5, 4.5, 13.5, 40.5, 121.5, 364.5)
+"""Variances of the noise a brightest pixel may have beyond that of a dark one, over the latter."""
+_CLEARLY: Final = 2.0
 
 
 def likelier_posterior(
@@ -80,6 +85,54 @@ def averaged_posterior(
     power, axes = np.linalg.eigh(covariance)
     factor = axes * np.sqrt(np.maximum(power, 0.0))
     return Posterior(mean, np.hstack([factor, moves]), mode, likeliest.variance, likeliest.freedom)
+
+
+def likelier_growth(
+    solved: Callable[[float], tuple[Blocks, float]],
+    prior: Prior,
+    posterior: Posterior,
+    noise: float,
+    brightest: float,
+) -> float:
+    """How much the noise grows with the light, by the evidence.
+
+    Parameters
+    ----------
+    solved : callable
+        For a growth (variance per unit of light over that of the background), the eliminated
+        system with its weights, and the sum of the logarithms of the weights.
+    prior : Prior
+    posterior : Posterior
+        What was found with some growth.
+    noise : float
+        Variance of the background's noise, its correlation included.
+    brightest : float
+        Light in the brightest pixel.
+
+    Returns
+    -------
+    float
+        0 where the evidence does not speak for growth clearly.
+    """
+    mode = posterior.log_amplitude
+
+    def evidence(growth: float) -> float:
+        blocks, weights = solved(growth)
+        white = whiten(blocks.normal, prior, mode, noise)
+        found = _log_evidence(blocks.normal, prior, white, mode, noise)
+        return found + 0.5 * weights + blocks.log_volume
+
+    ratios = np.array(_BRIGHTEST_OVER_DARK)
+    values = np.array([evidence(ratio / brightest) for ratio in ratios.tolist()])
+    best = int(np.argmax(values))
+    if values[best] < evidence(0.0) + _CLEARLY:
+        return 0.0
+    place = float(np.clip(best, 1, ratios.size - 2))
+    below, middle, above = values[int(place) - 1 : int(place) + 2].tolist()
+    bend = below - 2 * middle + above
+    shift = float(np.clip(0.5 * (below - above) / bend, -1, 1)) if bend < 0 else best - place
+    step = math.log(ratios[1] / ratios[0])
+    return float(ratios[int(place)] * math.exp(step * shift)) / brightest
 
 
 def _at(mode: Floats, varied: int, other: int, log_amplitude: float) -> Floats:

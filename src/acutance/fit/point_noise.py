@@ -16,7 +16,7 @@ from acutance.curves.grid import Floats
 from acutance.fit.noise import Correlation, correlation, outlier_weights, robust_scale
 from acutance.fit.point_stamps import Stamps
 
-__all__ = ["NOISE_FLOOR", "PointNoise", "noise_around"]
+__all__ = ["NOISE_FLOOR", "PointNoise", "grows", "noise_around"]
 
 NOISE_FLOOR: Final = 4e-5
 """The least noise the arithmetic allows for, as a share of the brightest source's peak."""
@@ -26,12 +26,9 @@ _MODEL_ERROR: Final = 0.02
 """Share of a source's light in a pixel that may be left before noise, and before an outlier, is
 seen in it."""
 _BRIGHT: Final = 0.03
-_LEAST_FREE: Final = 0.1
+_MOST_TAKEN: Final = 0.9
 _FEWEST: Final = 20
-_SIGNIFICANT: Final = 3.0
-_GROWTH_STEPS: Final = 8
-_LARGEST: Final = 25.0
-"""Largest squared residual over its expectation that is believed."""
+_SIGNIFICANT: Final = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +66,7 @@ class PointNoise:
 
 
 def noise_around(
-    stamps: Stamps, residual: Floats, light: Floats, leverage: Floats, *, robust: bool
+    stamps: Stamps, residual: Floats, light: Floats, growth: float, *, robust: bool
 ) -> PointNoise:
     """What the residuals say of the noise.
 
@@ -78,13 +75,12 @@ def noise_around(
     stamps : Stamps
     residual, light : (n,) arrays
         What the fit leaves of every pixel, and what the pixel's source gives it.
-    leverage : (n,) array
-        How much of a pixel's own noise the fit took up, 0 to 1.
+    growth : float
+        Variance per unit of light over that of the background.
     robust : bool
         Bound the weight of outlying pixels.
     """
     least = NOISE_FLOOR * float(light.max())
-    growth = _growth(residual, light, np.maximum(1 - leverage, 0.0), least)
     standard = residual / np.sqrt(1 + growth * np.maximum(light, 0.0))
     scale = math.hypot(robust_scale(standard), least)
     standard = standard / np.hypot(scale, _MODEL_ERROR * light)
@@ -98,21 +94,22 @@ def noise_around(
     return PointNoise(outlier, growth, max(found, key=lambda one: one.inflation))
 
 
-def _growth(residual: Floats, light: Floats, free: Floats, least: float) -> float:
-    """Variance per unit of light over the background's variance; 0 unless it is significant."""
+def grows(residual: Floats, light: Floats, leverage: Floats) -> bool:
+    """Whether bright pixels scatter significantly more than the background.
+
+    Parameters
+    ----------
+    residual, light : (n,) arrays
+        What a fit with equal weights leaves of every pixel, and what the sources give it.
+    leverage : (n,) array
+        How much of a pixel's own noise the fit took up, 0 to 1.
+    """
     bright = light > _BRIGHT * float(light.max())
-    dark, bright = ~bright, bright & (free > _LEAST_FREE)
+    dark, bright = ~bright, bright & (leverage < _MOST_TAKEN)
     if bright.sum() < _FEWEST or dark.sum() < _FEWEST:
-        return 0.0
-    base = robust_scale(residual[dark]) ** 2 + least**2
-    own, left = light[bright], free[bright]
-    growth, doubt = 0.0, math.inf
-    for _ in range(_GROWTH_STEPS):
-        # A squared residual scatters by sqrt(2) of its mean.
-        expected = left * base * (1 + growth * own)
-        slope = left * base * own / expected
-        excess = np.minimum(residual[bright] ** 2, _LARGEST * expected) - left * base
-        excess -= (_SHAPE_ERROR * own) ** 2
-        growth = max(float(slope @ (excess / expected)) / float(slope @ slope), 0.0)
-        doubt = math.sqrt(2 / float(slope @ slope))
-    return growth if growth > _SIGNIFICANT * doubt else 0.0
+        return False
+    base = math.hypot(robust_scale(residual[dark]), NOISE_FLOOR * float(light.max()))
+    free = 1 - leverage[bright]
+    power = np.maximum(residual[bright] ** 2 - (_SHAPE_ERROR * light[bright]) ** 2, 0.0)
+    excess = float(power.sum()) / base**2 - float(free.sum())
+    return excess > _SIGNIFICANT * math.sqrt(2 * float(free @ free))

@@ -9,16 +9,21 @@ the same linear problem (`fit.point_blocks`), solved again where they have moved
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.fit.noise import Correlation, robust_scale
 from acutance.fit.point_blocks import Blocks, eliminate
-from acutance.fit.point_evidence import averaged_posterior, likelier_posterior
+from acutance.fit.point_evidence import (
+    averaged_posterior,
+    likelier_growth,
+    likelier_posterior,
+)
 from acutance.fit.point_ground import Ground, ground_levels
-from acutance.fit.point_noise import NOISE_FLOOR, PointNoise, noise_around
+from acutance.fit.point_noise import NOISE_FLOOR, PointNoise, grows, noise_around
 from acutance.fit.point_stamps import Stamps
 from acutance.fit.point_start import BlurredPoints, own_columns
 from acutance.fit.posterior import Posterior, Prior
@@ -54,8 +59,8 @@ class PointsFit:
         Background at the pixel nearest to a source, and its slopes down and to the right per px.
     grounds_std : (k,) array
         Standard deviation of the background.
-    fitted : (n,) array
-        What the model gives every pixel.
+    light, fitted : (n,) arrays
+        What its own source, and the model as a whole, gives every pixel.
     weight : (n,) array
         1 where a pixel is no outlier.
     noise : float
@@ -74,6 +79,7 @@ class PointsFit:
     fluxes_std: Floats
     grounds: Floats
     grounds_std: Floats
+    light: Floats
     fitted: Floats
     weight: Floats
     noise: float
@@ -84,6 +90,11 @@ class PointsFit:
     def residual(self) -> Floats:
         """What the model leaves of every pixel, (n,)."""
         return self.stamps.value - self.fitted
+
+    @property
+    def pixel_noise(self) -> Floats:
+        """Standard deviation of every pixel's noise, (n,)."""
+        return np.sqrt(self.noise**2 + self.gain * np.maximum(self.light, 0.0))
 
     @property
     def peaks(self) -> Floats:
@@ -118,7 +129,12 @@ def fit_points(stamps: Stamps, start: BlurredPoints, *, robust: bool = True) -> 
         # Until the sources are in place, the linear problem leaves errors of second order: they
         # are taken for noise, lest the PSF explain them.
         prior = _prior(directions, ground, floor)
-        blocks, posterior, moves = _solve(stamps, state, prior, noise, ground, earlier)
+        system = _linear(stamps, state, noise, ground, prior.noise_floor)
+        blocks = system.eliminated(noise.weight(state.light))
+        posterior = likelier_posterior(
+            blocks.normal, prior, system.variance, noise.correlation.inflation, earlier
+        )
+        moves = np.abs(blocks.own(posterior.beta)[:, 1:3]).max(axis=1)
         tried = _moved(stamps, state, ground, blocks, posterior)
         if tried.rms > 1.05 * max(state.rms, floor) and floor < _WORST * float(peaks.max()):
             floor, earlier = 4 * floor, None
@@ -127,8 +143,8 @@ def fit_points(stamps: Stamps, start: BlurredPoints, *, robust: bool = True) -> 
         bend = _BEND * float((peaks * np.minimum(moves, _LONGEST_STEP_PX) ** 2).max())
         quiet = noise
         if bend <= state.rms:
-            leverage = _leverage(blocks, posterior, state.light)
-            quiet = noise_around(stamps, state.residual, state.light, leverage, robust=robust)
+            growth = _growth(before, state, system, noise, prior, posterior)
+            quiet = noise_around(stamps, state.residual, state.light, growth, robust=robust)
         enough = max(least, _NEGLIGIBLE * state.rms)
         if bend < enough and floor < max(2 * least, state.rms) and noise.agrees(quiet):
             break
@@ -155,6 +171,22 @@ class _State:
         return float(np.sqrt(np.mean(self.residual**2)))
 
 
+@dataclass(frozen=True, eq=False)
+class _Linear:
+    """What the unknowns of all sources do to the pixels, near a state; noise for unit weight."""
+
+    own: Floats
+    shared: Floats
+    data: Floats
+    starts: NDArray[np.intp]
+    tie: Floats
+    variance: float
+
+    def eliminated(self, weight: Floats) -> Blocks:
+        """The same without the sources' own unknowns."""
+        return eliminate(self.own, self.shared, self.data, weight, self.starts, self.tie)
+
+
 def _misfit(stamps: Stamps, start: BlurredPoints, peaks: Floats) -> float:
     """The errors of second order to expect of the start, in image units.
 
@@ -176,15 +208,10 @@ def _prior(directions: PsfDirections, ground: Ground, noise_floor: float) -> Pri
     )  # fmt: skip
 
 
-def _solve(
-    stamps: Stamps,
-    state: _State,
-    prior: Prior,
-    noise: PointNoise,
-    ground: Ground,
-    earlier: Posterior | None,
-) -> tuple[Blocks, Posterior, Floats]:
-    """One linear solution about the state, and how far every source moves, in pixels."""
+def _linear(
+    stamps: Stamps, state: _State, noise: PointNoise, ground: Ground, noise_floor: float
+) -> _Linear:
+    """The linear problem about the state."""
     directions = state.model.directions
     psf = state.model.with_slopes(*stamps.offsets(state.places))
     own = own_columns(stamps, state.places, state.fluxes, psf)
@@ -192,14 +219,9 @@ def _solve(
     mean = stamps.summed(state.fluxes, blur)
     shared = np.hstack([stamps.summed(state.fluxes, columns), ground.columns])
     weight = noise.weight(state.light)
-    variance = max(float(weight @ state.residual**2) / stamps.value.size, prior.noise_floor**2)
+    variance = max(float(weight @ state.residual**2) / stamps.value.size, noise_floor**2)
     tie = ground.tie(math.sqrt(variance))
-    blocks = eliminate(own, shared, stamps.value - mean, weight, stamps.starts, tie)
-    posterior = likelier_posterior(
-        blocks.normal, prior, variance, noise.correlation.inflation, earlier
-    )
-    own_found = blocks.own(posterior.beta)
-    return blocks, posterior, np.abs(own_found[:, 1:3]).max(axis=1)
+    return _Linear(own, shared, stamps.value - mean, stamps.starts, tie, variance)
 
 
 def _moved(
@@ -224,6 +246,31 @@ def _seen(
     residual = stamps.value - stamps.summed(fluxes, psf) - ground_levels(stamps, places, grounds)
     light = fluxes[stamps.owner] * psf[: stamps.value.size]
     return _State(model, places, fluxes, grounds, light, residual)
+
+
+def _growth(
+    before: _State,
+    state: _State,
+    system: _Linear,
+    noise: PointNoise,
+    prior: Prior,
+    posterior: Posterior,
+) -> float:
+    """Variance of the noise per unit of light over that of the background."""
+
+    def solved(growth: float) -> tuple[Blocks, float]:
+        weight = replace(noise, growth=growth).weight(before.light)
+        return system.eliminated(weight), float(np.log(weight).sum())
+
+    if noise.growth == 0:
+        leverage = _leverage(system.eliminated(noise.weight(before.light)), posterior, state.light)
+        if not grows(state.residual, state.light, leverage):
+            return 0.0
+    dark = state.light < 0.01 * float(state.light.max())
+    variance = max(robust_scale(state.residual[dark]), prior.noise_floor) ** 2
+    brightest = float(before.light.max())
+    inflated = variance * noise.correlation.inflation
+    return likelier_growth(solved, prior, posterior, inflated, brightest)
 
 
 def _leverage(blocks: Blocks, posterior: Posterior, light: Floats) -> Floats:
@@ -256,6 +303,6 @@ def _found(
     own_std = np.sqrt(np.einsum("kij,kij->ki", both, both))
     return PointsFit(
         stamps, model, state.places, own_std[:, [2, 1]], state.fluxes * model.volume, flux_std,
-        state.grounds, own_std[:, 3], stamps.value - state.residual, noise.outlier,
+        state.grounds, own_std[:, 3], state.light, stamps.value - state.residual, noise.outlier,
         math.sqrt(posterior.variance), noise.growth * posterior.variance, noise.correlation,
     )  # fmt: skip

@@ -85,9 +85,10 @@ def sources_of_fit(
     left[stamps.row.astype(np.intp), stamps.col.astype(np.intp)] = fit.residual
     x, y = stamps.offsets(fit.places)
     core = np.hypot(x, y) <= 3.0
-    power = np.bincount(stamps.owner[core], fit.residual[core] ** 2, fit.fluxes.size)
+    standard = fit.residual[core] / np.maximum(fit.pixel_noise[core], 1e-300)
+    power = np.bincount(stamps.owner[core], standard**2, fit.fluxes.size)
     count = np.bincount(stamps.owner[core], minlength=fit.fluxes.size)
-    misfit = np.sqrt(power / np.maximum(count, 1)) / max(fit.noise, 1e-300)
+    misfit = np.sqrt(power / np.maximum(count, 1))
     peaks = fit.peaks
     found = []
     for k, place in enumerate(fit.places):
