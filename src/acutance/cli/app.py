@@ -17,6 +17,7 @@ from acutance.cli import (
     pulse,
     simulate,
     sites,
+    star,
     study,
 )
 from acutance.cli.terminal import fail
@@ -71,6 +72,7 @@ app.command("edge", epilog=edge.EXAMPLE)(edge.edge)
 app.command("pulse", epilog=pulse.EXAMPLE)(pulse.pulse)
 app.command("points", epilog=points.EXAMPLE)(points.points)
 app.command("sites", epilog=sites.EXAMPLE)(sites.sites)
+app.command("star", epilog=star.EXAMPLE)(star.star)
 app.add_typer(simulate.app, name="simulate")
 app.command("study", epilog=study.EXAMPLE)(study.study)
 app.add_typer(plan_mirrors.app, name="plan")

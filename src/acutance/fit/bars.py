@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
-from acutance.fit.bars_ends import OtfTable, end_effect
+from acutance.fit.bars_ends import OtfTable, end_effect, light_of_neighbours
 from acutance.fit.bars_group import Bars
 from acutance.fit.bars_seen import SeenGroup, group_columns
 from acutance.fit.levels import Levels, with_level
@@ -50,6 +50,7 @@ _SETTLED_END: Final = 2e-4
 _KNOWN: Final = 0.3
 """How well the caller knows where a group is, in periods."""
 _ROUND: Final = 0.4
+_AROUND: Final = 0.5
 _OWN: Final = 5
 """Columns every group has for itself: level, slope, place, period, direction."""
 
@@ -159,8 +160,7 @@ def solve_bars(
         )
         settled = longest < (_PLAIN_PX if plain else _SETTLED_PX) and not changed
         if not plain:
-            table = OtfTable.of(solved.model)
-            found = [end_effect(table, one.bars, one.across, one.along) for one in seen]
+            found = _surroundings(solved.model, seen)
             change = max(float(np.max(np.abs(a - b))) for a, b in zip(found, ends, strict=True))
             settled = (
                 settled and change < _SETTLED_END and float(np.max(np.abs(again - outlier))) < 0.05
@@ -174,6 +174,18 @@ def solve_bars(
         contrast = math.copysign(max(abs(solved.model.level), 1e-3 * abs(contrast)), contrast)
     _require_near(said, groups)
     return BarsSolution(solved.model, _fits(seen, solved), solved.noise, outlier)
+
+
+def _surroundings(model: PlaneModel, seen: list[SeenGroup]) -> list[Floats]:
+    """What the bars' ends take from every group's pixels, and other groups add, for contrast 1."""
+    table = OtfTable.of(model)
+    beside = light_of_neighbours(
+        table, [one.bars for one in seen], [(one.rows, one.cols) for one in seen]
+    )
+    return [
+        end_effect(table, one.bars, one.across, one.along) + other
+        for one, other in zip(seen, beside, strict=True)
+    ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,10 +213,12 @@ def _pass(
 ) -> _Pass:
     """One regression with all groups where they are; a `plain` one knows no processes."""
     states = None if plain else ProcessModes(blur.width_px)
-    first = _OWN * len(seen)
+    first = _OWN * len(seen) + 1
     m = first + MEAN_MODES + (0 if states is None else states.blocks().size)
-    value = np.concatenate([one.value for one in seen]) - contrast * np.concatenate(ends)
+    around = contrast * np.concatenate(ends)
+    value = np.concatenate([one.value for one in seen]) - around
     design = np.zeros((value.size, m))
+    design[:, first - 1] = around
     start = 0
     for number, one in enumerate(seen):
         here = slice(start, start + one.value.size)
@@ -272,6 +286,8 @@ def _prior(
             float(back[0]), there.period_px - bars.period_px,
             math.radians(there.normal_deg - bars.normal_deg),
         )  # fmt: skip
+    # What lies around is told by the last pass's model, as far as that is known.
+    scale[first - 1] = _AROUND / height
     # A shift of the whole spread function is that of all groups.
     scale[first + 4 : first + 6] = 1e-6
     # Directions without bars are about as sharp as those with.

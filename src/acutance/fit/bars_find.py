@@ -28,6 +28,7 @@ _COUNTS = range(2, 16)
 _BLURS_PX = (0.5, 0.8)
 _COMMON_DEG = 12.0
 _SURE = 0.15
+_ABOUT_AS_WELL = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +77,8 @@ def find_bars(image: Floats, count: int | None = None) -> FoundBars:
             if (found := _measured(bright, blob, count)) is not None
         ]  # fmt: skip
         if groups:
-            return FoundBars(_of_one_kind(groups), sign * height)
+            counted = [_recounted(bright, one, _usual_count(groups)) for one in groups]
+            return FoundBars(_of_one_kind(counted), sign * height)
     raise NoBarsError(
         "no group of parallel bars stands out of the ground: choose a region that holds the "
         "groups and some ground around them, or state where they are (groups)"
@@ -96,6 +98,22 @@ def _blobs(bright: Floats, close_px: float) -> list[NDArray[np.bool_]]:
 class _Candidate:
     bars: Bars
     sureness: float
+    rest: float
+    blob: NDArray[np.bool_]
+
+
+def _usual_count(groups: list[_Candidate]) -> int:
+    """The number of bars that most groups have; wide bars are counted surely."""
+    votes = np.bincount([one.bars.count for one in groups], [one.bars.period_px for one in groups])
+    return int(np.argmax(votes))
+
+
+def _recounted(bright: Floats, one: _Candidate, count: int) -> _Candidate:
+    """The group with the usual number of bars, if that explains it about as well."""
+    if one.bars.count == count:
+        return one
+    other = _measured(bright, one.blob, count)
+    return other if other is not None and other.rest < 2 * one.rest + _ABOUT_AS_WELL else one
 
 
 def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Candidate | None:
@@ -119,7 +137,7 @@ def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Ca
             break
     if best is None or best[0] > 0.35:
         return None
-    return _Candidate(best[1], sureness)
+    return _Candidate(best[1], sureness, best[0], blob)
 
 
 def _profile_fit(

@@ -14,6 +14,7 @@ from acutance.curves import Estimate, Mtf, Otf2d
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP, mtf_crossing
 from acutance.errors import OptionError
+from acutance.fit.noise import robust_scale
 from acutance.fit.star import PlaneModel, StarSolution, solve_star
 from acutance.fit.star_find import find_star
 from acutance.fit.star_rings import FoundStar, ring_modulations
@@ -99,6 +100,19 @@ class StarMeasurement(Measurement2d):
         sweep = min(self.star.sweep_deg, 180.0)
         count = max(round(sweep / _DIRECTION_STEP_DEG), 1)
         return np.asarray(self.star.first_deg + 90 + (np.arange(count) + 0.5) * sweep / count)
+
+    def mtf_by_direction(self, freq_cpp: float, directions_deg: Floats) -> tuple[Floats, Floats]:
+        """MTF at one frequency in some directions, and its standard deviation, (n,) each."""
+        angle = np.radians(directions_deg)
+        u, v = freq_cpp * np.cos(angle), freq_cpp * np.sin(angle)
+        # As a curve over directions: every one with its own variance.
+        curve = Mtf(directions_deg, self.otf.model.otf(u, v), self.otf.model.factor(u, v))
+        return curve.value, curve.std
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of what the fit leaves, outliers aside, image units."""
+        return robust_scale(self.residual[np.isfinite(self.residual)])
 
     @property
     def mtf_nyquist(self) -> Estimate:

@@ -28,6 +28,8 @@ from acutance.report.points_panels import points_panels
 from acutance.report.points_tables import points_blocks, points_sections, sources_csv
 from acutance.report.reports import comparison_report, edge_report, target_report
 from acutance.report.scene_truth import scene_document, target_truth_document
+from acutance.report.star_panels import star_panels
+from acutance.report.star_words import star_blocks, star_csv, star_sections
 from acutance.report.study_figures import plan_text, study_figure, study_text
 from acutance.report.tables import mtf_csv, mtf_csv_of_many
 from acutance.report.target_page import target_figure
@@ -70,6 +72,10 @@ __all__ = [
     "scene_document",
     "sensor_document",
     "sources_csv",
+    "star_blocks",
+    "star_csv",
+    "star_panels",
+    "star_sections",
     "study_figure",
     "study_text",
     "target_document",
