@@ -1,0 +1,424 @@
+"""One parametric 2-D OTF through the curves of many measurements, by generalised least squares."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from scipy.special import gammaincc
+
+from acutance.curves import Estimate
+from acutance.curves.grid import Floats
+from acutance.fit.combine_departure import Departure
+from acutance.fit.combine_forms import FORMS, SensorForm
+
+__all__ = ["ChiSquare", "CombinedFit", "FormFit", "PlaneCurve", "combine_curves"]
+
+Complexes = NDArray[np.complex128]
+
+_FLOOR = 5e-4
+"""What an estimator may be wrong by without noise; also what makes a covariance invertible."""
+
+_SHIFT_PX = 0.3
+"""The curves know their centroid only so well: a phase linear in frequency says nothing."""
+
+_LARGEST_STD_DEG = 30.0
+_LEAST_WEIGHT = 0.01
+_SHARES = (0.0, 0.01, 0.03, 0.1, 0.3)
+"""Standard deviations tried for the departure from a form, shares of the logarithm of the OTF."""
+
+_SMEAR_STARTS = ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7))
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneCurve:
+    """The OTF of one measurement at places of the plane of frequencies, with its covariance.
+
+    Parameters
+    ----------
+    name : str
+        What a reader calls the measurement.
+    u_cpp, v_cpp : (n,) array
+        Frequencies across and along, cycles per pixel.
+    otf : (n,) complex array
+    factor : (n, k) complex array
+        Factor of the covariance: the error is ``factor @ z``, z standard normal and real.
+    """
+
+    name: str
+    u_cpp: Floats
+    v_cpp: Floats
+    otf: Complexes
+    factor: Complexes
+
+    @cached_property
+    def whitening(self) -> Floats:
+        """Matrix (2n, 2n) that gives the stacked real and imaginary errors unit variance."""
+        move = 2j * math.pi * _SHIFT_PX * self.otf[:, None]
+        shifts = move * np.stack([self.u_cpp, self.v_cpp], axis=1)
+        wide = _stacked(np.concatenate([self.factor, shifts], axis=1))
+        value, vector = np.linalg.eigh(wide @ wide.T + _FLOOR**2 * np.eye(wide.shape[0]))
+        return np.asarray((vector / np.sqrt(value)) @ vector.T)
+
+    @cached_property
+    def spread(self) -> Floats:
+        """Factor (2n, k) of what the whitened errors vary by: less than 1 where the floor rules."""
+        return np.asarray(self.whitening @ _stacked(self.factor))
+
+    def whitened(self, values: Complexes) -> Floats:
+        """Values (n,) or (n, p), stacked and whitened."""
+        return np.asarray(self.whitening @ _stacked(values))
+
+
+def _stacked(values: Complexes) -> Floats:
+    return np.concatenate([values.real, values.imag], axis=0)
+
+
+@dataclass(frozen=True)
+class ChiSquare:
+    """How far residuals lie from zero, measured by their standard deviations.
+
+    Parameters
+    ----------
+    value : float
+    expected : float
+        Its mean if model and standard deviations are true: the effective degrees of freedom.
+    variance : float
+        Its variance then.
+    """
+
+    value: float
+    expected: float
+    variance: float
+
+    @property
+    def p_value(self) -> float:
+        """Chance of a larger one; a scaled chi-square has the mean and the variance."""
+        if not (self.expected > 0 and self.variance > 0):
+            return math.nan
+        scale = self.variance / (2 * self.expected)
+        return float(gammaincc(0.5 * self.expected / scale, 0.5 * self.value / scale))
+
+    @property
+    def birge_ratio(self) -> float:
+        """Root of chi-square over its mean, at least 1: what the deviations have to be widened by.
+
+        R. T. Birge, Phys. Rev. 40, 207 (1932).
+        """
+        if not self.expected > 0:
+            return 1.0
+        return max(1.0, math.sqrt(self.value / self.expected))
+
+
+@dataclass(frozen=True, eq=False)
+class FormFit:
+    """One form, with a departure of a given size, fitted to all curves.
+
+    Parameters
+    ----------
+    form : SensorForm
+    share : float
+        Standard deviation of the departure from the form, a share of the logarithm of the OTF.
+    departure : Departure
+    parameters : (p,) array
+    weights : (m,) array
+        Of the departure's directions.
+    root : (p + m, p + m) array
+        Factor of the covariance of both, before it is widened.
+    score : float
+        Chi-square of the curves and the priors, with the logarithm of the determinant and two
+        for each parameter: less the better.
+    weight : float
+        Share in the mean over forms, ``exp(-score / 2)`` normalised.
+    """
+
+    form: SensorForm
+    share: float
+    departure: Departure
+    parameters: Floats
+    weights: Floats
+    root: Floats
+    score: float
+    weight: float
+
+    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """OTF, (n,), exactly 1 at zero frequency."""
+        plain = self.form.otf(self.parameters, u_cpp, v_cpp)
+        if self.weights.size == 0:
+            return plain
+        return np.asarray(plain + self.departure.directions(u_cpp, v_cpp) @ self.weights)
+
+    def slopes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Derivatives of the OTF by parameters and weights, (n, p + m)."""
+        own = self.form.slopes(self.parameters, u_cpp, v_cpp)
+        if self.weights.size == 0:
+            return own
+        return np.concatenate([own, self.departure.directions(u_cpp, v_cpp)], axis=1)
+
+    def numbers(self, widened: float = 1.0) -> dict[str, Estimate]:
+        """Parameters by name; a direction of what is round or short has no value."""
+        centre = self.form.numbers(self.parameters)
+        step = 1e-5
+        rows = {name: np.zeros(self.parameters.size) for name in centre}
+        for i, move in enumerate(step * np.eye(self.parameters.size)):
+            above = self.form.numbers(self.parameters + move)
+            below = self.form.numbers(self.parameters - move)
+            for name, row in rows.items():
+                change = above[name] - below[name]
+                if name.endswith("_deg"):
+                    change = (change + 90.0) % 180.0 - 90.0
+                row[i] = change / (2 * step)
+        root = self.root[: self.parameters.size]
+        found = {
+            name: Estimate(value, widened * float(np.linalg.norm(rows[name] @ root)))
+            for name, value in centre.items()
+        }
+        for name, number in found.items():
+            if name.endswith("_deg") and not number.std < _LARGEST_STD_DEG:
+                found[name] = Estimate(math.nan, math.nan)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class CombinedFit:
+    """The 2-D OTF of all curves, an `acutance.curves.OtfModel`: a mean over forms.
+
+    Parameters
+    ----------
+    curves : tuple of PlaneCurve
+    forms : tuple of FormFit
+        The one of largest weight first.
+    total : ChiSquare
+        Of all curves together about the mean over forms: whether the curves agree.
+    members : tuple of ChiSquare
+        Of each curve.
+    plain : ChiSquare
+        Of all curves about the best form without a departure: whether a plain sensor holds them.
+    """
+
+    curves: tuple[PlaneCurve, ...]
+    forms: tuple[FormFit, ...]
+    total: ChiSquare
+    members: tuple[ChiSquare, ...]
+    plain: ChiSquare
+
+    @property
+    def best(self) -> FormFit:
+        """The form with the largest weight."""
+        return self.forms[0]
+
+    @property
+    def departure(self) -> float:
+        """Mean standard deviation of the departure, a share of the logarithm of the OTF."""
+        return sum(one.weight * one.share for one in self.forms)
+
+    @property
+    def birge_ratio(self) -> float:
+        """What every standard deviation was widened by."""
+        return self.total.birge_ratio
+
+    @property
+    def numbers(self) -> dict[str, Estimate]:
+        """Parameters of the best form."""
+        return self.best.numbers(self.birge_ratio)
+
+    @property
+    def band_cpp(self) -> float:
+        """Frequency beyond which nothing is transferred."""
+        sigma = min(one.form.least_sigma_px(one.parameters) for one in self.forms)
+        return float(np.clip(0.8 / max(sigma, 1e-3), 3.0, 6.0))
+
+    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Mean OTF over the forms, (n,), exactly 1 at zero frequency."""
+        return _mean_otf(self.forms, u_cpp, v_cpp)
+
+    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Factor of its covariance, (n, k): that of each form, and how the forms differ."""
+        mean = self.otf(u_cpp, v_cpp)
+        parts = []
+        for one in self.forms:
+            off = one.otf(u_cpp, v_cpp) - mean
+            own = np.concatenate([one.slopes(u_cpp, v_cpp) @ one.root, off[:, None]], axis=1)
+            parts.append(math.sqrt(one.weight) * own)
+        found = self.birge_ratio * np.concatenate(parts, axis=1)
+        found[(u_cpp == 0) & (v_cpp == 0)] = 0.0
+        return np.asarray(found)
+
+
+def combine_curves(
+    curves: Sequence[PlaneCurve],
+    *,
+    detector_px: tuple[float, float] = (1.0, 1.0),
+    forms: Sequence[tuple[str, ...]] = FORMS,
+) -> CombinedFit:
+    """Fit every form to all curves, with departures of several sizes, and average.
+
+    Each is weighted by its likelihood, the departure integrated out, and Akaike's two for each
+    parameter, so that a smear, a halo or a departure enters as far as the curves show it; where
+    they cannot tell forms apart, the difference between them is part of the uncertainty
+    (Burnham, Anderson, Model Selection, 2002, 4.3).
+
+    Parameters
+    ----------
+    curves : sequence of PlaneCurve
+    detector_px : (float, float), optional
+        Width of the detector across and along.
+    forms : sequence of tuples of str, optional
+        Terms of the forms that are tried.
+    """
+    data = _Whitened(curves)
+    nowhere = np.zeros((data.values.size, 0))
+    plain = [_fit_form(data, SensorForm(terms, detector_px), None, 0.0, nowhere) for terms in forms]
+    first = min(plain, key=lambda one: one.score)
+    departure = Departure(first.form, tuple(first.parameters.tolist()))
+    ways = data.of(departure.directions(data.u_cpp, data.v_cpp))
+    fits = plain + [
+        _fit_form(data, start.form, start, share, share * ways)
+        for share in _SHARES[1:]
+        for start in plain
+    ]
+    weighted = _weighted([replace(one, departure=departure) for one in fits])
+    total, members = _chi_squares(data, weighted)
+    return CombinedFit(tuple(curves), weighted, total, members, _chi_squares(data, [first])[0])
+
+
+def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
+    """Fits with their share in the mean, the largest first; what hardly counts is left out."""
+    best = min(one.score for one in fits)
+    odds = {id(one): math.exp(-0.5 * (one.score - best)) for one in fits}
+    kept = sorted((one for one in fits if odds[id(one)] > _LEAST_WEIGHT), key=lambda one: one.score)
+    whole = sum(odds[id(one)] for one in kept)
+    return tuple(replace(one, weight=odds[id(one)] / whole) for one in kept)
+
+
+def _mean_otf(forms: Sequence[FormFit], u: Floats, v: Floats) -> Complexes:
+    return np.asarray(sum(one.weight * one.otf(u, v) for one in forms))
+
+
+@dataclass(frozen=True, eq=False)
+class _Whitened:
+    """All curves in one: places, values, and a matrix for each that whitens its errors."""
+
+    curves: Sequence[PlaneCurve]
+
+    @cached_property
+    def u_cpp(self) -> Floats:
+        return np.concatenate([one.u_cpp for one in self.curves])
+
+    @cached_property
+    def v_cpp(self) -> Floats:
+        return np.concatenate([one.v_cpp for one in self.curves])
+
+    @cached_property
+    def values(self) -> Floats:
+        return self.of(np.concatenate([one.otf for one in self.curves]))
+
+    @cached_property
+    def _ends(self) -> list[int]:
+        return [0, *np.cumsum([one.otf.size for one in self.curves]).tolist()]
+
+    @property
+    def parts(self) -> list[slice]:
+        """Where each curve stands in what is whitened."""
+        return [slice(2 * a, 2 * b) for a, b in pairwise(self._ends)]
+
+    def of(self, values: Complexes) -> Floats:
+        """Values (n,) or (n, p) at all places, stacked and whitened curve by curve."""
+        ends = pairwise(self._ends)
+        parts = [one.whitened(values[a:b]) for one, (a, b) in zip(self.curves, ends, strict=True)]
+        return np.concatenate(parts)
+
+
+def _fit_form(
+    data: _Whitened, form: SensorForm, start: FormFit | None, share: float, ways: Floats
+) -> FormFit:
+    """The parameters of largest posterior density, the departure integrated out."""
+    mean, spread = form.mean, form.spread
+    # (1 + ways ways^T)^(-1/2), by the singular values of ways.
+    left, singular, _ = np.linalg.svd(ways, full_matrices=False)
+    damping = 1 / np.sqrt(1 + singular**2) - 1
+
+    def damped(values: Floats) -> Floats:
+        return np.asarray(values + (left * damping) @ (left.T @ values))
+
+    def residual(p: Floats) -> Floats:
+        off = data.values - data.of(form.otf(p, data.u_cpp, data.v_cpp))
+        return np.concatenate([damped(off), (p - mean) / spread])
+
+    def slopes(p: Floats) -> Floats:
+        by_p = data.of(form.slopes(p, data.u_cpp, data.v_cpp))
+        return np.concatenate([-damped(by_p), np.diag(1 / spread)])
+
+    found = min(
+        (
+            least_squares(
+                residual, first, jac=slopes, method="lm", xtol=1e-6, ftol=1e-6, max_nfev=60
+            )
+            for first in (_starts(form) if start is None else [start.parameters])
+        ),
+        key=lambda one: float(one.cost),
+    )
+    p = np.asarray(found.x)
+    off = data.values - data.of(form.otf(p, data.u_cpp, data.v_cpp))
+    by_p = data.of(form.slopes(p, data.u_cpp, data.v_cpp))
+    design = np.concatenate([by_p, ways], axis=1)
+    normal = design.T @ design
+    normal += np.diag(np.concatenate([spread**-2.0, np.ones(ways.shape[1])]))
+    value, vector = np.linalg.eigh(normal)
+    root = vector / np.sqrt(value)
+    # The directions' weights are counted in units of the share.
+    scale = np.concatenate([np.ones(p.size), np.full(ways.shape[1], share)])
+    amounts = np.linalg.solve(normal[p.size :, p.size :], ways.T @ off)
+    score = 2 * float(found.cost) + float(np.sum(np.log1p(singular**2))) + 2 * p.size
+    nothing = Departure(form, tuple(p.tolist()))
+    return FormFit(form, share, nothing, p, share * amounts, scale[:, None] * root, score, 1.0)
+
+
+def _starts(form: SensorForm) -> list[Floats]:
+    """Where to begin: a smear is stationary at none, and could lie in any direction."""
+    if "smear" not in form.terms:
+        return [form.mean]
+    at = form.terms.index("smear")
+    at = SensorForm(form.terms[:at]).mean.size
+    found = []
+    for smear in _SMEAR_STARTS:
+        start = form.mean.copy()
+        start[at : at + 2] = smear
+        found.append(start)
+    return found
+
+
+def _chi_squares(
+    data: _Whitened, forms: Sequence[FormFit]
+) -> tuple[ChiSquare, tuple[ChiSquare, ...]]:
+    """Chi-square of all curves and of each, with the mean and the variance they should have.
+
+    Whitened errors e of covariance S leave the residuals ``M e``, M taking out what the
+    parameters follow; a sum of their squares over a curve has the mean ``tr(P M S M)`` and the
+    variance ``2 tr((P M S M)^2)``, P choosing the curve.
+    """
+    best = forms[0]
+    slopes = data.of(best.slopes(data.u_cpp, data.v_cpp))
+    inverse = best.root @ best.root.T
+    columns = []
+    for part, one in zip(data.parts, data.curves, strict=True):
+        moved = -slopes @ (inverse @ (slopes[part].T @ one.spread))
+        moved[part] += one.spread
+        columns.append(moved)
+    errors = np.concatenate(columns, axis=1)
+    residual = data.values - data.of(_mean_otf(forms, data.u_cpp, data.v_cpp))
+    members = tuple(_chi_square(residual[part], errors[part]) for part in data.parts)
+    return _chi_square(residual, errors), members
+
+
+def _chi_square(residual: Floats, errors: Floats) -> ChiSquare:
+    smaller = errors @ errors.T if errors.shape[0] < errors.shape[1] else errors.T @ errors
+    return ChiSquare(
+        float(residual @ residual), float(np.trace(smaller)), 2 * float(np.sum(smaller**2))
+    )

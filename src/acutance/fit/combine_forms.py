@@ -1,0 +1,223 @@
+"""Parametric sensors over the plane of frequencies: Gaussian x detector x smear, halo, trail.
+
+Each form is a product of terms; each term is centred, so that no form moves the image. Parameters
+are unbounded numbers of order 1 with a normal prior, wide enough to say no more than what a sensor
+can be: it keeps a term that the data do not show from running away.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.errors import ModelError
+from acutance.optics import Diffraction
+
+__all__ = ["FORMS", "TERMS", "SensorForm", "Term"]
+
+Complexes = NDArray[np.complex128]
+
+_STEP = 1e-4
+
+
+@dataclass(frozen=True)
+class Term:
+    """One factor of a parametric OTF.
+
+    Parameters
+    ----------
+    otf : function of (parameters, u, v)
+        OTF (n,) at frequencies in cycles per pixel, 1 at zero.
+    mean, spread : tuple of float
+        Prior of the parameters.
+    numbers : function of parameters
+        What a reader wants to know of it, by name with its unit.
+    """
+
+    otf: Callable[[Floats, Floats, Floats], NDArray[np.generic]]
+    mean: tuple[float, ...]
+    spread: tuple[float, ...]
+    numbers: Callable[[Floats], dict[str, float]]
+
+
+def _blur_covariance(p: Floats) -> tuple[float, float, float]:
+    """Variances across and along and covariance of the Gaussian, px^2."""
+    across, along = math.exp(p[0]), math.exp(p[1])
+    correlation = math.tanh(p[2])
+    return across**2, along**2, correlation * across * along
+
+
+def _gaussian(p: Floats, u: Floats, v: Floats) -> Floats:
+    xx, yy, xy = _blur_covariance(p)
+    return np.asarray(np.exp(-2 * math.pi**2 * (xx * u**2 + 2 * xy * u * v + yy * v**2)))
+
+
+def _gaussian_numbers(p: Floats) -> dict[str, float]:
+    xx, yy, xy = _blur_covariance(p)
+    middle, half = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), xy)
+    return {
+        "sigma_across_px": math.sqrt(xx),
+        "sigma_along_px": math.sqrt(yy),
+        "correlation": math.tanh(p[2]),
+        "sigma_major_px": math.sqrt(middle + half),
+        "sigma_minor_px": math.sqrt(max(middle - half, 0.0)),
+        "major_axis_deg": math.degrees(0.5 * math.atan2(2 * xy, xx - yy)),
+    }
+
+
+def _smear(p: Floats, u: Floats, v: Floats) -> Floats:
+    return np.asarray(np.sinc(p[0] * u + p[1] * v))
+
+
+def _smear_numbers(p: Floats) -> dict[str, float]:
+    direction = math.degrees(math.atan2(p[1], p[0]))
+    return {
+        "smear_px": math.hypot(p[0], p[1]),
+        "smear_direction_deg": (direction + 90.0) % 180.0 - 90.0,
+    }
+
+
+def _logistic(x: float) -> float:
+    return 1 / (1 + math.exp(-x))
+
+
+def _halo(p: Floats, u: Floats, v: Floats) -> Floats:
+    share, sigma = _logistic(p[0]), math.exp(p[1])
+    foot = np.exp(-2 * (math.pi * sigma) ** 2 * (u**2 + v**2))
+    return np.asarray(1 - share + share * foot)
+
+
+def _halo_numbers(p: Floats) -> dict[str, float]:
+    return {"halo_share": _logistic(p[0]), "halo_sigma_px": math.exp(p[1])}
+
+
+def _trail(p: Floats, u: Floats, v: Floats) -> Complexes:
+    across, along = 2j * math.pi * p[0] * u, 2j * math.pi * p[1] * v
+    return np.asarray(np.exp(across + along) / ((1 + across) * (1 + along)))
+
+
+def _trail_numbers(p: Floats) -> dict[str, float]:
+    return {"trail_across_px": float(p[0]), "trail_along_px": float(p[1])}
+
+
+def _aperture(p: Floats) -> tuple[float, float]:
+    return math.exp(p[0]), 0.7 * _logistic(p[1])
+
+
+def _diffraction(p: Floats, u: Floats, v: Floats) -> Floats:
+    cutoff, obscuration = _aperture(p)
+    return np.asarray(Diffraction(cutoff, obscuration=obscuration).otf(u, v))
+
+
+def _diffraction_numbers(p: Floats) -> dict[str, float]:
+    cutoff, obscuration = _aperture(p)
+    return {"cutoff_cpp": cutoff, "obscuration": obscuration}
+
+
+TERMS: dict[str, Term] = {
+    "gaussian": Term(
+        _gaussian, (math.log(0.4), math.log(0.4), 0.0), (0.7, 0.7, 0.3), _gaussian_numbers
+    ),
+    "smear": Term(_smear, (0.0, 0.0), (1.2, 1.2), _smear_numbers),
+    "halo": Term(_halo, (-2.2, math.log(2.0)), (1.0, 0.5), _halo_numbers),
+    "trail": Term(_trail, (0.0, 0.0), (0.4, 0.4), _trail_numbers),
+    "diffraction": Term(_diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
+}
+"""Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear and halo of a pixel or two."""
+
+
+@dataclass(frozen=True)
+class SensorForm:
+    """A product of terms with a rectangular detector.
+
+    Parameters
+    ----------
+    terms : tuple of str
+        Names in `TERMS`.
+    detector_px : (float, float)
+        Width of the detector across and along, in pixels.
+
+    Examples
+    --------
+    >>> print(SensorForm(("gaussian", "smear"), (1.0, 1.0)).name)
+    gaussian x detector x smear
+    """
+
+    terms: tuple[str, ...]
+    detector_px: tuple[float, float] = (1.0, 1.0)
+
+    def __post_init__(self) -> None:
+        unknown = [name for name in self.terms if name not in TERMS]
+        if unknown or not self.terms:
+            raise ModelError(
+                f"a sensor form was made of {', '.join(self.terms) or 'nothing'}: its terms are "
+                f"{', '.join(TERMS)}"
+            )
+
+    @property
+    def name(self) -> str:
+        """What it is made of."""
+        return " x ".join([self.terms[0], "detector", *self.terms[1:]])
+
+    @property
+    def mean(self) -> Floats:
+        """Prior mean of all parameters, (p,)."""
+        return np.array([one for name in self.terms for one in TERMS[name].mean])
+
+    @property
+    def spread(self) -> Floats:
+        """Prior standard deviation of all parameters, (p,)."""
+        return np.array([one for name in self.terms for one in TERMS[name].spread])
+
+    def otf(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """OTF (n,), exactly 1 at zero frequency."""
+        across, along = self.detector_px
+        product = (np.sinc(across * u_cpp) * np.sinc(along * v_cpp)).astype(complex)
+        for term, own in self._split(p):
+            product *= term.otf(own, u_cpp, v_cpp)
+        return np.asarray(product)
+
+    def slopes(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Derivatives of the OTF by the parameters, (n, p), by central differences."""
+        steps = _STEP * np.eye(p.size)
+        sides = (
+            self.otf(p + step, u_cpp, v_cpp) - self.otf(p - step, u_cpp, v_cpp) for step in steps
+        )
+        return np.stack(list(sides), axis=1) / (2 * _STEP)
+
+    def numbers(self, p: Floats) -> dict[str, float]:
+        """What a reader wants to know, by name."""
+        found: dict[str, float] = {}
+        for term, own in self._split(p):
+            found |= term.numbers(own)
+        return found
+
+    def least_sigma_px(self, p: Floats) -> float:
+        """Narrowest standard deviation of the Gaussian: what ends the band."""
+        return self.numbers(p)["sigma_minor_px"] if "gaussian" in self.terms else 0.0
+
+    def _split(self, p: Floats) -> list[tuple[Term, Floats]]:
+        found, start = [], 0
+        for name in self.terms:
+            stop = start + len(TERMS[name].mean)
+            found.append((TERMS[name], p[start:stop]))
+            start = stop
+        return found
+
+
+FORMS: tuple[tuple[str, ...], ...] = (
+    ("gaussian",),
+    ("gaussian", "smear"),
+    ("gaussian", "halo"),
+    ("gaussian", "trail"),
+    ("gaussian", "diffraction"),
+    ("gaussian", "smear", "halo"),
+    ("gaussian", "smear", "trail"),
+    ("gaussian", "halo", "trail"),
+)
+"""Forms that are tried, the simplest first."""
