@@ -9,7 +9,9 @@ from typer.core import TyperGroup
 
 from acutance import __version__
 from acutance.cli import (
+    bars,
     biresolution,
+    combine,
     demo,
     edge,
     plan_mirrors,
@@ -67,7 +69,9 @@ def _main(
     """
 
 
+app.command("bars", epilog=bars.EXAMPLE)(bars.bars)
 app.command("biresolution", epilog=biresolution.EXAMPLE)(biresolution.biresolution)
+app.command("combine", epilog=combine.EXAMPLE)(combine.combine)
 app.command("edge", epilog=edge.EXAMPLE)(edge.edge)
 app.command("pulse", epilog=pulse.EXAMPLE)(pulse.pulse)
 app.command("points", epilog=points.EXAMPLE)(points.points)

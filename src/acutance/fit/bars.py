@@ -50,7 +50,7 @@ _SETTLED_END: Final = 2e-4
 _KNOWN: Final = 0.3
 """How well the caller knows where a group is, in periods."""
 _ROUND: Final = 0.4
-_AROUND: Final = 0.5
+_AROUND: Final = 1.0
 _OWN: Final = 5
 """Columns every group has for itself: level, slope, place, period, direction."""
 

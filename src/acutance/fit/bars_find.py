@@ -29,6 +29,7 @@ _BLURS_PX = (0.5, 0.8)
 _COMMON_DEG = 12.0
 _SURE = 0.15
 _ABOUT_AS_WELL = 0.03
+_FULL = 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,14 +72,20 @@ def find_bars(image: Floats, count: int | None = None) -> FoundBars:
     if not height > 0:
         raise NoBarsError("the region is uniform: there are no bars to be seen in it")
     bright = sign * departure / height
+    best: list[_Candidate] = []
+    fewest = math.inf
     for close in _CLOSE_PX:
-        groups = [
-            found for blob in _blobs(bright, close)
-            if (found := _measured(bright, blob, count)) is not None
-        ]  # fmt: skip
-        if groups:
-            counted = [_recounted(bright, one, _usual_count(groups)) for one in groups]
-            return FoundBars(_of_one_kind(counted), sign * height)
+        seen = [_measured(bright, blob, count) for blob in _blobs(bright, close)]
+        groups = [one for one in seen if one is not None and one.bars.count > 1]
+        # Bars that are wider than the gaps closed stand alone, as a patch of the bars' level does.
+        alone = sum(one is not None and one.bars.count == 1 for one in seen)
+        if groups and alone < fewest:
+            best, fewest = groups, alone
+        if best and not fewest:
+            break
+    if best:
+        counted = [_recounted(bright, one, _usual_count(best)) for one in best]
+        return FoundBars(_of_one_kind(counted), sign * height)
     raise NoBarsError(
         "no group of parallel bars stands out of the ground: choose a region that holds the "
         "groups and some ground around them, or state where they are (groups)"
@@ -117,7 +124,7 @@ def _recounted(bright: Floats, one: _Candidate, count: int) -> _Candidate:
 
 
 def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Candidate | None:
-    """The group a blob holds; nothing if it is no group."""
+    """The group a blob holds, or the one bar it is; nothing if it is neither."""
     near = ndimage.binary_dilation(blob, iterations=2)
     # Differences of neighbours would turn the direction: they see fine structure too weakly.
     down = ndimage.gaussian_filter(bright, 1.0, order=(1, 0))
@@ -162,6 +169,7 @@ def _profile_fit(
     offset, width = _span(across[central], value[central])
     if not width > 3 or np.ptp(profile) == 0:
         return None
+    alone, level = min(_rest(places, profile, offset, 2 * width, 1, blur) for blur in _BLURS_PX)
     best = (math.inf, 0.0, 0.0, 0)
     for bars in _COUNTS if count is None else (count,):
         for period in np.linspace(0.9, 1.1, 17) * width / (bars - 0.5):
@@ -169,10 +177,15 @@ def _profile_fit(
                 continue
             for move in np.linspace(-0.4, 0.4, 9) * min(period, 6.0):
                 for blur in _BLURS_PX:
-                    rest = _rest(places, profile, offset + float(move), float(period), bars, blur)
+                    rest, _ = _rest(
+                        places, profile, offset + float(move), float(period), bars, blur
+                    )
                     if rest < best[0]:
                         best = (rest, offset + float(move), float(period), bars)
     rest, place, period, bars = best
+    # Fine bars nobody can resolve look like one wide bar, but of half the height.
+    if level > _FULL and alone < 2 * rest + _ABOUT_AS_WELL:
+        rest, place, period, bars = alone, offset, 2 * width, 1
     if not bars:
         return None
     angle = math.radians(normal_deg)
@@ -208,8 +221,8 @@ def _crossing(mean: Floats, inside: int, step: int, level: float) -> float:
 
 def _rest(
     places: Floats, profile: Floats, offset: float, period: float, count: int, blur: float
-) -> float:
-    """Share of a profile's variance that a blurred group leaves."""
+) -> tuple[float, float]:
+    """Share of a profile's variance that a blurred group leaves, and its height in the profile."""
     centres = offset + (np.arange(count) - 0.5 * (count - 1)) * period
     scale = 1 / math.hypot(blur, 0.29)
     edge = 0.25 * period
@@ -221,8 +234,8 @@ def _rest(
     shared = float(model @ own)
     size = float(model @ model)
     if not (power > 0 and size > 0 and shared > 0):
-        return 1.0
-    return 1 - shared**2 / (size * power)
+        return 1.0, 0.0
+    return 1 - shared**2 / (size * power), shared / size
 
 
 def _of_one_kind(found: list[_Candidate]) -> tuple[Bars, ...]:

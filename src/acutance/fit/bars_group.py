@@ -12,7 +12,8 @@ from acutance.curves.grid import Floats
 
 __all__ = ["Bars", "GroupReading", "central", "coltman_mtf", "read_group"]
 
-_ALIASED_CPP = 0.03
+_HIGHEST_CPP = 1.0
+_TOLD_APART = 30.0
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ class GroupReading:
 def read_group(
     bars: Bars, across_px: Floats, value: Floats, contrast: float, noise: float
 ) -> GroupReading:
-    """Fit the fundamental and, where sampling tells it apart, the third harmonic of a group.
+    """Fit the fundamental of a group, and the harmonics that sampling tells apart from it.
 
     Parameters
     ----------
@@ -105,45 +106,50 @@ def read_group(
     """
     middle = 0.0 if bars.count % 2 else 0.5 * bars.period_px
     phase = 2 * math.pi * bars.freq_cpp * (across_px - middle)
-    columns = [np.ones(value.size), np.cos(phase), np.sin(phase)]
-    if _tells_apart(bars):
-        columns += [np.cos(3 * phase), np.sin(3 * phase)]
-    design = np.stack(columns, axis=1)
-    gram = design.T @ design
-    inverse = np.linalg.pinv(gram, rcond=1e-8)
+    design = _harmonics(bars, phase)
+    inverse = np.linalg.pinv(design.T @ design, rcond=1e-8)
     fit = inverse @ (design.T @ value)
     spread = noise**2 * inverse
     first = 2 / math.pi * contrast
     modulation, modulation_std = fit[1] / first, math.sqrt(spread[1, 1]) / abs(first)
-    ctf, variance = 2 * fit[1], 4 * spread[1, 1]
-    if fit.size > 3:
-        ctf += 2 * fit[3]
-        variance += 4 * (spread[3, 3] + 2 * spread[1, 3])
+    # Midway on a bar and midway on a gap all odd harmonics count in full, with opposite signs.
+    both = np.zeros(fit.size)
+    both[1::2] = 2.0
+    ctf, ctf_std = float(both @ fit), math.sqrt(float(both @ spread @ both))
     return GroupReading(
-        float(modulation), float(modulation_std), float(ctf / contrast),
-        math.sqrt(max(float(variance), 0.0)) / abs(contrast),
-    )  # fmt: skip
-
-
-def _tells_apart(bars: Bars) -> bool:
-    """Whether the third harmonic, sampled, is not the fundamental again nor a constant."""
-    f = bars.freq_cpp
-    if 3 * f > 1.0:
-        return False
-    cos = max(
-        abs(math.cos(math.radians(bars.normal_deg))), abs(math.sin(math.radians(bars.normal_deg)))
+        float(modulation), float(modulation_std), ctf / contrast, ctf_std / abs(contrast)
     )
-    folded = abs(3 * f * cos - round(3 * f * cos))
-    own = abs(f * cos - round(f * cos))
-    return abs(folded - own) > _ALIASED_CPP and folded > _ALIASED_CPP
+
+
+def _harmonics(bars: Bars, phase: Floats) -> Floats:
+    """Constant, fundamental, and the odd harmonics that sampling tells apart from those before."""
+    design = np.stack([np.ones(phase.size), np.cos(phase), np.sin(phase)], axis=1)
+    for number in (3, 5):
+        if number * bars.freq_cpp > _HIGHEST_CPP:
+            break
+        turn = number * phase
+        wider = np.column_stack([design, np.cos(turn), np.sin(turn)])
+        if np.linalg.cond(wider.T @ wider) < _TOLD_APART:
+            design = wider
+    return design
 
 
 def coltman_mtf(freq_cpp: Floats, ctf: Floats) -> Floats:
     """MTF from the contrast of square bars at some frequencies, ascending.
 
     ``M(f) = pi/4 [C(f) + C(3f)/3 - C(5f)/5 + C(7f)/7 + C(11f)/11 - C(13f)/13 ...]`` (Coltman,
-    JOSA 44, 468, 1954); between the frequencies C is interpolated, beyond the last it is 0.
+    JOSA 44, 468, 1954). Between the frequencies C is interpolated; beyond the last it goes on
+    along the line of the last two, down to 0.
     """
+    if freq_cpp.size > 1:
+        fall = (ctf[-2] - ctf[-1]) / (freq_cpp[-1] - freq_cpp[-2])
+        if fall > 0 and ctf[-1] > 0:
+            freq_cpp, ctf = np.append(freq_cpp, freq_cpp[-1] + ctf[-1] / fall), np.append(ctf, 0.0)
+            return _series(freq_cpp, ctf)[:-1]
+    return _series(freq_cpp, ctf)
+
+
+def _series(freq_cpp: Floats, ctf: Floats) -> Floats:
     signs: dict[int, float] = {1: 1, 3: 1, 5: -1, 7: 1, 11: 1, 13: -1, 15: -1, 17: -1, 19: 1}
     total = np.zeros(freq_cpp.size)
     for harmonic, sign in signs.items():

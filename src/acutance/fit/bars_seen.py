@@ -25,7 +25,18 @@ _STEP_PX: Final = 0.05
 
 @dataclass(frozen=True, eq=False)
 class SeenGroup:
-    """The pixels of a group."""
+    """The pixels of a group.
+
+    Attributes
+    ----------
+    bars : Bars
+        Where the group is taken to be.
+    rows, cols : (n,) int arrays
+    value : (n,) array
+        The pixels.
+    across, along : (n,) arrays
+        Their distances from the centre along the normal and along the bars, px.
+    """
 
     bars: Bars
     rows: NDArray[np.intp]
@@ -36,6 +47,7 @@ class SeenGroup:
 
     @classmethod
     def of(cls, image: Floats, bars: Bars, number: int) -> SeenGroup:
+        """The usable pixels between the bars' ends and some way beside the group."""
         rows, cols = np.nonzero(np.isfinite(image))
         across, along = bars.across_and_along(rows.astype(float), cols.astype(float))
         margin = min(_END_MARGIN_PX, 0.25 * bars.length_px)

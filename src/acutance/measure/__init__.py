@@ -1,15 +1,19 @@
 """Measurements: an image in, a `Measurement` out."""
 
+from acutance.fit.bars_group import Bars
 from acutance.measure.bars import BARS_METHODS, BarsGroup, BarsMeasurement, measure_bars
 from acutance.measure.bars_options import BarsLimits, BarsOptions
 from acutance.measure.biresolution import BIRESOLUTION_METHODS, measure_biresolution
 from acutance.measure.biresolution_measurement import BiresolutionMeasurement
 from acutance.measure.biresolution_options import BiresolutionLimits, BiresolutionOptions
 from acutance.measure.biresolution_reference import MeasuredCurves, measured_reference
+from acutance.measure.combination import CombinedMeasurement, CombinedPart, combine
+from acutance.measure.combine_options import CombineLimits, CombineOptions
 from acutance.measure.edge import METHODS, measure_edge
 from acutance.measure.measurement import Check, ImageInfo, Measurement, Samples
 from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.options import EdgeLimits, EdgeOptions, PulseLimits, PulseOptions
+from acutance.measure.plane_slices import PlaneSlices
 from acutance.measure.points import POINTS_METHODS, PointsMeasurement, measure_points
 from acutance.measure.points_evidence import PointSource
 from acutance.measure.points_options import PointsLimits, PointsOptions
@@ -26,6 +30,7 @@ __all__ = [
     "POINTS_METHODS",
     "PULSE_METHODS",
     "STAR_METHODS",
+    "Bars",
     "BarsGroup",
     "BarsLimits",
     "BarsMeasurement",
@@ -34,6 +39,10 @@ __all__ = [
     "BiresolutionMeasurement",
     "BiresolutionOptions",
     "Check",
+    "CombineLimits",
+    "CombineOptions",
+    "CombinedMeasurement",
+    "CombinedPart",
     "EdgeGroup",
     "EdgeLimits",
     "EdgeOptions",
@@ -41,6 +50,7 @@ __all__ = [
     "MeasuredCurves",
     "Measurement",
     "Measurement2d",
+    "PlaneSlices",
     "PointSource",
     "PointsLimits",
     "PointsMeasurement",
@@ -55,6 +65,7 @@ __all__ = [
     "StarOptions",
     "SurveyErrors",
     "TargetResult",
+    "combine",
     "measure_bars",
     "measure_biresolution",
     "measure_edge",

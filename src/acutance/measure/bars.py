@@ -16,6 +16,7 @@ from acutance.errors import NoBarsError, OptionError
 from acutance.fit.bars import BarsSolution, GroupFit, solve_bars
 from acutance.fit.bars_find import find_bars
 from acutance.fit.bars_group import Bars, GroupReading, central, coltman_mtf, read_group
+from acutance.fit.noise import robust_scale
 from acutance.measure.bars_checks import bars_checks
 from acutance.measure.bars_options import BarsOptions
 from acutance.measure.cut import Cut, RoiLike, cut
@@ -105,6 +106,15 @@ class BarsMeasurement(Measurement2d):
     def response(self) -> Response:
         """The curves along the normal of the first direction."""
         return self.otf.response(self.directions_deg[0])
+
+    def is_first_direction(self, group: BarsGroup) -> bool:
+        """Whether a group's normal is near that of the first direction."""
+        return _turn_deg(group.bars.normal_deg, self.directions_deg[0]) < _ONE_DIRECTION_DEG
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of what the fit leaves, outliers aside, image units."""
+        return robust_scale(self.residual[np.isfinite(self.residual)])
 
     @property
     def mtf(self) -> Mtf:
@@ -247,12 +257,17 @@ def _directions(groups: tuple[GroupFit, ...]) -> tuple[float, ...]:
     for one in groups:
         angle = one.bars.normal_deg
         for kind in kinds:
-            if abs((kind[0] - angle + 90) % 180 - 90) < _ONE_DIRECTION_DEG:
+            if _turn_deg(kind[0], angle) < _ONE_DIRECTION_DEG:
                 kind.append(kind[0] + (angle - kind[0] + 90) % 180 - 90)
                 break
         else:
             kinds.append([angle])
     return tuple(sum(kind) / len(kind) for kind in sorted(kinds, key=len, reverse=True))
+
+
+def _turn_deg(one: float, other: float) -> float:
+    """Angle between two normals, which have no sign, 0 to 90."""
+    return abs((one - other + 90) % 180 - 90)
 
 
 def _groups(pixels: Cut, solved: BarsSolution, otf: Otf2d) -> tuple[BarsGroup, ...]:
@@ -294,8 +309,7 @@ def _coltman(groups: tuple[GroupFit, ...], readings: list[GroupReading]) -> list
         mates = [
             (other.bars.freq_cpp, reading.ctf)
             for other, reading in zip(groups, readings, strict=True)
-            if abs((other.bars.normal_deg - one.bars.normal_deg + 90) % 180 - 90)
-            < _ONE_DIRECTION_DEG
+            if _turn_deg(other.bars.normal_deg, one.bars.normal_deg) < _ONE_DIRECTION_DEG
         ]
         table = np.array(sorted(mates))
         series = coltman_mtf(table[:, 0], table[:, 1])

@@ -1,5 +1,7 @@
 """Faces of a measurement on paper: text, figures, HTML, CSV and JSON."""
 
+from acutance.report.bars_panels import bars_panels
+from acutance.report.bars_words import bars_blocks, bars_csv, bars_sections
 from acutance.report.biresolution_panels import biresolution_panels
 from acutance.report.biresolution_words import biresolution_blocks, biresolution_sections
 from acutance.report.budget import (
@@ -8,6 +10,8 @@ from acutance.report.budget import (
     budget_text,
     sensor_document,
 )
+from acutance.report.combine_panels import combine_panels
+from acutance.report.combine_words import combine_blocks, combine_sections
 from acutance.report.comparison_page import comparison_figure
 from acutance.report.documents import (
     comparison_document,
@@ -37,12 +41,19 @@ from acutance.report.text import comparison_text, target_text, text_report
 
 __all__ = [
     "PlanePanel",
+    "bars_blocks",
+    "bars_csv",
+    "bars_panels",
+    "bars_sections",
     "biresolution_blocks",
     "biresolution_panels",
     "biresolution_sections",
     "budget_document",
     "budget_figure",
     "budget_text",
+    "combine_blocks",
+    "combine_panels",
+    "combine_sections",
     "comparison_document",
     "comparison_figure",
     "comparison_report",

@@ -238,7 +238,7 @@ def bars(
         BarGroup(g.row - low[0], g.col - low[1], normal, g.period_px, count, length_px)
         for g in loose
     )
-    image = np.full(shape, dark)
+    image = np.full(shape, float(dark))
     for group in groups:
         add_patches(image, sensor, group.patches(bright - dark))
     added = noise_of_snr(bright - dark, snr, noise)

@@ -251,7 +251,7 @@ def star(
         )
     middle = 0.5 * (dark + bright)
     around = middle if ground is None else ground
-    image = np.full(shape, around)
+    image = np.full(shape, float(around))
     add_star(image, sensor, target, mean=middle - around, amplitude=0.5 * (bright - dark))
     added = noise_of_snr(bright - dark, snr, noise)
     truth = StarTruth(sensor, target, dark, bright, around, added)

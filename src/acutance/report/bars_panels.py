@@ -1,0 +1,163 @@
+"""Drawings of bars: where the groups are, their profiles, MTF at their frequencies, residuals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, SHADE, VERMILION
+from acutance.report.panels import TWO_SIDED_95, band_edges, mark_frequencies, show_pixels
+from acutance.report.plane_panels import PlanePanel
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import FigureBase
+
+    from acutance.measure import BarsGroup, BarsMeasurement
+
+__all__ = ["bars_panels"]
+
+MOST_SIGMAS = 4.0
+MOST_GROUPS = 12
+COLUMNS = 4
+NYQUIST_CPP = 0.5
+
+
+def bars_panels(measurement: BarsMeasurement) -> tuple[PlanePanel, ...]:
+    """What a measurement of bars adds to the page of a 2-D measurement."""
+
+    def on_axes(draw: Callable[[Axes, BarsMeasurement], None]) -> Callable[[FigureBase], None]:
+        return lambda page: draw(page.subplots(), measurement)
+
+    rows = math.ceil(min(len(measurement.groups), MOST_GROUPS) / COLUMNS)
+    return (
+        PlanePanel(
+            "Groups",
+            "The outline of every group, with its number and its frequency in cycles per pixel.",
+            on_axes(_draw_groups),
+        ),
+        PlanePanel(
+            "MTF along the bars' normal",
+            "Line: the joint fit of all groups with its 95 % band. Dots: the plain readings: a "
+            "sinusoid over that of the bars, the contrast of the bars (CTF), and the MTF by "
+            "Coltman's series from it.",
+            on_axes(_draw_mtf),
+        ),
+        PlanePanel(
+            "Residuals",
+            "Image less fitted bars, in standard deviations of the noise; grey was not used.",
+            on_axes(_draw_residual),
+        ),
+        PlanePanel(
+            "Profiles",
+            "Every pixel of a group at its distance along the normal (dots), and the fit (line): "
+            "0 is the ground, 1 a wide bar. The bars before the sensor are grey.",
+            lambda page: _draw_profiles(page, measurement),
+            wide=True,
+            height_in=0.4 + 2.5 * rows,
+        ),
+    )
+
+
+def _draw_groups(axes: Axes, measurement: BarsMeasurement) -> None:
+    show_pixels(axes, measurement.pixels, *measurement.image.roi[:2])
+    for number, group in enumerate(measurement.groups, start=1):
+        rows, cols = _outline(group)
+        axes.plot(cols, rows, color=ORANGE, linewidth=1.2)
+        axes.annotate(
+            f"{number}: {group.freq_cpp:.2f}", (float(cols.max()), float(rows.mean())), (4, 0),
+            textcoords="offset points", fontsize=7.5, color=ORANGE, va="center",
+        )  # fmt: skip
+    axes.set_title(f"{len(measurement.groups)} groups of bars")
+
+
+def _outline(group: BarsGroup) -> tuple[Floats, Floats]:
+    """Rows and columns of a group's corners, closed."""
+    bars = group.bars
+    angle = math.radians(bars.normal_deg)
+    across = 0.5 * bars.width_px * np.array([-1, 1, 1, -1, -1])
+    along = 0.5 * bars.length_px * np.array([-1, -1, 1, 1, -1])
+    return (
+        bars.row + across * math.sin(angle) + along * math.cos(angle),
+        bars.col + across * math.cos(angle) - along * math.sin(angle),
+    )
+
+
+def _draw_mtf(axes: Axes, measurement: BarsMeasurement) -> None:
+    mtf = measurement.mtf
+    low, high = band_edges(mtf.value, mtf.std)
+    groups = [one for one in measurement.groups if measurement.is_first_direction(one)]
+    highest = [float(high.max()), *(one.reading.ctf for one in groups)]
+    mark_frequencies(axes, measurement.response.gsd_m, 1.02 * max(highest))
+    axes.fill_between(mtf.freq_cpp, low, high, color=BLUE, alpha=0.25, linewidth=0)
+    axes.plot(mtf.freq_cpp, mtf.value, color=BLUE, label="joint fit")
+    freq = [one.freq_cpp for one in groups]
+    axes.errorbar(
+        freq, [one.reading.modulation for one in groups],
+        yerr=[TWO_SIDED_95 * one.reading.modulation_std for one in groups],
+        fmt="o", color=INK, markersize=3.5, linewidth=0.9, label="sinusoid", zorder=3,
+    )  # fmt: skip
+    axes.plot(
+        freq, [one.reading.ctf for one in groups], "s", color=ORANGE, markersize=4, label="CTF"
+    )
+    axes.plot(
+        freq, [one.coltman for one in groups], "x", color=VERMILION, markersize=5,
+        label="Coltman",
+    )  # fmt: skip
+    axes.set_title(f"MTF along the normal, {measurement.directions_deg[0]:.1f}°")
+    axes.legend(loc="lower left")
+
+
+def _draw_residual(axes: Axes, measurement: BarsMeasurement) -> None:
+    import matplotlib
+
+    row, col, height, width = measurement.image.roi
+    noise = max(measurement.noise, 1e-9 * abs(measurement.contrast.value))
+    colors = matplotlib.colormaps["RdBu_r"].with_extremes(bad=SHADE)
+    shown = axes.imshow(
+        np.ma.masked_invalid(measurement.residual / noise), cmap=colors, vmin=-MOST_SIGMAS,
+        vmax=MOST_SIGMAS, interpolation="nearest",
+        extent=(col - 0.5, col + width - 0.5, row + height - 0.5, row - 0.5),
+    )  # fmt: skip
+    axes.figure.colorbar(shown, ax=axes, shrink=0.8, label="standard deviations")
+    axes.grid(visible=False)
+    axes.set(xlabel="column", ylabel="row", title="Residuals")
+
+
+def _draw_profiles(page: FigureBase, measurement: BarsMeasurement) -> None:
+    shown = measurement.groups[:MOST_GROUPS]
+    rows = math.ceil(len(shown) / COLUMNS)
+    grid = page.subplots(rows, COLUMNS, squeeze=False, sharey=True)
+    for axes in grid.flat[len(shown) :]:
+        axes.axis("off")
+    for number, (axes, group) in enumerate(zip(grid.flat, shown, strict=False), start=1):
+        _draw_profile(axes, group, number)
+        if number > len(shown) - COLUMNS:
+            axes.set_xlabel("distance along the normal [px]")
+    more = len(measurement.groups) - len(shown)
+    page.suptitle(
+        "Profiles of the groups" + (f" ({more} more not shown)" if more else ""),
+        x=0.012, ha="left", fontsize=11, fontweight="bold",
+    )  # fmt: skip
+
+
+def _draw_profile(axes: Axes, group: BarsGroup, number: int) -> None:
+    bars = group.bars
+    places = (np.arange(bars.count) - 0.5 * (bars.count - 1)) * bars.period_px
+    for place in places.tolist():
+        axes.axvspan(
+            place - 0.25 * bars.period_px, place + 0.25 * bars.period_px, color=SHADE, zorder=0
+        )
+    axes.plot(group.across_px, group.value, ".", color=FAINT, markersize=2.2, rasterized=True)
+    order = np.argsort(group.across_px)
+    axes.plot(group.across_px[order], group.fitted[order], color=BLUE, linewidth=1.3)
+    aliased = group.freq_cpp > NYQUIST_CPP
+    axes.set_title(
+        f"{number}: {group.freq_cpp:.3f} c/px, MTF {group.mtf.value:.3f}"
+        + (" (aliased)" if aliased else ""),
+        fontsize=8.5, color=GREEN if aliased else INK,
+    )  # fmt: skip
