@@ -82,7 +82,7 @@ class RejectedSpot:
     ----------
     row, col : float
     reason : str
-        One of the reasons this module's page names, or "no source".
+        One of the reasons this module's page names, "no source", or "unlike" (the others).
     message : str
         What was found there.
     """

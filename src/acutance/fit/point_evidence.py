@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Final
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from acutance.curves.grid import Floats
 from acutance.fit.normal import Normal
@@ -29,6 +30,7 @@ _LEAST_WEIGHT: Final = 0.003
 _BRIGHTEST_OVER_DARK: Final = (0.5, 1.5, 4.5, 13.5, 40.5, 121.5, 364.5)
 """Variances of the noise a brightest pixel may have beyond that of a dark one, over the latter."""
 _CLEARLY: Final = 2.0
+_FELT: Final = 0.02
 
 
 def likelier_posterior(
@@ -87,12 +89,21 @@ def averaged_posterior(
     return Posterior(mean, np.hstack([factor, moves]), mode, likeliest.variance, likeliest.freedom)
 
 
+def felt_directions(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Floats:
+    """Combinations of coefficients, of unit prior variance, that the data say something of.
+
+    Returns
+    -------
+    (m, r) array
+        Orthonormal in units of the prior; r is what is worth keeping.
+    """
+    sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
+    power, axes = np.linalg.eigh(sigma[:, None] * normal.gram * (sigma / noise))
+    return np.asarray(sigma[:, None] * axes[:, power > _FELT])
+
+
 def likelier_growth(
-    solved: Callable[[float], tuple[Blocks, float]],
-    prior: Prior,
-    posterior: Posterior,
-    noise: float,
-    brightest: float,
+    solved: Callable[[float], tuple[Blocks, float]], noise: float, brightest: float
 ) -> float:
     """How much the noise grows with the light, by the evidence.
 
@@ -100,10 +111,8 @@ def likelier_growth(
     ----------
     solved : callable
         For a growth (variance per unit of light over that of the background), the eliminated
-        system with its weights, and the sum of the logarithms of the weights.
-    prior : Prior
-    posterior : Posterior
-        What was found with some growth.
+        system in coefficients of unit prior variance, and the sum of the logarithms of the
+        weights.
     noise : float
         Variance of the background's noise, its correlation included.
     brightest : float
@@ -114,13 +123,17 @@ def likelier_growth(
     float
         0 where the evidence does not speak for growth clearly.
     """
-    mode = posterior.log_amplitude
 
     def evidence(growth: float) -> float:
         blocks, weights = solved(growth)
-        white = whiten(blocks.normal, prior, mode, noise)
-        found = _log_evidence(blocks.normal, prior, white, mode, noise)
-        return found + 0.5 * weights + blocks.log_volume
+        normal = blocks.normal
+        precision = normal.gram / noise
+        precision[np.diag_indices_from(precision)] += 1.0
+        lower = np.linalg.cholesky(precision)
+        explained = float(np.sum(solve_triangular(lower, normal.projection, lower=True) ** 2))
+        misfit = (normal.data - explained / noise) / noise
+        volume = float(np.log(np.diagonal(lower)).sum())
+        return 0.5 * (weights - misfit) - volume + blocks.log_volume
 
     ratios = np.array(_BRIGHTEST_OVER_DARK)
     values = np.array([evidence(ratio / brightest) for ratio in ratios.tolist()])

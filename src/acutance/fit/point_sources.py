@@ -19,6 +19,7 @@ from acutance.fit.noise import Correlation, robust_scale
 from acutance.fit.point_blocks import Blocks, eliminate
 from acutance.fit.point_evidence import (
     averaged_posterior,
+    felt_directions,
     likelier_growth,
     likelier_posterior,
 )
@@ -32,12 +33,13 @@ from acutance.fit.psf_prior import LOG_AMPLITUDE, LOG_AMPLITUDE_STD, PsfDirectio
 
 __all__ = ["PointsFit", "fit_points"]
 
-_MAX_PASSES = 14
+_FEWEST_PASSES, _MAX_PASSES = 3, 14
 _NEGLIGIBLE = 0.15
 """Share of the noise that the errors of second order may have."""
 _BEND = 3.0
 """Half of a peak's curvature, in peaks per square pixel, for a rather sharp system."""
 _LONGEST_STEP_PX = 0.15
+_HARDLY_BETTER = 0.997
 _WORST = 0.3
 
 
@@ -125,7 +127,7 @@ def fit_points(stamps: Stamps, start: BlurredPoints, *, robust: bool = True) -> 
     floor = max(least, _misfit(stamps, start, peaks))
     ground = Ground.of(stamps, start)
     before, earlier = state, None
-    for _ in range(_MAX_PASSES):
+    for passes in range(_MAX_PASSES):
         # Until the sources are in place, the linear problem leaves errors of second order: they
         # are taken for noise, lest the PSF explain them.
         prior = _prior(directions, ground, floor)
@@ -140,13 +142,19 @@ def fit_points(stamps: Stamps, start: BlurredPoints, *, robust: bool = True) -> 
             floor, earlier = 4 * floor, None
             continue
         before, state, earlier = state, tried, posterior
-        bend = _BEND * float((peaks * np.minimum(moves, _LONGEST_STEP_PX) ** 2).max())
+        bends = _BEND * peaks * np.minimum(moves, _LONGEST_STEP_PX) ** 2
+        # What counts is how they compare with the noise of the bright pixels they are in.
+        bend = float((bends / np.sqrt(1 + noise.growth * peaks)).max())
         quiet = noise
         if bend <= state.rms:
-            growth = _growth(before, state, system, noise, prior, posterior)
+            growth = _growth(before, state, system, blocks, noise, prior, posterior)
             quiet = noise_around(stamps, state.residual, state.light, growth, robust=robust)
         enough = max(least, _NEGLIGIBLE * state.rms)
         if bend < enough and floor < max(2 * least, state.rms) and noise.agrees(quiet):
+            break
+        # Where the PSF differs over the region, sources and PSF would go on chasing each other.
+        chasing = state.rms > _HARDLY_BETTER * before.rms
+        if chasing and passes > _FEWEST_PASSES and max(bend, floor) < before.rms:
             break
         floor, noise = max(least, bend), quiet
     posterior = averaged_posterior(blocks.normal, prior, noise.correlation.inflation, posterior)
@@ -252,25 +260,29 @@ def _growth(
     before: _State,
     state: _State,
     system: _Linear,
+    blocks: Blocks,
     noise: PointNoise,
     prior: Prior,
     posterior: Posterior,
 ) -> float:
     """Variance of the noise per unit of light over that of the background."""
 
-    def solved(growth: float) -> tuple[Blocks, float]:
-        weight = replace(noise, growth=growth).weight(before.light)
-        return system.eliminated(weight), float(np.log(weight).sum())
-
     if noise.growth == 0:
-        leverage = _leverage(system.eliminated(noise.weight(before.light)), posterior, state.light)
+        leverage = _leverage(blocks, posterior, state.light)
         if not grows(state.residual, state.light, leverage):
             return 0.0
     dark = state.light < 0.01 * float(state.light.max())
     variance = max(robust_scale(state.residual[dark]), prior.noise_floor) ** 2
     brightest = float(before.light.max())
     inflated = variance * noise.correlation.inflation
-    return likelier_growth(solved, prior, posterior, inflated, brightest)
+    axes = felt_directions(blocks.normal, prior, posterior.log_amplitude, inflated)
+    felt = replace(system, shared=system.shared @ axes)
+
+    def solved(growth: float) -> tuple[Blocks, float]:
+        weight = replace(noise, growth=growth).weight(before.light)
+        return felt.eliminated(weight), float(np.log(weight).sum())
+
+    return likelier_growth(solved, inflated, brightest)
 
 
 def _leverage(blocks: Blocks, posterior: Posterior, light: Floats) -> Floats:

@@ -5,19 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.fit.noise import robust_scale
 from acutance.fit.point_blocks import eliminate
 from acutance.fit.point_stamps import Stamps
 from acutance.fit.psf_blur import FOOT_WIDTHS, BlurSlopes, PlaneBlur
 
-__all__ = ["BlurredPoints", "fit_blurred_points", "own_columns"]
+__all__ = ["BlurredPoints", "fit_blurred_points", "own_columns", "unlike_sources"]
 
 _MAX_STEPS = 25
 _SETTLED = 3e-4
 _LONGEST_STEP_PX = 0.4
 _FOOT = (-0.6, 1.5)
 _SIGMAS_PX = (0.4, 0.7, 1.2, 2.0)
+_CORE_PX = 3.0
+_UNLIKE = 0.05
+_TIMES_USUAL = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +99,27 @@ def fit_blurred_points(stamps: Stamps, places: Floats) -> BlurredPoints:
         if gained < _SETTLED and np.abs(step[1][:, 1:3]).max() < 1e-3:
             break
     return best
+
+
+def unlike_sources(stamps: Stamps, found: BlurredPoints) -> tuple[Floats, NDArray[np.bool_]]:
+    """How much each source departs from the common blur, and which ones do so unlike the others.
+
+    Returns
+    -------
+    departure : (k,) array
+        Root mean square residual within three pixels, less what noise explains, over the peak.
+    unlike : (k,) bool array
+        Where that is significant, large, and several times what is usual.
+    """
+    noise = max(robust_scale(found.residual), 1e-300)
+    x, y = stamps.offsets(found.places)
+    core = np.hypot(x, y) <= _CORE_PX
+    count = np.maximum(np.bincount(stamps.owner[core], minlength=found.fluxes.size), 1)
+    power = np.bincount(stamps.owner[core], found.residual[core] ** 2, found.fluxes.size) / count
+    peak = found.fluxes * found.blur.peak * (1 + found.foot / FOOT_WIDTHS**2)
+    departure = np.sqrt(np.maximum(power - noise**2, 0.0)) / peak
+    surely = np.sqrt(np.maximum(power - noise**2 * (1 + 3 * np.sqrt(2 / count)), 0.0)) / peak
+    return departure, surely > max(_UNLIKE, _TIMES_USUAL * float(np.median(surely)))
 
 
 def _cost(found: BlurredPoints) -> float:

@@ -15,7 +15,7 @@ from acutance.errors import OptionError, TargetError
 from acutance.fit.point_detection import RejectedSpot, Spot, find_spots, sort_spots
 from acutance.fit.point_sources import PointsFit, fit_points
 from acutance.fit.point_stamps import cut_stamps
-from acutance.fit.point_start import fit_blurred_points
+from acutance.fit.point_start import fit_blurred_points, unlike_sources
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.measurement import Check, ImageInfo
 from acutance.measure.measurement2d import Measurement2d
@@ -96,34 +96,52 @@ class _Answer:
 
     otf: Any
     sources: tuple[PointSource, ...]
+    rejected: tuple[RejectedSpot, ...]
     checks: tuple[Check, ...]
     fit: PointsFit | None = None
     published: PublishedMirrors | None = None
 
 
-def _psf_fit(pixels: Cut, clean: Floats, places: Floats, options: PointsOptions) -> _Answer:
+_Rejected = tuple[RejectedSpot, ...]
+
+
+def _psf_fit(pixels: Cut, places: Floats, rejected: _Rejected, options: PointsOptions) -> _Answer:
     if options.method_options is not None:
         raise OptionError("method_options belong to the published method: leave them out")
-    stamps = cut_stamps(clean, places, options.radius_px)
-    fit = fit_points(stamps, fit_blurred_points(stamps, places), robust=options.robust)
+    stamps = cut_stamps(_covered(pixels.pixels, rejected), places, options.radius_px)
+    start = fit_blurred_points(stamps, places)
+    departure, unlike = unlike_sources(stamps, start)
+    if unlike.any():
+        rejected = (*rejected, *map(_unlike, places[unlike].tolist(), departure[unlike].tolist()))
+        places = places[~unlike]
+        stamps = cut_stamps(_covered(pixels.pixels, rejected), places, options.radius_px)
+        start = fit_blurred_points(stamps, places)
+    fit = fit_points(stamps, start, robust=options.robust)
     sources = sources_of_fit(fit, pixels.pixels, (pixels.box.row, pixels.box.col))
     checks = check_points(
         sources, options.limits, saturation=pixels.saturation_level, correlation=fit.correlation,
         outlier_share=float(np.mean(fit.weight < 0.5)),
     )  # fmt: skip
-    return _Answer(fit.model, sources, checks, fit=fit)
+    return _Answer(fit.model, sources, rejected, checks, fit=fit)
 
 
-def _gaussian(pixels: Cut, clean: Floats, places: Floats, options: PointsOptions) -> _Answer:
+def _unlike(place: tuple[float, float], departure: float) -> RejectedSpot:
+    return RejectedSpot(
+        *place, "unlike",
+        f"the blur of the others leaves {100 * departure:.0f} % of its peak: it is no point",
+    )  # fmt: skip
+
+
+def _gaussian(pixels: Cut, places: Floats, rejected: _Rejected, options: PointsOptions) -> _Answer:
     chosen = options.method_options or SdsuMirrorsOptions()
-    found = sdsu_2003_mirrors(clean, places, chosen)
+    found = sdsu_2003_mirrors(_covered(pixels.pixels, rejected), places, chosen)
     origin = (pixels.box.row, pixels.box.col)
     sources = sources_of_mirrors(found, pixels.pixels, origin, chosen.window_px)
     checks = check_points(sources, options.limits, saturation=pixels.saturation_level)
-    return _Answer(found.psf, sources, checks, published=found)
+    return _Answer(found.psf, sources, rejected, checks, published=found)
 
 
-POINTS_METHODS: dict[str, Callable[[Cut, Floats, Floats, PointsOptions], _Answer]] = {
+POINTS_METHODS: dict[str, Callable[[Cut, Floats, _Rejected, PointsOptions], _Answer]] = {
     "psf-fit": _psf_fit,
     "gaussian-2003": _gaussian,
 }
@@ -179,7 +197,7 @@ def measure_points(
     wanted = None if positions is None else _places("positions", positions) - origin
     spots, rejected = _choose(pixels, wanted, chosen)
     places = np.array([(one.row, one.col) for one in spots])
-    answer = POINTS_METHODS[method](pixels, _covered(pixels.pixels, rejected), places, chosen)
+    answer = POINTS_METHODS[method](pixels, places, rejected, chosen)
     gsd = None if pixels.gsd is None else (pixels.gsd.row_m, pixels.gsd.col_m)
     checks, survey = answer.checks, None
     if surveyed is not None:
@@ -200,7 +218,7 @@ def measure_points(
         image=_info(pixels),
         options=chosen.to_dict(),
         sources=answer.sources,
-        rejected=tuple(_shifted(one, origin) for one in rejected),
+        rejected=tuple(_shifted(one, origin) for one in answer.rejected),
         survey=survey,
         fit=answer.fit,
         published=answer.published,
