@@ -3,117 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
-from scipy.special import gammaincc
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
+from acutance.fit.combine_curves import ChiSquare, PlaneCurve, WhitenedCurves
 from acutance.fit.combine_departure import Departure
 from acutance.fit.combine_forms import FORMS, SensorForm
 
-__all__ = ["ChiSquare", "CombinedFit", "FormFit", "PlaneCurve", "combine_curves"]
+__all__ = ["CombinedFit", "FormFit", "combine_curves"]
 
 Complexes = NDArray[np.complex128]
-
-_FLOOR = 5e-4
-"""What an estimator may be wrong by without noise; also what makes a covariance invertible."""
-
-_SHIFT_PX = 0.3
-"""The curves know their centroid only so well: a phase linear in frequency says nothing."""
 
 _LARGEST_STD_DEG = 30.0
 _LEAST_WEIGHT = 0.01
 _SHARES = (0.0, 0.01, 0.03, 0.1, 0.3)
 """Standard deviations tried for the departure from a form, shares of the logarithm of the OTF."""
 
+_MOST_DEPARTED = 3
+_STARTS_TRIED = 2
 _SMEAR_STARTS = ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7))
-
-
-@dataclass(frozen=True, eq=False)
-class PlaneCurve:
-    """The OTF of one measurement at places of the plane of frequencies, with its covariance.
-
-    Parameters
-    ----------
-    name : str
-        What a reader calls the measurement.
-    u_cpp, v_cpp : (n,) array
-        Frequencies across and along, cycles per pixel.
-    otf : (n,) complex array
-    factor : (n, k) complex array
-        Factor of the covariance: the error is ``factor @ z``, z standard normal and real.
-    """
-
-    name: str
-    u_cpp: Floats
-    v_cpp: Floats
-    otf: Complexes
-    factor: Complexes
-
-    @cached_property
-    def whitening(self) -> Floats:
-        """Matrix (2n, 2n) that gives the stacked real and imaginary errors unit variance."""
-        move = 2j * math.pi * _SHIFT_PX * self.otf[:, None]
-        shifts = move * np.stack([self.u_cpp, self.v_cpp], axis=1)
-        wide = _stacked(np.concatenate([self.factor, shifts], axis=1))
-        value, vector = np.linalg.eigh(wide @ wide.T + _FLOOR**2 * np.eye(wide.shape[0]))
-        return np.asarray((vector / np.sqrt(value)) @ vector.T)
-
-    @cached_property
-    def spread(self) -> Floats:
-        """Factor (2n, k) of what the whitened errors vary by: less than 1 where the floor rules."""
-        return np.asarray(self.whitening @ _stacked(self.factor))
-
-    def whitened(self, values: Complexes) -> Floats:
-        """Values (n,) or (n, p), stacked and whitened."""
-        return np.asarray(self.whitening @ _stacked(values))
-
-
-def _stacked(values: Complexes) -> Floats:
-    return np.concatenate([values.real, values.imag], axis=0)
-
-
-@dataclass(frozen=True)
-class ChiSquare:
-    """How far residuals lie from zero, measured by their standard deviations.
-
-    Parameters
-    ----------
-    value : float
-    expected : float
-        Its mean if model and standard deviations are true: the effective degrees of freedom.
-    variance : float
-        Its variance then.
-    """
-
-    value: float
-    expected: float
-    variance: float
-
-    @property
-    def p_value(self) -> float:
-        """Chance of a larger one; a scaled chi-square has the mean and the variance."""
-        if not (self.expected > 0 and self.variance > 0):
-            return math.nan
-        scale = self.variance / (2 * self.expected)
-        return float(gammaincc(0.5 * self.expected / scale, 0.5 * self.value / scale))
-
-    @property
-    def birge_ratio(self) -> float:
-        """Root of chi-square over its mean, at least 1: what the deviations have to be widened by.
-
-        R. T. Birge, Phys. Rev. 40, 207 (1932).
-        """
-        if not self.expected > 0:
-            return 1.0
-        return max(1.0, math.sqrt(self.value / self.expected))
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,8 +46,7 @@ class FormFit:
     root : (p + m, p + m) array
         Factor of the covariance of both, before it is widened.
     score : float
-        Chi-square of the curves and the priors, with the logarithm of the determinant and two
-        for each parameter: less the better.
+        Minus twice the logarithm of the form's evidence, by Laplace's approximation.
     weight : float
         Share in the mean over forms, ``exp(-score / 2)`` normalised.
     """
@@ -259,10 +172,10 @@ def combine_curves(
 ) -> CombinedFit:
     """Fit every form to all curves, with departures of several sizes, and average.
 
-    Each is weighted by its likelihood, the departure integrated out, and Akaike's two for each
-    parameter, so that a smear, a halo or a departure enters as far as the curves show it; where
-    they cannot tell forms apart, the difference between them is part of the uncertainty
-    (Burnham, Anderson, Model Selection, 2002, 4.3).
+    Each is weighted by its evidence, parameters and departure integrated out, so that a smear, a
+    halo or a departure enters as far as the curves show it; where they cannot tell forms apart,
+    the difference between them is part of the uncertainty (MacKay, Information Theory, Inference,
+    and Learning Algorithms, 2003, chapter 28).
 
     Parameters
     ----------
@@ -272,16 +185,17 @@ def combine_curves(
     forms : sequence of tuples of str, optional
         Terms of the forms that are tried.
     """
-    data = _Whitened(curves)
+    data = WhitenedCurves(curves)
     nowhere = np.zeros((data.values.size, 0))
     plain = [_fit_form(data, SensorForm(terms, detector_px), None, 0.0, nowhere) for terms in forms]
     first = min(plain, key=lambda one: one.score)
     departure = Departure(first.form, tuple(first.parameters.tolist()))
     ways = data.of(departure.directions(data.u_cpp, data.v_cpp))
+    likely = sorted(plain, key=lambda one: one.score)[:_MOST_DEPARTED]
     fits = plain + [
         _fit_form(data, start.form, start, share, share * ways)
         for share in _SHARES[1:]
-        for start in plain
+        for start in likely
     ]
     weighted = _weighted([replace(one, departure=departure) for one in fits])
     total, members = _chi_squares(data, weighted)
@@ -301,42 +215,8 @@ def _mean_otf(forms: Sequence[FormFit], u: Floats, v: Floats) -> Complexes:
     return np.asarray(sum(one.weight * one.otf(u, v) for one in forms))
 
 
-@dataclass(frozen=True, eq=False)
-class _Whitened:
-    """All curves in one: places, values, and a matrix for each that whitens its errors."""
-
-    curves: Sequence[PlaneCurve]
-
-    @cached_property
-    def u_cpp(self) -> Floats:
-        return np.concatenate([one.u_cpp for one in self.curves])
-
-    @cached_property
-    def v_cpp(self) -> Floats:
-        return np.concatenate([one.v_cpp for one in self.curves])
-
-    @cached_property
-    def values(self) -> Floats:
-        return self.of(np.concatenate([one.otf for one in self.curves]))
-
-    @cached_property
-    def _ends(self) -> list[int]:
-        return [0, *np.cumsum([one.otf.size for one in self.curves]).tolist()]
-
-    @property
-    def parts(self) -> list[slice]:
-        """Where each curve stands in what is whitened."""
-        return [slice(2 * a, 2 * b) for a, b in pairwise(self._ends)]
-
-    def of(self, values: Complexes) -> Floats:
-        """Values (n,) or (n, p) at all places, stacked and whitened curve by curve."""
-        ends = pairwise(self._ends)
-        parts = [one.whitened(values[a:b]) for one, (a, b) in zip(self.curves, ends, strict=True)]
-        return np.concatenate(parts)
-
-
 def _fit_form(
-    data: _Whitened, form: SensorForm, start: FormFit | None, share: float, ways: Floats
+    data: WhitenedCurves, form: SensorForm, start: FormFit | None, share: float, ways: Floats
 ) -> FormFit:
     """The parameters of largest posterior density, the departure integrated out."""
     mean, spread = form.mean, form.spread
@@ -360,7 +240,7 @@ def _fit_form(
             least_squares(
                 residual, first, jac=slopes, method="lm", xtol=1e-6, ftol=1e-6, max_nfev=60
             )
-            for first in (_starts(form) if start is None else [start.parameters])
+            for first in ([start.parameters] if start is not None else _likely(form, residual))
         ),
         key=lambda one: float(one.cost),
     )
@@ -375,9 +255,17 @@ def _fit_form(
     # The directions' weights are counted in units of the share.
     scale = np.concatenate([np.ones(p.size), np.full(ways.shape[1], share)])
     amounts = np.linalg.solve(normal[p.size :, p.size :], ways.T @ off)
-    score = 2 * float(found.cost) + float(np.sum(np.log1p(singular**2))) + 2 * p.size
+    # Laplace: what the priors of parameters and directions lose by being narrowed.
+    whole = np.concatenate([spread, np.ones(ways.shape[1])])
+    narrowed = np.linalg.slogdet(whole[:, None] * normal * whole)[1]
+    score = 2 * float(found.cost) + float(narrowed)
     nothing = Departure(form, tuple(p.tolist()))
     return FormFit(form, share, nothing, p, share * amounts, scale[:, None] * root, score, 1.0)
+
+
+def _likely(form: SensorForm, residual: Callable[[Floats], Floats]) -> list[Floats]:
+    """The starts that fit best."""
+    return sorted(_starts(form), key=lambda p: float(np.sum(residual(p) ** 2)))[:_STARTS_TRIED]
 
 
 def _starts(form: SensorForm) -> list[Floats]:
@@ -395,7 +283,7 @@ def _starts(form: SensorForm) -> list[Floats]:
 
 
 def _chi_squares(
-    data: _Whitened, forms: Sequence[FormFit]
+    data: WhitenedCurves, forms: Sequence[FormFit]
 ) -> tuple[ChiSquare, tuple[ChiSquare, ...]]:
     """Chi-square of all curves and of each, with the mean and the variance they should have.
 

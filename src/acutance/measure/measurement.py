@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from acutance.curves import Estimate, HasResponse, Response
 from acutance.curves.grid import Floats
 from acutance.fit.line import Line, Orientation
+from acutance.measure.plane_slices import PlaneSlices
 from acutance.raster.image import AlongTrack
 
 __all__ = ["Check", "ImageInfo", "Measurement", "Samples"]
@@ -183,6 +184,11 @@ class Measurement(HasResponse):
         """The checks that did not pass."""
         return tuple(check for check in self.checks if not check.passed)
 
+    @property
+    def slices(self) -> PlaneSlices:
+        """The slice of the 2-D OTF along the normal, with its covariance."""
+        return PlaneSlices.of_curve(self.mtf, self.line.normal_deg)
+
     def metrics(self) -> dict[str, Estimate]:
         """All numbers by name."""
         return self.response.metrics()
@@ -213,6 +219,7 @@ class Measurement(HasResponse):
             "mtf": self.mtf.to_dict(),
             "lsf": self.lsf.to_dict(),
             "esf": self.esf.to_dict(),
+            "plane": self.slices.to_dict(),
             "checks": [check.to_dict() for check in self.checks],
             "options": dict(self.options),
             "software": {"acutance": __version__},

@@ -12,6 +12,7 @@ from typing import Any
 from acutance.curves import Estimate, Mtf, Otf2d, Response
 from acutance.curves.grid import Floats
 from acutance.measure.measurement import SCHEMA, Check, ImageInfo
+from acutance.measure.plane_slices import PlaneSlices
 
 __all__ = ["Measurement2d"]
 
@@ -81,6 +82,11 @@ class Measurement2d:
         """The checks that did not pass."""
         return tuple(check for check in self.checks if not check.passed)
 
+    @property
+    def slices(self) -> PlaneSlices:
+        """Slices of the OTF in several directions, with their common covariance."""
+        return PlaneSlices.of_plane(self.otf)
+
     def metrics(self) -> dict[str, dict[str, Estimate]]:
         """All numbers by direction ("across", "along") and name."""
         return {"across": self.across.metrics(), "along": self.along.metrics()}
@@ -98,6 +104,7 @@ class Measurement2d:
             **self.evidence(),
             "across": _direction(self.across),
             "along": _direction(self.along),
+            "plane": self.slices.to_dict(),
             "checks": [check.to_dict() for check in self.checks],
             "options": dict(self.options),
             "software": {"acutance": __version__},

@@ -1,0 +1,130 @@
+"""``acutance combine``: many measurements of one sensor become one 2-D OTF."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from acutance.cli.choices import change_limits
+from acutance.cli.faces import faces_of_plane
+from acutance.cli.result_options import (
+    CovarianceOption,
+    CsvOption,
+    FigureOption,
+    JsonOption,
+    LimitOption,
+    ReportOption,
+    ResultOptions,
+    StrictOption,
+)
+from acutance.cli.target import GsdOption, parse_gsd
+from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.report.html import Section
+    from acutance.report.plane_panels import PlanePanel
+
+__all__ = ["EXAMPLE", "combine"]
+
+EXAMPLE = (
+    "\b\nExamples:\n"
+    "  acutance edge site.tif --roi 20,30,60,50 --json > across.json\n"
+    "  acutance edge site.tif --roi 90,30,50,60 --json > along.json\n"
+    "  acutance points site.tif --roi 10,90,60,60 --json > mirrors.json\n"
+    "  acutance combine across.json along.json mirrors.json --report sensor.html"
+)
+
+
+def combine(
+    files: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="FILE...", help="Measurements as JSON, written by a measuring command."
+        ),
+    ],
+    gsd: GsdOption = None,
+    detector: Annotated[
+        str,
+        typer.Option(metavar="PX|ACROSS,ALONG", help="Width of the detector in pixels."),
+    ] = "1",
+    figure: FigureOption = None,
+    report: ReportOption = None,
+    csv: CsvOption = None,
+    as_json: JsonOption = False,
+    covariance: CovarianceOption = False,
+    limit: LimitOption = None,
+    strict: StrictOption = False,
+) -> None:
+    """Combine measurements of one sensor into one 2-D OTF: across and along exactly.
+
+    Edges and pulses of several directions, points, stars, bars and pairs of images are fitted
+    together by a parametric sensor; a chi-square says whether they agree.
+    """
+    wanted = ResultOptions(
+        files[0],
+        figure=figure,
+        report=report,
+        csv=csv,
+        as_json=as_json,
+        covariance=covariance,
+        strict=strict,
+    )
+    documents = [_read(name) for name in files]
+
+    from acutance.measure import CombineLimits, CombineOptions
+    from acutance.measure import combine as combine_measurements
+
+    options = CombineOptions(
+        detector_px=_parse_detector(detector), limits=change_limits(CombineLimits(), limit or [])
+    )
+    measurement = combine_measurements(
+        documents, names=files, gsd_m=parse_gsd(gsd), options=options
+    )
+
+    def panels() -> tuple[PlanePanel, ...]:
+        from acutance.report import combine_panels
+
+        return combine_panels(measurement)
+
+    def sections() -> tuple[Section, ...]:
+        from acutance.report import combine_sections
+
+        return combine_sections(measurement)
+
+    def blocks() -> tuple[str, ...]:
+        from acutance.report import combine_blocks
+
+        return combine_blocks(measurement)
+
+    faces = faces_of_plane(measurement, panels=panels, sections=sections, blocks=blocks)
+    wanted.deliver([measurement], faces)
+
+
+def _read(name: str) -> Any:
+    try:
+        return json.loads(Path(name).read_text(encoding="utf-8"))
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OptionError(
+            f"{name} cannot be read ({reason}): give files that a measuring command wrote "
+            "with --json"
+        ) from error
+    except ValueError as error:
+        raise OptionError(
+            f"{name} holds no JSON ({error}): write it with a measuring command and --json"
+        ) from error
+
+
+def _parse_detector(text: str) -> tuple[float, float]:
+    try:
+        widths = [float(part) for part in text.split(",")]
+    except ValueError:
+        widths = []
+    if len(widths) not in (1, 2):
+        raise OptionError(
+            f"--detector {text}: write one width in pixels (1), or those across and along (1,0.9)"
+        )
+    return widths[0], widths[-1]

@@ -1,0 +1,147 @@
+"""Curves of many measurements in the plane of frequencies, their errors whitened."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammaincc
+
+from acutance.curves.grid import Floats
+
+__all__ = ["ChiSquare", "PlaneCurve", "WhitenedCurves"]
+
+Complexes = NDArray[np.complex128]
+
+_FLOOR = 5e-4
+"""What an estimator may be wrong by without noise; also what makes a covariance invertible."""
+
+_SHIFT_PX = 0.3
+"""The curves know their centroid only so well: a phase linear in frequency says nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneCurve:
+    """The OTF of one measurement at places of the plane of frequencies, with its covariance.
+
+    Parameters
+    ----------
+    name : str
+        What a reader calls the measurement.
+    u_cpp, v_cpp : (n,) array
+        Frequencies across and along, cycles per pixel.
+    otf : (n,) complex array
+    factor : (n, k) complex array
+        Factor of the covariance: the error is ``factor @ z``, z standard normal and real.
+    """
+
+    name: str
+    u_cpp: Floats
+    v_cpp: Floats
+    otf: Complexes
+    factor: Complexes
+
+    @cached_property
+    def whitening(self) -> Floats:
+        """Matrix (2n, 2n) that gives the stacked real and imaginary errors unit variance."""
+        move = 2j * math.pi * _SHIFT_PX * self.otf[:, None]
+        shifts = move * np.stack([self.u_cpp, self.v_cpp], axis=1)
+        wide = _stacked(np.concatenate([self.factor, shifts], axis=1))
+        value, vector = np.linalg.eigh(wide @ wide.T + _FLOOR**2 * np.eye(wide.shape[0]))
+        return np.asarray((vector / np.sqrt(value)) @ vector.T)
+
+    @cached_property
+    def spread(self) -> Floats:
+        """Factor (2n, k) of what the whitened errors vary by: less than 1 where the floor rules."""
+        return np.asarray(self.whitening @ _stacked(self.factor))
+
+    def whitened(self, values: Complexes) -> Floats:
+        """Values (n,) or (n, p), stacked and whitened."""
+        return np.asarray(self.whitening @ _stacked(values))
+
+
+def _stacked(values: Complexes) -> Floats:
+    return np.concatenate([values.real, values.imag], axis=0)
+
+
+@dataclass(frozen=True)
+class ChiSquare:
+    """How far residuals lie from zero, measured by their standard deviations.
+
+    Parameters
+    ----------
+    value : float
+    expected : float
+        Its mean if model and standard deviations are true: the effective degrees of freedom.
+    variance : float
+        Its variance then.
+    """
+
+    value: float
+    expected: float
+    variance: float
+
+    @property
+    def p_value(self) -> float:
+        """Chance of a larger one; a scaled chi-square has the mean and the variance."""
+        if not (self.expected > 0 and self.variance > 0):
+            return math.nan
+        scale = self.variance / (2 * self.expected)
+        return float(gammaincc(0.5 * self.expected / scale, 0.5 * self.value / scale))
+
+    @property
+    def birge_ratio(self) -> float:
+        """Root of chi-square over its mean, at least 1: what the deviations have to be widened by.
+
+        R. T. Birge, Phys. Rev. 40, 207 (1932).
+        """
+        if not self.expected > 0:
+            return 1.0
+        return max(1.0, math.sqrt(self.value / self.expected))
+
+
+@dataclass(frozen=True, eq=False)
+class WhitenedCurves:
+    """All curves in one: places, values, and a matrix for each that whitens its errors.
+
+    Parameters
+    ----------
+    curves : sequence of PlaneCurve
+    """
+
+    curves: Sequence[PlaneCurve]
+
+    @cached_property
+    def u_cpp(self) -> Floats:
+        """Frequencies across, (n,)."""
+        return np.concatenate([one.u_cpp for one in self.curves])
+
+    @cached_property
+    def v_cpp(self) -> Floats:
+        """Frequencies along, (n,)."""
+        return np.concatenate([one.v_cpp for one in self.curves])
+
+    @cached_property
+    def values(self) -> Floats:
+        """The OTFs, stacked and whitened."""
+        return self.of(np.concatenate([one.otf for one in self.curves]))
+
+    @cached_property
+    def _ends(self) -> list[int]:
+        return [0, *np.cumsum([one.otf.size for one in self.curves]).tolist()]
+
+    @property
+    def parts(self) -> list[slice]:
+        """Where each curve stands in what is whitened."""
+        return [slice(2 * a, 2 * b) for a, b in pairwise(self._ends)]
+
+    def of(self, values: Complexes) -> Floats:
+        """Values (n,) or (n, p) at all places, stacked and whitened curve by curve."""
+        ends = pairwise(self._ends)
+        parts = [one.whitened(values[a:b]) for one, (a, b) in zip(self.curves, ends, strict=True)]
+        return np.concatenate(parts)

@@ -1,0 +1,138 @@
+"""A measurement's OTF along one or some directions, with enough covariance to combine it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves import Mtf, Otf2d
+from acutance.curves.grid import Floats
+from acutance.errors import OptionError
+
+__all__ = ["PLANE_DIRECTIONS_DEG", "PlaneSlices"]
+
+Complexes = NDArray[np.complex128]
+
+PLANE_DIRECTIONS_DEG = (0.0, 45.0, 90.0, 135.0)
+"""Directions in which a 2-D OTF is written, if the target has none of its own."""
+
+_FREQ_CPP: Floats = np.asarray(np.arange(1, 17) * 0.05)
+_LEAST_STD = 1.5e-4
+"""Errors smaller than this are left out: no method is that exact."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneSlices:
+    """Slices of a 2-D OTF with their common covariance.
+
+    Parameters
+    ----------
+    normal_deg : (m,) array
+        Directions, from the column axis (0) towards the row axis (90).
+    freq_cpp : (n,) array
+        Frequencies along each, cycles per pixel.
+    otf : (m * n,) complex array
+        Direction by direction.
+    factor : (m * n, k) complex array
+        Factor of the covariance: the error is ``factor @ z``, z standard normal and real.
+    """
+
+    normal_deg: Floats
+    freq_cpp: Floats
+    otf: Complexes
+    factor: Complexes
+
+    @classmethod
+    def of_curve(cls, mtf: Mtf, normal_deg: float) -> PlaneSlices:
+        """The slice along the normal of an edge or a pulse."""
+        # The grid of a curve has steps of 0.01 c/px: the places are on it.
+        places = np.searchsorted(mtf.freq_cpp, _FREQ_CPP - 1e-9)
+        factor = _narrowed(mtf.otf_factor[places])
+        return cls(np.array([normal_deg]), _FREQ_CPP, mtf.otf[places], factor)
+
+    @classmethod
+    def of_plane(
+        cls,
+        otf: Otf2d,
+        directions_deg: Sequence[float] = PLANE_DIRECTIONS_DEG,
+        band_cpp: tuple[float, float] = (0.0, 1.0),
+    ) -> PlaneSlices:
+        """Slices of a 2-D OTF at the frequencies it was measured at."""
+        low, high = band_cpp
+        freq = _FREQ_CPP[(low - 1e-9 <= _FREQ_CPP) & (high + 1e-9 >= _FREQ_CPP)]
+        directions = np.asarray(directions_deg, float)
+        u, v = _places(directions, freq)
+        return cls(directions, freq, otf.model.otf(u, v), _narrowed(otf.model.factor(u, v)))
+
+    @property
+    def places(self) -> tuple[Floats, Floats]:
+        """Frequencies across and along, (m * n,) each."""
+        return _places(self.normal_deg, self.freq_cpp)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Directions, frequencies, OTF and factor as lists."""
+        return {
+            "normal_deg": self.normal_deg.tolist(),
+            "freq_cpp": np.round(self.freq_cpp, 6).tolist(),
+            "otf_real": np.round(self.otf.real, 6).tolist(),
+            "otf_imag": np.round(self.otf.imag, 6).tolist(),
+            "factor_real": np.round(self.factor.real, 6).tolist(),
+            "factor_imag": np.round(self.factor.imag, 6).tolist(),
+        }
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> PlaneSlices:
+        """The slices that `to_dict` wrote.
+
+        Raises
+        ------
+        OptionError
+            If the document holds something else.
+        """
+        try:
+            return cls._read(document)
+        except (KeyError, TypeError, ValueError) as error:
+            raise OptionError(f"the slices of the plane cannot be read ({error})") from error
+
+    @classmethod
+    def _read(cls, document: Mapping[str, Any]) -> PlaneSlices:
+        normal, freq = (np.array(document[name], float) for name in ("normal_deg", "freq_cpp"))
+        otf = _complex(document, "otf")
+        factor = _complex(document, "factor")
+        if factor.ndim != 2:
+            factor = factor.reshape(otf.size, -1)
+        if otf.shape != (normal.size * freq.size,) or factor.shape[0] != otf.size:
+            raise ValueError(
+                f"{normal.size} directions and {freq.size} frequencies with {otf.size} values and "
+                f"a factor of {factor.shape[0]} rows"
+            )
+        if not (np.isfinite(otf).all() and np.isfinite(factor).all()):
+            raise ValueError("numbers that are not finite")
+        return cls(normal, freq, otf, factor)
+
+
+def _complex(document: Mapping[str, Any], name: str) -> Complexes:
+    real, imag = (np.array(document[f"{name}_{part}"], float) for part in ("real", "imag"))
+    return np.asarray(real + 1j * imag)
+
+
+def _places(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
+    angle = np.radians(normal_deg)
+    u, v = np.outer(np.cos(angle), freq_cpp), np.outer(np.sin(angle), freq_cpp)
+    return u.ravel(), v.ravel()
+
+
+def _narrowed(factor: Complexes) -> Complexes:
+    """The same covariance with as few columns as it needs."""
+    n = factor.shape[0]
+    stacked = np.concatenate([factor.real, factor.imag])
+    if stacked.size == 0:
+        return factor
+    left, size, _ = np.linalg.svd(stacked, full_matrices=False)
+    kept = size > min(_LEAST_STD, float(size[0]))
+    narrow = left[:, kept] * size[kept]
+    return np.asarray(narrow[:n] + 1j * narrow[n:])
