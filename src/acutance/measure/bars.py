@@ -22,6 +22,7 @@ from acutance.measure.bars_options import BarsOptions
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.measurement import ImageInfo
 from acutance.measure.measurement2d import Measurement2d
+from acutance.measure.plane_slices import PlaneSlices
 from acutance.raster import Gsd, Image
 
 __all__ = ["BARS_METHODS", "BarsGroup", "BarsMeasurement", "measure_bars"]
@@ -110,6 +111,11 @@ class BarsMeasurement(Measurement2d):
     def is_first_direction(self, group: BarsGroup) -> bool:
         """Whether a group's normal is near that of the first direction."""
         return _turn_deg(group.bars.normal_deg, self.directions_deg[0]) < _ONE_DIRECTION_DEG
+
+    @property
+    def slices(self) -> PlaneSlices:
+        """Slices of the OTF in the directions across the bars, the only ones measured."""
+        return PlaneSlices.of_plane(self.otf, self.directions_deg)
 
     @property
     def noise(self) -> float:
