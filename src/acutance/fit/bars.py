@@ -24,7 +24,7 @@ from acutance.fit.bars_ends import OtfTable, end_effect, light_of_neighbours
 from acutance.fit.bars_group import Bars
 from acutance.fit.bars_seen import SeenGroup, group_columns
 from acutance.fit.levels import Levels, with_level
-from acutance.fit.noise import outlier_weights, robust_scale
+from acutance.fit.noise import Correlation, correlation, outlier_weights, robust_scale
 from acutance.fit.normal import Normal
 from acutance.fit.posterior import Posterior, Prior, regress
 from acutance.fit.star import PlaneModel
@@ -40,7 +40,7 @@ from acutance.fit.star_modes import (
 __all__ = ["BarsSolution", "GroupFit", "solve_bars"]
 
 _SIGMA_PX: Final = 0.5
-_NOISE_FLOOR: Final = 2e-4
+_NOISE_FLOOR: Final = 1e-3
 _MAX_PASSES: Final = 16
 _PLAIN_PASSES: Final = 6
 _APERTURE_STD: Final = 0.18
@@ -96,12 +96,15 @@ class BarsSolution:
         Standard deviation of the noise, image units.
     outlier : (n,) array
         Weight of every pixel of all groups, in their order.
+    correlation : Correlation
+        Of the residuals of neighbouring pixels.
     """
 
     model: PlaneModel
     groups: tuple[GroupFit, ...]
     noise: float
     outlier: Floats
+    correlation: Correlation
 
 
 def solve_bars(
@@ -137,6 +140,7 @@ def solve_bars(
         contrast = math.copysign(levels.bright - levels.dark, contrast)
     said, outlier = groups, np.ones(0)
     ends: list[Floats] = []
+    whiteness = Correlation(1.0, 0.0, 0.0)
     earlier: Posterior | None = None
     # First a plain blur, until every group is in its place, then the transfer function itself.
     plain = True
@@ -148,8 +152,8 @@ def solve_bars(
         if [one.size for one in ends] != [one.value.size for one in seen]:
             ends = [np.zeros(one.value.size) for one in seen]
         solved = _pass(
-            seen, said, blur, contrast, outlier, earlier, ends, None if plain else levels,
-            plain=plain,
+            seen, said, blur, contrast, outlier, whiteness.inflation, earlier, ends,
+            None if plain else levels, plain=plain,
         )  # fmt: skip
         again = _reweighted(solved.residual / solved.noise) if robust and not plain else outlier
         wider, changed = _moved_blur(blur, solved.model, seen) if plain else (blur, False)
@@ -160,6 +164,7 @@ def solve_bars(
         )
         settled = longest < (_PLAIN_PX if plain else _SETTLED_PX) and not changed
         if not plain:
+            whiteness = _whiteness(solved, seen)
             found = _surroundings(solved.model, seen)
             change = max(float(np.max(np.abs(a - b))) for a, b in zip(found, ends, strict=True))
             settled = (
@@ -173,7 +178,12 @@ def solve_bars(
         groups, outlier, blur = moved, again, wider
         contrast = math.copysign(max(abs(solved.model.level), 1e-3 * abs(contrast)), contrast)
     _require_near(said, groups)
-    return BarsSolution(solved.model, _fits(seen, solved), solved.noise, outlier)
+    return BarsSolution(solved.model, _fits(seen, solved), solved.noise, outlier, whiteness)
+
+
+def _whiteness(solved: _Pass, seen: list[SeenGroup]) -> Correlation:
+    rows, cols = (np.concatenate([getattr(one, name) for one in seen]) for name in ("rows", "cols"))
+    return correlation(np.clip(solved.residual / solved.noise, -4, 4), rows, cols, (0.8, 0.6))
 
 
 def _surroundings(model: PlaneModel, seen: list[SeenGroup]) -> list[Floats]:
@@ -205,6 +215,7 @@ def _pass(
     blur: PlaneBlur,
     contrast: float,
     outlier: Floats,
+    inflation: float,
     earlier: Posterior | None,
     ends: list[Floats],
     levels: Levels | None,
@@ -235,9 +246,9 @@ def _pass(
         row = np.zeros(m)
         row[first:] = PlaneModel(blur, np.zeros(m - first), np.zeros((m - first, 1))).at_zero
         level = math.copysign(levels.bright - levels.dark, contrast)
-        normal = with_level(normal, row, level, levels.std, variance)
+        normal = with_level(normal, row, level, levels.std, variance * inflation)
     prior = _prior(blur, states, seen, said, first, contrast, unseen=levels is None)
-    posterior = regress(normal, prior, variance, 1.0, earlier)
+    posterior = regress(normal, prior, variance, inflation, earlier)
     beta, factor = posterior.beta, posterior.factor
     steps = [beta[_OWN * k + 2 : _OWN * k + 5] for k in range(len(seen))]
     spread = [np.linalg.norm(factor[_OWN * k + 2 : _OWN * k + 5], axis=1) for k in range(len(seen))]

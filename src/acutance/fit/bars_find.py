@@ -87,17 +87,24 @@ def find_bars(image: Floats, count: int | None = None) -> FoundBars:
         counted = [_recounted(bright, one, _usual_count(best)) for one in best]
         return FoundBars(_of_one_kind(counted), sign * height)
     raise NoBarsError(
-        "no group of parallel bars stands out of the ground: choose a region that holds the "
-        "groups and some ground around them, or state where they are (groups)"
+        "no whole group of parallel bars stands out of the ground: choose a region that holds "
+        "the groups and some ground on all sides of them, or state where they are (groups)"
     )
 
 
 def _blobs(bright: Floats, close_px: float) -> list[NDArray[np.bool_]]:
-    """Parts of the image that stand out of the ground once gaps are closed."""
+    """Parts of the image that stand out of the ground once gaps are closed.
+
+    One that reaches the border is no target: a group is known by its ground on all sides.
+    """
     whole = ndimage.gaussian_filter(bright, close_px) > _STANDS_OUT
     labels, number = ndimage.label(whole)
+    cut_off = set(np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]]).tolist())
+    size = np.bincount(labels.ravel())
     return [
-        labels == one for one in range(1, number + 1) if np.count_nonzero(labels == one) > _LEAST_PX
+        labels == one
+        for one in range(1, number + 1)
+        if size[one] > _LEAST_PX and one not in cut_off
     ]
 
 

@@ -13,6 +13,8 @@ from acutance.measure.star_checks import piled_up
 
 __all__ = ["bars_checks"]
 
+_QUIET_SNR = 500.0
+
 
 def bars_checks(
     pixels: Cut, solved: BarsSolution, directions_deg: tuple[float, ...], limits: BarsLimits
@@ -28,7 +30,11 @@ def bars_checks(
     clipped = max(piled_up(values), piled_up(-values))
     if pixels.saturation_level is not None:
         clipped = max(clipped, float(np.mean(values >= pixels.saturation_level)))
+    strongest = abs(solved.correlation.strongest)
     outliers = float(np.mean(solved.outlier < 0.5))
+    if snr > _QUIET_SNR:
+        # What is left is the arithmetic's, not the image's.
+        strongest, outliers = 0.0, 0.0
     named = " and ".join(f"{angle:.1f}" for angle in directions_deg)
     return (
         at_least(
@@ -70,6 +76,12 @@ def bars_checks(
             "saturation", clipped, limits.saturation,
             f"{clipped:.1%} of the pixels are clipped at an end of the scale: the bars' contrast "
             "is then not what the sensor saw",
+        ),
+        at_most(
+            "correlated_noise", strongest, limits.correlated_noise,
+            f"residuals of neighbouring pixels are correlated by {strongest:.2f}: the image was "
+            "resampled, or the bars are not as they were taken to be (place, direction, number, "
+            "period, levels)",
         ),
         at_most(
             "outliers", outliers, limits.outliers,

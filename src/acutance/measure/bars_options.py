@@ -36,6 +36,8 @@ class BarsLimits:
         Largest residual of a group, rms, relative to the noise of all.
     saturation : float
         Largest share of pixels at the end of the scale.
+    correlated_noise : float
+        Largest correlation of the residuals between neighbouring pixels.
     outliers : float
         Largest share of outlying pixels.
     """
@@ -48,6 +50,7 @@ class BarsLimits:
     finest_cpp: float = 0.4
     misfit: float = 1.5
     saturation: float = 0.001
+    correlated_noise: float = 0.15
     outliers: float = 0.02
 
 
