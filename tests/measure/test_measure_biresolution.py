@@ -120,6 +120,14 @@ class TestTruth:
             truth.response("along").mtf_nyquist.value, abs=0.015
         )
 
+    def test_shift_beyond_what_was_looked_at(self) -> None:
+        low, high, _ = rendered("gaussian", 2.0, 3, (96, 96), (9.5, 3.0))
+        with pytest.raises(ac.TargetError, match="at the end of the 8 low pixels"):
+            ac.measure_biresolution(low, high)
+        options = ac.BiresolutionOptions(max_shift_px=16)
+        m = ac.measure_biresolution(low, high, options=options)
+        assert [one.value for one in m.shift_px] == pytest.approx((9.5, 3.0), abs=0.03)
+
     def test_spectral_ratio_agrees(self) -> None:
         m = measured(method="spectral-ratio")
         _, _, truth = rendered()
@@ -210,6 +218,25 @@ class TestRealTrouble:
         )
         shown = m.residual[30 - m.image.roi[0], 70 - m.image.roi[1]]
         assert np.isnan(shown)
+
+    @pytest.mark.parametrize("texture", [0.0, 1.0])
+    def test_cloud_over_half_the_scene(self, texture: float) -> None:
+        """As much of the scene as there is ground: no median can tell which is which."""
+        low, high, truth = rendered("smeared", 2.0, 4, (128, 128))
+        other, _, _ = rendered("smeared", 2.0, 79, (128, 128))
+        noisy = 3000 + 10 * noise(low.shape) + texture * other
+        cloudy = np.where(np.arange(128) < 64, noisy, low)
+        m = ac.measure_biresolution(cloudy, high, reference_mtf=REFERENCE)
+        value, std = both(m)
+        assert m.pixel_fit.left_out > (0.35 if texture else 0.15) * low.size
+        assert np.all(np.abs(value - truth.response().mtf_nyquist.value) < 2.5 * std)
+        assert np.all(std < 0.03)
+        assert {"left_out", "residual_correlation"} & {check.name for check in m.failed_checks}
+
+    def test_clipped_below_the_end_of_the_scale(self) -> None:
+        low, high, _ = rendered()
+        m = ac.measure_biresolution(np.minimum(low, 900.0), high, reference_mtf=REFERENCE)
+        assert "saturation" in {check.name for check in m.failed_checks}
 
     def test_nodata_in_both_images(self) -> None:
         low, high, truth = rendered()

@@ -30,11 +30,14 @@ class Registration:
         Of the images without their local means, at that shift.
     inverted : bool
         Whether a match with opposite sign is the stronger one.
+    at_limit : bool
+        Whether it lies at the end of the range that was looked at, so that the best may be beyond.
     """
 
     shift_px: tuple[float, float]
     correlation: float
     inverted: bool
+    at_limit: bool = False
 
 
 def register(low: Floats, high: Floats, max_shift_px: int) -> Registration:
@@ -59,7 +62,10 @@ def register(low: Floats, high: Floats, max_shift_px: int) -> Registration:
     near = match[np.ix_(order, order)]
     i, j = (int(k) for k in np.unravel_index(int(np.argmax(near)), near.shape))
     shift = tuple(float(order[k]) + _vertex(line, k) for k, line in ((i, near[:, j]), (j, near[i])))
-    return Registration((shift[0], shift[1]), float(near[i, j]), bool(-near.min() > near.max()))
+    return Registration(
+        (shift[0], shift[1]), float(near[i, j]), bool(-near.min() > near.max()),
+        reach > 0 and max(abs(int(order[i])), abs(int(order[j]))) == reach,
+    )  # fmt: skip
 
 
 def _detail(image: Floats) -> Floats:

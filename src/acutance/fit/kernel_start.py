@@ -93,6 +93,8 @@ class _Sums:
 def fit_blur(
     tiles: Tiles,
     grid: TapGrid,
+    down: AxisBlur,
+    across: AxisBlur,
     *,
     stop_change: float = 1e-4,
     max_steps: int = 30,
@@ -104,6 +106,8 @@ def fit_blur(
     ----------
     tiles : Tiles
     grid : TapGrid
+    down, across : AxisBlur
+        Where to start: the shifts have to be right to a pixel.
     stop_change : float, optional
         Relative change of the residual at which the iteration ends.
     max_steps : int, optional
@@ -115,7 +119,6 @@ def fit_blur(
     TargetError
         If the two images have nothing in common.
     """
-    down, across = AxisBlur(), AxisBlur()
     gain, offset, noise = _first_guess(tiles, grid, down, across)
     steps: list[BlurStep] = []
     before = np.inf

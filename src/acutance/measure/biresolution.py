@@ -8,6 +8,8 @@ OTF it is the low sensor's.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -16,8 +18,10 @@ from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
 from acutance.fit.bi_local import fit_regions
 from acutance.fit.bi_register import Registration, register
+from acutance.fit.bi_screen import ScreenedTiles, screened
 from acutance.fit.bi_spectrum import PairSpectra, fit_spectra, pair_spectra
-from acutance.fit.bi_tile import FAR_PX
+from acutance.fit.bi_tile import FAR_PX, core, first_of_cell
+from acutance.fit.kernel_blur import AxisBlur
 from acutance.fit.kernel_fit import KernelFit, fit_kernel
 from acutance.fit.kernel_otf import KernelOtf
 from acutance.fit.kernel_start import BlurFit, fit_blur
@@ -39,6 +43,9 @@ _SHORT_REACH_PX = 4.5
 _ROOM_PX = 56
 _LARGEST_PX, _SMALLEST_PX = 64, 16
 _SHOWN_PX = 384
+_PILED_UP = 3.0
+"""How many times as many pixels have the largest value as the hundredth of the scale below it, if
+they were clipped."""
 
 
 def measure_biresolution(
@@ -93,17 +100,20 @@ def measure_biresolution(
     reference = reference_otf(reference_mtf, geometry.across.ratio, geometry.down.ratio)
     tiles, match = _registered(coarse, fine, geometry, _as_region(roi, coarse), chosen)
     noise = tiles.high_noise if chosen.noise_high is None else chosen.noise_high
+    start = AxisBlur(match.shift_px[0]), AxisBlur(match.shift_px[1])
+    shared = screened(tiles, tiles.taps, *start) if chosen.robust else ScreenedTiles(tiles, {}, 0)
     blur = fit_blur(
-        tiles, tiles.taps,
+        shared, tiles.taps, *start,
         stop_change=chosen.stop_change, max_steps=chosen.max_steps, robust=chosen.robust,
     )  # fmt: skip
     _require_gain(blur, match)
     pixel_fit = fit_kernel(
-        tiles, tiles.taps, blur,
+        shared, tiles.taps, blur,
         processes=3 if tiles.reach_px > 0.5 * (_LONG_REACH_PX + _SHORT_REACH_PX) else 2,
         noise_high=noise, robust=chosen.robust,
     )  # fmt: skip
-    spectra = _spectra(tiles, pixel_fit, blur)
+    pixel_fit = replace(pixel_fit, left_out=pixel_fit.left_out + shared.left_out)
+    spectra = _spectra(tiles, shared, pixel_fit, blur)
     fit = pixel_fit
     if method == "spectral-ratio":
         if spectra is None:
@@ -113,7 +123,7 @@ def measure_biresolution(
             )
         fit = fit_spectra(spectra, pixel_fit, blur, noise_high=noise)
     shown = _Residuals(tiles.box)
-    local = fit_regions(tiles, tiles.taps, blur, pixel_fit, tiles.map_shape, shown.keep)
+    local = fit_regions(shared, tiles.taps, blur, pixel_fit, tiles.map_shape, shown.keep)
     model = KernelOtf(fit, tiles.grid.across.band_cpp, tiles.grid.down.band_cpp, reference)
     seen = PairEvidence(
         tiles.grid, blur, pixel_fit, model, spectra, local, _saturated(tiles), match.inverted,
@@ -174,6 +184,13 @@ def _registered(
             f"{options.max_shift_px} low pixels: one is uniform, or they show different ground; "
             "check the pair, the ratio and the geotransforms"
         )
+    if found.at_limit:
+        raise TargetError(
+            f"the images match best with a shift of {found.shift_px[0]:.1f} rows and "
+            f"{found.shift_px[1]:.1f} columns, at the end of the {options.max_shift_px} low pixels "
+            "looked at: they may lie further apart, look further (max_shift_px, --max-shift); or "
+            "they show different ground"
+        )
     placed = grid.shifted((round(found.shift_px[0]), round(found.shift_px[1])))
     reach = options.reach_px
     if reach is None:
@@ -200,7 +217,10 @@ def _matched(tiles: PairTiles, max_shift_px: int) -> Registration:
         found = register(tile.low, under, max_shift_px)
         if found.correlation > best.correlation:
             best = found
-    return best
+    # The means under the low pixels are not centred on these.
+    away = [axis.offset_px + (first_of_cell(axis) + 0.5 * (axis.per_px - 1)) / axis.per_px
+            for axis in (tiles.taps.down, tiles.taps.across)]  # fmt: skip
+    return replace(best, shift_px=(best.shift_px[0] - away[0], best.shift_px[1] - away[1]))
 
 
 def _require_gain(blur: BlurFit, match: Registration) -> None:
@@ -214,13 +234,15 @@ def _require_gain(blur: BlurFit, match: Registration) -> None:
     )
 
 
-def _spectra(tiles: PairTiles, fit: KernelFit, blur: BlurFit) -> PairSpectra | None:
+def _spectra(
+    tiles: PairTiles, shared: ScreenedTiles, fit: KernelFit, blur: BlurFit
+) -> PairSpectra | None:
     """Spectra in the largest windows of which two fit into a tile either way."""
     side = min(min(box.shape) for box in tiles.boxes)
     size = min(_LARGEST_PX, 2 * (side // 3))
     if size < _SMALLEST_PX:
         return None
-    return pair_spectra(tiles(), fit.residuals(tiles), tiles.taps, blur, size)
+    return pair_spectra(shared(), fit.residuals(shared), tiles.taps, blur, size)
 
 
 def _shifts(blur: BlurFit, fit: KernelFit) -> tuple[Estimate, Estimate]:
@@ -244,16 +266,20 @@ def _snr(blur: BlurFit, fit: KernelFit) -> float:
 
 
 def _saturated(tiles: PairTiles) -> float:
-    """Share of the low pixels at the end of the scale."""
-    level = tiles.low.saturation_level
-    if level is None:
-        return 0.0
-    clipped = known = 0
-    for tile in tiles():
-        usable = tile.low[np.isfinite(tile.low)]
-        clipped += int(np.count_nonzero(usable >= level))
-        known += usable.size
-    return clipped / max(known, 1)
+    """Share of either image's pixels at the end of the scale, or piled up at their own largest."""
+    low = np.concatenate([core(tile.low)[np.isfinite(core(tile.low))] for tile in tiles.some(16)])
+    high = np.concatenate([tile.fine.ravel() for tile in tiles.some(16)])
+    return max(
+        _clipped(low, tiles.low.saturation_level), _clipped(high, tiles.high.saturation_level)
+    )
+
+
+def _clipped(values: Floats, level: float | None) -> float:
+    top = float(values.max())
+    share = float(np.mean(values == top))
+    room = 0.01 * float(np.ptp(values))
+    piled_up = share > _PILED_UP * float(np.mean((values >= top - room) & (values < top)))
+    return share if piled_up or (level is not None and top >= level) else 0.0
 
 
 def _middle(box: Box) -> tuple[float, float]:

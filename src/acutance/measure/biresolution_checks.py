@@ -44,7 +44,7 @@ class PairEvidence:
     spectra : PairSpectra or None
     local : LocalFit
     saturated : float
-        Share of the low pixels at the end of the scale.
+        Share of an image's pixels at the end of the scale, of the worse one.
     inverted : bool
         Whether the images match better with opposite sign.
     stop_change : float
@@ -120,7 +120,7 @@ def _checks(seen: PairEvidence, limits: BiresolutionLimits) -> Iterator[Check]:
     )  # fmt: skip
     yield at_most(
         "saturation", seen.saturated, limits.saturation,
-        f"{100 * seen.saturated:.2f} % of the low pixels are clipped at the end of the scale",
+        f"{100 * seen.saturated:.2f} % of an image's pixels are clipped at the end of the scale",
     )  # fmt: skip
     change = seen.blur.steps[-1].change / seen.stop_change
     yield at_most(
