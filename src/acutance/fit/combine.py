@@ -22,6 +22,7 @@ Complexes = NDArray[np.complex128]
 
 _LARGEST_STD_DEG = 30.0
 _LEAST_WEIGHT = 0.01
+_FAINT = 0.1
 _SHARES = (0.0, 0.01, 0.03, 0.1, 0.3)
 """Standard deviations tried for the departure from a form, shares of the logarithm of the OTF."""
 
@@ -108,7 +109,8 @@ class CombinedFit:
     forms : tuple of FormFit
         The one of largest weight first.
     total : ChiSquare
-        Of all curves together about the mean over forms: whether the curves agree.
+        Of all curves together about the mean over forms, in what sensors differ by (width,
+        smear, halo, trail): whether the curves agree.
     members : tuple of ChiSquare
         Of each curve.
     plain : ChiSquare
@@ -198,7 +200,7 @@ def combine_curves(
         for start in likely
     ]
     weighted = _weighted([replace(one, departure=departure) for one in fits])
-    total, members = _chi_squares(data, weighted)
+    total, members = _chi_squares(data, weighted, _shapes(data, weighted[0]))
     return CombinedFit(tuple(curves), weighted, total, members, _chi_squares(data, [first])[0])
 
 
@@ -283,13 +285,14 @@ def _starts(form: SensorForm) -> list[Floats]:
 
 
 def _chi_squares(
-    data: WhitenedCurves, forms: Sequence[FormFit]
+    data: WhitenedCurves, forms: Sequence[FormFit], ways: Floats | None = None
 ) -> tuple[ChiSquare, tuple[ChiSquare, ...]]:
     """Chi-square of all curves and of each, with the mean and the variance they should have.
 
     Whitened errors e of covariance S leave the residuals ``M e``, M taking out what the
     parameters follow; a sum of their squares over a curve has the mean ``tr(P M S M)`` and the
-    variance ``2 tr((P M S M)^2)``, P choosing the curve.
+    variance ``2 tr((P M S M)^2)``, P choosing the curve, and of each curve the `ways` (n, k) that
+    are looked at: a prior makes errors in other directions smaller than their deviations.
     """
     best = forms[0]
     slopes = data.of(best.slopes(data.u_cpp, data.v_cpp))
@@ -301,8 +304,31 @@ def _chi_squares(
         columns.append(moved)
     errors = np.concatenate(columns, axis=1)
     residual = data.values - data.of(_mean_otf(forms, data.u_cpp, data.v_cpp))
-    members = tuple(_chi_square(residual[part], errors[part]) for part in data.parts)
-    return _chi_square(residual, errors), members
+    seen = []
+    for part in data.parts:
+        if ways is None:
+            seen.append((residual[part], errors[part]))
+        else:
+            axes = _span(ways[part])
+            seen.append((axes.T @ residual[part], axes.T @ errors[part]))
+    members = tuple(_chi_square(*one) for one in seen)
+    whole = tuple(np.concatenate(parts) for parts in zip(*seen, strict=True))
+    return _chi_square(*whole), members
+
+
+def _span(ways: Floats) -> Floats:
+    """Orthonormal axes of the directions some vectors span, the faint ones left out, (n, k)."""
+    left, size, _ = np.linalg.svd(ways / np.linalg.norm(ways, axis=0), full_matrices=False)
+    return np.asarray(left[:, size > _FAINT * size[0]])
+
+
+def _shapes(data: WhitenedCurves, best: FormFit) -> Floats:
+    """How curves of sensors differ: in width, smear, halo and trail, (n, k)."""
+    form = SensorForm(("gaussian", "smear", "halo", "trail"), best.form.detector_px)
+    at = form.mean.copy()
+    at[:3] = best.parameters[:3]
+    at[3:5] = 0.5
+    return data.of(form.slopes(at, data.u_cpp, data.v_cpp))
 
 
 def _chi_square(residual: Floats, errors: Floats) -> ChiSquare:
