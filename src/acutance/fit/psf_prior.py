@@ -89,9 +89,10 @@ _BLURRED: Final = 5
 _EXPLICIT: Final = 8
 _OBSCURATIONS: Final = (0.0, 0.33)
 LOG_AMPLITUDE: Final[Floats] = np.array([-5.0, -4.0, -4.6, -4.5, -3.0, -3.5, -2.5])
-LOG_AMPLITUDE_STD: Final = 1.5
+LOG_AMPLITUDE_STD: Final = 2.5
 """Amplitudes of SHAPE, DETAIL, HALO, TAIL, APERTURE, FOOT and AIRY relative to the source's
-flux (of APERTURE, relative to the pixel), within a factor 4.5 either way."""
+flux (of APERTURE, relative to the pixel), within a factor 12 either way: wings of some per cent
+must not be more surprising than none (benchmarks/points.py)."""
 _GAUGE_STEP: Final = 0.3
 _GAUGE_REACH: Final = 4.5
 
