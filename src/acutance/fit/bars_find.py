@@ -8,6 +8,7 @@ of finite groups, blurred plainly.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +26,10 @@ _CLOSE_PX = (2.0, 3.5, 6.0)
 _STANDS_OUT = 0.2
 _LEAST_PX = 40
 _COUNTS = range(2, 16)
+_BLUR_PX = 0.65
 _BLURS_PX = (0.5, 0.8)
+_CLOSER = 3
+_LEAST_PERIOD_PX = 1.4
 _COMMON_DEG = 12.0
 _SURE = 0.15
 _ABOUT_AS_WELL = 0.03
@@ -177,18 +181,24 @@ def _profile_fit(
     if not width > 3 or np.ptp(profile) == 0:
         return None
     alone, level = min(_rest(places, profile, offset, 2 * width, 1, blur) for blur in _BLURS_PX)
+    counts: Sequence[int] = _COUNTS if count is None else (count,)
+    coarse = [
+        min(
+            (
+                _rest(places, profile, offset + move, period, bars, _BLUR_PX)[0]
+                for period, move in _trials(width, bars, 9, 5)
+            ),
+            default=math.inf,
+        )
+        for bars in counts
+    ]
     best = (math.inf, 0.0, 0.0, 0)
-    for bars in _COUNTS if count is None else (count,):
-        for period in np.linspace(0.9, 1.1, 17) * width / (bars - 0.5):
-            if period < 1.4:
-                continue
-            for move in np.linspace(-0.4, 0.4, 9) * min(period, 6.0):
-                for blur in _BLURS_PX:
-                    rest, _ = _rest(
-                        places, profile, offset + float(move), float(period), bars, blur
-                    )
-                    if rest < best[0]:
-                        best = (rest, offset + float(move), float(period), bars)
+    for index in np.argsort(coarse)[:_CLOSER].tolist():
+        for period, move in _trials(width, counts[index], 17, 9):
+            for blur in _BLURS_PX:
+                rest, _ = _rest(places, profile, offset + move, period, counts[index], blur)
+                if rest < best[0]:
+                    best = (rest, offset + move, period, counts[index])
     rest, place, period, bars = best
     # Fine bars nobody can resolve look like one wide bar, but of half the height.
     if level > _FULL and alone < 2 * rest + _ABOUT_AS_WELL:
@@ -199,6 +209,16 @@ def _profile_fit(
     row = centre.row + place * math.sin(angle) + middle * math.cos(angle)
     col = centre.col + place * math.cos(angle) - middle * math.sin(angle)
     return rest, Bars(row, col, normal_deg, period, bars, length)
+
+
+def _trials(width: float, count: int, periods: int, moves: int) -> list[tuple[float, float]]:
+    """Periods and places to be tried for a number of bars in a known width."""
+    return [
+        (float(period), float(move))
+        for period in np.linspace(0.9, 1.1, periods) * width / (count - 0.5)
+        if period >= _LEAST_PERIOD_PX
+        for move in np.linspace(-0.4, 0.4, moves) * min(period, 6.0)
+    ]
 
 
 def _span(places: Floats, value: Floats) -> tuple[float, float]:
