@@ -31,7 +31,7 @@ def site_image(tmp_path_factory):
     return str(path)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def acutance():
     """Run a command line; the result has .exit_code, .stdout and .stderr."""
 

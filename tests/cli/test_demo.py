@@ -1,44 +1,74 @@
-"""``acutance demo``: a site rendered, measured and compared with its truth."""
+"""``acutance demo``: a campaign rendered, measured by every method, compared with its truth."""
 
 import json
 import re
 
 import pytest
 
-from acutance.measure import PULSE_METHODS
+from acutance.measure import METHODS, POINTS_METHODS, PULSE_METHODS
+
+TARGETS = ("vertical edge", "horizontal edge", "pulse tarp", "bars", "star", "mirrors")
 
 
-def test_the_demonstration_writes_a_site_its_truth_and_the_pages(acutance, tmp_path):
-    folder = tmp_path / "out" / "demo"
-    result = acutance("demo", folder)
+@pytest.fixture(scope="module")
+def folder(acutance, tmp_path_factory):
+    """The demonstration, once for all tests."""
+    place = tmp_path_factory.mktemp("out") / "demo"
+    result = acutance("demo", place)
     assert result.exit_code == 0, result.stderr
-    assert result.stdout.strip() == f"open {folder / 'index.html'}"
-    index = (folder / "index.html").read_text(encoding="utf-8")
-    pages = re.findall(r'href="([^"]+)"', index)
-    assert len(pages) == 5
-    assert "pulse-tarp.html" in pages
-    for page in pages:
-        assert "truth" in (folder / page).read_text(encoding="utf-8")
+    assert result.stdout.strip() == f"open {place / 'index.html'}"
+    return place
+
+
+def test_one_image_holds_every_target_and_its_truth_lies_beside_it(folder):
     truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
-    for edge in truth["edges"].values():
-        assert f"{edge['truth']['mtf_nyquist']:.4f}" in index
-    assert "spline" in index
-    assert (folder / "site.tif").exists()
+    assert set(truth["edges"]) == {"vertical", "horizontal"}
+    assert {one["kind"] for one in truth["targets"].values()} == {
+        "pulse", "bars", "star", "points",
+    }  # fmt: skip
+    assert [path.name for path in folder.glob("*.tif")] == ["site.tif"]
 
 
-def test_the_demonstration_measures_a_tarp_by_every_method(acutance, tmp_path):
-    result = acutance("demo", tmp_path, "--seed", 2)
+def test_the_report_names_every_method_and_its_pages_exist(folder):
+    index = (folder / "index.html").read_text(encoding="utf-8")
+    for name in (*METHODS, *PULSE_METHODS, *POINTS_METHODS, *TARGETS, "all combined"):
+        assert name in index
+    pages = re.findall(r'href="([^"]+)"', index)
+    assert len(pages) == len(TARGETS) + 1
+    for page in pages:
+        assert "<svg" in (text := (folder / page).read_text(encoding="utf-8")) or "data:" in text
+    assert "truth" in (folder / "pulse-tarp.html").read_text(encoding="utf-8")
+
+
+def test_no_reference_method_is_far_from_the_truth(folder):
+    """Fifteen numbers of one draw: none beyond 4 standard deviations, and none without one."""
+    rows = json.loads((folder / "comparison.json").read_text(encoding="utf-8"))["rows"]
+    own = ("spline", "joint", "psf-fit", "least-squares")
+    checked = [row for row in rows if row["method"] in own]
+    assert len(checked) == 10
+    for row in checked:
+        for name in ("mtf_nyquist", "rer", "fwhm_px"):
+            assert abs(row[name]["off_in_std"]) < 4, (row["target"], name)
+
+
+def test_the_combination_agrees_and_is_the_most_exact(folder):
+    document = json.loads((folder / "comparison.json").read_text(encoding="utf-8"))
+    assert document["agreement"]["p_value"] > 0.01
+    stds = {
+        (row["target"], row["orientation"]): row["mtf_nyquist"]["std"]
+        for row in document["rows"]
+        if row["method"] in ("spline", "joint", "psf-fit", "least-squares")
+    }
+    for orientation in ("across", "along"):
+        combined = stds.pop(("all combined", orientation))
+        assert all(combined < std for (_, way), std in stds.items() if way == orientation)
+
+
+def test_its_documents_can_be_combined_again(folder, acutance):
+    names = ("vertical-edge", "horizontal-edge", "mirrors")
+    result = acutance("combine", *(folder / f"{name}.json" for name in names), "--json")
     assert result.exit_code == 0, result.stderr
-    truth = json.loads((tmp_path / "pulse.truth.json").read_text(encoding="utf-8"))
-    assert truth["width_m"] == pytest.approx(8.83)
-    page = (tmp_path / "pulse-tarp.html").read_text(encoding="utf-8")
-    index = (tmp_path / "index.html").read_text(encoding="utf-8")
-    assert f"{truth['width_px']:.4f}" in page
-    assert f"{truth['width_px']:.4f}" in index
-    assert f"{truth['mtf_nyquist']:.4f}" in index
-    for method in PULSE_METHODS:
-        assert method in page
-    assert (tmp_path / "pulse.tif").exists()
+    assert len(json.loads(result.stdout)["parts"]) == len(names)
 
 
 def test_a_folder_that_cannot_be_made_is_exit_2(acutance, tmp_path):
