@@ -11,6 +11,7 @@ from acutance.report import save_figure
 from acutance.report.page import styled
 from textbook import (
     benchmarks,
+    biresolution_figures,
     edge_figures,
     method_figures,
     plane_figures,
@@ -30,6 +31,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
     "step-gains": method_figures.gains_of_steps,
     "method-errors": method_figures.errors_of_methods,
     "reference-systems": plane_figures.reference_systems,
+    **biresolution_figures.FIGURES,
     **study_figures.FIGURES,
 }
 
@@ -46,6 +48,7 @@ TEXTS: dict[str, Callable[[], str]] = {
     "sites.inc": tables.sites,
     "top-names.inc": reference.top_names,
     **reference.help_texts(),
+    **biresolution_figures.TEXTS,
     **study_figures.TEXTS,
 }
 
