@@ -121,6 +121,24 @@ def test_one_source_is_measured_with_wider_intervals():
     assert [check.name for check in few.failed_checks] == ["sources", "phase_gap_px"]
 
 
+def test_sources_that_were_not_asked_for_do_not_disturb_the_others():
+    image, truth = image_of(GAUSSIAN, snr=80, rng=np.random.default_rng(2))
+    found = ac.measure_points(image, positions=truth.positions[:3])
+    assert len(found.sources) == 3
+    assert [one.reason for one in found.rejected] == ["left out"] * 17
+    assert found.across.mtf_nyquist.value == pytest.approx(0.2344, abs=0.03)
+
+
+def test_a_spot_that_is_no_point_is_unlike_the_others():
+    image, truth = image_of(GAUSSIAN, snr=200, rng=np.random.default_rng(2))
+    image[57:60, 8] += [250.0, 500.0, 250.0]
+    image[58, 7:10] += [60.0, 0.0, 60.0]
+    found = ac.measure_points(image)
+    assert len(found.sources) == 20
+    assert {one.reason for one in found.rejected} <= {"cosmic ray", "unlike"}
+    assert np.abs(found.positions - truth.positions[0]).min() < 0.1
+
+
 def test_noise_that_grows_with_the_light_is_seen():
     noise = ac.simulate.Noise(read=3.0, shot_gain=0.6)
     gains = []

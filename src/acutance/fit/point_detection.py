@@ -82,7 +82,8 @@ class RejectedSpot:
     ----------
     row, col : float
     reason : str
-        One of the reasons this module's page names, "no source", or "unlike" (the others).
+        One of the reasons this module's page names, "no source", "unlike" (the others), or
+        "left out" (not asked for).
     message : str
         What was found there.
     """

@@ -253,8 +253,17 @@ def _choose(
     rejected = (*missing, *rejected)
     if not kept:
         raise TargetError(_nothing(rejected, options))
-    by_peak = sorted(kept, key=lambda one: -one.peak)[: options.max_sources]
-    return tuple(one for one in kept if one in by_peak), rejected
+    by_peak = sorted(kept, key=lambda one: -one.peak)
+    taken = by_peak[: options.max_sources]
+    surplus = f"{options.max_sources} brighter ones were taken (max_sources)"
+    left_out = [_left_out(one, surplus) for one in by_peak[options.max_sources :]]
+    unasked = (one for one in everything if one not in spots and one.snr >= options.min_snr)
+    left_out += [_left_out(one, "it is not among the places that were given") for one in unasked]
+    return tuple(one for one in kept if one in taken), (*rejected, *left_out)
+
+
+def _left_out(one: Spot, message: str) -> RejectedSpot:
+    return RejectedSpot(one.row, one.col, "left out", message)
 
 
 def _nothing(rejected: Sequence[RejectedSpot], options: PointsOptions) -> str:
