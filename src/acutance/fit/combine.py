@@ -29,6 +29,7 @@ _SHARES = (0.0, 0.01, 0.03, 0.1, 0.3)
 _MOST_DEPARTED = 3
 _STARTS_TRIED = 2
 _SMEAR_STARTS = ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7))
+_TRAIL_STARTS = ((0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3))
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +188,7 @@ def combine_curves(
     forms : sequence of tuples of str, optional
         Terms of the forms that are tried.
     """
-    data = WhitenedCurves(curves)
+    data = WhitenedCurves([one.centred() for one in curves])
     nowhere = np.zeros((data.values.size, 0))
     plain = [_fit_form(data, SensorForm(terms, detector_px), None, 0.0, nowhere) for terms in forms]
     first = min(plain, key=lambda one: one.score)
@@ -201,7 +202,7 @@ def combine_curves(
     ]
     weighted = _weighted([replace(one, departure=departure) for one in fits])
     total, members = _chi_squares(data, weighted, _shapes(data, weighted[0]))
-    return CombinedFit(tuple(curves), weighted, total, members, _chi_squares(data, [first])[0])
+    return CombinedFit(tuple(data.curves), weighted, total, members, _chi_squares(data, [first])[0])
 
 
 def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
@@ -271,17 +272,19 @@ def _likely(form: SensorForm, residual: Callable[[Floats], Floats]) -> list[Floa
 
 
 def _starts(form: SensorForm) -> list[Floats]:
-    """Where to begin: a smear is stationary at none, and could lie in any direction."""
-    if "smear" not in form.terms:
-        return [form.mean]
-    at = form.terms.index("smear")
-    at = SensorForm(form.terms[:at]).mean.size
-    found = []
-    for smear in _SMEAR_STARTS:
-        start = form.mean.copy()
-        start[at : at + 2] = smear
-        found.append(start)
+    """Where to begin: none of a smear or a trail is stationary, and they have directions."""
+    found = [form.mean]
+    for name, ways in (("smear", _SMEAR_STARTS), ("trail", _TRAIL_STARTS)):
+        if name in form.terms:
+            at = SensorForm(form.terms[: form.terms.index(name)]).mean.size
+            found = [_with(start, at, way) for start in found for way in ways]
     return found
+
+
+def _with(start: Floats, at: int, way: tuple[float, float]) -> Floats:
+    moved = start.copy()
+    moved[at : at + 2] = way
+    return moved
 
 
 def _chi_squares(

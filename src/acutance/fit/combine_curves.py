@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -21,6 +21,7 @@ Complexes = NDArray[np.complex128]
 _FLOOR = 5e-4
 """What an estimator may be wrong by without noise; also what makes a covariance invertible."""
 
+_LOW_CPP = 0.12
 _SHIFT_PX = 0.3
 """The curves know their centroid only so well: a phase linear in frequency says nothing."""
 
@@ -45,6 +46,14 @@ class PlaneCurve:
     v_cpp: Floats
     otf: Complexes
     factor: Complexes
+
+    def centred(self) -> PlaneCurve:
+        """The same about the centroid, as the slope of the phase at low frequencies tells it."""
+        near = np.hypot(self.u_cpp, self.v_cpp) < _LOW_CPP
+        places = 2 * math.pi * np.stack([self.u_cpp, self.v_cpp], axis=1)
+        moved = np.linalg.lstsq(places[near], -np.angle(self.otf[near]), rcond=1e-6)[0]
+        turn = np.exp(1j * (places @ moved))
+        return replace(self, otf=self.otf * turn, factor=self.factor * turn[:, None])
 
     @cached_property
     def whitening(self) -> Floats:

@@ -1,0 +1,81 @@
+"""``acutance combine`` on the documents the other commands write."""
+
+import json
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance import optics, simulate
+
+SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=0.7)
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("measured")
+    names = []
+    for number, (angle, orientation) in enumerate(((6, "across"), (7, "along"), (30, "across"))):
+        image, _ = simulate.edge(
+            SENSOR, angle_deg=angle, orientation=orientation, shape=(50, 50), snr=100,
+            rng=np.random.default_rng(number),
+        )  # fmt: skip
+        path = folder / f"edge-{number}.json"
+        path.write_text(json.dumps(ac.measure_edge(image, gsd_m=0.7).to_dict()), encoding="utf-8")
+        names.append(path)
+    return names
+
+
+def test_text_names_every_file_and_the_sensor(acutance, files):
+    result = acutance("combine", *files)
+    assert result.exit_code == 0, result.stderr
+    for name in ("edge-0", "edge-1", "edge-2", "Sensor of largest weight", "agreement"):
+        assert name in result.stdout
+
+
+def test_all_faces_are_written(acutance, files, tmp_path):
+    report, figure, csv = (tmp_path / f"sensor.{end}" for end in ("html", "png", "csv"))
+    result = acutance(
+        "combine", *files, "--report", report, "--figure", figure, "--csv", csv, "--json"
+    )
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["kind"] == "combined"
+    assert document["across"]["mtf_nyquist"]["value"] == pytest.approx(0.289, abs=0.02)
+    assert "Do the measurements agree?" in report.read_text(encoding="utf-8")
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    assert csv.read_text(encoding="utf-8").startswith("direction,")
+
+
+def test_strict_asks_for_three_directions(acutance, files):
+    assert acutance("combine", *files[:2], "--strict").exit_code == 3
+    assert acutance("combine", *files[:2], "--strict", "--limit", "directions=2").exit_code == 0
+
+
+def test_the_detector_is_an_option(acutance, files):
+    result = acutance("combine", *files, "--detector", "1,0.8", "--json")
+    assert json.loads(result.stdout)["sensor"]["detector_px"] == [1.0, 0.8]
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("{", "holds no JSON"),
+        ("[1, 2]", "is a list: give results"),
+        ('{"type": "FeatureCollection"}', "no measurement of acutance"),
+        (None, "cannot be read"),
+    ],
+)
+def test_wrong_files_are_exit_2(acutance, files, tmp_path, content, message):
+    wrong = tmp_path / "wrong.json"
+    if content is not None:
+        wrong.write_text(content, encoding="utf-8")
+    result = acutance("combine", files[0], wrong)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize("width", ["wide", "0", "1,2,3"])
+def test_a_detector_that_is_none_is_exit_2(acutance, files, width):
+    assert acutance("combine", *files, "--detector", width).exit_code == 2
