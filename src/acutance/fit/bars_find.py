@@ -82,7 +82,7 @@ def find_bars(image: Floats, count: int | None = None) -> FoundBars:
         seen = [_measured(bright, blob, count) for blob in _blobs(bright, close)]
         groups = [one for one in seen if one is not None and one.bars.count > 1]
         # Bars that are wider than the gaps closed stand alone, as a patch of the bars' level does.
-        alone = sum(one is not None and one.bars.count == 1 for one in seen)
+        alone = len(seen) - len(groups)
         if groups and alone < fewest:
             best, fewest = groups, alone
         if best and not fewest:
