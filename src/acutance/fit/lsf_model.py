@@ -70,6 +70,16 @@ class LsfModel:
         sums = self.level * self.blur.esf(s) + departure + self.tail * tail_esf(u)
         return np.asarray(sums / self.height)
 
+    def step(self, s: Floats) -> tuple[Floats, Floats]:
+        """Response to the step and its derivative at normal distances `s`, in image units."""
+        width = self.blur.width_px
+        u = s / width
+        esf, lsf = self.blur.esf_and_lsf(s)
+        esf = self.level * esf + combine(*edge_weights(u), self.spline) + self.tail * tail_esf(u)
+        cell, weights = line_weights(u)
+        lsf = self.level * lsf + combine(cell, weights, self.spline) / width
+        return esf, lsf + self.tail / width * tail_lsf(u)
+
     def half_point(self) -> float:
         """Normal distance of the 50 % point."""
         s = np.asarray(np.arange(-40, 41) * (0.05 * self.blur.width_px))

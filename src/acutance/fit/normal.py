@@ -63,34 +63,48 @@ def accumulate(
     m, q = CELLS + 3, columns.shape[0]
     gram = np.zeros((m + q, m + q))
     projection = np.zeros(m + q)
-    weighted_columns = columns * weight
+    beside = np.vstack([y, columns])
     for i, (cell, basis) in enumerate(stencils):
-        weighted = basis * weight
-        _add_own(gram, cell, basis, weighted)
-        for other, other_basis in stencils[i + 1 :]:
-            _add_pair(gram, cell, weighted, other, other_basis)
+        # Sorted by their place, the pixels of a cell are neighbours: one sweep sums a product.
+        order = np.argsort(cell.astype(np.int16), kind="stable")
+        places = cell[order]
+        own, others = basis.take(order, axis=1), beside.take(order, axis=1)
+        weighted = own * weight[order]
         for a in range(4):
-            here = slice(a, a + CELLS)
-            projection[here] += np.bincount(cell, weighted[a] * y, CELLS)
-            for j, column in enumerate(columns):
-                gram[here, m + j] += np.bincount(cell, weighted[a] * column, CELLS)
+            _add_own(gram, a, _cell_sums(places, weighted[a] * own[a:]))
+            sums = _cell_sums(places, weighted[a] * others)
+            projection[a : a + CELLS] += sums[0]
+            gram[a : a + CELLS, m:] += sums[1:].T
+        for other, other_basis in stencils[i + 1 :]:
+            _add_pair(gram, cell, basis * weight, other, other_basis)
     gram += gram.T
+    weighted_columns = columns * weight
     gram[m:, m:] = weighted_columns @ columns.T
     projection[m:] = weighted_columns @ y
     return Normal(gram, projection, float(np.dot(weight * y, y)), count)
 
 
-def _add_own(gram: Floats, cell: NDArray[np.intp], basis: Floats, weighted: Floats) -> None:
+def _cell_sums(cell: NDArray[np.intp], products: Floats) -> Floats:
+    """Sums of the rows of `products` (k, n) over the pixels of every cell, (k, CELLS).
+
+    The pixels are sorted by their cell.
+    """
+    starts = np.flatnonzero(cell[1:] != cell[:-1]) + 1
+    starts = np.concatenate([[0], starts])
+    sums = np.zeros((products.shape[0], CELLS))
+    sums[:, cell[starts]] = np.add.reduceat(products, starts, axis=1)
+    return sums
+
+
+def _add_own(gram: Floats, a: int, sums: Floats) -> None:
     """Products of one step's spline with itself: the upper triangle, and half the diagonal."""
     # Entries (cell + a, cell + b) lie on one diagonal: a strided slice of the flat matrix.
     size = gram.shape[0]
     flat, stride = gram.reshape(-1), size + 1
-    for a in range(4):
-        for b in range(a, 4):
-            start = a * size + b
-            diagonal = flat[start : start + CELLS * stride : stride]
-            products = np.bincount(cell, weighted[a] * basis[b], CELLS)
-            diagonal += products if a < b else 0.5 * products
+    for b, products in enumerate(sums, start=a):
+        start = a * size + b
+        diagonal = flat[start : start + CELLS * stride : stride]
+        diagonal += products if a < b else 0.5 * products
 
 
 def _add_pair(
@@ -99,6 +113,12 @@ def _add_pair(
     """Products of two steps' splines, one way: its transpose is the other."""
     m = CELLS + 3
     offsets = (np.arange(4)[:, None] * m + np.arange(4)).reshape(16, 1)
-    place = cell * m + other + offsets
-    shares = (weighted[:, None] * basis).reshape(16, -1)
-    gram[:m, :m] += np.bincount(place.reshape(-1), shares.reshape(-1), m * m).reshape(m, m)
+    place = cell * m + other
+    order = np.argsort(place.astype(np.int16), kind="stable")
+    place = place[order]
+    starts = np.flatnonzero(place[1:] != place[:-1]) + 1
+    starts = np.concatenate([[0], starts])
+    products = weighted.take(order, axis=1)[:, None] * basis.take(order, axis=1)
+    sums = np.add.reduceat(products.reshape(16, -1), starts, axis=1)
+    found = np.bincount((place[starts] + offsets).reshape(-1), sums.reshape(-1), m * m)
+    gram[:m, :m] += found.reshape(m, m)

@@ -22,7 +22,7 @@ __all__ = ["Evidence", "Posterior", "Prior", "Whitened", "evidence_of", "regress
 
 _MAX_STEPS = 12
 _CURVATURE_FLOOR = 0.05
-_LONGEST_DOWN, _LONGEST_UP = 2.0, 1.5
+_LONGEST_DOWN, _LONGEST_UP = 4.0, 1.5
 _SETTLED_NOISE = 0.02
 _SETTLED_AMPLITUDE = 0.1
 """A last step this short is taken to first order."""

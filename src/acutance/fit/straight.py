@@ -19,7 +19,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
 from acutance.fit import ground
 from acutance.fit import prior as lsf_prior
-from acutance.fit.ground import ground_trends, is_sloping, is_uneven
+from acutance.fit.ground import ground_trends
 from acutance.fit.lsf_model import LsfModel
 from acutance.fit.noise import (
     Correlation,
@@ -85,11 +85,7 @@ class Solved:
     @property
     def model(self) -> LsfModel:
         """The LSF the coefficients make: the tail has its own closed form beside the spline."""
-        inner, tail = self.solution.directions.esf[:, :-1], self.solution.directions.block.size
-        beta, factor = self.solution.posterior.beta, self.solution.posterior.factor
-        latent = np.vstack([inner @ factor[1:tail], factor[tail]])
-        spline = inner @ beta[1:tail]
-        return LsfModel(self.start.blur, self.start.height, spline, float(beta[tail]), latent)
+        return self.solution.model(self.start)
 
     @property
     def dark(self) -> float:
@@ -118,8 +114,6 @@ class Solution:
     steps, steps_std : (k,) arrays
         How the free step parameters want to change, and their standard deviations.
     half_length_px : float
-    uneven : bool
-        Whether the ground shows trends.
     roughness : float
         Noise variance the edge's raggedness adds where the image is steepest, relative to the
         rest.
@@ -136,8 +130,14 @@ class Solution:
     steps: Floats
     steps_std: Floats
     half_length_px: float
-    uneven: bool
     roughness: float
+
+    def model(self, start: BlurredEdge) -> LsfModel:
+        """The LSF that departs from the `start` of this pass."""
+        inner, tail = self.directions.esf[:, :-1], self.directions.block.size
+        beta, factor = self.posterior.beta, self.posterior.factor
+        latent = np.vstack([inner @ factor[1:tail], factor[tail]])
+        return LsfModel(start.blur, start.height, inner @ beta[1:tail], float(beta[tail]), latent)
 
 
 def solve(
@@ -158,19 +158,18 @@ def solve(
     rows, cols = pixels.row.astype(np.intp), pixels.col.astype(np.intp)
     outlier = np.ones(pixels.value.size)
     whiteness = Correlation(1.0, 0.0, 0.0)
-    earlier: Posterior | None = None
-    uneven, roughness = False, 0.0
+    earlier: Solution | None = None
+    roughness = 0.0
     for _ in range(_MAX_PASSES):
-        solved = _pass(
-            pixels, start, outlier, whiteness.inflation, earlier, uneven, roughness, fit_width
-        )
+        solved = _pass(pixels, start, outlier, whiteness.inflation, earlier, roughness, fit_width)
         standard = solved.residual / solved.noise
         heavy = robust and float(np.abs(standard).max()) > _OUTLYING
         again = _reweighted(standard, solved.transition) if heavy else outlier
         found = correlation(_bounded(standard), rows, cols, start.line.normal)
         settled = (
-            (uneven or not solved.uneven)
-            and abs(solved.turn_rad) * solved.half_length_px < _SETTLED_PX
+            abs(solved.turn_rad) * solved.half_length_px < _SETTLED_PX
+            # The derivative by the width is that of the blur until there is an LSF.
+            and not (fit_width and earlier is None)
             and _are_short(solved, fit_width)
             and np.max(np.abs(again - outlier)) < 0.05
             and abs(found.inflation / whiteness.inflation - 1) < 0.05
@@ -178,9 +177,7 @@ def solve(
         )
         if settled:
             break
-        # With the trends there is one amplitude more: nothing earlier to start it from.
-        earlier = solved.posterior if uneven or not solved.uneven else None
-        outlier, whiteness, uneven = again, found, uneven or solved.uneven
+        outlier, whiteness, earlier = again, found, solved
         roughness = solved.roughness
         start = _moved(start, solved, fit_width)
     return Solved(start, solved, outlier, whiteness)
@@ -225,8 +222,7 @@ def _pass(
     start: BlurredEdge,
     outlier: Floats,
     inflation: float,
-    earlier: Posterior | None,
-    uneven: bool,
+    earlier: Solution | None,
     roughness: float,
     fit_width: bool,
 ) -> Solution:
@@ -248,9 +244,11 @@ def _pass(
     relative *= 1 + roughness * steep
 
     sides = profile.sides(seen, s)
-    steps = _step_columns(profile, height, seen, fit_width)
-    trends = height * ground_trends(sides, t) if uneven else np.empty((0, s.size))
-    columns = np.vstack([_beyond(profile, s, width), height * t * slope, steps, trends])
+    known = _known_steps(start, s, seen, earlier)
+    steps = _step_columns(profile, known, fit_width)
+    trends = ground_trends(sides, t)
+    turn_column = t * profile.response(known)[1]
+    columns = np.vstack([_beyond(profile, s, width), turn_column, steps, trends])
     stencils = []
     for distance, part in zip(profile.distances(s), profile.shares, strict=True):
         cell, basis = edge_weights(distance / width)
@@ -266,7 +264,9 @@ def _pass(
         stencils, departure, outlier / relative, columns, float(np.add.reduce(outlier))
     ).combined(design)
     prior = _prior(start, directions, len(steps), len(trends))
-    posterior = regress(normal, prior, scale, inflation, earlier)
+    posterior = regress(
+        normal, prior, scale, inflation, None if earlier is None else earlier.posterior
+    )
 
     coefficients = design @ posterior.beta
     fitted = coefficients[CELLS + 3 :] @ columns
@@ -283,10 +283,7 @@ def _pass(
         (float(side_noise[0]), float(side_noise[1])),
         float(posterior.beta[turn]), _norm(posterior.factor[turn]),
         posterior.beta[own], np.array([_norm(row) for row in posterior.factor[own]]),
-        float(np.max(np.abs(t))), is_uneven(standard, sides, t, width)
-        or is_sloping(
-            (pixels.value - start.dark) / height, float(np.mean(noise)) / height, sides, width
-        ),
+        float(np.max(np.abs(t))),
         _raggedness(standard, np.where(np.abs(standard) < _OUTLYING, steep, 0.0), roughness),
     )  # fmt: skip
 
@@ -325,15 +322,29 @@ def _bounded(standard: Floats) -> Floats:
     return np.minimum(np.maximum(standard, -_OUTLYING), _OUTLYING)
 
 
-def _step_columns(
-    profile: Profile, height: float, seen: list[tuple[Floats, Floats]], fit_width: bool
-) -> Floats:
+def _known_steps(
+    start: BlurredEdge,
+    s: Floats,
+    seen: list[tuple[Floats, Floats]],
+    earlier: Solution | None,
+) -> list[tuple[Floats, Floats]]:
+    """Response to every step and its derivative, in image units, as far as they are known.
+
+    How well a pulse's width is told hangs on the LSF itself, not on the blur it departs from:
+    after the first pass its solution is taken.
+    """
+    if earlier is None:
+        return [(start.height * esf, start.height * lsf) for esf, lsf in seen]
+    model = earlier.model(start)
+    return [model.step(distance) for distance in start.profile.distances(s)]
+
+
+def _step_columns(profile: Profile, known: list[tuple[Floats, Floats]], fit_width: bool) -> Floats:
     """Derivatives of the mean by a pulse's width (if free) and by its fall, (k, n)."""
-    if len(seen) == 1:
-        return np.empty((0, seen[0][0].size))
-    esf, lsf = seen[1]
-    by_width = -profile.shares[1] * height * lsf
-    by_fall = -height * esf
+    if len(known) == 1:
+        return np.empty((0, known[0][0].size))
+    esf, lsf = known[1]
+    by_width, by_fall = -profile.shares[1] * lsf, -esf
     return np.array([by_width, by_fall] if fit_width else [by_fall])
 
 
@@ -368,9 +379,8 @@ def _prior(start: BlurredEdge, directions: lsf_prior.Directions, steps: int, tre
     block = np.full(m, -1)
     block[1 : last + 1] = np.where(directions.block >= 2, directions.block - 2, -1)
     log_amplitude = lsf_prior.LOG_AMPLITUDE
-    if trends:
-        block[last + 2 + steps :] = log_amplitude.size
-        log_amplitude = np.append(log_amplitude, ground.LOG_AMPLITUDE)
+    block[last + 2 + steps :] = log_amplitude.size
+    log_amplitude = np.append(log_amplitude, ground.LOG_AMPLITUDE)
     scale = np.ones(m)
     # Turn (radians) and steps (pixels, shares) are known to about one before the pixels are seen.
     scale[last + 1 : last + 2 + steps] = 1 / start.height
