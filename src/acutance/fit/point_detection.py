@@ -21,6 +21,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter, map_coordinates, maximum_filter
+from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
 from acutance.fit.noise import robust_scale
@@ -43,6 +44,7 @@ _LEAST_LACK_PX2: Final = 0.06
 """So much less than the others a cosmic ray's variance is in any case: where optics leave next to
 none, ratios say nothing."""
 _LESSER_BLEND: Final = 0.05
+_LOBE_PX: Final = 6.0
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,7 @@ def find_spots(
     rows, cols = np.nonzero(tops & (smooth > level))
     order = np.argsort(-smooth[rows, cols])[:_MOST_SPOTS]
     middles = np.stack([rows[order], cols[order]], axis=1)
+    middles = middles[~_lobes(middles, smooth[rows[order], cols[order]])]
     if places is None:
         found = [_spot(residual, middle, noise) for middle in middles]
         return tuple(found), (), residual, noise
@@ -144,6 +147,16 @@ def find_spots(
             continue
         missing.append(RejectedSpot(row, col, "no source", fault))
     return tuple(spots), tuple(missing), residual, noise
+
+
+def _lobes(middles: NDArray[np.intp], light: Floats) -> NDArray[np.bool_]:
+    """Which spots are far fainter than one nearby: rings and lobes of its image."""
+    if not light.size:
+        return np.zeros(0, bool)
+    tree = cKDTree(middles)
+    near = tree.query_ball_point(middles, _LOBE_PX)
+    brightest = np.array([light[one].max() for one in near])
+    return np.asarray(light < _LESSER_BLEND * brightest)
 
 
 def _background(image: Floats) -> Floats:
