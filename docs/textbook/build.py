@@ -12,6 +12,7 @@ from acutance.report.page import styled
 from textbook import (
     benchmarks,
     biresolution_figures,
+    combine_figures,
     edge_figures,
     method_figures,
     plane_figures,
@@ -32,6 +33,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
     "method-errors": method_figures.errors_of_methods,
     "reference-systems": plane_figures.reference_systems,
     **biresolution_figures.FIGURES,
+    **combine_figures.FIGURES,
     **study_figures.FIGURES,
 }
 

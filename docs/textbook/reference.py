@@ -36,6 +36,7 @@ COMMANDS: dict[str, list[str]] = {
     "edge": ["edge"],
     "pulse": ["pulse"],
     "biresolution": ["biresolution"],
+    "combine": ["combine"],
     "sites": ["sites"],
     "simulate-edge": ["simulate", "edge"],
     "simulate-pair": ["simulate", "pair"],
