@@ -17,6 +17,7 @@ from textbook import (
     method_figures,
     plane_figures,
     reference,
+    star_figures,
     study_figures,
     tables,
 )
@@ -34,6 +35,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
     "reference-systems": plane_figures.reference_systems,
     **biresolution_figures.FIGURES,
     **combine_figures.FIGURES,
+    **star_figures.FIGURES,
     **study_figures.FIGURES,
 }
 
@@ -51,6 +53,7 @@ TEXTS: dict[str, Callable[[], str]] = {
     "top-names.inc": reference.top_names,
     **reference.help_texts(),
     **biresolution_figures.TEXTS,
+    **star_figures.TEXTS,
     **study_figures.TEXTS,
 }
 

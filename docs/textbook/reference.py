@@ -37,6 +37,8 @@ COMMANDS: dict[str, list[str]] = {
     "pulse": ["pulse"],
     "biresolution": ["biresolution"],
     "combine": ["combine"],
+    "star": ["star"],
+    "bars": ["bars"],
     "sites": ["sites"],
     "simulate-edge": ["simulate", "edge"],
     "simulate-pair": ["simulate", "pair"],
