@@ -104,6 +104,11 @@ def test_the_document_keeps_what_was_combined(together):
     assert sum(form["weight"] for form in document["forms"]) == pytest.approx(1)
 
 
+def _without_deviations(plane):
+    for part in ("factor_real", "factor_imag"):
+        plane[part] = [[] for _ in plane[part]]
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -112,6 +117,9 @@ def test_the_document_keeps_what_was_combined(together):
         (lambda d: d[0].pop("image"), "cannot be read as a measurement"),
         (lambda d: d[0].update(plane={"normal_deg": [0]}), "cannot be read"),
         (lambda d: d[0]["plane"]["otf_real"].pop(), "cannot be read"),
+        (lambda d: d[0]["plane"].update(normal_deg=[float("nan")]), "not finite"),
+        (lambda d: d[0]["plane"].update(otf_real=[50.0] * 16), "near 1"),
+        (lambda d: _without_deviations(d[0]["plane"]), "no standard deviations"),
         (lambda d: d[0]["image"].update(gsd_m=2.8), "different pixels"),
         (lambda d: d[0]["image"].update(along_track="x"), "measure them alike"),
         (lambda d: d[0].update(kind="combined"), "a combination already"),

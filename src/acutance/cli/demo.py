@@ -166,7 +166,7 @@ def _sections(
     from acutance.report.campaign import campaign_table, difference_table
     from acutance.report.campaign_panels import campaign_figure, curves_figure, site_figure
     from acutance.report.html import Headline, Plate, Section, Verdict
-    from acutance.report.wording import format_number, word_estimate
+    from acutance.report.wording import word_estimate
 
     combined, scene = campaign.combined, campaign.scene
     found = combined.chi_square
@@ -185,7 +185,7 @@ def _sections(
                 )
     agree = (
         f"The methods agree: chi-square {found.value:.0f}, {found.expected:.0f} expected; the "
-        f"chance of a larger one is {format_number(found.p_value, 2)}."
+        f"chance of a larger one is {100 * found.p_value:.0f} %."
         if found.p_value >= 0.01
         else f"The methods disagree: chi-square {found.value:.0f}, {found.expected:.0f} expected; "
         f"all deviations were widened by {combined.birge_ratio:.2f}."

@@ -25,6 +25,7 @@ Combinable = Measurement | Measurement2d | TargetResult | Mapping[str, Any]
 
 _GSD_SHARE = 0.02
 _COHERENT_CPP = 0.08
+_AT_LOWEST = (0.2, 2.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,6 +159,7 @@ def _read(document: Mapping[str, Any], called: str, name: str | None) -> Measure
             "given: measure it again with --reference"
         )
     slices, known = _slices(document, called)
+    _require_transfer(slices, called)
     line = document.get("line")
     place = [float(one) for one in image["roi"]]
     if line is not None:
@@ -176,6 +178,23 @@ def _read(document: Mapping[str, Any], called: str, name: str | None) -> Measure
         tuple(one["name"] for one in document["checks"] if not one["passed"]),
         known,
     )
+
+
+def _require_transfer(slices: PlaneSlices, called: str) -> None:
+    """Refuse what is no transfer function, and one without any standard deviation."""
+    lowest = np.abs(slices.otf.reshape(slices.normal_deg.size, -1)[:, 0])
+    least, most = _AT_LOWEST
+    if not (np.all(lowest > least) and np.all(lowest < most)):
+        raise OptionError(
+            f"{called}: its MTF at {slices.freq_cpp[0]:g} c/px is {lowest.min():.3g} to "
+            f"{lowest.max():.3g}, that of a sensor is near 1: the document was changed, or the "
+            "measurement failed"
+        )
+    if not np.any(slices.factor):
+        raise OptionError(
+            f"{called} has no standard deviations, so it cannot be weighted: measure it with a "
+            "method that reports them"
+        )
 
 
 def _slices(document: Mapping[str, Any], called: str) -> tuple[PlaneSlices, bool]:

@@ -110,7 +110,7 @@ class PlaneSlices:
                 f"{normal.size} directions and {freq.size} frequencies with {otf.size} values and "
                 f"a factor of {factor.shape[0]} rows"
             )
-        if not (np.isfinite(otf).all() and np.isfinite(factor).all()):
+        if not all(np.isfinite(part).all() for part in (normal, freq, otf, factor)):
             raise ValueError("numbers that are not finite")
         return cls(normal, freq, otf, factor)
 
