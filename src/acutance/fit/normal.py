@@ -68,13 +68,15 @@ def accumulate(
         # Sorted by their place, the pixels of a cell are neighbours: one sweep sums a product.
         order = np.argsort(cell.astype(np.int16), kind="stable")
         places = cell[order]
-        own, others = basis.take(order, axis=1), beside.take(order, axis=1)
-        weighted = own * weight[order]
+        factors = np.vstack([basis, beside]).take(order, axis=1)
+        weighted = factors[:4] * weight[order]
+        starts = _first_of_each(places)
         for a in range(4):
-            _add_own(gram, a, _cell_sums(places, weighted[a] * own[a:]))
-            sums = _cell_sums(places, weighted[a] * others)
-            projection[a : a + CELLS] += sums[0]
-            gram[a : a + CELLS, m:] += sums[1:].T
+            sums = np.zeros((factors.shape[0] - a, CELLS))
+            sums[:, places[starts]] = np.add.reduceat(weighted[a] * factors[a:], starts, axis=1)
+            _add_own(gram, a, sums[: 4 - a])
+            projection[a : a + CELLS] += sums[4 - a]
+            gram[a : a + CELLS, m:] += sums[5 - a :].T
         for other, other_basis in stencils[i + 1 :]:
             _add_pair(gram, cell, basis * weight, other, other_basis)
     gram += gram.T
@@ -84,16 +86,12 @@ def accumulate(
     return Normal(gram, projection, float(np.dot(weight * y, y)), count)
 
 
-def _cell_sums(cell: NDArray[np.intp], products: Floats) -> Floats:
-    """Sums of the rows of `products` (k, n) over the pixels of every cell, (k, CELLS).
-
-    The pixels are sorted by their cell.
-    """
-    starts = np.flatnonzero(cell[1:] != cell[:-1]) + 1
-    starts = np.concatenate([[0], starts])
-    sums = np.zeros((products.shape[0], CELLS))
-    sums[:, cell[starts]] = np.add.reduceat(products, starts, axis=1)
-    return sums
+def _first_of_each(place: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Where in sorted places each of them comes first."""
+    starts = np.empty(place.size, bool)
+    starts[0] = True
+    np.not_equal(place[1:], place[:-1], out=starts[1:])
+    return starts.nonzero()[0]
 
 
 def _add_own(gram: Floats, a: int, sums: Floats) -> None:
@@ -116,8 +114,7 @@ def _add_pair(
     place = cell * m + other
     order = np.argsort(place.astype(np.int16), kind="stable")
     place = place[order]
-    starts = np.flatnonzero(place[1:] != place[:-1]) + 1
-    starts = np.concatenate([[0], starts])
+    starts = _first_of_each(place)
     products = weighted.take(order, axis=1)[:, None] * basis.take(order, axis=1)
     sums = np.add.reduceat(products.reshape(16, -1), starts, axis=1)
     found = np.bincount((place[starts] + offsets).reshape(-1), sums.reshape(-1), m * m)

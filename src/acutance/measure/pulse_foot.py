@@ -60,8 +60,11 @@ def with_uncertain_foot(response: Response, share: float = FOOT_SHARE) -> Respon
     change -= change.sum() / lsf.value.sum() * lsf.value
     lifted = np.cumsum(change) * step - 0.5 * change * step
     centre = float(s @ lsf.value / lsf.value.sum())
-    waves = np.exp(-2j * np.pi * np.outer(mtf.freq_cpp, s - centre))
-    moved = np.einsum("fs,s->f", waves, change) * step
+    # Both grids are regular: so many samples are one cycle of the lowest frequency, or several.
+    cycle = round(1 / (float(mtf.freq_cpp[1]) * step))
+    cycles = -(-s.size // cycle)
+    turn = np.exp(-2j * np.pi * mtf.freq_cpp * (s[0] - centre))
+    moved = np.fft.rfft(change, cycles * cycle)[::cycles][: mtf.freq_cpp.size] * turn * step
     return replace(
         response,
         esf=_with_cause(esf, np.interp(esf.distance_px, s, lifted)),
