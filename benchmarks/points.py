@@ -103,7 +103,7 @@ def _coverage(names: list[str], arguments) -> list[str]:
     jobs = [
         Job(name, SNR, (arguments.seed, i, j))
         for i, name in enumerate(names)
-        for j in range(arguments.draws if name in BAR else max(arguments.draws // 8, 2))
+        for j in range(arguments.draws if name in BAR else max(arguments.draws // 4, 2))
     ]
     found = work_through(noisy_errors, jobs, arguments.processes, "coverage")
     rows, places, pooled = [], [], []

@@ -18,7 +18,7 @@ from scipy.special import ndtr
 from acutance.curves.grid import Floats
 from acutance.fit.blur import FWHM_OF_SIGMA, gaussian
 
-__all__ = ["FOOT_WIDTHS", "LEAST_SIGMA_PX", "BlurSlopes", "PlaneBlur"]
+__all__ = ["FOOT_WIDTHS", "LEAST_SIGMA_PX", "BlurSlopes", "Broad", "PlaneBlur"]
 
 _REACH = 7.0
 """So many standard deviations from its edge the aperture sees nothing."""
@@ -52,6 +52,31 @@ class BlurSlopes(NamedTuple):
     by_yy: Floats
     by_width_x: Floats
     by_width_y: Floats
+
+
+@dataclass(frozen=True)
+class Broad:
+    """A Gaussian of covariance ((xx, xy), (xy, yy)), broad beside a pixel."""
+
+    xx: float
+    xy: float
+    yy: float
+
+    def slopes(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
+        """Light per square pixel at places (x, y), (n,), and its derivatives by x and y."""
+        det = self.xx * self.yy - self.xy**2
+        by_x, by_y = (self.yy * x - self.xy * y) / det, (self.xx * y - self.xy * x) / det
+        psf = np.exp(-0.5 * (by_x * x + by_y * y)) / (2 * math.pi * math.sqrt(det))
+        return psf, -by_x * psf, -by_y * psf
+
+    def psf(self, x: Floats, y: Floats) -> Floats:
+        """Light per square pixel at places (x, y), (n,)."""
+        return self.slopes(x, y)[0]
+
+    def otf(self, u: Floats, v: Floats) -> Floats:
+        """Transfer function at frequencies in cycles per pixel."""
+        power = self.xx * u * u + 2 * self.xy * u * v + self.yy * v * v
+        return np.asarray(np.exp(-2 * np.pi**2 * power))
 
 
 @dataclass(frozen=True)
@@ -102,6 +127,11 @@ class PlaneBlur:
         return PlaneBlur(
             more * self.xx + box, more * self.xy, more * self.yy + box, self.aperture_px
         )
+
+    def broadened(self, widths: float) -> Broad:
+        """A plain Gaussian so many times as wide, the aperture's variance included."""
+        more, box = widths**2, self.aperture_px**2 / 12
+        return Broad(more * (self.xx + box), more * self.xy, more * (self.yy + box))
 
     def psf(self, x: Floats, y: Floats) -> Floats:
         """The PSF at places (x, y), (n,)."""

@@ -4,7 +4,7 @@ The PSF is the mean blur (`fit.psf_blur`) with a free ellipse, plus what follows
 amplitude that the data decide (`fit.posterior`):
 
 - APERTURE: another width of the detector's aperture across and along;
-- FOOT: the blur twice as wide (scatter near the core; less light there, if negative);
+- FOOT: the blur twice and four times as wide (scatter; less light there, if negative);
 - AIRY: the image behind an aperture as narrow as the blur, with its rings and wings: clear, and
   with a third of its diameter obscured;
 - SHAPE: smooth departures near the peak (sharpening, asymmetry, smear);
@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.fit.psf_airy import Airy
-from acutance.fit.psf_blur import FOOT_WIDTHS, BlurSlopes, PlaneBlur
+from acutance.fit.psf_blur import FOOT_WIDTHS, BlurSlopes, Broad, PlaneBlur
 
 __all__ = [
     "LOG_AMPLITUDE",
@@ -86,7 +86,8 @@ class _Process:
 
 _PROCESSES: Final = (_Process(1.2, 0.6, 12), _Process(0.7, 0.2, 13), _Process(3.0, 1.2, 11))
 _BLURRED: Final = 5
-_EXPLICIT: Final = 8
+_BROAD_WIDTHS: Final = 4.0
+_EXPLICIT: Final = 9
 _OBSCURATIONS: Final = (0.0, 0.33)
 LOG_AMPLITUDE: Final[Floats] = np.array([-5.0, -4.0, -4.6, -4.5, -3.0, -3.5, -2.5])
 LOG_AMPLITUDE_STD: Final = 2.5
@@ -130,7 +131,7 @@ def tail_otf(freq: Floats, half_width: float) -> Floats:
 class PsfDirections:
     """The directions in which the PSF may differ from a mean `blur`.
 
-    First the three elements of Sigma, the two apertures, the foot and the Airy patterns, then the
+    First the three elements of Sigma, the two apertures, the feet and the Airy patterns, then the
     modes of the processes, then the tail. From each the share is taken out that a change of flux
     or of place would explain: every source has its own flux and place.
     """
@@ -142,6 +143,10 @@ class PsfDirections:
         return self.blur.widened(FOOT_WIDTHS)
 
     @cached_property
+    def _feet(self) -> tuple[PlaneBlur, Broad]:
+        return (self._foot, self.blur.broadened(_BROAD_WIDTHS))
+
+    @cached_property
     def _airy(self) -> tuple[Airy, ...]:
         sigma_px = (self.blur.xx * self.blur.yy) ** 0.25
         a = self.blur.aperture_px
@@ -149,7 +154,7 @@ class PsfDirections:
 
     def _explicit(self, x: Floats, y: Floats, slopes: BlurSlopes) -> tuple[Floats, ...]:
         """The directions that are no process and no tail, before the gauge."""
-        return (*slopes[3:], self._foot.psf(x, y), *(one.psf(x, y) for one in self._airy))
+        return (*slopes[3:], *(one.psf(x, y) for one in (*self._feet, *self._airy)))
 
     @property
     def size(self) -> int:
@@ -159,7 +164,7 @@ class PsfDirections:
     @cached_property
     def block(self) -> NDArray[np.intp]:
         """Which amplitude rules each direction; -1 for those with a scale of their own."""
-        counts = [3, 2, 1, 2, *(process.sizes.size for process in _PROCESSES), 1]
+        counts = [3, 2, len(self._feet), 2, *(process.sizes.size for process in _PROCESSES), 1]
         return np.repeat([-1, 4, 5, 6, 0, 1, 2, 3], counts)
 
     @cached_property
@@ -253,7 +258,7 @@ class PsfDirections:
         by_x, by_y = ((explicit(one) - psf) / step for one in beside)
         for weight, other in zip(
             weights[_BLURRED:_EXPLICIT].tolist(),
-            (self._foot.slopes(x, y)[:3], *(one.slopes(x, y) for one in self._airy)),
+            (one.slopes(x, y)[:3] for one in (*self._feet, *self._airy)),
             strict=True,
         ):
             psf, by_x, by_y = (
@@ -301,8 +306,7 @@ class PsfDirections:
         """Fourier transform of every direction at frequencies in cycles per pixel, (n, size)."""
         columns = np.empty((u.size, self.size), complex)
         columns[:, :_BLURRED] = self.blur.otf_slopes(u, v)
-        columns[:, _BLURRED] = self._foot.otf(u, v)
-        for i, one in enumerate(self._airy, start=_BLURRED + 1):
+        for i, one in enumerate((*self._feet, *self._airy), start=_BLURRED):
             columns[:, i] = one.otf(u, v)
         first = _EXPLICIT
         for process, (scale_x, scale_y) in self._scaled():
