@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -107,7 +108,8 @@ def _headlines(measurement: Measurement2d) -> tuple[Headline, ...]:
                 cards.append(
                     Headline(f"{words.label}, {direction}", number.value, words.unit, details)
                 )
-    cards.append(Headline("SNR", format_number(measurement.snr, 3)))
+    if math.isfinite(measurement.snr):
+        cards.append(Headline("SNR", format_number(measurement.snr, 3)))
     return tuple(cards)
 
 
