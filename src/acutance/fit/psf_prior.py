@@ -152,9 +152,14 @@ class PsfDirections:
         a = self.blur.aperture_px
         return tuple(Airy.as_narrow_as(sigma_px, hole, a) for hole in _OBSCURATIONS)
 
+    @cached_property
+    def _patterns(self) -> tuple[PlaneBlur | Broad | Airy, ...]:
+        """What has a form of its own and one weight: feet, and apertures that diffract."""
+        return (*self._feet, *self._airy)
+
     def _explicit(self, x: Floats, y: Floats, slopes: BlurSlopes) -> tuple[Floats, ...]:
         """The directions that are no process and no tail, before the gauge."""
-        return (*slopes[3:], *(one.psf(x, y) for one in (*self._feet, *self._airy)))
+        return (*slopes[3:], *(one.psf(x, y) for one in self._patterns))
 
     @property
     def size(self) -> int:
@@ -258,7 +263,7 @@ class PsfDirections:
         by_x, by_y = ((explicit(one) - psf) / step for one in beside)
         for weight, other in zip(
             weights[_BLURRED:_EXPLICIT].tolist(),
-            (one.slopes(x, y)[:3] for one in (*self._feet, *self._airy)),
+            (one.slopes(x, y)[:3] for one in self._patterns),
             strict=True,
         ):
             psf, by_x, by_y = (
@@ -306,7 +311,7 @@ class PsfDirections:
         """Fourier transform of every direction at frequencies in cycles per pixel, (n, size)."""
         columns = np.empty((u.size, self.size), complex)
         columns[:, :_BLURRED] = self.blur.otf_slopes(u, v)
-        for i, one in enumerate((*self._feet, *self._airy), start=_BLURRED):
+        for i, one in enumerate(self._patterns, start=_BLURRED):
             columns[:, i] = one.otf(u, v)
         first = _EXPLICIT
         for process, (scale_x, scale_y) in self._scaled():
