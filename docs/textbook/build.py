@@ -16,6 +16,7 @@ from textbook import (
     edge_figures,
     method_figures,
     plane_figures,
+    point_figures,
     reference,
     star_figures,
     study_figures,
@@ -35,6 +36,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
     "reference-systems": plane_figures.reference_systems,
     **biresolution_figures.FIGURES,
     **combine_figures.FIGURES,
+    **point_figures.FIGURES,
     **star_figures.FIGURES,
     **study_figures.FIGURES,
 }

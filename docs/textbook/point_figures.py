@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,7 +12,7 @@ import acutance as ac
 from acutance.report.page import BLUE, FAINT, INK, VERMILION, new_page
 from acutance.studies import lay_out_mirrors
 
-__all__ = ["layouts_and_phases", "mirrors_beside_truth", "phases_make_a_finer_grid"]
+__all__ = ["FIGURES"]
 
 _TWO_SIDED_95 = 1.96
 
@@ -106,3 +108,10 @@ def mirrors_beside_truth() -> Figure:
     for axes in (mtf, error):
         axes.legend()
     return figure
+
+
+FIGURES: dict[str, Callable[[], Figure]] = {
+    "point-layouts": layouts_and_phases,
+    "point-mirrors": mirrors_beside_truth,
+    "point-phases": phases_make_a_finer_grid,
+}

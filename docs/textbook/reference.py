@@ -22,6 +22,7 @@ PACKAGES = (
     "fit.band",
     "fit.edge",
     "fit.pulse",
+    "fit.point_sources",
     "raster",
     "simulate",
     "measure",
@@ -35,6 +36,7 @@ COMMANDS: dict[str, list[str]] = {
     "acutance": [],
     "edge": ["edge"],
     "pulse": ["pulse"],
+    "points": ["points"],
     "biresolution": ["biresolution"],
     "combine": ["combine"],
     "star": ["star"],
@@ -44,6 +46,7 @@ COMMANDS: dict[str, list[str]] = {
     "simulate-pair": ["simulate", "pair"],
     "study": ["study"],
     "plan": ["plan"],
+    "plan-mirrors": ["plan", "mirrors"],
     "demo": ["demo"],
 }
 
