@@ -100,7 +100,8 @@ def test_intervals_hold_the_truth():
     u, v = 0.5 * np.cos([0, 0.8, 1.6, 2.4]), 0.5 * np.sin([0, 0.8, 1.6, 2.4])
     held, ratios = [], []
     for _ in range(60):
-        fit = combine_curves([curve(sensor.otf, one, 0.006, rng) for one in DIRECTIONS])
+        curves = [curve(sensor.otf, one, 0.006, rng) for one in DIRECTIONS]
+        fit = combine_curves(curves, forms=FORMS[:3])
         factor = fit.factor(u, v).real
         off = (fit.otf(u, v) - sensor.otf(u, v)).real
         held.append(np.abs(off) < 1.96 * np.linalg.norm(factor, axis=1))
