@@ -285,17 +285,18 @@ def _own_fault(
 def _compared(one: Spot, narrow: float, wide: float) -> tuple[str, str] | None:
     """What is wrong with a spot beside the others."""
     shape = one.shape
+    thin = max(shape.narrow_px2, 0.0)
     if shape.narrow_at_most_px2 < min(_NARROW * narrow, narrow - _LEAST_LACK_PX2):
         if shape.wide_px2 < narrow:
             return (
                 "hot pixel",
-                f"it is as narrow as one pixel: variances of {shape.narrow_px2:.2f} and "
+                f"it is as narrow as one pixel: variances of {thin:.2f} and "
                 f"{shape.wide_px2:.2f} px² along its axes, those of the others are at least "
                 f"{narrow:.2f}",
             )
         return (
             "cosmic ray",
-            f"its minor axis has a variance of {shape.narrow_px2:.2f} px², the others {narrow:.2f}",
+            f"its minor axis has a variance of {thin:.2f} px², the others {narrow:.2f}",
         )
     if shape.wide_at_least_px2 > _WIDE * wide:
         return (
