@@ -271,11 +271,13 @@ def fit_spectra(
     # mean was taken out there.
     chosen = (v > 0) | ((v == 0) & (u > 0))
     chosen &= np.hypot(u - np.round(u), v - np.round(v)) * spectra.size_px > _LOWEST_BINS
-    chosen &= coherence > _LEAST_COHERENCE
-    if chosen.sum() < 50:
+    # Frequencies are not chosen by their own coherence: where there is none, those that are by
+    # chance in phase would be kept, and the MTF at Nyquist come out 0.02 too high.
+    coherent = int(np.count_nonzero(coherence[chosen] > _LEAST_COHERENCE))
+    if coherent < 50:
         raise TargetError(
-            f"only {int(chosen.sum())} frequencies are coherent between the two images, 50 are "
-            "needed: they show different things, or little detail; use method kernel-fit"
+            f"only {coherent} frequencies are coherent between the two images, 50 are needed: they "
+            "show different things, or little detail; use method kernel-fit"
         )
     u, v, high = u[chosen], v[chosen], spectra.high.ravel()[chosen]
     # Of a single frequency; half of the noise is in phase.
