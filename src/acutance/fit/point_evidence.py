@@ -17,7 +17,7 @@ from scipy.linalg import solve_triangular
 from acutance.curves.grid import Floats
 from acutance.fit.normal import Normal
 from acutance.fit.point_blocks import Blocks
-from acutance.fit.posterior import Posterior, Prior, Whitened, regress, whiten
+from acutance.fit.posterior import Posterior, Prior, regress, whiten
 
 __all__ = ["averaged_posterior", "likelier_growth", "likelier_posterior"]
 
@@ -65,17 +65,15 @@ def averaged_posterior(
     mode = likeliest.log_amplitude
     points = [mode, *(_at(mode, _HALO, _TAIL, a) for a in _GRID)]
     points += [_at(mode, _TAIL, _HALO, a) for a in _GRID]
-    white = [whiten(normal, prior, point, noise) for point in points]
-    evidence = np.array(
-        [
-            _log_evidence(normal, prior, one, point, noise)
-            for one, point in zip(white, points, strict=True)
-        ]
-    )
+    evidence = np.array([_log_evidence(normal, prior, point, noise) for point in points])
     weights = np.exp(evidence - evidence.max())
     weights[weights < _LEAST_WEIGHT * weights.sum()] = 0.0
     weights /= weights.sum()
-    kept = [(w, one) for w, one in zip(weights.tolist(), white, strict=True) if w > 0]
+    kept = [
+        (weight, whiten(normal, prior, point, noise))
+        for weight, point in zip(weights.tolist(), points, strict=True)
+        if weight > 0
+    ]
     mean = np.asarray(sum(w * one.sigma * one.mean for w, one in kept))
     covariance = np.zeros((mean.size, mean.size))
     for w, one in kept:
@@ -162,19 +160,20 @@ def _from(prior: Prior, variance: float, log_amplitude: Floats) -> Posterior:
     return Posterior(nothing, nothing[:, None], log_amplitude, variance, 0.0)
 
 
-def _log_evidence(
-    normal: Normal, prior: Prior, white: Whitened, log_amplitude: Floats, noise: float
-) -> float:
+def _log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> float:
     """Logarithm of the evidence at given amplitudes and noise variance, hyperprior included."""
-    explained = float(white.mean @ (white.sigma * normal.projection)) / noise
-    volume = float(np.sum(np.log(np.diagonal(white.root))))
+    sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
+    precision = sigma[:, None] * normal.gram * (sigma / noise)
+    precision[np.diag_indices_from(precision)] += 1.0
+    lower = np.linalg.cholesky(precision)
+    seen = solve_triangular(lower, sigma * normal.projection / noise, lower=True)
     away = (log_amplitude - prior.log_amplitude) / prior.log_amplitude_std
-    return 0.5 * (explained - normal.data / noise - float(away @ away)) + volume
+    misfit = normal.data / noise - float(seen @ seen) + float(away @ away)
+    return -0.5 * misfit - float(np.log(np.diagonal(lower)).sum())
 
 
 def _evidence_of(normal: Normal, prior: Prior, found: Posterior, inflation: float) -> float:
     """The same at a posterior's amplitudes and noise, which may differ between posteriors."""
     noise = found.variance * inflation
-    white = whiten(normal, prior, found.log_amplitude, noise)
     level = 0.5 * normal.count / inflation * math.log(noise)
-    return _log_evidence(normal, prior, white, found.log_amplitude, noise) - level
+    return _log_evidence(normal, prior, found.log_amplitude, noise) - level
