@@ -112,7 +112,8 @@ def bars_trial(job: tuple[BarsCase, str, int, int]) -> Trial:
 
     def truth(freq: float) -> float:
         angle = np.radians(found.directions_deg[0])
-        return float(np.abs(sensor.otf(freq * np.cos(angle), freq * np.sin(angle))))
+        there = np.array([freq])
+        return float(np.abs(sensor.otf(there * np.cos(angle), there * np.sin(angle)))[0])
 
     errors = np.array([[found.mtf(f).value - truth(f) for f in FREQ]])
     plain = [
