@@ -17,7 +17,7 @@ from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.fit.trim import Extent
 from acutance.measure import pixel_checks, structure_checks
 from acutance.measure.cut import Cut
-from acutance.measure.evidence import MUCH, Evidence, TargetChecks, at_least, at_most
+from acutance.measure.evidence import MUCH, PLACES, Evidence, TargetChecks, at_least, at_most
 from acutance.measure.measurement import Check
 from acutance.measure.options import EdgeLimits
 
@@ -161,6 +161,6 @@ def plateau(limits: EdgeLimits, side: str, value: float) -> Check:
     """How far one side is uniform."""
     return at_least(
         f"plateau_{side}_px", value, limits.plateau_px,
-        f"the {side} side is uniform out to {value:.1f} px from the edge (Li et al. 4.2: 7 to 10); "
+        f"the ground {PLACES[side]} is uniform out to {value:.1f} px (Li et al. 4.2: 7 to 10); "
         "what lies further of a halo is not seen and raises the MTF",
     )  # fmt: skip

@@ -14,10 +14,18 @@ from acutance.curves.grid import Floats
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.measure.measurement import Check
 
-__all__ = ["MUCH", "Evidence", "TargetChecks", "at_least", "at_most"]
+__all__ = ["MUCH", "PLACES", "Evidence", "TargetChecks", "at_least", "at_most"]
 
 MUCH = 999.0
 """Stands for a ratio without bound: nothing disturbs."""
+
+PLACES = {
+    "dark": "on the dark side",
+    "bright": "on the bright side",
+    "before": "before the strip",
+    "behind": "behind the strip",
+}
+"""Where a target's two grounds lie."""
 
 _FAR_WIDTHS = 2.0
 

@@ -160,7 +160,7 @@ class PulseChecks(TargetChecks):
             else "the joint fit bridges it, with wider intervals near it"
         )
         return Check(
-            "zero_distance_cpp", value, f">= {limit:g}", passed,
+            "zero_distance_cpp", value, f">= {limit:g}" if self.by_ratio else "any", passed,
             f"the pulse's spectrum has a zero at {nearest:.3f} c/px, {value:.3f} from Nyquist: "
             f"{advice}",
         )  # fmt: skip

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.measure.evidence import MUCH, Evidence, at_least, at_most
+from acutance.measure.evidence import MUCH, PLACES, Evidence, at_least, at_most
 from acutance.measure.measurement import Check
 from acutance.measure.options import EdgeLimits
 
@@ -37,8 +37,8 @@ def uniformity(seen: Evidence, limits: EdgeLimits, side: str, outwards: Floats) 
     value = min(1 / found, MUCH) if found > 0 else MUCH
     return at_least(
         f"uniformity_{side}", value, limits.uniformity,
-        f"the {side} side varies by {100 / value:.1f} % of the contrast from place to place "
-        "(KOMPSAT-3 draft 3b: contrast at least 50 times the variation)",
+        f"the ground {PLACES[side]} varies by {100 / value:.1f} % of the contrast from place to "
+        "place (KOMPSAT-3 draft 3b: contrast at least 50 times the variation)",
     )  # fmt: skip
 
 
