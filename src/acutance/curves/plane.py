@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import numpy as np
@@ -143,22 +144,30 @@ def _spread(
     Sums over a regular grid of frequencies: the integral of the repeated LSF, whose mean is taken
     out and put back as a straight line.
     """
-    everything = np.column_stack([otf, factor])
-    esf = _integrated(_DISTANCE_PX, freq, everything)
-    half = crossing(_DISTANCE_PX, esf[:, 0], 0.5, float(_DISTANCE_PX[_steep(esf[:, 0])]))
-    places = _DISTANCE_PX + (0.0 if math.isnan(half) else half)
-    esf = _integrated(places, freq, everything)
-    turns = np.exp(2j * math.pi * np.outer(places, freq[1:]))
-    lsf = 2 * (turns @ everything[1:]).real / PERIOD_PX
-    lsf[:, 0] += 1 / PERIOD_PX
-    return esf[:, 0], lsf[:, 0], esf[:, 1:], lsf[:, 1:]
+    integral = 1 / (2j * math.pi * freq[1:])
+    esf = 0.5 + _DISTANCE_PX / PERIOD_PX + _synthesised(otf[1:] * integral)
+    half = crossing(_DISTANCE_PX, esf, 0.5, float(_DISTANCE_PX[_steep(esf)]))
+    half = 0.0 if math.isnan(half) else half
+    turn = np.exp(2j * math.pi * freq[1:] * half)
+    spectra = np.column_stack([otf, factor])[1:] * turn[:, None]
+    esfs = _synthesised(spectra * integral[:, None])
+    esfs[:, 0] += 0.5 + (_DISTANCE_PX + half) / PERIOD_PX
+    lsfs = _synthesised(spectra)
+    lsfs[:, 0] += 1 / PERIOD_PX
+    return esfs[:, 0], lsfs[:, 0], esfs[:, 1:], lsfs[:, 1:]
 
 
-def _integrated(places: Floats, freq: Floats, everything: Complexes) -> Floats:
-    turns = np.exp(2j * math.pi * np.outer(places, freq[1:])) / (2j * math.pi * freq[1:])
-    esf = 2 * (turns @ everything[1:]).real / PERIOD_PX
-    esf[:, 0] += 0.5 + places / PERIOD_PX
-    return np.asarray(esf)
+def _synthesised(spectrum: Complexes) -> Floats:
+    """Sum of the waves of a spectrum, (f, ...) from the first frequency, at the grid's places."""
+    parts = np.concatenate([spectrum.real, spectrum.imag])
+    return np.asarray(2 / PERIOD_PX * (_waves(spectrum.shape[0]) @ parts))
+
+
+@cache
+def _waves(count: int) -> Floats:
+    """Cosines and negative sines of `count` frequencies at the grid's places, (n, 2 count)."""
+    phase = 2 * math.pi * np.outer(_DISTANCE_PX, np.arange(1, count + 1) / PERIOD_PX)
+    return np.hstack([np.cos(phase), -np.sin(phase)])
 
 
 def _steep(esf: Floats) -> int:
