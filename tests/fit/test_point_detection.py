@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 from acutance import optics, simulate
 from acutance.fit.point_detection import find_spots, sort_spots
@@ -93,3 +94,14 @@ def test_flat_and_broken_images_hold_nothing():
     holes = np.full((40, 40), np.nan)
     holes[:12, :12] = 3.0
     assert find_spots(holes)[0] == ()
+
+
+def test_grass_under_a_source_makes_it_no_hot_pixel():
+    sharp = optics.Sensor([optics.Gaussian(0.4), optics.Detector()])
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        image, _ = simulate.points(sharp, positions=PLACES, shape=(120, 80), snr=60, rng=rng)
+        grass = gaussian_filter(rng.standard_normal(image.shape), 3.0)
+        _, reasons = sorted_by_reason(image + 25.0 * grass / grass.std())
+        near = [np.abs(PLACES - place).max(axis=1).min() < 2 for place in reasons]
+        assert not any(near), reasons

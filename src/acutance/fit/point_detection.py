@@ -13,6 +13,7 @@ it serves is asked one question after the other; what does not serve is kept wit
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -45,6 +46,8 @@ _LEAST_LACK_PX2: Final = 0.06
 none, ratios say nothing."""
 _LESSER_BLEND: Final = 0.05
 _LOBE_PX: Final = 6.0
+_RING_PX: Final = 4
+_LEAST_RING: Final = 16
 
 
 @dataclass(frozen=True)
@@ -194,7 +197,23 @@ def _spot(residual: Floats, middle: NDArray[np.intp], noise: float) -> Spot:
     up, left = np.unravel_index(int(np.argmax(window)), window.shape)
     row, col = max(row - 1, 0) + int(up), max(col - 1, 0) + int(left)
     peak = float(residual[row, col])
-    return Spot(spot_shape(residual, (row, col), noise), peak, peak / noise)
+    ground, rough = _ground_around(residual, row, col)
+    shape = spot_shape(residual - ground, (row, col), max(noise, rough))
+    return Spot(shape, peak, peak / noise)
+
+
+def _ground_around(residual: Floats, row: int, col: int) -> tuple[float, float]:
+    """Level and roughness of the ring of pixels around a spot: grass is not the block's median."""
+    top, side = max(row - _RING_PX, 0), max(col - _RING_PX, 0)
+    part = residual[top : row + _RING_PX + 1, side : col + _RING_PX + 1]
+    down, right = np.arange(top, top + part.shape[0]), np.arange(side, side + part.shape[1])
+    away = np.maximum(np.abs(down - row)[:, None], np.abs(right - col))
+    ring = part[away >= CLEAR_PX]
+    if ring.size < _LEAST_RING:
+        return 0.0, 0.0
+    level = float(np.median(ring))
+    # Two standard deviations of a scale from so few pixels are chance.
+    return level, robust_scale(ring - level) / (1 + 2 * 1.17 / math.sqrt(ring.size))
 
 
 def sort_spots(
