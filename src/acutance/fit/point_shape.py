@@ -79,7 +79,8 @@ def spot_shape(residual: Floats, middle: tuple[int, int], noise: float) -> SpotS
     dy, dx = rows - y, cols - x
     window = np.outer(_fall(dy), _fall(dx))
     seen = light * window
-    total = max(float(seen.sum()), 1e-300)
+    # Where light and what is missing cancel, there is no spot: it is as wide as may be.
+    total = max(float(seen.sum()), 0.1 * float(np.abs(seen).sum()), 1e-300)
     down, across = float(dy**2 @ seen.sum(axis=1)) / total, float(seen.sum(axis=0) @ dx**2) / total
     lean = float(dy @ seen @ dx) / total
     doubts = [
