@@ -12,6 +12,7 @@ import numpy as np
 from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
+from acutance.fit.bars_group import Bars
 from acutance.fit.line import Line, Orientation
 from acutance.optics.block import Transfer
 from acutance.optics.sensor import Sensor, normal_direction_deg
@@ -25,39 +26,8 @@ HARMONICS = 25
 
 
 @dataclass(frozen=True)
-class BarGroup:
-    """Parallel bars, as wide as the gaps between them.
-
-    Parameters
-    ----------
-    row, col : float
-        Centre of the group in pixels.
-    normal_deg : float
-        Direction across the bars, from the column axis towards the row axis.
-    period_px : float
-        Distance of two bars along the normal.
-    count : int
-        Number of bars.
-    length_px : float
-        Length of the bars.
-    """
-
-    row: float
-    col: float
-    normal_deg: float
-    period_px: float
-    count: int
-    length_px: float
-
-    @property
-    def freq_cpp(self) -> float:
-        """Frequency of the bars in cycles per pixel."""
-        return 1 / self.period_px
-
-    @property
-    def width_px(self) -> float:
-        """From the first bar's outer edge to the last one's."""
-        return (self.count - 0.5) * self.period_px
+class BarGroup(Bars):
+    """A group of bars as it lies in a scene."""
 
     @property
     def region(self) -> Floats:
