@@ -33,6 +33,7 @@ LIBRARIES = {
     "markupsafe": {"report"},
     "typer": {"cli"},
     "rich": {"cli"},
+    "threadpoolctl": {"measure"},
 }
 
 # (module, imported module): why it is right all the same.

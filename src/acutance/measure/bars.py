@@ -22,6 +22,7 @@ from acutance.measure.bars_options import BarsOptions
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.measurement import ImageInfo
 from acutance.measure.measurement2d import Measurement2d
+from acutance.measure.one_thread import one_thread
 from acutance.measure.plane_slices import PlaneSlices
 from acutance.raster import Gsd, Image
 
@@ -146,6 +147,7 @@ class BarsMeasurement(Measurement2d):
         }
 
 
+@one_thread
 def measure_bars(
     image: Image | ArrayLike,
     roi: RoiLike = None,

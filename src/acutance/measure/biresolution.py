@@ -33,6 +33,7 @@ from acutance.measure.biresolution_reference import ReferenceLike, reference_otf
 from acutance.measure.biresolution_tiles import PairTiles
 from acutance.measure.cut import RoiLike
 from acutance.measure.measurement import ImageInfo
+from acutance.measure.one_thread import one_thread
 from acutance.raster import Box, Image, Region
 
 __all__ = ["BIRESOLUTION_METHODS", "measure_biresolution"]
@@ -48,6 +49,7 @@ _PILED_UP = 3.0
 they were clipped."""
 
 
+@one_thread
 def measure_biresolution(
     low: Image | ArrayLike,
     high: Image | ArrayLike,

@@ -27,6 +27,7 @@ from acutance.measure.combine_inputs import (
 from acutance.measure.combine_options import CombineOptions
 from acutance.measure.measurement import ImageInfo
 from acutance.measure.measurement2d import Measurement2d
+from acutance.measure.one_thread import one_thread
 from acutance.raster import Gsd
 from acutance.raster.image import AlongTrack
 
@@ -134,6 +135,7 @@ def _chi_square(found: ChiSquare) -> dict[str, float]:
     }
 
 
+@one_thread
 def combine(
     measurements: Sequence[Combinable],
     *,

@@ -19,6 +19,7 @@ from acutance.fit.point_start import fit_blurred_points, unlike_sources
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.measurement import Check, ImageInfo
 from acutance.measure.measurement2d import Measurement2d
+from acutance.measure.one_thread import one_thread
 from acutance.measure.points_checks import check_points, check_survey
 from acutance.measure.points_evidence import PointSource, sources_of_fit, sources_of_mirrors
 from acutance.measure.points_options import PointsOptions
@@ -147,6 +148,7 @@ POINTS_METHODS: dict[str, Callable[[Cut, Floats, _Rejected, PointsOptions], _Ans
 }
 
 
+@one_thread
 def measure_points(
     image: Image | ArrayLike,
     roi: RoiLike = None,

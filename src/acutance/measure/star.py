@@ -21,6 +21,7 @@ from acutance.fit.star_rings import FoundStar, ring_modulations
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.measurement import ImageInfo
 from acutance.measure.measurement2d import Measurement2d
+from acutance.measure.one_thread import one_thread
 from acutance.measure.star_checks import star_checks
 from acutance.measure.star_options import StarOptions
 from acutance.raster import Gsd, Image
@@ -158,6 +159,7 @@ class StarMeasurement(Measurement2d):
         }
 
 
+@one_thread
 def measure_star(
     image: Image | ArrayLike,
     roi: RoiLike = None,

@@ -1,0 +1,36 @@
+"""One thread for many small matrices.
+
+The fits of two dimensions solve hundreds of systems of some hundred unknowns. Shared among
+threads each of them takes longer than alone: 20 sources four times as long on two cores. Whoever
+has several cores measures several images at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, wraps
+from typing import ParamSpec, TypeVar
+
+from threadpoolctl import ThreadpoolController
+
+__all__ = ["one_thread"]
+
+Given = ParamSpec("Given")
+Result = TypeVar("Result")
+
+
+def one_thread(function: Callable[Given, Result]) -> Callable[Given, Result]:
+    """The same function, during which linear algebra keeps to one thread."""
+
+    @wraps(function)
+    def alone(*args: Given.args, **options: Given.kwargs) -> Result:
+        with _libraries().limit(limits=1, user_api="blas"):
+            return function(*args, **options)
+
+    return alone
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """The libraries with threads of their own; looking for them takes some milliseconds."""
+    return ThreadpoolController()
