@@ -74,3 +74,12 @@ def test_refusals(acutance, star_image, words, message):
     assert result.exit_code == 2
     assert message in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_a_sine_taken_for_a_square_wave_is_refused(acutance, tmp_path):
+    path = tmp_path / "sine.tif"
+    made = acutance("simulate", "star", "--sensor", "gaussian", "--snr", 100, "--out", path)
+    assert made.exit_code == 0
+    done = acutance("star", path, "--wave", "square")
+    assert done.exit_code == 2
+    assert "--wave sine" in done.stderr

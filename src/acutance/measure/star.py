@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from acutance.curves import Estimate, Mtf, Otf2d
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP, mtf_crossing
-from acutance.errors import OptionError
+from acutance.errors import NoStarError, OptionError
 from acutance.fit.noise import robust_scale
 from acutance.fit.star import PlaneModel, StarSolution, solve_star
 from acutance.fit.star_find import find_star
@@ -31,6 +31,8 @@ __all__ = ["STAR_METHODS", "Rings", "StarMeasurement", "measure_star"]
 STAR_METHODS = ("joint",)
 _FREQ_CPP: Floats = np.asarray(np.arange(101) * 0.01)
 _DIRECTION_STEP_DEG = 5.0
+_MOST_RAISED = 3.0
+"""No restoration raises the contrast of coarse spokes so much."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,6 +223,7 @@ def _measurement(
     star, level = solved.star, Estimate(model.level, model.level_std)
     snr = _contrast(model, options) / solved.noise if solved.noise > 0 else math.inf
     freq, modulation, std = ring_modulations(pixels.pixels, star, solved.inner_px, solved.outer_px)
+    _require_spokes(level, float(modulation.max()), options.wave)
     residual = np.full(pixels.pixels.shape, np.nan)
     residual[solved.rows, solved.cols] = solved.residual
     gsd = pixels.gsd
@@ -243,6 +246,17 @@ def _measurement(
         pixels=pixels.pixels,
         residual=residual,
     )
+
+
+def _require_spokes(level: Estimate, seen: float, wave: str) -> None:
+    """Refuse a fit whose spokes have far less contrast than the image of them."""
+    if seen > _MOST_RAISED * abs(level.value):
+        other = "sine" if wave == "square" else "square"
+        raise NoStarError(
+            f"the image's spokes have an amplitude of {seen:.4g}, and those of the fitted {wave} "
+            f"star {level}: no sensor raises contrast so much. The spokes may be a {other} wave "
+            f"(--wave {other}), or have another number of cycles"
+        )
 
 
 def _contrast(model: PlaneModel, options: StarOptions) -> float:
