@@ -187,9 +187,12 @@ def describe_plane_image(measurement: Measurement2d) -> str:
     """Where the pixels of a 2-D measurement came from, in one line."""
     image = measurement.image
     row, col, height, width = image.roi
-    parts = [image.path or "array in memory", f"band {image.band}"]
     if height and width:
+        parts = [image.path or "array in memory", f"band {image.band}"]
         parts.append(f"rows {row}–{row + height - 1}, columns {col}–{col + width - 1}")
+    else:
+        # A combination has no pixels of its own.
+        parts = [image.path or "several images"]
     gsd_m = measurement.otf.gsd_m
     if gsd_m is not None:
         same = format_number(gsd_m[0]) == format_number(gsd_m[1])
