@@ -79,12 +79,12 @@ def cut(image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None
         box.require_inside(source.shape)
     if box.height * box.width > _MAX_PIXELS:
         raise RegionError(
-            f"the region has {box.height} x {box.width} pixels, more than any edge target: choose "
+            f"the region has {box.height} x {box.width} pixels, more than any target: choose "
             "a region around the target (row, column, height, width, a polygon or a site)"
         )
     if min(box.height, box.width) < _MIN_SIDE_PX:
         raise RegionError(
-            f"the region has {box.height} x {box.width} pixels: an edge needs at least "
+            f"the region has {box.height} x {box.width} pixels: a target needs at least "
             f"{_MIN_SIDE_PX} both ways"
         )
     pixels = source.read(box)
