@@ -25,8 +25,6 @@ from acutance.errors import OptionError
 
 if TYPE_CHECKING:
     from acutance.measure.biresolution_reference import ReferenceLike
-    from acutance.report.html import Section
-    from acutance.report.plane_panels import PlanePanel
 
 __all__ = ["EXAMPLE", "biresolution", "parse_reference"]
 
@@ -129,23 +127,15 @@ def biresolution(
         options=options,
     )
 
-    def panels() -> tuple[PlanePanel, ...]:
-        from acutance.report import biresolution_panels
+    from acutance import report as faces
 
-        return biresolution_panels(measurement)
-
-    def sections() -> tuple[Section, ...]:
-        from acutance.report import biresolution_sections
-
-        return biresolution_sections(measurement)
-
-    def blocks() -> tuple[str, ...]:
-        from acutance.report import biresolution_blocks
-
-        return biresolution_blocks(measurement)
-
-    faces = faces_of_plane(measurement, panels=panels, sections=sections, blocks=blocks)
-    wanted.deliver([measurement], faces)
+    shown = faces_of_plane(
+        measurement,
+        panels=lambda: faces.biresolution_panels(measurement),
+        sections=lambda: faces.biresolution_sections(measurement),
+        blocks=lambda: faces.biresolution_blocks(measurement),
+    )
+    wanted.deliver([measurement], shown)
 
 
 def parse_reference(text: str | None) -> ReferenceLike:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -22,10 +22,6 @@ from acutance.cli.result_options import (
 )
 from acutance.cli.target import GsdOption, parse_gsd
 from acutance.errors import OptionError
-
-if TYPE_CHECKING:
-    from acutance.report.html import Section
-    from acutance.report.plane_panels import PlanePanel
 
 __all__ = ["EXAMPLE", "combine"]
 
@@ -84,23 +80,15 @@ def combine(
         documents, names=files, gsd_m=parse_gsd(gsd), options=options
     )
 
-    def panels() -> tuple[PlanePanel, ...]:
-        from acutance.report import combine_panels
+    from acutance import report as faces
 
-        return combine_panels(measurement)
-
-    def sections() -> tuple[Section, ...]:
-        from acutance.report import combine_sections
-
-        return combine_sections(measurement)
-
-    def blocks() -> tuple[str, ...]:
-        from acutance.report import combine_blocks
-
-        return combine_blocks(measurement)
-
-    faces = faces_of_plane(measurement, panels=panels, sections=sections, blocks=blocks)
-    wanted.deliver([measurement], faces)
+    shown = faces_of_plane(
+        measurement,
+        panels=lambda: faces.combine_panels(measurement),
+        sections=lambda: faces.combine_sections(measurement),
+        blocks=lambda: faces.combine_blocks(measurement),
+    )
+    wanted.deliver([measurement], shown)
 
 
 def _read(name: str) -> Any:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
 from typing import Annotated
 
 import typer
 
+from acutance.cli.choices import change_limits
 from acutance.cli.faces import faces_of_plane
 from acutance.cli.result_options import (
     CovarianceOption,
@@ -105,15 +105,18 @@ def points(
     if survey_reference not in ("mean", "first"):
         raise OptionError(f"--survey-reference {survey_reference}: it has to be mean or first")
 
-    from acutance.measure import POINTS_METHODS, PointsOptions, measure_points
+    from acutance.measure import POINTS_METHODS, PointsLimits, PointsOptions, measure_points
     from acutance.raster import read_positions
 
     if method not in POINTS_METHODS:
         raise OptionError(f"there is no method {method!r}: choose from {', '.join(POINTS_METHODS)}")
     options = PointsOptions(
-        min_snr=min_snr, min_distance_px=min_distance, radius_px=radius, robust=robust
+        min_snr=min_snr,
+        min_distance_px=min_distance,
+        radius_px=radius,
+        robust=robust,
+        limits=change_limits(PointsLimits(), limit or []),
     )
-    options = replace(options, limits=replace(options.limits, **_limits(limit or [])))
     source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site)
     measurement = measure_points(
         source,
@@ -136,20 +139,3 @@ def points(
             blocks=lambda: faces.points_blocks(measurement),
         ),
     )
-
-
-def _limits(changes: list[str]) -> dict[str, float]:
-    """Limits of the checks that are to be changed, as NAME=VALUE."""
-    from acutance.measure import PointsLimits
-
-    known = {field.name for field in fields(PointsLimits)}
-    found = {}
-    for text in changes:
-        name, _, number = text.partition("=")
-        if name not in known:
-            raise OptionError(f"--limit {text}: the limits are {', '.join(sorted(known))}")
-        try:
-            found[name] = float(number)
-        except ValueError as error:
-            raise OptionError(f"--limit {text}: write a number, as in {name}=10") from error
-    return found
