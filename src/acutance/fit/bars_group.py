@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.fit.line import Line
 
 __all__ = ["Bars", "GroupReading", "central", "coltman_mtf", "read_group"]
 
@@ -51,6 +52,27 @@ class Bars:
         """From the first bar's outer edge to the last one's."""
         return (self.count - 0.5) * self.period_px
 
+    @property
+    def places_px(self) -> Floats:
+        """Middles of the bars along the normal, from the centre of the group, (count,)."""
+        return np.asarray((np.arange(self.count) - 0.5 * (self.count - 1)) * self.period_px)
+
+    @property
+    def region(self) -> Floats:
+        """Corners of the group, (4, 2) as (row, col)."""
+        x, y = Line(self.row, self.col, self.normal_deg).normal
+        corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        across, along = 0.5 * self.width_px, 0.5 * self.length_px
+        return np.array(
+            [
+                (
+                    self.row + a * across * y + b * along * x,
+                    self.col + a * across * x - b * along * y,
+                )
+                for a, b in corners
+            ]
+        )
+
     def across_and_along(self, rows: Floats, cols: Floats) -> tuple[Floats, Floats]:
         """Distances from the centre along the normal and along the bars, in pixels."""
         angle = math.radians(self.normal_deg)
@@ -60,8 +82,7 @@ class Bars:
 
     def spectrum(self, freq_cpp: Floats) -> Floats:
         """Fourier transform of the profile (1 on the bars, 0 beside them), which is real."""
-        places = (np.arange(self.count) - 0.5 * (self.count - 1)) * self.period_px
-        turns = np.cos(2 * math.pi * np.outer(freq_cpp, places)).sum(axis=1)
+        turns = np.cos(2 * math.pi * np.outer(freq_cpp, self.places_px)).sum(axis=1)
         half = 0.5 * self.period_px
         return np.asarray(turns * half * np.sinc(freq_cpp * half))
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from acutance.curves.metrics import NYQUIST_CPP
 from acutance.fit.bi_local import LocalFit
 from acutance.fit.bi_spectrum import PairSpectra
 from acutance.fit.kernel_fit import KernelFit
@@ -27,8 +28,6 @@ from acutance.measure.evidence import at_least, at_most
 from acutance.measure.measurement import Check
 
 __all__ = ["PairEvidence", "check_pair"]
-
-_NYQUIST_CPP = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +138,7 @@ def _reference(seen: PairEvidence, limits: BiresolutionLimits) -> Check:
             "that of the high one, too large by the reciprocal of the latter; state it with "
             "reference_mtf",
         )  # fmt: skip
-    nyquist, nothing = np.array([_NYQUIST_CPP]), np.zeros(1)
+    nyquist, nothing = np.array([NYQUIST_CPP]), np.zeros(1)
     both = (
         seen.model.reference.otf(nyquist, nothing),
         seen.model.reference.otf(nothing, nyquist),
@@ -161,7 +160,7 @@ def _coherence(seen: PairEvidence, limits: BiresolutionLimits) -> Check:
     found = []
     for axis in ("across", "along"):
         freq, coherence = seen.spectra.along_axis(axis)
-        found.append(float(np.interp(_NYQUIST_CPP, freq, coherence)))
+        found.append(float(np.interp(NYQUIST_CPP, freq, coherence)))
     value = min(found)
     return at_least(
         "coherence", value, limits.coherence,

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError
 
 __all__ = [
@@ -27,7 +28,6 @@ __all__ = [
     "zeros_cpp",
 ]
 
-_NYQUIST_CPP = 0.5
 _MARGIN_CPP = 0.05
 
 
@@ -174,7 +174,7 @@ def critical_frequencies(
     0.25 0.2718
     """
     if frequencies is None:
-        frequencies = {"Nyquist": _NYQUIST_CPP, "0.25": 0.25}
+        frequencies = {"Nyquist": NYQUIST_CPP, "0.25": 0.25}
     found = []
     for name, freq in frequencies.items():
         if not freq > 0:

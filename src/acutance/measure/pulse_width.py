@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError
 from acutance.fit.pulse import SplinePulse
 from acutance.measure.published import PublishedPulse
@@ -40,7 +41,6 @@ __all__ = [
     "zeros_cpp",
 ]
 
-_NYQUIST_CPP = 0.5
 _AGREES, _DOUBTFUL = 2.0, 3.0
 _DEFORMED_CPP = (0.3, 0.4)
 _SMOOTH_TERMS = 4
@@ -86,7 +86,7 @@ class WidthConsistency:
             return f"{found}: they agree within {abs(self.sigmas):.1f} standard deviations"
         side = "narrow" if self.difference_px > 0 else "wide"
         sure = "probably" if abs(self.sigmas) <= _DOUBTFUL else "almost certainly"
-        gain = float(width_error_gain(self.found_px, self.stated_px, _NYQUIST_CPP))
+        gain = float(width_error_gain(self.found_px, self.stated_px, NYQUIST_CPP))
         return (
             f"{found}: the stated one, or the GSD, is {sure} too {side} by "
             f"{abs(self.difference_px):.3f} px ({abs(self.sigmas):.1f} standard deviations); the "
@@ -232,7 +232,7 @@ def smoothest_width(
     _, coefficient = _smooth_mtf(freq, spectrum, on_axis)
     smooth = 1.0 + _even_powers(np.array(_DEFORMED_CPP), float(freq[-1])) @ coefficient
     low, high = (mtf(f).value / float(m) - 1.0 for f, m in zip(_DEFORMED_CPP, smooth, strict=True))
-    gain = float(width_error_gain(fit.ratio_width_px, on_axis, _NYQUIST_CPP))
+    gain = float(width_error_gain(fit.ratio_width_px, on_axis, NYQUIST_CPP))
     return WidthSearch(stated, tried, roughness, chosen, (low, high), gain)
 
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
 from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, SHADE, VERMILION
 from acutance.report.panels import TWO_SIDED_95, band_edges, mark_frequencies, show_pixels
-from acutance.report.plane_panels import PlanePanel
+from acutance.report.plane_panels import PlanePanel, draw_residuals
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,10 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["bars_panels"]
 
-MOST_SIGMAS = 4.0
 MOST_GROUPS = 12
 COLUMNS = 4
-NYQUIST_CPP = 0.5
 
 
 def bars_panels(measurement: BarsMeasurement) -> tuple[PlanePanel, ...]:
@@ -66,25 +64,13 @@ def bars_panels(measurement: BarsMeasurement) -> tuple[PlanePanel, ...]:
 def _draw_groups(axes: Axes, measurement: BarsMeasurement) -> None:
     show_pixels(axes, measurement.pixels, *measurement.image.roi[:2])
     for number, group in enumerate(measurement.groups, start=1):
-        rows, cols = _outline(group)
-        axes.plot(cols, rows, color=ORANGE, linewidth=1.2)
+        rows, cols = group.bars.region.T
+        axes.fill(cols, rows, facecolor="none", edgecolor=ORANGE, linewidth=1.2)
         axes.annotate(
             f"{number}: {group.freq_cpp:.2f}", (float(cols.max()), float(rows.mean())), (4, 0),
             textcoords="offset points", fontsize=7.5, color=ORANGE, va="center",
         )  # fmt: skip
     axes.set_title(f"{len(measurement.groups)} groups of bars")
-
-
-def _outline(group: BarsGroup) -> tuple[Floats, Floats]:
-    """Rows and columns of a group's corners, closed."""
-    bars = group.bars
-    angle = math.radians(bars.normal_deg)
-    across = 0.5 * bars.width_px * np.array([-1, 1, 1, -1, -1])
-    along = 0.5 * bars.length_px * np.array([-1, -1, 1, 1, -1])
-    return (
-        bars.row + across * math.sin(angle) + along * math.cos(angle),
-        bars.col + across * math.cos(angle) - along * math.sin(angle),
-    )
 
 
 def _draw_mtf(axes: Axes, measurement: BarsMeasurement) -> None:
@@ -113,19 +99,8 @@ def _draw_mtf(axes: Axes, measurement: BarsMeasurement) -> None:
 
 
 def _draw_residual(axes: Axes, measurement: BarsMeasurement) -> None:
-    import matplotlib
-
-    row, col, height, width = measurement.image.roi
     noise = max(measurement.noise, 1e-9 * abs(measurement.contrast.value))
-    colors = matplotlib.colormaps["RdBu_r"].with_extremes(bad=SHADE)
-    shown = axes.imshow(
-        np.ma.masked_invalid(measurement.residual / noise), cmap=colors, vmin=-MOST_SIGMAS,
-        vmax=MOST_SIGMAS, interpolation="nearest",
-        extent=(col - 0.5, col + width - 0.5, row + height - 0.5, row - 0.5),
-    )  # fmt: skip
-    axes.figure.colorbar(shown, ax=axes, shrink=0.8, label="standard deviations")
-    axes.grid(visible=False)
-    axes.set(xlabel="column", ylabel="row", title="Residuals")
+    draw_residuals(axes, measurement.residual / noise, *measurement.image.roi[:2])
 
 
 def _draw_profiles(page: FigureBase, measurement: BarsMeasurement) -> None:
@@ -147,8 +122,7 @@ def _draw_profiles(page: FigureBase, measurement: BarsMeasurement) -> None:
 
 def _draw_profile(axes: Axes, group: BarsGroup, number: int) -> None:
     bars = group.bars
-    places = (np.arange(bars.count) - 0.5 * (bars.count - 1)) * bars.period_px
-    for place in places.tolist():
+    for place in bars.places_px.tolist():
         axes.axvspan(
             place - 0.25 * bars.period_px, place + 0.25 * bars.period_px, color=SHADE, zorder=0
         )

@@ -9,7 +9,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.report.page import BLUE, FAINT, INK, VERMILION, split_page
-from acutance.report.plane_panels import PlanePanel
+from acutance.report.plane_panels import PlanePanel, draw_residuals
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +21,6 @@ __all__ = ["biresolution_panels"]
 
 COLORS = {"across": BLUE, "along": VERMILION}
 _LEAST_COHERENCE = 0.05
-_MOST_SIGMAS = 4.0
 _KERNEL_PX = 3.0
 
 
@@ -117,19 +116,8 @@ def _draw_kernel(axes: Axes, measurement: BiresolutionMeasurement) -> None:
 
 
 def _draw_residual(axes: Axes, measurement: BiresolutionMeasurement) -> None:
-    from matplotlib import colormaps
-
     noise = measurement.pixel_fit.noise or 1.0
-    colors = colormaps["RdBu_r"].with_extremes(bad="#f4d03f")
-    row, col, height, width = measurement.image.roi
-    shown = axes.imshow(
-        np.ma.masked_invalid(measurement.residual / noise), cmap=colors, vmin=-_MOST_SIGMAS,
-        vmax=_MOST_SIGMAS, interpolation="nearest",
-        extent=(col - 0.5, col + width - 0.5, row + height - 0.5, row - 0.5),
-    )  # fmt: skip
-    axes.figure.colorbar(shown, ax=axes, shrink=0.8, label="standard deviations")
-    axes.grid(visible=False)
-    axes.set(xlabel="column", ylabel="row", title="Residuals")
+    draw_residuals(axes, measurement.residual / noise, *measurement.image.roi[:2], unused="#f4d03f")
 
 
 def _draw_map(page: FigureBase, measurement: BiresolutionMeasurement) -> None:

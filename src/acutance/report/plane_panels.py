@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.report.page import BLUE, FAINT, INK, VERMILION
+from acutance.report.page import BLUE, FAINT, INK, SHADE, VERMILION
 from acutance.report.panels import TWO_SIDED_95, band_edges, mark_frequencies
 from acutance.report.wording import word_estimate
 
@@ -25,6 +25,7 @@ __all__ = [
     "draw_plane_lsf",
     "draw_plane_mtf",
     "draw_psf",
+    "draw_residuals",
     "draw_transfer_map",
 ]
 
@@ -33,6 +34,7 @@ LEVELS = (0.02, 0.05, 0.1, 0.25, 0.5, 0.75)
 MTF_LEVELS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9)
 LEAST_REACH_PX = 2.0
 MOST_REACH_PX = 5.0
+MOST_SIGMAS = 4.0
 
 
 @dataclass(frozen=True)
@@ -143,6 +145,27 @@ def draw_transfer_map(axes: Axes, measurement: Measurement2d) -> None:
     axes.clabel(lines, fmt="%g", fontsize=7.5)
     axes.plot([-0.5, 0.5, 0.5, -0.5, -0.5], [-0.5, -0.5, 0.5, 0.5, -0.5], color=VERMILION, lw=1.1)
     axes.set(xlabel="across [c/px]", ylabel="along [c/px]", title="MTF; red: Nyquist")
+
+
+def draw_residuals(
+    axes: Axes, residual_sigmas: Floats, row: int, col: int, unused: str = SHADE
+) -> None:
+    """Residuals in standard deviations, their axes counting pixels from (row, col).
+
+    Pixels that were not used are NaN and get a colour of their own.
+    """
+    import matplotlib
+
+    height, width = residual_sigmas.shape
+    shown = axes.imshow(
+        np.ma.masked_invalid(residual_sigmas),
+        cmap=matplotlib.colormaps["RdBu_r"].with_extremes(bad=unused),
+        vmin=-MOST_SIGMAS, vmax=MOST_SIGMAS, interpolation="nearest",
+        extent=(col - 0.5, col + width - 0.5, row + height - 0.5, row - 0.5),
+    )  # fmt: skip
+    axes.figure.colorbar(shown, ax=axes, shrink=0.8, label="standard deviations")
+    axes.grid(visible=False)
+    axes.set(xlabel="column", ylabel="row", title="Residuals")
 
 
 def _draw_map(axes: Axes, places: Floats, values: Floats, colors: str, *, floor: float) -> None:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
 from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, SHADE, VERMILION
 from acutance.report.panels import TWO_SIDED_95, band_edges, show_pixels
-from acutance.report.plane_panels import PlanePanel
+from acutance.report.plane_panels import PlanePanel, draw_residuals
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["star_panels"]
 
-MOST_SIGMAS = 4.0
-NYQUIST_CPP = 0.5
 POLAR_CPP = 0.7
 LEVELS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9)
 FREQS_CPP = {0.25: BLUE, 0.5: VERMILION}
@@ -122,19 +121,8 @@ def _draw_centre(axes: Axes, measurement: StarMeasurement) -> None:
 
 
 def _draw_residual(axes: Axes, measurement: StarMeasurement) -> None:
-    import matplotlib
-
-    row, col, height, width = measurement.image.roi
     noise = max(measurement.noise, 1e-9 * measurement.level.value)
-    colors = matplotlib.colormaps["RdBu_r"].with_extremes(bad=SHADE)
-    shown = axes.imshow(
-        np.ma.masked_invalid(measurement.residual / noise), cmap=colors, vmin=-MOST_SIGMAS,
-        vmax=MOST_SIGMAS, interpolation="nearest",
-        extent=(col - 0.5, col + width - 0.5, row + height - 0.5, row - 0.5),
-    )  # fmt: skip
-    axes.figure.colorbar(shown, ax=axes, shrink=0.8, label="standard deviations")
-    axes.grid(visible=False)
-    axes.set(xlabel="column", ylabel="row", title="Residuals")
+    draw_residuals(axes, measurement.residual / noise, *measurement.image.roi[:2])
 
 
 def _draw_radii(axes: Axes, measurement: StarMeasurement) -> None:

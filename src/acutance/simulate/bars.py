@@ -29,27 +29,10 @@ HARMONICS = 25
 class BarGroup(Bars):
     """A group of bars as it lies in a scene."""
 
-    @property
-    def region(self) -> Floats:
-        """Corners of the group, (4, 2) as (row, col)."""
-        x, y = Line(self.row, self.col, self.normal_deg).normal
-        corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
-        across, along = 0.5 * self.width_px, 0.5 * self.length_px
-        return np.array(
-            [
-                (
-                    self.row + a * across * y + b * along * x,
-                    self.col + a * across * x - b * along * y,
-                )
-                for a, b in corners
-            ]
-        )
-
     def patches(self, contrast: float) -> list[Patch]:
         """The bars as rectangles of the given level above the ground."""
         middle = Line(self.row, self.col, self.normal_deg)
-        places = (np.arange(self.count) - 0.5 * (self.count - 1)) * self.period_px
-        lines = [middle.moved(float(place), 0.0) for place in places]
+        lines = [middle.moved(place, 0.0) for place in self.places_px.tolist()]
         half = 0.5 * self.period_px
         return [
             Patch(one.row, one.col, half, self.length_px, self.normal_deg, contrast)
