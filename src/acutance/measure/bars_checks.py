@@ -9,7 +9,7 @@ from acutance.measure.bars_options import BarsLimits
 from acutance.measure.cut import Cut
 from acutance.measure.evidence import MUCH, at_least, at_most
 from acutance.measure.measurement import Check
-from acutance.measure.star_checks import piled_up
+from acutance.measure.periodic import clipped_share
 
 __all__ = ["bars_checks"]
 
@@ -27,9 +27,7 @@ def bars_checks(
     misfits = [float(np.sqrt(np.mean(one.residual**2))) / solved.noise for one in solved.groups]
     worst = int(np.argmax(misfits))
     values = np.concatenate([one.value for one in solved.groups])
-    clipped = max(piled_up(values), piled_up(-values))
-    if pixels.saturation_level is not None:
-        clipped = max(clipped, float(np.mean(values >= pixels.saturation_level)))
+    clipped = clipped_share(values, pixels.saturation_level)
     strongest = abs(solved.correlation.strongest)
     outliers = float(np.mean(solved.outlier < 0.5))
     if snr > _QUIET_SNR:

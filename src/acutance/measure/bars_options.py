@@ -8,7 +8,7 @@ from typing import Any
 from acutance.errors import OptionError
 from acutance.fit.bars_group import Bars
 from acutance.fit.levels import Levels
-from acutance.measure.star_options import require_levels
+from acutance.measure.periodic import known_levels
 
 __all__ = ["BarsLimits", "BarsOptions"]
 
@@ -85,7 +85,7 @@ class BarsOptions:
     limits: BarsLimits = field(default_factory=BarsLimits)
 
     def __post_init__(self) -> None:
-        require_levels(self.dark, self.bright, self.level_std)
+        known_levels(self.dark, self.bright, self.level_std)
         if self.count is not None and not 2 <= self.count <= 40:
             raise OptionError(
                 f"{self.count} bars in a group: 2 to 40 can be measured; a single bar is a pulse "
@@ -107,9 +107,7 @@ class BarsOptions:
     @property
     def levels(self) -> Levels | None:
         """Both levels, if they are known."""
-        if self.dark is None or self.bright is None:
-            return None
-        return Levels(self.dark, self.bright, self.level_std)
+        return known_levels(self.dark, self.bright, self.level_std)
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""

@@ -6,16 +6,14 @@ import math
 
 import numpy as np
 
-from acutance.curves.grid import Floats
 from acutance.fit.star import StarSolution
 from acutance.measure.cut import Cut
 from acutance.measure.evidence import MUCH, at_least, at_most
 from acutance.measure.measurement import Check
+from acutance.measure.periodic import clipped_share
 from acutance.measure.star_options import StarLimits
 
-__all__ = ["piled_up", "star_checks", "third_harmonic"]
-
-_PILED_UP = 5
+__all__ = ["star_checks", "third_harmonic"]
 
 
 def star_checks(
@@ -27,7 +25,7 @@ def star_checks(
     coarsest = star.cycles / (2 * math.pi * solved.outer_px)
     finest = star.cycles / (2 * math.pi * solved.inner_px)
     wave = third_harmonic(solved)
-    clipped = _clipped(pixels, solved)
+    clipped = clipped_share(solved.value, pixels.saturation_level)
     strongest = abs(solved.correlation.strongest)
     outliers = float(np.mean(solved.outlier < 0.5))
     return (
@@ -95,19 +93,3 @@ def third_harmonic(solved: StarSolution) -> float:
     amplitude = float(np.hypot(*fit))
     chance = 1.7 * solved.noise * math.sqrt(2 / phase.size)
     return math.sqrt(max(amplitude**2 - chance**2, 0.0)) / solved.model.level
-
-
-def _clipped(pixels: Cut, solved: StarSolution) -> float:
-    """Share of the pixels that pile up at an end of the scale."""
-    values = solved.value
-    share = 0.0
-    if pixels.saturation_level is not None:
-        share = float(np.mean(values >= pixels.saturation_level))
-    return max(share, piled_up(values), piled_up(-values))
-
-
-def piled_up(values: Floats) -> float:
-    """Share of the values that equal the largest, where that is more than chance."""
-    _, counts = np.unique(values, return_counts=True)
-    last, before = int(counts[-1]), int(counts[-2]) if counts.size > 1 else 0
-    return last / values.size if last >= _PILED_UP and last > 3 * before else 0.0

@@ -8,8 +8,9 @@ from typing import Any
 from acutance.errors import OptionError
 from acutance.fit.levels import Levels
 from acutance.fit.star_waves import Wave
+from acutance.measure.periodic import known_levels
 
-__all__ = ["StarLimits", "StarOptions", "require_levels"]
+__all__ = ["StarLimits", "StarOptions"]
 
 
 @dataclass(frozen=True)
@@ -86,32 +87,14 @@ class StarOptions:
     def __post_init__(self) -> None:
         if self.wave not in ("sine", "square"):
             raise OptionError(f"wave is {self.wave!r}: it has to be 'sine' or 'square'")
-        require_levels(self.dark, self.bright, self.level_std)
+        known_levels(self.dark, self.bright, self.level_std)
 
     @property
     def levels(self) -> Levels | None:
         """Both levels, if they are known."""
-        if self.dark is None or self.bright is None:
-            return None
-        return Levels(self.dark, self.bright, self.level_std)
+        return known_levels(self.dark, self.bright, self.level_std)
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""
         chosen = {name: value for name, value in vars(self).items() if name != "limits"}
         return {**chosen, "limits": dict(vars(self.limits))}
-
-
-def require_levels(dark: float | None, bright: float | None, std: float) -> None:
-    """Refuse levels that mean nothing.
-
-    Raises
-    ------
-    OptionError
-        If there is but one, dark is not the lower one, or the standard deviation is negative.
-    """
-    if (dark is None) != (bright is None):
-        raise OptionError("one level was given: give dark and bright, or neither")
-    if dark is not None and bright is not None and not dark < bright:
-        raise OptionError(f"dark is {dark:g} and bright {bright:g}: dark has to be the lower one")
-    if not std >= 0:
-        raise OptionError(f"level_std is {std:g}, it has to be 0 or more")

@@ -1,0 +1,45 @@
+"""What bars and stars have in common: levels stated by the caller, pixels at the scale's ends."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.errors import OptionError
+from acutance.fit.levels import Levels
+
+__all__ = ["clipped_share", "known_levels"]
+
+_PILED_UP = 5
+
+
+def known_levels(dark: float | None, bright: float | None, std: float) -> Levels | None:
+    """Both levels of a target's materials, or None where neither was stated.
+
+    Raises
+    ------
+    OptionError
+        If there is but one, dark is not the lower one, or the standard deviation is negative.
+    """
+    if (dark is None) != (bright is None):
+        raise OptionError("one level was given: give dark and bright, or neither")
+    if dark is not None and bright is not None and not dark < bright:
+        raise OptionError(f"dark is {dark:g} and bright {bright:g}: dark has to be the lower one")
+    if not std >= 0:
+        raise OptionError(f"level_std is {std:g}, it has to be 0 or more")
+    return None if dark is None or bright is None else Levels(dark, bright, std)
+
+
+def clipped_share(values: Floats, saturation_level: float | None) -> float:
+    """Share of the pixels, (n,), that reach the detector's limit or pile up at an end."""
+    share = 0.0
+    if saturation_level is not None:
+        share = float(np.mean(values >= saturation_level))
+    return max(share, _piled_up(values), _piled_up(-values))
+
+
+def _piled_up(values: Floats) -> float:
+    """Share of the values that equal the largest, where that is more than chance."""
+    _, counts = np.unique(values, return_counts=True)
+    last, before = int(counts[-1]), int(counts[-2]) if counts.size > 1 else 0
+    return last / values.size if last >= _PILED_UP and last > 3 * before else 0.0
