@@ -18,6 +18,7 @@ from acutance.fit.trim import Extent, trim
 from acutance.measure.checks import EdgeChecks, sample_phases
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.measurement import Measurement, Samples
+from acutance.measure.one_thread import one_thread
 from acutance.measure.options import EdgeOptions
 from acutance.measure.published import PUBLISHED, PUBLISHED_OPTIONS
 from acutance.raster import Gsd, Image
@@ -53,6 +54,7 @@ METHODS: dict[str, Callable[[EdgeBand, EdgeOptions], EdgeFit]] = {
 }
 
 
+@one_thread
 def measure_edge(
     image: Image | ArrayLike,
     roi: RoiLike = None,

@@ -17,6 +17,7 @@ from acutance.fit.pulse import PulseBand, fit_pulse
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.edge import require_phases
 from acutance.measure.measurement import Measurement, Samples
+from acutance.measure.one_thread import one_thread
 from acutance.measure.options import PulseOptions
 from acutance.measure.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
 from acutance.measure.pulse_checks import PulseChecks
@@ -62,6 +63,7 @@ PULSE_METHODS: dict[str, Callable[[PulseBand, bool, PulseOptions], _Fitted]] = {
 }
 
 
+@one_thread
 def measure_pulse(
     image: Image | ArrayLike,
     roi: RoiLike = None,

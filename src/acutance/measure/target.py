@@ -17,6 +17,7 @@ from acutance.fit.locate import Segment, find_segments
 from acutance.measure.cut import RoiLike, cut
 from acutance.measure.edge import measure_segment
 from acutance.measure.measurement import Measurement
+from acutance.measure.one_thread import one_thread
 from acutance.measure.options import EdgeOptions
 from acutance.raster import Gsd, Image
 
@@ -77,6 +78,7 @@ class TargetResult:
     groups: Mapping[str, EdgeGroup]
 
 
+@one_thread
 def measure_edges(
     image: Image | ArrayLike,
     roi: RoiLike = None,
