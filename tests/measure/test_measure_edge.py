@@ -179,6 +179,14 @@ def test_limits_can_be_changed():
     assert check.limit == ">= 10"
 
 
+def test_the_angle_is_limited_by_the_method_unless_somebody_limits_it():
+    image, _ = simulated(angle_deg=35.0)
+    strict = EdgeOptions(limits=EdgeLimits(angle_deg=10.0))
+    assert "angle_deg" not in failed(ac.measure_edge(image))
+    assert "angle_deg" in failed(ac.measure_edge(image, method="iso12233"))
+    assert "angle_deg" in failed(ac.measure_edge(image, options=strict))
+
+
 def test_rer_centre_can_be_chosen():
     image, _ = simulated()
     assert ac.measure_edge(image).response.rer_centre == "half"

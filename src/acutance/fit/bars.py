@@ -26,8 +26,8 @@ from acutance.fit.bars_seen import SeenGroup, group_columns
 from acutance.fit.levels import Levels, with_level
 from acutance.fit.noise import Correlation, correlation, outlier_weights, robust_scale
 from acutance.fit.normal import Normal
+from acutance.fit.plane_model import PlaneModel
 from acutance.fit.posterior import Posterior, Prior, regress
-from acutance.fit.star import PlaneModel
 from acutance.fit.star_modes import (
     LOG_AMPLITUDE,
     LOG_AMPLITUDE_STD,

@@ -29,6 +29,7 @@ _FREQ_CPP: Floats = np.asarray(np.arange(101) * 0.01)
 _STEP_PX = 0.05
 _MIN_HALF_PX = 10.0
 _Linear = tuple[Floats, SplineRows]
+_Parts = tuple[Floats, NDArray[np.intp], Floats, Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,19 +67,12 @@ class LsfModel:
     def esf(self, s: Floats) -> Floats:
         """Normalised ESF at normal distances `s` in pixels, (n,)."""
         u = s / self.blur.width_px
-        departure = combine(*edge_weights(u), self.spline)
-        sums = self.level * self.blur.esf(s) + departure + self.tail * tail_esf(u)
-        return np.asarray(sums / self.height)
+        return self._sum(self.blur.esf(s), *edge_weights(u), tail_esf(u)) / self.height
 
     def step(self, s: Floats) -> tuple[Floats, Floats]:
         """Response to the step and its derivative at normal distances `s`, in image units."""
-        width = self.blur.width_px
-        u = s / width
-        esf, lsf = self.blur.esf_and_lsf(s)
-        esf = self.level * esf + combine(*edge_weights(u), self.spline) + self.tail * tail_esf(u)
-        cell, weights = line_weights(u)
-        lsf = self.level * lsf + combine(cell, weights, self.spline) / width
-        return esf, lsf + self.tail / width * tail_lsf(u)
+        esf, lsf = self._parts(s)
+        return self._sum(*esf), self._sum(*lsf)
 
     def half_point(self) -> float:
         """Normal distance of the 50 % point."""
@@ -91,7 +85,9 @@ class LsfModel:
         """The curves on their grids, 0 at `middle`."""
         half = math.ceil(max(_MIN_HALF_PX, HALF_SUPPORT * self.blur.width_px) / _STEP_PX)
         distance = np.asarray(np.arange(-half, half + 1) * _STEP_PX)
-        (esf, esf_design), (lsf, lsf_design) = self._esf_and_lsf(distance + middle)
+        (esf, esf_design), (lsf, lsf_design) = (
+            self._normalised(*parts) for parts in self._parts(distance + middle)
+        )
         otf, otf_design = self._otf(_FREQ_CPP)
         return Response(
             Esf(distance, esf, esf_design, self.latent),
@@ -104,22 +100,29 @@ class LsfModel:
         steepness = float(sample(response.lsf.distance_px, response.lsf.value, 0.0))
         return response.esf(0.0).std / abs(steepness)
 
-    def _esf_and_lsf(self, s: Floats) -> tuple[_Linear, _Linear]:
-        """Normalised ESF, and LSF per pixel."""
+    def _parts(self, s: Floats) -> tuple[_Parts, _Parts]:
+        """What the ESF, and the LSF per pixel, are sums of."""
         width = self.blur.width_px
         u = s / width
-        blurred_esf, blurred_lsf = self.blur.esf_and_lsf(s)
-        cell, weights = edge_weights(u)
-        esf = self._normalised(blurred_esf, cell, weights, tail_esf(u))
-        weights = line_weights(u)[1] / width
-        return esf, self._normalised(blurred_lsf, cell, weights, tail_lsf(u) / width)
+        esf, lsf = self.blur.esf_and_lsf(s)
+        cell, slopes = line_weights(u)
+        return (
+            (esf, *edge_weights(u), tail_esf(u)),
+            (lsf, cell, slopes / width, tail_lsf(u) / width),
+        )
+
+    def _sum(
+        self, blurred: Floats, cell: NDArray[np.intp], weights: Floats, tail: Floats
+    ) -> Floats:
+        """The blur, the spline and the tail, each with what was fitted of it, in image units."""
+        return self.level * blurred + combine(cell, weights, self.spline) + self.tail * tail
 
     def _normalised(
         self, blurred: Floats, cell: NDArray[np.intp], weights: Floats, tail: Floats
     ) -> _Linear:
+        """The sum, of height 1, and its design."""
         height = self.height
-        value = self.level * blurred + combine(cell, weights, self.spline) + self.tail * tail
-        value /= height
+        value = self._sum(blurred, cell, weights, tail) / height
         # What lifts the height lowers the curve: so do the last coefficient and the tail.
         dense = np.empty((value.size, 2))
         np.multiply(value, -1 / height, out=dense[:, 0])

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -22,20 +21,20 @@ from acutance.errors import NoStarError
 from acutance.fit.levels import Levels, with_level
 from acutance.fit.noise import Correlation, correlation, outlier_weights, robust_scale
 from acutance.fit.normal import Normal
+from acutance.fit.plane_model import PlaneModel
 from acutance.fit.posterior import Posterior, Prior, regress
 from acutance.fit.star_modes import (
     LOG_AMPLITUDE,
     LOG_AMPLITUDE_STD,
     MEAN_MODES,
     UNSEEN,
-    Complexes,
     PlaneBlur,
     ProcessModes,
 )
 from acutance.fit.star_rings import FoundStar, ring_modulations
-from acutance.fit.star_waves import HIGHEST_CPP, Wave, star_table
+from acutance.fit.star_waves import Wave, star_table
 
-__all__ = ["PlaneModel", "StarSolution", "solve_star"]
+__all__ = ["StarSolution", "solve_star"]
 
 RIM_MARGIN_PX: Final = 3.0
 """Pixels nearer to the star's rim are left out: what lies beyond is not known."""
@@ -47,62 +46,6 @@ _NOISE_FLOOR: Final = 2e-4
 _MAX_PASSES: Final = 8
 _LEAST_PIXELS: Final = 400
 _GROUND: Final = 6
-
-
-@dataclass(frozen=True, eq=False)
-class PlaneModel:
-    """An OTF over the plane, with its covariance (`acutance.curves.OtfModel`).
-
-    Attributes
-    ----------
-    blur : PlaneBlur
-        Mean of the OTF.
-    beta : (m,) array
-        Coefficients of the modes, or of the mean's alone; their sum at zero frequency is the
-        level.
-    spread : (m, k) array
-        Factor of the covariance of beta.
-    """
-
-    blur: PlaneBlur
-    beta: Floats
-    spread: Floats
-
-    @property
-    def band_cpp(self) -> float:
-        """Frequency beyond which nothing is transferred."""
-        return HIGHEST_CPP
-
-    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """OTF, (n,)."""
-        return np.asarray(self._modes(u_cpp, v_cpp) @ self.beta / self.level)
-
-    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Factor of its covariance, (n, k)."""
-        modes = self._modes(u_cpp, v_cpp)
-        otf = modes @ self.beta / self.level
-        return np.asarray((modes - np.outer(otf, self.at_zero)) @ self.spread / self.level)
-
-    @cached_property
-    def level(self) -> float:
-        """Amplitude of the star before the sensor."""
-        return float(self.at_zero @ self.beta)
-
-    @property
-    def level_std(self) -> float:
-        """Its standard deviation."""
-        return float(np.linalg.norm(self.at_zero @ self.spread))
-
-    @cached_property
-    def at_zero(self) -> Floats:
-        """What every coefficient adds to the level, (m,)."""
-        return np.asarray(self._modes(np.zeros(1), np.zeros(1))[0].real)
-
-    def _modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        mean = self.blur.modes(u_cpp, v_cpp)
-        if self.beta.size == MEAN_MODES:
-            return mean
-        return np.hstack([mean, ProcessModes(self.blur.width_px).plane(u_cpp, v_cpp)])
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,6 +24,8 @@ from acutance.measure.options import EdgeLimits
 __all__ = ["EdgeChecks", "sample_phases"]
 
 _OUTLIER_SIGMAS = 4.5
+_MOST_BY_ROWS_DEG = 30.0
+_MOST_DEG = 45.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +97,9 @@ def contrast(seen: Evidence, limits: EdgeLimits) -> Check:
 def angle(fit: EdgeFit, limits: EdgeLimits, by_rows: bool) -> Check:
     """Angle between the edge and the grid."""
     angle = fit.line.angle_deg
-    limit = limits.angle_deg if by_rows else 45.0
+    limit = limits.angle_deg
+    if limit is None:
+        limit = _MOST_BY_ROWS_DEG if by_rows else _MOST_DEG
     return at_most(
         "angle_deg", angle, limit,
         f"the edge is inclined by {angle:.2f} degrees (KOMPSAT-3 draft 3d allows 30 to methods "

@@ -30,8 +30,9 @@ class EdgeLimits:
         Least ratio of contrast to noise.
     uniformity : float
         Least ratio of contrast to the structure of either plateau.
-    angle_deg : float
-        Largest angle between edge and grid for the methods that work row by row.
+    angle_deg : float, optional
+        Largest angle between edge and grid; by default 30 for the methods that work row by row,
+        and any (45) for a fit along the normal.
     sample_phases : float
         Least number of sub-pixel phases.
     rows : float
@@ -60,7 +61,7 @@ class EdgeLimits:
 
     contrast_snr: float = 50.0
     uniformity: float = 50.0
-    angle_deg: float = 30.0
+    angle_deg: float | None = None
     sample_phases: float = 3.0
     rows: float = 20.0
     straightness_px: float = 0.05

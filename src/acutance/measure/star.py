@@ -15,7 +15,8 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP, mtf_crossing
 from acutance.errors import NoStarError, OptionError
 from acutance.fit.noise import robust_scale
-from acutance.fit.star import PlaneModel, StarSolution, solve_star
+from acutance.fit.plane_model import PlaneModel
+from acutance.fit.star import StarSolution, solve_star
 from acutance.fit.star_find import find_star
 from acutance.fit.star_rings import FoundStar, ring_modulations
 from acutance.measure.cut import Cut, RoiLike, cut
