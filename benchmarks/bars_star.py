@@ -82,7 +82,7 @@ def star_trial(job: tuple[StarCase, str, int, int]) -> tuple[np.ndarray, np.ndar
     found = measure_star(
         image, cycles=case.cycles, options=StarOptions(wave=wave, **levels(case, rng))
     )
-    truths, curves = [truth.mtf_mean(FREQ)], [found.mtf]
+    truths, curves = [truth.mtf_mean(FREQ, found.directions_deg)], [found.mtf]
     # A fan of less than half a turn holds no spokes for some directions.
     if case.sweep_deg >= 180:
         truths += [truth.mtf_toward(0.0, FREQ), truth.mtf_toward(90.0, FREQ)]

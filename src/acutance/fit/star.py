@@ -34,11 +34,12 @@ from acutance.fit.star_modes import (
 from acutance.fit.star_rings import FoundStar, ring_modulations
 from acutance.fit.star_waves import Wave, star_table
 
-__all__ = ["StarSolution", "solve_star"]
+__all__ = ["RIM_MARGIN_PX", "SIDE_MARGIN_PX", "StarSolution", "solve_star"]
 
 RIM_MARGIN_PX: Final = 3.0
 """Pixels nearer to the star's rim are left out: what lies beyond is not known."""
-_SIDE_MARGIN_PX: Final = 5.0
+SIDE_MARGIN_PX: Final = 5.0
+"""Pixels nearer to a straight side of a fan are left out."""
 _FINEST_CPP: Final = 1.3
 """Pixels nearer to the centre see spokes finer than this: the printed centre may end there."""
 _APERTURE_STD: Final = 0.18
@@ -173,7 +174,7 @@ def solve_star(
 def _select(image: Floats, star: FoundStar, inner: float, outer: float) -> _Pixels:
     rows, cols = np.nonzero(np.isfinite(image))
     radius, angle = star.polar(rows.astype(float), cols.astype(float))
-    margin = _SIDE_MARGIN_PX / np.maximum(radius, 1.0)
+    margin = SIDE_MARGIN_PX / np.maximum(radius, 1.0)
     kept = (radius > inner + 0.5) & (radius < outer) & star.holds(angle, margin)
     if np.count_nonzero(kept) < _LEAST_PIXELS:
         raise NoStarError(

@@ -16,7 +16,7 @@ from acutance.curves.metrics import NYQUIST_CPP, mtf_crossing
 from acutance.errors import NoStarError, OptionError
 from acutance.fit.noise import robust_scale
 from acutance.fit.plane_model import PlaneModel
-from acutance.fit.star import StarSolution, solve_star
+from acutance.fit.star import SIDE_MARGIN_PX, StarSolution, solve_star
 from acutance.fit.star_find import find_star
 from acutance.fit.star_rings import FoundStar, ring_modulations
 from acutance.measure.cut import Cut, RoiLike, cut
@@ -94,16 +94,28 @@ class StarMeasurement(Measurement2d):
 
     @cached_property
     def mtf(self) -> Mtf:
-        """Mean of the MTF over the directions the star holds."""
+        """Mean of the MTF over `directions_deg`."""
         return mean_over_directions(self.otf, self.directions_deg)
 
     @property
     def directions_deg(self) -> Floats:
-        """Directions across the spokes, from the column axis towards the row axis, (n,)."""
+        """Directions across the spokes, from the column axis towards the row axis, (n,).
+
+        Of a fan those in which it shows Nyquist's frequency (or the highest it does): its spokes
+        are that fine near the centre, where the margin beside its straight sides takes most.
+        """
+        star = self.star
+        first, sweep = star.first_deg, star.sweep_deg
+        if sweep < 360:
+            fine_px = star.radius_at(min(NYQUIST_CPP, self.reach_cpp[1]))
+            beside = math.degrees(SIDE_MARGIN_PX / fine_px)
+            # Of a fan that is too narrow at that radius the middle remains.
+            beside = min(beside, 0.5 * sweep)
+            first, sweep = first + beside, sweep - 2 * beside
         # Opposite spokes show the same direction: half a turn is all.
-        sweep = min(self.star.sweep_deg, 180.0)
+        sweep = min(sweep, 180.0)
         count = max(round(sweep / _DIRECTION_STEP_DEG), 1)
-        return np.asarray(self.star.first_deg + 90 + (np.arange(count) + 0.5) * sweep / count)
+        return np.asarray(first + 90 + (np.arange(count) + 0.5) * sweep / count)
 
     def mtf_by_direction(self, freq_cpp: float, directions_deg: Floats) -> tuple[Floats, Floats]:
         """MTF at one frequency in some directions, and its standard deviation, (n,) each."""

@@ -127,12 +127,20 @@ class StarTruth:
         angle, freq = math.radians(direction_deg), np.asarray(freq_cpp, float)
         return np.abs(self.sensor.otf(freq * math.cos(angle), freq * math.sin(angle)))
 
-    def mtf_mean(self, freq_cpp: ArrayLike) -> Floats:
-        """Mean of the MTF over the directions the star holds, at frequencies in c/px."""
-        middle = (np.arange(360) + 0.5) / 360 * self.star.sweep_deg
-        freq = np.asarray(freq_cpp, float)
-        # The normal of a spoke is a quarter turn from the spoke.
-        angle = np.radians(self.star.start_deg + middle + 90.0)
+    def mtf_mean(self, freq_cpp: ArrayLike, directions_deg: ArrayLike | None = None) -> Floats:
+        """Mean of the MTF over some directions, at frequencies in c/px.
+
+        Parameters
+        ----------
+        freq_cpp : float or (n,) array_like
+        directions_deg : (k,) array_like, optional
+            Directions of the normals; those of all spokes unless given.
+        """
+        if directions_deg is None:
+            middle = (np.arange(360) + 0.5) / 360 * self.star.sweep_deg
+            # The normal of a spoke is a quarter turn from the spoke.
+            directions_deg = self.star.start_deg + middle + 90.0
+        freq, angle = np.asarray(freq_cpp, float), np.radians(directions_deg)
         u, v = np.multiply.outer(freq, np.cos(angle)), np.multiply.outer(freq, np.sin(angle))
         return np.asarray(np.mean(np.abs(self.sensor.otf(u, v)), axis=-1))
 
