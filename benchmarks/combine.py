@@ -57,10 +57,25 @@ def systems() -> dict[str, ac.Sensor]:
         ),
         "halo": known["halo"],
         "asymmetric": known["asymmetric"],
+        "sharpened": known["sharpened"],
+        "unsharp mask": ac.Sensor([optics.Gaussian(0.5), pixel, unsharp_mask(0.8, 1.0)]),
         "diffraction": known["diffraction"],
         "defocused": known["defocused"],
-        "sharpened": known["sharpened"],
-    }
+        "diffracting, sharpened": ac.Sensor(
+            [
+                optics.Diffraction(1.2, obscuration=0.3), optics.Gaussian(0.3), pixel,
+                optics.Sharpening.both_axes(0.15),
+            ]
+        ),
+    }  # fmt: skip
+
+
+def unsharp_mask(gain: float, sigma_px: float) -> optics.Sharpening:
+    """The image and `gain` times what a Gaussian of 5 x 5 pixels takes out of it."""
+    fall = np.exp(-0.5 * (np.arange(-2, 3) / sigma_px) ** 2)
+    kernel = -gain * np.outer(fall, fall) / fall.sum() ** 2
+    kernel[2, 2] += 1 + gain
+    return optics.Sharpening(tuple(map(tuple, kernel.tolist())))
 
 
 @dataclass(frozen=True)

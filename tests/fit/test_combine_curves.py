@@ -121,10 +121,21 @@ def test_curves_that_contradict_each_other_have_a_chi_square_and_wider_intervals
     assert np.argmin([one.p_value for one in fit.members]) in (0, 4)
 
 
-def test_a_system_no_form_holds_gets_a_departure():
+def test_a_sharpened_product_is_held_by_a_form():
     sensor = optics.Sensor(
         [optics.Gaussian(0.45), optics.Detector(), optics.Sharpening.both_axes(0.27)]
     )
+    fit = combine_curves([curve(sensor.otf, one, 0.003) for one in DIRECTIONS])
+    assert fit.plain.p_value > 0.01
+    assert fit.best.form.numbers(fit.best.parameters)["sharpening_across"] == pytest.approx(
+        0.27, abs=0.03
+    )
+
+
+def test_a_system_no_form_holds_gets_a_departure():
+    aperture = optics.Diffraction(1.2, obscuration=0.3)
+    kernel = [[-0.15, 0.05, 1.2, 0.05, -0.15]]
+    sensor = optics.Sensor([aperture, optics.Detector(), optics.Sharpening(kernel)])
     fit = combine_curves([curve(sensor.otf, one, 0.003) for one in DIRECTIONS])
     assert fit.plain.p_value < 1e-6
     assert fit.departure > 0.02

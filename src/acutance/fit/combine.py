@@ -201,7 +201,8 @@ def combine_curves(
         for start in likely
     ]
     weighted = _weighted([replace(one, departure=departure) for one in fits])
-    total, members = _chi_squares(data, weighted, _shapes(data, weighted[0]))
+    simplest = min(plain, key=lambda one: len(one.form.terms))
+    total, members = _chi_squares(data, weighted, _shapes(data, simplest))
     return CombinedFit(tuple(data.curves), weighted, total, members, _chi_squares(data, [first])[0])
 
 
@@ -325,11 +326,15 @@ def _span(ways: Floats) -> Floats:
     return np.asarray(left[:, size > _FAINT * size[0]])
 
 
-def _shapes(data: WhitenedCurves, best: FormFit) -> Floats:
-    """How curves of sensors differ: in width, smear, halo and trail, (n, k)."""
-    form = SensorForm(("gaussian", "smear", "halo", "trail"), best.form.detector_px)
+def _shapes(data: WhitenedCurves, simplest: FormFit) -> Floats:
+    """How curves of sensors differ: in width, smear, halo and trail, (n, k).
+
+    About the Gaussian of the simplest form: that of another may be half a sensor, as behind an
+    unsharp mask.
+    """
+    form = SensorForm(("gaussian", "smear", "halo", "trail"), simplest.form.detector_px)
     at = form.mean.copy()
-    at[:3] = best.parameters[:3]
+    at[:3] = simplest.parameters[:3]
     at[3:5] = 0.5
     return data.of(form.slopes(at, data.u_cpp, data.v_cpp))
 

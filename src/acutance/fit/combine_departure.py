@@ -1,9 +1,10 @@
 """What no parametric sensor holds: a smooth relative departure of the logarithm of its OTF.
 
-The OTF is taken as ``H(u, v) + |H| ln|H| e (a(u, v) + i b(u, v))``, to first order ``H`` with its
-logarithm changed by the share ``a``; e makes the largest slope 1. The functions a (even) and b
-(odd) are Gaussian processes of one length, written in values at a few places of the plane, so that
-they are linear parameters with a normal prior.
+The OTF is taken as ``H(u, v) - |H| ln min(|H|, |D|) e (a(u, v) + i b(u, v))``, to first order ``H``
+with its logarithm changed by the share ``a``. D is the detector's OTF, above which only sharpening
+lifts H; e makes the largest slope 1. The functions a (even) and b (odd) are Gaussian processes of
+one length, written in values at a few places of the plane, so that they are linear parameters with
+a normal prior.
 """
 
 from __future__ import annotations
@@ -55,7 +56,9 @@ class Departure:
     def directions(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Change of the OTF for a unit of every direction, (n, m): exactly 0 at zero frequency."""
         size = np.abs(self.form.otf(np.array(self.parameters), u_cpp, v_cpp))
-        reach = -math.e * size * np.log(np.maximum(size, 1e-30))
+        # Of a sharpened product the blur is seen through a gain: its detector's at least.
+        blurred = np.minimum(size, self.form.detector_otf(u_cpp, v_cpp))
+        reach = -math.e * size * np.log(np.maximum(np.abs(blurred), 1e-30))
         even = self._kernel(u_cpp, v_cpp, 1.0) @ self._roots[0]
         odd = self._kernel(u_cpp, v_cpp, -1.0) @ self._roots[1]
         return np.asarray(reach[:, None] * np.concatenate([even, 1j * odd], axis=1))

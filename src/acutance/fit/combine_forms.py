@@ -1,4 +1,4 @@
-"""Parametric sensors over the plane of frequencies: Gaussian x detector x smear, halo, trail.
+"""Parametric sensors over the plane of frequencies: Gaussian x detector x smear, halo, ...
 
 Each form is a product of terms; each term is centred, so that no form moves the image. Parameters
 are unbounded numbers of order 1 with a normal prior, wide enough to say no more than what a sensor
@@ -105,6 +105,37 @@ def _trail_numbers(p: Floats) -> dict[str, float]:
     return {"trail_across_px": float(p[0]), "trail_along_px": float(p[1])}
 
 
+def _taps(p: Floats) -> tuple[float, float]:
+    """Outer taps of the kernel across and along, less the sign: two fifths at the most."""
+    return 0.4 * math.tanh(p[0]), 0.4 * math.tanh(p[1])
+
+
+def _sharpening(p: Floats, u: Floats, v: Floats) -> Floats:
+    across, along = _taps(p)
+    by_col = 1 + 2 * across * (1 - np.cos(2 * math.pi * u))
+    return np.asarray(by_col * (1 + 2 * along * (1 - np.cos(2 * math.pi * v))))
+
+
+def _sharpening_numbers(p: Floats) -> dict[str, float]:
+    across, along = _taps(p)
+    return {"sharpening_across": across, "sharpening_along": along}
+
+
+def _mask(p: Floats) -> tuple[float, float]:
+    """Gain, which nobody makes larger than two, and width of an unsharp mask."""
+    return 2.0 * _logistic(p[0]), math.exp(p[1])
+
+
+def _unsharp(p: Floats, u: Floats, v: Floats) -> Floats:
+    gain, sigma = _mask(p)
+    return np.asarray(1 + gain * (1 - np.exp(-2 * (math.pi * sigma) ** 2 * (u**2 + v**2))))
+
+
+def _unsharp_numbers(p: Floats) -> dict[str, float]:
+    gain, sigma = _mask(p)
+    return {"unsharp_gain": gain, "unsharp_sigma_px": sigma}
+
+
 def _aperture(p: Floats) -> tuple[float, float]:
     return math.exp(p[0]), 0.7 * _logistic(p[1])
 
@@ -126,9 +157,12 @@ TERMS: dict[str, Term] = {
     "smear": Term(_smear, (0.0, 0.0), (1.2, 1.2), _smear_numbers),
     "halo": Term(_halo, (-2.2, math.log(2.0)), (1.0, 0.5), _halo_numbers),
     "trail": Term(_trail, (0.0, 0.0), (0.4, 0.4), _trail_numbers),
+    "sharpening": Term(_sharpening, (0.4, 0.4), (0.4, 0.4), _sharpening_numbers),
+    "unsharp": Term(_unsharp, (-1.0, 0.0), (1.0, 0.3), _unsharp_numbers),
     "diffraction": Term(_diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
 }
-"""Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear and halo of a pixel or two."""
+"""Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear and halo of a pixel or two, taps
+of up to a third, masks of a quarter to the whole of what is missing."""
 
 
 @dataclass(frozen=True)
@@ -176,11 +210,15 @@ class SensorForm:
 
     def otf(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF (n,), exactly 1 at zero frequency."""
-        across, along = self.detector_px
-        product = (np.sinc(across * u_cpp) * np.sinc(along * v_cpp)).astype(complex)
+        product = self.detector_otf(u_cpp, v_cpp).astype(complex)
         for term, own in self._split(p):
             product *= term.otf(own, u_cpp, v_cpp)
         return np.asarray(product)
+
+    def detector_otf(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
+        """OTF of the detector alone, (n,)."""
+        across, along = self.detector_px
+        return np.asarray(np.sinc(across * u_cpp) * np.sinc(along * v_cpp))
 
     def slopes(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Derivatives of the OTF by the parameters, (n, p), by central differences."""
@@ -216,8 +254,11 @@ FORMS: tuple[tuple[str, ...], ...] = (
     ("gaussian", "halo"),
     ("gaussian", "trail"),
     ("gaussian", "diffraction"),
+    ("gaussian", "sharpening"),
+    ("gaussian", "unsharp"),
     ("gaussian", "smear", "halo"),
     ("gaussian", "smear", "trail"),
     ("gaussian", "halo", "trail"),
+    ("gaussian", "smear", "sharpening"),
 )
 """Forms that are tried, the simplest first."""
