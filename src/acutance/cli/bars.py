@@ -80,7 +80,7 @@ def bars(
     The contrast of every group (CTF) and Coltman's series stand beside the result.
     """
     wanted = ResultOptions(
-        image,
+        (image, roi),
         figure=figure,
         report=report,
         csv=csv,

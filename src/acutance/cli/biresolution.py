@@ -96,7 +96,7 @@ def biresolution(
     the LOW image. Shift, gain and offset between the two are fitted.
     """
     wanted = ResultOptions(
-        low,
+        (low, high, reference, roi),
         figure=figure,
         report=report,
         csv=csv,

@@ -60,7 +60,7 @@ def combine(
     together by a parametric sensor; a chi-square says whether they agree.
     """
     wanted = ResultOptions(
-        files[0],
+        files,
         figure=figure,
         report=report,
         csv=csv,

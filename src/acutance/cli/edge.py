@@ -73,7 +73,7 @@ def edge(
     if all_edges and compare is not None:
         raise OptionError("--all and --compare cannot be combined: use one of them")
     wanted = ResultOptions(
-        image,
+        (image, roi),
         figure=figure,
         report=report,
         csv=csv,

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from acutance.errors import OptionError
 
-__all__ = ["OutputFile", "check_output"]
+__all__ = ["OutputFile", "check_optional", "check_output"]
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class OutputFile:
 
 
 def check_output(
-    option: str, name: str, endings: Sequence[str], *, keep: str | None = None
+    option: str, name: str, endings: Sequence[str], *, keep: Iterable[str | None] = ()
 ) -> OutputFile:
     """Make sure that a file can be written, before any work is done for it.
 
@@ -62,14 +62,15 @@ def check_output(
         The path.
     endings : sequence of str
         What the name may end in, with the dot.
-    keep : str, optional
-        A file that must not be overwritten: the input.
+    keep : iterable of str or None
+        Files that must not be overwritten: the inputs. What is no file (a missing one, a region
+        in numbers, the name of a preset) is passed over.
 
     Raises
     ------
     OptionError
         If the ending is none of `endings`, the folder is missing or not writable, the path is a
-        folder, or it is the input.
+        folder, or it is an input, also by another name or through a link.
     """
     path = Path(name)
     if path.suffix.lower() not in endings:
@@ -81,8 +82,11 @@ def check_output(
         )
     if path.is_dir():
         raise OptionError(f"{option} {name} is a folder: give the name of a file")
-    if keep is not None and path.exists() and Path(keep).exists() and path.samefile(keep):
-        raise OptionError(f"{option} {name} is the input image: give another name")
+    for known in keep:
+        if known is not None and _is_same_file(name, known):
+            raise OptionError(
+                f"{option} {name} is the input {known}, which it would overwrite: give another name"
+            )
     part = _part_path(path)
     try:
         part.write_bytes(b"")
@@ -90,6 +94,18 @@ def check_output(
     except OSError as error:
         raise OptionError(_refusal(option, path, error)) from error
     return OutputFile(option, path)
+
+
+def check_optional(
+    option: str, name: str | None, endings: Sequence[str], *, keep: Iterable[str | None] = ()
+) -> OutputFile | None:
+    """The file of `check_output`, or None where none was asked for."""
+    return None if name is None else check_output(option, name, endings, keep=keep)
+
+
+def _is_same_file(name: str, other: str) -> bool:
+    # os.path.exists is False, and raises nothing, for words that can be no path at all.
+    return os.path.exists(name) and os.path.exists(other) and os.path.samefile(name, other)
 
 
 def _part_path(path: Path) -> Path:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from acutance.cli.output import OutputFile, check_output
+from acutance.cli.output import OutputFile, check_optional
 from acutance.cli.result_options import JsonOption
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.cli.study import WorkersOption, execution_of, progress_bar
@@ -90,8 +90,8 @@ def plan(
         raise OptionError(f"acutance plan {target}: it has to be edge or pulse")
     if target == "edge" and (width_px is not None or width_m is not None):
         raise OptionError("--width-px and --width-m belong to a pulse: an edge has no width")
-    table = None if csv is None else check_output("--csv", csv, (".csv",))
-    drawing = None if figure is None else check_output("--figure", figure, (".png", ".svg", ".pdf"))
+    table = check_optional("--csv", csv, (".csv",), keep=(sensor,))
+    drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
     system = _sensor(sensor, gsd)
     options = PlanOptions(
         target=_TARGETS[target], sensor=system, snr=_snr(snr, contrast, noise),

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from acutance.cli.output import check_output
+from acutance.cli.output import check_optional
 from acutance.cli.plan import EXAMPLE as TARGETS_EXAMPLE
 from acutance.cli.plan import plan
 from acutance.cli.result_options import JsonOption
@@ -101,8 +101,8 @@ def plan_mirrors(
 
     if arrangement not in ("columns", "square"):
         raise OptionError(f"--arrangement {arrangement}: it has to be columns or square")
-    table = None if csv is None else check_output("--csv", csv, (".csv",))
-    drawing = None if figure is None else check_output("--figure", figure, (".png", ".svg", ".pdf"))
+    table = check_optional("--csv", csv, (".csv",), keep=(sensor,))
+    drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
     system = named_sensor(sensor)
     if gsd is not None:
         system = replace(system, gsd_m=gsd, gsd_along_m=None)

@@ -94,7 +94,7 @@ def points(
     (saturated, blended, hot pixels, cosmic rays) is left out and named.
     """
     wanted = ResultOptions(
-        image,
+        (image, positions, surveyed, roi),
         figure=figure,
         report=report,
         csv=csv,

@@ -83,7 +83,7 @@ def pulse(
     if hold_width and width_m is None and width_px is None:
         raise OptionError("--hold-width needs a width: add --width-m or --width-px")
     wanted = ResultOptions(
-        image,
+        (image, roi),
         figure=figure,
         report=report,
         csv=csv,

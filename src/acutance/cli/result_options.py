@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from acutance.cli.faces import Faces, deliver
-from acutance.cli.output import OutputFile, check_output
+from acutance.cli.output import check_optional
 from acutance.cli.terminal import FAILED_CHECK, say
 from acutance.errors import OptionError
 
@@ -76,8 +76,8 @@ class ResultOptions:
 
     Parameters
     ----------
-    image : str
-        The input, which no output may overwrite.
+    inputs : iterable of str or None
+        What the command reads, files or not: no output may overwrite a file of them.
     figure, report, csv : str or None
         Names of the files asked for.
     as_json, covariance, strict : bool
@@ -90,7 +90,7 @@ class ResultOptions:
 
     def __init__(
         self,
-        image: str,
+        inputs: Iterable[str | None],
         *,
         figure: str | None,
         report: str | None,
@@ -101,9 +101,10 @@ class ResultOptions:
     ) -> None:
         if covariance and not as_json:
             raise OptionError("--covariance belongs to the JSON document: add --json")
-        self.figure = _checked("--figure", figure, (".png", ".svg", ".pdf"), image)
-        self.report = _checked("--report", report, (".html",), image)
-        self.csv = _checked("--csv", csv, (".csv",), image)
+        kept = tuple(inputs)
+        self.figure = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=kept)
+        self.report = check_optional("--report", report, (".html",), keep=kept)
+        self.csv = check_optional("--csv", csv, (".csv",), keep=kept)
         self.as_json, self.covariance, self.strict = as_json, covariance, strict
 
     def deliver(self, measurements: Sequence[Measurement | Measurement2d], faces: Faces) -> None:
@@ -120,9 +121,3 @@ class ResultOptions:
         if self.strict and failed:
             say(f"acutance: a check failed in {failed} of {len(measurements)} measurements")
             raise typer.Exit(FAILED_CHECK)
-
-
-def _checked(
-    option: str, name: str | None, endings: Sequence[str], image: str
-) -> OutputFile | None:
-    return None if name is None else check_output(option, name, endings, keep=image)

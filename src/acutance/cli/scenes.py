@@ -58,10 +58,11 @@ class SimulatedFiles:
     truth: OutputFile
 
     @classmethod
-    def of(cls, out: str) -> SimulatedFiles:
-        """The files for ``--out``, refused if they cannot be written."""
-        image = check_output("--out", out, (".tif", ".tiff"))
-        truth = check_output("--out", str(image.path.with_suffix(".truth.json")), (".json",))
+    def of(cls, out: str, *inputs: str | None) -> SimulatedFiles:
+        """The files for ``--out``, refused if they cannot be written or are among the inputs."""
+        image = check_output("--out", out, (".tif", ".tiff"), keep=inputs)
+        beside = str(image.path.with_suffix(".truth.json"))
+        truth = check_output("--out", beside, (".json",), keep=inputs)
         return cls(image, truth)
 
     def write(self, pixels: Floats, sensor: Sensor, document: dict[str, Any], seed: int) -> None:
@@ -125,7 +126,7 @@ def pulse(
     seed: Seed = 0,
 ) -> None:
     """Render a pulse target: a bright strip between two grounds."""
-    files, shape = SimulatedFiles.of(out), parse_size(size)
+    files, shape = SimulatedFiles.of(out, sensor), parse_size(size)
     system = named_sensor(sensor)
 
     import numpy as np
@@ -186,7 +187,7 @@ def bars(
     seed: Seed = 0,
 ) -> None:
     """Render groups of bars below one another."""
-    files, system = SimulatedFiles.of(out), named_sensor(sensor)
+    files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor)
     try:
         distances = tuple(float(part) for part in periods.split(","))
     except ValueError as error:
@@ -233,7 +234,7 @@ def star(
     seed: Seed = 0,
 ) -> None:
     """Render a Siemens star."""
-    files, shape, system = SimulatedFiles.of(out), parse_size(size), named_sensor(sensor)
+    files, shape, system = SimulatedFiles.of(out, sensor), parse_size(size), named_sensor(sensor)
 
     import numpy as np
 
@@ -275,7 +276,7 @@ def points(
     seed: Seed = 0,
 ) -> None:
     """Render an array of mirrors."""
-    files, system = SimulatedFiles.of(out), named_sensor(sensor)
+    files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor)
 
     import numpy as np
 
@@ -324,7 +325,7 @@ def site(
     seed: Seed = 0,
 ) -> None:
     """Render a campaign on grass: edge and pulse tarps, mirrors, bars, a star."""
-    files, shape, system = SimulatedFiles.of(out), parse_size(size), named_sensor(sensor)
+    files, shape, system = SimulatedFiles.of(out, sensor), parse_size(size), named_sensor(sensor)
 
     import numpy as np
 

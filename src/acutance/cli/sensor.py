@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from acutance.cli.output import check_output
+from acutance.cli.output import check_optional
 from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
@@ -71,8 +71,8 @@ def sensor_budget(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> None:
     """What every block of a sensor leaves of the contrast, across and along."""
-    drawing = None if figure is None else check_output("--figure", figure, (".png", ".svg", ".pdf"))
-    sheet = None if toml is None else check_output("--toml", toml, (".toml",))
+    drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
+    sheet = check_optional("--toml", toml, (".toml",), keep=(sensor,))
     from acutance.optics import SensorSheet, budget, presets, sheet_to_toml
     from acutance.report.budget import budget_document, budget_figure, budget_text
     from acutance.report.documents import json_text

@@ -101,7 +101,7 @@ def edge(
     seed: Annotated[int, typer.Option(metavar="N", help="Of the random numbers.")] = 0,
 ) -> None:
     """Render a straight edge as a sensor sees it, and write what a perfect measurement finds."""
-    files = SimulatedFiles.of(out)
+    files = SimulatedFiles.of(out, sensor)
     shape = parse_size(size)
     blocks = {
         "gaussian": gaussian,

@@ -54,9 +54,10 @@ def pair(
     seed: Annotated[int, typer.Option(metavar="N", help="Of the random numbers.")] = 0,
 ) -> None:
     """Render a pair of georeferenced images of fields and texture, by two sensors."""
-    files, shape = SimulatedFiles.of(out), parse_size(size)
-    fine = check_output("--high", high, (".tif", ".tiff"))
-    if fine.path == files.image.path:
+    inputs = (sensor, high_sensor)
+    files, shape = SimulatedFiles.of(out, *inputs), parse_size(size)
+    fine = check_output("--high", high, (".tif", ".tiff"), keep=inputs)
+    if fine.path.resolve() == files.image.path.resolve():
         raise OptionError("--out and --high name the same file: give two")
     rows, cols = _parse_shift(shift)
     system, reference = named_sensor(sensor), named_sensor(high_sensor)

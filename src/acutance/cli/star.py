@@ -94,7 +94,7 @@ def star(
     knows it and uses them.
     """
     wanted = ResultOptions(
-        image,
+        (image, roi),
         figure=figure,
         report=report,
         csv=csv,

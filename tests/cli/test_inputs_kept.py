@@ -1,0 +1,72 @@
+"""No output of a command overwrites what the command reads, whatever its name."""
+
+import os
+
+import pytest
+
+from acutance.cli.output import check_output
+from acutance.errors import OptionError
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Inputs of every kind; none holds what it should, for nothing may be read before a refusal."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("low.tif", "high.csv", "places.csv", "roi.csv", "my.toml", "a.json", "b.csv"):
+        (tmp_path / name).write_text("mine")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("words", "kept"),
+    [
+        (("points", "low.tif", "--positions", "places.csv", "--csv", "places.csv"), "places.csv"),
+        (("points", "low.tif", "--surveyed", "places.csv", "--csv", "./places.csv"), "places.csv"),
+        (("biresolution", "low.tif", "high.csv", "--csv", "high.csv"), "high.csv"),
+        (("biresolution", "low.tif", "x", "--reference", "b.csv", "--csv", "b.csv"), "b.csv"),
+        (("edge", "low.tif", "--roi", "roi.csv", "--csv", "roi.csv"), "roi.csv"),
+        (("pulse", "low.tif", "--roi", "roi.csv", "--csv", "roi.csv"), "roi.csv"),
+        (("bars", "low.tif", "--roi", "roi.csv", "--csv", "roi.csv"), "roi.csv"),
+        (("star", "low.tif", "--roi", "roi.csv", "--csv", "roi.csv"), "roi.csv"),
+        (("combine", "a.json", "b.csv", "--csv", "b.csv"), "b.csv"),
+        (("simulate", "sensor-budget", "my.toml", "--toml", "my.toml"), "my.toml"),
+    ],
+)
+def test_an_input_is_not_overwritten(acutance, folder, words, kept):
+    done = acutance(*words)
+    assert done.exit_code == 2
+    assert f"is the input {kept}, which it would overwrite: give another name" in done.stderr
+    assert (folder / kept).read_text() == "mine"
+
+
+@pytest.mark.parametrize("link", [os.symlink, os.link])
+def test_a_link_to_an_input_is_the_input(acutance, folder, link):
+    for name in ("other.csv", "other.tif", "other.toml"):
+        link("places.csv" if name == "other.csv" else "my.toml", name)
+    for words in (
+        ("points", "low.tif", "--positions", "other.csv", "--csv", "places.csv"),
+        ("points", "low.tif", "--positions", "places.csv", "--csv", "other.csv"),
+        ("simulate", "sensor-budget", "other.toml", "--toml", "my.toml"),
+        ("simulate", "edge", "--sensor", "my.toml", "--out", "other.tif"),
+        ("simulate", "star", "--sensor", "my.toml", "--out", "other.tif"),
+        ("simulate", "pair", "--high-sensor", "my.toml", "--out", "a.tif", "--high", "other.tif"),
+    ):
+        done = acutance(*words)
+        assert done.exit_code == 2
+        assert "which it would overwrite" in done.stderr, words
+    for name in ("places.csv", "my.toml"):
+        assert (folder / name).read_text() == "mine"
+
+
+def test_words_that_are_no_path_are_no_input(folder):
+    odd = ("1,2,3,4", "x" * 5000, "nul\0byte", None)
+    assert check_output("--csv", "new.csv", (".csv",), keep=odd).path.name == "new.csv"
+
+
+def test_a_pair_needs_two_files_however_they_are_named(acutance, folder):
+    (folder / "sub").mkdir()
+    done = acutance("simulate", "pair", "--out", "a.tif", "--high", "sub/../a.tif")
+    assert done.exit_code == 2
+    assert "name the same file" in done.stderr
+    with pytest.raises(OptionError):
+        check_output("--csv", "sub/../places.csv", (".csv",), keep=("places.csv",))
