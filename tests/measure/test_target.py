@@ -1,5 +1,6 @@
 """All edges of a target: found, grouped, averaged, and consistent."""
 
+import json
 import math
 
 import numpy as np
@@ -7,7 +8,9 @@ import pytest
 
 import acutance as ac
 from acutance.curves import Estimate
-from acutance.measure.target import _weighted_mean
+from acutance.measure.target import TargetResult, _weighted_mean, combine_edges
+from acutance.report.documents import json_text, target_document
+from acutance.report.target_page import group_rows
 from acutance.simulate import site
 
 SYSTEM = ac.Sensor(
@@ -70,6 +73,45 @@ def test_weighted_mean_and_chi_square():
     agreeing, small = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)])
     assert small < 1
     assert agreeing.std == pytest.approx(0.1 / math.sqrt(2))
+
+
+def test_numbers_at_zero_are_not_averaged_as_if_gaussian():
+    clipped = [Estimate(0.0, 0.017), Estimate(0.0, 0.015), Estimate(0.0, 0.017), Estimate(0, 0.011)]
+    mean, chi_square = _weighted_mean(clipped)
+    assert mean.value == 0.0
+    assert 0.011 < mean.std < 0.017
+    assert math.isnan(chi_square)
+    # Two overshoots that are not there, with next to no deviation, beside one that is.
+    mean, chi_square = _weighted_mean(
+        [Estimate(0, 0.0007), Estimate(0, 0.0009), Estimate(0.042, 0.012)]
+    )
+    assert mean.value == pytest.approx(0.014)
+    assert mean.std == pytest.approx(0.014)
+    assert math.isnan(chi_square)
+    alone, _ = _weighted_mean([Estimate(0.0, 0.017)])
+    assert alone == Estimate(0.0, 0.017)
+
+
+def test_a_blur_without_nyquist_has_no_chi_square_in_any_face():
+    wide = ac.Sensor([ac.optics.Gaussian(1.1), ac.optics.Detector(1.0)])
+    edges = []
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        image, _ = ac.simulate.edge(wide, angle_deg=8, snr=60, rng=rng, shape=(48, 48))
+        edges.append(ac.measure_edge(image))
+    assert min(m.mtf_nyquist.value / m.mtf_nyquist.std for m in edges) < 1
+    (group,) = combine_edges(edges).values()
+    assert math.isnan(group.chi_square["mtf_nyquist"])
+    assert math.isnan(group.p_value["mtf_nyquist"])
+    assert group.metrics["mtf_nyquist"].std >= min(m.mtf_nyquist.std for m in edges)
+    assert group.p_value["rer"] > 1e-3
+    result = TargetResult(tuple(edges), (), {group.orientation: group})
+    (row,) = group_rows(result, ("mtf_nyquist",))
+    assert row[3:] == ("–", "–")
+    document = json.loads(json_text(target_document(result)))
+    (written,) = document["groups"].values()
+    assert written["chi_square"]["mtf_nyquist"] is None
+    assert written["p_value"]["mtf_nyquist"] is None
 
 
 def test_a_scene_may_declare_that_along_track_is_the_x_axis(scene):

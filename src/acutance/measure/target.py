@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves import Estimate
+from acutance.curves.grid import Floats
 from acutance.errors import AcutanceError
 from acutance.fit.line import Orientation
 from acutance.fit.locate import Segment, find_segments
@@ -48,8 +49,17 @@ class EdgeGroup:
         Means weighted by 1 / std^2. Where the edges disagree beyond their standard deviations,
         that of the mean is widened by the square root of chi-square per degree of freedom.
     chi_square, p_value : dict of float
-        Consistency: chi-square of the edges about the mean, and the chance of a larger one.
+        Consistency: chi-square of the edges about the mean, and the chance of a larger one; ``nan``
+        for a single edge, and where it means nothing (below).
     degrees_of_freedom : int
+
+    Notes
+    -----
+    No metric can be negative: a modulus that drowns in noise, or an overshoot that is not there,
+    is reported as 0. Where one of the edges lies within its standard deviation of 0, the values
+    are no longer Gaussian, and neither weights nor chi-square mean anything. The mean is then the
+    plain one. As clipped errors do not average out, its standard deviation is the root mean square
+    of the edges', or what the edges' scatter says if that is more; chi-square and p are ``nan``.
     """
 
     orientation: Orientation
@@ -182,12 +192,20 @@ def _weighted_mean(numbers: Sequence[Estimate]) -> tuple[Estimate, float]:
     std = np.array([number.std for number in numbers])
     if not (np.isfinite(value).all() and np.isfinite(std).all() and (std > 0).all()):
         return Estimate(float(np.mean(value)), math.nan), math.nan
+    if len(numbers) > 1 and (value < std).any():
+        return _plain_mean(value, std), math.nan
     weight = 1 / std**2
     mean = float(weight @ value / weight.sum())
     scatter = float(weight @ (value - mean) ** 2)
     freedom = len(numbers) - 1
     widened = max(1.0, math.sqrt(scatter / freedom)) if freedom else 1.0
     return Estimate(mean, widened / math.sqrt(weight.sum())), scatter
+
+
+def _plain_mean(value: Floats, std: Floats) -> Estimate:
+    """Mean of numbers of which some lie at their bound 0; see `EdgeGroup`."""
+    scatter = float(np.std(value, ddof=1)) / math.sqrt(value.size)
+    return Estimate(float(np.mean(value)), max(math.sqrt(float(np.mean(std**2))), scatter))
 
 
 def _chance(chi_square: float, freedom: int) -> float:
