@@ -60,3 +60,14 @@ def test_an_error_of_acutance_is_the_last_line_of_stderr(acutance):
     assert result.stdout == ""
     assert result.stderr.startswith("acutance: /nowhere/scene.tif does not exist")
     assert len(result.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("words", ["", "interrupted: 3 of 9 trials are kept in t.jsonl"])
+def test_ctrl_c_is_one_line_and_exit_130(acutance, monkeypatch, words):
+    def broken(**_):
+        raise KeyboardInterrupt(words)
+
+    monkeypatch.setattr("acutance.raster.sites", broken)
+    result = acutance("sites")
+    assert (result.exit_code, result.stdout) == (130, "")
+    assert result.stderr == f"acutance: {words or 'interrupted'}\n"

@@ -22,20 +22,22 @@ from acutance.cli import (
     star,
     study,
 )
-from acutance.cli.terminal import fail
+from acutance.cli.terminal import fail, stop
 from acutance.errors import AcutanceError
 
 __all__ = ["app", "run"]
 
 
 class _Commands(TyperGroup):
-    """Commands whose expected errors are one message on stderr and exit code 2."""
+    """Commands whose expected errors are one message on stderr and exit code 2, and Ctrl-C 130."""
 
     def invoke(self, ctx: Any) -> Any:
         try:
             return super().invoke(ctx)
         except AcutanceError as error:
             fail(str(error))
+        except KeyboardInterrupt as error:
+            stop(str(error))
 
 
 app = typer.Typer(
@@ -65,7 +67,8 @@ def _main(
 ) -> None:
     """Measure how sharp an Earth-observation satellite really sees.
 
-    Exit codes: 0 measured, 2 bad usage or input, 3 measured but a check failed under --strict.
+    Exit codes: 0 measured, 2 bad usage or input, 3 measured but a check failed under --strict,
+    130 interrupted.
     """
 
 

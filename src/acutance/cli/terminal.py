@@ -8,10 +8,11 @@ from typing import NoReturn
 
 import typer
 
-__all__ = ["FAILED_CHECK", "command_line", "fail", "say"]
+__all__ = ["FAILED_CHECK", "command_line", "fail", "say", "stop"]
 
 BAD_USAGE = 2
 FAILED_CHECK = 3
+INTERRUPTED = 130
 
 
 def say(message: str) -> None:
@@ -23,6 +24,12 @@ def fail(message: str) -> NoReturn:
     """End with exit code 2 and one message."""
     say(f"acutance: {message}")
     raise typer.Exit(BAD_USAGE)
+
+
+def stop(message: str) -> NoReturn:
+    """End after Ctrl-C with one message and the exit code of shells for it."""
+    say(f"acutance: {message or 'interrupted'}")
+    raise typer.Exit(INTERRUPTED)
 
 
 def command_line() -> str:

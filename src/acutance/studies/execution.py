@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from multiprocessing import get_context, parent_process
+from multiprocessing.synchronize import Event
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -25,6 +27,7 @@ Trial = TypeVar("Trial")
 
 Record = dict[str, Any]
 Measure = Callable[[Options, Trial, np.random.Generator], Record]
+Chunk = list[tuple[int, Record]]
 
 _LIBRARIES = ("OPENBLAS", "OMP", "MKL")
 _CHUNKS_PER_WORKER = 8
@@ -86,6 +89,11 @@ def run_trials(
     measure : function of (options, trial, rng)
         At the top of a module, so that other processes find it; gives numbers by name.
     execution : Execution
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If it was interrupted; the message says what is kept.
     """
     from acutance import __version__
 
@@ -97,12 +105,20 @@ def run_trials(
         done: dict[int, Record] = {} if kept is None else dict(kept.done)
         todo = [i for i in range(len(trials)) if i not in done]
         _tell(execution, len(trials) - len(todo), len(trials))
-        for finished in _finished(options, trials, measure, execution, todo):
-            for index, record in finished:
-                done[index] = record
-                if kept is not None:
-                    kept.append(index, record)
+
+        def keep(chunk: Chunk) -> None:
+            for index, record in chunk:
+                if index not in done:
+                    if kept is not None:
+                        kept.append(index, record)
+                    done[index] = record
             _tell(execution, len(done), len(trials))
+
+        try:
+            _run(options, trials, measure, execution, todo, keep)
+        except KeyboardInterrupt:
+            path = None if kept is None else kept.path
+            raise KeyboardInterrupt(_interruption(len(done), len(trials), path)) from None
     return [done[i] for i in range(len(trials))]
 
 
@@ -111,44 +127,82 @@ def _tell(execution: Execution, done: int, total: int) -> None:
         execution.progress(done, total)
 
 
-def _finished(
+def _interruption(done: int, total: int, path: Path | None) -> str:
+    if path is None:
+        return "interrupted"
+    return (
+        f"interrupted: {done} of {total} trials are kept in {path}; run the same command again to "
+        "go on"
+    )
+
+
+def _run(
     options: Options,
     trials: Sequence[Trial],
     measure: Measure[Options, Trial],
     execution: Execution,
     todo: Sequence[int],
-) -> Iterator[list[tuple[int, Record]]]:
-    """Chunks of finished trials, as they come."""
+    keep: Callable[[Chunk], None],
+) -> None:
+    """Hand finished trials to `keep`, chunk by chunk, as they come."""
     workers = execution.workers or os.cpu_count() or 1
     workers = min(workers, len(todo))
     seed = execution.seed
     if workers <= 1:
         for i in todo:
-            yield _work(options, measure, seed, [(i, trials[i])])
+            keep(_work(options, measure, seed, [(i, trials[i])]))
         return
     size = max(1, min(_MOST_IN_A_CHUNK, len(todo) // (_CHUNKS_PER_WORKER * workers)))
     chunks = [todo[k : k + size] for k in range(0, len(todo), size)]
     # Fresh processes read the number of threads when they load the libraries.
+    context = get_context("spawn")
+    stop = context.Event()
     with (
         _one_thread_each(),
         ProcessPoolExecutor(
-            workers, mp_context=get_context("spawn"), initializer=_obey_parent
+            workers, mp_context=context, initializer=_obey_parent, initargs=(stop,)
         ) as pool,
     ):
-        futures: list[Future[list[tuple[int, Record]]]] = [
-            pool.submit(_work, options, measure, seed, [(i, trials[i]) for i in chunk])
-            for chunk in chunks
-        ]
+        futures: list[Future[Chunk]] = []
         try:
+            with _interrupts_held_back():
+                futures += (
+                    pool.submit(_work, options, measure, seed, [(i, trials[i]) for i in chunk])
+                    for chunk in chunks
+                )
             for future in as_completed(futures):
-                yield future.result()
+                keep(future.result())
         except BaseException:
+            stop.set()
             pool.shutdown(cancel_futures=True)
+            # What the processes had finished when they were stopped is not to be done again.
+            for future in futures:
+                if not future.cancelled() and future.exception() is None:
+                    keep(future.result())
             raise
 
 
-def _obey_parent() -> None:
+@contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """Let Ctrl-C wait; processes started meanwhile never hear of it, not even while they load."""
+    if sys.platform == "win32":
+        yield
+        return
+    earlier = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, earlier)
+
+
+_stop: Event | None = None
+"""In a worker process: set when no further trial is wanted."""
+
+
+def _obey_parent(stop: Event) -> None:
     """Leave interrupts to the parent process, and end when it has ended, however it did."""
+    global _stop
+    _stop = stop
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
@@ -165,8 +219,14 @@ def _work(
     measure: Measure[Options, Trial],
     seed: int,
     chunk: Sequence[tuple[int, Trial]],
-) -> list[tuple[int, Record]]:
-    return [(i, measure(options, trial, trial_rng(seed, i))) for i, trial in chunk]
+) -> Chunk:
+    """Finished trials of the chunk: all of them, unless the parent process wants no more."""
+    finished: Chunk = []
+    for i, trial in chunk:
+        if _stop is not None and _stop.is_set():
+            break
+        finished.append((i, measure(options, trial, trial_rng(seed, i))))
+    return finished
 
 
 @contextmanager
