@@ -10,6 +10,7 @@ from acutance.errors import NoBarsError, OptionError
 from acutance.fit.bars_find import find_bars
 from acutance.fit.bars_group import coltman_mtf
 from acutance.measure import Bars, BarsOptions, measure_bars
+from acutance.measure.periodic import clipped_share
 from acutance.simulate import bars, reference_systems
 
 FREQ = np.arange(10, 51, 4) / 100
@@ -184,6 +185,18 @@ def test_zero_noise():
     assert np.max(np.abs(error)) < 0.002
     assert np.all(np.abs(error) < 4 * std)
     assert found.trusted
+
+
+def test_uniform_ground_without_noise_is_not_clipped():
+    image, _ = _bars(snr=None, periods_px=(8.0, 4.0, 3.0, 2.0))
+    assert "saturation" not in [check.name for check in measure_bars(image).failed_checks]
+
+
+def test_values_pile_up_where_noise_should_have_spread_them():
+    ground = np.full(100, 200.0)
+    assert clipped_share(ground, None, snr=1000.0) == 0.0
+    assert clipped_share(ground, None, snr=100.0) == 1.0
+    assert clipped_share(ground, 200.0, snr=1000.0) == 1.0
 
 
 def test_options_are_refused_by_name():

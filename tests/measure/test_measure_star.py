@@ -152,6 +152,17 @@ def test_zero_noise_and_missing_pixels():
     assert np.max(np.abs(error)) < 0.002
 
 
+def test_without_noise_nothing_is_blamed_on_the_target():
+    for wave in ("sine", "square"):
+        image, _ = _star(snr=None, wave=wave)
+        options = StarOptions(wave=wave, dark=200.0, bright=1200.0)
+        assert measure_star(image, options=options).trusted
+    # What really lies on it is still seen.
+    image[60:80, 60:80] += 150.0
+    failed = [check.name for check in measure_star(image, options=options).failed_checks]
+    assert "outliers" in failed
+
+
 def test_options_are_refused_by_name():
     with pytest.raises(OptionError, match="dark and bright, or neither"):
         StarOptions(dark=1.0)

@@ -9,11 +9,9 @@ from acutance.measure.bars_options import BarsLimits
 from acutance.measure.cut import Cut
 from acutance.measure.evidence import MUCH, at_least, at_most
 from acutance.measure.measurement import Check
-from acutance.measure.periodic import clipped_share
+from acutance.measure.periodic import QUIET_SNR, clipped_share, outlier_share
 
 __all__ = ["bars_checks"]
-
-_QUIET_SNR = 500.0
 
 
 def bars_checks(
@@ -27,12 +25,11 @@ def bars_checks(
     misfits = [float(np.sqrt(np.mean(one.residual**2))) / solved.noise for one in solved.groups]
     worst = int(np.argmax(misfits))
     values = np.concatenate([one.value for one in solved.groups])
-    clipped = clipped_share(values, pixels.saturation_level)
-    strongest = abs(solved.correlation.strongest)
-    outliers = float(np.mean(solved.outlier < 0.5))
-    if snr > _QUIET_SNR:
-        # What is left is the arithmetic's, not the image's.
-        strongest, outliers = 0.0, 0.0
+    clipped = clipped_share(values, pixels.saturation_level, snr)
+    # Of an image without noise, what is left is the arithmetic's.
+    strongest = 0.0 if snr > QUIET_SNR else abs(solved.correlation.strongest)
+    residual = np.concatenate([one.residual for one in solved.groups])
+    outliers = outlier_share(residual, solved.outlier, solved.model.level)
     named = " and ".join(f"{angle:.1f}" for angle in directions_deg)
     return (
         at_least(

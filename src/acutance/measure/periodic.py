@@ -1,4 +1,4 @@
-"""What bars and stars have in common: levels stated by the caller, pixels at the scale's ends."""
+"""What bars and stars have in common: levels stated by the caller, clipped and outlying pixels."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 from acutance.fit.levels import Levels
 
-__all__ = ["clipped_share", "known_levels"]
+__all__ = ["QUIET_SNR", "clipped_share", "known_levels", "outlier_share"]
+
+QUIET_SNR = 500.0
+"""Above this ratio of contrast to noise there is no noise to speak of in an image."""
 
 _PILED_UP = 5
 
@@ -30,12 +33,26 @@ def known_levels(dark: float | None, bright: float | None, std: float) -> Levels
     return None if dark is None or bright is None else Levels(dark, bright, std)
 
 
-def clipped_share(values: Floats, saturation_level: float | None) -> float:
-    """Share of the pixels, (n,), that reach the detector's limit or pile up at an end."""
+def clipped_share(values: Floats, saturation_level: float | None, snr: float) -> float:
+    """Share of the pixels, (n,), that reach the detector's limit or pile up at an end.
+
+    Piling up tells something only where noise should have spread the values: uniform ground in an
+    image without noise is all one number.
+    """
     share = 0.0
     if saturation_level is not None:
         share = float(np.mean(values >= saturation_level))
+    if snr > QUIET_SNR:
+        return share
     return max(share, _piled_up(values), _piled_up(-values))
+
+
+def outlier_share(residual: Floats, weight: Floats, contrast: float) -> float:
+    """Share of the pixels, (n,), that do not fit.
+
+    What is below the noise of a quiet image is the arithmetic's and none of the target's.
+    """
+    return float(np.mean((weight < 0.5) & (np.abs(residual) > abs(contrast) / QUIET_SNR)))
 
 
 def _piled_up(values: Floats) -> float:

@@ -10,7 +10,7 @@ from acutance.fit.star import StarSolution
 from acutance.measure.cut import Cut
 from acutance.measure.evidence import MUCH, at_least, at_most
 from acutance.measure.measurement import Check
-from acutance.measure.periodic import clipped_share
+from acutance.measure.periodic import QUIET_SNR, clipped_share, outlier_share
 from acutance.measure.star_options import StarLimits
 
 __all__ = ["star_checks", "third_harmonic"]
@@ -25,9 +25,10 @@ def star_checks(
     coarsest = star.cycles / (2 * math.pi * solved.outer_px)
     finest = star.cycles / (2 * math.pi * solved.inner_px)
     wave = third_harmonic(solved)
-    clipped = clipped_share(solved.value, pixels.saturation_level)
-    strongest = abs(solved.correlation.strongest)
-    outliers = float(np.mean(solved.outlier < 0.5))
+    clipped = clipped_share(solved.value, pixels.saturation_level, snr)
+    # Of an image without noise, what is left is the arithmetic's.
+    strongest = 0.0 if snr > QUIET_SNR else abs(solved.correlation.strongest)
+    outliers = outlier_share(solved.residual, solved.outlier, level.level)
     return (
         at_least(
             "contrast_snr", min(snr, MUCH), limits.contrast_snr,
