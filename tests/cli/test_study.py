@@ -35,6 +35,18 @@ def test_a_study_again_reads_its_trials(acutance, tmp_path):
     assert journal.read_bytes() == before
 
 
+def test_a_damaged_line_of_trials_is_one_line_of_stderr(acutance, tmp_path):
+    first = acutance("study", "angle", *SMALL, "--out", tmp_path)
+    (journal,) = tmp_path.glob("*.jsonl")
+    lines = journal.read_text().splitlines(keepends=True)
+    journal.write_text(lines[0] + "snow\n")
+    again = acutance("study", "angle", *SMALL, "--out", tmp_path)
+    assert (again.exit_code, again.stdout) == (0, first.stdout)
+    assert again.stderr.startswith(f"acutance: {journal}, line 2: damaged, so passed over")
+    assert "UserWarning" not in again.stderr
+    assert journal.read_text() == lines[0] + "snow\n" + lines[1]
+
+
 def test_json_is_the_document_alone(acutance):
     done = acutance("study", "width", "--set", "widths_px=2.9,3.0", "--workers", 1, "--json")
     document = json.loads(done.stdout)

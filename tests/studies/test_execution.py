@@ -109,6 +109,29 @@ def test_half_a_line_is_cut_off(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "damage",
+    [
+        b"snow", b"", b"{}", b"[1]", b"7", b'{"trial": 1}', b'{"trial": null, "values": {}}',
+        b'{"trial": 1, "values": 3}', b'\xff\xfe{"tri', b'{"trial": 1, "val\r{',
+    ],
+)  # fmt: skip
+def test_a_damaged_line_is_named_and_its_trial_run_again(tmp_path, damage):
+    how = Execution(seed=5, workers=1, folder=tmp_path)
+    whole = run_trials("t", Options(), TRIALS, draw, how)
+    (path,) = tmp_path.glob("*.jsonl")
+    lines = path.read_bytes().split(b"\n")
+    lines[1] = lines[4] = damage
+    path.write_bytes(b"\n".join(lines))
+    with pytest.warns(UserWarning, match=r"t-.*\.trials\.jsonl, lines 2, 5: damaged") as warned:
+        again = run_trials("t", Options(), TRIALS, draw, how)
+    assert len(warned) == 1
+    assert values(again) == values(whole)
+    after = path.read_bytes().split(b"\n")
+    assert after[: len(lines) - 1] == lines[:-1]
+    assert [json.loads(line)["trial"] for line in after[len(lines) - 1 : -1]] == [1, 4]
+
+
+@pytest.mark.parametrize(
     "other",
     [("u", Options(), 1, "0"), ("t", Options(3.0), 1, "0"), ("t", Options(), 2, "0"),
      ("t", Options(), 1, "1")],

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from acutance.cli.output import OutputFile, check_output
-from acutance.cli.terminal import say
+from acutance.cli.terminal import say, warnings_said
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def study(
     options = {one: _options(STUDIES[one].options, changes or []) for one in wanted}
     folder = None if out is None else _folder(out)
     for one in wanted:
-        with progress_bar(one) as progress:
+        with progress_bar(one) as progress, warnings_said():
             how = execution_of(seed, workers, folder, progress)
             result = run_study(one, options[one], how)
         _deliver(result, folder, as_json)

@@ -6,7 +6,8 @@ import hashlib
 import json
 import math
 import os
-from collections.abc import Mapping
+import warnings
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -36,7 +37,8 @@ class Journal:
     """An append-only file of finished trials, one line of JSON each.
 
     A line is written at once and counts only when it ends: what a crash left of a line is cut
-    off when the file is opened again. Use it as a context.
+    off when the file is opened again. Lines that are damaged otherwise are left where they are
+    and named in a warning; their trials are not among those done. Use it as a context.
 
     Parameters
     ----------
@@ -70,11 +72,16 @@ class Journal:
         whole = content.rfind(b"\n") + 1
         if whole < len(content):
             os.ftruncate(self._handle, whole)
-        done = {}
-        for line in content[:whole].splitlines():
-            entry = json.loads(line)
-            values = {k: math.nan if v is None else v for k, v in entry["values"].items()}
-            done[int(entry["trial"])] = values
+        done, damaged = {}, []
+        for number, line in enumerate(content[:whole].split(b"\n")[:-1], start=1):
+            try:
+                trial, values = _parse(line)
+            except (ValueError, KeyError, TypeError, AttributeError):
+                damaged.append(number)
+            else:
+                done[trial] = values
+        if damaged:
+            warnings.warn(_damage(self.path, damaged), stacklevel=2)
         return done
 
     def append(self, trial: int, values: Mapping[str, Any]) -> None:
@@ -96,3 +103,16 @@ class Journal:
         trace: TracebackType | None,
     ) -> None:
         os.close(self._handle)
+
+
+def _parse(line: bytes) -> tuple[int, dict[str, Any]]:
+    """The trial of a line; any of the errors of a text that is something else."""
+    entry = json.loads(line)
+    return int(entry["trial"]), {
+        name: math.nan if value is None else value for name, value in entry["values"].items()
+    }
+
+
+def _damage(path: Path, lines: Sequence[int]) -> str:
+    which = f"line{'s' if len(lines) > 1 else ''} {', '.join(map(str, lines))}"
+    return f"{path}, {which}: damaged, so passed over; what stood there is computed again"
