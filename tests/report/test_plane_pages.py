@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import html
 import io
 import json
 from dataclasses import dataclass, replace
@@ -10,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
+from matplotlib.text import Text
 
 from acutance import optics
 from acutance.curves import Otf2d
@@ -105,3 +107,26 @@ def test_directions_change_places_when_along_track_is_the_x_axis(plane):
     turned = replace(plane, image=ImageInfo(along_track="x"))
     assert turned.across.mtf_nyquist.value == plane.along.mtf_nyquist.value
     assert turned.along.gsd_m == plane.across.gsd_m
+
+
+class Ratio(Measurement2d):
+    """Of a pair of images without a reference."""
+
+    is_ratio = True
+
+
+def test_a_ratio_of_two_sensors_is_called_one_in_every_face(plane):
+    ratio = Ratio(kind="biresolution", method="kernel-fit", otf=plane.otf, snr=80.0, checks=CHECKS)
+    text, page = plane_text(ratio), plane_report(ratio)
+    for face in (text, page):
+        assert "MTF ratio low/high at Nyquist" in face
+        assert "RER of the ratio" in face
+        assert "not the low sensor's own MTF" in html.unescape(face)
+        assert "MTF at Nyquist" not in face
+    assert "Modulation transfer function" not in page
+    assert "MTF ratio low/high in steps of" in page
+    words = {text.get_text() for text in plane_figure(ratio).findobj(Text)}
+    assert {"MTF ratio low/high", "Line spread function of the ratio low/high"} <= words
+    assert not [one for one in words if one.startswith(("Modulation", "MTF;", "MTF at", "PSF,"))]
+    assert plane_csv(ratio).startswith("direction,freq_cpp,mtf_low_over_mtf_high,std,")
+    assert plane_csv(plane).startswith("direction,freq_cpp,mtf,std,")

@@ -82,6 +82,11 @@ class BiresolutionMeasurement(Measurement2d):
         return self.grid.down.ratio, self.grid.across.ratio
 
     @property
+    def is_ratio(self) -> bool:
+        """Whether the curves are MTF_low / MTF_high, as no reference was given."""
+        return not self.reference_known
+
+    @property
     def steps(self) -> Sequence[BlurStep]:
         """The iterations of the parametric fit."""
         return self.blur.steps

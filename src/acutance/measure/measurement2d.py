@@ -83,6 +83,11 @@ class Measurement2d:
         return tuple(check for check in self.checks if not check.passed)
 
     @property
+    def is_ratio(self) -> bool:
+        """Whether the curves are a sensor's MTF over another's, and not its own."""
+        return False
+
+    @property
     def slices(self) -> PlaneSlices:
         """Slices of the OTF in several directions, with their common covariance."""
         return PlaneSlices.of_plane(self.otf)

@@ -10,6 +10,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.report.page import BLUE, FAINT, INK, VERMILION, split_page
 from acutance.report.plane_panels import PlanePanel, draw_residuals
+from acutance.report.quantity import transfer_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,8 +53,8 @@ def biresolution_panels(measurement: BiresolutionMeasurement) -> tuple[PlanePane
         ),
         PlanePanel(
             "Map of local statistics",
-            "Every region on its own: MTF at Nyquist across and along, shift against the whole "
-            "(arrows, enlarged), and residuals.",
+            f"Every region on its own: {transfer_name(measurement)} at Nyquist across and along, "
+            "shift against the whole (arrows, enlarged), and residuals.",
             lambda page: _draw_map(page, measurement),
             wide=True,
             height_in=3.6,
@@ -126,7 +127,13 @@ def _draw_map(page: FigureBase, measurement: BiresolutionMeasurement) -> None:
     for part, axis in zip(parts, ("across", "along"), strict=False):
         mtf, std = measurement.local_mtf_nyquist(axis)
         typical = float(np.nanmedian(std)) if np.isfinite(std).any() else float("nan")
-        _draw_field(part, mtf, f"MTF at Nyquist {axis}", f"each ± {typical:.3f}", "viridis")
+        _draw_field(
+            part,
+            mtf,
+            f"{transfer_name(measurement)} at Nyquist {axis}",
+            f"each ± {typical:.3f}",
+            "viridis",
+        )
     _draw_shifts(parts[2].subplots(), local.shift_row_px, local.shift_col_px)
     _draw_field(parts[3], local.residual, "Residual", "units of the low image", "magma_r")
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.report.html import Section, Table
+from acutance.report.quantity import transfer_name
 from acutance.report.text import align_columns
 from acutance.report.wording import format_number, word_estimate
 
@@ -96,7 +97,8 @@ def _pair_rows(measurement: BiresolutionMeasurement) -> list[tuple[str, str]]:
         ("noise of the high image", format_number(measurement.high_noise)),
         (
             "regions of the map",
-            f"{local.pixels.size}; MTF at Nyquist scatters by {spread[0]:.3f} across, "
-            f"{spread[1]:.3f} along, shifts by {local.shift_spread_px:.3f} px",
+            f"{local.pixels.size}; {transfer_name(measurement)} at Nyquist scatters by "
+            f"{spread[0]:.3f} across, {spread[1]:.3f} along, "
+            f"shifts by {local.shift_spread_px:.3f} px",
         ),
     ]

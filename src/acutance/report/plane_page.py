@@ -15,6 +15,7 @@ from acutance.report.plane_panels import (
     draw_psf,
     draw_transfer_map,
 )
+from acutance.report.quantity import spread_name, transfer_name
 from acutance.report.wording import (
     count_failed_checks,
     describe_plane,
@@ -44,25 +45,26 @@ def plane_panels(measurement: Measurement2d) -> tuple[PlanePanel, ...]:
     def on_axes(draw: Callable[[Axes, Measurement2d], None]) -> Callable[[FigureBase], None]:
         return lambda page: draw(page.subplots(), measurement)
 
+    transfer = transfer_name(measurement)
     return (
         PlanePanel(
-            "Modulation transfer function",
-            "The MTF across and along with their 95 % bands. What the image holds beyond "
+            transfer_name(measurement, "Modulation transfer function"),
+            f"The {transfer} across and along with their 95 % bands. What the image holds beyond "
             "Nyquist is aliased.",
             on_axes(draw_plane_mtf),
         ),
         PlanePanel(
-            "Line spread function",
+            spread_name(measurement, "Line spread function"),
             "The PSF integrated over the other direction, with its full width at half.",
             on_axes(draw_plane_lsf),
         ),
         PlanePanel(
-            "Point spread function",
+            spread_name(measurement, "Point spread function"),
             "Light of a point with the pixel's area included, in percent of its peak.",
             on_axes(draw_psf),
         ),
         PlanePanel(
-            "MTF over the plane",
+            f"{transfer} over the plane",
             "The modulus of the 2-D transfer function in all directions.",
             on_axes(draw_transfer_map),
         ),
@@ -99,7 +101,7 @@ def plane_figure(measurement: Measurement2d, extra_panels: Sequence[PlanePanel] 
             for place, panel in zip(split_page(part, 1, 3), panels, strict=False):
                 panel.draw(place)
         numbers, map_, checks = split_page(parts[-1], 1, 3, widths=(1.35, 0.95, 0.9))
-        _write_numbers(numbers.subplots(), words[0])
+        _write_numbers(numbers.subplots(), measurement, words[0])
         plane.draw(map_)
         _write_checks(checks.subplots(), measurement, words[1])
         figure.suptitle(
@@ -122,8 +124,10 @@ def _number_rows(measurement: Measurement2d) -> list[tuple[str, ...]]:
     across, along = measurement.across.metrics(), measurement.along.metrics()
     for name in across:
         words = metric_words(name)
+        # The title says that all of them are of a ratio: there is no room for it in every line.
+        label = words.label.replace("MTF at", "Ratio at") if measurement.is_ratio else words.label
         cells = (word_estimate(one[name]).value_and_std for one in (across, along))
-        rows.append((words.label, words.unit, *cells))
+        rows.append((label, words.unit, *cells))
     return rows
 
 
@@ -135,9 +139,9 @@ def _check_rows(measurement: Measurement2d) -> list[tuple[str, ...]]:
     return rows
 
 
-def _write_numbers(axes: Axes, rows: Sequence[Sequence[str]]) -> None:
+def _write_numbers(axes: Axes, measurement: Measurement2d, rows: Sequence[Sequence[str]]) -> None:
     write_grid(axes, rows, places=(0.0, 0.33, 0.69, 1.0), align="llrr")
-    axes.set_title("Numbers, value ± std")
+    axes.set_title(spread_name(measurement, "Numbers") + ", value ± std")
 
 
 def _write_checks(axes: Axes, measurement: Measurement2d, rows: Sequence[Sequence[str]]) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.report.page import BLUE, FAINT, INK, SHADE, VERMILION
 from acutance.report.panels import TWO_SIDED_95, band_edges, mark_frequencies
+from acutance.report.quantity import spread_name, transfer_name
 from acutance.report.wording import word_estimate
 
 if TYPE_CHECKING:
@@ -83,7 +84,10 @@ def draw_plane_mtf(axes: Axes, measurement: Measurement2d) -> None:
             0.985, 0.955 - 0.155 * i, f"{name}, at Nyquist\n{number}",
             transform=axes.transAxes, ha="right", va="top", color=COLORS[name],
         )  # fmt: skip
-    axes.set_title("Modulation transfer function")
+    axes.set(
+        ylabel=transfer_name(measurement),
+        title=transfer_name(measurement, "Modulation transfer function"),
+    )
 
 
 def _draw_curve(axes: Axes, mtf: Mtf, color: str) -> None:
@@ -119,7 +123,7 @@ def draw_plane_lsf(axes: Axes, measurement: Measurement2d) -> None:
         ylim=(min(-0.05 * top, 1.05 * low_end), 1.12 * top),
         xlabel="distance [px]",
         ylabel="LSF [1/px]",
-        title="Line spread function",
+        title=spread_name(measurement, "Line spread function"),
     )
 
 
@@ -132,7 +136,8 @@ def draw_psf(axes: Axes, measurement: Measurement2d) -> None:
     lines = axes.contour(distance, distance, share, LEVELS, colors=[INK], linewidths=0.9)
     axes.clabel(lines, fmt=_percent, fontsize=7.5)
     axes.plot([-0.5, 0.5, 0.5, -0.5, -0.5], [-0.5, -0.5, 0.5, 0.5, -0.5], color=VERMILION, lw=1.1)
-    axes.set(xlabel="across [px]", ylabel="along [px]", title="PSF, % of its peak; red: one pixel")
+    title = spread_name(measurement, "PSF") + ", % of its peak; red: one pixel"
+    axes.set(xlabel="across [px]", ylabel="along [px]", title=title)
 
 
 def draw_transfer_map(axes: Axes, measurement: Measurement2d) -> None:
@@ -144,7 +149,8 @@ def draw_transfer_map(axes: Axes, measurement: Measurement2d) -> None:
     lines = axes.contour(freq, freq, modulus, MTF_LEVELS, colors=[INK], linewidths=0.9)
     axes.clabel(lines, fmt="%g", fontsize=7.5)
     axes.plot([-0.5, 0.5, 0.5, -0.5, -0.5], [-0.5, -0.5, 0.5, 0.5, -0.5], color=VERMILION, lw=1.1)
-    axes.set(xlabel="across [c/px]", ylabel="along [c/px]", title="MTF; red: Nyquist")
+    title = transfer_name(measurement) + "; red: Nyquist"
+    axes.set(xlabel="across [c/px]", ylabel="along [c/px]", title=title)
 
 
 def draw_residuals(

@@ -12,6 +12,7 @@ from acutance.report.html import Headline, Plate, Section, Table, Verdict, rende
 from acutance.report.page import new_page, styled
 from acutance.report.plane_page import plane_panels
 from acutance.report.plane_panels import PlanePanel
+from acutance.report.quantity import plane_metric_words, transfer_name
 from acutance.report.sections import checks_sections, reproducing_section
 from acutance.report.tables import STEP_CPP
 from acutance.report.wording import (
@@ -19,7 +20,6 @@ from acutance.report.wording import (
     describe_plane,
     describe_plane_image,
     format_number,
-    metric_words,
     verdict,
     word_estimate,
     write_fixed,
@@ -84,7 +84,10 @@ def plane_sections(
         Section("Numbers", tables=(_numbers_table(measurement),)),
         *extra_sections,
         *checks_sections(measurement),
-        Section("MTF in steps of 0.02 cycles per pixel", tables=(_mtf_table(measurement),)),
+        Section(
+            f"{transfer_name(measurement)} in steps of 0.02 cycles per pixel",
+            tables=(_mtf_table(measurement),),
+        ),
         reproducing_section(measurement, command),
     )
 
@@ -101,7 +104,8 @@ def _headlines(measurement: Measurement2d) -> tuple[Headline, ...]:
     for direction, numbers in measurement.metrics().items():
         for name in HEADLINES:
             if name in numbers:
-                words, number = metric_words(name), word_estimate(numbers[name])
+                words = plane_metric_words(measurement, name)
+                number = word_estimate(numbers[name])
                 details = (
                     () if number.std == MISSING else (f"± {number.std}", f"95 %: {number.interval}")
                 )
@@ -117,7 +121,7 @@ def _numbers_table(measurement: Measurement2d) -> Table:
     across, along = measurement.across.metrics(), measurement.along.metrics()
     rows = []
     for name in across:
-        words = metric_words(name)
+        words = plane_metric_words(measurement, name)
         pair = [word_estimate(one[name]) for one in (across, along)]
         cells = (cell for number in pair for cell in (number.value_and_std, number.interval))
         rows.append((words.label, *cells, words.unit, words.meaning))

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from acutance.report.quantity import csv_column, plane_metric_words
 from acutance.report.tables import STEP_CPP
 from acutance.report.text import align_columns
 from acutance.report.wording import (
     describe_plane,
     describe_plane_image,
     format_number,
-    metric_words,
     verdict,
     word_estimate,
 )
@@ -42,7 +42,7 @@ def plane_text(measurement: Measurement2d, blocks: Sequence[str] = ()) -> str:
     across, along = measurement.across.metrics(), measurement.along.metrics()
     numbers: list[tuple[str, ...]] = [("", "across", "along", "")]
     for name in across:
-        words = metric_words(name)
+        words = plane_metric_words(measurement, name)
         cells = (word_estimate(one[name]).value_and_std for one in (across, along))
         numbers.append((words.label, *cells, words.unit))
     parts = [
@@ -65,10 +65,11 @@ def plane_csv(measurement: Measurement2d) -> str:
     """The MTF across and along as CSV, in steps of 0.02 cycles per pixel.
 
     Columns are direction, freq_cpp, mtf, std, low95, high95, and freq_cpm (cycles per metre) when
-    the GSD is known.
+    the GSD is known. Where the curves are a ratio of two sensors', the column of the MTF is called
+    mtf_low_over_mtf_high.
     """
     metres = measurement.across.gsd_m is not None
-    header = ("direction", "freq_cpp", "mtf", "std", "low95", "high95")
+    header = ("direction", "freq_cpp", csv_column(measurement), "std", "low95", "high95")
     lines = [",".join((*header, "freq_cpm") if metres else header)]
     for direction, response in (("across", measurement.across), ("along", measurement.along)):
         lines += [f"{direction},{cells}" for cells in _curve_rows(response)]

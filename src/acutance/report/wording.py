@@ -178,6 +178,8 @@ def describe_image(measurement: Measurement) -> str:
 def describe_plane(measurement: Measurement2d) -> str:
     """What a 2-D measurement is, in one line: target, method, SNR."""
     parts = [f"{measurement.kind.capitalize()} by {measurement.method}"]
+    if measurement.is_ratio:
+        parts.append("MTF ratio low/high (not the low sensor's own MTF)")
     if math.isfinite(measurement.snr):
         parts.append(f"SNR {format_number(measurement.snr, 3)}")
     return ", ".join(parts)
