@@ -6,7 +6,7 @@ import pytest
 from acutance import optics
 from acutance.errors import ModelError
 from acutance.fit.combine import combine_curves
-from acutance.fit.combine_curves import ChiSquare, PlaneCurve
+from acutance.fit.combine_curves import ChiSquare, PlaneCurve, WhitenedCurves
 from acutance.fit.combine_departure import Departure
 from acutance.fit.combine_forms import FORMS, TERMS, SensorForm
 
@@ -141,6 +141,30 @@ def test_a_system_no_form_holds_gets_a_departure():
     assert fit.departure > 0.02
     u, v = FREQ * np.cos(0.1), FREQ * np.sin(0.1)
     assert fit.otf(u, v) == pytest.approx(sensor.otf(u, v), abs=0.03)
+
+
+def test_many_curves_keep_what_their_priors_leave_in_common():
+    sensor = optics.Sensor([optics.Gaussian(0.45), optics.Detector()])
+
+    def std(count):
+        directions = np.linspace(0.0, 175.0, count, endpoint=False)
+        fit = combine_curves([curve(sensor.otf, one, 0.01) for one in directions])
+        return float(np.linalg.norm(fit.factor(np.array([0.5]), np.zeros(1)).real))
+
+    # Independent curves would halve it, and end at nothing.
+    assert 0.55 < std(24) / std(6) < 0.95
+
+
+def test_errors_of_curves_that_share_a_prior_are_correlated_at_one_frequency():
+    sensor = optics.Sensor([optics.Gaussian(0.45), optics.Detector()])
+    data = WhitenedCurves([curve(sensor.otf, one, 0.01).centred() for one in DIRECTIONS[:2]])
+    one, other = data.parts
+    assert not data.shared[one, one].any()
+    # A quarter of the variance of the real parts, less where the floor under the errors rules.
+    alike = data.shared[one, other].diagonal()[:16]
+    assert np.all((alike > 0.1) & (alike < 0.25))
+    assert np.abs(data.shared[one, other].diagonal()[16:]).max() < 0.05
+    assert np.linalg.eigvalsh(data.covariance).min() > -1e-9
 
 
 def test_chi_square_of_chance():

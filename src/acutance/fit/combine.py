@@ -45,8 +45,10 @@ class FormFit:
     parameters : (p,) array
     weights : (m,) array
         Of the departure's directions.
+    inverse : (p + m, p + m) array
+        Covariance of both if the errors of different curves were independent.
     root : (p + m, p + m) array
-        Factor of the covariance of both, before it is widened.
+        Factor of their covariance, before it is widened.
     score : float
         Minus twice the logarithm of the form's evidence, by Laplace's approximation.
     weight : float
@@ -58,6 +60,7 @@ class FormFit:
     departure: Departure
     parameters: Floats
     weights: Floats
+    inverse: Floats
     root: Floats
     score: float
     weight: float
@@ -254,8 +257,10 @@ def _fit_form(
     design = np.concatenate([by_p, ways], axis=1)
     normal = design.T @ design
     normal += np.diag(np.concatenate([spread**-2.0, np.ones(ways.shape[1])]))
-    value, vector = np.linalg.eigh(normal)
-    root = vector / np.sqrt(value)
+    inverse = np.linalg.inv(normal)
+    moved = design @ inverse
+    value, vector = np.linalg.eigh(inverse + moved.T @ data.shared @ moved)
+    root = vector * np.sqrt(np.maximum(value, 0.0))
     # The directions' weights are counted in units of the share.
     scale = np.concatenate([np.ones(p.size), np.full(ways.shape[1], share)])
     amounts = np.linalg.solve(normal[p.size :, p.size :], ways.T @ off)
@@ -264,7 +269,10 @@ def _fit_form(
     narrowed = np.linalg.slogdet(whole[:, None] * normal * whole)[1]
     score = 2 * float(found.cost) + float(narrowed)
     nothing = Departure(form, tuple(p.tolist()))
-    return FormFit(form, share, nothing, p, share * amounts, scale[:, None] * root, score, 1.0)
+    return FormFit(
+        form, share, nothing, p, share * amounts, scale[:, None] * inverse * scale,
+        scale[:, None] * root, score, 1.0,
+    )  # fmt: skip
 
 
 def _likely(form: SensorForm, residual: Callable[[Floats], Floats]) -> list[Floats]:
@@ -300,29 +308,23 @@ def _chi_squares(
     """
     best = forms[0]
     slopes = data.of(best.slopes(data.u_cpp, data.v_cpp))
-    inverse = best.root @ best.root.T
-    columns = []
-    for part, one in zip(data.parts, data.curves, strict=True):
-        moved = -slopes @ (inverse @ (slopes[part].T @ one.spread))
-        moved[part] += one.spread
-        columns.append(moved)
-    errors = np.concatenate(columns, axis=1)
     residual = data.values - data.of(_mean_otf(forms, data.u_cpp, data.v_cpp))
-    seen = []
-    for part in data.parts:
-        if ways is None:
-            seen.append((residual[part], errors[part]))
-        else:
-            axes = _span(ways[part])
-            seen.append((axes.T @ residual[part], axes.T @ errors[part]))
-    members = tuple(_chi_square(*one) for one in seen)
-    whole = tuple(np.concatenate(parts) for parts in zip(*seen, strict=True))
-    return _chi_square(*whole), members
+    left = np.eye(residual.size) - slopes @ best.inverse @ slopes.T
+    covariance = left @ data.covariance @ left.T
+    axes = [np.eye(residual.size)[:, part] for part in data.parts]
+    if ways is not None:
+        axes = [own @ _span(ways[part]) for own, part in zip(axes, data.parts, strict=True)]
+    members = tuple(_chi_square(own.T @ residual, own.T @ covariance @ own) for own in axes)
+    whole = np.concatenate(axes, axis=1)
+    return _chi_square(whole.T @ residual, whole.T @ covariance @ whole), members
 
 
 def _span(ways: Floats) -> Floats:
     """Orthonormal axes of the directions some vectors span, the faint ones left out, (n, k)."""
-    left, size, _ = np.linalg.svd(ways / np.linalg.norm(ways, axis=0), full_matrices=False)
+    # A curve exactly across sees nothing of a smear along.
+    length = np.linalg.norm(ways, axis=0)
+    seen = length > 1e-9 * length.max()
+    left, size, _ = np.linalg.svd(ways[:, seen] / length[seen], full_matrices=False)
     return np.asarray(left[:, size > _FAINT * size[0]])
 
 
@@ -339,8 +341,7 @@ def _shapes(data: WhitenedCurves, simplest: FormFit) -> Floats:
     return data.of(form.slopes(at, data.u_cpp, data.v_cpp))
 
 
-def _chi_square(residual: Floats, errors: Floats) -> ChiSquare:
-    smaller = errors @ errors.T if errors.shape[0] < errors.shape[1] else errors.T @ errors
+def _chi_square(residual: Floats, covariance: Floats) -> ChiSquare:
     return ChiSquare(
-        float(residual @ residual), float(np.trace(smaller)), 2 * float(np.sum(smaller**2))
+        float(residual @ residual), float(np.trace(covariance)), 2 * float(np.sum(covariance**2))
     )

@@ -21,6 +21,13 @@ Complexes = NDArray[np.complex128]
 _FLOOR = 5e-4
 """What an estimator may be wrong by without noise; also what makes a covariance invertible."""
 
+_COMMON = 0.25
+"""Share of the variance of a measurement that is alike in all of one sensor: what its prior leaves.
+
+Images of a plain Gaussian, which is what priors expect, scatter by 0.86 to 0.9 of the deviations
+that are stated (benchmarks/coverage.py): the rest is allowed for other shapes of sensors, and a
+sensor has one shape.
+"""
 _LOW_CPP = 0.12
 _SHIFT_PX = 0.3
 """The curves know their centroid only so well: a phase linear in frequency says nothing."""
@@ -68,6 +75,12 @@ class PlaneCurve:
     def spread(self) -> Floats:
         """Factor (2n, k) of what the whitened errors vary by: less than 1 where the floor rules."""
         return np.asarray(self.whitening @ _stacked(self.factor))
+
+    @cached_property
+    def even_spread(self) -> Floats:
+        """The symmetric factor (2n, 2n) of the errors, whitened: a column belongs to a place."""
+        value, vector = np.linalg.eigh(_stacked(self.factor) @ _stacked(self.factor).T)
+        return np.asarray(self.whitening @ (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T)
 
     def whitened(self, values: Complexes) -> Floats:
         """Values (n,) or (n, p), stacked and whitened."""
@@ -148,6 +161,32 @@ class WhitenedCurves:
     def parts(self) -> list[slice]:
         """Where each curve stands in what is whitened."""
         return [slice(2 * a, 2 * b) for a, b in pairwise(self._ends)]
+
+    @cached_property
+    def covariance(self) -> Floats:
+        """What the whitened errors vary by, (2n, 2n)."""
+        total = self.shared.copy()
+        for part, one in zip(self.parts, self.curves, strict=True):
+            total[part, part] += one.spread @ one.spread.T
+        return total
+
+    @cached_property
+    def shared(self) -> Floats:
+        """Covariance of the whitened errors of different curves, (2n, 2n).
+
+        Alike are the real parts at one frequency, in whatever direction they were measured.
+        """
+        freq = np.round(np.hypot(self.u_cpp, self.v_cpp), 3)
+        known, number = np.unique(freq, return_inverse=True)
+        rows, own = [], np.zeros((2 * freq.size, 2 * freq.size))
+        for part, one, (a, b) in zip(self.parts, self.curves, pairwise(self._ends), strict=True):
+            places = number[a:b]
+            alike = np.zeros((b - a, known.size))
+            alike[np.arange(b - a), places] = 1 / np.sqrt(np.bincount(places)[places])
+            rows.append(one.even_spread[:, : b - a] @ alike)
+            own[part, part] = rows[-1] @ rows[-1].T
+        together = np.concatenate(rows)
+        return np.asarray(_COMMON * (together @ together.T - own))
 
     def of(self, values: Complexes) -> Floats:
         """Values (n,) or (n, p) at all places, stacked and whitened curve by curve."""
