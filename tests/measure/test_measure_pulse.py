@@ -162,3 +162,17 @@ def test_uneven_grounds_are_no_correlated_noise_by_the_published_method():
     image, _ = simulated(right_dark=200.0)
     m = ac.measure_pulse(image, width_px=3.0, method="sdsu-2005")
     assert not failed(m) & {"correlated_noise", "outliers"}
+
+
+def test_a_width_that_is_far_off_ends_where_the_true_one_does():
+    image, _ = ac.simulate.pulse(
+        ac.simulate.reference_systems()["gaussian"], width_px=3.0, angle_deg=6.0, snr=100,
+        shape=(60, 50), rng=np.random.default_rng(3),
+    )  # fmt: skip
+    true = ac.measure_pulse(image, width_px=3.0)
+    for stated_px in (1.0, 5.0):
+        found = ac.measure_pulse(image, width_px=stated_px)
+        assert found.width_px.value == pytest.approx(true.width_px.value, abs=2e-4)
+        assert found.width_px.std == pytest.approx(true.width_px.std, rel=0.05)
+        assert found.mtf_nyquist.value == pytest.approx(true.mtf_nyquist.value, abs=5e-4)
+        assert "width_sigmas" in [check.name for check in found.failed_checks]

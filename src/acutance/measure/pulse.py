@@ -26,6 +26,8 @@ from acutance.raster import Gsd, Image
 
 __all__ = ["PULSE_METHODS", "measure_pulse"]
 
+_MOST_CORRECTED = 0.15
+
 
 @dataclass(frozen=True, eq=False)
 class _Fitted:
@@ -117,11 +119,20 @@ def measure_pulse(
     if stated_px is not None and method in PUBLISHED_PULSE:
         band = replace(band, pulse_width_px=stated_px)
     found = estimate(band, free, chosen)
+    if free and stated_px is not None and _is_far(found.width.value, stated_px):
+        # So far from its start the fit may have stopped in a place of its own: start near the end.
+        band, extent = find_pulse(pixels.pixels, found.width.value)
+        found = estimate(band, free, chosen)
     checks = PulseChecks(
         pixels, band, extent, found.fit, found.width, found.fall, stated_px, chosen.limits,
         by_ratio=method != "spline",
     )  # fmt: skip
     return _measurement(pixels, band, found, checks, method, chosen, stated_px)
+
+
+def _is_far(found_px: float, stated_px: float) -> bool:
+    """Whether a fitted width is another one than what was stated, not a correction of it."""
+    return abs(found_px / stated_px - 1) > _MOST_CORRECTED
 
 
 def _method(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:

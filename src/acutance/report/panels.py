@@ -155,9 +155,10 @@ def _legend_below(axes: Axes, entries: list[tuple[str, str]]) -> None:
     )
 
 
-def draw_pixels(axes: Axes, samples: Samples) -> None:
-    """Every pixel used, at its distance along the normal."""
-    _dot(axes, samples.distance_px, samples.value, f"{samples.distance_px.size} pixels")
+def draw_pixels(axes: Axes, samples: Samples, values: Floats | None = None) -> None:
+    """Every pixel used, or some `values` of them, (n,), at its distance along the normal."""
+    shown = samples.value if values is None else values
+    _dot(axes, samples.distance_px, shown, f"{samples.distance_px.size} pixels")
 
 
 def _dot(axes: Axes, places: Floats, values: Floats, label: str | None = None) -> None:
@@ -168,7 +169,10 @@ def _dot(axes: Axes, places: Floats, values: Floats, label: str | None = None) -
 def draw_esf(axes: Axes, measurement: Measurement) -> None:
     """The samples along the normal and the edge spread function with its 95 % band."""
     esf, reach = measurement.esf, reach_px(measurement)
-    draw_pixels(axes, measurement.samples)
+    samples = measurement.samples
+    # Slow trends of the ground belong to the fit: pixels are shown without them, as residuals are.
+    fitted = np.interp(samples.distance_px, esf.distance_px, esf.value, left=0.0, right=1.0)
+    draw_pixels(axes, samples, fitted + samples.residual)
     low, high = band_edges(esf.value, esf.std)
     axes.fill_between(esf.distance_px, low, high, color=BLUE, alpha=0.3, linewidth=0)
     axes.plot(esf.distance_px, esf.value, color=BLUE, label="ESF, 95 % band")
