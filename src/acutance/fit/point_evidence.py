@@ -17,7 +17,7 @@ from scipy.linalg import solve_triangular
 from acutance.curves.grid import Floats
 from acutance.fit.normal import Normal
 from acutance.fit.point_blocks import Blocks
-from acutance.fit.posterior import Posterior, Prior, regress, whiten
+from acutance.fit.posterior import Posterior, Prior, evidence_of, regress, whiten
 
 __all__ = ["averaged_posterior", "likelier_growth", "likelier_posterior"]
 
@@ -52,7 +52,7 @@ def averaged_posterior(
 
     At the likeliest amplitudes alone, wings that the data neither show nor exclude would be taken
     for absent. Either amplitude runs over a grid, each point weighted by its evidence; what the
-    other amplitudes leave open stays as in `likeliest`.
+    other amplitudes leave open enters to first order, those two held: the grid has their share.
 
     Parameters
     ----------
@@ -80,11 +80,21 @@ def averaged_posterior(
         covariance += w * one.covariance * np.outer(one.sigma, one.sigma)
         away = one.sigma * one.mean - mean
         covariance += w * np.outer(away, away)
-    moves = likeliest.factor[:, mean.size :].copy()
-    moves[:, [_HALO, _TAIL]] = 0.0
     power, axes = np.linalg.eigh(covariance)
     factor = axes * np.sqrt(np.maximum(power, 0.0))
-    return Posterior(mean, np.hstack([factor, moves]), mode, likeliest.variance, likeliest.freedom)
+    share = _share_of_others(normal, prior, mode, noise)
+    return Posterior(mean, np.hstack([factor, share]), mode, likeliest.variance, likeliest.freedom)
+
+
+def _share_of_others(normal: Normal, prior: Prior, mode: Floats, noise: float) -> Floats:
+    """Factor of what the amplitudes but HALO's and TAIL's leave open, those held, (m, k - 2)."""
+    others = np.setdiff1d(np.arange(mode.size), [_HALO, _TAIL])
+    white = whiten(normal, prior, mode, noise)
+    found = evidence_of(white, prior, mode)
+    curvature, axes = np.linalg.eigh(-found.hessian[np.ix_(others, others)])
+    # No amplitude is less certain than before the data.
+    spread = axes / np.sqrt(np.maximum(curvature, 1 / prior.log_amplitude_std**2))
+    return np.asarray(white.sigma[:, None] * (found.moves[:, others] @ spread))
 
 
 def felt_directions(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Floats:
