@@ -83,9 +83,15 @@ def test_files(acutance, pair, folder):
 
 
 def test_a_measurement_as_the_reference(acutance, pair, folder):
-    document = acutance("biresolution", *pair, "--json").stdout
+    document = acutance("biresolution", *pair, "--reference", 0.2891, "--json").stdout
     path = folder / "reference.json"
     path.write_text(document)
+    refused = acutance("biresolution", *pair, "--reference", path)
+    assert refused.exit_code == 2
+    assert "pixels of 20 m" in refused.stderr
+    of_the_high = json.loads(document)
+    of_the_high["image"]["gsd_m"] = 10.0
+    path.write_text(json.dumps(of_the_high))
     result = acutance("biresolution", *pair, "--reference", path, "--json")
     assert result.exit_code == 0, result.stderr
     found = json.loads(result.stdout)["across"]["mtf_nyquist"]

@@ -409,6 +409,44 @@ def test_document_as_a_reference() -> None:
     assert curves.across(0.5).value == pytest.approx(measured().across.mtf_nyquist.value, rel=1e-6)
 
 
+def _edge_of_the_reference(gsd_m: float) -> ac.Measurement:
+    image, _ = ac.simulate.edge(REFERENCE, angle_deg=6, snr=100, rng=np.random.default_rng(3))
+    return ac.measure_edge(image, gsd_m=gsd_m)
+
+
+def test_a_reference_in_one_direction_is_said_to_be_one() -> None:
+    low, high, _ = rendered()
+    image = ac.Image.from_array(high, gsd_m=10.0)
+    edge = _edge_of_the_reference(10.0)
+    for reference in (edge, measured_reference(edge.to_dict(), "edge.json")):
+        m = ac.measure_biresolution(low, image, reference_mtf=reference)
+        (check,) = (one for one in m.failed_checks if one.name == "reference_directions")
+        assert f"{edge.line.normal_deg:.1f} degrees from the column axis" in check.message
+    names = {check.name for check in measured().checks}
+    assert "reference_directions" not in names
+
+
+def test_a_reference_of_other_pixels_is_refused() -> None:
+    low, high, _ = rendered()
+    wrong = _edge_of_the_reference(0.7)
+    message = r"pixels of 0.7 m, those of the high image have 10 m"
+    for pair in ((low, ac.Image.from_array(high, 10.0)), (ac.Image.from_array(low, 20.0), high)):
+        with pytest.raises(ac.OptionError, match=message):
+            ac.measure_biresolution(*pair, reference_mtf=wrong)
+    with pytest.raises(ac.OptionError, match=message):
+        ac.measure_biresolution(
+            low, ac.Image.from_array(high, 10.0),
+            reference_mtf=measured_reference(wrong.to_dict(), "edge.json"),
+        )  # fmt: skip
+
+
+def test_a_ratio_is_no_reference() -> None:
+    low, high, _ = rendered()
+    ratio = ac.measure_biresolution(low, high)
+    with pytest.raises(ac.OptionError, match="no sensor's own MTF"):
+        measured_reference(ratio.to_dict(), "file")
+
+
 def test_stopping_threshold() -> None:
     low, high, _ = rendered()
     loose = ac.measure_biresolution(low, high, options=ac.BiresolutionOptions(stop_change=0.2))

@@ -29,12 +29,17 @@ from acutance.measure.biresolution_checks import PairEvidence, check_pair
 from acutance.measure.biresolution_grid import PairGrid, pair_grid
 from acutance.measure.biresolution_measurement import BiresolutionMeasurement
 from acutance.measure.biresolution_options import BiresolutionOptions
-from acutance.measure.biresolution_reference import ReferenceLike, reference_otf
+from acutance.measure.biresolution_reference import (
+    ReferenceLike,
+    known_curves,
+    reference_otf,
+    require_pixels,
+)
 from acutance.measure.biresolution_tiles import PairTiles
 from acutance.measure.cut import RoiLike
 from acutance.measure.measurement import ImageInfo
 from acutance.measure.one_thread import one_thread
-from acutance.raster import Box, Image, Region
+from acutance.raster import Box, Gsd, Image, Region
 
 __all__ = ["BIRESOLUTION_METHODS", "measure_biresolution"]
 
@@ -100,6 +105,8 @@ def measure_biresolution(
     coarse, fine = _as_image(low), _as_image(high)
     geometry = pair_grid(coarse, fine, ratio)
     reference = reference_otf(reference_mtf, geometry.across.ratio, geometry.down.ratio)
+    curves = known_curves(reference_mtf)
+    require_pixels(curves, _high_gsd(coarse, fine, geometry))
     tiles, match = _registered(coarse, fine, geometry, _as_region(roi, coarse), chosen)
     noise = tiles.high_noise if chosen.noise_high is None else chosen.noise_high
     start = AxisBlur(match.shift_px[0]), AxisBlur(match.shift_px[1])
@@ -129,7 +136,7 @@ def measure_biresolution(
     model = KernelOtf(fit, tiles.grid.across.band_cpp, tiles.grid.down.band_cpp, reference)
     seen = PairEvidence(
         tiles.grid, blur, pixel_fit, model, spectra, local, _saturated(tiles), match.inverted,
-        chosen.stop_change,
+        chosen.stop_change, None if curves is None else curves.only_direction,
     )  # fmt: skip
     gsd = coarse.gsd(*_middle(tiles.box))
     return BiresolutionMeasurement(
@@ -156,6 +163,14 @@ def measure_biresolution(
         high_noise=noise,
         reference_known=reference is not None,
     )
+
+
+def _high_gsd(low: Image, high: Image, grid: PairGrid) -> Gsd | None:
+    """GSD of the high image: its own, or the low one's by the ratio."""
+    own, coarse = high.gsd(), low.gsd()
+    if own is not None or coarse is None:
+        return own
+    return Gsd(coarse.row_m / grid.down.ratio, coarse.col_m / grid.across.ratio)
 
 
 def _as_image(image: Image | ArrayLike) -> Image:

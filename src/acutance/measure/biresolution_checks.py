@@ -48,6 +48,8 @@ class PairEvidence:
         Whether the images match better with opposite sign.
     stop_change : float
         Threshold of the parametric fit.
+    only_direction : str or None
+        The direction of the reference's measurement, where it is a single one.
     """
 
     grid: PairGrid
@@ -59,6 +61,7 @@ class PairEvidence:
     saturated: float
     inverted: bool
     stop_change: float
+    only_direction: str | None = None
 
 
 def check_pair(seen: PairEvidence, limits: BiresolutionLimits) -> tuple[Check, ...]:
@@ -75,6 +78,13 @@ def _checks(seen: PairEvidence, limits: BiresolutionLimits) -> Iterator[Check]:
         "finer it is (Li et al. 5.2)",
     )  # fmt: skip
     yield _reference(seen, limits)
+    if seen.only_direction is not None:
+        yield at_least(
+            "reference_directions", 1.0, limits.reference_directions,
+            f"the reference's MTF was measured in {seen.only_direction}, and is taken for all: "
+            "smear or asymmetry of its sensor is then in the result; combine measurements in two "
+            "directions, or use points or a star",
+        )  # fmt: skip
     sign = "; it matches better with opposite sign: not the same band" if seen.inverted else ""
     yield at_least(
         "correlation", seen.blur.correlation, limits.correlation,

@@ -22,6 +22,8 @@ class BiresolutionLimits:
     reference_mtf : float
         Least MTF of the reference at the low image's Nyquist frequency; a reference that was not
         given has none.
+    reference_directions : float
+        Least number of directions in which a reference was measured.
     correlation : float
         Least correlation of the low image with the blurred high one, local means left out.
     coherence : float
@@ -47,6 +49,7 @@ class BiresolutionLimits:
 
     ratio: float = 2.0
     reference_mtf: float = 0.5
+    reference_directions: float = 2.0
     correlation: float = 0.9
     coherence: float = 0.1
     pixels: float = 2000.0

@@ -17,16 +17,21 @@ from acutance.fit.kernel_otf import ReferenceOtf
 from acutance.measure.measurement import SCHEMA, Measurement
 from acutance.measure.measurement2d import Measurement2d
 from acutance.optics import Detector, Gaussian, Sensor
+from acutance.raster import Gsd
 
 __all__ = [
     "MeasuredCurves",
     "ReferenceLike",
+    "known_curves",
     "measured_reference",
     "reference_otf",
+    "require_pixels",
     "sensor_of_nyquist",
 ]
 
 Complexes = NDArray[np.complex128]
+
+_GSD_SHARE = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +41,27 @@ class MeasuredCurves:
     Parameters
     ----------
     across, along : Mtf
+        One and the same where only one direction was measured.
+    gsd_m : float, optional
+        Of its pixels in metres: along the normal of a single direction, else along the rows.
+    normal_deg : float, optional
+        The single direction, from the column axis (0) towards the row axis (90).
     """
 
     across: Mtf
     along: Mtf
+    gsd_m: float | None = None
+    normal_deg: float | None = None
+
+    @property
+    def only_direction(self) -> str | None:
+        """The single direction in words; ``None`` where both were measured."""
+        if self.along is not self.across:
+            return None
+        if self.normal_deg is None:
+            return "one direction"
+        angle = (self.normal_deg + 90.0) % 180.0 - 90.0
+        return f"one direction, {angle:.1f} degrees from the column axis"
 
 
 ReferenceLike = (
@@ -103,6 +125,44 @@ def _read(mtf: Mtf, freq_cpp: Floats) -> tuple[Floats, Floats]:
     return np.asarray(value), np.asarray(np.interp(freq_cpp, mtf.freq_cpp, mtf.std))
 
 
+def known_curves(reference: ReferenceLike) -> MeasuredCurves | None:
+    """The curves of a measured reference; ``None`` for one that is described or not given."""
+    if isinstance(reference, MeasuredCurves):
+        return reference
+    if isinstance(reference, Measurement2d):
+        across, along = reference.across.mtf, reference.along.mtf
+        return MeasuredCurves(across, along, reference.image.gsd_m)
+    if isinstance(reference, Measurement):
+        only, gsd_m = reference.mtf, reference.response.gsd_m
+        return MeasuredCurves(only, only, gsd_m, reference.line.normal_deg)
+    if isinstance(reference, Response):
+        return MeasuredCurves(reference.mtf, reference.mtf, reference.gsd_m)
+    return MeasuredCurves(reference, reference) if isinstance(reference, Mtf) else None
+
+
+def require_pixels(curves: MeasuredCurves | None, gsd: Gsd | None) -> None:
+    """Refuse a measured reference of other pixels than the high image's.
+
+    Its frequencies are in cycles per pixel of its own image: in another product of the same
+    sensor, or another sensor, they mean something else.
+
+    Raises
+    ------
+    OptionError
+        If both GSDs are known and differ by more than 5 %.
+    """
+    if curves is None or curves.gsd_m is None or gsd is None:
+        return
+    own = gsd.along_normal(curves.normal_deg or 0.0)
+    if abs(math.log(curves.gsd_m / own)) > math.log(1 + _GSD_SHARE):
+        raise OptionError(
+            f"the reference was measured in pixels of {curves.gsd_m:.4g} m, those of the high "
+            f"image have {own:.4g} m: its frequencies in cycles per pixel mean something else "
+            "there. Measure the reference in the high image's own product, or state its MTF at "
+            "Nyquist or its sensor"
+        )
+
+
 def reference_otf(
     reference: ReferenceLike, ratio_across: float, ratio_along: float
 ) -> ReferenceOtf | None:
@@ -127,20 +187,13 @@ def reference_otf(
         reference = sensor_of_nyquist(float(reference))
     if isinstance(reference, Sensor):
         return _OfSensor(reference, ratio_across, ratio_along)
-    if isinstance(reference, MeasuredCurves):
-        across, along = reference.across, reference.along
-    elif isinstance(reference, Measurement2d):
-        across, along = reference.across.mtf, reference.along.mtf
-    elif isinstance(reference, Measurement | Response):
-        across = along = reference.mtf
-    elif isinstance(reference, Mtf):
-        across = along = reference
-    else:
+    curves = known_curves(reference)
+    if curves is None:
         raise OptionError(
             f"reference_mtf is a {type(reference).__name__}: give a Sensor, a measurement, an Mtf, "
             "or the MTF at the reference's own Nyquist frequency as a number"
         )
-    return _OfCurves(across, along, ratio_across, ratio_along)
+    return _OfCurves(curves.across, curves.along, ratio_across, ratio_along)
 
 
 def sensor_of_nyquist(mtf_nyquist: float) -> Sensor:
@@ -174,17 +227,25 @@ def measured_reference(document: Any, origin: str) -> MeasuredCurves:
     Raises
     ------
     OptionError
-        If it is no such document.
+        If it is no such document, or one of a ratio of two sensors' MTFs.
     """
     if not isinstance(document, Mapping) or document.get("schema") != SCHEMA:
         raise OptionError(f"{origin} is no document {SCHEMA}: write one with --json")
+    if document.get("quantity") == "mtf_low_over_mtf_high":
+        raise OptionError(
+            f"{origin} is the ratio MTF_low / MTF_high, no sensor's own MTF: measure it again with "
+            "--reference"
+        )
     try:
+        gsd = document.get("image", {}).get("gsd_m")
+        gsd_m = None if gsd is None else float(gsd)
         if "across" in document:
             across, along = (_curve(document[name]["mtf"]) for name in ("across", "along"))
-            return MeasuredCurves(across, along)
-        only = _curve(document["mtf"])
-        return MeasuredCurves(only, only)
-    except (KeyError, TypeError, ValueError) as error:
+            return MeasuredCurves(across, along, gsd_m)
+        only, line = _curve(document["mtf"]), document.get("line", {})
+        normal = line.get("normal_deg")
+        return MeasuredCurves(only, only, gsd_m, None if normal is None else float(normal))
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise OptionError(f"{origin} holds no MTF that can be read ({error})") from error
 
 

@@ -123,6 +123,7 @@ def _draw_residual(axes: Axes, measurement: BiresolutionMeasurement) -> None:
 
 def _draw_map(page: FigureBase, measurement: BiresolutionMeasurement) -> None:
     local = measurement.local
+    name = "Ratio" if measurement.is_ratio else "MTF"
     parts = split_page(page, 1, 4)
     for part, axis in zip(parts, ("across", "along"), strict=False):
         mtf, std = measurement.local_mtf_nyquist(axis)
@@ -130,7 +131,7 @@ def _draw_map(page: FigureBase, measurement: BiresolutionMeasurement) -> None:
         _draw_field(
             part,
             mtf,
-            f"{transfer_name(measurement)} at Nyquist {axis}",
+            f"{name} at Nyquist {axis}",
             f"each ± {typical:.3f}",
             "viridis",
         )

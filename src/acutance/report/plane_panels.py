@@ -136,8 +136,8 @@ def draw_psf(axes: Axes, measurement: Measurement2d) -> None:
     lines = axes.contour(distance, distance, share, LEVELS, colors=[INK], linewidths=0.9)
     axes.clabel(lines, fmt=_percent, fontsize=7.5)
     axes.plot([-0.5, 0.5, 0.5, -0.5, -0.5], [-0.5, -0.5, 0.5, 0.5, -0.5], color=VERMILION, lw=1.1)
-    title = spread_name(measurement, "PSF") + ", % of its peak; red: one pixel"
-    axes.set(xlabel="across [px]", ylabel="along [px]", title=title)
+    name = "PSF of the ratio, %" if measurement.is_ratio else "PSF, % of its peak"
+    axes.set(xlabel="across [px]", ylabel="along [px]", title=f"{name}; red: one pixel")
 
 
 def draw_transfer_map(axes: Axes, measurement: Measurement2d) -> None:
