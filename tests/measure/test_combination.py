@@ -155,6 +155,46 @@ def test_square_pixels_can_be_denied(edges):
     assert found.across.gsd_m == pytest.approx(0.7)
 
 
+def _edge_of_pixels(gsd, seed, angle=6, orientation="across"):
+    image, _ = simulate.edge(
+        SENSOR, angle_deg=angle, orientation=orientation, shape=(50, 50), dark=200, bright=1200,
+        snr=100, rng=np.random.default_rng(seed),
+    )  # fmt: skip
+    return ac.measure_edge(image, gsd_m=gsd)
+
+
+def test_pixels_that_are_not_square_are_known_from_the_measurements():
+    wide = ac.Gsd(0.5, 0.7)
+    both = [_edge_of_pixels(wide, 1), _edge_of_pixels(wide, 2, 7, "along")]
+    found = ac.combine(both)
+    assert found.across.gsd_m == pytest.approx(0.7)
+    assert found.along.gsd_m == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("orientation", ["across", "along"])
+def test_square_and_other_pixels_are_told_apart_in_any_direction(orientation):
+    other = "along" if orientation == "across" else "across"
+    square = _edge_of_pixels(0.5, 1, 6, other)
+    wide = _edge_of_pixels(ac.Gsd(0.5, 0.7), 2, 7, orientation)
+    with pytest.raises(ac.OptionError, match=r"0\.5 m, .* 0\.5 x 0\.7 m"):
+        ac.combine([square, wide])
+    old = wide.to_dict()
+    del old["image"]["pixel_gsd_m"]
+    if orientation == "across":
+        with pytest.raises(ac.OptionError, match="different pixels"):
+            ac.combine([square, old])
+
+
+def test_a_gsd_that_some_lack_fails_a_check_that_names_them():
+    known, unknown = _edge_of_pixels(2.0, 1), _edge_of_pixels(None, 2, 7, "along")
+    found = ac.combine([known, unknown], names=["a", "b"])
+    (check,) = (one for one in found.failed_checks if one.name == "unknown_gsd")
+    assert "have one: b;" in check.message
+    for given, gsd_m in (([known, unknown], 2.0), ([_edge_of_pixels(None, 1), unknown], None)):
+        stated = ac.combine(given, gsd_m=gsd_m)
+        assert "unknown_gsd" not in [one.name for one in stated.failed_checks]
+
+
 def test_a_target_document_is_taken_apart(edges):
     target = {"schema": "acutance/target/1", "measurements": [one.to_dict() for one in edges]}
     found = ac.combine([target], names=["tarp.json"])

@@ -21,10 +21,10 @@ from acutance.measure.combine_inputs import (
     Combinable,
     MeasuredInput,
     common_flight,
-    common_gsd,
     read_inputs,
 )
 from acutance.measure.combine_options import CombineOptions
+from acutance.measure.combine_pixels import common_gsd, without_gsd
 from acutance.measure.measurement import ImageInfo
 from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.one_thread import one_thread
@@ -152,7 +152,7 @@ def combine(
     names : sequence of str, optional
         What to call them.
     gsd_m : float or Gsd, optional
-        Ground sampling distance in metres; needed where pixels are not square.
+        Ground sampling distance in metres, instead of that of the measurements.
     options : CombineOptions, optional
 
     Returns
@@ -176,8 +176,8 @@ def combine(
     inputs = read_inputs(measurements, names)
     _require_two(inputs)
     gsd = Gsd.square(gsd_m) if isinstance(gsd_m, float | int) else gsd_m
-    if gsd is None and (shared := common_gsd(inputs)) is not None:
-        gsd = Gsd.square(shared)
+    unknown = without_gsd(inputs) if gsd is None else ()
+    gsd = gsd or common_gsd(inputs)
     along_track = cast("AlongTrack", common_flight(inputs))
     fit = combine_curves(
         [_curve(one) for one in inputs], detector_px=chosen.detector_px, forms=chosen.forms
@@ -189,7 +189,7 @@ def combine(
         method="least-squares",
         otf=otf,
         snr=math.nan,
-        checks=check_combination(inputs, fit, chosen.limits),
+        checks=check_combination(inputs, fit, chosen.limits, unknown),
         image=ImageInfo(
             paths.pop() if len(paths) == 1 else None,
             gsd_m=None if gsd is None else gsd.col_m,

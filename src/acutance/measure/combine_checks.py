@@ -21,7 +21,10 @@ _SAME_LINE_DEG = 5.0
 
 
 def check_combination(
-    inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: CombineLimits
+    inputs: Sequence[MeasuredInput],
+    fit: CombinedFit,
+    limits: CombineLimits,
+    without_gsd: Sequence[str] = (),
 ) -> tuple[Check, ...]:
     """All checks of a combination.
 
@@ -30,6 +33,8 @@ def check_combination(
     inputs : sequence of MeasuredInput
     fit : CombinedFit
     limits : CombineLimits
+    without_gsd : sequence of str, optional
+        Names of measurements without a GSD among others that have one.
     """
     return (
         _agreement(fit, limits),
@@ -47,6 +52,13 @@ def check_combination(
             limits.assumed_covariance,
             "without covariance, errors at frequencies within 0.08 c/px are taken to be alike: "
             "write the JSON again with this version",
+        ),
+        at_most(
+            "unknown_gsd", len(without_gsd), limits.unknown_gsd,
+            "measurements without a GSD among others that have one"
+            + (f": {', '.join(without_gsd)}" if without_gsd else "")
+            + "; nothing tells that their pixels are the same, so state the GSD when measuring, "
+            "or of all when combining",
         ),
     )  # fmt: skip
 

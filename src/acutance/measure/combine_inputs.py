@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
@@ -18,12 +17,11 @@ from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.plane_slices import PlaneSlices
 from acutance.measure.target import TargetResult
 
-__all__ = ["Combinable", "MeasuredInput", "read_inputs"]
+__all__ = ["Combinable", "MeasuredInput", "common_flight", "read_inputs"]
 
 Combinable = Measurement | Measurement2d | TargetResult | Mapping[str, Any]
 """A result, or its JSON document."""
 
-_GSD_SHARE = 0.02
 _COHERENT_CPP = 0.08
 _AT_LOWEST = (0.2, 2.0)
 
@@ -38,6 +36,9 @@ class MeasuredInput:
     kind, method : str
     slices : PlaneSlices
     gsd_m : float or None
+        Along the normal of a single direction, else along the rows.
+    pixel_gsd_m : (float, float) or None
+        Between rows and between columns; ``None`` where the document does not say.
     along_track : {"y", "x"}
     path : str or None
     place : tuple of float
@@ -57,6 +58,7 @@ class MeasuredInput:
     place: tuple[float, ...]
     failed_checks: tuple[str, ...]
     covariance_known: bool
+    pixel_gsd_m: tuple[float, float] | None = None
 
     @property
     def of_plane(self) -> bool:
@@ -165,7 +167,7 @@ def _read(document: Mapping[str, Any], called: str, name: str | None) -> Measure
     if line is not None:
         place = [float(line[key]) for key in ("row", "col", "normal_deg")]
     word = document.get("orientation", "")
-    gsd = image["gsd_m"]
+    gsd, sides = image["gsd_m"], image.get("pixel_gsd_m")
     return MeasuredInput(
         name or " ".join(one for one in (kind, word) if one),
         str(kind),
@@ -177,6 +179,7 @@ def _read(document: Mapping[str, Any], called: str, name: str | None) -> Measure
         tuple(place),
         tuple(one["name"] for one in document["checks"] if not one["passed"]),
         known,
+        None if sides is None else (float(sides[0]), float(sides[1])),
     )
 
 
@@ -262,28 +265,6 @@ def _distinctly_named(inputs: Sequence[MeasuredInput]) -> tuple[MeasuredInput, .
 def _short(name: str) -> str:
     path = PurePath(name)
     return path.stem if path.suffix == ".json" else name
-
-
-def common_gsd(inputs: Sequence[MeasuredInput]) -> float | None:
-    """The GSD all inputs share; ``None`` if none of them knows it.
-
-    Raises
-    ------
-    OptionError
-        If they differ.
-    """
-    known = {one.name: one.gsd_m for one in inputs if one.gsd_m is not None}
-    if not known:
-        return None
-    least, most = (pick(known, key=lambda name: known[name]) for pick in (min, max))
-    if known[most] > known[least] * (1 + _GSD_SHARE):
-        raise OptionError(
-            f"the measurements have different pixels: {least} {known[least]:g} m, {most} "
-            f"{known[most]:g} m. Frequencies per pixel mean different things then: combine those "
-            "of one sensor and one product; for pixels that are not square state both distances "
-            "(--gsd ROW,COL)"
-        )
-    return math.exp(float(np.mean(np.log(list(known.values())))))
 
 
 def common_flight(inputs: Sequence[MeasuredInput]) -> str:

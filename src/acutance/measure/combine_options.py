@@ -29,6 +29,8 @@ class CombineLimits:
         Largest number of pairs that measured the same pixels.
     assumed_covariance : float
         Largest number of measurements without covariance.
+    unknown_gsd : float
+        Largest number of measurements without a GSD, where others have one.
     """
 
     agreement: float = 0.01
@@ -37,6 +39,7 @@ class CombineLimits:
     failed_inputs: float = 0.0
     shared_targets: float = 0.0
     assumed_covariance: float = 0.0
+    unknown_gsd: float = 0.0
 
 
 @dataclass(frozen=True)

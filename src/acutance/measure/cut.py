@@ -48,7 +48,7 @@ class Cut:
         gsd_m = None if self.gsd is None else self.gsd.along_normal(line.normal_deg)
         return ImageInfo(
             self.image.path, self.image.band, gsd_m, self.box.as_tuple(), self.image.crs,
-            self.image.along_track,
+            self.image.along_track, None if self.gsd is None else (self.gsd.row_m, self.gsd.col_m),
         )  # fmt: skip
 
 

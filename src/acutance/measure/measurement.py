@@ -60,7 +60,8 @@ class ImageInfo:
     """Where the pixels came from.
 
     `roi` is (row, col, height, width) of the cut, in pixels of the whole image; `along_track` the
-    axis the satellite flew along.
+    axis the satellite flew along. `gsd_m` is the GSD along the normal of a straight target, along
+    the rows of any other; `pixel_gsd_m` that between rows and that between columns.
     """
 
     path: str | None = None
@@ -69,12 +70,14 @@ class ImageInfo:
     roi: tuple[int, int, int, int] = (0, 0, 0, 0)
     crs: str | None = None
     along_track: AlongTrack = "y"
+    pixel_gsd_m: tuple[float, float] | None = None
 
     def to_dict(self) -> dict[str, Any]:
         return {
             "path": self.path,
             "band": self.band,
             "gsd_m": self.gsd_m,
+            "pixel_gsd_m": None if self.pixel_gsd_m is None else list(self.pixel_gsd_m),
             "roi": list(self.roi),
             "crs": self.crs,
             "along_track": self.along_track,

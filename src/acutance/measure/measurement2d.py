@@ -104,7 +104,7 @@ class Measurement2d:
             "schema": SCHEMA,
             "kind": self.kind,
             "method": self.method,
-            "image": self.image.to_dict(),
+            "image": {**self.image.to_dict(), "pixel_gsd_m": _sides(self.otf.gsd_m)},
             "snr": self.snr if math.isfinite(self.snr) else None,
             **self.evidence(),
             "across": _direction(self.across),
@@ -119,6 +119,10 @@ class Measurement2d:
     def evidence(self) -> dict[str, Any]:
         """What the method adds to the JSON document; nothing unless it says so."""
         return {}
+
+
+def _sides(gsd_m: tuple[float, float] | None) -> list[float] | None:
+    return None if gsd_m is None else list(gsd_m)
 
 
 def _direction(response: Response) -> dict[str, Any]:
