@@ -24,6 +24,10 @@ NUMBERS = {
     "position_px": "place [px]",
 }
 
+_ENOUGH_DRAWS = 20
+_MUCH_WIDER = 1.5
+"""Scatter over stated deviation; 20 draws tell it to a sixth."""
+
 
 def mirror_plan_text(plan: MirrorPlan) -> str:
     """A plan of mirrors as text: layout, mirrors, phases, what to expect."""
@@ -75,7 +79,25 @@ def _expected(plan: MirrorPlan) -> str:
     return (
         align_columns(rows, "lrrrr", indent="")
         + f"\n  at SNR {plan.options.snr:g}, {plan.options.draws} simulated images; places no "
-        f"better than ± {bound} px"
+        f"better than ± {bound} px" + _narrow(plan)
+    )
+
+
+def _narrow(plan: MirrorPlan) -> str:
+    """Which stated deviations are too small for this sensor, if the draws can tell."""
+    if plan.options.draws < _ENOUGH_DRAWS:
+        return ""
+    names = [
+        f"{words} {direction}"
+        for name, words in NUMBERS.items()
+        for direction in ("across", "along")
+        if plan.scatter[f"{name} {direction}"] > _MUCH_WIDER * plan.std[f"{name} {direction}"]
+    ]
+    if not names:
+        return ""
+    return (
+        f"\n  of this sensor the method states too little for {', '.join(names)}: what its images "
+        "scatter by is the better guide"
     )
 
 
@@ -88,9 +110,13 @@ def mirror_plan_figure(plan: MirrorPlan) -> Figure:
         metres = layout.places_m
         ground.plot(metres[:, 1], metres[:, 0], "o", color=BLUE)
         _number(ground, metres)
-        ground.set(xlabel="across [m]", ylabel="along [m]", aspect="equal", title="On the ground")
-        ground.margins(0.15)
-        ground.invert_yaxis()
+        # As much room on all sides, also beside a layout of one column.
+        (top, left), (bottom, right) = metres.min(axis=0), metres.max(axis=0)
+        room = 0.12 * max(bottom - top, right - left)
+        ground.set(
+            xlim=(left - room, right + room), ylim=(bottom + room, top - room), aspect="equal",
+            xlabel="across [m]", ylabel="along [m]", title="On the ground",
+        )  # fmt: skip
         places = layout.phases
         phases.plot([0, 1, 1, 0, 0], [0, 0, 1, 1, 0], color=FAINT, lw=1)
         phases.plot(places[:, 1], places[:, 0], "o", color=BLUE)

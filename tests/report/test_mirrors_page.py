@@ -1,0 +1,19 @@
+"""The plan of a layout of mirrors in words."""
+
+from dataclasses import replace
+
+from acutance import optics
+from acutance.report import mirror_plan_text
+from acutance.studies import MirrorPlanOptions, plan_mirrors
+
+SENSOR = optics.Sensor([optics.Gaussian(0.45), optics.Detector()], gsd_m=0.7)
+
+
+def test_deviations_that_are_too_small_are_named_where_the_draws_can_tell():
+    plan = plan_mirrors(MirrorPlanOptions(SENSOR, draws=2))
+    wide = {name: 2.0 * std for name, std in plan.std.items() if name.startswith("fwhm_px")}
+    few = replace(plan, scatter={**plan.std, **wide})
+    many = replace(few, options=replace(plan.options, draws=40))
+    assert "states too little" not in mirror_plan_text(few)
+    assert "states too little for FWHM [px] across, FWHM [px] along" in mirror_plan_text(many)
+    assert "states too little" not in mirror_plan_text(replace(many, scatter=plan.std))
