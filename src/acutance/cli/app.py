@@ -36,6 +36,8 @@ class _Commands(TyperGroup):
             return super().invoke(ctx)
         except AcutanceError as error:
             fail(str(error))
+        except MemoryError as error:
+            fail(f"there is not enough memory ({error}): choose a smaller image or region")
         except KeyboardInterrupt as error:
             stop(str(error))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import Field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
@@ -31,10 +32,15 @@ def choose_methods(first: str, compare: str | None, known: Collection[str]) -> l
     Raises
     ------
     OptionError
-        If one of them is not among `known`.
+        If one of them is not among `known`, or nothing is compared.
     """
     others = [name.strip() for name in (compare or "").split(",")]
     wanted = list(dict.fromkeys([first, *(name for name in others if name)]))
+    if compare is not None and wanted == [first]:
+        rest = ", ".join(name for name in known if name != first)
+        raise OptionError(
+            f"--compare {compare!r} sets nothing beside {first}: name others, of {rest}"
+        )
     for name in wanted:
         if name not in known:
             raise OptionError(f"there is no method {name!r}: choose from {', '.join(known)}")
@@ -74,6 +80,10 @@ def _parse_limit(text: str, known: set[str]) -> tuple[str, float]:
     if name not in known:
         raise OptionError(f"--limit {text}: the limits are {', '.join(sorted(known))}")
     try:
-        return name, float(number)
-    except ValueError as error:
-        raise OptionError(f"--limit {text}: write a number, as in {name}=10") from error
+        value = float(number)
+    except ValueError:
+        value = math.nan
+    # No value is above or below one that is not a number: the check would always fail.
+    if math.isnan(value):
+        raise OptionError(f"--limit {text}: write a number, as in {name}=10")
+    return name, value

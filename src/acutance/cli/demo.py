@@ -47,7 +47,7 @@ def demo(
     folder: Annotated[
         str, typer.Argument(metavar="DIR", help="Where to write; made if it does not exist.")
     ],
-    seed: Annotated[int, typer.Option(metavar="N", help="Of the random numbers.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 1,
 ) -> None:
     """Measure a simulated campaign by every method, and compare with the truth.
 

@@ -67,7 +67,9 @@ def plan(
     ] = None,
     draws: Annotated[
         int,
-        typer.Option(metavar="N", min=0, help="Simulated images a design; 0 for bounds alone."),
+        typer.Option(
+            metavar="N", min=0, help="Simulated images a design, 2 or more; 0 for bounds."
+        ),
     ] = 200,
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005,
     workers: WorkersOption = None,
@@ -95,7 +97,7 @@ def plan(
     system = _sensor(sensor, gsd)
     options = PlanOptions(
         target=_TARGETS[target], sensor=system, snr=_snr(snr, contrast, noise),
-        rows=tuple(int(count) for count in _numbers("--rows", rows)),
+        rows=_whole_numbers("--rows", rows),
         angles_deg=_numbers("--angle", angle), widths_px=_widths(width_px, width_m, system),
         draws=draws, accuracy=accuracy,
     )  # fmt: skip
@@ -139,6 +141,13 @@ def _numbers(option: str, text: str) -> tuple[float, ...]:
         return tuple(float(part) for part in text.split(","))
     except ValueError as error:
         raise OptionError(f"{option} {text}: write numbers with commas, as in 20,40") from error
+
+
+def _whole_numbers(option: str, text: str) -> tuple[int, ...]:
+    numbers = _numbers(option, text)
+    if not all(number.is_integer() for number in numbers):
+        raise OptionError(f"{option} {text}: write whole numbers with commas, as in 20,40")
+    return tuple(int(number) for number in numbers)
 
 
 def _write(target: OutputFile, content: str | bytes) -> None:

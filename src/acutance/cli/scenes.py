@@ -17,7 +17,17 @@ if TYPE_CHECKING:
     from acutance.curves.grid import Floats
     from acutance.optics import Sensor
 
-__all__ = ["EXAMPLES", "SimulatedFiles", "bars", "parse_size", "points", "pulse", "site", "star"]
+__all__ = [
+    "EXAMPLES",
+    "Seed",
+    "SimulatedFiles",
+    "bars",
+    "parse_size",
+    "points",
+    "pulse",
+    "site",
+    "star",
+]
 
 EXAMPLES = {
     "pulse": "  acutance simulate pulse --sensor generic-2005 --width 3 --snr 70 --out pulse.tif",
@@ -42,7 +52,7 @@ Snr = Annotated[
     float | None,
     typer.Option(metavar="RATIO", help="Contrast over noise; no noise if not given."),
 ]
-Seed = Annotated[int, typer.Option(metavar="N", help="Of the random numbers.")]
+Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")]
 
 
 @dataclass(frozen=True)
@@ -310,11 +320,12 @@ def site(
     sensor: SensorName = "generic-2005",
     targets: Annotated[
         int | None,
-        typer.Option(metavar="N", help="Fill the image with N tarps instead of one campaign."),
+        typer.Option(metavar="N", min=1, help="Fill the image with N tarps, no campaign."),
     ] = None,
     size: Annotated[
-        str, typer.Option(metavar="ROWS,COLS", help="Size of the image; with --targets.")
-    ] = "1000,1000",
+        str | None,
+        typer.Option(metavar="ROWS,COLS", help="Size of the image, with --targets; 1000,1000."),
+    ] = None,
     turn: Annotated[float, typer.Option(metavar="DEG", help="Turn of the targets.")] = 6.0,
     texture: Annotated[
         float, typer.Option(metavar="DN", help="Standard deviation of the grass.")
@@ -325,7 +336,12 @@ def site(
     seed: Seed = 0,
 ) -> None:
     """Render a campaign on grass: edge and pulse tarps, mirrors, bars, a star."""
-    files, shape, system = SimulatedFiles.of(out, sensor), parse_size(size), named_sensor(sensor)
+    if size is not None and targets is None:
+        raise OptionError(
+            f"--size {size} belongs to --targets: the campaign has a size of its own, leave it out"
+        )
+    files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor)
+    shape = parse_size(size or "1000,1000")
 
     import numpy as np
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from acutance.cli import scenes, simulate_pair
-from acutance.cli.scenes import SimulatedFiles, parse_size
+from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
 from acutance.cli.sensor import BUDGET_EXAMPLE, named_sensor, sensor_budget
 from acutance.errors import OptionError
 
@@ -89,6 +89,9 @@ def edge(
     along: Annotated[
         bool, typer.Option("--along", help="A nearly horizontal edge: the MTF along track.")
     ] = False,
+    falling: Annotated[
+        bool, typer.Option("--falling", help="The bright side first: left, or above.")
+    ] = False,
     size: Annotated[
         str, typer.Option(metavar="ROWS,COLS", help="Size of the image in pixels.")
     ] = "60,40",
@@ -98,7 +101,7 @@ def edge(
         float | None,
         typer.Option(metavar="RATIO", help="Contrast over noise; no noise if not given."),
     ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="Of the random numbers.")] = 0,
+    seed: Seed = 0,
 ) -> None:
     """Render a straight edge as a sensor sees it, and write what a perfect measurement finds."""
     files = SimulatedFiles.of(out, sensor)
@@ -129,6 +132,7 @@ def edge(
         sensor_seen,
         angle_deg=angle,
         orientation="along" if along else "across",
+        polarity="falling" if falling else "rising",
         shape=shape,
         dark=dark,
         bright=bright,

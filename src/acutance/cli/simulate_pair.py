@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 import typer
 
 from acutance.cli.output import check_output
-from acutance.cli.scenes import SimulatedFiles, parse_size
+from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.cli.terminal import say
 from acutance.errors import OptionError
@@ -51,7 +52,7 @@ def pair(
         float | None,
         typer.Option(metavar="RATIO", help="Contrast over noise; no noise if not given."),
     ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="Of the random numbers.")] = 0,
+    seed: Seed = 0,
 ) -> None:
     """Render a pair of georeferenced images of fields and texture, by two sensors."""
     inputs = (sensor, high_sensor)
@@ -59,6 +60,8 @@ def pair(
     fine = check_output("--high", high, (".tif", ".tiff"), keep=inputs)
     if fine.path.resolve() == files.image.path.resolve():
         raise OptionError("--out and --high name the same file: give two")
+    if not 0 < gsd < math.inf:
+        raise OptionError(f"--gsd {gsd:g}: the GSD has to be above 0 m")
     rows, cols = _parse_shift(shift)
     system, reference = named_sensor(sensor), named_sensor(high_sensor)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from acutance.curves.grid import Floats
@@ -22,15 +24,25 @@ def known_levels(dark: float | None, bright: float | None, std: float) -> Levels
     Raises
     ------
     OptionError
-        If there is but one, dark is not the lower one, or the standard deviation is negative.
+        If there is but one, dark is not the lower one, or the standard deviation is negative or
+        belongs to no levels.
     """
     if (dark is None) != (bright is None):
-        raise OptionError("one level was given: give dark and bright, or neither")
-    if dark is not None and bright is not None and not dark < bright:
+        raise OptionError(
+            "one level was given: give dark and bright, or neither (--dark, --bright)"
+        )
+    if not 0 <= std < math.inf:
+        raise OptionError(f"level_std (--level-std) is {std:g}, it has to be 0 or more")
+    if dark is None or bright is None:
+        if std > 0:
+            raise OptionError(
+                f"level_std (--level-std) is {std:g}, but no levels are stated: give dark and "
+                "bright (--dark, --bright) with it"
+            )
+        return None
+    if not -math.inf < dark < bright < math.inf:
         raise OptionError(f"dark is {dark:g} and bright {bright:g}: dark has to be the lower one")
-    if not std >= 0:
-        raise OptionError(f"level_std is {std:g}, it has to be 0 or more")
-    return None if dark is None or bright is None else Levels(dark, bright, std)
+    return Levels(dark, bright, std)
 
 
 def clipped_share(values: Floats, saturation_level: float | None, snr: float) -> float:

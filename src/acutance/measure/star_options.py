@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -88,6 +89,12 @@ class StarOptions:
         if self.wave not in ("sine", "square"):
             raise OptionError(f"wave is {self.wave!r}: it has to be 'sine' or 'square'")
         known_levels(self.dark, self.bright, self.level_std)
+        if self.inner_px is not None and not 0 <= self.inner_px < math.inf:
+            raise OptionError(f"inner_px (--inner) is {self.inner_px:g}, it has to be 0 or more")
+        if self.centre is not None and not all(map(math.isfinite, self.centre)):
+            raise OptionError(
+                f"centre (--centre) is {self.centre}, it has to be two finite numbers"
+            )
 
     @property
     def levels(self) -> Levels | None:

@@ -16,6 +16,7 @@ from acutance.fit.bars_group import Bars
 from acutance.fit.line import Line, Orientation
 from acutance.optics.block import Transfer
 from acutance.optics.sensor import Sensor, normal_direction_deg
+from acutance.simulate.limits import require_finite, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import Patch, add_patches
 
@@ -166,11 +167,13 @@ def bars(
     ModelError
         If the arguments contradict each other.
     """
-    if not periods_px or not min(periods_px) > 0 or count < 1 or not length_px > 0:
+    sizes = (*periods_px, length_px)
+    if not periods_px or not all(0 < size < math.inf for size in sizes) or count < 1:
         raise ModelError(
             f"bars of periods {tuple(periods_px)}, {count} of {length_px:g} px in a group: there "
-            "has to be a period, and all have to be above 0"
+            "has to be a period, and all have to be finite and above 0"
         )
+    require_finite(dark=dark, bright=bright)
     if not abs(angle_deg) <= 45 or dark == bright:
         raise ModelError(
             f"bars tilted by {angle_deg:g} deg of level {bright:g} on {dark:g}: the tilt cannot "
@@ -187,6 +190,7 @@ def bars(
     corners = np.concatenate([group.region for group in loose])
     low, high = corners.min(axis=0) - GAP_PX, corners.max(axis=0) + GAP_PX
     shape = (math.ceil(high[0] - low[0]), math.ceil(high[1] - low[1]))
+    require_shape(shape)
     groups = tuple(
         BarGroup(g.row - low[0], g.col - low[1], normal, g.period_px, count, length_px)
         for g in loose

@@ -15,11 +15,12 @@ from acutance.fit.line import Line
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.bars import BarGroup, BarsTruth
 from acutance.simulate.edge import Truth
+from acutance.simulate.limits import MAX_SCENE_PIXELS, require_shape
 from acutance.simulate.noise import Noise
 from acutance.simulate.points import PointsTruth, mirror_columns, peak_per_flux
 from acutance.simulate.pulse import PulseTruth
 from acutance.simulate.scene import Point, add_patches, texture
-from acutance.simulate.site import Scene, SceneEdge, SceneTarget
+from acutance.simulate.site import Scene, SceneEdge, SceneTarget, require_texture
 from acutance.simulate.star import Star, StarTruth, add_star
 from acutance.simulate.tarps import (
     GUARD_PX,
@@ -108,8 +109,11 @@ def render_site(
     Raises
     ------
     ModelError
-        If a target reaches beyond the image, or randomness is asked for without `rng`.
+        If the image is too large, a target reaches beyond it, or randomness is asked for without
+        `rng`.
     """
+    require_shape(shape, MAX_SCENE_PIXELS)
+    require_texture(texture_std)
     others = Placed() if placed is None else placed
     image = np.zeros(shape, np.float32)
     if texture_std > 0:

@@ -14,6 +14,7 @@ from acutance.errors import ModelError
 from acutance.fit.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.ground import GroundNoise
+from acutance.simulate.limits import require_finite, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 
@@ -139,10 +140,12 @@ def edge(
     """
     if polarity not in ("rising", "falling"):
         raise ModelError(f'polarity is {polarity!r}, it has to be "rising" or "falling"')
+    require_shape(shape)
+    require_finite(dark=dark, bright=bright, offset_px=offset_px)
     if not dark < bright:
         raise ModelError(
             f"dark is {dark:g} and bright {bright:g}: dark has to be lower; "
-            'polarity="falling" turns the edge round'
+            'polarity="falling" (--falling) turns the edge round'
         )
     line = line_through_centre(shape, angle_deg, orientation, polarity).moved(offset_px, 0.0)
     added = noise_of_snr(bright - dark, snr, noise)
@@ -177,7 +180,7 @@ def line_through_centre(
     if not abs(angle_deg) <= 45:
         raise ModelError(
             f"the edge is tilted by {angle_deg:g} deg against the nearer axis, which cannot "
-            'exceed 45: use the other orientation ("across" or "along")'
+            'exceed 45: use the other orientation ("across" or "along", --along)'
         )
     normal = normal_direction_deg(angle_deg, orientation) + (180.0 if polarity == "falling" else 0)
     along = shape[0] if orientation == "across" else shape[1]

@@ -17,6 +17,7 @@ from acutance.fit.line import Orientation
 from acutance.optics import Rescaled, Sensor
 from acutance.optics.block import Block, Transfer, require
 from acutance.simulate.ground import alias_bands
+from acutance.simulate.limits import require_finite, require_shape
 from acutance.simulate.native import NativeGrid
 from acutance.simulate.noise import Noise, noise_of_snr
 
@@ -187,9 +188,21 @@ def pair(
     Raises
     ------
     ModelError
-        If the ratio is no number of quarters above 1, the high image has no whole pixels, or the
-        images are too large to be rendered at once.
+        If the ratio is no number of quarters above 1, the low image has no contrast or is shifted
+        by more than half of it, or the images are too large to be rendered at once.
     """
+    require_shape(shape)
+    require_finite(ratio=ratio, gain=gain, offset=offset, dark=dark, bright=bright)
+    if gain == 0 or dark == bright:
+        raise ModelError(
+            f"gain is {gain:g}, dark {dark:g} and bright {bright:g}: this leaves no contrast; the "
+            "gain cannot be 0, and the levels have to differ"
+        )
+    if not all(abs(moved) <= 0.5 * size for moved, size in zip(shift_px, shape, strict=True)):
+        raise ModelError(
+            f"the images are shifted by {shift_px[0]:g} rows and {shift_px[1]:g} columns of "
+            f"{shape[0]} by {shape[1]}: at most half of the image is possible"
+        )
     quarters = round(4 * ratio)
     if not (1 < ratio <= 16 and abs(4 * ratio - quarters) < 1e-9):
         raise ModelError(f"the ratio is {ratio:g}, it has to be 1.25 to 16 in steps of a quarter")

@@ -13,6 +13,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.fit.line import Orientation
 from acutance.optics.sensor import Sensor
+from acutance.simulate.limits import require_finite, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import Point, render_patches
 
@@ -170,14 +171,21 @@ def points(
     Raises
     ------
     ModelError
-        If there are no sources, one lies outside the image, or their numbers differ.
+        If there are no sources, one lies outside the image, their numbers differ, or `peak` is not
+        above 0.
     """
     places = mirror_columns((12.0, 12.0)) if positions is None else np.asarray(positions, float)
     if places.ndim != 2 or places.shape[0] == 0 or places.shape[1] != 2:
         raise ModelError(f"positions have shape {places.shape}, they have to be (n, 2): row, col")
+    require_finite(peak=peak, background=background)
+    if not peak > 0:
+        raise ModelError(f"peak is {peak:g}, it has to be above 0: a source adds light")
+    if not np.all(np.isfinite(places)):
+        raise ModelError("a position is not a finite number: give (row, col) in pixels")
     if shape is None:
         last = np.ceil(places.max(axis=0)).astype(int) + 13
         shape = (int(last[0]), int(last[1]))
+    require_shape(shape)
     if np.any(places < 0) or np.any(places > np.array(shape) - 1):
         raise ModelError(f"a source lies outside the image of {shape[0]} by {shape[1]} pixels")
     brightness = peak_per_flux(sensor)

@@ -16,6 +16,7 @@ from acutance.fit.line import Line, Orientation
 from acutance.optics.sensor import Sensor
 from acutance.simulate.edge import line_through_centre
 from acutance.simulate.ground import GroundNoise
+from acutance.simulate.limits import require_finite, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 from acutance.simulate.scene import Patch, render_patches
@@ -238,6 +239,9 @@ def pulse(
         If the arguments contradict each other.
     """
     behind = dark if right_dark is None else right_dark
+    require_shape(shape)
+    require_finite(dark=dark, bright=bright, right_dark=behind, width_px=width_px)
+    require_finite(length_px=length_px or 0.0, offset_px=offset_px)
     _require_pulse(width_px, length_px, (dark, bright, behind))
     line = line_through_centre(shape, angle_deg, orientation).moved(offset_px, 0.0)
     added = noise_of_snr(bright - 0.5 * (dark + behind), snr, noise)

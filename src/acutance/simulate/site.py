@@ -16,6 +16,7 @@ from acutance.fit.line import Line
 from acutance.optics.sensor import Sensor
 from acutance.simulate.bars import BarsTruth
 from acutance.simulate.edge import Truth
+from acutance.simulate.limits import require_finite, require_shape
 from acutance.simulate.noise import Noise
 from acutance.simulate.points import PointsTruth
 from acutance.simulate.pulse import PulseTruth
@@ -139,6 +140,9 @@ def checkerboard(
     """
     if centre is None:
         centre = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))
+    require_shape(shape)
+    require_texture(texture_std)
+    require_finite(dark=dark, bright=bright, ground=ground)
     _require_room(shape, tile_px, turn_deg, centre)
     board = _tiles(centre, tile_px, turn_deg, dark - ground, bright - ground)
     image = ground + render_patches(sensor, board, shape)
@@ -161,6 +165,21 @@ def checkerboard(
         f"{dark:g} and {bright:g} on {ground:g}"
     )
     return Scene(image, edges, sensor, description)
+
+
+def require_texture(texture_std: float) -> None:
+    """Refuse a standard deviation of the ground that is none.
+
+    Raises
+    ------
+    ModelError
+        If it is negative, infinite or not a number.
+    """
+    require_finite(texture_std=texture_std)
+    if texture_std < 0:
+        raise ModelError(
+            f"texture_std is {texture_std:g}, it has to be 0 or more: 0 is even ground"
+        )
 
 
 def site(

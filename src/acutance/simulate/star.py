@@ -13,7 +13,8 @@ from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.optics.block import require
 from acutance.optics.sensor import Sensor
-from acutance.simulate.ground import render_raster
+from acutance.simulate.ground import MAX_SUBPIXELS, render_raster
+from acutance.simulate.limits import require_finite, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import stamp
 
@@ -182,8 +183,19 @@ def add_star(
     star : Star
     mean, amplitude : float
         Mean level of the star above what is there, and the modulation about it.
+
+    Raises
+    ------
+    ModelError
+        If the star is too large to be drawn.
     """
     side = 2 * (math.ceil(star.radius_px) + ROOM_PX)
+    if (side * SUBPIXELS) ** 2 > MAX_SUBPIXELS:
+        raise ModelError(
+            f"a star of {star.radius_px:g} px is drawn with {(side * SUBPIXELS) ** 2 / 1e6:.0f} "
+            f"million squares of 1/{SUBPIXELS} px, {MAX_SUBPIXELS / 1e6:.0f} million are possible: "
+            "use a smaller radius"
+        )
     top, left = round(star.row) - side // 2, round(star.col) - side // 2
     fine = (np.arange(side * SUBPIXELS) + 0.5) / SUBPIXELS - 0.5
     wave, cover = star.drawn(fine[:, None] + top, fine[None, :] + left, 1 / SUBPIXELS)
@@ -248,6 +260,8 @@ def star(
     ModelError
         If the arguments contradict each other, or the star does not fit into the image.
     """
+    require_shape(shape)
+    require_finite(dark=dark, bright=bright, start_deg=start_deg)
     if centre is None:
         centre = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))
     target = Star(*centre, radius_px, cycles, wave, start_deg, sweep_deg, finest_cpp)

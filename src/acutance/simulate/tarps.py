@@ -100,8 +100,13 @@ def tarp_rows(
     Raises
     ------
     ModelError
-        If each would have less than 90 by 90 pixels.
+        If there are none, they are turned too far, or each would have less than 90 by 90 pixels.
     """
+    if count < 1 or not abs(turn_deg) <= 45:
+        raise ModelError(
+            f"{count} targets turned by {turn_deg:g} deg were asked for: there has to be 1 or "
+            "more, turned by -45 to 45"
+        )
     cols = max(1, round(math.sqrt(count * shape[1] / shape[0])))
     rows = math.ceil(count / cols)
     pitch = (shape[0] / rows, shape[1] / cols)

@@ -90,10 +90,9 @@ def run_trials(
         At the top of a module, so that other processes find it; gives numbers by name.
     execution : Execution
 
-    Raises
-    ------
-    KeyboardInterrupt
-        If it was interrupted; the message says what is kept.
+    Notes
+    -----
+    After Ctrl-C the message of the KeyboardInterrupt says what is kept.
     """
     from acutance import __version__
 

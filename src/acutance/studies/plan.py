@@ -45,7 +45,7 @@ class PlanOptions:
     widths_px : tuple of float
         Widths of the pulse. A single number is compared with others from 1.5 to 4 px.
     draws : int
-        Simulated images a design; 0 leaves the simulation out.
+        Simulated images a design, 2 or more; 0 leaves the simulation out.
     window_px : float
         Of the bound of a free LSF.
     accuracy : float, optional
@@ -69,6 +69,11 @@ class PlanOptions:
             raise OptionError(
                 f"snr is {self.snr:g}, draws {self.draws} and window_px {self.window_px:g}: SNR "
                 "and window have to be above 0"
+            )
+        if self.draws == 1:
+            raise OptionError(
+                "draws (--draws) is 1: a single simulated image says nothing of the scatter; ask "
+                "for 2 or more, or for 0 to have the bounds alone"
             )
         if not self.rows or min(self.rows) < _FEWEST_ROWS:
             raise OptionError(

@@ -1,0 +1,100 @@
+"""Options that mean nothing are refused with exit code 2 and words, never silently changed."""
+
+import pytest
+
+from acutance.raster import open_image
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def refused(acutance, words, message):
+    result = acutance(*words)
+    assert result.exit_code == 2, result.output
+    assert result.stdout == ""
+    assert message in " ".join(result.stderr.split())
+    assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize("target", ["edge", "pulse", "bars", "star", "points", "site", "pair"])
+def test_a_seed_is_0_or_more(acutance, folder, target):
+    more = ("--high", "b.tif") if target == "pair" else ()
+    refused(acutance, ("simulate", target, "--seed", -1, "--out", "a.tif", *more), "--seed")
+    assert not list(folder.iterdir())
+
+
+def test_the_seed_of_a_demo_is_0_or_more(acutance, folder):
+    refused(acutance, ("demo", "d", "--seed", -1), "--seed")
+    assert not list(folder.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("site", "--targets", 0), "--targets"),
+        (("site", "--targets", -1), "--targets"),
+        (("site", "--size", "300,300"), "--size 300,300 belongs to --targets"),
+        (("site", "--texture", -1), "it has to be 0 or more"),
+        (("site", "--targets", 3, "--size", "1000000,1000000"), "400 million pixels"),
+        (("edge", "--size", "1000000,1000000"), "25 million pixels"),
+        (("edge", "--dark", 3, "--bright", 1), "(--falling) turns the edge round"),
+        (("points", "--peak", 0), "peak is 0"),
+        (("points", "--peak", -3), "peak is -3"),
+        (("pair", "--high", "b.tif", "--gain", 0), "the gain cannot be 0"),
+        (("pair", "--high", "b.tif", "--gsd", -1), "--gsd -1: the GSD has to be above 0 m"),
+        (("pair", "--high", "b.tif", "--gsd", "nan"), "above 0 m"),
+        (("pair", "--high", "b.tif", "--shift", "1e9,0"), "at most half of the image"),
+    ],
+)
+def test_scenes_that_cannot_be_rendered(acutance, folder, words, message):
+    refused(acutance, ("simulate", *words, "--out", "a.tif"), message)
+    assert not list(folder.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("edge", "--limit", "rows=nan"), "--limit rows=nan: write a number, as in rows=10"),
+        (("edge", "--limit", "rows=many"), "write a number"),
+        (("edge", "--compare", "spline"), "sets nothing beside spline: name others, of sdsu-2005"),
+        (("edge", "--compare", ","), "sets nothing beside spline"),
+        (("pulse", "--compare", "spline"), "sets nothing beside spline"),
+        (("star", "--inner", -5), "inner_px (--inner) is -5"),
+        (("star", "--level-std", 3), "give dark and bright (--dark, --bright)"),
+        (("bars", "--level-std", 3), "give dark and bright (--dark, --bright)"),
+        (("bars", "--dark", 3), "give dark and bright, or neither (--dark, --bright)"),
+    ],
+)
+def test_measurements_that_mean_nothing(acutance, edge_image, words, message):
+    refused(acutance, (words[0], edge_image, *words[1:]), message)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("edge", "--draws", 1), "2 or more, or for 0"),
+        (("edge", "--rows", "nan"), "write whole numbers"),
+        (("edge", "--rows", "30.5"), "write whole numbers"),
+    ],
+)
+def test_plans_that_mean_nothing(acutance, words, message):
+    refused(acutance, ("plan", *words), message)
+
+
+def test_an_edge_can_fall(acutance, folder):
+    result = acutance("simulate", "edge", "--falling", "--out", "a.tif")
+    assert result.exit_code == 0, result.stderr
+    pixels = open_image("a.tif").read()
+    assert pixels[:, 0].mean() > 1100
+    assert pixels[:, -1].mean() < 300
+
+
+def test_too_little_memory_is_said(acutance, monkeypatch):
+    def broken(**_):
+        raise MemoryError("Unable to allocate 7 TiB")
+
+    monkeypatch.setattr("acutance.raster.sites", broken)
+    refused(acutance, ("sites",), "not enough memory (Unable to allocate 7 TiB): choose a smaller")

@@ -1,0 +1,131 @@
+"""What cannot be rendered is refused in words, before memory is taken for it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from acutance.errors import ModelError
+from acutance.simulate import (
+    bars,
+    brookings,
+    checkerboard,
+    edge,
+    pair,
+    points,
+    pulse,
+    reference_systems,
+    render_site,
+    star,
+    tarp_rows,
+)
+
+SENSOR = reference_systems()["gaussian"]
+HUGE = (1_000_000, 1_000_000)
+NAN, INF = math.nan, math.inf
+
+
+@pytest.mark.parametrize(
+    "render",
+    [
+        lambda: edge(SENSOR, shape=HUGE),
+        lambda: pulse(SENSOR, shape=HUGE),
+        lambda: star(SENSOR, shape=HUGE),
+        lambda: bars(SENSOR, length_px=1e7),
+        lambda: bars(SENSOR, count=100_000_000),
+        lambda: points(SENSOR, shape=HUGE),
+        lambda: points(SENSOR, positions=[(1e9, 1e9)]),
+        lambda: checkerboard(SENSOR, shape=HUGE),
+        lambda: render_site(SENSOR, [], HUGE),
+        lambda: pair(SENSOR, SENSOR, shape=HUGE, rng=np.random.default_rng(1)),
+    ],
+)
+def test_an_image_beyond_memory_is_refused(render):
+    with pytest.raises(ModelError, match=r"an image of \d+ by \d+ px .* million pixels"):
+        render()
+
+
+@pytest.mark.parametrize("shape", [(0, 40), (40, -1)])
+def test_an_image_without_pixels_is_refused(shape):
+    with pytest.raises(ModelError, match="1 or more"):
+        edge(SENSOR, shape=shape)
+
+
+def test_a_star_beyond_memory_is_refused():
+    with pytest.raises(ModelError, match="60 million are possible: use a smaller radius"):
+        star(SENSOR, shape=(4000, 4000), radius_px=1500.0)
+
+
+@pytest.mark.parametrize("level", [NAN, INF, -INF])
+@pytest.mark.parametrize("render", [edge, pulse, bars, star])
+def test_levels_are_numbers(render, level):
+    with pytest.raises(ModelError, match=r"bright is .*, it has to be a finite number"):
+        render(SENSOR, bright=level)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "message"),
+    [
+        ({"periods_px": (8.0, NAN)}, "finite and above 0"),
+        ({"periods_px": (8.0, INF)}, "finite and above 0"),
+        ({"length_px": INF}, "finite and above 0"),
+        ({"count": 0}, "finite and above 0"),
+    ],
+)
+def test_bars_have_a_size(sizes, message):
+    with pytest.raises(ModelError, match=message):
+        bars(SENSOR, **sizes)
+
+
+@pytest.mark.parametrize(
+    ("light", "message"),
+    [
+        ({"peak": 0.0}, "a source adds light"),
+        ({"peak": -3.0}, "a source adds light"),
+        ({"peak": NAN}, "peak is nan"),
+        ({"background": INF}, "background is inf"),
+        ({"positions": [(NAN, 3.0)]}, "not a finite number"),
+    ],
+)
+def test_sources_shine(light, message):
+    with pytest.raises(ModelError, match=message):
+        points(SENSOR, **light)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        lambda texture: brookings(SENSOR, np.random.default_rng(1), texture_std=texture),
+        lambda texture: checkerboard(SENSOR, texture_std=texture),
+        lambda texture: render_site(SENSOR, [], (50, 50), texture_std=texture),
+    ],
+)
+@pytest.mark.parametrize("texture", [-1.0, NAN, INF])
+def test_texture_is_0_or_more(scene, texture):
+    with pytest.raises(ModelError, match="texture_std is"):
+        scene(texture)
+
+
+@pytest.mark.parametrize(("count", "turn"), [(0, 6.0), (-1, 6.0), (1, NAN), (1, 90.0)])
+def test_rows_of_tarps_have_tarps(count, turn):
+    with pytest.raises(ModelError, match="there has to be 1 or more, turned by -45 to 45"):
+        tarp_rows((1000, 1000), count, turn_deg=turn)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"gain": 0.0}, "leaves no contrast"),
+        ({"gain": NAN}, "gain is nan"),
+        ({"offset": INF}, "offset is inf"),
+        ({"dark": 5.0, "bright": 5.0}, "leaves no contrast"),
+        ({"shift_px": (1e9, 0.0)}, "at most half of the image"),
+        ({"shift_px": (0.0, -15.1)}, "at most half of the image"),
+        ({"shift_px": (0.0, NAN)}, "at most half of the image"),
+        ({"ratio": NAN}, "ratio is nan"),
+        ({"ratio": INF}, "ratio is inf"),
+    ],
+)
+def test_a_pair_shows_the_same_ground(change, message):
+    with pytest.raises(ModelError, match=message):
+        pair(SENSOR, SENSOR, shape=(40, 30), rng=np.random.default_rng(1), **change)
