@@ -195,3 +195,14 @@ def test_real_stars_saturated_ones_and_hot_pixel_named():
         for response, listed in ((one.across, across), (one.along, along)):
             width = response.fwhm_px
             assert abs(width.value - listed) < 3 * width.std + 0.1
+
+
+def test_the_spokes_of_a_star_are_refused_as_points_in_words():
+    image, _ = ac.simulate.star(
+        ac.simulate.reference_systems()["gaussian"], wave="square", snr=100.0,
+        rng=np.random.default_rng(0),
+    )  # fmt: skip
+    with pytest.raises(ac.TargetError, match="no points"):
+        ac.measure_points(image)
+    # The published Gaussian knows no better, but what it leaves out is no traceback.
+    assert ac.measure_points(image, method="gaussian-2003").failed_checks

@@ -199,7 +199,14 @@ def measure_points(
     wanted = None if positions is None else _places("positions", positions) - origin
     spots, rejected = _choose(pixels, wanted, chosen)
     places = np.array([(one.row, one.col) for one in spots])
-    answer = POINTS_METHODS[method](pixels, places, rejected, chosen)
+    try:
+        answer = POINTS_METHODS[method](pixels, places, rejected, chosen)
+    except np.linalg.LinAlgError as error:
+        raise TargetError(
+            f"the {len(spots)} sources found are not explained by one point spread function, "
+            "however wide: they are no points, or not of one kind; give their positions, or a "
+            "region that holds nothing but mirrors or stars"
+        ) from error
     gsd = None if pixels.gsd is None else (pixels.gsd.row_m, pixels.gsd.col_m)
     checks, survey = answer.checks, None
     if surveyed is not None:

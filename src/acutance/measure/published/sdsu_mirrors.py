@@ -167,8 +167,11 @@ def sdsu_2003_mirrors(
         found = _fit_mirror(image, place, around, chosen)
         if found is None:
             continue
-        mirrors.append(found)
         rows, cols, values = _window(image, (found.row, found.col), chosen.window_px)
+        # A fit that left its window for pixels that are not there is no source's.
+        if not np.isfinite(values).all():
+            continue
+        mirrors.append(found)
         shares = (values - found.bias) / found.peak
         samples.append((cols - found.col, rows - found.row, shares))
     if not mirrors:
