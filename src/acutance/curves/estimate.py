@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 from statistics import NormalDist
+
+from acutance.errors import OptionError
 
 __all__ = ["Estimate"]
 
@@ -34,7 +37,17 @@ class Estimate:
     std: float = 0.0
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """The symmetric interval that holds the truth with probability `level` (0..1)."""
+        """The symmetric interval that holds the truth with probability `level` (0..1).
+
+        Raises
+        ------
+        OptionError
+            If `level` is no probability, or 1, which no interval reaches.
+        """
+        if not (isinstance(level, Real) and 0 <= level < 1):
+            raise OptionError(
+                f"level is {level!r}: give a probability between 0 and 1, such as 0.95"
+            )
         half = NormalDist().inv_cdf(0.5 + level / 2) * self.std
         return self.value - half, self.value + half
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Floats", "Rows", "crossing", "sample", "slope"]
+from acutance.errors import OptionError
+
+__all__ = ["Floats", "Rows", "crossing", "one_place", "sample", "slope"]
 
 Floats = NDArray[np.float64]
 
@@ -35,9 +38,34 @@ def _cell(grid: Floats, at: float) -> tuple[slice, float, float]:
     position = (at - start) / step
     if not -1e-9 <= position <= size - 1 + 1e-9:
         stop = start + step * (size - 1)
-        raise ValueError(f"{at:g} lies outside the curve, which runs from {start:g} to {stop:g}")
+        raise OptionError(f"{at:g} lies outside the curve, which runs from {start:g} to {stop:g}")
     first = min(max(math.floor(position) - 1, 0), size - 4)
     return slice(first, first + 4), position - first, step
+
+
+def one_place(at: Any, grid: str) -> float:
+    """The place at which somebody asks for a curve.
+
+    Parameters
+    ----------
+    at : float
+    grid : str
+        What the curve's own places are called, for the message.
+
+    Raises
+    ------
+    OptionError
+        If it is not one number.
+    """
+    if not isinstance(at, Real) and np.ndim(at) > 0:
+        raise OptionError(
+            f"a curve was called at {np.size(at)} places: call it at one, or take its arrays, "
+            f"`value` and `std` on `{grid}`"
+        )
+    try:
+        return float(at)
+    except (TypeError, ValueError):
+        raise OptionError(f"a curve was called at {at!r}, which is no number") from None
 
 
 def sample(grid: Floats, values: NDArray[Any] | Rows, at: float) -> Any:
@@ -47,7 +75,7 @@ def sample(grid: Floats, values: NDArray[Any] | Rows, at: float) -> Any:
 
     Raises
     ------
-    ValueError
+    OptionError
         If `at` lies outside the grid.
     """
     window, t, _ = _cell(grid, at)

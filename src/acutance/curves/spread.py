@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from acutance.curves.estimate import Estimate
-from acutance.curves.grid import Floats, Rows, sample
+from acutance.curves.grid import Floats, Rows, one_place, sample
 
 __all__ = ["Esf", "Lsf"]
 
@@ -63,7 +63,16 @@ class _SpreadCurve:
         return row if self.latent is None else row @ self.latent
 
     def __call__(self, distance_px: float) -> Estimate:
-        """The curve at one normal distance, by cubic interpolation."""
+        """The curve at one normal distance, by cubic interpolation.
+
+        At many, take `value` and `std` on `distance_px`.
+
+        Raises
+        ------
+        OptionError
+            If it is not one number, or lies outside the curve.
+        """
+        distance_px = one_place(distance_px, "distance_px")
         gradient = self.gradient(distance_px)
         value = float(sample(self.distance_px, self.value, distance_px))
         return Estimate(value, float(np.sqrt(gradient @ gradient)))

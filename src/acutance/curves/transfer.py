@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.estimate import Estimate
-from acutance.curves.grid import Floats, sample
+from acutance.curves.grid import Floats, one_place, sample
 
 __all__ = ["Mtf"]
 
@@ -82,8 +82,16 @@ class Mtf:
         return self._at(freq_cpp)[1]
 
     def __call__(self, freq_cpp: float) -> Estimate:
-        """The MTF at one frequency (cycles per pixel), by cubic interpolation of the OTF."""
-        value, gradient = self._at(freq_cpp)
+        """The MTF at one frequency (cycles per pixel), by cubic interpolation of the OTF.
+
+        At many, take `value` and `std` on `freq_cpp`.
+
+        Raises
+        ------
+        OptionError
+            If it is not one number, or lies outside the curve.
+        """
+        value, gradient = self._at(one_place(freq_cpp, "freq_cpp"))
         return Estimate(value, float(np.sqrt(gradient @ gradient)))
 
     def _at(self, freq_cpp: float) -> tuple[float, Floats]:

@@ -20,6 +20,7 @@ from acutance.fit.noise import robust_scale
 from acutance.measure.bars_checks import bars_checks
 from acutance.measure.bars_options import BarsOptions
 from acutance.measure.cut import Cut, RoiLike, cut
+from acutance.measure.given import chosen_options
 from acutance.measure.measurement import ImageInfo
 from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.one_thread import one_thread
@@ -181,7 +182,7 @@ def measure_bars(
     NoBarsError
         If there are no bars, or not as they were described.
     """
-    chosen = options or BarsOptions()
+    chosen = chosen_options(options, BarsOptions)
     if method not in BARS_METHODS:
         raise OptionError(f"there is no bars method {method!r}: {', '.join(BARS_METHODS)} is known")
     pixels = cut(image, roi, gsd_m)

@@ -37,6 +37,7 @@ from acutance.measure.biresolution_reference import (
 )
 from acutance.measure.biresolution_tiles import PairTiles
 from acutance.measure.cut import RoiLike
+from acutance.measure.given import chosen_options, chosen_region
 from acutance.measure.measurement import ImageInfo
 from acutance.measure.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, Region
@@ -101,7 +102,7 @@ def measure_biresolution(
     if method not in BIRESOLUTION_METHODS:
         known = ", ".join(BIRESOLUTION_METHODS)
         raise OptionError(f"there is no bi-resolution method {method!r}: choose one of {known}")
-    chosen = options or BiresolutionOptions()
+    chosen = chosen_options(options, BiresolutionOptions)
     coarse, fine = _as_image(low), _as_image(high)
     geometry = pair_grid(coarse, fine, ratio)
     reference = reference_otf(reference_mtf, geometry.across.ratio, geometry.down.ratio)
@@ -178,11 +179,11 @@ def _as_image(image: Image | ArrayLike) -> Image:
 
 
 def _as_region(roi: RoiLike, image: Image) -> Region | None:
-    if roi is None or isinstance(roi, Region):
-        return roi
-    box = roi if isinstance(roi, Box) else Box(*roi)
-    box.require_inside(image.shape)
-    return Region.from_box(box)
+    where = None if roi is None else chosen_region(roi)
+    if where is None or isinstance(where, Region):
+        return where
+    where.require_inside(image.shape)
+    return Region.from_box(where)
 
 
 def _registered(

@@ -25,6 +25,7 @@ from acutance.measure.combine_inputs import (
 )
 from acutance.measure.combine_options import CombineOptions
 from acutance.measure.combine_pixels import common_gsd, without_gsd
+from acutance.measure.given import chosen_options
 from acutance.measure.measurement import ImageInfo
 from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.one_thread import one_thread
@@ -172,10 +173,10 @@ def combine(
     ... # doctest: +SKIP
     >>> print(both.across.mtf_nyquist, both.chi_square.p_value)  # doctest: +SKIP
     """
-    chosen = options or CombineOptions()
+    chosen = chosen_options(options, CombineOptions)
     inputs = read_inputs(measurements, names)
     _require_two(inputs)
-    gsd = Gsd.square(gsd_m) if isinstance(gsd_m, float | int) else gsd_m
+    gsd = Gsd.given(gsd_m)
     unknown = without_gsd(inputs) if gsd is None else ()
     gsd = gsd or common_gsd(inputs)
     along_track = cast("AlongTrack", common_flight(inputs))

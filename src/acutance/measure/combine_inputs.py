@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Any
@@ -89,6 +89,13 @@ def read_inputs(
     OptionError
         If one is nothing that can be combined, or they do not belong together.
     """
+    single = (Measurement, Measurement2d, TargetResult, Mapping, str)
+    if isinstance(measurements, single) or not isinstance(measurements, Iterable):
+        raise OptionError(
+            f"a single {type(measurements).__name__} was given: give a list of measurements, "
+            "combine([first, second])"
+        )
+    measurements = tuple(measurements)
     if names is not None and len(names) != len(measurements):
         raise OptionError(f"{len(names)} names were given for {len(measurements)} measurements")
     found: list[MeasuredInput] = []

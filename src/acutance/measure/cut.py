@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
 from acutance.fit.line import Line
+from acutance.measure.given import chosen_region
 from acutance.measure.measurement import ImageInfo
 from acutance.raster import Box, Gsd, Image, Region
 
@@ -65,17 +66,18 @@ def cut(image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None
 
     Raises
     ------
+    ImageError, OptionError
+        If there is no image, or the GSD is no positive number.
     RegionError
-        If the region lies outside the image, holds too few usable pixels, or is far larger than
-        any target.
+        If the region is none, lies outside the image, holds too few usable pixels, or is far
+        larger than any target.
     """
     source = image if isinstance(image, Image) else Image.from_array(image)
-    if roi is None:
-        box, region = Box.whole(source.shape), None
-    elif isinstance(roi, Region):
-        box, region = roi.box(source.shape), roi
+    where = Box.whole(source.shape) if roi is None else chosen_region(roi)
+    if isinstance(where, Region):
+        box, region = where.box(source.shape), where
     else:
-        box, region = roi if isinstance(roi, Box) else Box(*roi), None
+        box, region = where, None
         box.require_inside(source.shape)
     if box.height * box.width > _MAX_PIXELS:
         raise RegionError(
@@ -98,5 +100,5 @@ def cut(image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None
         )
     gsd = source.gsd(box.row + box.height / 2, box.col + box.width / 2)
     if gsd_m is not None:
-        gsd = gsd_m if isinstance(gsd_m, Gsd) else Gsd.square(gsd_m)
+        gsd = Gsd.given(gsd_m)
     return Cut(pixels, box, source.saturation_level, gsd, source)

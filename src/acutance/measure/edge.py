@@ -17,6 +17,7 @@ from acutance.fit.locate import Segment, find_segments
 from acutance.fit.trim import Extent, trim
 from acutance.measure.checks import EdgeChecks, sample_phases
 from acutance.measure.cut import Cut, RoiLike, cut
+from acutance.measure.given import chosen_options
 from acutance.measure.measurement import Measurement, Samples
 from acutance.measure.one_thread import one_thread
 from acutance.measure.options import EdgeOptions
@@ -97,8 +98,8 @@ def measure_edge(
     >>> print(ac.measure_edge(image).mtf_nyquist)  # doctest: +SKIP
     0.2893 ± 0.0061
     """
-    pixels = cut(image, roi, gsd_m)
-    return _measure_first(pixels, method, options or EdgeOptions())
+    chosen = chosen_options(options, EdgeOptions)
+    return _measure_first(cut(image, roi, gsd_m), method, chosen)
 
 
 def _measure_first(pixels: Cut, method: str, options: EdgeOptions) -> Measurement:

@@ -16,6 +16,7 @@ from acutance.fit.locate import find_segments
 from acutance.fit.pulse import PulseBand, fit_pulse
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.edge import require_phases
+from acutance.measure.given import chosen_options
 from acutance.measure.measurement import Measurement, Samples
 from acutance.measure.one_thread import one_thread
 from acutance.measure.options import PulseOptions
@@ -109,7 +110,7 @@ def measure_pulse(
     NoEdgeError, PhaseError, SupportError
         If there is no pulse, it is aligned with the grid, or too little of it is there.
     """
-    chosen = options or PulseOptions()
+    chosen = chosen_options(options, PulseOptions)
     estimate = _method(method)
     pixels = cut(image, roi, gsd_m)
     stated_px = _stated_width(pixels, width_px, width_m)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from acutance.fit.star import SIDE_MARGIN_PX, StarSolution, solve_star
 from acutance.fit.star_find import find_star
 from acutance.fit.star_rings import FoundStar, ring_modulations
 from acutance.measure.cut import Cut, RoiLike, cut
+from acutance.measure.given import chosen_options
 from acutance.measure.measurement import ImageInfo
 from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.one_thread import one_thread
@@ -210,11 +212,10 @@ def measure_star(
     NoStarError
         If there is no star, or it has another number of cycles.
     """
-    chosen = options or StarOptions()
+    chosen = chosen_options(options, StarOptions)
     if method not in STAR_METHODS:
         raise OptionError(f"there is no star method {method!r}: {', '.join(STAR_METHODS)} is known")
-    if cycles is not None and not 4 <= cycles <= 1000:
-        raise OptionError(f"a star of {cycles} cycles: 4 to 1000 can be measured")
+    _require_cycles(cycles)
     pixels = cut(image, roi, gsd_m)
     found = find_star(pixels.pixels, cycles, _local(chosen.centre, pixels))
     solved = solve_star(
@@ -222,6 +223,18 @@ def measure_star(
         inner_px=chosen.inner_px, robust=chosen.robust,
     )  # fmt: skip
     return _measurement(pixels, solved, method, chosen)
+
+
+def _require_cycles(cycles: Any) -> None:
+    if cycles is None:
+        return
+    if not (isinstance(cycles, Real) and float(cycles).is_integer()):
+        raise OptionError(
+            f"cycles is {cycles!r}: give the whole number of periods in a full turn, or None to "
+            "count them"
+        )
+    if not 4 <= float(cycles) <= 1000:
+        raise OptionError(f"a star of {cycles} cycles: 4 to 1000 can be measured")
 
 
 def _local(centre: tuple[float, float] | None, pixels: Cut) -> tuple[float, float] | None:

@@ -17,6 +17,7 @@ from acutance.fit.line import Orientation
 from acutance.fit.locate import Segment, find_segments
 from acutance.measure.cut import RoiLike, cut
 from acutance.measure.edge import measure_segment
+from acutance.measure.given import chosen_options
 from acutance.measure.measurement import Measurement
 from acutance.measure.one_thread import one_thread
 from acutance.measure.options import EdgeOptions
@@ -112,7 +113,7 @@ def measure_edges(
     TargetResult
     """
     pixels = cut(image, roi, gsd_m)
-    chosen = options or EdgeOptions()
+    chosen = chosen_options(options, EdgeOptions)
     measured: list[Measurement] = []
     rejected: list[Rejected] = []
     strongest = 0.0

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from numbers import Real
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,6 +39,30 @@ def normal_direction_deg(angle_deg: float, orientation: Axis) -> float:
     return angle_deg + (90.0 if orientation == "along" else 0.0)
 
 
+def _as_blocks(blocks: Any) -> tuple[Block, ...]:
+    """The blocks of a sensor as a tuple.
+
+    Raises
+    ------
+    ModelError
+        If there is no sequence of them, or one has no OTF.
+    """
+    try:
+        found = tuple(blocks)
+    except TypeError:
+        raise ModelError(
+            f"the blocks are a {type(blocks).__name__}: give a list, such as "
+            "[Gaussian(0.4), Detector()]"
+        ) from None
+    for number, one in enumerate(found, start=1):
+        if isinstance(one, type) or not callable(getattr(one, "otf", None)):
+            raise ModelError(
+                f"block {number} is {one!r}, which has no OTF: give blocks such as Gaussian(0.4) "
+                "or Detector()"
+            )
+    return found
+
+
 @dataclass(frozen=True)
 class Sensor:
     """A linear, shift-invariant imaging system: its OTF is the product of its blocks' OTFs.
@@ -63,12 +89,16 @@ class Sensor:
     gsd_along_m: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "blocks", tuple(self.blocks))
+        object.__setattr__(self, "blocks", _as_blocks(self.blocks))
         if not self.blocks:
             raise ModelError("a sensor needs at least one block, such as Detector()")
         for name in ("gsd_m", "gsd_along_m"):
             size = getattr(self, name)
-            if size is not None and not (size > 0 and math.isfinite(size)):
+            if size is None:
+                continue
+            if not isinstance(size, Real):
+                raise ModelError(f"{name} is {size!r}: give a number of metres")
+            if not 0 < float(size) < math.inf:
                 raise ModelError(f"{name} is {size:g}, it has to be finite and above 0")
         if self.gsd_along_m is not None and self.gsd_m is None:
             raise ModelError("gsd_along_m was given without gsd_m: give the distance both ways")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 
 from acutance.errors import OptionError
 
@@ -32,6 +33,11 @@ class Gsd:
 
     def __post_init__(self) -> None:
         for axis, value in (("rows", self.row_m), ("columns", self.col_m)):
+            if not isinstance(value, Real):
+                raise OptionError(
+                    f"a GSD of {value!r} between {axis} is no number: give metres, for example "
+                    "Gsd(0.7, 0.7)"
+                )
             if not (math.isfinite(value) and value > 0.0):
                 raise OptionError(
                     f"a GSD of {value:g} m between {axis} means nothing: "
@@ -42,6 +48,24 @@ class Gsd:
     def square(cls, gsd_m: float) -> Gsd:
         """The same distance between rows and between columns."""
         return cls(float(gsd_m), float(gsd_m))
+
+    @classmethod
+    def given(cls, gsd_m: float | Gsd | None) -> Gsd | None:
+        """What a caller gave: one distance for both, a `Gsd`, or nothing.
+
+        Raises
+        ------
+        OptionError
+            If it is something else.
+        """
+        if gsd_m is None or isinstance(gsd_m, Gsd):
+            return gsd_m
+        if not isinstance(gsd_m, Real):
+            raise OptionError(
+                f"gsd_m is {gsd_m!r}: give a positive number of metres, or Gsd(row_m, col_m) where "
+                "pixels are not square"
+            )
+        return cls.square(gsd_m)
 
     def along_normal(self, normal_deg: float) -> float:
         """Metres per pixel for distances measured along an edge's normal.

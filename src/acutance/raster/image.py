@@ -106,7 +106,7 @@ class Image:
         OptionError
             If the GSD is not a positive number.
         """
-        values = np.asanyarray(array)
+        values = _as_array(array)
         require_image_array(values, "the array")
         return cls(
             path=None,
@@ -116,7 +116,7 @@ class Image:
             dtype=values.dtype.name,
             source=ArrayPixels(values, nodata),
             saturation_level=_largest(values.dtype),
-            own_gsd=_as_gsd(gsd_m),
+            own_gsd=Gsd.given(gsd_m),
             along_track=along_track,
         )
 
@@ -208,8 +208,8 @@ def open_image(
     OptionError
         If the GSD is not a positive number.
     """
-    gsd = _as_gsd(gsd_m)
-    name = os.fspath(path)
+    gsd = Gsd.given(gsd_m)
+    name = _as_name(path)
     _require_file(name)
     if name.lower().endswith(".npy"):
         opened = _open_npy(name, band, gsd, nodata)
@@ -217,6 +217,40 @@ def open_image(
     from acutance.raster.dataset import open_dataset
 
     return replace(open_dataset(name, band, gsd, nodata), along_track=along_track)
+
+
+def _as_array(array: Any) -> NDArray[Any]:
+    """An array of whatever can be one.
+
+    Raises
+    ------
+    ImageError
+        If it is the name of a file, or rows of different lengths.
+    """
+    if isinstance(array, str | bytes | os.PathLike):
+        raise ImageError(
+            f"{os.fspath(array)!r} is the name of a file, no array: open it with "
+            "acutance.open_image(name), and measure what that returns"
+        )
+    try:
+        return np.asanyarray(array)
+    except (TypeError, ValueError) as error:
+        raise ImageError(
+            f"the {type(array).__name__} given cannot be made an array ({error}): an image has "
+            "rows of equal length"
+        ) from error
+
+
+def _as_name(path: Any) -> str:
+    """The name of a file as text."""
+    try:
+        name = os.fspath(path)
+    except TypeError:
+        raise ImageError(
+            f"open_image was given a {type(path).__name__}: give the name of a file; an array is "
+            "measured as it is, or made an image by Image.from_array"
+        ) from None
+    return os.fsdecode(name)
 
 
 def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Image:
@@ -254,7 +288,3 @@ def _require_file(name: str) -> None:
 
 def _largest(dtype: np.dtype[Any]) -> float | None:
     return float(np.iinfo(dtype).max) if dtype.kind in "iu" else None
-
-
-def _as_gsd(gsd_m: float | Gsd | None) -> Gsd | None:
-    return gsd_m if gsd_m is None or isinstance(gsd_m, Gsd) else Gsd.square(gsd_m)

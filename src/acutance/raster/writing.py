@@ -62,7 +62,7 @@ def write_geotiff(
 
     target = Path(path)
     bands = _as_bands(np.asarray(array))
-    gsd = gsd_m if gsd_m is None or isinstance(gsd_m, Gsd) else Gsd.square(gsd_m)
+    gsd = Gsd.given(gsd_m)
     profile = {
         "driver": "GTiff",
         "count": bands.shape[0],

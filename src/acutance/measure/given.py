@@ -1,0 +1,60 @@
+"""What a caller hands in besides pixels: options of the right kind, and regions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, TypeVar
+
+from acutance.errors import OptionError, RegionError
+from acutance.raster import Box, Region
+
+__all__ = ["chosen_options", "chosen_region"]
+
+Options = TypeVar("Options")
+
+
+def chosen_options(options: Any, kind: type[Options]) -> Options:
+    """The options given, or the default ones for ``None``.
+
+    Raises
+    ------
+    OptionError
+        If they are those of another measurement, or none at all.
+    """
+    if options is None:
+        return kind()
+    if not isinstance(options, kind):
+        raise OptionError(
+            f"options are of type {type(options).__name__}: give {kind.__name__}(...), or leave "
+            "them out"
+        )
+    return options
+
+
+def chosen_region(roi: Any) -> Region | Box:
+    """A region, a box, or the box of four numbers.
+
+    Raises
+    ------
+    RegionError
+        If it is none of these.
+    """
+    if isinstance(roi, Region | Box):
+        return roi
+    if isinstance(roi, str):
+        raise RegionError(
+            f"roi is the text {roi!r}: read it with acutance.raster.parse_roi(text, image), or "
+            "give (row, column, height, width)"
+        )
+    try:
+        numbers: Sequence[Any] = tuple(roi)
+    except TypeError:
+        raise RegionError(
+            f"roi is of type {type(roi).__name__}: give (row, column, height, width), a Box or a "
+            "Region"
+        ) from None
+    if len(numbers) != 4:
+        raise RegionError(
+            f"roi has {len(numbers)} numbers: give four, (row, column, height, width), in pixels"
+        )
+    return Box(*numbers)
