@@ -5,6 +5,8 @@ import re
 
 import pytest
 
+from acutance.cli.demo_folder import FILES, demo_folder
+from acutance.errors import OptionError
 from acutance.measure import METHODS, POINTS_METHODS, PULSE_METHODS
 
 TARGETS = ("vertical edge", "horizontal edge", "pulse tarp", "bars", "star", "mirrors")
@@ -76,3 +78,34 @@ def test_a_folder_that_cannot_be_made_is_exit_2(acutance, tmp_path):
     result = acutance("demo", tmp_path / "file")
     assert result.exit_code == 2
     assert "cannot be made" in result.stderr
+
+
+def test_the_folder_holds_what_was_announced_and_may_be_written_again(folder):
+    assert {path.name for path in folder.iterdir()} == set(FILES)
+    assert demo_folder(str(folder)) == folder
+    (folder / "index.html").unlink()
+    assert demo_folder(str(folder)) == folder
+
+
+@pytest.mark.parametrize("name", ["index.html", "bars.json", "site.tif", "truth.json"])
+def test_files_that_no_demonstration_wrote_are_kept(acutance, tmp_path, name):
+    (tmp_path / name).write_text('{"schema": "mine"}')
+    result = acutance("demo", tmp_path)
+    assert result.exit_code == 2
+    assert f"holds {name}, which would be overwritten and which no demonst" in result.stderr
+    assert (tmp_path / name).read_text() == '{"schema": "mine"}'
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_other_files_in_the_folder_do_not_matter(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    (tmp_path / "sub").mkdir()
+    assert demo_folder(str(tmp_path)) == tmp_path
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_folder_where_a_file_should_be_is_found_out_first(tmp_path):
+    (tmp_path / "truth.json").write_text('{"schema": "acutance/scene/1"}')
+    (tmp_path / "star.html").mkdir()
+    with pytest.raises(OptionError, match=r"star\.html is a folder"):
+        demo_folder(str(tmp_path))

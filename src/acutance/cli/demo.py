@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from acutance.cli.demo_folder import MARK, demo_folder, file_of
 from acutance.cli.demo_targets import Campaign, PlaneTarget, StraightTarget, measure_campaign
-from acutance.cli.output import check_output
+from acutance.cli.output import OutputFile, check_output
 from acutance.cli.terminal import say
-from acutance.errors import OptionError
 
 if TYPE_CHECKING:
     from acutance.optics import Sensor
@@ -55,17 +55,18 @@ def demo(
     its truth as JSON beside it. An HTML report sets every method beside the truth and beside the
     others, and combines them into one 2-D OTF.
     """
-    place = _make_folder(folder)
-    index = check_output("DIR", str(place / "index.html"), (".html",))
+    place = demo_folder(folder)
 
     import numpy as np
 
     from acutance import simulate
     from acutance.raster import open_image, write_geotiff
+    from acutance.report import json_text, scene_document
     from acutance.report.html import render_report
 
     scene = simulate.brookings(_demonstration_sensor(GSD_M), np.random.default_rng(seed))
     say(f"rendering: {scene.description}")
+    _output(place, MARK).write(json_text(scene_document(scene)))
     path = place / "site.tif"
     write_geotiff(path, scene.image.astype(np.float32), gsd_m=GSD_M)
     campaign = measure_campaign(scene, open_image(path))
@@ -73,6 +74,7 @@ def demo(
     entries = campaign.entries()
     links = _write_pages(place, campaign)
     _write_documents(place, campaign, entries)
+    index = _output(place, "index.html")
     index.write(
         render_report(
             "One site, every method, and the truth",
@@ -81,16 +83,6 @@ def demo(
         )
     )
     typer.echo(f"open {index.path}")
-
-
-def _make_folder(name: str) -> Path:
-    folder = Path(name)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise OptionError(f"the folder {name} cannot be made ({reason}): give another") from error
-    return folder
 
 
 def _demonstration_sensor(gsd_m: float) -> Sensor:
@@ -107,12 +99,11 @@ def _demonstration_sensor(gsd_m: float) -> Sensor:
 
 
 def _write_documents(place: Path, campaign: Campaign, entries: Sequence[CampaignEntry]) -> None:
-    """The truth, the comparison, and every reference measurement as JSON."""
-    from acutance.report import json_text, scene_document
+    """The comparison, and every reference measurement as JSON."""
+    from acutance.report import json_text
     from acutance.report.campaign import campaign_rows
 
     contents = {
-        "truth.json": scene_document(campaign.scene),
         "comparison.json": {
             "schema": "acutance/campaign/1",
             "rows": campaign_rows(entries),
@@ -122,13 +113,13 @@ def _write_documents(place: Path, campaign: Campaign, entries: Sequence[Campaign
     }
     targets: Sequence[StraightTarget | PlaneTarget] = (*campaign.straight, *campaign.plane)
     for target in targets:
-        contents[f"{_file_of(target.name)}.json"] = target.measurements[0].to_dict()
+        contents[f"{file_of(target.name)}.json"] = target.measurements[0].to_dict()
     for name, content in contents.items():
-        check_output("DIR", str(place / name), (".json",)).write(json_text(content))
+        _output(place, name).write(json_text(content))
 
 
-def _file_of(name: str) -> str:
-    return name.replace(" ", "-")
+def _output(place: Path, name: str) -> OutputFile:
+    return check_output("DIR", str(place / name), (Path(name).suffix,))
 
 
 def _write_pages(place: Path, campaign: Campaign) -> tuple[Link, ...]:
@@ -155,8 +146,8 @@ def _write_pages(place: Path, campaign: Campaign) -> tuple[Link, ...]:
 
 
 def _write(place: Path, target: StraightTarget | PlaneTarget, page: str) -> str:
-    name = f"{_file_of(target.name)}.html"
-    check_output("DIR", str(place / name), (".html",)).write(page)
+    name = f"{file_of(target.name)}.html"
+    _output(place, name).write(page)
     return name
 
 
