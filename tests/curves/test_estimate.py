@@ -14,6 +14,14 @@ def test_prints_two_digits_of_the_standard_deviation() -> None:
     assert str(Estimate(math.nan, math.nan)) == "undefined"
 
 
+def test_a_format_holds_for_value_and_deviation() -> None:
+    assert f"{Estimate(0.15112, 0.0032):.3f}" == "0.151 ± 0.003"
+    assert f"{Estimate(0.15112, 0.0032)}" == "0.1511 ± 0.0032"
+    assert f"{Estimate(0.25):.2f}" == "0.25"
+    assert f"{Estimate(0.25, math.nan):.2f}" == "0.25"
+    assert f"{Estimate(math.nan, math.nan):.2f}" == "undefined"
+
+
 def test_interval_is_symmetric_and_normal() -> None:
     low, high = Estimate(1.0, 0.1).interval(0.95)
     assert low == pytest.approx(1 - 0.1959964)

@@ -214,6 +214,12 @@ def test_signal_dependent_noise_is_seen_on_both_sides():
 class TestRefusals:
     def test_aligned_edge(self):
         image, _ = simulated(angle_deg=0.0)
+        with pytest.raises(ac.PhaseError, match="no length of it helps") as error:
+            ac.measure_edge(image)
+        assert "a region of" not in str(error.value)
+
+    def test_nearly_aligned_edge(self):
+        image, _ = simulated(angle_deg=0.3)
         with pytest.raises(ac.PhaseError, match=r"sample phases over .* rows.*use a region of"):
             ac.measure_edge(image)
 

@@ -30,6 +30,8 @@ class Estimate:
     >>> mtf_nyquist = Estimate(0.1511, 0.0032)
     >>> print(mtf_nyquist)
     0.1511 ± 0.0032
+    >>> print(f"{mtf_nyquist:.3f}")
+    0.151 ± 0.003
     >>> low, high = mtf_nyquist.interval(0.95)
     """
 
@@ -65,6 +67,16 @@ class Estimate:
 
     def __float__(self) -> float:
         return self.value
+
+    def __format__(self, spec: str) -> str:
+        """Value and standard deviation, both by `spec`; without one as `str` does."""
+        if not spec:
+            return str(self)
+        if not math.isfinite(self.value):
+            return "undefined"
+        if not (self.std > 0 and math.isfinite(self.std)):
+            return format(self.value, spec)
+        return f"{self.value:{spec}} ± {self.std:{spec}}"
 
     def __str__(self) -> str:
         if not math.isfinite(self.value):

@@ -29,6 +29,9 @@ __all__ = ["METHODS", "measure_edge", "measure_segment", "require_phases"]
 _MIN_PHASES = 2.0
 _WANTED_PHASES = 4.0
 _CANDIDATES = 4
+_ALIGNED_DEG = 0.1
+_NEAR_45_DEG = 40.0
+_SIGNIFICANT = 3.0
 
 
 def _spline(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
@@ -140,17 +143,28 @@ def require_phases(band: EdgeBand, line: Line) -> None:
     phases = sample_phases(line.normal_distance(rows, cols))
     if phases >= _MIN_PHASES:
         return
-    angle, length = line.angle_deg, line.length_px
-    needed = (1 - 1 / _WANTED_PHASES) / math.tan(math.radians(max(angle, 0.05)))
-    advice = (
-        f"a region of at least {needed:.0f} rows or a more inclined edge"
-        if angle < 40
-        else "an edge that is not at 45 degrees to the grid"
-    )
     raise PhaseError(
-        f"edge angle {angle:.2f} deg gives {phases:.1f} sample phases over {length:.0f} rows, at "
-        f"least {_WANTED_PHASES:g} are wanted and {_MIN_PHASES:g} needed: use {advice}"
+        f"edge angle {line.angle_deg:.2f} deg gives {phases:.1f} sample phases over "
+        f"{line.length_px:.0f} rows, at least {_WANTED_PHASES:g} are wanted and {_MIN_PHASES:g} "
+        f"needed: {_advice(line)}"
     )
+
+
+def _advice(line: Line) -> str:
+    """What to do about too few phases.
+
+    The length an edge needs goes as 1 / angle, which for an aligned one is noise.
+    """
+    angle = line.angle_deg
+    if angle > _NEAR_45_DEG:
+        return "use an edge that is not at 45 degrees to the grid"
+    if angle < max(_ALIGNED_DEG, _SIGNIFICANT * line.angle_std_deg):
+        return (
+            "the edge is aligned with the grid, as nearly as can be told, and no length of it helps: "
+            "use a more inclined edge, by 2 degrees or more"
+        )
+    needed = (1 - 1 / _WANTED_PHASES) / math.tan(math.radians(angle))
+    return f"use a region of at least {needed:.0f} rows or a more inclined edge"
 
 
 def _measurement(
