@@ -160,8 +160,8 @@ def _advice(line: Line) -> str:
         return "use an edge that is not at 45 degrees to the grid"
     if angle < max(_ALIGNED_DEG, _SIGNIFICANT * line.angle_std_deg):
         return (
-            "the edge is aligned with the grid, as nearly as can be told, and no length of it helps: "
-            "use a more inclined edge, by 2 degrees or more"
+            "the edge is aligned with the grid, as nearly as can be told, and no length of it "
+            "helps: use a more inclined edge, by 2 degrees or more"
         )
     needed = (1 - 1 / _WANTED_PHASES) / math.tan(math.radians(angle))
     return f"use a region of at least {needed:.0f} rows or a more inclined edge"
