@@ -24,6 +24,7 @@ from acutance.cli.target import (
     BandOption,
     GsdOption,
     ImageArgument,
+    NodataOption,
     RoiOption,
     SiteOption,
     open_target,
@@ -64,6 +65,7 @@ def bars(
     roi: RoiOption = None,
     site: SiteOption = None,
     band: BandOption = 1,
+    nodata: NodataOption = None,
     gsd: GsdOption = None,
     robust: Annotated[bool, typer.Option(help="Bound the weight of outlying pixels.")] = True,
     figure: FigureOption = None,
@@ -91,6 +93,7 @@ def bars(
 
     from acutance.measure import BarsLimits, BarsOptions, measure_bars
 
+    _require_bars("--count", count)
     options = BarsOptions(
         groups=tuple(parse_group(text) for text in group or []),
         count=count,
@@ -100,7 +103,7 @@ def bars(
         robust=robust,
         limits=change_limits(BarsLimits(), limit or []),
     )
-    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site)
+    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata)
     measurement = measure_bars(source, region, options=options)
 
     from acutance import report as faces
@@ -120,7 +123,7 @@ def parse_group(text: str) -> Bars:
     Raises
     ------
     OptionError
-        If it is not six numbers, or the number of bars is not a whole one.
+        If it is not six numbers, or the number of bars is not a whole one above 1.
     """
     from acutance.measure import Bars
 
@@ -134,4 +137,13 @@ def parse_group(text: str) -> Bars:
             "40.5,31,6,8,5,24"
         )
     row, col, angle, period, count, length = numbers
+    _require_bars(f"--group {text}: COUNT", count)
     return Bars(row, col, angle, period, int(count), length)
+
+
+def _require_bars(option: str, count: float | None) -> None:
+    if count is not None and count < 2:
+        raise OptionError(
+            f"{option} is {count:g}, a group has 2 bars or more; a single bar is a pulse, which "
+            "acutance pulse measures"
+        )

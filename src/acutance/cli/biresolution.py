@@ -20,7 +20,14 @@ from acutance.cli.result_options import (
     ResultOptions,
     StrictOption,
 )
-from acutance.cli.target import BandOption, GsdOption, RoiOption, SiteOption, open_target
+from acutance.cli.target import (
+    BandOption,
+    GsdOption,
+    NodataOption,
+    RoiOption,
+    SiteOption,
+    open_target,
+)
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -62,6 +69,11 @@ def biresolution(
     high_band: Annotated[
         int, typer.Option(metavar="N", help="Which band of the high image, from 1.")
     ] = 1,
+    nodata: NodataOption = None,
+    high_nodata: Annotated[
+        float | None,
+        typer.Option(metavar="VALUE", help="The same of the high image."),
+    ] = None,
     gsd: GsdOption = None,
     method: Annotated[
         str, typer.Option(metavar="METHOD", help="kernel-fit (the reference) or spectral-ratio.")
@@ -116,10 +128,10 @@ def biresolution(
         limits=change_limits(BiresolutionLimits(), limit or []),
     )
     known = parse_reference(reference)
-    source, region = open_target(low, band=band, gsd=gsd, roi=roi, site=site)
+    source, region = open_target(low, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata)
     measurement = measure_biresolution(
         source,
-        open_image(high, high_band),
+        open_image(high, high_band, nodata=high_nodata),
         ratio=ratio,
         roi=region,
         reference_mtf=known,

@@ -27,6 +27,7 @@ from acutance.cli.target import (
     BandOption,
     GsdOption,
     ImageArgument,
+    NodataOption,
     RoiOption,
     SiteOption,
     open_target,
@@ -49,6 +50,7 @@ def edge(
     roi: RoiOption = None,
     site: SiteOption = None,
     band: BandOption = 1,
+    nodata: NodataOption = None,
     gsd: GsdOption = None,
     along_track: AlongTrackOption = "y",
     method: Annotated[str, typer.Option(metavar="METHOD", help=f"{METHODS_HELP}.")] = "spline",
@@ -91,7 +93,7 @@ def edge(
         limits=change_limits(EdgeLimits(), limit or []),
     )
     source, region = open_target(
-        image, band=band, gsd=gsd, roi=roi, site=site, along_track=along_track
+        image, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata, along_track=along_track
     )
     if all_edges:
         wanted.deliver(*_measure_all(source, region, method, options))

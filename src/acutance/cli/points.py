@@ -22,6 +22,7 @@ from acutance.cli.target import (
     BandOption,
     GsdOption,
     ImageArgument,
+    NodataOption,
     RoiOption,
     SiteOption,
     open_target,
@@ -63,6 +64,7 @@ def points(
     roi: RoiOption = None,
     site: SiteOption = None,
     band: BandOption = 1,
+    nodata: NodataOption = None,
     gsd: GsdOption = None,
     method: Annotated[
         str, typer.Option(metavar="METHOD", help="psf-fit (the reference) or gaussian-2003.")
@@ -117,7 +119,7 @@ def points(
         robust=robust,
         limits=change_limits(PointsLimits(), limit or []),
     )
-    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site)
+    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata)
     measurement = measure_points(
         source,
         region,

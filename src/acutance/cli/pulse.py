@@ -26,6 +26,7 @@ from acutance.cli.target import (
     BandOption,
     GsdOption,
     ImageArgument,
+    NodataOption,
     RoiOption,
     SiteOption,
     open_target,
@@ -59,6 +60,7 @@ def pulse(
     roi: RoiOption = None,
     site: SiteOption = None,
     band: BandOption = 1,
+    nodata: NodataOption = None,
     gsd: GsdOption = None,
     along_track: AlongTrackOption = "y",
     method: Annotated[str, typer.Option(metavar="METHOD", help=f"{METHODS_HELP}.")] = "spline",
@@ -101,7 +103,7 @@ def pulse(
         limits=change_limits(PulseLimits(), limit or []),
     )
     source, region = open_target(
-        image, band=band, gsd=gsd, roi=roi, site=site, along_track=along_track
+        image, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata, along_track=along_track
     )
     if width_m is not None and source.gsd() is None:
         raise OptionError("--width-m needs a GSD, and the image has none: add --gsd or --width-px")

@@ -23,6 +23,7 @@ from acutance.cli.target import (
     BandOption,
     GsdOption,
     ImageArgument,
+    NodataOption,
     RoiOption,
     SiteOption,
     open_target,
@@ -78,6 +79,7 @@ def star(
     roi: RoiOption = None,
     site: SiteOption = None,
     band: BandOption = 1,
+    nodata: NodataOption = None,
     gsd: GsdOption = None,
     robust: Annotated[bool, typer.Option(help="Bound the weight of outlying pixels.")] = True,
     figure: FigureOption = None,
@@ -116,7 +118,7 @@ def star(
         limits=change_limits(StarLimits(), limit or []),
     )
     known = _parse_cycles(cycles)
-    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site)
+    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata)
     measurement = measure_star(source, region, cycles=known, options=options)
 
     from acutance import report as faces

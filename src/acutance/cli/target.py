@@ -17,6 +17,7 @@ __all__ = [
     "BandOption",
     "GsdOption",
     "ImageArgument",
+    "NodataOption",
     "RoiOption",
     "SiteOption",
     "open_target",
@@ -46,6 +47,12 @@ GsdOption = Annotated[
         metavar="M",
         help="Ground sampling distance in metres, or ROW,COL distances where they differ. "
         "That of the file without it.",
+    ),
+]
+NodataOption = Annotated[
+    float | None,
+    typer.Option(
+        metavar="VALUE", help="The stored value of unusable pixels; that of the file without it."
     ),
 ]
 
@@ -88,6 +95,7 @@ def open_target(
     gsd: str | None,
     roi: str | None,
     site: str | None,
+    nodata: float | None = None,
     along_track: str = "y",
 ) -> tuple[Image, Region | None]:
     """Open the image and find the region the options ask for.
@@ -105,7 +113,7 @@ def open_target(
     from acutance.raster import find_site, open_image, parse_roi, site_region
 
     place = None if site is None else find_site(site)
-    image = open_image(path, band, gsd_m, along_track=_AXES[along_track])
+    image = open_image(path, band, gsd_m, nodata, along_track=_AXES[along_track])
     if place is not None:
         return image, site_region(place, image)
     return image, None if roi is None else parse_roi(roi, image)

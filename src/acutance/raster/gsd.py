@@ -41,7 +41,7 @@ class Gsd:
             if not (math.isfinite(value) and value > 0.0):
                 raise OptionError(
                     f"a GSD of {value:g} m between {axis} means nothing: "
-                    "give a positive number of metres, for example gsd_m=0.7"
+                    "give a positive number of metres, for example 0.7 (gsd_m, --gsd)"
                 )
 
     @classmethod

@@ -273,6 +273,9 @@ def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Im
 
 def _require_file(name: str) -> None:
     """Check what the file system can tell before a driver is asked."""
+    # To the file system no name at all is the folder one stands in.
+    if not name.strip():
+        raise ImageError("the name of the image is empty: give the path of a file")
     path = Path(name)
     try:
         is_file, is_folder = path.is_file(), path.is_dir()

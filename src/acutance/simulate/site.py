@@ -178,7 +178,7 @@ def require_texture(texture_std: float) -> None:
     require_finite(texture_std=texture_std)
     if texture_std < 0:
         raise ModelError(
-            f"texture_std is {texture_std:g}, it has to be 0 or more: 0 is even ground"
+            f"texture_std (--texture) is {texture_std:g}, it has to be 0 or more: 0 is even ground"
         )
 
 

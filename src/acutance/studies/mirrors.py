@@ -92,7 +92,9 @@ class MirrorPlanOptions:
 
     def __post_init__(self) -> None:
         if self.sensor.gsd_m is None:
-            raise OptionError("mirrors need a ground sampling distance: give the sensor's GSD")
+            raise OptionError(
+                "mirrors need a ground sampling distance: give the sensor's GSD (gsd_m, --gsd)"
+            )
         if self.arrangement not in ("columns", "square"):
             raise OptionError(
                 f"arrangement is {self.arrangement!r}: it has to be 'columns' or 'square'"

@@ -81,13 +81,13 @@ class PlanOptions:
             )
         if not self.angles_deg or not all(0 < angle <= 30 for angle in self.angles_deg):
             raise OptionError(
-                f"angles_deg are {self.angles_deg}: an edge without tilt has no sub-pixel phases, "
-                "and more than 30 degrees is not planned; 5 to 10 serve best"
+                f"angles_deg (--angle) are {self.angles_deg}: an edge without tilt has no "
+                "sub-pixel phases, and more than 30 degrees is not planned; 5 to 10 serve best"
             )
         if not self.widths_px or not all(0.5 <= width <= 20 for width in self.widths_px):
             raise OptionError(
-                f"widths_px are {self.widths_px}: a pulse is 0.5 to 20 px wide, 3 serves best; "
-                "check the width and the GSD"
+                f"widths_px (--width-px, --width-m) are {self.widths_px}: a pulse is 0.5 to 20 px "
+                "wide, 3 serves best; check the width and the GSD"
             )
         if self.accuracy is not None and not self.accuracy > 0:
             raise OptionError(f"accuracy is {self.accuracy:g}: it has to be above 0")
