@@ -211,6 +211,13 @@ def test_signal_dependent_noise_is_seen_on_both_sides():
     assert fit.noise_bright == pytest.approx(np.sqrt(16 + 0.4 * 1200), rel=0.1)
 
 
+def test_a_detector_without_any_blur_has_a_middle():
+    bare = ac.Sensor([ac.optics.Detector(1.0)])
+    image, truth = ac.simulate.edge(bare, angle_deg=6.0, shape=(60, 40))
+    m = ac.measure_edge(image)
+    assert m.mtf_nyquist.value == pytest.approx(truth.mtf_nyquist.value, abs=2e-3)
+
+
 class TestRefusals:
     def test_aligned_edge(self):
         image, _ = simulated(angle_deg=0.0)

@@ -79,7 +79,9 @@ class LsfModel:
         s = np.asarray(np.arange(-40, 41) * (0.05 * self.blur.width_px))
         value = self.esf(s)
         steep = int(np.argmax(value[1:] - value[:-1]))
-        return crossing(s, value, 0.5, float(s[max(steep - 8, 0)]))
+        # The last place below one half: of a ramp any part may be the steepest.
+        below = (value[: steep + 2] < 0.5).nonzero()[0]
+        return crossing(s, value, 0.5, float(s[below[-1]] if below.size else s[0]))
 
     def response(self, middle: float) -> Response:
         """The curves on their grids, 0 at `middle`."""
