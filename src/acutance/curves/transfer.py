@@ -66,14 +66,19 @@ class Mtf:
     def value(self) -> Floats:
         """The MTF, (n,): modulus of the OTF, less what noise in quadrature adds to a modulus.
 
-        Noise perpendicular to the OTF lengthens it (Rice), by var / (2 M) to first order.
+        Noise perpendicular to the OTF lengthens it (Rice), by var / (2 M) to first order. Where
+        it is longer than the OTF itself, nothing is left: the MTF is clipped at 0.
         """
         quadrature = self._along_and_quadrature[1]
         return _modulus(self.otf, np.einsum("ij,ij->i", quadrature, quadrature))
 
     @cached_property
     def std(self) -> Floats:
-        """Standard deviation of the MTF at every frequency, (n,)."""
+        """Standard deviation of the MTF at every frequency, (n,).
+
+        It is that of the OTF's component along itself, also where the MTF is clipped at 0: there
+        it says how large an MTF may hide, and not how a modulus scatters.
+        """
         along = self.covariance_factor
         return np.asarray(np.sqrt(np.einsum("ij,ij->i", along, along)))
 
