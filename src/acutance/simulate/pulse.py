@@ -277,9 +277,9 @@ def _require_pulse(
 ) -> None:
     left, level, right = levels
     if not width_px > 0:
-        raise ModelError(f"width_px (--width) is {width_px:g}, it has to be above 0")
+        raise ModelError(f"width_px is {width_px:g}, it has to be above 0 (--width)")
     if length_px is not None and not length_px > 0:
-        raise ModelError(f"length_px (--length) is {length_px:g}, it has to be above 0")
+        raise ModelError(f"length_px is {length_px:g}, it has to be above 0 (--length)")
     if not (level - left) * (level - right) > 0:
         raise ModelError(
             f"the pulse has level {level:g} between grounds of {left:g} and {right:g}: it has to "
