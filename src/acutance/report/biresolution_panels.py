@@ -84,14 +84,15 @@ def _draw_spectra(axes: Axes, measurement: BiresolutionMeasurement) -> None:
             transfer[middle[0] :, middle[1]]
         )  # fmt: skip
         shown = (coherence > _LEAST_COHERENCE) & (found > 0.04)
-        axes.plot(found[shown], np.abs(line[shown]) / total, "o", ms=3, color=color)
+        ratio = np.abs(line[shown]) / total
+        axes.plot(found[shown], ratio, "o", ms=3, color=color, label=f"spectral ratio {axis}")
     axes.axvline(0.5, color=FAINT, lw=0.8)
     axes.text(0.505, 0.99 * top, "Nyquist", color=FAINT, va="top")
     axes.set(
         xlim=(0, min(1.0, measurement.ratio[1] / 2)), ylim=(0, top),
         xlabel="frequency [cycles per low pixel]", title="Spectra: MTF_low / MTF_high",
     )  # fmt: skip
-    axes.legend(loc="upper right", bbox_to_anchor=(1.0, 0.93))
+    axes.legend(loc="upper right", bbox_to_anchor=(1.0, 0.93), fontsize=7.5)
 
 
 def _draw_kernel(axes: Axes, measurement: BiresolutionMeasurement) -> None:
