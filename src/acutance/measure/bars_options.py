@@ -89,13 +89,13 @@ class BarsOptions:
         if self.count is not None and not 2 <= self.count <= 40:
             raise OptionError(
                 f"{self.count} bars in a group: 2 to 40 can be measured; a single bar is a pulse "
-                "(measure_pulse)"
+                "(measure_pulse, acutance pulse)"
             )
         for number, one in enumerate(self.groups, 1):
             if one.count < 2:
                 raise OptionError(
                     f"group {number} has {one.count} bar: at least 2 are needed; a single bar is "
-                    "a pulse (measure_pulse)"
+                    "a pulse (measure_pulse, acutance pulse)"
                 )
             if not (1.2 <= one.period_px <= 100 and one.length_px >= 6):
                 raise OptionError(

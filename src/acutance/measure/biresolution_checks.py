@@ -146,7 +146,7 @@ def _reference(seen: PairEvidence, limits: BiresolutionLimits) -> Check:
             "reference_mtf", 0.0, limits.reference_mtf,
             "the high image's own MTF was not given: the result is the MTF of the low sensor OVER "
             "that of the high one, too large by the reciprocal of the latter; state it with "
-            "reference_mtf",
+            "reference_mtf (--reference)",
         )  # fmt: skip
     nyquist, nothing = np.array([NYQUIST_CPP]), np.zeros(1)
     both = (

@@ -96,7 +96,8 @@ def cut(image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None
     if usable < _MIN_SIDE_PX**2:
         raise RegionError(
             f"only {usable} of the region's {pixels.size} pixels hold data: the rest is nodata, "
-            "masked or NaN; choose another region, or name the nodata value"
+            "masked or NaN; choose another region, or correct the nodata value if pixels that "
+            "have it are data (nodata, --nodata)"
         )
     gsd = source.gsd(box.row + box.height / 2, box.col + box.width / 2)
     if gsd_m is not None:

@@ -150,8 +150,8 @@ def _stated_width(pixels: Cut, width_px: float | None, width_m: float | None) ->
     if width_m is not None:
         if pixels.gsd is None:
             raise OptionError(
-                f"a width of {width_m:g} m needs a GSD, and the image has none: give gsd_m, or "
-                "the width in pixels"
+                f"a width of {width_m:g} m needs a GSD, and the image has none: give gsd_m "
+                "(--gsd), or the width in pixels"
             )
         side = next(find_segments(pixels.pixels, 1), None)
         width_px = width_m / pixels.gsd.along_normal(side.line.normal_deg if side else 0.0)
