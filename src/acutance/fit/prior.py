@@ -67,12 +67,12 @@ class Directions(NamedTuple):
 
 
 def _process(extent: float, smoothness: float) -> Floats:
-    """Square root of a Gaussian process's covariance, (SIZE, r), to 3e-4 of its variance."""
+    """Square root of a Gaussian process's covariance, (SIZE, r), to 1e-4 of its variance."""
     u = CENTRES
     envelope = np.exp(-0.5 * (u / extent) ** 2)
     kernel = np.exp(-0.5 * ((u[:, None] - u) / smoothness) ** 2) * envelope[:, None] * envelope
     power, shape = np.linalg.eigh(kernel)
-    kept = power > 3e-4 * power[-1]
+    kept = power > 1e-4 * power[-1]
     return np.asarray(shape[:, kept] * np.sqrt(power[kept]))
 
 
