@@ -225,7 +225,7 @@ def test_a_target_without_edges_along_says_so(target, measurement):
     across = target.groups["across"]
     alone = TargetResult(across.measurements, (), {"across": across})
     figure = target_figure(alone, backdrop=measurement.samples.image, origin=(5, 7))
-    assert "MTF along: no edge measured" in texts(figure)
+    assert "0 rejected; none along" in texts(figure)
     assert "2 edges measured, 0 rejected" in texts(figure)
 
 

@@ -24,6 +24,7 @@ from acutance.report.wording import (
     split_message,
     verdict,
     word_estimate,
+    word_place,
     write_fixed,
 )
 
@@ -266,6 +267,7 @@ def target_sections(
         Section(
             "Checks",
             verdicts=(Verdict(all(one.trusted for one in measurements), verdict(measurements)),),
+            tables=_failed_checks(measurements),
         ),
         Section("Edges", plates=(plate,), tables=(_edges_table(measurements),)),
         Section(
@@ -278,11 +280,21 @@ def target_sections(
         ),
     ]
     if result.rejected:
-        rows = tuple((one.stage, one.reason) for one in result.rejected)
+        rows = tuple((word_place(one.values), one.stage, one.reason) for one in result.rejected)
         sections.append(
-            Section("Rejected", tables=(Table(("Stage", "Why"), rows, "ll"),)),
+            Section("Rejected", tables=(Table(("Where", "Stage", "Why"), rows, "lll"),)),
         )
     return (*sections, reproducing_section(measurements[0], command or _command(measurements[0])))
+
+
+def _failed_checks(measurements: Sequence[Measurement]) -> tuple[Table, ...]:
+    """What every failed check says, edge by edge; no table if there is none."""
+    rows = [
+        (str(number), check.name, check.message)
+        for number, one in enumerate(measurements, start=1)
+        for check in one.failed_checks
+    ]
+    return (Table(("Edge", "Check", "What it says"), tuple(rows), "rll"),) if rows else ()
 
 
 def _mean_sections(result: TargetResult) -> list[Section]:

@@ -16,7 +16,7 @@ from acutance.report.wording import MISSING, count_edges, format_number, metric_
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, FigureBase
 
     from acutance.curves.grid import Floats
     from acutance.measure import EdgeGroup, TargetResult
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["group_rows", "target_figure"]
 
 MOST_NAMED = 8
+COLORS = {"across": BLUE, "along": VERMILION}
 DRAWN = ("mtf_nyquist", "rer", "fwhm_px", "mtf50_cpp", "mtf_area")
 
 
@@ -54,17 +55,24 @@ def target_figure(
         show_pixels(image, pixels, row, col)
         _number_edges(image, result)
         _write_groups(table, result)
-        across, along = right.subplots(2, 1)
-        _draw_group(across, result, "across", BLUE)
-        _draw_group(along, result, "along", VERMILION)
+        for axes, orientation in zip(
+            _panels(right, len(result.groups)), result.groups, strict=True
+        ):
+            _draw_group(axes, result, orientation, COLORS[orientation])
         count = len(result.measurements)
+        none = "".join(f"; none {one}" for one in COLORS if one not in result.groups)
         figure.suptitle(
-            f"{count_edges(count)} measured, {len(result.rejected)} rejected",
+            f"{count_edges(count)} measured, {len(result.rejected)} rejected{none}",
             x=0.012,
             ha="left",
             fontsize=12,
         )
     return figure
+
+
+def _panels(page: FigureBase, count: int) -> list[Axes]:
+    """As many panels as there are directions, one below the other."""
+    return list(np.atleast_1d(page.subplots(count, 1)))
 
 
 def _mosaic(measurements: Sequence[Measurement]) -> tuple[Floats, tuple[int, int]]:
@@ -82,7 +90,7 @@ def _mosaic(measurements: Sequence[Measurement]) -> tuple[Floats, tuple[int, int
 
 def _number_edges(axes: Axes, result: TargetResult) -> None:
     for number, one in enumerate(result.measurements, start=1):
-        color = BLUE if one.orientation == "across" else VERMILION
+        color = COLORS[one.orientation]
         x, y = one.line.normal
         half = 0.5 * (one.line.length_px if math.isfinite(one.line.length_px) else 0.0)
         axes.plot(
@@ -107,11 +115,7 @@ def _number_edges(axes: Axes, result: TargetResult) -> None:
 
 
 def _draw_group(axes: Axes, result: TargetResult, orientation: str, color: str) -> None:
-    group: EdgeGroup | None = result.groups.get(orientation)
-    if group is None:
-        axes.set_title(f"MTF {orientation}: no edge measured")
-        axes.axis("off")
-        return
+    group: EdgeGroup = result.groups[orientation]
     top = max(float(one.mtf.value.max()) for one in group.measurements)
     mark_frequencies(axes, group.measurements[0].response.gsd_m, top)
     numbers = {id(one): i for i, one in enumerate(result.measurements, start=1)}

@@ -16,6 +16,7 @@ from acutance.report.wording import (
     numbers_of,
     verdict,
     word_estimate,
+    word_place,
 )
 
 if TYPE_CHECKING:
@@ -118,7 +119,12 @@ def target_text(result: TargetResult) -> str:
         ),
     ]
     if result.rejected:
-        blocks.append("\n".join(f"  {one.stage}: {one.reason}" for one in result.rejected))
+        blocks.append(
+            "\n".join(
+                f"  at {word_place(one.values)}, {one.stage}: {one.reason}"
+                for one in result.rejected
+            )
+        )
     return "\n\n".join(blocks)
 
 

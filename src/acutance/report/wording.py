@@ -30,6 +30,7 @@ __all__ = [
     "split_message",
     "verdict",
     "word_estimate",
+    "word_place",
     "write_fixed",
 ]
 
@@ -236,6 +237,13 @@ def verdict(measurements: Sequence[Measurement | Measurement2d]) -> str:
     if not names:
         return counted
     return f"{counted[:-1]} ({', '.join(names)}): read what they say before using the numbers."
+
+
+def word_place(values: Mapping[str, Any]) -> str:
+    """Where a candidate lies, as row and column; a dash where nobody said."""
+    if not {"row", "col"} <= values.keys():
+        return MISSING
+    return f"row {values['row']:.0f}, column {values['col']:.0f}"
 
 
 def split_message(check: Check) -> tuple[str, str]:
