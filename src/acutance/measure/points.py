@@ -17,6 +17,7 @@ from acutance.fit.point_sources import PointsFit, fit_points
 from acutance.fit.point_stamps import cut_stamps
 from acutance.fit.point_start import fit_blurred_points, unlike_sources
 from acutance.measure.cut import Cut, RoiLike, cut
+from acutance.measure.given import chosen_options
 from acutance.measure.measurement import Check, ImageInfo
 from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.one_thread import one_thread
@@ -190,7 +191,7 @@ def measure_points(
     TargetError
         If no source serves; the message counts why.
     """
-    chosen = options or PointsOptions()
+    chosen = chosen_options(options, PointsOptions)
     if method not in POINTS_METHODS:
         known = ", ".join(POINTS_METHODS)
         raise OptionError(f"there is no points method {method!r}: choose one of {known}")

@@ -150,9 +150,13 @@ def _draw_deviations(
     axes.locator_params(axis="x", nbins=5)
 
 
+def _color(target: str) -> str:
+    """That of the target's kind, as on the site: mirrors are the points."""
+    return next((color for kind, color in COLORS.items() if kind in target), COLORS["points"])
+
+
 def curves_figure(entries: Sequence[CampaignEntry]) -> Figure:
     """The MTFs of the reference methods across and along with the truth."""
-    colors = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
     with styled():
         figure = new_page(12.4, 4.6)
         for place, orientation in zip(split_page(figure, 1, 2), ("across", "along"), strict=True):
@@ -160,7 +164,8 @@ def curves_figure(entries: Sequence[CampaignEntry]) -> Figure:
             own = [one for one in entries if one.reference and one.orientation == orientation]
             mark_frequencies(axes, None, 1.0)
             single = [one for one in own if one.target != "all combined"]
-            for one, color in zip(single, colors, strict=False):
+            for one in single:
+                color = _color(one.target)
                 low, high = band_edges(one.response.mtf.value, one.response.mtf.std)
                 axes.fill_between(
                     one.response.mtf.freq_cpp, low, high, color=color, alpha=0.15, linewidth=0
