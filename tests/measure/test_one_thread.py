@@ -1,4 +1,4 @@
-"""Linear algebra keeps to one thread while a fit of two dimensions runs, and no longer."""
+"""Linear algebra keeps to one thread while a fit runs, and no longer."""
 
 from threadpoolctl import threadpool_info
 
