@@ -57,8 +57,8 @@ class Departure:
         """Change of the OTF for a unit of every direction, (n, m): exactly 0 at zero frequency."""
         size = np.abs(self.form.otf(np.array(self.parameters), u_cpp, v_cpp))
         # Of a sharpened product the blur is seen through a gain: its detector's at least.
-        blurred = np.minimum(size, self.form.detector_otf(u_cpp, v_cpp))
-        reach = -math.e * size * np.log(np.maximum(np.abs(blurred), 1e-30))
+        blurred = np.minimum(size, np.abs(self.form.detector_otf(u_cpp, v_cpp)))
+        reach = -math.e * size * np.log(np.maximum(blurred, 1e-30))
         even = self._kernel(u_cpp, v_cpp, 1.0) @ self._roots[0]
         odd = self._kernel(u_cpp, v_cpp, -1.0) @ self._roots[1]
         return np.asarray(reach[:, None] * np.concatenate([even, 1j * odd], axis=1))
