@@ -110,9 +110,9 @@ def bars(
 
     shown = faces_of_plane(
         measurement,
-        panels=lambda: faces.bars_panels(measurement),
-        sections=lambda: faces.bars_sections(measurement),
-        blocks=lambda: faces.bars_blocks(measurement),
+        panels=faces.bars_panels,
+        sections=faces.bars_sections,
+        blocks=faces.bars_blocks,
     )
     wanted.deliver([measurement], replace(shown, csv=lambda: faces.bars_csv(measurement)))
 

@@ -143,9 +143,9 @@ def biresolution(
 
     shown = faces_of_plane(
         measurement,
-        panels=lambda: faces.biresolution_panels(measurement),
-        sections=lambda: faces.biresolution_sections(measurement),
-        blocks=lambda: faces.biresolution_blocks(measurement),
+        panels=faces.biresolution_panels,
+        sections=faces.biresolution_sections,
+        blocks=faces.biresolution_blocks,
     )
     wanted.deliver([measurement], shown)
 

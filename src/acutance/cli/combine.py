@@ -84,9 +84,9 @@ def combine(
 
     shown = faces_of_plane(
         measurement,
-        panels=lambda: faces.combine_panels(measurement),
-        sections=lambda: faces.combine_sections(measurement),
-        blocks=lambda: faces.combine_blocks(measurement),
+        panels=faces.combine_panels,
+        sections=faces.combine_sections,
+        blocks=faces.combine_blocks,
     )
     wanted.deliver([measurement], shown)
 

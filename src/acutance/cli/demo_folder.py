@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from acutance.cli.output import check_output
+from acutance.cli.output import check_output, make_folder
 from acutance.errors import OptionError
 
 __all__ = ["FILES", "MARK", "demo_folder", "file_of"]
@@ -41,12 +41,7 @@ def demo_folder(name: str) -> Path:
         If it cannot be made or written to, or holds files that would be overwritten and that no
         demonstration wrote.
     """
-    folder = Path(name)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise OptionError(f"the folder {name} cannot be made ({reason}): give another") from error
+    folder = make_folder("the folder", name)
     there = [file for file in FILES if (folder / file).exists()]
     if there and not _is_demonstration(folder):
         some = ", ".join(there[:3]) + (" and others" if len(there) > 3 else "")

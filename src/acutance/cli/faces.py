@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from acutance.report.html import Section
 
 __all__ = ["Faces", "deliver", "faces_by_method", "faces_of_plane", "faces_of_target"]
+
+Plane = TypeVar("Plane", bound="Measurement2d")
 
 
 @dataclass(frozen=True)
@@ -93,24 +95,24 @@ def faces_of_target(result: TargetResult, backdrop: Floats, origin: tuple[int, i
 
 
 def faces_of_plane(
-    measurement: Measurement2d,
+    measurement: Plane,
     *,
-    panels: Callable[[], Sequence[PlanePanel]] = tuple,
-    sections: Callable[[], Sequence[Section]] = tuple,
-    blocks: Callable[[], Sequence[str]] = tuple,
+    panels: Callable[[Plane], Sequence[PlanePanel]],
+    sections: Callable[[Plane], Sequence[Section]],
+    blocks: Callable[[Plane], Sequence[str]],
 ) -> Faces:
     """Of a 2-D measurement, with what its method adds to the figure, the report and the text."""
     from acutance import report
 
     return Faces(
-        text=lambda: report.plane_text(measurement, blocks()),
+        text=lambda: report.plane_text(measurement, blocks(measurement)),
         document=lambda covariance: report.plane_document(measurement, covariance=covariance),
-        figure=lambda: report.plane_figure(measurement, panels()),
+        figure=lambda: report.plane_figure(measurement, panels(measurement)),
         report=lambda: report.plane_report(
             measurement,
             command=command_line(),
-            extra_panels=panels(),
-            extra_sections=sections(),
+            extra_panels=panels(measurement),
+            extra_sections=sections(measurement),
         ),
         csv=lambda: report.plane_csv(measurement),
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from acutance.errors import OptionError
 
-__all__ = ["OutputFile", "check_optional", "check_output"]
+__all__ = ["OutputFile", "check_optional", "check_output", "make_folder"]
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,23 @@ def check_optional(
 ) -> OutputFile | None:
     """The file of `check_output`, or None where none was asked for."""
     return None if name is None else check_output(option, name, endings, keep=keep)
+
+
+def make_folder(called: str, name: str) -> Path:
+    """A folder to write into, made if it does not exist; `called` is what the user knows it as.
+
+    Raises
+    ------
+    OptionError
+        If it cannot be made.
+    """
+    folder = Path(name)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OptionError(f"{called} {name} cannot be made ({reason}): name a folder") from error
+    return folder
 
 
 def _is_same_file(name: str, other: str) -> bool:

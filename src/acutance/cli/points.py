@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from acutance.cli.choices import change_limits
+from acutance.cli.choices import change_limits, choose_methods
 from acutance.cli.faces import faces_of_plane
 from acutance.cli.result_options import (
     CovarianceOption,
@@ -110,8 +110,7 @@ def points(
     from acutance.measure import POINTS_METHODS, PointsLimits, PointsOptions, measure_points
     from acutance.raster import read_positions
 
-    if method not in POINTS_METHODS:
-        raise OptionError(f"there is no method {method!r}: choose from {', '.join(POINTS_METHODS)}")
+    choose_methods(method, None, POINTS_METHODS)
     options = PointsOptions(
         min_snr=min_snr,
         min_distance_px=min_distance,
@@ -136,8 +135,8 @@ def points(
         [measurement],
         faces_of_plane(
             measurement,
-            panels=lambda: faces.points_panels(measurement),
-            sections=lambda: faces.points_sections(measurement),
-            blocks=lambda: faces.points_blocks(measurement),
+            panels=faces.points_panels,
+            sections=faces.points_sections,
+            blocks=faces.points_blocks,
         ),
     )

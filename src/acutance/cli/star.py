@@ -125,9 +125,9 @@ def star(
 
     shown = faces_of_plane(
         measurement,
-        panels=lambda: faces.star_panels(measurement),
-        sections=lambda: faces.star_sections(measurement),
-        blocks=lambda: faces.star_blocks(measurement),
+        panels=faces.star_panels,
+        sections=faces.star_sections,
+        blocks=faces.star_blocks,
     )
     wanted.deliver([measurement], replace(shown, csv=lambda: faces.star_csv(measurement)))
 

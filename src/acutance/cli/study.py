@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.output import OutputFile, check_output
+from acutance.cli.output import OutputFile, check_output, make_folder
 from acutance.cli.terminal import say, warnings_said
 from acutance.errors import OptionError
 
@@ -64,7 +64,7 @@ def study(
         raise OptionError("--set and --json belong to one study: name it instead of all")
     wanted = list(STUDIES) if name == "all" else [name]
     options = {one: _options(STUDIES[one].options, changes or []) for one in wanted}
-    folder = None if out is None else _folder(out)
+    folder = None if out is None else make_folder("--out", out)
     for one in wanted:
         with progress_bar(one) as progress, warnings_said():
             how = execution_of(seed, workers, folder, progress)
@@ -107,16 +107,6 @@ class _Bar(AbstractContextManager[Callable[[int, int], None]]):
 
     def __exit__(self, *_: object) -> None:
         self._progress.stop()
-
-
-def _folder(name: str) -> Path:
-    folder = Path(name)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise OptionError(f"--out {name} cannot be made ({reason}): name a folder") from error
-    return folder
 
 
 def _options(kind: type[Any], changes: Sequence[str]) -> Any:

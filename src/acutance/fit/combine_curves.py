@@ -73,13 +73,12 @@ class PlaneCurve:
 
     @cached_property
     def spread(self) -> Floats:
-        """Factor (2n, k) of what the whitened errors vary by: less than 1 where the floor rules."""
-        return np.asarray(self.whitening @ _stacked(self.factor))
+        """Factor (2n, 2n) of what the whitened errors vary by: less than 1 where the floor rules.
 
-    @cached_property
-    def even_spread(self) -> Floats:
-        """The symmetric factor (2n, 2n) of the errors, whitened: a column belongs to a place."""
-        value, vector = np.linalg.eigh(_stacked(self.factor) @ _stacked(self.factor).T)
+        Of the errors' factors it is the symmetric one, whitened: every column belongs to a place.
+        """
+        stacked = _stacked(self.factor)
+        value, vector = np.linalg.eigh(stacked @ stacked.T)
         return np.asarray(self.whitening @ (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T)
 
     def whitened(self, values: Complexes) -> Floats:
@@ -183,7 +182,7 @@ class WhitenedCurves:
             places = number[a:b]
             alike = np.zeros((b - a, known.size))
             alike[np.arange(b - a), places] = 1 / np.sqrt(np.bincount(places)[places])
-            rows.append(one.even_spread[:, : b - a] @ alike)
+            rows.append(one.spread[:, : b - a] @ alike)
             own[part, part] = rows[-1] @ rows[-1].T
         together = np.concatenate(rows)
         return np.asarray(_COMMON * (together @ together.T - own))

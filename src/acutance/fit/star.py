@@ -34,9 +34,9 @@ from acutance.fit.star_modes import (
 from acutance.fit.star_rings import FoundStar, ring_modulations
 from acutance.fit.star_waves import Wave, star_table
 
-__all__ = ["RIM_MARGIN_PX", "SIDE_MARGIN_PX", "StarSolution", "solve_star"]
+__all__ = ["SIDE_MARGIN_PX", "StarSolution", "solve_star"]
 
-RIM_MARGIN_PX: Final = 3.0
+_RIM_MARGIN_PX: Final = 3.0
 """Pixels nearer to the star's rim are left out: what lies beyond is not known."""
 SIDE_MARGIN_PX: Final = 5.0
 """Pixels nearer to a straight side of a fan are left out."""
@@ -125,7 +125,7 @@ def solve_star(
         If too few pixels are usable, or the fit does not settle.
     """
     inner = max(star.radius_at(_FINEST_CPP), inner_px or 0.0, 1.5)
-    outer = star.rim_px - RIM_MARGIN_PX
+    outer = star.rim_px - _RIM_MARGIN_PX
     pixels = _select(image, star, inner, outer)
     blur, level = _start(image, star, inner, outer, levels, wave)
     outlier = np.ones(pixels.value.size)
