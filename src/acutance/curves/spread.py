@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -75,7 +76,7 @@ class _SpreadCurve:
         distance_px = one_place(distance_px, "distance_px")
         gradient = self.gradient(distance_px)
         value = float(sample(self.distance_px, self.value, distance_px))
-        return Estimate(value, float(np.sqrt(gradient @ gradient)))
+        return Estimate(value, math.sqrt(float(gradient @ gradient)))
 
     def to_dict(self) -> dict[str, list[float]]:
         """Distances, values and standard deviations as lists."""

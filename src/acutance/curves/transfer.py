@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -48,7 +49,11 @@ class Mtf:
     @cached_property
     def _along_and_quadrature(self) -> tuple[Floats, Floats]:
         """Covariance factors, (n, m), of the OTF's part in phase with itself and of the rest."""
-        return _split(self.otf[:, None], self.factor, self.latent)
+        modulus = np.abs(self.otf)
+        known = modulus > 0
+        turn = np.conj(np.where(known, self.otf, 1.0)) / np.where(known, modulus, 1.0)
+        along, quadrature = _parts(turn[:, None] * self.factor, self.latent)
+        return along, quadrature
 
     @property
     def covariance_factor(self) -> Floats:
@@ -70,7 +75,8 @@ class Mtf:
         it is longer than the OTF itself, nothing is left: the MTF is clipped at 0.
         """
         quadrature = self._along_and_quadrature[1]
-        return _modulus(self.otf, np.einsum("ij,ij->i", quadrature, quadrature))
+        power = np.abs(self.otf) ** 2 - np.einsum("ij,ij->i", quadrature, quadrature)
+        return np.asarray(np.sqrt(np.maximum(power, 0.0)))
 
     @cached_property
     def std(self) -> Floats:
@@ -97,13 +103,15 @@ class Mtf:
             If it is not one number, or lies outside the curve.
         """
         value, gradient = self._at(one_place(freq_cpp, "freq_cpp"))
-        return Estimate(value, float(np.sqrt(gradient @ gradient)))
+        return Estimate(value, math.sqrt(float(gradient @ gradient)))
 
     def _at(self, freq_cpp: float) -> tuple[float, Floats]:
-        otf = np.atleast_1d(sample(self.freq_cpp, self.otf, freq_cpp))
-        row = sample(self.freq_cpp, self.factor, freq_cpp)[None, :]
-        along, quadrature = _split(otf, row, self.latent)
-        return float(_modulus(otf, np.einsum("ij,ij->i", quadrature, quadrature))[0]), along[0]
+        otf = complex(sample(self.freq_cpp, self.otf, freq_cpp))
+        modulus = abs(otf)
+        turn = otf.conjugate() / modulus if modulus > 0 else 1.0
+        row = sample(self.freq_cpp, self.factor, freq_cpp)
+        along, quadrature = _parts(turn * row, self.latent)
+        return math.sqrt(max(modulus**2 - float(quadrature @ quadrature), 0.0)), along
 
     @cached_property
     def phase_rad(self) -> Floats:
@@ -120,16 +128,7 @@ class Mtf:
         }
 
 
-def _split(otf: Complexes, factor: Complexes, latent: Floats | None) -> tuple[Floats, Floats]:
-    """Covariance factors of the OTF's error along itself and perpendicular to itself."""
-    modulus = np.abs(otf)
-    direction = np.where(modulus > 0, otf, 1.0) / np.where(modulus > 0, modulus, 1.0)
-    turned = np.conj(direction) * factor
-    along, quadrature = np.ascontiguousarray(turned.real), np.ascontiguousarray(turned.imag)
-    if latent is None:
-        return along, quadrature
-    return along @ latent, quadrature @ latent
-
-
-def _modulus(otf: Complexes, excess: Floats) -> Floats:
-    return np.asarray(np.sqrt(np.maximum(np.abs(otf) ** 2 - excess, 0.0)))
+def _parts(turned: Complexes, latent: Floats | None) -> Floats:
+    """Covariance factors of a complex error's real and imaginary part, (2, ..., m)."""
+    parts = np.stack([turned.real, turned.imag])
+    return parts if latent is None else parts @ latent

@@ -3,13 +3,42 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.fit.blur import Blur
 from acutance.fit.line import Line
 
-__all__ = ["EdgeBand", "EdgeFit"]
+__all__ = ["EdgeBand", "EdgeFit", "Pixels"]
+
+
+@dataclass(frozen=True, eq=False)
+class Pixels:
+    """The pixels of a fit, (n,) each.
+
+    Attributes
+    ----------
+    at : two int arrays
+        Their rows and columns, as an index of the image.
+    row, col : arrays
+        The same as places; integers are pixel centres.
+    value : array
+    """
+
+    at: tuple[NDArray[np.intp], NDArray[np.intp]]
+    row: Floats
+    col: Floats
+    value: Floats
+
+    @classmethod
+    def of(cls, image: Floats) -> Pixels:
+        """The finite pixels of an image, in row-major order."""
+        rows, cols = np.isfinite(image).nonzero()
+        return cls((rows, cols), rows.astype(float), cols.astype(float), image[rows, cols])
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +69,11 @@ class EdgeBand:
     width_px: float
     noise: float
     blur: Blur | None = None
+
+    @cached_property
+    def pixels(self) -> Pixels:
+        """The pixels that may be used."""
+        return Pixels.of(self.image)
 
 
 @dataclass(frozen=True, eq=False)

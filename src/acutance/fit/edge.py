@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.fit.band import EdgeBand, EdgeFit
+from acutance.fit.band import EdgeBand, EdgeFit, Pixels
 from acutance.fit.blur import Blur
 from acutance.fit.noise import Correlation
 from acutance.fit.start import BlurredEdge, fit_blurred_edge
-from acutance.fit.straight import Pixels, Solved, solve
+from acutance.fit.straight import Solved, solve
 
 __all__ = ["SplineEdge", "fit_edge", "spline_edge"]
 
@@ -57,14 +57,14 @@ def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
     NoEdgeError
         If the band holds no step.
     """
-    pixels = Pixels.of(band.image)
-    return spline_edge(pixels, solve(pixels, _start(band, pixels), robust=robust))
+    return spline_edge(band.pixels, solve(band.pixels, _start(band), robust=robust))
 
 
-def _start(band: EdgeBand, pixels: Pixels) -> BlurredEdge:
+def _start(band: EdgeBand) -> BlurredEdge:
     """The plain blurred edge the linear model departs from."""
     if band.blur is not None:
         return BlurredEdge(band.line, band.blur, band.dark, band.bright - band.dark, band.noise)
+    pixels = band.pixels
     return fit_blurred_edge(
         pixels.row, pixels.col, pixels.value, band.line,
         dark=band.dark, bright=band.bright, sigma_px=band.width_px, noise=band.noise,

@@ -6,12 +6,12 @@ import numpy as np
 
 from acutance.curves.grid import Floats, crossing
 from acutance.errors import NoEdgeError, SupportError, TargetError
+from acutance.fit.band import Pixels
 from acutance.fit.locate import Segment, find_segments
 from acutance.fit.noise import median
 from acutance.fit.profile import pulse_profile
 from acutance.fit.pulse import PulseBand
 from acutance.fit.start import fit_blurred_edge
-from acutance.fit.straight import Pixels
 from acutance.fit.trim import Extent, serving
 
 __all__ = ["find_pulse"]

@@ -156,14 +156,14 @@ def _refined(
         if np.count_nonzero(own) < _MIN_LENGTH_PX:
             return None
         weight = votes.magnitude[own] ** 2
-        along = x * votes.row[own] - y * votes.col[own]
-        middle = float(weight @ along / weight.sum())
-        across = float(weight @ distance[own] / weight.sum())
-        centred = along - middle
-        variance = float(weight @ centred**2)
+        weight /= weight.sum()
+        along, away = x * votes.row[own] - y * votes.col[own], distance[own]
+        middle, across = float(weight @ along), float(weight @ away)
+        pull = weight * (along - middle)
+        variance = float(pull @ along)
         if variance <= 0:
             return None
-        tilt = float(weight @ (centred * (distance[own] - across))) / variance
+        tilt = float(pull @ away) / variance
         # The line's points are (offset + across) n + along t, tilted by `tilt`.
         col = x * (offset + across) - y * middle
         row = y * (offset + across) + x * middle

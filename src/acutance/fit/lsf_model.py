@@ -18,9 +18,10 @@ from acutance.fit.spline import (
     SIZE,
     SplineRows,
     combine,
+    edge_and_line_weights,
     edge_weights,
-    line_weights,
     transform,
+    waves,
 )
 
 __all__ = ["LsfModel"]
@@ -100,16 +101,16 @@ class LsfModel:
     def half_point_std(self, response: Response) -> float:
         """Standard deviation of the 50 % point of a `response` about it."""
         steepness = float(sample(response.lsf.distance_px, response.lsf.value, 0.0))
-        return response.esf(0.0).std / abs(steepness)
+        return float(np.linalg.norm(response.esf.gradient(0.0))) / abs(steepness)
 
     def _parts(self, s: Floats) -> tuple[_Parts, _Parts]:
         """What the ESF, and the LSF per pixel, are sums of."""
         width = self.blur.width_px
         u = s / width
         esf, lsf = self.blur.esf_and_lsf(s)
-        cell, slopes = line_weights(u)
+        cell, weights, slopes = edge_and_line_weights(u)
         return (
-            (esf, *edge_weights(u), tail_esf(u)),
+            (esf, cell, weights, tail_esf(u)),
             (lsf, cell, slopes / width, tail_lsf(u) / width),
         )
 
@@ -133,9 +134,9 @@ class LsfModel:
 
     def _otf(self, freq_cpp: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Normalised OTF about the LSF's centroid, and its design."""
-        freq = freq_cpp * self.blur.width_px
-        about = np.exp(2j * np.pi * freq * self._centroid()) / self.height
-        design = transform(freq, about, further=1)
+        freq, centroid = freq_cpp * self.blur.width_px, self._centroid()
+        about = waves(freq, -centroid)[0] / self.height
+        design = transform(freq, centroid, 1 / self.height, further=1)
         design[:, -1] = tail_otf(freq) * about
         # A real product: a complex one of this size would wake the threads of BLAS.
         coefficients = np.append(self.spline, self.tail)

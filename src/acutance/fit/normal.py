@@ -63,27 +63,48 @@ def accumulate(
     m, q = CELLS + 3, columns.shape[0]
     gram = np.zeros((m + q, m + q))
     projection = np.zeros(m + q)
-    beside = np.vstack([y, columns])
     for i, (cell, basis) in enumerate(stencils):
-        # Sorted by their place, the pixels of a cell are neighbours: one sweep sums a product.
-        order = np.argsort(cell.astype(np.int16), kind="stable")
-        places = cell[order]
-        factors = np.vstack([basis, beside]).take(order, axis=1)
-        weighted = factors[:4] * weight[order]
-        starts = _first_of_each(places)
+        weighted, rows = basis * weight, np.vstack([basis, y, columns])
+        sums = _sums_by_cell(cell, weighted, rows)
         for a in range(4):
-            sums = np.zeros((factors.shape[0] - a, CELLS))
-            sums[:, places[starts]] = np.add.reduceat(weighted[a] * factors[a:], starts, axis=1)
-            _add_own(gram, a, sums[: 4 - a])
-            projection[a : a + CELLS] += sums[4 - a]
-            gram[a : a + CELLS, m:] += sums[5 - a :].T
+            _add_own(gram, a, sums[:, a, a:4].T)
+            projection[a : a + CELLS] += sums[:, a, 4]
+            gram[a : a + CELLS, m:] += sums[:, a, 5:]
         for other, other_basis in stencils[i + 1 :]:
-            _add_pair(gram, cell, basis * weight, other, other_basis)
+            _add_pair(gram, cell, weighted, other, other_basis)
     gram += gram.T
-    weighted_columns = columns * weight
-    gram[m:, m:] = weighted_columns @ columns.T
-    projection[m:] = weighted_columns @ y
-    return Normal(gram, projection, float(np.dot(weight * y, y)), count)
+    products = rows[4:] * weight @ rows[4:].T
+    gram[m:, m:], projection[m:] = products[1:, 1:], products[0, 1:]
+    return Normal(gram, projection, products.item(0), count)
+
+
+def _sums_by_cell(cell: NDArray[np.intp], left: Floats, right: Floats) -> Floats:
+    """Products of the rows of `left` and `right`, summed over each cell's pixels.
+
+    Parameters
+    ----------
+    cell : (n,) int array
+    left, right : (j, n) and (k, n) arrays
+
+    Returns
+    -------
+    (CELLS, j, k) array
+    """
+    order = np.argsort(cell.astype(np.int16), kind="stable")
+    stops = np.add.accumulate(np.bincount(cell, minlength=CELLS))
+    sums = np.empty((CELLS, left.shape[0], right.shape[0]))
+    # The outermost cells hold all that lies beyond the support, often half of the pixels.
+    for end, own in ((0, order[: stops[0]]), (-1, order[stops[-2] :])):
+        sums[end] = left.take(own, axis=1) @ right.take(own, axis=1).T
+    # The others hold about as many each: one stack of small products, filled up with nothing.
+    starts, stops = stops[:-2, None], stops[1:-1, None]
+    places = starts + np.arange(int((stops - starts).max()))
+    own = order.take(places, mode="clip")
+    some = left.take(own, axis=1) * (places < stops)
+    np.matmul(
+        some.transpose(1, 0, 2), right.take(own, axis=1).transpose(1, 2, 0), out=sums[1:-1]
+    )
+    return sums
 
 
 def _first_of_each(place: NDArray[np.intp]) -> NDArray[np.intp]:

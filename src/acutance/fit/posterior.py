@@ -239,9 +239,9 @@ def evidence_of(white: Whitened, prior: Prior, log_amplitude: Floats) -> Evidenc
     """
     members, precision = prior.members, 1 / prior.log_amplitude_std**2
     own = members * white.mean[:, None]
-    moves = 2 * white.covariance @ own
+    shifts = white.covariance @ own
     explained = (white.mean**2 + white.variances) @ members
     gradient = explained - prior.sizes - (log_amplitude - prior.log_amplitude) * precision
-    hessian = 2 * own.T @ moves + 2 * members.T @ white.covariance**2 @ members
+    hessian = 4 * (own.T @ shifts) + 2 * (members.T @ (white.covariance**2 @ members))
     hessian.reshape(-1)[:: gradient.size + 1] -= 2 * explained + precision
-    return Evidence(gradient, hessian, moves, precision / 4)
+    return Evidence(gradient, hessian, 2 * shifts, precision / 4)

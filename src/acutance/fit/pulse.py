@@ -9,7 +9,7 @@ from acutance.fit.band import EdgeBand
 from acutance.fit.edge import SplineEdge, spline_edge
 from acutance.fit.profile import pulse_profile
 from acutance.fit.start import BlurredEdge, fit_blurred_edge
-from acutance.fit.straight import Pixels, Solved, solve
+from acutance.fit.straight import Solved, solve
 
 __all__ = ["PulseBand", "SplinePulse", "fit_pulse"]
 
@@ -70,10 +70,9 @@ def fit_pulse(band: PulseBand, *, fit_width: bool = True, robust: bool = True) -
     NoEdgeError
         If no pulse survives the fit.
     """
-    pixels = Pixels.of(band.image)
-    start = _start(band, pixels, fit_width)
-    solved = solve(pixels, start, robust=robust, fit_width=fit_width)
-    edge = spline_edge(pixels, solved)
+    start = _start(band, fit_width)
+    solved = solve(band.pixels, start, robust=robust, fit_width=fit_width)
+    edge = spline_edge(band.pixels, solved)
     return SplinePulse(
         **vars(edge),
         pulse_width=_width(solved, fit_width),
@@ -84,12 +83,13 @@ def fit_pulse(band: PulseBand, *, fit_width: bool = True, robust: bool = True) -
     )
 
 
-def _start(band: PulseBand, pixels: Pixels, fit_width: bool) -> BlurredEdge:
+def _start(band: PulseBand, fit_width: bool) -> BlurredEdge:
     """The plain blurred pulse the linear model departs from."""
     profile = pulse_profile(band.pulse_width_px, band.fall)
     if band.blur is not None:
         height = band.bright - band.dark
         return BlurredEdge(band.line, band.blur, band.dark, height, band.noise, profile)
+    pixels = band.pixels
     return fit_blurred_edge(
         pixels.row, pixels.col, pixels.value, band.line,
         dark=band.dark, bright=band.bright, sigma_px=band.width_px, noise=band.noise,

@@ -30,12 +30,13 @@ __all__ = [
     "SIZE",
     "SplineRows",
     "combine",
+    "edge_and_line_weights",
     "edge_weights",
     "esf_from_lsf",
-    "line_weights",
     "quasi_interpolant",
     "spread",
     "transform",
+    "waves",
 ]
 
 HALF_SUPPORT: Final = 8.0
@@ -46,6 +47,7 @@ SIZE: Final = CELLS - 2
 """Number of LSF coefficients; the ESF has CELLS + 3."""
 CENTRES: Final[Floats] = np.asarray(-HALF_SUPPORT + CELL * (np.arange(SIZE) + 1.5))
 """Where the quadratic B-splines are centred, (SIZE,)."""
+_FOUR: Final = np.arange(4)[:, None]
 
 
 def _cells(u: Floats) -> tuple[NDArray[np.intp], Floats]:
@@ -73,25 +75,30 @@ def edge_weights(u: Floats) -> tuple[NDArray[np.intp], Floats]:
         ESF(u) = sum_a weights[a] * e[cell + a].
     """
     cell, t = _cells(u)
+    return cell, _cubics(t)
+
+
+def edge_and_line_weights(u: Floats) -> tuple[NDArray[np.intp], Floats, Floats]:
+    """`edge_weights` and their derivative: LSF(u) = sum_a slopes[a] * e[cell + a]."""
+    cell, t = _cells(u)
+    slopes = np.empty((4, t.size))
+    rest, scaled = 1.0 - t, t * (1 / CELL)
+    np.multiply(rest, (-0.5 / CELL) * rest, out=slopes[0])
+    np.multiply(t, 0.5 * scaled, out=slopes[3])
+    np.multiply(scaled, 1.5 * t - 2.0, out=slopes[1])
+    np.subtract(-slopes[0], slopes[1] + slopes[3], out=slopes[2])
+    return cell, _cubics(t), slopes
+
+
+def _cubics(t: Floats) -> Floats:
+    """The four cubic B-splines at places t (0..1) of a cell, (4, n)."""
     weights = np.empty((4, t.size))
     rest, square = 1.0 - t, t * t
     np.multiply(rest * rest, rest * (1 / 6), out=weights[0])
     np.multiply(square, t * (1 / 6), out=weights[3])
     np.add(square * (0.5 * t - 1.0), 2 / 3, out=weights[1])
     np.subtract(1.0 - weights[0], weights[1] + weights[3], out=weights[2])
-    return cell, weights
-
-
-def line_weights(u: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """The derivative of `edge_weights`: LSF(u) = sum_a weights[a] * e[cell + a]."""
-    cell, t = _cells(u)
-    weights = np.empty((4, t.size))
-    rest, scaled = 1.0 - t, t * (1 / CELL)
-    np.multiply(rest, (-0.5 / CELL) * rest, out=weights[0])
-    np.multiply(t, 0.5 * scaled, out=weights[3])
-    np.multiply(scaled, 1.5 * t - 2.0, out=weights[1])
-    np.subtract(-weights[0], weights[1] + weights[3], out=weights[2])
-    return cell, weights
+    return weights
 
 
 def spread(cell: NDArray[np.intp], weights: Floats, further: int = 0) -> Floats:
@@ -99,8 +106,7 @@ def spread(cell: NDArray[np.intp], weights: Floats, further: int = 0) -> Floats:
     columns = CELLS + 3 + further
     matrix = np.zeros((cell.size, columns))
     first = np.arange(0, matrix.size, columns) + cell
-    for a in range(4):
-        matrix.reshape(-1)[first + a] = weights[a]
+    matrix.reshape(-1)[first + _FOUR] = weights
     return matrix
 
 
@@ -169,8 +175,16 @@ def quasi_interpolant(values: Floats) -> Floats:
     return coefficients
 
 
+def waves(freq: Floats, *places: float) -> NDArray[np.complex128]:
+    """Transforms of unit impulses at some places, exp(-2 pi i f u), (places, n)."""
+    angle = np.multiply.outer((-2 * np.pi) * np.array(places), freq)
+    turned = np.empty(angle.shape, complex)
+    turned.real, turned.imag = np.cos(angle), np.sin(angle)
+    return turned
+
+
 def transform(
-    freq: Floats, scale: NDArray[np.complex128] | float = 1.0, further: int = 0
+    freq: Floats, about: float = 0.0, scale: float = 1.0, further: int = 0
 ) -> NDArray[np.complex128]:
     """Fourier transform of the LSF by ESF coefficients, (n, CELLS + 3 + further).
 
@@ -180,24 +194,26 @@ def transform(
     ----------
     freq : (n,) array
         Frequencies in cycles per width.
-    scale : (n,) complex array or float, optional
-        What to multiply every frequency by.
+    about : float, optional
+        Place, in widths, to which phases refer.
+    scale : float, optional
+        What to multiply by.
     further : int, optional
         Number of columns to leave room for.
     """
     columns = np.zeros((CELLS + 3 + further, freq.size), complex)
     turns = columns[3 : 3 + SIZE]
-    phase = -2j * np.pi * freq
-    turn = np.exp(CELL * phase)
-    smooth = scale * np.sinc(freq * CELL) ** 3
+    turn, first, last = waves(freq, CELL, CENTRES.item(0) - about, CENTRES.item(-1) - about)
+    smooth = np.sinc(freq * CELL)
+    smooth *= scale * smooth * smooth
     # Coefficient e_m lifts the LSF's c_(m - 3) and lowers c_(m - 2), one cell further on; the
     # last one only lifts.
-    turns[0] = smooth * (1 - turn) * np.exp(CENTRES[0] * phase)
+    np.multiply(smooth * (1 - turn), first, out=turns[0])
     # Doubling: coefficients m .. 2m - 1 are the first m, moved by m cells.
     done = 1
     while done < SIZE:
         more = min(done, SIZE - done)
         np.multiply(turns[:more], turn, out=turns[done : done + more])
         turn, done = turn * turn, done + more
-    turns[-1] = smooth * np.exp(CENTRES[-1] * phase)
+    np.multiply(smooth, last, out=turns[-1])
     return columns.T

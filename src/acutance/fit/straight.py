@@ -19,6 +19,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
 from acutance.fit import ground
 from acutance.fit import prior as lsf_prior
+from acutance.fit.band import Pixels
 from acutance.fit.ground import ground_trends
 from acutance.fit.lsf_model import LsfModel
 from acutance.fit.noise import (
@@ -34,7 +35,7 @@ from acutance.fit.profile import Profile
 from acutance.fit.spline import CELLS, HALF_SUPPORT, combine, edge_weights
 from acutance.fit.start import BlurredEdge
 
-__all__ = ["Pixels", "Solution", "Solved", "solve"]
+__all__ = ["Solution", "Solved", "solve"]
 
 _NOISE_FLOOR = 2e-4
 _SETTLED_PX = 0.01
@@ -44,21 +45,6 @@ _MAX_PASSES = 10
 _MIN_STEEP = 20
 _SIGNIFICANT = 4.0
 _OUTLYING = 4.0
-
-
-@dataclass(frozen=True, eq=False)
-class Pixels:
-    """The pixels of a fit, (n,) each: row, column (integers at centres) and value."""
-
-    row: Floats
-    col: Floats
-    value: Floats
-
-    @classmethod
-    def of(cls, image: Floats) -> Pixels:
-        """The finite pixels of an image, in row-major order."""
-        rows, cols = np.nonzero(np.isfinite(image))
-        return cls(rows.astype(float), cols.astype(float), image[rows, cols])
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +141,6 @@ def solve(
     fit_width : bool, optional
         Whether a pulse's width is unknown (its fall always is).
     """
-    rows, cols = pixels.row.astype(np.intp), pixels.col.astype(np.intp)
     outlier = np.ones(pixels.value.size)
     whiteness = Correlation(1.0, 0.0, 0.0)
     earlier: Solution | None = None
@@ -165,7 +150,7 @@ def solve(
         standard = solved.residual / solved.noise
         heavy = robust and float(np.abs(standard).max()) > _OUTLYING
         again = _reweighted(standard, solved.transition) if heavy else outlier
-        found = correlation(_bounded(standard), rows, cols, start.line.normal)
+        found = correlation(_bounded(standard), *pixels.at, start.line.normal)
         settled = (
             abs(solved.turn_rad) * solved.half_length_px < _SETTLED_PX
             # The derivative by the width is that of the blur until there is an LSF.

@@ -14,12 +14,11 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, SupportError
-from acutance.fit.band import EdgeBand
+from acutance.fit.band import EdgeBand, Pixels
 from acutance.fit.line import Line
 from acutance.fit.locate import Segment
 from acutance.fit.noise import median
 from acutance.fit.start import BlurredEdge, fit_blurred_edge
-from acutance.fit.straight import Pixels
 
 __all__ = ["Extent", "Serving", "serving", "trim"]
 
@@ -32,6 +31,8 @@ _SIGNIFICANCE = 4.0
 _MAX_HALF_WIDTH_PX = 40.0
 _FIRST_REACH_PX = 7.0
 _REACH_WIDTHS = 2.5
+_WIDER: Floats = np.array([1.0, 1.5, 2.0, 3.0, 4.0])
+"""Plateaus to ask for, in units of what is needed."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +115,7 @@ def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: fl
     SupportError
         If too few rows serve.
     """
-    rows, cols = pixels.row.astype(np.intp), pixels.col.astype(np.intp)
+    rows, cols = pixels.at
     s = edge.line.normal_distance(pixels.row, pixels.col)
     t = edge.line.tangent_distance(pixels.row, pixels.col)
     departure = (pixels.value - edge.dark) / edge.height - edge.profile.mean(edge.blur, s)
@@ -209,11 +210,12 @@ def _strange(
     half_length_px: float,
 ) -> NDArray[np.bool_]:
     """Which pixels do not look like the plateau of their side, in the mean of 3 x 3 pixels."""
-    field, known = np.zeros(shape), np.zeros(shape)
     place = rows * shape[1] + cols
-    field.reshape(-1)[place] = departure
-    known.reshape(-1)[place] = 1.0
-    smooth: Floats = (_box(field) / np.maximum(_box(known), 1.0)).reshape(-1)[place]
+    fields = np.zeros((2, *shape))
+    fields[0].reshape(-1)[place] = departure
+    fields[1].reshape(-1)[place] = 1.0
+    total, known = _box(fields)
+    smooth: Floats = (total / np.maximum(known, 1.0)).reshape(-1)[place]
     width = edge.blur.width_px
     outside = edge.profile.outside(s)
     beside = (np.abs(t) < half_length_px) & (outside > width)
@@ -226,11 +228,12 @@ def _strange(
 
 
 def _box(values: Floats) -> Floats:
-    """Sums over 3 x 3 pixels, zero beyond the image."""
-    padded = np.zeros((values.shape[0] + 2, values.shape[1] + 2))
-    padded[1:-1, 1:-1] = values
-    down = padded[:-2] + padded[1:-1] + padded[2:]
-    return np.asarray(down[:, :-2] + down[:, 1:-1] + down[:, 2:])
+    """Sums over 3 x 3 pixels of every image, (k, rows, cols), zero beyond it."""
+    images, rows, cols = values.shape
+    padded = np.zeros((images, rows + 2, cols + 2))
+    padded[:, 1:-1, 1:-1] = values
+    down = padded[:, :-2] + padded[:, 1:-1] + padded[:, 2:]
+    return np.asarray(down[..., :-2] + down[..., 1:-1] + down[..., 2:])
 
 
 def _reaches(
@@ -277,16 +280,12 @@ def _best_run(reach: Floats, need: float) -> tuple[int, int]:
 
     Asking for a wider plateau shortens the run; twice the need is worth a third of the rows.
     """
-    best, best_score = (0, 0), 0.0
-    padded = np.zeros(reach.size + 2, np.int8)
-    for times in (1.0, 1.5, 2.0, 3.0, 4.0):
-        padded[1:-1] = reach >= times * need
-        edges = padded[1:] - padded[:-1]
-        starts, stops = (edges > 0).nonzero()[0], (edges < 0).nonzero()[0]
-        if starts.size == 0:
-            break
-        longest = int(np.argmax(stops - starts))
-        score = float(stops[longest] - starts[longest]) * (1 - 2.0**-times)
-        if score > best_score:
-            best, best_score = (int(starts[longest]), int(stops[longest])), score
-    return best
+    wide = np.zeros((_WIDER.size, reach.size + 2), np.int8)
+    wide[:, 1:-1] = reach >= need * _WIDER[:, None]
+    turns = wide[:, 1:] - wide[:, :-1]
+    plateau, starts = (turns > 0).nonzero()
+    stops = (turns < 0).nonzero()[1]
+    if starts.size == 0:
+        return 0, 0
+    best = int(np.argmax((stops - starts) * (1 - 0.5 ** _WIDER[plateau])))
+    return int(starts[best]), int(stops[best])

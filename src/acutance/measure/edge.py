@@ -139,8 +139,7 @@ def _method(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
 
 def require_phases(band: EdgeBand, line: Line) -> None:
     """Refuse an edge whose samples repeat at the same sub-pixel phases."""
-    rows, cols = np.nonzero(np.isfinite(band.image))
-    phases = sample_phases(line.normal_distance(rows, cols))
+    phases = sample_phases(line.normal_distance(band.pixels.row, band.pixels.col))
     if phases >= _MIN_PHASES:
         return
     raise PhaseError(

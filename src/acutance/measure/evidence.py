@@ -49,15 +49,15 @@ class Evidence:
         """Evidence of a fit whose last step lies `last_px` behind its first."""
         return cls(band, fit, -fit.distance_px, fit.distance_px - last_px)
 
-    @cached_property
+    @property
     def rows(self) -> Floats:
         """Rows of the pixels."""
-        return np.asarray(np.nonzero(np.isfinite(self.band.image))[0], float)
+        return self.band.pixels.row
 
-    @cached_property
+    @property
     def cols(self) -> Floats:
         """Columns of the pixels."""
-        return np.asarray(np.nonzero(np.isfinite(self.band.image))[1], float)
+        return self.band.pixels.col
 
     @cached_property
     def t(self) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
@@ -113,7 +114,7 @@ class Image:
             band=1,
             band_count=1,
             shape=(int(values.shape[0]), int(values.shape[1])),
-            dtype=values.dtype.name,
+            dtype=_name(values.dtype),
             source=ArrayPixels(values, nodata),
             saturation_level=_largest(values.dtype),
             own_gsd=Gsd.given(gsd_m),
@@ -264,7 +265,7 @@ def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Im
         band=1,
         band_count=1,
         shape=(int(array.shape[0]), int(array.shape[1])),
-        dtype=array.dtype.name,
+        dtype=_name(array.dtype),
         source=source,
         saturation_level=_largest(array.dtype),
         own_gsd=gsd,
@@ -287,6 +288,12 @@ def _require_file(name: str) -> None:
     if not is_file and not is_folder and not _GDAL_NAME.match(name):
         found = "its folder exists" if path.parent.is_dir() else "nor does its folder"
         raise ImageError(f"{name} does not exist ({found}): check the path")
+
+
+@cache
+def _name(dtype: np.dtype[Any]) -> str:
+    """Name of a type; to compose it takes as long as to read a small region."""
+    return dtype.name
 
 
 def _largest(dtype: np.dtype[Any]) -> float | None:

@@ -52,7 +52,10 @@ class ArrayPixels:
     def read(self, box: Box) -> Floats:
         cut = self.array[box.slices]
         raw = np.ma.getdata(cut)
-        return usable_values(raw, np.ma.getmaskarray(cut) | equals_nodata(raw, self.nodata))
+        values = usable_values(raw, np.asarray(np.ma.getmask(cut)))
+        if self.nodata is not None:
+            values[equals_nodata(raw, self.nodata)] = np.nan
+        return values
 
 
 @dataclass(frozen=True)

@@ -101,7 +101,7 @@ def fermi(band: EdgeBand, options: FermiOptions = _DEFAULT) -> EdgeFit:
         If no sum of Fermi functions rises from dark to bright in the band.
     """
     crossing_rows(band, Frame.of(band))
-    row, col = np.nonzero(np.isfinite(band.image))
+    row, col = band.pixels.row, band.pixels.col
     if row.size < _PIXELS_PER_UNKNOWN * (2 + 3 * options.max_terms):
         raise SupportError(
             f"{options.max_terms} Fermi functions need at least "
@@ -111,7 +111,7 @@ def fermi(band: EdgeBand, options: FermiOptions = _DEFAULT) -> EdgeFit:
     pixels = _Pixels(
         band.line.normal_distance(row, col),
         band.line.tangent_distance(row, col),
-        band.image[row, col],
+        band.pixels.value,
     )
     fit = _best_sum(pixels, band, options)
     response, middle_px, middle_gradient = _response(fit)

@@ -274,9 +274,9 @@ def edge_fit(
     """
     from scipy.interpolate import CubicSpline
 
-    row, col = np.nonzero(np.isfinite(band.image))
-    distance = line.normal_distance(row, col)
-    value = (band.image[row, col] - dark) / (bright - dark)
+    pixels = band.pixels
+    distance = line.normal_distance(pixels.row, pixels.col)
+    value = (pixels.value - dark) / (bright - dark)
     esf = response.esf
     places = np.clip(distance * per_normal_px, esf.distance_px[0], esf.distance_px[-1])
     model = CubicSpline(esf.distance_px, esf.value)(places)

@@ -264,10 +264,10 @@ def sdsu_2005_pulse(band: PulseBand, options: SdsuPulseOptions = _DEFAULT) -> Pu
     )
     rising_px = profile.middle_px - 0.5 * profile.width_px + curves.middle_px
     line = rows.frame.line_in_cut(profile.line).moved(rising_px / profile.px_per_normal, 0.0)
-    row, col = np.nonzero(np.isfinite(band.image))
-    distance = line.normal_distance(row, col)
+    pixels = band.pixels
+    distance = line.normal_distance(pixels.row, pixels.col)
     height = profile.height
-    value = (band.image[row, col] - profile.left) / (profile.bright - profile.left)
+    value = (pixels.value - profile.left) / (profile.bright - profile.left)
     place = distance * profile.px_per_normal + rising_px - profile.middle_px
     # Beyond the trimmed profile lie the two grounds, which may differ.
     step = profile.right - profile.left
