@@ -10,9 +10,9 @@ from acutance.fit.spline import (
     HALF_SUPPORT,
     SIZE,
     combine,
+    edge_and_line_weights,
     edge_weights,
     esf_from_lsf,
-    line_weights,
     quasi_interpolant,
     spread,
     transform,
@@ -25,6 +25,15 @@ def quadratic_spline(u):
     """The B-spline of degree 2 with unit cells, by its pieces."""
     u = np.abs(u)
     return np.where(u < 0.5, 0.75 - u**2, np.where(u < 1.5, 0.5 * (1.5 - u) ** 2, 0.0))
+
+
+def line_weights(u):
+    """Cells and slopes; on the way the edge's weights, which have to be the same."""
+    cell, weights, slopes = edge_and_line_weights(u)
+    own_cell, own_weights = edge_weights(u)
+    assert np.array_equal(cell, own_cell)
+    assert np.array_equal(weights, own_weights)
+    return cell, slopes
 
 
 def test_edge_weights_sum_to_one_everywhere():

@@ -70,9 +70,12 @@ class LsfModel:
         u = s / self.blur.width_px
         return self._sum(self.blur.esf(s), *edge_weights(u), tail_esf(u)) / self.height
 
-    def step(self, s: Floats) -> tuple[Floats, Floats]:
-        """Response to the step and its derivative at normal distances `s`, in image units."""
-        esf, lsf = self._parts(s)
+    def step(self, s: Floats, blurred: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
+        """Response to the step and its derivative at normal distances `s`, in image units.
+
+        `blurred` is the plain blur's ESF and LSF there.
+        """
+        esf, lsf = self._parts(s, blurred)
         return self._sum(*esf), self._sum(*lsf)
 
     def half_point(self) -> float:
@@ -88,8 +91,9 @@ class LsfModel:
         """The curves on their grids, 0 at `middle`."""
         half = math.ceil(max(_MIN_HALF_PX, HALF_SUPPORT * self.blur.width_px) / _STEP_PX)
         distance = np.asarray(np.arange(-half, half + 1) * _STEP_PX)
+        s = distance + middle
         (esf, esf_design), (lsf, lsf_design) = (
-            self._normalised(*parts) for parts in self._parts(distance + middle)
+            self._normalised(*parts) for parts in self._parts(s, self.blur.esf_and_lsf(s))
         )
         otf, otf_design = self._otf(_FREQ_CPP)
         return Response(
@@ -103,11 +107,11 @@ class LsfModel:
         steepness = float(sample(response.lsf.distance_px, response.lsf.value, 0.0))
         return float(np.linalg.norm(response.esf.gradient(0.0))) / abs(steepness)
 
-    def _parts(self, s: Floats) -> tuple[_Parts, _Parts]:
+    def _parts(self, s: Floats, blurred: tuple[Floats, Floats]) -> tuple[_Parts, _Parts]:
         """What the ESF, and the LSF per pixel, are sums of."""
         width = self.blur.width_px
         u = s / width
-        esf, lsf = self.blur.esf_and_lsf(s)
+        esf, lsf = blurred
         cell, weights, slopes = edge_and_line_weights(u)
         return (
             (esf, cell, weights, tail_esf(u)),

@@ -101,9 +101,7 @@ def _sums_by_cell(cell: NDArray[np.intp], left: Floats, right: Floats) -> Floats
     places = starts + np.arange(int((stops - starts).max()))
     own = order.take(places, mode="clip")
     some = left.take(own, axis=1) * (places < stops)
-    np.matmul(
-        some.transpose(1, 0, 2), right.take(own, axis=1).transpose(1, 2, 0), out=sums[1:-1]
-    )
+    np.matmul(some.transpose(1, 0, 2), right.take(own, axis=1).transpose(1, 2, 0), out=sums[1:-1])
     return sums
 
 

@@ -321,7 +321,10 @@ def _known_steps(
     if earlier is None:
         return [(start.height * esf, start.height * lsf) for esf, lsf in seen]
     model = earlier.model(start)
-    return [model.step(distance) for distance in start.profile.distances(s)]
+    return [
+        model.step(distance, blurred)
+        for distance, blurred in zip(start.profile.distances(s), seen, strict=True)
+    ]
 
 
 def _step_columns(profile: Profile, known: list[tuple[Floats, Floats]], fit_width: bool) -> Floats:
