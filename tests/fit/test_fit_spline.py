@@ -118,3 +118,11 @@ def test_transform_is_the_numerical_fourier_transform():
 def test_transform_at_zero_is_the_height():
     e = esf_from_lsf(np.random.default_rng(4).standard_normal(SIZE))
     assert (transform(np.arange(3) * 0.1) @ e)[0] == pytest.approx(e[-1], abs=1e-13)
+
+
+def test_transform_about_another_place_turns_the_phase():
+    freq = np.arange(0, 1.01, 0.1)
+    turn = 0.25 * np.exp(2j * np.pi * freq * 0.7)
+    moved = transform(freq, about=0.7, scale=0.25, further=2)
+    assert np.max(np.abs(moved[:, :-2] - turn[:, None] * transform(freq))) < 1e-13
+    assert not moved[:, -2:].any()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from acutance.fit.normal import accumulate
+from acutance.fit.normal import accumulate, renewed
 from acutance.fit.spline import HALF_SUPPORT, edge_weights, spread
 
 RNG = np.random.default_rng(5)
@@ -46,3 +46,24 @@ def test_two_steps_match_the_dense_design():
     found = accumulate(stencils, Y, WEIGHT, COLUMNS, N)
     np.testing.assert_allclose(found.gram, dense.T @ (WEIGHT[:, None] * dense), atol=1e-10)
     np.testing.assert_allclose(found.projection, dense.T @ (WEIGHT * Y), atol=1e-10)
+
+
+def test_renewed_equations_are_those_of_the_new_columns():
+    stencils = [edge_weights(U), (edge_weights(U - 2.3)[0], -0.8 * edge_weights(U - 2.3)[1])]
+    fixed, old, new = (RNG.standard_normal((k, N)) for k in (3, 2, 2))
+    before = accumulate(stencils, Y, WEIGHT, np.vstack([fixed, old]), N)
+    columns = np.vstack([fixed, new])
+    found = renewed(before, stencils, Y, WEIGHT, columns, 2)
+    expected = accumulate(stencils, Y, WEIGHT, columns, N)
+    np.testing.assert_allclose(found.gram, expected.gram, atol=1e-10)
+    np.testing.assert_allclose(found.projection, expected.projection, atol=1e-10)
+    assert (found.data, found.count) == (before.data, N)
+
+
+def test_all_pixels_beyond_the_support_or_in_one_cell():
+    for u in (np.array([-20.0, 20.0, 21.0]), np.full(5, 0.03)):
+        y, weight = RNG.standard_normal((2, u.size)) ** 2
+        found = accumulate([edge_weights(u)], y, weight, np.ones((1, u.size)), u.size)
+        dense = np.hstack([spread(*edge_weights(u)), np.ones((u.size, 1))])
+        np.testing.assert_allclose(found.gram, dense.T @ (weight[:, None] * dense), atol=1e-12)
+        np.testing.assert_allclose(found.projection, dense.T @ (weight * y), atol=1e-12)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.fit.spline import CELLS
 
-__all__ = ["Normal", "Stencil", "accumulate"]
+__all__ = ["Normal", "Stencil", "accumulate", "renewed"]
 
 Stencil = tuple[NDArray[np.intp], Floats]
 
@@ -76,6 +76,39 @@ def accumulate(
     products = rows[4:] * weight @ rows[4:].T
     gram[m:, m:], projection[m:] = products[1:, 1:], products[0, 1:]
     return Normal(gram, projection, products.item(0), count)
+
+
+def renewed(
+    normal: Normal,
+    stencils: Sequence[Stencil],
+    y: Floats,
+    weight: Floats,
+    columns: Floats,
+    changed: int,
+) -> Normal:
+    """The equations of the same pixels after the last columns have changed.
+
+    Parameters
+    ----------
+    normal : Normal
+        As `accumulate` made it of these pixels and weights.
+    stencils, y, weight
+        As they were.
+    columns : (q, n) array
+    changed : int
+        How many of the columns, from the last, are others than they were.
+    """
+    first = normal.projection.size - changed
+    weighted = columns[-changed:] * weight
+    rows = np.zeros((changed, normal.projection.size))
+    for cell, basis in stencils:
+        sums = _sums_by_cell(cell, basis, weighted)
+        for a in range(4):
+            rows[:, a : a + CELLS] += sums[:, a].T
+    rows[:, CELLS + 3 :] = weighted @ columns.T
+    gram, projection = normal.gram.copy(), normal.projection.copy()
+    gram[first:], gram[:, first:], projection[first:] = rows, rows.T, weighted @ y
+    return replace(normal, gram=gram, projection=projection)
 
 
 def _sums_by_cell(cell: NDArray[np.intp], left: Floats, right: Floats) -> Floats:

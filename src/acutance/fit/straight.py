@@ -4,7 +4,7 @@ The image of a straight target is ``dark + height * sum_k share_k R(s - position
 normal distance and R the response to a unit step (`fit.profile`). R is that of the plain blurred
 edge (`fit.start`) plus a free spline and a tail (`fit.spline`, `fit.prior`), whose amplitudes the
 data decide (`fit.posterior`). The line's direction and, of a pulse, its width and its fall are
-further unknowns of the same linear model, solved again where they have moved.
+further unknowns of the same linear model (`fit.linear`), solved again where they have moved.
 """
 
 from __future__ import annotations
@@ -13,31 +13,20 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
-from acutance.fit import ground
-from acutance.fit import prior as lsf_prior
 from acutance.fit.band import Pixels
-from acutance.fit.ground import ground_trends
+from acutance.fit.linear import Linear
 from acutance.fit.lsf_model import LsfModel
-from acutance.fit.noise import (
-    Correlation,
-    correlation,
-    outlier_weights,
-    robust_scale,
-    side_variances,
-)
-from acutance.fit.normal import accumulate
-from acutance.fit.posterior import Posterior, Prior, regress
+from acutance.fit.noise import Correlation, correlation, outlier_weights, robust_scale
+from acutance.fit.normal import Normal, accumulate, renewed
+from acutance.fit.posterior import Posterior, regress
 from acutance.fit.profile import Profile
-from acutance.fit.spline import CELLS, HALF_SUPPORT, combine, edge_weights
 from acutance.fit.start import BlurredEdge
 
 __all__ = ["Solution", "Solved", "solve"]
 
-_NOISE_FLOOR = 2e-4
 _SETTLED_PX = 0.01
 _SETTLED_FALL = 0.003
 """A linear step this short leaves less than 1e-4 of the edge's height behind."""
@@ -53,8 +42,6 @@ class Solved:
 
     Attributes
     ----------
-    start : BlurredEdge
-        What the linear model departs from: line, blur, levels and profile as they settled.
     solution : Solution
         The last pass.
     outlier : (n,) array
@@ -63,15 +50,19 @@ class Solved:
         What the residuals say of the noise's correlation.
     """
 
-    start: BlurredEdge
     solution: Solution
     outlier: Floats
     correlation: Correlation
 
     @property
+    def start(self) -> BlurredEdge:
+        """What the linear model departs from: line, blur, levels and profile as they settled."""
+        return self.solution.linear.start
+
+    @property
     def model(self) -> LsfModel:
-        """The LSF the coefficients make: the tail has its own closed form beside the spline."""
-        return self.solution.model(self.start)
+        """The LSF."""
+        return self.solution.model
 
     @property
     def dark(self) -> float:
@@ -81,49 +72,63 @@ class Solved:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """One pass of the linear model at a fixed line and profile.
+    """One pass: the linear model solved at given weights.
 
     Attributes
     ----------
+    linear : Linear
+    weight : (n,) array
+        Weights of the pixels.
+    normal : Normal
+        Their equations.
     posterior : Posterior
-        Of the coefficients: dark, the LSF's directions (the tail the last), the line's turn,
-        the changes of the free step parameters, the ground's trends.
-    directions : Directions
+        Of the unknowns.
     residual, noise : (n,) arrays
         What is left of every pixel, and the noise's standard deviation there, in image units.
-    transition : (n,) bool array
-        Pixels within a blur's width of a step.
     side_noise : (float, float)
         Standard deviation of the noise on dark and on bright ground.
-    turn_rad, turn_std_rad : float
-        How the line wants to turn, and how well that is known.
-    steps, steps_std : (k,) arrays
-        How the free step parameters want to change, and their standard deviations.
-    half_length_px : float
     roughness : float
         Noise variance the edge's raggedness adds where the image is steepest, relative to the
         rest.
     """
 
+    linear: Linear
+    weight: Floats
+    normal: Normal
     posterior: Posterior
-    directions: lsf_prior.Directions
     residual: Floats
     noise: Floats
-    transition: NDArray[np.bool_]
     side_noise: tuple[float, float]
-    turn_rad: float
-    turn_std_rad: float
-    steps: Floats
-    steps_std: Floats
-    half_length_px: float
     roughness: float
 
-    def model(self, start: BlurredEdge) -> LsfModel:
-        """The LSF that departs from the `start` of this pass."""
-        inner, tail = self.directions.esf[:, :-1], self.directions.block.size
-        beta, factor = self.posterior.beta, self.posterior.factor
-        latent = np.vstack([inner @ factor[1:tail], factor[tail]])
-        return LsfModel(start.blur, start.height, inner @ beta[1:tail], float(beta[tail]), latent)
+    @property
+    def model(self) -> LsfModel:
+        """The LSF of this pass."""
+        return self.linear.model(self.posterior)
+
+    @property
+    def turn_rad(self) -> float:
+        """How the line wants to turn."""
+        return float(self.posterior.beta[-self.linear.derivatives])
+
+    @property
+    def turn_std_rad(self) -> float:
+        """Standard deviation of the turn."""
+        return _norm(self.posterior.factor[-self.linear.derivatives])
+
+    @property
+    def steps(self) -> Floats:
+        """How a pulse's width (if free) and its fall want to change, (k,)."""
+        return self.posterior.beta[self._first_step :]
+
+    @property
+    def steps_std(self) -> Floats:
+        """Standard deviations of the steps, (k,)."""
+        return np.array([_norm(row) for row in self.posterior.factor[self._first_step :]])
+
+    @property
+    def _first_step(self) -> int:
+        return self.posterior.beta.size - self.linear.derivatives + 1
 
 
 def solve(
@@ -141,18 +146,19 @@ def solve(
     fit_width : bool, optional
         Whether a pulse's width is unknown (its fall always is).
     """
+    linear = Linear.about(start, pixels, fit_width=fit_width)
     outlier = np.ones(pixels.value.size)
     whiteness = Correlation(1.0, 0.0, 0.0)
     earlier: Solution | None = None
     roughness = 0.0
     for _ in range(_MAX_PASSES):
-        solved = _pass(pixels, start, outlier, whiteness.inflation, earlier, roughness, fit_width)
+        solved = _pass(linear, outlier, whiteness.inflation, roughness, earlier)
         standard = solved.residual / solved.noise
         heavy = robust and float(np.abs(standard).max()) > _OUTLYING
-        again = _reweighted(standard, solved.transition) if heavy else outlier
-        found = correlation(_bounded(standard), *pixels.at, start.line.normal)
+        again = _reweighted(standard, linear) if heavy else outlier
+        found = correlation(_bounded(standard), *pixels.at, linear.start.line.normal)
         settled = (
-            abs(solved.turn_rad) * solved.half_length_px < _SETTLED_PX
+            abs(solved.turn_rad) * linear.half_length_px < _SETTLED_PX
             # The derivative by the width is that of the blur until there is an LSF.
             and not (fit_width and earlier is None)
             and _are_short(solved, fit_width)
@@ -164,8 +170,15 @@ def solve(
             break
         outlier, whiteness, earlier = again, found, solved
         roughness = solved.roughness
-        start = _moved(start, solved, fit_width)
-    return Solved(start, solved, outlier, whiteness)
+        if not _rests(solved):
+            linear = Linear.about(_moved(solved, fit_width), pixels, fit_width=fit_width)
+    return Solved(solved, outlier, whiteness)
+
+
+def _rests(solved: Solution) -> bool:
+    """Whether line and profile want to move by less than the pixels tell of them."""
+    still = np.abs(solved.steps) < solved.steps_std
+    return bool(abs(solved.turn_rad) < solved.turn_std_rad and np.all(still))
 
 
 def _are_short(solved: Solution, fit_width: bool) -> bool:
@@ -181,15 +194,16 @@ def _are_short(solved: Solution, fit_width: bool) -> bool:
     return bool(np.all(steps < tolerance))
 
 
-def _moved(start: BlurredEdge, solved: Solution, fit_width: bool) -> BlurredEdge:
+def _moved(solved: Solution, fit_width: bool) -> BlurredEdge:
     """The start, with the line and the profile moved to where the solution wants them."""
+    start = solved.linear.start
     if not (math.isfinite(solved.turn_rad) and np.all(np.isfinite(solved.steps))):
         raise NoEdgeError(
             "the fit of the target did not settle: its pixels do not follow one straight line; "
             "choose a region with one straight target"
         )
     # A turn that is too large for the linear model is cut: three pixels at the ends a pass.
-    most = 3.0 / max(solved.half_length_px, 1.0)
+    most = 3.0 / max(solved.linear.half_length_px, 1.0)
     line = start.line.moved(0.0, math.degrees(float(np.clip(solved.turn_rad, -most, most))))
     if not solved.steps.size:
         return replace(start, line=line)
@@ -203,74 +217,39 @@ def _moved(start: BlurredEdge, solved: Solution, fit_width: bool) -> BlurredEdge
 
 
 def _pass(
-    pixels: Pixels,
-    start: BlurredEdge,
-    outlier: Floats,
-    inflation: float,
-    earlier: Solution | None,
-    roughness: float,
-    fit_width: bool,
+    linear: Linear, outlier: Floats, inflation: float, roughness: float, earlier: Solution | None
 ) -> Solution:
     """Solve for the LSF's departures from the start, the levels, the line and the steps."""
-    line, blur, height, profile = start.line, start.blur, start.height, start.profile
-    width = blur.width_px
-    s = line.normal_distance(pixels.row, pixels.col)
-    t = line.tangent_distance(pixels.row, pixels.col)
-    seen = profile.seen(blur, s)
-    mean, slope = profile.response(seen)
-    departure = pixels.value - start.dark - height * mean
-    variance_dark, variance_bright = side_variances(departure * np.sqrt(outlier), mean)
-    floor = (_NOISE_FLOOR * height) ** 2
-    scale = 0.5 * (variance_dark + variance_bright) + floor
-    share = np.minimum(np.maximum(mean, 0.0), 1.0)
-    relative = (variance_dark + floor + (variance_bright - variance_dark) * share) / scale
-    # A ragged edge moves by fractions of a pixel from row to row: noise where the image is steep.
-    steep = (slope / max(float(np.max(np.abs(slope))), 1e-12)) ** 2
-    relative *= 1 + roughness * steep
-
-    sides = profile.sides(seen, s)
-    known = _known_steps(start, s, seen, earlier)
-    steps = _step_columns(profile, known, fit_width)
-    trends = ground_trends(sides, t)
-    turn_column = t * profile.response(known)[1]
-    columns = np.vstack([_beyond(profile, s, width), turn_column, steps, trends])
-    stencils = []
-    for distance, part in zip(profile.distances(s), profile.shares, strict=True):
-        cell, basis = edge_weights(distance / width)
-        stencils.append((cell, basis if part == 1 else part * basis))
-    directions = lsf_prior.directions(blur)
-    design = _design(directions, len(columns))
-    if len(profile.shares) > 1:
-        # The dark level is under every pixel once, whatever the steps.
-        columns = np.vstack([columns, np.ones(s.size)])
-        design = np.vstack([design, np.zeros(design.shape[1])])
-        design[: CELLS + 3, 0], design[-1, 0] = 0.0, 1.0
-    normal = accumulate(
-        stencils, departure, outlier / relative, columns, float(np.add.reduce(outlier))
-    ).combined(design)
-    prior = _prior(start, directions, len(steps), len(trends))
+    noise = linear.noise(outlier, roughness)
+    weight = outlier / noise.relative
+    columns = linear.columns(None if earlier is None else earlier.model)
+    normal = _equations(linear, weight, columns, float(np.add.reduce(outlier)), earlier)
     posterior = regress(
-        normal, prior, scale, inflation, None if earlier is None else earlier.posterior
-    )
-
-    coefficients = design @ posterior.beta
-    fitted = coefficients[CELLS + 3 :] @ columns
-    for cell, basis in stencils:
-        fitted = fitted + combine(cell, basis, coefficients[: CELLS + 3])
-    noise = np.sqrt(posterior.variance * relative)
-    standard = _bounded((departure - fitted) / noise)
-    side_noise = np.sqrt(posterior.variance / scale * np.array([variance_dark, variance_bright]))
-    turn = directions.block.size + 1
-    own = slice(turn + 1, turn + 1 + len(steps))
+        normal.combined(linear.design), linear.prior, noise.scale, inflation,
+        None if earlier is None else earlier.posterior,
+    )  # fmt: skip
+    residual = linear.departure - linear.image(columns, posterior.beta)
+    std = np.sqrt(posterior.variance * noise.relative)
+    standard, steep = _bounded(residual / std), linear.steepness
+    dark, bright = np.sqrt(posterior.variance * noise.sides).tolist()
     return Solution(
-        posterior, directions, departure - fitted, noise,
-        profile.near(s, width),
-        (float(side_noise[0]), float(side_noise[1])),
-        float(posterior.beta[turn]), _norm(posterior.factor[turn]),
-        posterior.beta[own], np.array([_norm(row) for row in posterior.factor[own]]),
-        float(np.max(np.abs(t))),
+        linear, weight, normal, posterior, residual, std, (dark, bright),
         _raggedness(standard, np.where(np.abs(standard) < _OUTLYING, steep, 0.0), roughness),
     )  # fmt: skip
+
+
+def _equations(
+    linear: Linear, weight: Floats, columns: Floats, count: float, earlier: Solution | None
+) -> Normal:
+    """The pixels' equations; where only the LSF has become known since, most of them are there."""
+    stencils, departure = linear.stencils, linear.departure
+    if (
+        earlier is None
+        or earlier.linear is not linear
+        or not np.array_equal(earlier.weight, weight)
+    ):
+        return accumulate(stencils, departure, weight, columns, count)
+    return renewed(earlier.normal, stencils, departure, weight, columns, linear.derivatives)
 
 
 def _raggedness(standard: Floats, steep: Floats, assumed: float) -> float:
@@ -286,17 +265,6 @@ def _raggedness(standard: Floats, steep: Floats, assumed: float) -> float:
     return max((power - 1) / float(np.mean(steep[there])), 0.0)
 
 
-def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
-    """What the tail adds beyond the spline's support, (n,)."""
-    total = np.zeros(s.size)
-    for distance, share in zip(profile.distances(s), profile.shares, strict=True):
-        far = np.abs(distance) > HALF_SUPPORT * width
-        u = distance[far] / width
-        end = lsf_prior.tail_esf(np.array([-HALF_SUPPORT, HALF_SUPPORT]))
-        total[far] += share * (lsf_prior.tail_esf(u) - np.where(u < 0, *end))
-    return total
-
-
 def _norm(row: Floats) -> float:
     """Standard deviation that a row of a factor stands for."""
     return math.sqrt(float(row @ row))
@@ -307,77 +275,13 @@ def _bounded(standard: Floats) -> Floats:
     return np.minimum(np.maximum(standard, -_OUTLYING), _OUTLYING)
 
 
-def _known_steps(
-    start: BlurredEdge,
-    s: Floats,
-    seen: list[tuple[Floats, Floats]],
-    earlier: Solution | None,
-) -> list[tuple[Floats, Floats]]:
-    """Response to every step and its derivative, in image units, as far as they are known.
-
-    How well a pulse's width is told hangs on the LSF itself, not on the blur it departs from:
-    after the first pass its solution is taken.
-    """
-    if earlier is None:
-        return [(start.height * esf, start.height * lsf) for esf, lsf in seen]
-    model = earlier.model(start)
-    return [
-        model.step(distance, blurred)
-        for distance, blurred in zip(start.profile.distances(s), seen, strict=True)
-    ]
-
-
-def _step_columns(profile: Profile, known: list[tuple[Floats, Floats]], fit_width: bool) -> Floats:
-    """Derivatives of the mean by a pulse's width (if free) and by its fall, (k, n)."""
-    if len(known) == 1:
-        return np.empty((0, known[0][0].size))
-    esf, lsf = known[1]
-    by_width, by_fall = -profile.shares[1] * lsf, -esf
-    return np.array([by_width, by_fall] if fit_width else [by_fall])
-
-
-def _reweighted(standard: Floats, transition: NDArray[np.bool_]) -> Floats:
+def _reweighted(standard: Floats, linear: Linear) -> Floats:
     """Weights of the pixels by their standardised residuals.
 
     An outlier stands out from pixels like itself. Where many depart together, as in the
     transition when the model does not yet follow the edge, nobody is one.
     """
+    start = linear.start
+    transition = start.profile.near(linear.s, start.blur.width_px)
     bulk = [robust_scale(standard[place]) for place in (transition, ~transition) if place.any()]
     return outlier_weights(standard / min(max(bulk), 1.0))
-
-
-def _design(directions: lsf_prior.Directions, beside: int) -> Floats:
-    """What every coefficient does to the spline and to the columns beside it.
-
-    The dark level lifts every ESF coefficient alike, because the B-splines sum to one; the tail
-    is the last direction, within the support and beyond.
-    """
-    last = directions.block.size
-    design = np.zeros((CELLS + 3 + beside, last + beside))
-    design[: CELLS + 3, 0] = 1.0
-    design[: CELLS + 3, 1 : last + 1] = directions.esf
-    design[CELLS + 3 :, last:] = np.eye(beside)
-    return design
-
-
-def _prior(start: BlurredEdge, directions: lsf_prior.Directions, steps: int, trends: int) -> Prior:
-    """The prior of all coefficients: dark, mean blur, processes, tail, turn, steps, trends."""
-    last = directions.block.size
-    m = last + 2 + steps + trends
-    block = np.full(m, -1)
-    block[1 : last + 1] = np.where(directions.block >= 2, directions.block - 2, -1)
-    log_amplitude = lsf_prior.LOG_AMPLITUDE
-    block[last + 2 + steps :] = log_amplitude.size
-    log_amplitude = np.append(log_amplitude, ground.LOG_AMPLITUDE)
-    scale = np.ones(m)
-    # Turn (radians) and steps (pixels, shares) are known to about one before the pixels are seen.
-    scale[last + 1 : last + 2 + steps] = 1 / start.height
-    aperture, aperture_std = lsf_prior.APERTURE_PX
-    mean = np.zeros(m)
-    where = 1 + int(np.flatnonzero(directions.block == 1)[0])
-    scale[where] = aperture_std
-    mean[where] = (aperture - start.blur.aperture_px) * start.height
-    return Prior(
-        block, scale, mean, log_amplitude, lsf_prior.LOG_AMPLITUDE_STD,
-        start.height, _NOISE_FLOOR * start.height,
-    )  # fmt: skip
