@@ -30,6 +30,7 @@ __all__ = ["Solution", "Solved", "solve"]
 _SETTLED_PX = 0.01
 _SETTLED_FALL = 0.003
 """A linear step this short leaves less than 1e-4 of the edge's height behind."""
+_RESTING = 3.0
 _MAX_PASSES = 10
 _MIN_STEEP = 20
 _SIGNIFICANT = 4.0
@@ -157,11 +158,11 @@ def solve(
         heavy = robust and float(np.abs(standard).max()) > _OUTLYING
         again = _reweighted(standard, linear) if heavy else outlier
         found = correlation(_bounded(standard), *pixels.at, linear.start.line.normal)
+        short = _are_short(solved, fit_width)
         settled = (
-            abs(solved.turn_rad) * linear.half_length_px < _SETTLED_PX
+            short
             # The derivative by the width is that of the blur until there is an LSF.
             and not (fit_width and earlier is None)
-            and _are_short(solved, fit_width)
             and np.max(np.abs(again - outlier)) < 0.05
             and abs(found.inflation / whiteness.inflation - 1) < 0.05
             and abs(solved.roughness - roughness) < 0.1 * (1 + roughness)
@@ -170,28 +171,30 @@ def solve(
             break
         outlier, whiteness, earlier = again, found, solved
         roughness = solved.roughness
-        if not _rests(solved):
+        if not (short and _rest(solved)):
             linear = Linear.about(_moved(solved, fit_width), pixels, fit_width=fit_width)
     return Solved(solved, outlier, whiteness)
 
 
-def _rests(solved: Solution) -> bool:
-    """Whether line and profile want to move by less than the pixels tell of them."""
-    still = np.abs(solved.steps) < solved.steps_std
-    return bool(abs(solved.turn_rad) < solved.turn_std_rad and np.all(still))
-
-
 def _are_short(solved: Solution, fit_width: bool) -> bool:
-    """Whether a pulse's width and fall are so near their end that the linear model serves.
+    """Whether the steps of line and profile are so short that the linear model serves.
 
     What a linear step in the width leaves behind is about its square in pixels, of a step in the
     fall a twentieth: it has to be small beside the standard deviation.
     """
+    if abs(solved.turn_rad) * solved.linear.half_length_px >= _SETTLED_PX:
+        return False
     steps, stds = np.abs(solved.steps), solved.steps_std
     tolerance = np.maximum(_SETTLED_FALL, 6.0 * stds)
     if fit_width:
         tolerance[0] = max(_SETTLED_PX, math.sqrt(0.06 * stds[0]))
     return bool(np.all(steps < tolerance))
+
+
+def _rest(solved: Solution) -> bool:
+    """Whether the steps of line and profile are no longer than the pixels tell of them."""
+    still = np.abs(solved.steps) < _RESTING * solved.steps_std
+    return bool(abs(solved.turn_rad) < _RESTING * solved.turn_std_rad and np.all(still))
 
 
 def _moved(solved: Solution, fit_width: bool) -> BlurredEdge:
