@@ -124,3 +124,16 @@ def test_a_scene_may_declare_that_along_track_is_the_x_axis(scene):
         assert turned.groups[other].measurements[0].to_dict()["line"]["orientation"] == other
     with pytest.raises(ac.OptionError, match="along_track is 'z'"):
         ac.Image.from_array(scene.image, along_track="z")
+
+
+def test_every_rejected_edge_is_told_in_pixels_of_the_whole_image(scene):
+    canvas = np.full((500, 700), 500.0) + np.random.default_rng(5).normal(0, 5, (500, 700))
+    rows, cols = scene.image.shape
+    canvas[300 : 300 + rows, 400 : 400 + cols] = scene.image
+    canvas[290:430, 530:] += 700.0
+    roi = (290, 390, rows + 20, cols + 40)
+    rejected = ac.measure_edges(canvas, roi).rejected
+    assert {one.stage for one in rejected} == {"fit", "contrast"}
+    for one in rejected:
+        assert roi[0] <= one.values["row"] < roi[0] + roi[2]
+        assert roi[1] <= one.values["col"] < roi[1] + roi[3]

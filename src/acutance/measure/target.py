@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,15 +13,15 @@ from numpy.typing import ArrayLike
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import AcutanceError
-from acutance.fit.line import Orientation
-from acutance.fit.locate import Segment, find_segments
+from acutance.fit.line import Line, Orientation
+from acutance.fit.locate import find_segments
 from acutance.measure.cut import RoiLike, cut
 from acutance.measure.edge import measure_segment
 from acutance.measure.given import chosen_options
 from acutance.measure.measurement import Measurement
 from acutance.measure.one_thread import one_thread
 from acutance.measure.options import EdgeOptions
-from acutance.raster import Gsd, Image
+from acutance.raster import Box, Gsd, Image
 
 __all__ = ["EdgeGroup", "Rejected", "TargetResult", "combine_edges", "measure_edges"]
 
@@ -31,7 +31,15 @@ _STRENGTH_SHARE = 0.1
 
 @dataclass(frozen=True)
 class Rejected:
-    """A candidate that was not measured: at which stage, why, and the numbers behind it."""
+    """A candidate that was not measured: at which stage, why, and the numbers behind it.
+
+    Attributes
+    ----------
+    stage : {"fit", "contrast"}
+    reason : str
+    values : dict
+        Where it lies in pixels of the whole image (``row``, ``col``), and its ``normal_deg``.
+    """
 
     stage: str
     reason: str
@@ -124,7 +132,8 @@ def measure_edges(
         try:
             found = measure_segment(pixels, segment, method, chosen)
         except AcutanceError as error:
-            rejected.append(Rejected("fit", str(error), _describe(segment)))
+            where = _where(_in_image(segment.line, pixels.box))
+            rejected.append(Rejected("fit", str(error), where))
             continue
         if not any(_same_edge(found, other) for other in measured):
             measured.append(found)
@@ -132,8 +141,12 @@ def measure_edges(
     return TargetResult(kept, (*rejected, *dim), combine_edges(kept))
 
 
-def _describe(segment: Segment) -> dict[str, float]:
-    line = segment.line
+def _in_image(line: Line, box: Box) -> Line:
+    """A line of the cut, in pixels of the whole image."""
+    return replace(line, row=line.row + box.row, col=line.col + box.col)
+
+
+def _where(line: Line) -> dict[str, float]:
     return {"row": line.row, "col": line.col, "normal_deg": line.normal_deg}
 
 
@@ -158,7 +171,7 @@ def _of_the_target(
             "contrast",
             f"contrast {height:.4g} is less than {_CONTRAST_SHARE:g} of the strongest edge's "
             f"{max(heights):.4g}: probably not of the target",
-            {"row": one.line.row, "col": one.line.col, "normal_deg": one.line.normal_deg},
+            _where(one.line),
         )
         for one, height in zip(measured, heights, strict=True)
         if height < least
