@@ -90,6 +90,22 @@ def test_a_report_without_gsd_and_checks_leaves_their_parts_out(vague_measuremen
     assert "acutance edge" not in text
 
 
+def test_the_comparison_tells_all_failed_checks_and_how_all_were_measured(compared):
+    text = words(comparison_report(compared))
+    message = "The bright plateau is 2.0 px wide, at least 3 px are needed: use a wider region."
+    for one in compared:
+        assert f"{one.method} plateau_px {message}" in text
+    assert "methods spline, sdsu-2005, iso12233" in text
+    assert "--method spline --compare sdsu-2005,iso12233" in text
+
+
+def test_the_comparison_shows_only_options_that_all_share(compared):
+    first, second = compared[:2]
+    other = replace(second, options={**second.options, "robust": True})
+    text = words(comparison_report([first, other]))
+    assert "methods spline, sdsu-2005 rer_centre half limits.contrast_snr 50" in text
+
+
 def test_the_comparison_shows_every_method_and_the_truth(compared, truth):
     text = words(comparison_report(compared, truth=truth))
     for one in compared:

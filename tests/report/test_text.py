@@ -49,6 +49,14 @@ def test_a_comparison_has_a_column_for_each_method(compared):
     assert row.count("±") == 3
 
 
+def test_a_comparison_says_what_the_failed_checks_of_each_method_say(compared):
+    lines = comparison_text(compared).splitlines()
+    for one in compared:
+        (verdict,) = (i for i, line in enumerate(lines) if line.startswith(f"{one.method}: "))
+        (failed,) = one.failed_checks
+        assert lines[verdict + 1] == f"  {failed.name}: {failed.message}"
+
+
 def test_a_target_lists_edges_means_and_rejections(target):
     text = target_text(target)
     assert text.startswith("4 edges measured, 1 rejected")

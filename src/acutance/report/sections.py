@@ -150,22 +150,44 @@ def reproducing_section(
     measurement: Measurement | Measurement2d, command: str | None = None
 ) -> Section:
     """Options, software, time, and the command that measures the same again."""
+    options = (("method", measurement.method), *flatten_options(measurement.options))
+    return _how_it_was_measured(options, measurement, command)
+
+
+def _how_it_was_measured(
+    options: Sequence[tuple[str, str]],
+    measurement: Measurement | Measurement2d,
+    command: str | None,
+) -> Section:
     from acutance import __version__
 
-    rows = [
-        ("method", measurement.method),
-        *flatten_options(measurement.options),
+    rows = (
+        *options,
         ("acutance", __version__),
         ("measured at", measurement.measured_at.isoformat(sep=" ", timespec="seconds")),
-    ]
+    )
     return Section(
         "How it was measured",
-        tables=(Table(("Option", "Value"), tuple(rows), "ll"),),
+        tables=(Table(("Option", "Value"), rows, "ll"),),
         command=command,
     )
 
 
-def _command(measurement: Measurement) -> str | None:
+def _reproducing_comparison(measurements: Sequence[Measurement], command: str | None) -> Section:
+    """The methods, and the options they share; the command repeats them all."""
+    first = measurements[0]
+    methods = list(dict.fromkeys(one.method for one in measurements))
+    each = [dict(flatten_options(one.options)) for one in measurements]
+    shared = [
+        (name, value)
+        for name, value in each[0].items()
+        if all(options.get(name) == value for options in each)
+    ]
+    again = command or _command(first, compared=methods[1:])
+    return _how_it_was_measured([("methods", ", ".join(methods)), *shared], first, again)
+
+
+def _command(measurement: Measurement, compared: Sequence[str] = ()) -> str | None:
     """The command line that repeats a measurement made from Python, where a file is known."""
     image = measurement.image
     if image.path is None:
@@ -181,6 +203,7 @@ def _command(measurement: Measurement) -> str | None:
         words += ["--width-px", format_number(measurement.stated_width_px, 8)]
         words += [] if measurement.width_px.std > 0 else ["--hold-width"]
     words += ["--method", measurement.method]
+    words += ["--compare", ",".join(compared)] if compared else []
     if measurement.response.rer_centre != "half":
         words += ["--rer-centre", measurement.response.rer_centre]
     return shlex.join(words)
@@ -216,8 +239,8 @@ def comparison_sections(
             "Numbers",
             tables=(_comparison_table(measurements, labels, true_numbers(truth, true_width_px)),),
         ),
-        Section("Checks", verdicts=verdicts),
-        reproducing_section(measurements[0], command or _command(measurements[0])),
+        Section("Checks", verdicts=verdicts, tables=_failed_checks("Method", labels, measurements)),
+        _reproducing_comparison(measurements, command),
     )
 
 
@@ -251,6 +274,7 @@ def target_sections(
 ) -> tuple[Section, ...]:
     """All edges of a target: group means, every edge, what was rejected and why."""
     measurements = tuple(result.measurements)
+    numbered = [str(number) for number in range(1, len(measurements) + 1)]
     plate = Plate.of_figure(
         target_figure(result, backdrop=backdrop, origin=origin),
         "The edges and their MTFs by direction",
@@ -267,7 +291,7 @@ def target_sections(
         Section(
             "Checks",
             verdicts=(Verdict(all(one.trusted for one in measurements), verdict(measurements)),),
-            tables=_failed_checks(measurements),
+            tables=_failed_checks("Edge", numbered, measurements),
         ),
         Section("Edges", plates=(plate,), tables=(_edges_table(measurements),)),
         Section(
@@ -287,14 +311,16 @@ def target_sections(
     return (*sections, reproducing_section(measurements[0], command or _command(measurements[0])))
 
 
-def _failed_checks(measurements: Sequence[Measurement]) -> tuple[Table, ...]:
-    """What every failed check says, edge by edge; no table if there is none."""
+def _failed_checks(
+    called: str, labels: Sequence[str], measurements: Sequence[Measurement]
+) -> tuple[Table, ...]:
+    """What every failed check says, one measurement after the other; no table if none failed."""
     rows = [
-        (str(number), check.name, check.message)
-        for number, one in enumerate(measurements, start=1)
+        (label, check.name, check.message)
+        for label, one in zip(labels, measurements, strict=True)
         for check in one.failed_checks
     ]
-    return (Table(("Edge", "Check", "What it says"), tuple(rows), "rll"),) if rows else ()
+    return (Table((called, "Check", "What it says"), tuple(rows), "lll"),) if rows else ()
 
 
 def _mean_sections(result: TargetResult) -> list[Section]:

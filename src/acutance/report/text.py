@@ -81,7 +81,7 @@ def text_report(measurement: Measurement) -> str:
 
 
 def comparison_text(measurements: Sequence[Measurement]) -> str:
-    """Several measurements of one target as text: one column a method."""
+    """Several measurements of one target as text: a column and the failed checks of each."""
     labels = edge_labels(measurements)
     rows = [("", *labels)]
     for name, first in numbers_of(measurements[0]).items():
@@ -89,7 +89,9 @@ def comparison_text(measurements: Sequence[Measurement]) -> str:
         words = (word_estimate(cell).value_and_std for cell in cells)
         rows.append((metric_words(name).label_with_unit, *words))
     verdicts = (
-        f"{label}: {verdict([one])}" for label, one in zip(labels, measurements, strict=True)
+        line
+        for label, one in zip(labels, measurements, strict=True)
+        for line in (f"{label}: {verdict([one])}", *_complaints(one))
     )
     return "\n\n".join(
         (
