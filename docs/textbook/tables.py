@@ -34,8 +34,8 @@ FORMULAS = {
     "Aerosol": r"e^{-t (f/f_a)^2} \ (f < f_a), \quad e^{-t} \ (f \ge f_a)",
     "Butterworth": r"\frac{1}{1 + (f/D_0)^2}",
     "ChargeDiffusion": r"\frac{\cosh(d/L)}{\cosh\left(d \sqrt{(2\pi f)^2 + 1/L^2}\right)}",
-    "Defocus": r"\frac{4}{\pi} \int_\nu^1 \sqrt{1-t^2} \cos(8\pi W \nu (t-\nu)) \, dt,"
-    r" \quad \nu = f/f_c",
+    "Defocus": r"\frac{4}{\pi (1-\epsilon^2)} \int_0^X \left(\sqrt{1-(x+\nu)^2}"
+    r" - \sqrt{\epsilon^2-(x-\nu)^2}\right) \cos(8\pi W \nu x) \, dx, \quad \nu = f/f_c",
     "Detector": r"\mathrm{sinc}(w u) \, \mathrm{sinc}(h v)",
     "Diffraction": r"P \star P \text{ (annular pupil)}, \quad 0 \ (f \ge f_c)",
     "Exponential": r"\frac{1}{1 + 2\pi i f L}",

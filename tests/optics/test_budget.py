@@ -13,6 +13,7 @@ from acutance.optics import (
     Gaussian,
     RasterPsf,
     Sensor,
+    Sharpening,
     Smear,
     budget,
     describe_block,
@@ -22,6 +23,7 @@ from acutance.optics import (
     presets,
     psf_on_the_ground,
 )
+from acutance.simulate import reference_systems
 
 GENERIC = preset("generic-2005")
 OBLONG = Sensor([Gaussian(0.5), Detector()], gsd_m=0.7, gsd_along_m=0.9)
@@ -36,6 +38,19 @@ def test_the_rows_multiply_to_the_whole(name, freq):
     assert math.prod(row.along for row in table.rows) == pytest.approx(table.along)
     assert table.across == pytest.approx(sensor.mtf(0.0, "across")(freq).value)
     assert table.along == pytest.approx(sensor.mtf(0.0, "along")(freq).value)
+
+
+@pytest.mark.parametrize("name", reference_systems())
+def test_every_kind_of_block_has_a_budget(name):
+    table = budget(reference_systems()[name])
+    assert math.prod(row.across for row in table.rows) == pytest.approx(table.across)
+
+
+def test_a_block_of_one_frequency_gives_one_number():
+    sharpening = Sharpening.both_axes(0.2)
+    assert np.shape(sharpening.otf(np.float64(0.5), np.float64(0.0))) == ()
+    row = budget(Sensor([Detector(), sharpening])).rows[1]
+    assert row.across == pytest.approx(1.0 + 4 * 0.2)
 
 
 def test_the_budget_of_the_generic_sensor():

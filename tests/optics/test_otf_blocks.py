@@ -19,6 +19,7 @@ from acutance.optics import (
     Jitter,
     Resampling,
     Rescaled,
+    Sensor,
     Sharpening,
     Shift,
     Smear,
@@ -34,6 +35,7 @@ BLOCKS = [
     ChargeDiffusion(0.3),
     ChargeDiffusion(0.3, 2.0),
     Defocus(0.7, 1.2),
+    Defocus(0.7, 1.2, 0.35),
     Detector(0.9, 1.1),
     Diffraction(1.2),
     Diffraction(1.2, 0.35),
@@ -165,6 +167,33 @@ def test_defocus_is_the_autocorrelation_of_the_curved_pupil(nu):
     assert found == pytest.approx(pupil_autocorrelation(nu, waves=0.9), abs=1.5e-3)
 
 
+@pytest.mark.parametrize("obscuration", [0.2, 0.5])
+@pytest.mark.parametrize("nu", [0.05, 0.2, 0.35, 0.5, 0.7, 0.9])
+def test_defocus_of_an_obscured_pupil_is_its_autocorrelation(nu, obscuration):
+    found = Defocus(0.6, 1.2, obscuration).otf(np.array([1.2 * nu]), ZERO[:1])[0]
+    assert found == pytest.approx(pupil_autocorrelation(nu, obscuration, waves=0.6), abs=1.5e-3)
+
+
+@pytest.mark.parametrize("obscuration", [0.0, 0.1, 0.35, 0.8])
+def test_an_obscured_pupil_in_focus_is_plain_diffraction(obscuration):
+    np.testing.assert_allclose(
+        Defocus(0.0, 1.2, obscuration).otf(1.3 * F, ZERO),
+        Diffraction(1.2, obscuration).otf(1.3 * F, ZERO),
+        atol=1e-10,
+    )
+
+
+def test_a_vanishing_obscuration_leaves_the_open_pupil():
+    np.testing.assert_allclose(
+        Defocus(0.8, 1.2, 1e-6).otf(F, ZERO), Defocus(0.8, 1.2).otf(F, ZERO), atol=1e-9
+    )
+
+
+def test_one_pupil_is_not_described_twice():
+    with pytest.raises(ModelError, match=r"write Defocus\(0.3, 1.3, obscuration=0.35\) alone"):
+        Sensor([Diffraction(1.3, 0.35), Defocus(0.3, 1.3)])
+
+
 def test_defocus_of_nothing_is_diffraction_and_a_lot_reverses_contrast():
     np.testing.assert_allclose(
         Defocus(0.0, 1.2).otf(F, ZERO), Diffraction(1.2).otf(F, ZERO), atol=1e-12
@@ -254,6 +283,13 @@ def test_larger_pixels_see_lower_frequencies():
         (lambda: Sharpening(((1.0, -2.0, 1.0),)), "sums to zero"),
         (lambda: Resampling("spline"), "'spline'"),
         (lambda: Tdi(0), "stages is 0"),
+        (lambda: Tdi(2.5, 0.1), "stages is 2.5, it has to be a whole number"),
+        (lambda: Tdi(True), "stages is True"),
+        (lambda: Tdi(8, phases=1.5), "phases is 1.5"),
+        (lambda: Gaussian("a"), "Gaussian: sigma_px is 'a', it has to be a number"),
+        (lambda: Gaussian(True), "sigma_px is True"),
+        (lambda: Sharpening("a"), "rows of equally many numbers"),
+        (lambda: Sharpening(((0.0, 1.0, 0.0), (1.0,))), "rows of equally many numbers"),
     ],
 )
 def test_meaningless_parameters_are_refused(build, words):

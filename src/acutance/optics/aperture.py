@@ -66,6 +66,9 @@ class Halo:
 class Diffraction:
     """A perfect circular aperture, with a central obscuration if there is one.
 
+    Out of focus, use `Defocus` alone: it holds this block, and the OTF of the curved pupil is not
+    the product of the two.
+
     The OTF is the autocorrelation of the annular pupil: the overlap of two discs, less twice
     that of a disc with an obscuration, plus that of two obscurations (the closed form of
     O'Neill, J. Opt. Soc. Am. 46, 285, 1956).
@@ -114,13 +117,17 @@ def _disc(radius: float) -> float:
 class Defocus:
     """A circular aperture out of focus, diffraction included: use it instead of `Diffraction`.
 
-    The pupil's autocorrelation with the phase of a defocus W20, as one exact integral
-    (Hopkins, Proc. R. Soc. A 231, 91, 1955)::
+    The autocorrelation of a pupil with the phase of a defocus W20, as one exact integral over
+    the place x across the overlap of the two pupils (Hopkins, Proc. R. Soc. A 231, 91, 1955)::
 
-        H(nu) = 4/pi * integral_nu^1 sqrt(1 - t^2) cos(8 pi W nu (t - nu)) dt
+        H(nu) = 4 / (pi (1 - e^2)) * integral_0^X (a(x) - b(x)) cos(8 pi W nu x) dx
 
-    by Gauss-Legendre quadrature; the error is below 1e-10. Beyond some 0.6 waves it is
-    negative over part of the band (reversed contrast).
+    in units of the pupil's radius, with half the chord ``a = sqrt(1 - (x + nu)^2)`` of the
+    farther pupil less that of the nearer obscuration, ``b = sqrt(e^2 - (x - nu)^2)`` where it is
+    real. The overlap ends at X, the pupil's rim at ``1 - nu`` or the place ``(1 - e^2) / (4 nu)``
+    where the obscuration crosses it, whichever comes first. By Gauss-Legendre quadrature; the
+    error is below 1e-10. Beyond some 0.6 waves it is negative over part of the band (reversed
+    contrast).
 
     Parameters
     ----------
@@ -128,27 +135,43 @@ class Defocus:
         Wavefront error at the rim of the pupil against its centre (W20), in wavelengths.
     cutoff_cpp : float
         Cut-off frequency of the aperture in cycles per pixel, as in `Diffraction`.
+    obscuration : float, optional
+        Diameter e of the obscuration over that of the aperture, 0 to below 1.
     """
 
     waves: float
     cutoff_cpp: float
+    obscuration: float = 0.0
 
     def __post_init__(self) -> None:
         require(self, -20.0, 20.0, waves=self.waves)
         require(self, above=True, cutoff_cpp=self.cutoff_cpp)
+        require(self, 0.0, 0.99, obscuration=self.obscuration)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
         nu = np.asarray(np.hypot(u, v) / self.cutoff_cpp)
         otf = np.zeros(nu.shape)
         inside = nu < 1
+        at, hole = nu[inside], self.obscuration
+        end = np.minimum(1 - at, (1 - hole**2) / (4 * np.maximum(at, 1e-9)))
+        area = self._half_disc(1.0, at, -at, end)
+        if hole > 0:
+            area = area - self._half_disc(hole, at, at, end)
+        otf[inside] = area * (4 / (math.pi * (1 - hole**2)))
+        return otf
+
+    def _half_disc(self, radius: float, nu: Floats, centre: Floats, end: Floats) -> Floats:
+        """Integral of half the chord of a disc, times the cosine of the phase, from 0 to `end`."""
+        # By the angle on the disc's rim, in which the chord has no infinite slope at its ends.
+        first = np.arccos(np.clip((end - centre) / radius, -1.0, 1.0))
+        span = np.arccos(np.clip(-centre / radius, -1.0, 1.0)) - first
         nodes, weights = np.polynomial.legendre.leggauss(32 + math.ceil(16 * abs(self.waves)))
-        at = nu[inside]
-        span = np.arccos(at)
+        total = np.zeros(nu.shape)
         for node, weight in zip(nodes, weights, strict=True):
-            theta = 0.5 * span * (node + 1)
-            phase = 8 * math.pi * self.waves * at * (np.cos(theta) - at)
-            otf[inside] += 0.5 * weight * span * np.sin(theta) ** 2 * np.cos(phase)
-        return otf * (4 / math.pi)
+            theta = first + 0.5 * span * (node + 1)
+            phase = 8 * math.pi * self.waves * nu * (centre + radius * np.cos(theta))
+            total += 0.5 * weight * span * (radius * np.sin(theta)) ** 2 * np.cos(phase)
+        return total
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from numbers import Integral, Real
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 
-__all__ = ["Axis", "Block", "Transfer", "along_axis", "require", "require_axis"]
+__all__ = ["Axis", "Block", "Transfer", "along_axis", "require", "require_axis", "require_count"]
 
 Transfer = NDArray[Any]
 """Values of an OTF: real where the blur is symmetric, complex where it is not."""
@@ -56,7 +57,7 @@ def require_axis(block: object, axis: str) -> None:
 def require(
     block: object, low: float = 0.0, high: float = math.inf, *, above: bool = False, **values: float
 ) -> None:
-    """Refuse a parameter outside ``low..high`` (`above`: `low` itself is refused too).
+    """Refuse what is no number, or outside ``low..high`` (`above`: `low` itself is refused too).
 
     Raises
     ------
@@ -64,6 +65,8 @@ def require(
         Names the block, the parameter, the value and the range.
     """
     for name, value in values.items():
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise ModelError(f"{type(block).__name__}: {name} is {value!r}, it has to be a number")
         inside = (value > low if above else value >= low) and value <= high
         if not (inside and math.isfinite(value)):
             relation = "above" if above else "at least"
@@ -71,4 +74,20 @@ def require(
             raise ModelError(
                 f"{type(block).__name__}: {name} is {value:g}, it has to be finite, "
                 f"{relation} {low:g}{upper}"
+            )
+
+
+def require_count(block: object, most: int, **values: int) -> None:
+    """Refuse a count that is not a whole number from 1 to `most`.
+
+    Raises
+    ------
+    ModelError
+        Names the block, the parameter, the value and the range.
+    """
+    for name, value in values.items():
+        if isinstance(value, bool) or not isinstance(value, Integral) or not 1 <= value <= most:
+            raise ModelError(
+                f"{type(block).__name__}: {name} is {value!r}, it has to be a whole number from "
+                f"1 to {most}"
             )

@@ -49,7 +49,8 @@ BLOCKS: dict[str, BlockKind] = {
     ),
     "Defocus": BlockKind(
         Defocus,
-        "4/pi int_nu^1 sqrt(1 - t^2) cos(8 pi W nu (t - nu)) dt",
+        "4 / (pi (1 - e^2)) int_0^X (a(x) - b(x)) cos(8 pi W nu x) dx, a, b half chords of the "
+        "pupil and of its obscuration",
         "Hopkins, Proc. R. Soc. A 231, 91, 1955",
     ),
     "WavefrontError": BlockKind(

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.optics.block import Axis, Transfer, along_axis, require, require_axis
+from acutance.optics.block import Axis, Transfer, along_axis, require, require_axis, require_count
 
 __all__ = ["Jitter", "Smear", "Tdi"]
+
+_MOST_STAGES = 10_000
 
 
 @dataclass(frozen=True)
@@ -67,14 +69,14 @@ class Tdi:
     Parameters
     ----------
     stages : int
-        Number of stages N, at least 1.
+        Number of stages N, 1 to 10 000.
     drift_px : float, optional
         Displacement per stage along the columns of the detector (the row axis), from a line
         rate that does not match the ground speed; of any sign.
     drift_across_px : float, optional
         Displacement per stage across, from a yaw error; of any sign.
     phases : int, optional
-        Clock phases per line, at least 1.
+        Clock phases per line, 1 to 10 000.
     """
 
     stages: int
@@ -83,7 +85,7 @@ class Tdi:
     phases: int = 4
 
     def __post_init__(self) -> None:
-        require(self, 1.0, stages=self.stages, phases=self.phases)
+        require_count(self, _MOST_STAGES, stages=self.stages, phases=self.phases)
         require(self, -1.0, 1.0, drift_px=self.drift_px, drift_across_px=self.drift_across_px)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:

@@ -165,7 +165,13 @@ class Sharpening:
     kernel: tuple[tuple[float, ...], ...]
 
     def __post_init__(self) -> None:
-        taps = np.atleast_2d(np.asarray(self.kernel, float))
+        try:
+            taps = np.atleast_2d(np.asarray(self.kernel, float))
+        except (TypeError, ValueError):
+            raise ModelError(
+                f"Sharpening: the kernel is {self.kernel!r}, it has to be rows of equally many "
+                "numbers"
+            ) from None
         if taps.ndim != 2 or taps.shape[0] % 2 == 0 or taps.shape[1] % 2 == 0:
             raise ModelError(
                 f"Sharpening: the kernel has shape {taps.shape}, both sides have to be odd"
@@ -195,7 +201,7 @@ class Sharpening:
         for (i, j), weight in np.ndenumerate(taps):
             down, right = i - taps.shape[0] // 2, j - taps.shape[1] // 2
             total = total + weight * np.exp(-2j * math.pi * (np.asarray(v) * down + u * right))
-        return np.ascontiguousarray(total.real) if symmetric else total
+        return np.array(total.real) if symmetric else total
 
 
 @dataclass(frozen=True)

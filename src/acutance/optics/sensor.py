@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
+from acutance.optics.aperture import Defocus, Diffraction
 from acutance.optics.block import Axis, Block, Transfer
 from acutance.optics.profile import Profile
 
@@ -60,7 +61,20 @@ def _as_blocks(blocks: Any) -> tuple[Block, ...]:
                 f"block {number} is {one!r}, which has no OTF: give blocks such as Gaussian(0.4) "
                 "or Detector()"
             )
+    _require_one_pupil(found)
     return found
+
+
+def _require_one_pupil(blocks: tuple[Block, ...]) -> None:
+    """Refuse an aperture described twice, once in focus and once out of it."""
+    sharp = next((one for one in blocks if isinstance(one, Diffraction)), None)
+    curved = next((one for one in blocks if isinstance(one, Defocus)), None)
+    if sharp is not None and curved is not None:
+        raise ModelError(
+            f"{sharp} and {curved} describe one pupil twice, and its OTF is not their product: "
+            f"write Defocus({curved.waves:g}, {curved.cutoff_cpp:g}, "
+            f"obscuration={sharp.obscuration:g}) alone, which holds the diffraction too"
+        )
 
 
 @dataclass(frozen=True)

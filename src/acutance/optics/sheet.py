@@ -226,11 +226,6 @@ def _block(table: Any, pixel_m: tuple[float, float] | None, origin: str) -> Bloc
         return BLOCKS[kind].make(**values)
     except ModelError as error:
         raise ModelError(f"{origin}: {error}") from error
-    except TypeError as error:
-        found = ", ".join(f"{name} = {value!r}" for name, value in values.items())
-        raise ModelError(
-            f"{origin}: a word stands where a number has to, or the other way round: {found}"
-        ) from error
 
 
 def _parameter(key: str, names: list[str], origin: str) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
-from acutance.optics.block import Transfer, require
+from acutance.optics.block import Transfer, require, require_count
 from acutance.optics.sensor import Sensor
 
 __all__ = ["GroundNoise", "alias_bands", "render_raster"]
@@ -126,7 +126,7 @@ class GroundNoise:
 
     def __post_init__(self) -> None:
         require(self, variance=self.variance)
-        require(self, 1, 100, subpixels=self.subpixels)
+        require_count(self, 100, subpixels=self.subpixels)
         if not self.grains or min(self.grains) < 1:
             raise ModelError(f"grains are {self.grains}, there have to be some, all 1 or more")
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
-from acutance.optics.block import require
+from acutance.optics.block import require, require_count
 from acutance.optics.sensor import Sensor
 from acutance.simulate.ground import MAX_SUBPIXELS, render_raster
 from acutance.simulate.limits import require_finite, require_shape
@@ -56,7 +56,7 @@ class Star:
     finest_cpp: float = 1.5
 
     def __post_init__(self) -> None:
-        require(self, 1, 1000, cycles=self.cycles)
+        require_count(self, 1000, cycles=self.cycles)
         require(self, above=True, radius_px=self.radius_px)
         require(self, 0.0, 2.5, above=True, finest_cpp=self.finest_cpp)
         require(self, 0.0, 360.0, above=True, sweep_deg=self.sweep_deg)
