@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats, crossing
+from acutance.curves.one_line import OneLine
 from acutance.curves.response import Response
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
@@ -48,7 +49,7 @@ class OtfModel(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Otf2d:
+class Otf2d(OneLine):
     """A 2-D OTF, from which the curves of every direction follow.
 
     Parameters

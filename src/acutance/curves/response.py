@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from acutance.curves import metrics
 from acutance.curves.estimate import Estimate
+from acutance.curves.one_line import OneLine
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
 
@@ -15,7 +16,7 @@ __all__ = ["METRICS", "HasResponse", "Response"]
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class Response(OneLine):
     """ESF, LSF and MTF of one direction, measured or true, and the metrics they hold.
 
     Parameters
@@ -99,13 +100,17 @@ class Response:
         """Edge height overshoot H of GIQE 4."""
         return metrics.giqe_h(self.esf)
 
+    def in_words(self) -> str:
+        """The three numbers everybody asks for."""
+        return f"mtf_nyquist {self.mtf_nyquist}, rer {self.rer}, fwhm_px {self.fwhm_px}"
+
     def metrics(self) -> dict[str, Estimate]:
         """All numbers by name, in the order a report prints them."""
         found = {name: getattr(self, name) for name in METRICS}
         return {name: number for name, number in found.items() if number is not None}
 
 
-class HasResponse:
+class HasResponse(OneLine):
     """Shortcuts of whatever holds a `response`: a measurement, or the truth of a simulation."""
 
     if TYPE_CHECKING:
@@ -142,6 +147,10 @@ class HasResponse:
     def fwhm_px(self) -> Estimate:
         """Full width of the LSF at half maximum, pixels."""
         return self.response.fwhm_px
+
+    def in_words(self) -> str:
+        """The main numbers of the response."""
+        return self.response.in_words()
 
 
 METRICS = (

@@ -10,12 +10,13 @@ import numpy as np
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.grid import Floats, Rows, one_place, sample
+from acutance.curves.one_line import OneLine
 
 __all__ = ["Esf", "Lsf"]
 
 
 @dataclass(frozen=True, eq=False)
-class _SpreadCurve:
+class _SpreadCurve(OneLine):
     """A real curve over the distance along the edge's normal, with its covariance.
 
     Parameters
@@ -77,6 +78,11 @@ class _SpreadCurve:
         gradient = self.gradient(distance_px)
         value = float(sample(self.distance_px, self.value, distance_px))
         return Estimate(value, math.sqrt(float(gradient @ gradient)))
+
+    def in_words(self) -> str:
+        """Where it runs."""
+        first, last = self.distance_px[[0, -1]]
+        return f"distance_px {first:g} to {last:g}, {self.distance_px.size} places"
 
     def to_dict(self) -> dict[str, list[float]]:
         """Distances, values and standard deviations as lists."""

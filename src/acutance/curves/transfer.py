@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.grid import Floats, one_place, sample
+from acutance.curves.one_line import OneLine
 
 __all__ = ["Mtf"]
 
@@ -18,7 +19,7 @@ Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)
-class Mtf:
+class Mtf(OneLine):
     """OTF along one direction, normalised to 1 at zero frequency, with its covariance.
 
     Parameters
@@ -117,6 +118,11 @@ class Mtf:
     def phase_rad(self) -> Floats:
         """Phase of the OTF in radians, relative to the centroid of the LSF, (n,)."""
         return np.asarray(np.angle(self.otf))
+
+    def in_words(self) -> str:
+        """Where it runs."""
+        first, last = self.freq_cpp[[0, -1]]
+        return f"freq_cpp {first:g} to {last:g}, {self.freq_cpp.size} places"
 
     def to_dict(self) -> dict[str, list[float]]:
         """Frequencies, values, standard deviations and phase as lists."""

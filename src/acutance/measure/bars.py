@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from acutance.curves import Estimate, Mtf, Otf2d, Response
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.errors import NoBarsError, OptionError
 from acutance.fit.bars import BarsSolution, GroupFit, solve_bars
 from acutance.fit.bars_find import find_bars
@@ -34,7 +35,7 @@ _ONE_DIRECTION_DEG = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class BarsGroup:
+class BarsGroup(OneLine):
     """What one group of bars says.
 
     Attributes

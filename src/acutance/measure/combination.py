@@ -13,6 +13,7 @@ import numpy as np
 from acutance.curves import Estimate, Mtf, Otf2d
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
+from acutance.curves.one_line import OneLine
 from acutance.errors import OptionError
 from acutance.fit.combine import CombinedFit, combine_curves
 from acutance.fit.combine_curves import ChiSquare, PlaneCurve
@@ -38,7 +39,7 @@ _LEAST_GAP_DEG = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class CombinedPart:
+class CombinedPart(OneLine):
     """One measurement beside what all of them say together.
 
     Parameters

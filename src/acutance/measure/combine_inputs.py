@@ -11,6 +11,7 @@ import numpy as np
 
 from acutance.curves import Mtf
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.errors import OptionError
 from acutance.measure.measurement import SCHEMA, Measurement
 from acutance.measure.measurement2d import Measurement2d
@@ -27,7 +28,7 @@ _AT_LOWEST = (0.2, 2.0)
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredInput:
+class MeasuredInput(OneLine):
     """One measurement as the combination sees it.
 
     Parameters

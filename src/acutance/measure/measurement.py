@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from acutance.curves import Estimate, HasResponse, Response
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.fit.line import Line, Orientation
 from acutance.measure.plane_slices import PlaneSlices
 from acutance.raster.image import AlongTrack
 
-__all__ = ["Check", "ImageInfo", "Measurement", "Samples"]
+__all__ = ["Check", "ImageInfo", "Measurement", "Samples", "count_failed"]
 
 SCHEMA = "acutance/measurement/1"
 
@@ -55,6 +56,13 @@ class Check:
         }
 
 
+def count_failed(checks: Sequence[Check]) -> str:
+    """ "2 of 17 checks failed (rows, profile)"."""
+    failed = [check.name for check in checks if not check.passed]
+    names = f" ({', '.join(failed)})" if failed else ""
+    return f"{len(failed)} of {len(checks)} checks failed{names}"
+
+
 @dataclass(frozen=True)
 class ImageInfo:
     """Where the pixels came from.
@@ -85,7 +93,7 @@ class ImageInfo:
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class Samples(OneLine):
     """The pixels a measurement used, seen along the normal: evidence for figures.
 
     Parameters
@@ -186,6 +194,14 @@ class Measurement(HasResponse):
     def failed_checks(self) -> tuple[Check, ...]:
         """The checks that did not pass."""
         return tuple(check for check in self.checks if not check.passed)
+
+    def in_words(self) -> str:
+        """Target, method and direction, the main numbers, and how many checks failed."""
+        width = "" if self.width_px is None else f"width_px {self.width_px}, "
+        return (
+            f"{self.kind} by {self.method}, {self.orientation}, {width}"
+            f"{self.response.in_words()}, snr {self.snr:.3g}, {count_failed(self.checks)}"
+        )
 
     @property
     def slices(self) -> PlaneSlices:

@@ -11,14 +11,15 @@ from typing import Any
 
 from acutance.curves import Estimate, Mtf, Otf2d, Response
 from acutance.curves.grid import Floats
-from acutance.measure.measurement import SCHEMA, Check, ImageInfo
+from acutance.curves.one_line import OneLine
+from acutance.measure.measurement import SCHEMA, Check, ImageInfo, count_failed
 from acutance.measure.plane_slices import PlaneSlices
 
 __all__ = ["Measurement2d"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Measurement2d:
+class Measurement2d(OneLine):
     """A measurement of the sensor in all directions; each method adds its evidence.
 
     Parameters
@@ -81,6 +82,13 @@ class Measurement2d:
     def failed_checks(self) -> tuple[Check, ...]:
         """The checks that did not pass."""
         return tuple(check for check in self.checks if not check.passed)
+
+    def in_words(self) -> str:
+        """Target and method, the main numbers of both directions, and how many checks failed."""
+        return (
+            f"{self.kind} by {self.method}, across: {self.across.in_words()}, "
+            f"along: {self.along.in_words()}, {count_failed(self.checks)}"
+        )
 
     @property
     def is_ratio(self) -> bool:

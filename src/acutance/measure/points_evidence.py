@@ -10,6 +10,7 @@ import numpy as np
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.fit.point_sources import PointsFit
 from acutance.measure.published.sdsu_mirrors import MirrorFit, PublishedMirrors
 
@@ -19,7 +20,7 @@ _SHOWN_PX = 7
 
 
 @dataclass(frozen=True, eq=False)
-class PointSource:
+class PointSource(OneLine):
     """One source as it was fitted.
 
     Parameters

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.errors import OptionError
 
 __all__ = ["SurveyErrors", "survey_errors"]
@@ -20,7 +21,7 @@ _LEAST = 2
 
 
 @dataclass(frozen=True, eq=False)
-class SurveyErrors:
+class SurveyErrors(OneLine):
     """What is left between measured and surveyed positions after one common shift.
 
     Parameters

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from acutance.curves import Estimate, Mtf, Otf2d
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP, mtf_crossing
+from acutance.curves.one_line import OneLine
 from acutance.errors import NoStarError, OptionError
 from acutance.fit.noise import robust_scale
 from acutance.fit.plane_model import PlaneModel
@@ -39,7 +40,7 @@ _MOST_RAISED = 3.0
 
 
 @dataclass(frozen=True, eq=False)
-class Rings:
+class Rings(OneLine):
     """The plain reading of a star: a sinusoid fitted to every ring of pixels.
 
     Attributes

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.errors import AcutanceError
 from acutance.fit.line import Line, Orientation
 from acutance.fit.locate import find_segments
@@ -27,6 +28,7 @@ __all__ = ["EdgeGroup", "Rejected", "TargetResult", "combine_edges", "measure_ed
 
 _CONTRAST_SHARE = 0.8
 _STRENGTH_SHARE = 0.1
+_MAIN = ("mtf_nyquist", "rer", "fwhm_px")
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class Rejected:
 
 
 @dataclass(frozen=True, eq=False)
-class EdgeGroup:
+class EdgeGroup(OneLine):
     """Edges of one orientation and what they say together.
 
     Attributes
@@ -78,9 +80,14 @@ class EdgeGroup:
     p_value: Mapping[str, float]
     degrees_of_freedom: int
 
+    def in_words(self) -> str:
+        """Direction, how many edges, and the main means."""
+        means = (f"{name} {self.metrics[name]}" for name in _MAIN if name in self.metrics)
+        return ", ".join((self.orientation, f"edges {len(self.measurements)}", *means))
+
 
 @dataclass(frozen=True, eq=False)
-class TargetResult:
+class TargetResult(OneLine):
     """All edges of a target.
 
     Attributes
@@ -95,6 +102,11 @@ class TargetResult:
     measurements: tuple[Measurement, ...]
     rejected: tuple[Rejected, ...]
     groups: Mapping[str, EdgeGroup]
+
+    def in_words(self) -> str:
+        """How many edges, and the main means of each group."""
+        count = f"measured {len(self.measurements)}, rejected {len(self.rejected)}"
+        return "; ".join((count, *(group.in_words() for group in self.groups.values())))
 
 
 @one_thread

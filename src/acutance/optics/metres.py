@@ -8,6 +8,7 @@ import numpy as np
 
 from acutance.curves import Response
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.errors import ModelError
 from acutance.optics.sensor import Sensor, spread_over_plane
 
@@ -15,7 +16,7 @@ __all__ = ["GroundCurves", "on_the_ground", "psf_on_the_ground"]
 
 
 @dataclass(frozen=True, eq=False)
-class GroundCurves:
+class GroundCurves(OneLine):
     """ESF, LSF and MTF of one direction on the ground.
 
     Parameters

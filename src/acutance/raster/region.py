@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.errors import RegionError
 
 __all__ = ["Box", "Region"]
@@ -115,7 +116,7 @@ class Box:
 
 
 @dataclass(frozen=True, eq=False)
-class Region:
+class Region(OneLine):
     """A polygon in pixel coordinates, with or without holes.
 
     A pixel belongs to the region when its centre lies inside. Of a centre exactly on the outline

@@ -11,6 +11,7 @@ import numpy as np
 
 from acutance.curves import Response
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.errors import ModelError
 from acutance.fit.bars_group import Bars
 from acutance.fit.line import Line, Orientation
@@ -42,7 +43,7 @@ class BarGroup(Bars):
 
 
 @dataclass(frozen=True, eq=False)
-class BarsTruth:
+class BarsTruth(OneLine):
     """What a perfect measurement of simulated bars would return.
 
     Parameters

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from acutance.curves import Response
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.errors import ModelError
 from acutance.fit.line import Orientation
 from acutance.optics.sensor import Sensor
@@ -21,7 +22,7 @@ __all__ = ["PointsTruth", "mirror_columns", "mirror_square", "points"]
 
 
 @dataclass(frozen=True, eq=False)
-class PointsTruth:
+class PointsTruth(OneLine):
     """What a perfect measurement of simulated point sources would return.
 
     Parameters

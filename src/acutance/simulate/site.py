@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
 from acutance.errors import ModelError
 from acutance.fit.line import Line
 from acutance.optics.sensor import Sensor
@@ -30,7 +31,7 @@ GUARD_PX = 3.0
 
 
 @dataclass(frozen=True, eq=False)
-class SceneEdge:
+class SceneEdge(OneLine):
     """One measurable edge of a scene.
 
     Parameters
@@ -47,7 +48,7 @@ class SceneEdge:
 
 
 @dataclass(frozen=True, eq=False)
-class SceneTarget:
+class SceneTarget(OneLine):
     """A target of a scene that is not one edge.
 
     Parameters
@@ -66,7 +67,7 @@ class SceneTarget:
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(OneLine):
     """A simulated image with all that is known about it.
 
     Parameters
