@@ -22,6 +22,7 @@ _MIN_PIXELS = 8
 _MIN_SNR = 3.0
 _MAX_WIDTH_PX = 24.0
 _PROFILE_STEP_PX = 0.5
+_SPOILED = 0.005
 
 
 def find_pulse(
@@ -84,8 +85,11 @@ def _at(
             f"{sign * right:.4g}: no strip of {width_px:.2f} px between two like grounds; choose "
             "a region with one strip, or state another width"
         )
+    # A bad pixel pulls by no more than a whole height.
+    height = level - min(left, right)
+    bounded = np.clip(pixels.value[beside], min(left, right) - height, level + height)
     pulse = fit_blurred_edge(
-        pixels.row[beside], pixels.col[beside], pixels.value[beside], segment.line,
+        pixels.row[beside], pixels.col[beside], bounded, segment.line,
         dark=left, bright=level, profile=pulse_profile(width_px, (level - right) / (level - left)),
         fit_width=fit_width,
     )  # fmt: skip
@@ -106,6 +110,8 @@ def _at(
 
 def _guessed_width(s: Floats, value: Floats) -> float:
     """Distance from the rising side to where the profile has fallen half way back."""
+    # Means of few pixels each: a bad one would pass for the strip.
+    value = np.clip(value, *np.quantile(value, (_SPOILED, 1 - _SPOILED)))
     bins = ((s + _REACH_PX) / _PROFILE_STEP_PX).astype(np.intp)
     inside = (bins >= 0) & (s < _MAX_WIDTH_PX)
     count = np.bincount(bins[inside])

@@ -111,8 +111,11 @@ class Linear:
             fixed.append(np.ones((1, s.size)))
         derivatives = 1 if is_edge else 2 + fit_width
         directions = lsf_prior.directions(start.blur)
+        departure = pixels.value - start.dark - start.height * mean
+        # A bad pixel pulls by no more than a whole height.
+        np.clip(departure, -start.height, start.height, out=departure)
         return cls(
-            start, s, t, seen, mean, slope, pixels.value - start.dark - start.height * mean,
+            start, s, t, seen, mean, slope, departure,
             stencils, np.vstack(fixed), derivatives, directions,
             _design(directions, len(trends), derivatives, level_beside=not is_edge),
             _prior(start, directions, len(trends), derivatives),

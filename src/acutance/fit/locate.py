@@ -96,13 +96,20 @@ def _gradient_votes(image: Floats) -> _Votes:
     known = np.isfinite(magnitude)
     if not known.any():
         return _Votes(*(np.empty(0) for _ in range(4)))
-    strongest = float(magnitude[known].max())
-    typical = median(magnitude[known])
+    strongest, typical = _usual_strongest(magnitude[known]), median(magnitude[known])
     rows, cols = np.nonzero(known & (magnitude > max(0.2 * strongest, 2 * typical, 1e-300)))
     x, y = by_col[rows, cols], by_row[rows, cols]
     direction = np.degrees(np.arctan2(y, x))
     row, col = (places.astype(float) + 1.0 for places in (rows, cols))
-    return _Votes(row, col, direction, magnitude[rows, cols])
+    return _Votes(row, col, direction, np.minimum(magnitude[rows, cols], strongest))
+
+
+def _usual_strongest(magnitude: Floats) -> float:
+    """The strongest gradient there is more of than a few bad pixels make, eight each."""
+    few = min(magnitude.size // 40, 34)
+    spoiled = max(few, min(magnitude.size // 500, 500))
+    place = magnitude.size - 1 - spoiled
+    return float(np.partition(magnitude, place)[place])
 
 
 def _strongest(votes: _Votes) -> tuple[Segment, NDArray[np.bool_]] | None:

@@ -119,6 +119,8 @@ def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: fl
     s = edge.line.normal_distance(pixels.row, pixels.col)
     t = edge.line.tangent_distance(pixels.row, pixels.col)
     departure = (pixels.value - edge.dark) / edge.height - edge.profile.mean(edge.blur, s)
+    # One bad pixel is an outlier, and no structure of the ground.
+    np.clip(departure, -1.0, 1.0, out=departure)
     strange = _strange(image.shape, rows, cols, departure, s, t, edge, half_length_px)
     need = 1.5 * edge.blur.width_px + 1.5
     first, bins, dark_reach, bright_reach = _reaches(edge, s, t, strange, need)
@@ -173,8 +175,11 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
                 f"the strongest edge separates levels of {levels[0]:.4g} and {levels[1]:.4g}, "
                 "which is a line and not a step: choose a region with one bright and one dark side"
             )
+        # A bad pixel pulls by no more than a whole height.
+        height = levels[1] - levels[0]
+        bounded = np.clip(value[near], levels[0] - height, levels[1] + height)
         edge = fit_blurred_edge(
-            row[near], col[near], value[near], segment.line,
+            row[near], col[near], bounded, segment.line,
             dark=levels[0], bright=levels[1], sigma_px=sigma_px,
         )  # fmt: skip
         if edge.blur.width_px * _REACH_WIDTHS <= reach:
