@@ -138,6 +138,72 @@ def test_document_names_the_width():
     assert document["width_px"]["std"] > 0
 
 
+def check_named(measurement, name):
+    return next(check for check in measurement.checks if check.name == name)
+
+
+@pytest.mark.parametrize("width_px", [2.5, 3.0, 3.68])
+@pytest.mark.parametrize("name", ["gaussian", "wide"])
+def test_the_width_of_the_pulse_response_is_told_with_an_interval_that_holds(name, width_px):
+    z = []
+    for seed in range(12):
+        image, truth = simulated(seed, SYSTEMS[name], width_px=width_px)
+        m = ac.measure_pulse(image, width_px=width_px, gsd_m=2.0)
+        z.append((m.prf_fwhm_px.value - truth.prf_fwhm_px) / m.prf_fwhm_px.std)
+        assert m.prf_fwhm_px.std < 0.06
+    # The deviation is on the safe side, and not by an order of magnitude.
+    assert 0.2 < np.sqrt(np.mean(np.square(z))) < 1.5
+    document = m.to_dict()
+    assert document["prf_fwhm_m"]["value"] == pytest.approx(2.0 * m.prf_fwhm_px.value)
+    assert document["width_m"]["value"] == pytest.approx(2.0 * m.width_px.value)
+
+
+@pytest.mark.parametrize("system", ["gaussian", "halo", "sharpened"])
+def test_without_noise_the_pulse_response_has_its_true_width_by_either_method(system):
+    image, truth = simulated(system=SYSTEMS[system], snr=None, shape=(60, 60))
+    found = ac.measure_pulse(image, width_px=3.0).prf_fwhm_px
+    assert found.value == pytest.approx(truth.prf_fwhm_px, abs=3e-3)
+    published = ac.measure_pulse(image, width_px=3.0, method="sdsu-2005").prf_fwhm_px
+    assert published.value == pytest.approx(truth.prf_fwhm_px, abs=0.02)
+
+
+def test_a_held_width_leaves_the_errors_of_the_curves():
+    image, _ = simulated()
+    held = ac.measure_pulse(image, width_px=3.0, fit_width=False).prf_fwhm_px
+    assert 0 < held.std < ac.measure_pulse(image, width_px=3.0).prf_fwhm_px.std
+
+
+def test_a_pulse_of_a_pixel_is_too_narrow_unless_told_otherwise():
+    image, _ = simulated(width_px=1.0)
+    narrow = ac.measure_pulse(image, width_px=1.0)
+    assert "width_px" in failed(narrow)
+    assert "three times the GSD" in check_named(narrow, "width_px").message
+    allowed = ac.PulseOptions(limits=ac.PulseLimits(width_px=0.5))
+    assert "width_px" not in failed(ac.measure_pulse(image, width_px=1.0, options=allowed))
+    assert check_named(ac.measure_pulse(simulated()[0], width_px=3.0), "width_px").passed
+
+
+def test_the_ratio_warns_where_a_reported_frequency_lies_beside_a_zero():
+    # 3 px have their first zero at 1/3 c/px: far from Nyquist, beside the MTF50 of this system.
+    image, _ = simulated(system=SYSTEMS["halo"], snr=200.0, shape=(60, 60))
+    zero = check_named(
+        ac.measure_pulse(image, width_px=3.0, method="sdsu-2005"), "zero_distance_cpp"
+    )
+    assert not zero.passed
+    assert "MTF50" in zero.message
+    assert "Nyquist" not in zero.message
+    joint = check_named(ac.measure_pulse(image, width_px=3.0), "zero_distance_cpp")
+    assert joint.passed
+    assert joint.value == pytest.approx(0.5 - 1 / 3, abs=0.01)
+
+
+def test_a_spectrum_without_a_zero_has_none_to_be_near_to():
+    image, _ = simulated(width_px=0.9)
+    zero = check_named(ac.measure_pulse(image, width_px=0.9), "zero_distance_cpp")
+    assert zero.passed
+    assert "no zero" in zero.message
+
+
 def test_the_published_ratio_underestimates_and_says_its_zeros():
     image, truth = simulated(snr=None, angle_deg=6.0, shape=(60, 60))
     published = ac.measure_pulse(image, width_px=3.0, method="sdsu-2005")

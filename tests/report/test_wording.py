@@ -52,7 +52,8 @@ def test_a_rounded_zero_has_no_sign():
 
 
 def test_every_metric_has_words():
-    assert set(METRIC_WORDS) == {*METRICS, "width_px", "width_m"}
+    of_a_pulse = {"width_px", "width_m", "prf_fwhm_px", "prf_fwhm_m"}
+    assert set(METRIC_WORDS) == {*METRICS, *of_a_pulse}
     assert metric_words("fwhm_px").label_with_unit == "FWHM [px]"
     assert metric_words("ground_tilt").label == "ground tilt"
 

@@ -149,6 +149,8 @@ class Measurement(HasResponse):
         The options of the measurement.
     width_px : Estimate, optional
         Width of a pulse along the normal.
+    prf_fwhm_px : Estimate, optional
+        Width of the pulse response function at half of its maximum, along the normal.
     stated_width_px : float, optional
         Width of a pulse as it was stated; ``None`` where it was guessed from the image.
     measured_at : datetime
@@ -165,6 +167,7 @@ class Measurement(HasResponse):
     image: ImageInfo = ImageInfo()
     options: Mapping[str, Any] = field(default_factory=dict)
     width_px: Estimate | None = None
+    prf_fwhm_px: Estimate | None = None
     stated_width_px: float | None = None
     measured_at: datetime = field(default_factory=lambda: datetime.now(UTC))
 
@@ -212,6 +215,17 @@ class Measurement(HasResponse):
         """All numbers by name."""
         return self.response.metrics()
 
+    def pulse_numbers(self) -> dict[str, Estimate]:
+        """What only a pulse has, by name: its width and that of its response; metres by a GSD."""
+        gsd_m = self.response.gsd_m
+        found: dict[str, Estimate] = {}
+        for name, number in (("width", self.width_px), ("prf_fwhm", self.prf_fwhm_px)):
+            if number is not None:
+                found[f"{name}_px"] = number
+                if gsd_m is not None:
+                    found[f"{name}_m"] = number.scaled(gsd_m)
+        return found
+
     def to_dict(self) -> dict[str, Any]:
         """The measurement as the JSON document ``acutance/measurement/1``."""
         from acutance import __version__
@@ -219,7 +233,7 @@ class Measurement(HasResponse):
         numbers = {name: number.to_dict() for name, number in self.metrics().items()}
         stated: dict[str, float | None] = {}
         if self.width_px is not None:
-            numbers["width_px"] = self.width_px.to_dict()
+            numbers |= {name: one.to_dict() for name, one in self.pulse_numbers().items()}
             stated = {"stated_width_px": self.stated_width_px}
         return {
             "schema": SCHEMA,

@@ -39,6 +39,12 @@ class EdgeLimits:
         Least number of rows.
     straightness_px : float
         Largest departure of the edge from a line, rms, in pixels.
+    steadiness : float
+        Largest change of the blur along the edge, as the share of the MTF at Nyquist it moves.
+    ragged_px : float
+        Largest movement of the edge to and fro from pixel to pixel, rms, in pixels.
+    lsf_width_px : float
+        Least width of the LSF at half its maximum, in pixels.
     plateau_px : float
         Least width of either plateau in pixels.
     saturation : float
@@ -78,16 +84,19 @@ class EdgeLimits:
 
 @dataclass(frozen=True)
 class PulseLimits(EdgeLimits):
-    """Limits of the target checks of a pulse: those of an edge, and four of its own.
+    """Limits of the target checks of a pulse: those of an edge, and five of its own.
 
     Parameters
     ----------
     width_sigmas : float
         Largest departure of the fitted width from the stated one, in standard deviations.
     zero_distance_cpp : float
-        Least distance of Nyquist from a zero of the pulse's spectrum (method "sdsu-2005").
+        Least distance of Nyquist, MTF50 and MTF30 from a zero of the pulse's spectrum (method
+        "sdsu-2005").
     parallel_deg : float
         Largest angle between the two sides.
+    width_px : float
+        Least width of the pulse in pixels.
     ground_step : float
         Largest difference of the two grounds, as a share of the pulse's height.
     """
@@ -98,6 +107,7 @@ class PulseLimits(EdgeLimits):
     ground_step: float = 0.25
 
 
+    width_px: float = 2.0
 @dataclass(frozen=True)
 class PulseOptions:
     """Options of a pulse measurement.

@@ -23,6 +23,7 @@ from acutance.measure.options import PulseOptions
 from acutance.measure.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
 from acutance.measure.pulse_checks import PulseChecks
 from acutance.measure.pulse_foot import with_uncertain_foot
+from acutance.measure.pulse_response import prf_fwhm
 from acutance.raster import Gsd, Image
 
 __all__ = ["PULSE_METHODS", "measure_pulse"]
@@ -37,6 +38,7 @@ class _Fitted:
     fit: EdgeFit
     width: Estimate
     fall: Estimate
+    prf_fwhm: Estimate
 
 
 def _spline(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
@@ -44,7 +46,7 @@ def _spline(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
         raise OptionError("method_options belong to the published methods: leave them out")
     fit = fit_pulse(band, fit_width=fit_width, robust=options.robust)
     told = replace(fit, response=with_uncertain_foot(fit.response))
-    return _Fitted(told, fit.pulse_width, fit.fall)
+    return _Fitted(told, fit.pulse_width, fit.fall, prf_fwhm(told.response, fit.pulse_width))
 
 
 def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
@@ -55,7 +57,8 @@ def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
                 f"method_options are {type(chosen).__name__}: method {name} takes {wanted.__name__}"
             )
         fit = PUBLISHED_PULSE[name](band, wanted() if chosen is None else chosen)
-        return _Fitted(fit, fit.pulse_width, fit.fall)
+        along_normal = fit.prf_fwhm_px.scaled(1.0 / fit.px_per_normal)
+        return _Fitted(fit, fit.pulse_width, fit.fall, along_normal)
 
     return measure
 
@@ -101,7 +104,7 @@ def measure_pulse(
     Returns
     -------
     Measurement
-        With `width_px`. The MTF is the sensor's, not that of the pulse response.
+        With `width_px` and `prf_fwhm_px`. The MTF is the sensor's, not that of the pulse response.
 
     Raises
     ------
@@ -187,5 +190,5 @@ def _measurement(
     )  # fmt: skip
     return Measurement(
         "pulse", method, line, response, samples, checks.snr, checks, info, options.to_dict(),
-        found.width, stated_px,
+        found.width, found.prf_fwhm, stated_px,
     )  # fmt: skip

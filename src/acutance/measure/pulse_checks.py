@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from acutance.curves import Estimate
+from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.fit.band import EdgeFit
 from acutance.fit.pulse import PulseBand
@@ -21,6 +22,7 @@ from acutance.measure.cut import Cut
 from acutance.measure.evidence import Evidence, TargetChecks
 from acutance.measure.measurement import Check
 from acutance.measure.options import PulseLimits
+from acutance.measure.published import PublishedPulse
 from acutance.measure.pulse_spectrum import zeros_cpp
 
 __all__ = ["PulseChecks"]
@@ -93,6 +95,7 @@ class PulseChecks(TargetChecks):
             pixel_checks.outliers(seen, limits),
             self._parallel(),
             self._grounds(),
+            self._wide_enough(),
             self._width(),
             self._zeros(),
         )
@@ -148,19 +151,52 @@ class PulseChecks(TargetChecks):
             "the GSD",
         )  # fmt: skip
 
-    def _zeros(self) -> Check:
-        limit = self.limits.zero_distance_cpp
-        zeros = zeros_cpp(self.width.value).tolist()
-        nearest = min(zeros, key=lambda zero: abs(zero - NYQUIST_CPP), default=math.inf)
-        value = min(abs(nearest - NYQUIST_CPP), 1.0)
-        passed = value >= limit or not self.by_ratio
-        advice = (
-            "the ratio is unusable there: use method spline, or a tarp of 3 pixels"
-            if self.by_ratio
-            else "the joint fit bridges it, with wider intervals near it"
-        )
+    def _wide_enough(self) -> Check:
+        value, limit = self.width.value, self.limits.width_px
         return Check(
-            "zero_distance_cpp", value, f">= {limit:g}" if self.by_ratio else "any", passed,
-            f"the pulse's spectrum has a zero at {nearest:.3f} c/px, {value:.3f} from Nyquist: "
-            f"{advice}",
+            "width_px", value, f">= {limit:g}", value >= limit,
+            f"the pulse is {value:.2f} px wide: the narrower, the less signal, and with one pixel "
+            "or less no good estimate is left; 3 px is the best (Li et al. 3.2): use a target of "
+            "three times the GSD",
         )  # fmt: skip
+
+    def _zeros(self) -> Check:
+        """Whether what is reported lies clear of the zeros of the spectrum that is divided by."""
+        response, limit = self.fit.response, self.limits.zero_distance_cpp
+        reported = {"Nyquist": NYQUIST_CPP}
+        if self.by_ratio:
+            reported |= {"MTF50": response.mtf50_cpp.value, "MTF30": response.mtf30_cpp.value}
+        zeros = zeros_cpp(self._divided_px)
+        if zeros.size == 0:
+            return Check(
+                "zero_distance_cpp", 1.0, f">= {limit:g}" if self.by_ratio else "any", True,
+                "the pulse's spectrum has no zero up to 1 c/px",
+            )  # fmt: skip
+        near = [_nearest(zeros, name, freq) for name, freq in reported.items() if freq > 0]
+        value = min(distance for distance, _ in near)
+        if not self.by_ratio:
+            return Check(
+                "zero_distance_cpp", value, "any", True,
+                f"of the pulse's spectrum, {near[0][1]}: the joint fit bridges it, with wider "
+                "intervals near it",
+            )  # fmt: skip
+        told = [words for distance, words in near if distance < limit] or [min(near)[1]]
+        return Check(
+            "zero_distance_cpp", value, f">= {limit:g}", value >= limit,
+            f"of the pulse's spectrum, {'; '.join(told)}: the ratio is unusable at a zero and "
+            "says little near it (Li et al. 3.2); use method spline, or a target of another width",
+        )  # fmt: skip
+
+    @property
+    def _divided_px(self) -> float:
+        """Width of the pulse whose spectrum the measured one is divided by, or would be."""
+        if isinstance(self.fit, PublishedPulse):
+            return self.fit.ratio_width_px
+        return self.width.value
+
+
+def _nearest(zeros: Floats, name: str, freq_cpp: float) -> tuple[float, str]:
+    """How far a frequency is from the zero next to it, and the same in words."""
+    zero = float(zeros[np.argmin(np.abs(zeros - freq_cpp))])
+    away = abs(freq_cpp - zero)
+    return away, f"{name} ({freq_cpp:.3f} c/px) lies {away:.3f} from the zero at {zero:.3f}"

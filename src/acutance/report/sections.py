@@ -42,7 +42,9 @@ __all__ = [
     "target_sections",
 ]
 
-HEADLINES = ("mtf_nyquist", "rer", "fwhm_px", "fwhm_m", "width_px", "width_m")
+HEADLINES = (
+    "mtf_nyquist", "rer", "fwhm_px", "fwhm_m", "width_px", "width_m", "prf_fwhm_px", "prf_fwhm_m",
+)  # fmt: skip
 
 CAPTIONS = {
     "mtf": (

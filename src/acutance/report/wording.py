@@ -64,6 +64,10 @@ class MetricWords:
 METRIC_WORDS = {
     "width_px": MetricWords("Width", "px", "Width of the pulse along its normal."),
     "width_m": MetricWords("Width on the ground", "m", "The same width in metres."),
+    "prf_fwhm_px": MetricWords(
+        "PRF FWHM", "px", "Full width of the pulse response function at half of its maximum."
+    ),
+    "prf_fwhm_m": MetricWords("PRF FWHM on the ground", "m", "The same width in metres."),
     "mtf_nyquist": MetricWords(
         "MTF at Nyquist", "", "Contrast left at 0.5 cycles per pixel, the sampling limit."
     ),
@@ -91,12 +95,8 @@ METRIC_WORDS = {
 
 
 def numbers_of(measurement: Measurement) -> dict[str, Estimate]:
-    """All numbers by name: the metrics, and before them the width of a pulse."""
-    width, gsd_m = measurement.width_px, measurement.response.gsd_m
-    found = {} if width is None else {"width_px": width}
-    if width is not None and gsd_m is not None:
-        found["width_m"] = width.scaled(gsd_m)
-    return {**found, **measurement.metrics()}
+    """All numbers by name: the metrics, and before them the widths of a pulse."""
+    return {**measurement.pulse_numbers(), **measurement.metrics()}
 
 
 def metric_words(name: str) -> MetricWords:

@@ -1,0 +1,74 @@
+"""The width of the pulse response function at half of its maximum, from a fitted LSF and width.
+
+The pulse response function (PRF) is what the image shows of a pulse of height 1 on ground of 0:
+``P(s) = E(s) - E(s - w)`` with the ESF E, 0 at the rising side, and the pulse's width w. It is
+linear in the ESF, so its covariance is that of the ESF seen from two places (Helder, Choi,
+"Generic sensor modeling using pulse method", 2005, 2.3).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from acutance.curves import Esf, Estimate, Response
+from acutance.curves.grid import Floats, crossing
+
+__all__ = ["prf_fwhm"]
+
+
+def prf_fwhm(response: Response, width: Estimate) -> Estimate:
+    """Full width of the pulse response function at half of its maximum, in pixels.
+
+    Parameters
+    ----------
+    response : Response
+        Of the sensor, along the normal.
+    width : Estimate
+        Width of the pulse in pixels.
+
+    Returns
+    -------
+    Estimate
+        ``nan`` where the response does not fall to half on both sides.
+
+    Notes
+    -----
+    The errors of width and curves are added as if they were independent. Of a fit that finds
+    both they are not: a pulse seen too wide goes with an LSF seen too narrow. The standard
+    deviation is therefore on the safe side, by a tenth to a half at widths of 3 px and more, by
+    a factor of 2 to 6 at 1.5 px.
+    """
+    esf, lsf, w = response.esf, response.lsf, width.value
+    grid = esf.distance_px
+    step = float(grid[1] - grid[0])
+    distance = np.arange(float(grid[0]), float(grid[-1]) + w + 0.5 * step, step)
+    value = _steps(esf, distance) - _steps(esf, distance - w)
+    peak = int(np.argmax(value))
+    top, level = float(distance[peak]), 0.5 * float(value[peak])
+    rise, fall = (crossing(distance, value, level, top, way) for way in (-1, 1))
+    if math.isnan(rise) or math.isnan(fall):
+        return Estimate(math.nan, math.nan)
+
+    def steepness(s: float) -> float:
+        return float(np.interp(s, lsf.distance_px, lsf.value, 0.0, 0.0))
+
+    def gradient(s: float) -> Floats:
+        return np.append(_gradient(esf, s) - _gradient(esf, s - w), steepness(s - w) * width.std)
+
+    half = 0.5 * gradient(top)
+    moves = [(half - gradient(s)) / (steepness(s) - steepness(s - w)) for s in (rise, fall)]
+    return Estimate(fall - rise, float(np.linalg.norm(moves[1] - moves[0])))
+
+
+def _steps(esf: Esf, distance_px: Floats) -> Floats:
+    return np.asarray(np.interp(distance_px, esf.distance_px, esf.value, 0.0, 1.0))
+
+
+def _gradient(esf: Esf, distance_px: float) -> Floats:
+    """The row of the ESF's covariance factor; nothing is uncertain beyond its grid."""
+    grid = esf.distance_px
+    inside = bool(grid[0] <= distance_px <= grid[-1])
+    row = esf.gradient(min(max(distance_px, float(grid[0])), float(grid[-1])))
+    return row if inside else np.zeros_like(row)
