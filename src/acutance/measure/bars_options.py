@@ -8,6 +8,7 @@ from typing import Any
 from acutance.errors import OptionError
 from acutance.fit.bars_group import Bars
 from acutance.fit.levels import Levels
+from acutance.measure.kinds import require_kinds
 from acutance.measure.periodic import known_levels
 
 __all__ = ["BarsLimits", "BarsOptions"]
@@ -53,6 +54,9 @@ class BarsLimits:
     correlated_noise: float = 0.15
     outliers: float = 0.02
 
+    def __post_init__(self) -> None:
+        require_kinds(self)
+
 
 @dataclass(frozen=True)
 class BarsOptions:
@@ -85,6 +89,7 @@ class BarsOptions:
     limits: BarsLimits = field(default_factory=BarsLimits)
 
     def __post_init__(self) -> None:
+        require_kinds(self)
         known_levels(self.dark, self.bright, self.level_std)
         if self.count is not None and not 2 <= self.count <= 40:
             raise OptionError(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.errors import OptionError
+from acutance.measure.kinds import require_kinds
 
 __all__ = ["BiresolutionLimits", "BiresolutionOptions"]
 
@@ -61,6 +62,9 @@ class BiresolutionLimits:
     saturation: float = 0.001
     iteration_change: float = 1.0
 
+    def __post_init__(self) -> None:
+        require_kinds(self)
+
 
 @dataclass(frozen=True)
 class BiresolutionOptions:
@@ -97,6 +101,7 @@ class BiresolutionOptions:
     limits: BiresolutionLimits = field(default_factory=BiresolutionLimits)
 
     def __post_init__(self) -> None:
+        require_kinds(self)
         reach = 4.0 if self.reach_px is None else self.reach_px
         noise = 0.0 if self.noise_high is None else self.noise_high
         asked = (

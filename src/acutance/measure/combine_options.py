@@ -7,6 +7,7 @@ from typing import Any
 
 from acutance.errors import OptionError
 from acutance.fit.combine_forms import FORMS, TERMS
+from acutance.measure.kinds import require_kinds
 
 __all__ = ["CombineLimits", "CombineOptions"]
 
@@ -41,6 +42,9 @@ class CombineLimits:
     assumed_covariance: float = 0.0
     unknown_gsd: float = 0.0
 
+    def __post_init__(self) -> None:
+        require_kinds(self)
+
 
 @dataclass(frozen=True)
 class CombineOptions:
@@ -66,7 +70,8 @@ class CombineOptions:
     limits: CombineLimits = field(default_factory=CombineLimits)
 
     def __post_init__(self) -> None:
-        if len(self.detector_px) != 2 or not all(0 < size <= 4 for size in self.detector_px):
+        require_kinds(self)
+        if not all(0 < size <= 4 for size in self.detector_px):
             raise OptionError(
                 f"detector_px is {self.detector_px}: it has to be two widths, across and along, "
                 "above 0 and up to 4 px"

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.curves.metrics import RerCentre
-from acutance.errors import OptionError
+from acutance.measure.kinds import require_kinds
 from acutance.measure.published import (
     FermiOptions,
     Iso12233Options,
@@ -71,15 +71,21 @@ class EdgeLimits:
     sample_phases: float = 3.0
     rows: float = 20.0
     straightness_px: float = 0.05
+    steadiness: float = 0.05
+    ragged_px: float = 0.05
+    lsf_width_px: float = 0.5
     plateau_px: float = 7.0
     saturation: float = 0.001
-    quantisation: float = 0.3
+    quantisation: float = 0.55
     gradient: float = 1.0
     correlated_noise: float = 0.1
     structure: float = 0.02
     lopsided: float = 0.01
     profile: float = 0.0005
     outliers: float = 0.02
+
+    def __post_init__(self) -> None:
+        require_kinds(self)
 
 
 @dataclass(frozen=True)
@@ -88,6 +94,8 @@ class PulseLimits(EdgeLimits):
 
     Parameters
     ----------
+    width_px : float
+        Least width of the pulse in pixels.
     width_sigmas : float
         Largest departure of the fitted width from the stated one, in standard deviations.
     zero_distance_cpp : float
@@ -95,19 +103,17 @@ class PulseLimits(EdgeLimits):
         "sdsu-2005").
     parallel_deg : float
         Largest angle between the two sides.
-    width_px : float
-        Least width of the pulse in pixels.
     ground_step : float
         Largest difference of the two grounds, as a share of the pulse's height.
     """
 
+    width_px: float = 2.0
     width_sigmas: float = 3.0
     zero_distance_cpp: float = 0.08
     parallel_deg: float = 0.5
     ground_step: float = 0.25
 
 
-    width_px: float = 2.0
 @dataclass(frozen=True)
 class PulseOptions:
     """Options of a pulse measurement.
@@ -128,6 +134,9 @@ class PulseOptions:
     robust: bool = True
     limits: PulseLimits = field(default_factory=PulseLimits)
     method_options: SdsuPulseOptions | None = None
+
+    def __post_init__(self) -> None:
+        require_kinds(self)
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""
@@ -163,10 +172,7 @@ class EdgeOptions:
     method_options: MethodOptions | None = None
 
     def __post_init__(self) -> None:
-        if self.rer_centre not in (None, "half", "peak"):
-            raise OptionError(
-                f"rer_centre is {self.rer_centre!r}: it has to be 'half', 'peak' or None"
-            )
+        require_kinds(self)
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.errors import OptionError
+from acutance.measure.kinds import require_kinds
 from acutance.measure.published.sdsu_mirrors import SdsuMirrorsOptions
 
 __all__ = ["PointsLimits", "PointsOptions"]
@@ -50,6 +51,9 @@ class PointsLimits:
     outliers: float = 0.02
     survey_px: float = 0.1
 
+    def __post_init__(self) -> None:
+        require_kinds(self)
+
 
 @dataclass(frozen=True)
 class PointsOptions:
@@ -87,6 +91,7 @@ class PointsOptions:
     method_options: SdsuMirrorsOptions | None = None
 
     def __post_init__(self) -> None:
+        require_kinds(self)
         bounds = {
             "min_snr": (self.min_snr, 1.0, 1e6),
             "min_distance_px": (self.min_distance_px, 0.0, 100.0),

@@ -9,6 +9,7 @@ from typing import Any
 from acutance.errors import OptionError
 from acutance.fit.levels import Levels
 from acutance.fit.star_waves import Wave
+from acutance.measure.kinds import require_kinds
 from acutance.measure.periodic import known_levels
 
 __all__ = ["StarLimits", "StarOptions"]
@@ -51,6 +52,9 @@ class StarLimits:
     correlated_noise: float = 0.1
     outliers: float = 0.02
 
+    def __post_init__(self) -> None:
+        require_kinds(self)
+
 
 @dataclass(frozen=True)
 class StarOptions:
@@ -86,8 +90,7 @@ class StarOptions:
     limits: StarLimits = field(default_factory=StarLimits)
 
     def __post_init__(self) -> None:
-        if self.wave not in ("sine", "square"):
-            raise OptionError(f"wave is {self.wave!r}: it has to be 'sine' or 'square'")
+        require_kinds(self)
         known_levels(self.dark, self.bright, self.level_std)
         if self.inner_px is not None and not 0 <= self.inner_px < math.inf:
             raise OptionError(f"inner_px (--inner) is {self.inner_px:g}, it has to be 0 or more")

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats
-from acutance.errors import NoEdgeError, OptionError, SupportError
+from acutance.errors import NoEdgeError, SupportError
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.fit.line import Line
+from acutance.measure.kinds import require_kinds
 from acutance.measure.published.fermi_sum import FermiSum
 from acutance.measure.published.resampled_response import (
     FREQ_CPP,
@@ -51,11 +52,7 @@ class FermiOptions:
     criterion: Literal["bic", "aicc"] = "bic"
 
     def __post_init__(self) -> None:
-        if self.max_terms not in (1, 2, 3) or self.criterion not in ("bic", "aicc"):
-            raise OptionError(
-                f"max_terms must be 1, 2 or 3 and criterion 'bic' or 'aicc', "
-                f"found {self.max_terms} and {self.criterion!r}"
-            )
+        require_kinds(self)
 
 
 _DEFAULT = FermiOptions()

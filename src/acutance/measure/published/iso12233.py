@@ -15,6 +15,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, SupportError
 from acutance.fit.band import EdgeBand, EdgeFit
+from acutance.measure.kinds import require_kinds
 from acutance.measure.published.edge_location import centroid_locations
 from acutance.measure.published.resampled_response import (
     FREQ_CPP,
@@ -60,16 +61,14 @@ class Iso12233Options:
     seed: int = 12233
 
     def __post_init__(self) -> None:
+        require_kinds(self)
         if not 1 <= self.bins_per_px <= 16 or not 1 <= self.edge_order <= 5:
             raise OptionError(
                 f"bins_per_px must be 1 to 16 and edge_order 1 to 5, "
                 f"found {self.bins_per_px} and {self.edge_order}"
             )
-        if self.window not in ("tukey", "hamming") or not 0 < self.tukey_alpha <= 1:
-            raise OptionError(
-                f"window must be 'tukey' or 'hamming' and tukey_alpha over 0 to 1, "
-                f"found {self.window!r} and {self.tukey_alpha}"
-            )
+        if not 0 < self.tukey_alpha <= 1:
+            raise OptionError(f"tukey_alpha lies over 0 to 1, found {self.tukey_alpha}")
 
 
 _DEFAULT = Iso12233Options()

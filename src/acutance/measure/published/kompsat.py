@@ -17,6 +17,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import RerCentre
 from acutance.errors import OptionError, SupportError
 from acutance.fit.band import EdgeBand, EdgeFit
+from acutance.measure.kinds import require_kinds
 from acutance.measure.published.edge_location import cubic_locations
 from acutance.measure.published.fermi_sum import fit_profile
 from acutance.measure.published.resampled_response import (
@@ -70,11 +71,7 @@ class KompsatOptions:
     seed: int = 2014
 
     def __post_init__(self) -> None:
-        if self.distance not in ("normal", "as-drafted") or self.esf not in ("spline", "fermi"):
-            raise OptionError(
-                f"distance must be 'normal' or 'as-drafted' and esf 'spline' or 'fermi', "
-                f"found {self.distance!r} and {self.esf!r}"
-            )
+        require_kinds(self)
         if not (0 < self.smoothness < 1 and 0 < self.start_smoothness < 1):
             raise OptionError(
                 f"smoothness and start_smoothness lie between 0 and 1, "

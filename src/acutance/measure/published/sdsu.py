@@ -16,6 +16,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, OptionError, SupportError
 from acutance.fit.band import EdgeBand, EdgeFit
+from acutance.measure.kinds import require_kinds
 from acutance.measure.published.edge_location import fermi_locations
 from acutance.measure.published.local_polynomial import modified_savitzky_golay
 from acutance.measure.published.resampled_response import (
@@ -70,11 +71,7 @@ class SdsuOptions:
     seed: int = 2005
 
     def __post_init__(self) -> None:
-        if self.order not in (2, 4) or self.distance not in ("row", "normal"):
-            raise OptionError(
-                f"order must be 2 or 4 and distance 'row' or 'normal', "
-                f"found {self.order} and {self.distance!r}"
-            )
+        require_kinds(self)
         if not 4.0 <= self.trim_px <= 40.0:
             raise OptionError(f"trim_px must be 4 to 40 px, found {self.trim_px}")
         frame = self.smoothing_points

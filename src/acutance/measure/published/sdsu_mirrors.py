@@ -27,6 +27,7 @@ from scipy.optimize import least_squares
 
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, SupportError
+from acutance.measure.kinds import require_kinds
 
 __all__ = [
     "GaussianPsf",
@@ -56,6 +57,7 @@ class SdsuMirrorsOptions:
     window_px: int = 5
 
     def __post_init__(self) -> None:
+        require_kinds(self)
         for name, value in vars(self).items():
             if value not in (3, 5, 7, 9):
                 raise OptionError(f"{name} is {value}: windows have 3, 5, 7 or 9 pixels")

@@ -19,6 +19,7 @@ from acutance.curves.grid import Floats, crossing
 from acutance.errors import NoEdgeError, OptionError, SupportError
 from acutance.fit.band import EdgeFit
 from acutance.fit.pulse import PulseBand
+from acutance.measure.kinds import require_kinds
 from acutance.measure.published.edge_location import fermi_locations
 from acutance.measure.published.local_polynomial import modified_savitzky_golay
 from acutance.measure.published.resampled_response import (
@@ -79,13 +80,7 @@ class SdsuPulseOptions:
     seed: int = 2005
 
     def __post_init__(self) -> None:
-        if self.order not in (2, 4) or self.distance not in ("row", "normal"):
-            raise OptionError(
-                f"order must be 2 or 4 and distance 'row' or 'normal', "
-                f"found {self.order} and {self.distance!r}"
-            )
-        if self.width not in ("stated", "axis"):
-            raise OptionError(f"width must be 'stated' or 'axis', found {self.width!r}")
+        require_kinds(self)
         if not 6.0 <= self.trim_px <= 40.0:
             raise OptionError(f"trim_px must be 6 to 40 px, found {self.trim_px}")
 

@@ -1,0 +1,85 @@
+"""Options hold what their classes declare: a number where a number is meant."""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Hashable
+from functools import cache
+from numbers import Integral, Real
+from typing import Any, Literal, Union, cast, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from acutance.errors import OptionError
+
+__all__ = ["require_kinds"]
+
+_WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "text"}
+
+
+def require_kinds(options: object) -> None:
+    """Refuse a field of a dataclass that is not of the kind its class declares.
+
+    Parameters
+    ----------
+    options : dataclass
+        Of numbers, truth values, texts, other classes, and tuples of them. An infinite number
+        is one, NaN is none: nothing lies above or below it.
+
+    Raises
+    ------
+    OptionError
+        Names the class, the field, what was given and what it has to be.
+    """
+    # To mypy a class hashes as its objects do.
+    for name, kind in _declared_by(cast(Hashable, type(options))).items():
+        value = getattr(options, name)
+        if not _is_of(value, kind):
+            raise OptionError(
+                f"{type(options).__name__}: {name} has to be {_word(kind)}, found {value!r:.80}"
+            )
+
+
+@cache
+def _declared_by(of: Any) -> dict[str, Any]:
+    return get_type_hints(of)
+
+
+def _is_of(value: Any, kind: Any) -> bool:
+    origin, parts = get_origin(kind), get_args(kind)
+    if origin in (Union, types.UnionType):
+        return any(_is_of(value, part) for part in parts)
+    if origin is Literal:
+        return isinstance(value, str | int) and value in parts
+    if origin is tuple:
+        return _are_of(value, parts)
+    if kind is bool:
+        return isinstance(value, bool | np.bool_)
+    if kind in (int, float):
+        wanted = Integral if kind is int else Real
+        return isinstance(value, wanted) and not isinstance(value, bool) and bool(value == value)
+    return isinstance(value, kind)
+
+
+def _are_of(values: Any, kinds: tuple[Any, ...]) -> bool:
+    """Whether any kind of sequence holds what a tuple is declared to hold."""
+    if isinstance(values, str) or not hasattr(values, "__len__"):
+        return False
+    if kinds[-1] is ...:
+        return all(_is_of(value, kinds[0]) for value in values)
+    return len(values) == len(kinds) and all(map(_is_of, values, kinds))
+
+
+def _word(kind: Any) -> str:
+    origin, parts = get_origin(kind), get_args(kind)
+    if origin in (Union, types.UnionType):
+        return " or ".join(_word(part) for part in parts)
+    if origin is Literal:
+        return " or ".join(map(repr, parts))
+    if origin is tuple and parts[-1] is ...:
+        return f"several times {_word(parts[0])}"
+    if origin is tuple:
+        return f"({', '.join(map(_word, parts))})"
+    if kind is types.NoneType:
+        return "None"
+    return _WORDS.get(kind, f"{kind.__name__}(...)")

@@ -1,0 +1,102 @@
+"""Options that are not of the kind their classes declare are refused where they are made."""
+
+import math
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance.fit.bars_group import Bars
+from acutance.measure import (
+    BarsLimits,
+    BarsOptions,
+    BiresolutionLimits,
+    BiresolutionOptions,
+    CombineLimits,
+    CombineOptions,
+    EdgeLimits,
+    EdgeOptions,
+    PointsLimits,
+    PointsOptions,
+    PulseLimits,
+    PulseOptions,
+    StarLimits,
+    StarOptions,
+)
+from acutance.measure.published import (
+    FermiOptions,
+    Iso12233Options,
+    KompsatOptions,
+    SdsuMirrorsOptions,
+    SdsuOptions,
+    SdsuPulseOptions,
+)
+
+LIMITS = {
+    BarsOptions: BarsLimits,
+    BiresolutionOptions: BiresolutionLimits,
+    CombineOptions: CombineLimits,
+    EdgeOptions: EdgeLimits,
+    PointsOptions: PointsLimits,
+    PulseOptions: PulseLimits,
+    StarOptions: StarLimits,
+}
+METHOD_OPTIONS = (
+    FermiOptions,
+    Iso12233Options,
+    KompsatOptions,
+    SdsuMirrorsOptions,
+    SdsuOptions,
+    SdsuPulseOptions,
+)
+
+
+@pytest.mark.parametrize("of", [*LIMITS, *LIMITS.values(), *METHOD_OPTIONS])
+def test_every_option_refuses_what_no_option_can_be(of):
+    for field in fields(of):
+        with pytest.raises(ac.OptionError, match=f"{of.__name__}: {field.name} has to be .* found"):
+            of(**{field.name: {"rows": 3}})
+
+
+@pytest.mark.parametrize("of", LIMITS.values())
+@pytest.mark.parametrize("wrong", ["a", math.nan, True, None, (3.0,)])
+def test_limits_are_numbers(of, wrong):
+    name = fields(of)[0].name
+    with pytest.raises(ac.OptionError, match=f"{name} has to be a number, found"):
+        of(**{name: wrong})
+    assert getattr(of(**{name: 3}), name) == 3
+    assert getattr(of(**{name: np.float32(3)}), name) == 3
+
+
+@pytest.mark.parametrize("of", LIMITS)
+def test_limits_are_those_of_the_same_target(of):
+    other = StarLimits() if of is not StarOptions else EdgeLimits()
+    with pytest.raises(ac.OptionError, match=rf"limits has to be {LIMITS[of].__name__}\(\.\.\.\)"):
+        of(limits=other)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: EdgeOptions(robust="no"), "robust has to be True or False, found 'no'"),
+        (lambda: EdgeOptions(rer_centre="top"), "rer_centre has to be 'half' or 'peak' or None"),
+        (lambda: PulseOptions(rer_centre="top"), "rer_centre has to be 'half' or 'peak' or None"),
+        (lambda: EdgeOptions(method_options=SdsuPulseOptions()), "has to be SdsuOptions"),
+        (lambda: PointsOptions(max_sources=2.5), "max_sources has to be a whole number"),
+        (lambda: StarOptions(centre=5), r"centre has to be \(a number, a number\) or None"),
+        (lambda: StarOptions(centre=(1.0, 2.0, 3.0)), "centre has to be"),
+        (lambda: BarsOptions(groups="ab"), r"groups has to be several times Bars\(\.\.\.\)"),
+        (lambda: SdsuOptions(order=3), "order has to be 2 or 4, found 3"),
+    ],
+)
+def test_the_message_says_what_is_wanted(make, message):
+    with pytest.raises(ac.OptionError, match=message):
+        make()
+
+
+def test_what_means_the_same_is_taken():
+    assert EdgeLimits(angle_deg=20, rows=math.inf).angle_deg == 20
+    assert EdgeOptions(robust=np.bool_(False)).robust == False  # noqa: E712
+    assert tuple(StarOptions(centre=np.array([3.0, 4.0])).centre) == (3.0, 4.0)
+    assert BarsOptions(groups=[Bars(20.0, 20.0, 0.0, 8.0, 5, 40.0)]).groups
