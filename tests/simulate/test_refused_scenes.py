@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from acutance.errors import ModelError
+from acutance.errors import ModelError, OptionError
 from acutance.simulate import (
     bars,
     brookings,
@@ -129,3 +129,26 @@ def test_rows_of_tarps_have_tarps(count, turn):
 def test_a_pair_shows_the_same_ground(change, message):
     with pytest.raises(ModelError, match=message):
         pair(SENSOR, SENSOR, shape=(40, 30), rng=np.random.default_rng(1), **change)
+
+
+@pytest.mark.parametrize(
+    ("render", "message"),
+    [
+        (lambda: edge(SENSOR, snr=100, rng=3), r"rng is 3: pass numpy.random.default_rng\(3\)"),
+        (lambda: pulse(SENSOR, snr=100, rng="a"), r"rng is 'a': pass numpy.random.default_rng\(\)"),
+        (lambda: pair(SENSOR, SENSOR, rng=3), "rng is 3"),
+        (lambda: checkerboard(SENSOR, texture_std=5.0, rng=3), "rng is 3"),
+        (lambda: brookings(SENSOR, 3), "rng is 3"),
+        (lambda: edge(SENSOR, shape=60), r"shape is 60: it has to be two whole numbers"),
+        (lambda: edge(SENSOR, shape=(60, 40, 3)), "two whole numbers"),
+        (lambda: edge(SENSOR, shape=(60.5, 40)), "two whole numbers"),
+        (lambda: star(SENSOR, shape="big"), "two whole numbers"),
+        (lambda: checkerboard(SENSOR, shape=60), "two whole numbers"),
+        (lambda: edge(SENSOR, dark="200"), "dark is '200', it has to be a number"),
+        (lambda: edge(SENSOR, snr="100"), "snr is '100', it has to be a number"),
+        (lambda: edge(SENSOR, angle_deg=None), "angle_deg is None, it has to be a number"),
+    ],
+)
+def test_arguments_of_the_wrong_kind_are_refused_by_name(render, message):
+    with pytest.raises(OptionError, match=message):
+        render()

@@ -15,7 +15,7 @@ from acutance.fit.line import Line
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.bars import BarGroup, BarsTruth
 from acutance.simulate.edge import Truth
-from acutance.simulate.limits import MAX_SCENE_PIXELS, require_shape
+from acutance.simulate.limits import MAX_SCENE_PIXELS, require_rng, require_shape
 from acutance.simulate.noise import Noise
 from acutance.simulate.points import PointsTruth, mirror_columns, peak_per_flux
 from acutance.simulate.pulse import PulseTruth
@@ -117,12 +117,11 @@ def render_site(
     others = Placed() if placed is None else placed
     image = np.zeros(shape, np.float32)
     if texture_std > 0:
-        if rng is None:
-            raise ModelError("texture was asked for without rng: pass numpy.random.default_rng()")
+        drawn = require_rng(rng, "texture")
         cover = np.ones(shape, np.float32)
         for patch in [one for tarp in tarps for one in tarp_patches(tarp, -1.0, -1.0)]:
             add_patches(cover, sensor, [patch])
-        image += texture(sensor, shape, texture_std, texture_grain_px, rng)
+        image += texture(sensor, shape, texture_std, texture_grain_px, drawn)
         image *= cover
     image += np.float32(ground)
     edges, targets = [], []

@@ -14,7 +14,7 @@ from acutance.errors import ModelError
 from acutance.fit.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.ground import GroundNoise
-from acutance.simulate.limits import require_finite, require_shape
+from acutance.simulate.limits import require_finite, require_numbers, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 
@@ -137,6 +137,8 @@ def edge(
     ------
     ModelError
         If the arguments contradict each other.
+    OptionError
+        If an argument is of the wrong kind: a shape that is no pair, a seed instead of `rng`.
     """
     if polarity not in ("rising", "falling"):
         raise ModelError(f'polarity is {polarity!r}, it has to be "rising" or "falling"')
@@ -174,9 +176,10 @@ def line_through_centre(
 
     Raises
     ------
-    ModelError
+    ModelError, OptionError
         If the tilt exceeds 45 degrees or the orientation is none.
     """
+    require_numbers(angle_deg=angle_deg)
     if not abs(angle_deg) <= 45:
         raise ModelError(
             f"the edge is tilted by {angle_deg:g} deg against the nearer axis, which cannot "

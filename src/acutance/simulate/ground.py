@@ -13,6 +13,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.optics.block import Transfer, require, require_count
 from acutance.optics.sensor import Sensor
+from acutance.simulate.limits import require_rng
 
 __all__ = ["GroundNoise", "alias_bands", "render_raster"]
 
@@ -202,13 +203,10 @@ class GroundNoise:
 
         Raises
         ------
-        ModelError
+        ModelError, OptionError
             If the field is too large, or no generator was handed in.
         """
-        if rng is None:
-            raise ModelError(
-                "ground noise was asked for without rng: pass numpy.random.default_rng()"
-            )
+        drawn = require_rng(rng, "ground noise")
         wide = (shape[0] + 2 * MARGIN_PX, shape[1] + 2 * MARGIN_PX)
-        image = render_raster(sensor, self.field(wide, rng), self.subpixels)
+        image = render_raster(sensor, self.field(wide, drawn), self.subpixels)
         return np.ascontiguousarray(image[MARGIN_PX:-MARGIN_PX, MARGIN_PX:-MARGIN_PX])

@@ -3,10 +3,21 @@
 from __future__ import annotations
 
 import math
+import operator
+from numbers import Real
 
-from acutance.errors import ModelError
+import numpy as np
 
-__all__ = ["MAX_PIXELS", "MAX_SCENE_PIXELS", "require_finite", "require_shape"]
+from acutance.errors import ModelError, OptionError
+
+__all__ = [
+    "MAX_PIXELS",
+    "MAX_SCENE_PIXELS",
+    "require_finite",
+    "require_numbers",
+    "require_rng",
+    "require_shape",
+]
 
 MAX_PIXELS = 25_000_000
 """Of an image of a single target, which takes about 120 bytes a pixel while it is rendered."""
@@ -20,15 +31,35 @@ def require_shape(shape: tuple[int, int], most: int = MAX_PIXELS) -> None:
 
     Raises
     ------
+    OptionError
+        If it is no pair of whole numbers.
     ModelError
         Names the shape and the limit.
     """
-    rows, cols = shape
-    if min(shape) < 1 or rows * cols > most:
+    try:
+        rows, cols = map(operator.index, shape)
+    except (TypeError, ValueError):
+        raise OptionError(
+            f"shape is {shape!r:.80}: it has to be two whole numbers, (rows, columns)"
+        ) from None
+    if min(rows, cols) < 1 or rows * cols > most:
         raise ModelError(
             f"an image of {rows} by {cols} px was asked for: rows and columns have to be 1 or "
             f"more, and {most / 1e6:.0f} million pixels are the most that can be rendered"
         )
+
+
+def require_numbers(**values: float) -> None:
+    """Refuse what is of another kind than a number.
+
+    Raises
+    ------
+    OptionError
+        Names the argument.
+    """
+    for name, value in values.items():
+        if not isinstance(value, Real):
+            raise OptionError(f"{name} is {value!r:.80}, it has to be a number")
 
 
 def require_finite(**values: float) -> None:
@@ -36,9 +67,30 @@ def require_finite(**values: float) -> None:
 
     Raises
     ------
+    OptionError
+        If it is something else than a number: names the argument.
     ModelError
-        Names the argument.
+        If it is an infinite number, or NaN.
     """
+    require_numbers(**values)
     for name, value in values.items():
         if not math.isfinite(value):
             raise ModelError(f"{name} is {value:g}, it has to be a finite number")
+
+
+def require_rng(rng: np.random.Generator | None, wanted: str) -> np.random.Generator:
+    """The generator that was handed in, for what was asked for with it.
+
+    Raises
+    ------
+    ModelError
+        If there is none.
+    OptionError
+        If it is something else, such as a seed.
+    """
+    if rng is None:
+        raise ModelError(f"{wanted} was asked for without rng: pass numpy.random.default_rng()")
+    if not isinstance(rng, np.random.Generator):
+        seed = rng if isinstance(rng, int) else ""
+        raise OptionError(f"rng is {rng!r:.80}: pass numpy.random.default_rng({seed})")
+    return rng

@@ -9,6 +9,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.optics.block import require
+from acutance.simulate.limits import require_numbers, require_rng
 
 __all__ = ["Noise", "noise_of_snr"]
 
@@ -47,14 +48,13 @@ class Noise:
 
         Raises
         ------
-        ModelError
+        ModelError, OptionError
             If something is random and no generator was handed in.
         """
         noisy = image
         if self.read > 0 or self.shot_gain > 0:
-            if rng is None:
-                raise ModelError("noise was asked for without rng: pass numpy.random.default_rng()")
-            noisy = image + self.std(image) * rng.standard_normal(image.shape)
+            drawn = require_rng(rng, "noise").standard_normal(image.shape)
+            noisy = image + self.std(image) * drawn
         if self.saturation is not None:
             noisy = np.minimum(noisy, self.saturation)
         if self.quantum > 0:
@@ -74,6 +74,7 @@ def noise_of_snr(contrast: float, snr: float | None, noise: Noise | None) -> Noi
         return noise
     if noise is not None:
         raise ModelError("snr and noise were both given: the noise already says how strong it is")
+    require_numbers(snr=snr)
     if not snr > 0:
         raise ModelError(f"snr is {snr:g}, it has to be above 0")
     return Noise(read=abs(contrast) / snr)

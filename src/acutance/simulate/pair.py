@@ -18,7 +18,7 @@ from acutance.fit.line import Orientation
 from acutance.optics import Rescaled, Sensor
 from acutance.optics.block import Block, Transfer, require
 from acutance.simulate.ground import alias_bands
-from acutance.simulate.limits import require_finite, require_shape
+from acutance.simulate.limits import require_finite, require_rng, require_shape
 from acutance.simulate.native import NativeGrid
 from acutance.simulate.noise import Noise, noise_of_snr
 
@@ -193,6 +193,7 @@ def pair(
         by more than half of it, or the images are too large to be rendered at once.
     """
     require_shape(shape)
+    drawn = require_rng(rng, "a landscape")
     require_finite(ratio=ratio, gain=gain, offset=offset, dark=dark, bright=bright)
     if gain == 0 or dark == bright:
         raise ModelError(
@@ -214,7 +215,7 @@ def pair(
             f"{MAX_SAMPLES:,} samples of the ground: render a smaller pair"
         )
     chosen = ground or Landscape()
-    radiance = landscape((wide[0] * quarters, wide[1] * quarters), quarters, chosen, rng)
+    radiance = landscape((wide[0] * quarters, wide[1] * quarters), quarters, chosen, drawn)
     spectrum = fft.fft2(dark + (bright - dark) * radiance)
     added_low = noise_of_snr(gain * (bright - dark), snr, noise_low)
     added_high = noise_of_snr(bright - dark, snr, noise_high)
@@ -229,9 +230,9 @@ def pair(
         inner = slice(first, first + size[0]), slice(first, first + size[1])
         if native is not None:
             scene = level[0] * _blurred(spectrum, seen_by, samples, moved_px) + level[1]
-            return native.product(scene, samples, whole, noise, rng)[inner]
+            return native.product(scene, samples, whole, noise, drawn)[inner]
         field = level[0] * _seen(spectrum, seen_by, samples, whole, moved_px)[inner] + level[1]
-        return field if noise is None else noise.added_to(field, rng)
+        return field if noise is None else noise.added_to(field, drawn)
 
     low = image(sensor, quarters, shape, (gain, offset), shift_px, added_low)
     high = image(reference, 4, (rows, cols), (1.0, 0.0), (0.0, 0.0), added_high)

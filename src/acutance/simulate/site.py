@@ -17,7 +17,7 @@ from acutance.fit.line import Line
 from acutance.optics.sensor import Sensor
 from acutance.simulate.bars import BarsTruth
 from acutance.simulate.edge import Truth
-from acutance.simulate.limits import require_finite, require_shape
+from acutance.simulate.limits import require_finite, require_rng, require_shape
 from acutance.simulate.noise import Noise
 from acutance.simulate.points import PointsTruth
 from acutance.simulate.pulse import PulseTruth
@@ -139,9 +139,9 @@ def checkerboard(
     ModelError
         If the board is too small, leaves the image, or randomness is asked for without `rng`.
     """
+    require_shape(shape)
     if centre is None:
         centre = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))
-    require_shape(shape)
     require_texture(texture_std)
     require_finite(dark=dark, bright=bright, ground=ground)
     _require_room(shape, tile_px, turn_deg, centre)
@@ -150,11 +150,10 @@ def checkerboard(
     for strip in strips:
         image = image + render_strip(sensor, strip, shape)
     if texture_std > 0:
-        if rng is None:
-            raise ModelError("texture was asked for without rng: pass numpy.random.default_rng()")
+        drawn = require_rng(rng, "texture")
         whole = Patch(*centre, 2 * tile_px, 2 * tile_px, turn_deg, 1.0)
         bare = 1 - render_patches(sensor, [whole], shape)
-        image = image + bare * texture(sensor, shape, texture_std, texture_grain_px, rng)
+        image = image + bare * texture(sensor, shape, texture_std, texture_grain_px, drawn)
     if noise is not None:
         image = noise.added_to(image, rng)
     edges = tuple(
