@@ -12,7 +12,7 @@ from acutance.fit.noise import median
 from acutance.fit.profile import pulse_profile
 from acutance.fit.pulse import PulseBand
 from acutance.fit.start import fit_blurred_edge
-from acutance.fit.trim import Extent, serving
+from acutance.fit.trim import Extent, beside, serving
 
 __all__ = ["find_pulse"]
 
@@ -61,22 +61,24 @@ def _at(
     image: Floats, segment: Segment, stated_px: float | None, sign: float, fit_width: bool
 ) -> tuple[PulseBand, Extent]:
     """The pulse whose rising side is `segment`."""
+    image = beside(image, segment.line)
     pixels = Pixels.of(image)
     s = segment.line.normal_distance(pixels.row, pixels.col)
     t = segment.line.tangent_distance(pixels.row, pixels.col)
-    beside = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
-    width_px = _guessed_width(s[beside], pixels.value[beside]) if stated_px is None else stated_px
+    along = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
+    width_px = _guessed_width(s[along], pixels.value[along]) if stated_px is None else stated_px
     reach = _REACH_PX
     grounds = [
-        pixels.value[beside & (outside > 0.5 * reach) & (outside < reach)]
+        pixels.value[along & (outside > 0.5 * reach) & (outside < reach)]
         for outside in (-s, s - width_px)
     ]
-    strip = pixels.value[beside & (np.abs(s - 0.5 * width_px) < max(0.25 * width_px, 0.6))]
+    strip = pixels.value[along & (np.abs(s - 0.5 * width_px) < max(0.25 * width_px, 0.6))]
     if min(strip.size, *(ground.size for ground in grounds)) < _MIN_PIXELS:
         raise SupportError(
-            f"beside the strip lie {grounds[0].size} and {grounds[1].size} usable pixels between "
-            f"{0.5 * reach:g} and {reach:g} px from it, at least {_MIN_PIXELS} are needed: choose "
-            "a region that reaches further to both sides"
+            f"beside the strip of {width_px:.2f} px lie {grounds[0].size} and {grounds[1].size} "
+            f"usable pixels between {0.5 * reach:g} and {reach:g} px from it, at least "
+            f"{_MIN_PIXELS} are needed: choose a region that reaches further to both sides, and "
+            "check the width if it was stated"
         )
     left, right, level = (median(part) for part in (*grounds, strip))
     if not (level > left and level > right):
@@ -87,9 +89,9 @@ def _at(
         )
     # A bad pixel pulls by no more than a whole height.
     height = level - min(left, right)
-    bounded = np.clip(pixels.value[beside], min(left, right) - height, level + height)
+    bounded = np.clip(pixels.value[along], min(left, right) - height, level + height)
     pulse = fit_blurred_edge(
-        pixels.row[beside], pixels.col[beside], bounded, segment.line,
+        pixels.row[along], pixels.col[along], bounded, segment.line,
         dark=left, bright=level, profile=pulse_profile(width_px, (level - right) / (level - left)),
         fit_width=fit_width,
     )  # fmt: skip

@@ -20,7 +20,7 @@ from acutance.fit.locate import Segment
 from acutance.fit.noise import median
 from acutance.fit.start import BlurredEdge, fit_blurred_edge
 
-__all__ = ["Extent", "Serving", "serving", "trim"]
+__all__ = ["Extent", "Serving", "beside", "serving", "trim"]
 
 _MIN_ROWS = 8
 _MIN_SNR = 3.0
@@ -29,6 +29,7 @@ _MAX_TOLERANCE = 0.22
 _NEAR_TOLERANCE = 0.3
 _SIGNIFICANCE = 4.0
 _MAX_HALF_WIDTH_PX = 40.0
+_FAR_PX = 100.0
 _FIRST_REACH_PX = 7.0
 _REACH_WIDTHS = 2.5
 _WIDER: Floats = np.array([1.0, 1.5, 2.0, 3.0, 4.0])
@@ -76,6 +77,7 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
     SupportError
         If it is too short, or a side has no plateau.
     """
+    image = beside(image, segment.line)
     pixels = Pixels.of(image)
     edge = _first_fit(pixels.row, pixels.col, pixels.value, segment)
     served = serving(image, pixels, edge, 0.5 * (segment.stop_px - segment.start_px))
@@ -84,6 +86,16 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
         edge.blur.sigma_px, edge.noise, edge.blur,
     )  # fmt: skip
     return band, served.extent
+
+
+def beside(image: Floats, line: Line) -> Floats:
+    """An image without what lies too far from a line to tell of the sensor, (rows, cols)."""
+    rows, cols = image.shape
+    if max(rows, cols) <= _FAR_PX:
+        return image
+    x, y = line.normal
+    distance = np.add.outer(y * (np.arange(rows) - line.row), x * (np.arange(cols) - line.col))
+    return np.where(np.abs(distance) < _FAR_PX, image, np.nan)
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,10 +170,10 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
     """Fit the plain blurred edge to the pixels close to the segment: closer for a sharper one."""
     s = segment.line.normal_distance(row, col)
     t = segment.line.tangent_distance(row, col)
-    beside = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
+    along = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
     reach, sigma_px = _FIRST_REACH_PX, 0.6
     for _ in range(3):
-        near = beside & (np.abs(s) < reach)
+        near = along & (np.abs(s) < reach)
         dark, bright = value[near & (s < -0.5 * reach)], value[near & (s > 0.5 * reach)]
         if min(dark.size, bright.size) < _MIN_ROWS:
             raise SupportError(
@@ -223,9 +235,9 @@ def _strange(
     smooth: Floats = (total / np.maximum(known, 1.0)).reshape(-1)[place]
     width = edge.blur.width_px
     outside = edge.profile.outside(s)
-    beside = (np.abs(t) < half_length_px) & (outside > width)
-    beside &= outside < _FIRST_REACH_PX + width
-    noise = median(np.abs(smooth[beside])) / 0.6745 if beside.any() else 0.0
+    around = (np.abs(t) < half_length_px) & (outside > width)
+    around &= outside < _FIRST_REACH_PX + width
+    noise = median(np.abs(smooth[around])) / 0.6745 if around.any() else 0.0
     # Beyond a fifth of the contrast nothing passes for noise, however rough the ground is.
     tolerance = max(_TOLERANCE, min(_SIGNIFICANCE * noise, _MAX_TOLERANCE))
     near = outside < 1.5 * width

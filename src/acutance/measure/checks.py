@@ -13,17 +13,28 @@ from functools import cached_property
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.fit.trim import Extent
 from acutance.measure import pixel_checks, structure_checks
 from acutance.measure.cut import Cut
-from acutance.measure.evidence import MUCH, PLACES, Evidence, TargetChecks, at_least, at_most
+from acutance.measure.evidence import (
+    MUCH,
+    PLACES,
+    Evidence,
+    TargetChecks,
+    at_least,
+    at_most,
+    at_most_much,
+)
 from acutance.measure.measurement import Check
 from acutance.measure.options import EdgeLimits
 
 __all__ = ["EdgeChecks", "sample_phases"]
 
 _OUTLIER_SIGMAS = 4.5
+_CHANGED = 4.0
+"""Standard deviations of a chi-square: less is noise."""
 _MOST_BY_ROWS_DEG = 30.0
 _MOST_DEG = 45.0
 
@@ -70,6 +81,9 @@ class EdgeChecks(TargetChecks):
             phases(seen, limits),
             enough_rows(self.extent, limits),
             straightness(seen, limits),
+            steadiness(seen, limits),
+            structure_checks.ragged(seen, limits),
+            lsf_width(seen, limits),
             plateau(limits, "dark", self.extent.dark_px),
             plateau(limits, "bright", self.extent.bright_px),
             pixel_checks.saturation(self.cut, self.band, seen, limits),
@@ -89,8 +103,9 @@ def contrast(seen: Evidence, limits: EdgeLimits) -> Check:
     value = min(1 / std, MUCH) if std > 0 else MUCH
     return at_least(
         "contrast_snr", value, limits.contrast_snr,
-        f"bright less dark is {value:.0f} times the plateaus' mean standard deviation "
-        "(KOMPSAT-3 draft 3c asks 50; below it the intervals widen)",
+        f"bright less dark is {at_most_much(value)} times the plateaus' mean standard deviation "
+        "(KOMPSAT-3 draft 3c asks 50)",
+        "the intervals widen; choose an edge of more contrast, or a longer one",
     )  # fmt: skip
 
 
@@ -104,6 +119,7 @@ def angle(fit: EdgeFit, limits: EdgeLimits, by_rows: bool) -> Check:
         "angle_deg", angle, limit,
         f"the edge is inclined by {angle:.2f} degrees (KOMPSAT-3 draft 3d allows 30 to methods "
         "that work row by row; a fit along the normal allows every angle with enough phases)",
+        "use the method spline, or another edge",
     )  # fmt: skip
 
 
@@ -121,8 +137,8 @@ def phases(seen: Evidence, limits: EdgeLimits) -> Check:
     value = sample_phases(seen.before)
     return at_least(
         "sample_phases", value, limits.sample_phases,
-        f"the widest gap between samples of the profile is {1 / max(value, 1e-9):.2f} px: "
-        "with fewer phases fine structure is not determined and the intervals are wider",
+        f"the widest gap between samples of the profile is {1 / max(value, 1e-9):.2f} px",
+        "with so few phases fine structure is not determined and the intervals are wider",
     )  # fmt: skip
 
 
@@ -131,33 +147,73 @@ def enough_rows(extent: Extent, limits: EdgeLimits) -> Check:
     return at_least(
         "rows", extent.length_px, limits.rows,
         f"{extent.length_px:.0f} rows of the edge serve (KOMPSAT-3 draft 3e: more than 10 to 20)",
+        "the intervals are wide; choose a region with more of it",
     )  # fmt: skip
 
 
 def straightness(seen: Evidence, limits: EdgeLimits) -> Check:
-    """Where every eighth of the edge lies beside the line, beyond what noise explains."""
-    slope = seen.slope
+    """Where every part of the edge lies beside the line, beyond what noise explains."""
+    value = _change_along(seen, seen.slope)
+    lost = 100 * (1 - math.exp(-2 * math.pi**2 * NYQUIST_CPP**2 * value**2))
+    return at_most(
+        "straightness_px", value, limits.straightness_px,
+        f"the edge leaves its line by {value:.3f} px rms, which takes {lost:.1f} % of the MTF at "
+        "Nyquist (0.05 px take 1.2 %)",
+        "choose a straighter part",
+    )  # fmt: skip
+
+
+def steadiness(seen: Evidence, limits: EdgeLimits) -> Check:
+    """How much the blur changes along the edge, as the share of the MTF at Nyquist that it moves.
+
+    A blur wider by a variance v has an ESF that differs by v / 2 times the slope of the LSF.
+    """
+    lsf = seen.fit.response.lsf
+    bend = np.gradient(lsf.value, lsf.distance_px)
+    column = np.interp(-seen.before, lsf.distance_px, bend, left=0.0, right=0.0)
+    variance = 2 * _change_along(seen, column)
+    value = 1 - math.exp(-2 * math.pi**2 * NYQUIST_CPP**2 * variance)
+    return at_most(
+        "steadiness", value, limits.steadiness,
+        f"from part to part of the edge its blur changes by {100 * value:.1f} % of the MTF at "
+        "Nyquist",
+        "another edge crosses it, or it is not equally sharp everywhere; choose a shorter part",
+    )  # fmt: skip
+
+
+def _change_along(seen: Evidence, column: Floats) -> float:
+    """How much of `column` (n,) the residuals of an edge's parts hold, rms beyond their noise."""
     steep = np.abs(seen.before) < 1
     span = float(np.ptp(seen.t[steep])) if steep.any() else 0.0
     parts = max(3, min(12, int(span // 5)))
     first = float(seen.t.min())
     part = np.minimum(((seen.t - first) * parts / max(np.ptp(seen.t), 1e-9)).astype(int), parts - 1)
-    power = np.bincount(part, slope * slope, parts)
+    power = np.bincount(part, column * column, parts)
     clipped = np.clip(seen.residual, -_OUTLIER_SIGMAS * seen.noise, _OUTLIER_SIGMAS * seen.noise)
-    moved = -np.bincount(part, slope * clipped, parts)
+    share = np.bincount(part, column * clipped, parts)
     told = power > 0.3 * np.median(power)
-    place = moved[told] / power[told]
+    amount = share[told] / power[told]
     variance = seen.noise**2 / power[told]
-    chi_square = float(np.sum(place**2 / np.maximum(variance, 1e-18)))
-    excess = float(np.mean(place**2 - variance))
-    # Three standard deviations of a chi-square: less is noise.
-    bent = chi_square > told.sum() + 3 * math.sqrt(2 * told.sum())
-    value = math.sqrt(max(excess, 0.0)) if bent else 0.0
-    lost = 100 * (1 - math.exp(-2 * math.pi**2 * 0.25 * value**2))
-    return at_most(
-        "straightness_px", value, limits.straightness_px,
-        f"the edge leaves its line by {value:.3f} px rms, which takes {lost:.1f} % of the MTF at "
-        "Nyquist (0.05 px take 1.2 %): choose a straighter part",
+    # What all parts have alike is the fit's, and no change.
+    amount -= np.average(amount, weights=power[told])
+    freedom = int(told.sum()) - 1
+    chi_square = float(np.sum(amount**2 / np.maximum(variance, 1e-18)))
+    if chi_square <= freedom + _CHANGED * math.sqrt(2 * freedom):
+        return 0.0
+    return math.sqrt(max(float(np.mean(amount**2 - variance)), 0.0))
+
+
+def lsf_width(seen: Evidence, limits: EdgeLimits) -> Check:
+    """Whether the LSF is as wide as that of any detector: numbers may be no picture of light.
+
+    A square detector alone has an FWHM of 0.7 to 1 px; the strongest sharpening takes a third.
+    """
+    value = seen.fwhm_px
+    return at_least(
+        "lsf_width_px", value, limits.lsf_width_px,
+        f"the LSF is {value:.2f} px wide at half its maximum",
+        "no detector is that narrow: the numbers are no sampled light (wrapped around the end of "
+        "their type, thresholded, or drawn)",
     )  # fmt: skip
 
 
@@ -165,6 +221,6 @@ def plateau(limits: EdgeLimits, side: str, value: float) -> Check:
     """How far one side is uniform."""
     return at_least(
         f"plateau_{side}_px", value, limits.plateau_px,
-        f"the ground {PLACES[side]} is uniform out to {value:.1f} px (Li et al. 4.2: 7 to 10); "
+        f"the ground {PLACES[side]} is uniform out to {value:.1f} px (Li et al. 4.2: 7 to 10)",
         "what lies further of a halo is not seen and raises the MTF",
     )  # fmt: skip

@@ -14,7 +14,15 @@ from acutance.curves.grid import Floats
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.measure.measurement import Check
 
-__all__ = ["MUCH", "PLACES", "Evidence", "TargetChecks", "at_least", "at_most"]
+__all__ = [
+    "MUCH",
+    "PLACES",
+    "Evidence",
+    "TargetChecks",
+    "at_least",
+    "at_most",
+    "at_most_much",
+]
 
 MUCH = 999.0
 """Stands for a ratio without bound: nothing disturbs."""
@@ -120,6 +128,11 @@ def _std(values: Floats) -> float:
     return math.sqrt(float(centred @ centred) / values.size)
 
 
+def at_most_much(ratio: float) -> str:
+    """A ratio in words: beyond `MUCH` nobody asks how large it is."""
+    return f"more than {MUCH:.0f}" if ratio >= MUCH else f"{ratio:.0f}"
+
+
 class TargetChecks(Sequence[Check]):
     """Checks of a target, answered when somebody first asks."""
 
@@ -141,11 +154,18 @@ class TargetChecks(Sequence[Check]):
         return self.answers[index]
 
 
-def at_least(name: str, value: float, limit: float, message: str) -> Check:
+def at_least(name: str, value: float, limit: float, found: str, otherwise: str = "") -> Check:
     """The check that `value` is not below `limit`."""
-    return Check(name, value, f">= {limit:g}", bool(value >= limit), message)
+    passed = bool(value >= limit)
+    return Check(name, value, f">= {limit:g}", passed, _message(passed, found, otherwise))
 
 
-def at_most(name: str, value: float, limit: float, message: str) -> Check:
+def at_most(name: str, value: float, limit: float, found: str, otherwise: str = "") -> Check:
     """The check that `value` is not above `limit`."""
-    return Check(name, value, f"<= {limit:g}", bool(value <= limit), message)
+    passed = bool(value <= limit)
+    return Check(name, value, f"<= {limit:g}", passed, _message(passed, found, otherwise))
+
+
+def _message(passed: bool, found: str, otherwise: str) -> str:
+    """What was found and, only where the limit is not kept, what it means and what to do."""
+    return found if passed or not otherwise else f"{found}: {otherwise}"

@@ -19,6 +19,7 @@ __all__ = ["correlation", "gradient", "outliers", "quantisation", "saturation"]
 _OUTLIER_SIGMAS = 4.5
 _SIGNIFICANT = 3.5
 _MIN_SIDE = 24
+_MIN_PILED = 20
 _TAIL_PX = 0.1
 """The LSF of an aperture falls as a / s^2: a is 0.065 px for a cutoff of 1 c/px, 0.1 for 0.65."""
 _MISFIT = 3e-4
@@ -33,13 +34,15 @@ def saturation(cut: Cut, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> 
     if cut.saturation_level is not None:
         share = float(np.mean(values >= cut.saturation_level))
     middle = float(np.median(values))
-    for outwards in (seen.before, seen.behind):
-        side = values[outwards > seen.far_px]
-        share = max(share, _piled_up(side, bright=bool(np.median(side) > middle), seen=seen))
+    # The two grounds and, of a pulse, the strip.
+    for there in (seen.before > seen.far_px, seen.behind > seen.far_px, seen.outside < 0):
+        side = values[there]
+        if side.size >= _MIN_PILED:
+            share = max(share, _piled_up(side, bright=bool(np.median(side) > middle), seen=seen))
     return at_most(
         "saturation", share, limits.saturation,
-        f"{100 * share:.1f} % of the pixels are clipped at the end of the scale: the edge's height "
-        "and shape are then not what the sensor saw",
+        f"{100 * share:.1f} % of the pixels are clipped at the end of a scale",
+        "the target's height and shape are then not what the sensor saw",
     )  # fmt: skip
 
 
@@ -49,8 +52,6 @@ def _piled_up(side: Floats, *, bright: bool, seen: Evidence) -> float:
     Noise has few pixels at its end. A side without any noise has nothing to clip, unless the
     transition is noisy.
     """
-    if side.size < 20:
-        return 0.0
     _, counts = np.unique(side if bright else -side, return_counts=True)
     end, beside = int(counts[-1]), int(counts[-2]) if counts.size > 1 else 0
     contrast = abs(seen.fit.bright - seen.fit.dark)
@@ -71,8 +72,11 @@ def quantisation(cut: Cut, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -
     value = MUCH if harmless else min(noise / step, MUCH)
     return at_least(
         "quantisation", value, limits.quantisation,
-        f"the plateaus' noise is {value:.2f} steps of the image's numbers: below 0.3 the rounding "
-        "is the same for every pixel of a plateau and shifts its level; use data of more bits",
+        "the image's numbers are finer than the curves resolve"
+        if harmless
+        else f"the plateaus' noise is {value:.2f} steps of the image's numbers",
+        "so much rounding is no noise: it is alike for the pixels of a plateau and shifts its "
+        "level by more than the intervals say; use data of more bits",
     )  # fmt: skip
 
 
@@ -91,8 +95,9 @@ def gradient(seen: Evidence, limits: EdgeLimits) -> Check:
     return at_most(
         "gradient", value, limits.gradient,
         f"far from the target the ground slopes, {value:.1f} in units of a small aperture's tail, "
-        "which falls outwards (0 to 1): the fit cannot tell a slope from a wide halo for sure; "
-        "choose a region whose sides are flat",
+        "which falls outwards (0 to 1)",
+        "the fit cannot tell a slope from a wide halo for sure; choose a region whose sides are "
+        "flat",
     )  # fmt: skip
 
 
@@ -139,8 +144,9 @@ def correlation(seen: Evidence, limits: EdgeLimits) -> Check:
     return at_most(
         "correlated_noise", value, limits.correlated_noise,
         f"neighbouring pixels' noise correlates by {found:.2f} ({significance:.0f} standard "
-        "deviations): a resampled product or textured ground; the intervals allow for it, and "
-        "the MTF is the product's",
+        "deviations)",
+        "a resampled product or textured ground; the intervals allow for it, and the MTF is the "
+        "product's",
     )  # fmt: skip
 
 
@@ -152,5 +158,6 @@ def outliers(seen: Evidence, limits: EdgeLimits) -> Check:
     return at_most(
         "outliers", value, limits.outliers,
         f"{100 * value:.2f} % of the pixels lie further than {_OUTLIER_SIGMAS:g} standard "
-        "deviations from the fit: objects on the target, or a bad fit",
+        "deviations from the fit",
+        "objects on the target, or a bad fit",
     )  # fmt: skip

@@ -17,7 +17,7 @@ from acutance.measure.evidence import MUCH, PLACES, Evidence, at_least, at_most
 from acutance.measure.measurement import Check
 from acutance.measure.options import EdgeLimits
 
-__all__ = ["lopsided", "profile", "strip", "structure", "uniformity"]
+__all__ = ["lopsided", "profile", "ragged", "strip", "structure", "uniformity"]
 
 _FAR_WIDTHS = 2.5
 _STEEP_WIDTHS, _NEAR_WIDTHS = 1.25, 4.0
@@ -26,6 +26,7 @@ _BIN_PX = 1.0
 _PART_PX = 5.0
 _MIN_PARTS, _MAX_PARTS = 4, 12
 _SIGNIFICANT = 3.0
+_STEEP_SHARE = 0.3
 _REPEATED = 5.0
 _OUTLIER_SIGMAS = 4.0
 _BLOCK_PX = 4
@@ -37,8 +38,9 @@ def uniformity(seen: Evidence, limits: EdgeLimits, side: str, outwards: Floats) 
     value = min(1 / found, MUCH) if found > 0 else MUCH
     return at_least(
         f"uniformity_{side}", value, limits.uniformity,
-        f"the ground {PLACES[side]} varies by {100 / value:.1f} % of the contrast from place to "
+        f"the ground {PLACES[side]} varies by {100 * found:.1f} % of the contrast from place to "
         "place (KOMPSAT-3 draft 3b: contrast at least 50 times the variation)",
+        "choose a more uniform ground",
     )  # fmt: skip
 
 
@@ -48,8 +50,9 @@ def strip(seen: Evidence, limits: EdgeLimits) -> Check:
     value = min(1 / found, MUCH) if found > 0 else MUCH
     return at_least(
         "uniformity_strip", value, limits.uniformity,
-        f"the strip varies by {100 / value:.1f} % of its height from place to place: seams, dirt, "
-        "a ridge or sides that are not straight (asked of a strip as of its grounds: 2 %)",
+        f"the strip varies by {100 * found:.1f} % of its height from place to place (asked of it "
+        "as of its grounds: 2 %)",
+        "seams, dirt, a ridge or sides that are not straight",
     )  # fmt: skip
 
 
@@ -85,8 +88,32 @@ def structure(seen: Evidence, limits: EdgeLimits) -> Check:
     value = max(worst, 0.0)
     return at_most(
         "structure", value, limits.structure,
-        f"beside the edge the profile goes up and down by {100 * value:.1f} % of the contrast: "
+        f"beside the edge the profile goes up and down by {100 * value:.1f} % of the contrast",
         "something else lies there, and its spectrum is taken for the sensor's",
+    )  # fmt: skip
+
+
+def ragged(seen: Evidence, limits: EdgeLimits) -> Check:
+    """How far the target's border moves to and fro from pixel to pixel, beyond noise.
+
+    Pixels on a border that is a distance d off its line differ by d times the slope of the image:
+    d is the root of what the residuals there have more than those of the noisier ground, by the
+    squared slope.
+    """
+    slope = seen.slope
+    steep = np.abs(slope) > _STEEP_SHARE * float(np.max(np.abs(slope)))
+    grounds = [seen.residual[side > seen.far_px] for side in (seen.before, seen.behind)]
+    noise = max((float(np.mean(side**2)) for side in grounds if side.size), default=0.0)
+    count = int(np.count_nonzero(steep))
+    there = seen.residual[steep]
+    excess = float(np.mean(there**2)) - noise if count else 0.0
+    # The variance of count squares of Gaussian noise.
+    chance = _SIGNIFICANT * noise * math.sqrt(2 / max(count, 1))
+    value = math.sqrt(excess / float(np.mean(slope[steep] ** 2))) if excess > chance else 0.0
+    return at_most(
+        "ragged_px", value, limits.ragged_px,
+        f"from pixel to pixel the border lies {value:.3f} px rms off the fitted line and profile",
+        "it is ragged, another edge crosses it, or the fit does not follow: choose another part",
     )  # fmt: skip
 
 
@@ -110,9 +137,9 @@ def lopsided(seen: Evidence, limits: EdgeLimits) -> Check:
     return at_most(
         "lopsided", value, limits.lopsided,
         f"beyond {near:.1f} px the ESF moves by {100 * value:.1f} % of the contrast more on one "
-        f"side than on the other ({significance:.0f} standard deviations): no halo does; a step of "
-        "the ground parallel to the edge does, or a long charge trail; choose another side or a "
-        "narrower region",
+        f"side than on the other ({significance:.0f} standard deviations)",
+        "no halo does; a step of the ground parallel to the edge does, or a long charge trail; "
+        "choose another side or a narrower region",
     )  # fmt: skip
 
 
@@ -148,8 +175,9 @@ def profile(seen: Evidence, limits: EdgeLimits, last_px: float, own_misfit: bool
     return at_most(
         "profile", value, limits.profile,
         f"all along the target the pixels leave the fit by the same {100 * value:.2f} % of the "
-        f"contrast ({most:.0f} standard deviations): lines parallel to it, a strip that is not of "
-        "one brightness, or ringing finer than the fit follows; the intervals do not allow for it",
+        f"contrast ({most:.0f} standard deviations)",
+        "lines parallel to it, a strip that is not of one brightness, or ringing finer than the "
+        "fit follows; the intervals do not allow for it",
     )  # fmt: skip
 
 

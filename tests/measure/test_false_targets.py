@@ -1,0 +1,108 @@
+"""What is no target, or a spoiled one: a check says so, or it does no harm."""
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance import optics
+
+SENSOR = ac.Sensor([optics.Gaussian(0.4), optics.Detector()])
+
+
+def failed(measurement):
+    return {check.name for check in measurement.failed_checks}
+
+
+def edge(seed, **options):
+    rng = np.random.default_rng(seed)
+    image, truth = ac.simulate.edge(SENSOR, **{"angle_deg": 6, "snr": 100, "rng": rng, **options})
+    return np.asarray(image), truth
+
+
+def crossed(seed, angle_deg, bright):
+    first, _ = edge(seed, shape=(60, 60))
+    second, _ = ac.simulate.edge(SENSOR, angle_deg=angle_deg, dark=0, bright=bright, shape=(60, 60))
+    return first + np.asarray(second)
+
+
+@pytest.mark.parametrize(("angle_deg", "bright"), [(-5, 200), (-5, 300), (-12, 300), (20, 200)])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_second_edge_across_the_first_is_noticed(angle_deg, bright, seed):
+    found = ac.measure_edge(crossed(seed, angle_deg, bright))
+    assert failed(found) & {"steadiness", "ragged_px"}
+
+
+@pytest.mark.parametrize("system", ["gaussian", "diffraction", "sharpened", "halo", "asymmetric"])
+def test_a_steady_edge_passes(system):
+    sensor = ac.simulate.reference_systems()[system]
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        snr = float(rng.choice([40, 100, 1000]))
+        angle = float(rng.uniform(3, 40))
+        image, _ = ac.simulate.edge(sensor, angle_deg=angle, snr=snr, shape=(50, 50), rng=rng)
+        checks = {check.name: check for check in ac.measure_edge(image).checks}
+        for name in ("steadiness", "ragged_px", "lsf_width_px"):
+            assert checks[name].passed, (seed, checks[name])
+
+
+@pytest.mark.parametrize("offset", [300, 500, 900])
+def test_numbers_that_wrapped_around_are_no_edge_of_light(offset):
+    image, _ = edge(1)
+    wrapped = (image.round().astype(int) - offset).astype("uint16")
+    assert "lsf_width_px" in failed(ac.measure_edge(wrapped))
+
+
+def test_numbers_too_coarse_for_the_intervals_are_noticed():
+    image, _ = edge(53, shape=(40, 40))
+    coarse = np.round(image * 0.03).astype("uint8")
+    assert "quantisation" in failed(ac.measure_edge(coarse))
+    assert "quantisation" not in failed(ac.measure_edge(np.round(image).astype("uint16")))
+
+
+@pytest.mark.parametrize("value", [4095.0, 65535.0, -32768.0, 1e30])
+@pytest.mark.parametrize("count", [1, 4])
+def test_bad_pixels_neither_hide_an_edge_nor_move_it(value, count):
+    image, truth = edge(2, shape=(50, 50))
+    rng = np.random.default_rng(count)
+    image[rng.integers(50, size=count), rng.integers(50, size=count)] = value
+    found = ac.measure_edge(image)
+    error = found.mtf_nyquist.value - truth.mtf_nyquist.value
+    assert abs(error) < 4 * found.mtf_nyquist.std < 0.05
+
+
+@pytest.mark.parametrize("value", [4095.0, 65535.0, -32768.0, 1e30])
+@pytest.mark.parametrize("count", [1, 4])
+def test_bad_pixels_neither_hide_a_pulse_nor_move_it(value, count):
+    rng = np.random.default_rng(count)
+    image, truth = ac.simulate.pulse(SENSOR, snr=80, rng=rng, shape=(60, 60))
+    image = np.asarray(image).copy()
+    image[rng.integers(60, size=count), rng.integers(60, size=count)] = value
+    found = ac.measure_pulse(image)
+    assert abs(found.width_px.value - truth.width_px) < 4 * found.width_px.std < 0.1
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_strip_clipped_below_the_end_of_its_type_is_noticed(seed):
+    rng = np.random.default_rng(seed)
+    noise = ac.simulate.Noise(read=10, saturation=1100.0)
+    image, _ = ac.simulate.pulse(SENSOR, noise=noise, offset_px=rng.uniform(-1, 1), rng=rng)
+    assert "saturation" in failed(ac.measure_pulse(image))
+    free, _ = ac.simulate.pulse(SENSOR, noise=ac.simulate.Noise(read=10), rng=rng)
+    assert "saturation" not in failed(ac.measure_pulse(free))
+
+
+def test_of_a_large_region_only_the_neighbourhood_of_the_edge_is_used():
+    image, truth = edge(0, shape=(500, 500))
+    found = ac.measure_edge(image)
+    rows, cols = np.nonzero(found.samples.used)
+    assert np.max(np.abs(found.line.normal_distance(rows, cols))) < 101
+    error = found.mtf_nyquist.value - truth.mtf_nyquist.value
+    assert abs(error) < 4 * found.mtf_nyquist.std
+
+
+def test_a_check_that_passed_gives_no_advice():
+    image, _ = edge(3)
+    for check in ac.measure_edge(image).checks:
+        assert check.passed
+        for word in ("choose", "use data", "something else", "not what the sensor"):
+            assert word not in check.message, check
