@@ -94,6 +94,14 @@ def test_a_killed_study_goes_on_where_it_was(tmp_path):
     assert all(math.isnan(record["nothing"]) for record in again)
 
 
+def test_trials_beyond_the_last_do_not_count(tmp_path):
+    calls = []
+    run_trials("t", Options(), TRIALS, draw, Execution(seed=5, workers=1, folder=tmp_path))
+    how = Execution(seed=5, workers=1, folder=tmp_path, progress=lambda *call: calls.append(call))
+    assert len(run_trials("t", Options(), TRIALS[:5], draw, how)) == 5
+    assert calls == [(5, 5)]
+
+
 def test_half_a_line_is_cut_off(tmp_path):
     with Journal(tmp_path, "t", "key") as journal:
         journal.append(0, {"value": 1.0})
@@ -113,6 +121,8 @@ def test_half_a_line_is_cut_off(tmp_path):
     [
         b"snow", b"", b"{}", b"[1]", b"7", b'{"trial": 1}', b'{"trial": null, "values": {}}',
         b'{"trial": 1, "values": 3}', b'\xff\xfe{"tri', b'{"trial": 1, "val\r{',
+        b'{"trial": 1, "values": {}}', b'{"trial": 1, "values": {}, "check": "00000000"}',
+        b'{"trial": 99, "values": {"value": 1.0, "trial": 99, "nothing": null}}',
     ],
 )  # fmt: skip
 def test_a_damaged_line_is_named_and_its_trial_run_again(tmp_path, damage):

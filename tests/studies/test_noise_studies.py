@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from acutance import OptionError
+from acutance.report.study_figures import study_figure
 from acutance.studies import (
     Execution,
     GroundNoiseOptions,
@@ -57,6 +58,38 @@ def test_ours_states_its_scatter(snr):
 def test_the_limit_decides(snr):
     strict = SnrOptions(noise_dn=(10.0, 20.0), draws=2, limit_percent=0.01)
     assert math.isnan(study_snr(strict, ALONE).finding("minimum_snr_edge_ours").value)
+
+
+def test_what_was_refused_everywhere_has_no_answers_but_the_reason():
+    steep = SnrOptions(noise_dn=(10.0,), draws=1, angle_deg=45.0)
+    result = study_snr(steep, ALONE)
+    for target in ("edge", "pulse"):
+        told = result.finding(f"refused_{target}_published")
+        assert told.value == 1
+        assert "refused 1 of 1 images" in told.text
+        trials = result.tables["trials"].where(target=target)
+        assert told.text.endswith(trials.columns["published_refusal"][0])
+    assert not any("nan" in found.text for found in result.findings)
+    assert {found.name.split("_")[0] for found in result.findings} == {"refused"}
+    study_figure(result)
+
+
+def test_a_single_draw_has_no_scatter_to_tell():
+    names = {
+        found.name for found in study_snr(SnrOptions(noise_dn=(5.0,), draws=1), ALONE).findings
+    }
+    assert "minimum_snr_edge_ours" in names
+    assert "bias_edge_ours_percent" in names
+    assert not any("scatter" in name for name in names)
+
+
+def test_uneven_ground_that_no_estimator_accepts_says_why():
+    steep = GroundNoiseOptions(levels_dn=((1100.0, 400.0),), runs=1, angle_deg=45.0)
+    result = study_ground_noise(steep, ALONE)
+    assert [found.name for found in result.findings] == [
+        "highest_snr", "refused_published", "refused_ours",
+    ]  # fmt: skip
+    study_figure(result)
 
 
 @pytest.fixture(scope="module")

@@ -39,11 +39,7 @@ def snr_figure(result: StudyResult) -> Figure:
             trials = result.tables["trials"].where(target=target)
             _draw_values(axes[0, column], trials["snr"], trials, float(levels["truth"][0]))
             _draw_errors(axes[1, column], levels, result.options.limit_percent)
-            minimum = {
-                name: result.finding(f"minimum_snr_{target}_{name}").value
-                for name in ESTIMATOR_COLORS
-            }
-            _mark_minimum(axes[1, column], minimum, result.options.limit_percent)
+            _mark_minimum(axes[1, column], result, f"minimum_snr_{target}_")
             size = result.options.width_px
             kind = "Edge" if target == "edge" else f"Pulse of {size:g} px"
             dark, bright = getattr(result.options, f"{target}_dn")
@@ -73,8 +69,7 @@ def ground_noise_figure(result: StudyResult) -> Figure:
         snr = np.array([by_difference[d] for d in trials["pulse_dn"] - trials["ground_dn"]])
         _draw_values(axes[0], snr, trials, float(table["truth"][0]))
         _draw_errors(axes[1], table, result.options.limit_percent)
-        minimum = {name: result.finding(f"minimum_snr_{name}").value for name in ESTIMATOR_COLORS}
-        _mark_minimum(axes[1], minimum, result.options.limit_percent)
+        _mark_minimum(axes[1], result, "minimum_snr_")
         runs, contrasts = result.options.runs, len(result.options.levels_dn)
         axes[0].set_title(f"Pulse on uneven ground: {contrasts} contrasts, {runs} runs each")
         axes[1].set_xlabel("SNR")
@@ -144,13 +139,15 @@ def _draw_errors(axes: Axes, levels: Table, limit_percent: float) -> None:
     axes.minorticks_off()
 
 
-def _mark_minimum(axes: Axes, minimum: dict[str, float], limit_percent: float) -> None:
+def _mark_minimum(axes: Axes, result: StudyResult, prefix: str) -> None:
     """Where each estimator comes below the limit."""
-    for line, (name, snr) in enumerate(minimum.items()):
-        known = bool(np.isfinite(snr))
-        if known:
+    found = {one.name: one.value for one in result.findings}
+    limit_percent = result.options.limit_percent
+    for line, name in enumerate(ESTIMATOR_COLORS):
+        snr, answer = found.get(f"{prefix}{name}"), "refused"
+        if snr is not None:
+            answer = f"SNR {snr:.0f}" if np.isfinite(snr) else "not reached"
             axes.axvline(snr, color=ESTIMATOR_COLORS[name], linewidth=1, dashes=(2, 2))
-        answer = f"SNR {snr:.0f}" if known else "not reached"
         axes.text(
             0.02, 0.16 - 0.11 * line,
             f"{ESTIMATOR_WORDS[name]} below {limit_percent:g} %: {answer}",

@@ -101,7 +101,8 @@ def run_trials(
         key = journal_key(study, options, execution.seed, __version__)
         journal = Journal(execution.folder, study, key)
     with journal as kept:
-        done: dict[int, Record] = {} if kept is None else dict(kept.done)
+        earlier: dict[int, Record] = {} if kept is None else kept.done
+        done = {i: earlier[i] for i in range(len(trials)) if i in earlier}
         todo = [i for i in range(len(trials)) if i not in done]
         _tell(execution, len(trials) - len(todo), len(trials))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,9 +12,9 @@ from acutance.optics import Sensor, preset
 from acutance.simulate import GroundNoise, pulse
 from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
-from acutance.studies.scatter import error_columns, minimum_snr, word_minimum
+from acutance.studies.scatter import error_columns, find_minimum, find_refusal
 from acutance.studies.table import Cell, Table
-from acutance.studies.targets import ESTIMATOR_WORDS, ESTIMATORS, measure_both_pulses
+from acutance.studies.targets import ESTIMATOR_WORDS, ESTIMATORS, Estimator, measure_both_pulses
 
 __all__ = ["GroundNoiseOptions", "study_ground_noise"]
 
@@ -95,7 +96,7 @@ def study_ground_noise(
     )
     return StudyResult(
         "ground-noise", "Uneven ground and the MTF at Nyquist", chosen, how.seed,
-        {"ground-noise": table, "trials": measured}, _findings(chosen, table),
+        {"ground-noise": table, "trials": measured}, _findings(chosen, table, measured),
     )  # fmt: skip
 
 
@@ -128,7 +129,7 @@ def _contrast(measured: Table, bright: float, dark: float, noise_dn: float) -> d
     return row
 
 
-def _findings(options: GroundNoiseOptions, table: Table) -> tuple[Finding, ...]:
+def _findings(options: GroundNoiseOptions, table: Table, trials: Table) -> tuple[Finding, ...]:
     noise_dn = options.ground.std_seen_by(options.sensor)
     highest_snr = float(table["snr"].max())
     found = [
@@ -141,33 +142,33 @@ def _findings(options: GroundNoiseOptions, table: Table) -> tuple[Finding, ...]:
     ]
     for name in ESTIMATORS:
         who, limit = ESTIMATOR_WORDS[name], options.limit_percent
-        least = minimum_snr(table["snr"], table[f"{name}_rms_percent"], limit)
-        found.append(
-            Finding(
-                f"minimum_snr_{name}",
-                least,
-                f"{who}: an rms error below {limit:g} % needs {word_minimum(least, table['snr'])}",
-                _PUBLISHED_MINIMUM if name == "published" else None,
-            )
-        )
-        calm = minimum_snr(table["snr"], table[f"{name}_std_percent"], limit)
-        found.append(
-            Finding(
-                f"minimum_snr_scatter_{name}",
-                calm,
-                f"{who}: a scatter below {limit:g} %, whatever the bias, needs "
-                f"{word_minimum(calm, table['snr'])}",
-            )
-        )
-        highest = int(np.argmax(table["snr"]))
-        bias = float(table[f"{name}_bias_percent"][highest])
-        known = table[f"{name}_std_percent"][highest] / np.sqrt(options.runs)
-        found.append(
-            Finding(
-                f"bias_{name}_percent",
-                bias,
-                f"{who}: a bias of {bias:+.1f} ± {known:.1f} % at the highest contrast",
-                _PUBLISHED_BIAS_PERCENT if name == "published" else None,
-            )
-        )
+        found += find_refusal(name, who, table, trials)
+        found += find_minimum(
+            f"minimum_snr_{name}", f"{who}: an rms error below {limit:g} %", table,
+            f"{name}_rms_percent", limit, _PUBLISHED_MINIMUM if name == "published" else None,
+        )  # fmt: skip
+        found += find_minimum(
+            f"minimum_snr_scatter_{name}",
+            f"{who}: a scatter below {limit:g} %, whatever the bias,", table,
+            f"{name}_std_percent", limit,
+        )  # fmt: skip
+        found += _bias(options, name, table)
     return tuple(found)
+
+
+def _bias(options: GroundNoiseOptions, name: Estimator, table: Table) -> tuple[Finding, ...]:
+    """The bias at the highest contrast; nothing where the estimator refused it."""
+    highest = int(np.argmax(table["snr"]))
+    bias = float(table[f"{name}_bias_percent"][highest])
+    if math.isnan(bias):
+        return ()
+    known = float(table[f"{name}_std_percent"][highest]) / math.sqrt(options.runs)
+    scatter = f" ± {known:.1f}" if math.isfinite(known) else ""
+    return (
+        Finding(
+            f"bias_{name}_percent",
+            bias,
+            f"{ESTIMATOR_WORDS[name]}: a bias of {bias:+.1f}{scatter} % at the highest contrast",
+            _PUBLISHED_BIAS_PERCENT if name == "published" else None,
+        ),
+    )

@@ -37,8 +37,9 @@ class Journal:
     """An append-only file of finished trials, one line of JSON each.
 
     A line is written at once and counts only when it ends: what a crash left of a line is cut
-    off when the file is opened again. Lines that are damaged otherwise are left where they are
-    and named in a warning; their trials are not among those done. Use it as a context.
+    off when the file is opened again. Every line carries a checksum of its trial and values.
+    Lines that are damaged otherwise, or changed by hand, are left where they are and named in a
+    warning; their trials are not among those done. Use it as a context.
 
     Parameters
     ----------
@@ -90,7 +91,8 @@ class Journal:
             name: None if isinstance(value, float) and not math.isfinite(value) else value
             for name, value in values.items()
         }
-        line = json.dumps({"trial": trial, "values": known}, allow_nan=False)
+        entry = {"trial": trial, "values": known, "check": _checksum(trial, known)}
+        line = json.dumps(entry, allow_nan=False)
         os.write(self._handle, line.encode() + b"\n")
 
     def __enter__(self) -> Journal:
@@ -108,9 +110,15 @@ class Journal:
 def _parse(line: bytes) -> tuple[int, dict[str, Any]]:
     """The trial of a line; any of the errors of a text that is something else."""
     entry = json.loads(line)
-    return int(entry["trial"]), {
-        name: math.nan if value is None else value for name, value in entry["values"].items()
-    }
+    trial, values = entry["trial"], entry["values"]
+    if entry["check"] != _checksum(trial, values):
+        raise ValueError("the line is not what was written")
+    return trial, {name: math.nan if value is None else value for name, value in values.items()}
+
+
+def _checksum(trial: int, values: Mapping[str, Any]) -> str:
+    """Eight hexadecimal digits that change with anything in a line."""
+    return hashlib.sha256(json.dumps([trial, values]).encode()).hexdigest()[:8]
 
 
 def _damage(path: Path, lines: Sequence[int]) -> str:

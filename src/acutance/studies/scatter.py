@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.studies.table import Cell
+from acutance.studies.result import Finding
+from acutance.studies.table import Cell, Table
 
-__all__ = ["error_columns", "falling_fit", "minimum_snr", "word_minimum"]
+__all__ = ["error_columns", "falling_fit", "find_minimum", "find_refusal", "minimum_snr"]
 
 
 def error_columns(name: str, value: Floats, truth: float) -> dict[str, Cell]:
@@ -76,8 +77,60 @@ def minimum_snr(snr: Floats, rms_percent: Floats, limit_percent: float) -> float
     return float(levels[good[0]]) if good.size else math.nan
 
 
-def word_minimum(least: float, snr: Floats) -> str:
-    """What to say of a minimum SNR that `minimum_snr` found among some levels."""
-    if math.isfinite(least):
-        return f"an SNR of {least:.0f}"
-    return f"more than the SNR of {snr.max():.0f} that was tried"
+def find_minimum(
+    name: str,
+    who: str,
+    levels: Table,
+    column: str,
+    limit_percent: float,
+    published: float | None = None,
+) -> tuple[Finding, ...]:
+    """The SNR from which an error stays below a limit; nothing where no level has that error.
+
+    Parameters
+    ----------
+    name, who : str
+        Of the finding, and what its sentence begins with: whose which error.
+    levels : Table
+        A row a level, with its ``snr``.
+    column : str
+        The error in percent.
+    limit_percent : float
+    published : float, optional
+        What the paper printed.
+    """
+    error, snr = levels[column], levels["snr"]
+    if not np.isfinite(error).any():
+        return ()
+    least = minimum_snr(snr, error, limit_percent)
+    needed = (
+        f"an SNR of {least:.0f}"
+        if math.isfinite(least)
+        else f"more than the SNR of {snr.max():.0f} that was tried"
+    )
+    return (Finding(name, least, f"{who} needs {needed}", published),)
+
+
+def find_refusal(name: str, who: str, levels: Table, trials: Table) -> tuple[Finding, ...]:
+    """That an estimator refused too many images to tell an error of any level, and why.
+
+    Parameters
+    ----------
+    name, who : str
+        Of the estimator, as the columns' names begin, and in words.
+    levels : Table
+        With the columns of `error_columns`.
+    trials : Table
+        Every image, with the refusals in words.
+    """
+    if np.isfinite(levels[f"{name}_rms_percent"]).any():
+        return ()
+    refused = [str(words) for words in trials.columns[f"{name}_refusal"] if words]
+    return (
+        Finding(
+            f"refused_{name}",
+            len(refused),
+            f"{who} refused {len(refused)} of {len(trials)} images, so there is no error to "
+            f"tell: {max(set(refused), key=refused.count)}",
+        ),
+    )

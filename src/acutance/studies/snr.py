@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -12,11 +13,12 @@ from acutance.optics import Sensor, preset
 from acutance.simulate import Noise, edge, pulse
 from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
-from acutance.studies.scatter import error_columns, minimum_snr, word_minimum
+from acutance.studies.scatter import error_columns, find_minimum, find_refusal
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import (
     ESTIMATOR_WORDS,
     ESTIMATORS,
+    Estimator,
     measure_both_edges,
     measure_both_pulses,
 )
@@ -109,7 +111,7 @@ def study_snr(options: SnrOptions | None = None, execution: Execution | None = N
     )
     return StudyResult(
         "snr", "System noise and the MTF at Nyquist", chosen, how.seed,
-        {"snr": table, "trials": measured}, _findings(chosen, table),
+        {"snr": table, "trials": measured}, _findings(chosen, table, measured),
     )  # fmt: skip
 
 
@@ -152,38 +154,36 @@ def _level(measured: Table, target: Target, sigma: float) -> dict[str, Cell]:
     return row
 
 
-def _findings(options: SnrOptions, table: Table) -> tuple[Finding, ...]:
-    found = []
+def _findings(options: SnrOptions, table: Table, trials: Table) -> tuple[Finding, ...]:
+    found: list[Finding] = []
     for target in _TARGETS:
-        rows = table.where(target=target)
         for name in ESTIMATORS:
-            who, limit = ESTIMATOR_WORDS[name], options.limit_percent
-            least = minimum_snr(rows["snr"], rows[f"{name}_rms_percent"], limit)
-            found.append(
-                Finding(
-                    f"minimum_snr_{target}_{name}",
-                    least,
-                    f"{target}, {who}: an rms error below {limit:g} % needs "
-                    f"{word_minimum(least, rows['snr'])}",
-                    _PUBLISHED_MINIMUM[target] if name == "published" else None,
-                )
-            )
-            calm = minimum_snr(rows["snr"], rows[f"{name}_std_percent"], limit)
-            found.append(
-                Finding(
-                    f"minimum_snr_scatter_{target}_{name}",
-                    calm,
-                    f"{target}, {who}: a scatter below {limit:g} %, whatever the bias, needs "
-                    f"{word_minimum(calm, rows['snr'])}",
-                )
-            )
-            quiet = rows["snr"] >= min(_HIGH_SNR, float(rows["snr"].max()))
-            bias = float(np.nanmean(rows[f"{name}_bias_percent"][quiet]))
-            found.append(
-                Finding(
-                    f"bias_{target}_{name}_percent",
-                    bias,
-                    f"{target}, {who}: a bias of {bias:+.1f} % at high SNR",
-                )
+            found += _answers(
+                options, target, name, table.where(target=target), trials.where(target=target)
             )
     return tuple(found)
+
+
+def _answers(
+    options: SnrOptions, target: Target, name: Estimator, rows: Table, trials: Table
+) -> Iterator[Finding]:
+    """What one estimator needs on one target, or why there is nothing to say of it."""
+    who, limit = f"{target}, {ESTIMATOR_WORDS[name]}", options.limit_percent
+    for refused in find_refusal(name, who, rows, trials):
+        yield replace(refused, name=f"refused_{target}_{name}")
+    yield from find_minimum(
+        f"minimum_snr_{target}_{name}", f"{who}: an rms error below {limit:g} %", rows,
+        f"{name}_rms_percent", limit, _PUBLISHED_MINIMUM[target] if name == "published" else None,
+    )  # fmt: skip
+    yield from find_minimum(
+        f"minimum_snr_scatter_{target}_{name}",
+        f"{who}: a scatter below {limit:g} %, whatever the bias,", rows,
+        f"{name}_std_percent", limit,
+    )  # fmt: skip
+    quiet = rows["snr"] >= min(_HIGH_SNR, float(rows["snr"].max()))
+    biases = rows[f"{name}_bias_percent"][quiet]
+    if np.isfinite(biases).any():
+        bias = float(np.nanmean(biases))
+        yield Finding(
+            f"bias_{target}_{name}_percent", bias, f"{who}: a bias of {bias:+.1f} % at high SNR"
+        )

@@ -39,25 +39,25 @@ _SDSU = EdgeOptions(method_options=SdsuOptions(replicates=0))
 
 
 def measure_both_edges(image: Floats) -> Record:
-    """MTF at Nyquist of an edge by both estimators, ours with its standard deviation.
+    """MTF at Nyquist of an edge by both estimators, with its standard deviation.
 
-    ``nan`` where an estimator refuses the image.
+    ``nan`` where an estimator refuses the image; the refusal is in words then, otherwise empty.
     """
     found: Record = {}
     try:
         published = measure_edge(image, method="sdsu-2005", options=_SDSU)
         found |= _numbers("published", published.mtf_nyquist)
-    except TargetError:
-        found |= _refused("published")
+    except TargetError as error:
+        found |= _refused("published", error)
     try:
         found |= _numbers("ours", measure_edge(image).mtf_nyquist)
-    except TargetError:
-        found |= _refused("ours")
+    except TargetError as error:
+        found |= _refused("ours", error)
     return found
 
 
 def measure_both_pulses(image: Floats, *, width_px: float) -> Record:
-    """MTF at Nyquist of a pulse by both estimators, ours with its standard deviation.
+    """MTF at Nyquist of a pulse by both estimators, with its standard deviation.
 
     Parameters
     ----------
@@ -68,18 +68,19 @@ def measure_both_pulses(image: Floats, *, width_px: float) -> Record:
     Returns
     -------
     dict
-        ``nan`` where an estimator refuses the image.
+        ``nan`` where an estimator refuses the image; the refusal is in words then, otherwise
+        empty.
     """
     found: Record = {}
     try:
         published = measure_published_pulse(image, width_px=width_px)
         found |= _numbers("published", published.response.mtf_nyquist)
-    except TargetError:
-        found |= _refused("published")
+    except TargetError as error:
+        found |= _refused("published", error)
     try:
         found |= _numbers("ours", measure_pulse(image, width_px=width_px).mtf_nyquist)
-    except TargetError:
-        found |= _refused("ours")
+    except TargetError as error:
+        found |= _refused("ours", error)
     return found
 
 
@@ -107,9 +108,13 @@ def measure_published_pulse(
     return sdsu_2005_pulse(replace(band, pulse_width_px=width_px), options)
 
 
-def _refused(name: str) -> Record:
-    return {f"{name}_mtf_nyquist": math.nan, f"{name}_mtf_nyquist_std": math.nan}
+def _refused(name: str, error: TargetError) -> Record:
+    return {**_numbers(name, Estimate(math.nan, math.nan)), f"{name}_refusal": str(error)}
 
 
 def _numbers(name: str, nyquist: Estimate) -> Record:
-    return {f"{name}_mtf_nyquist": nyquist.value, f"{name}_mtf_nyquist_std": nyquist.std}
+    return {
+        f"{name}_mtf_nyquist": nyquist.value,
+        f"{name}_mtf_nyquist_std": nyquist.std,
+        f"{name}_refusal": "",
+    }

@@ -169,6 +169,8 @@ def measure_correction_trial(
         smoothed = measure_published_pulse(image, width_px=found_px, order=4, distance="normal")
         ours = measure_pulse(image, width_px=stated_px)
     except TargetError:
+        if quiet:
+            raise
         return record
     assert ours.width_px is not None
     record |= {
