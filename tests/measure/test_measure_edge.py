@@ -230,6 +230,30 @@ class TestRefusals:
         with pytest.raises(ac.PhaseError, match=r"sample phases over .* rows.*use a region of"):
             ac.measure_edge(image)
 
+    def test_phases_needed_and_wanted_are_those_of_the_code_and_the_check(self):
+        image, _ = simulated(angle_deg=0.3)
+        with pytest.raises(ac.PhaseError, match="at least 2 are needed and 3 wanted: use a region"):
+            ac.measure_edge(image)
+        asked = EdgeOptions(limits=EdgeLimits(sample_phases=5))
+        with pytest.raises(ac.PhaseError, match="at least 2 are needed and 5 wanted: use a region"):
+            ac.measure_edge(image, options=asked)
+
+    @pytest.mark.parametrize("fill", [-9999.0, float(np.float32(-3.4028235e38)), 65535.0])
+    @pytest.mark.parametrize("place", [np.s_[:, -12:], np.s_[-12:, :], np.s_[-15:, -12:]])
+    def test_undeclared_fill_values_are_named(self, fill, place):
+        image, _ = simulated(shape=(60, 60))
+        image[place] = fill
+        with pytest.raises(ac.PhaseError, match=r"no data.*--nodata") as error:
+            ac.measure_edge(image)
+        told = float(str(error.value).split("nodata=")[1].split(",")[0])
+        stored = image.astype(np.float32)
+        assert ac.measure_edge(ac.Image.from_array(stored, nodata=told)).mtf_nyquist.std < 0.1
+
+    def test_an_aligned_edge_without_noise_is_no_fill(self):
+        image, _ = simulated(angle_deg=0.0, snr=None)
+        with pytest.raises(ac.PhaseError, match="no length of it helps"):
+            ac.measure_edge(image)
+
     def test_edge_at_45_degrees(self):
         image, _ = simulated(angle_deg=45.0)
         with pytest.raises(ac.PhaseError, match="45 degrees"):

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, OptionError, PhaseError, TargetError
 from acutance.fit.band import EdgeBand, EdgeFit
 from acutance.fit.edge import fit_edge
@@ -27,11 +28,11 @@ from acutance.raster import Gsd, Image
 __all__ = ["METHODS", "measure_edge", "measure_segment", "require_phases"]
 
 _MIN_PHASES = 2.0
-_WANTED_PHASES = 4.0
 _CANDIDATES = 4
 _ALIGNED_DEG = 0.1
 _NEAR_45_DEG = 40.0
 _SIGNIFICANT = 3.0
+_BESIDE_PX = 1.0
 
 
 def _spline(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
@@ -126,7 +127,7 @@ def measure_segment(
     """Measure one segment that was found in a cut; see `measure_edge`."""
     estimate = _method(method)
     band, extent = trim(pixels.pixels, segment)
-    require_phases(band, band.line)
+    require_phases(band, band.line, options.limits.sample_phases)
     fit = estimate(band, options)
     return _measurement(pixels, band, extent, fit, method, options)
 
@@ -137,19 +138,48 @@ def _method(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
     return METHODS[name]
 
 
-def require_phases(band: EdgeBand, line: Line) -> None:
-    """Refuse an edge whose samples repeat at the same sub-pixel phases."""
-    phases = sample_phases(line.normal_distance(band.pixels.row, band.pixels.col))
+def require_phases(band: EdgeBand, line: Line, wanted: float) -> None:
+    """Refuse an edge whose samples repeat at the same sub-pixel phases.
+
+    Parameters
+    ----------
+    band : EdgeBand
+    line : Line
+    wanted : float
+        What the check `sample_phases` asks for, which is more than can be measured with.
+    """
+    distance = line.normal_distance(band.pixels.row, band.pixels.col)
+    phases = sample_phases(distance)
     if phases >= _MIN_PHASES:
         return
+    fill = _fill_value(distance, band.pixels.value)
+    wanted = max(wanted, _MIN_PHASES)
     raise PhaseError(
         f"edge angle {line.angle_deg:.2f} deg gives {phases:.1f} sample phases over "
-        f"{line.length_px:.0f} rows, at least {_WANTED_PHASES:g} are wanted and {_MIN_PHASES:g} "
-        f"needed: {_advice(line)}"
+        f"{line.length_px:.0f} rows, at least {_MIN_PHASES:g} are needed and {wanted:g} wanted: "
+        + (_advice(line, wanted) if fill is None else _fill_advice(fill))
     )
 
 
-def _advice(line: Line) -> str:
+def _fill_value(distance: Floats, value: Floats) -> float | None:
+    """The number that all pixels of one side hold where those of the other differ, as data do."""
+    sides = (value[distance < -_BESIDE_PX], value[distance > _BESIDE_PX])
+    low, high = (float(np.ptp(side)) if side.size else 0.0 for side in sides)
+    if (low == 0) == (high == 0):
+        return None
+    flat = sides[0] if low == 0 else sides[1]
+    return float(flat[0]) if flat.size else None
+
+
+def _fill_advice(fill: float) -> str:
+    return (
+        f"all pixels on one side of it are {fill:.9g}, as where there is no data; if so, declare "
+        f"it (nodata={fill:.9g}, --nodata {fill:.9g}) or choose a region without such pixels, and "
+        "otherwise one with a more inclined edge"
+    )
+
+
+def _advice(line: Line, wanted: float) -> str:
     """What to do about too few phases.
 
     The length an edge needs goes as 1 / angle, which for an aligned one is noise.
@@ -162,7 +192,7 @@ def _advice(line: Line) -> str:
             "the edge is aligned with the grid, as nearly as can be told, and no length of it "
             "helps: use a more inclined edge, by 2 degrees or more"
         )
-    needed = (1 - 1 / _WANTED_PHASES) / math.tan(math.radians(angle))
+    needed = (1 - 1 / wanted) / math.tan(math.radians(angle))
     return f"use a region of at least {needed:.0f} rows or a more inclined edge"
 
 

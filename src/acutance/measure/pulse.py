@@ -119,7 +119,7 @@ def measure_pulse(
     stated_px = _stated_width(pixels, width_px, width_m)
     free = fit_width or stated_px is None
     band, extent = find_pulse(pixels.pixels, stated_px, fit_width=free)
-    require_phases(band, band.line)
+    require_phases(band, band.line, chosen.limits.sample_phases)
     if stated_px is not None and method in PUBLISHED_PULSE:
         band = replace(band, pulse_width_px=stated_px)
     found = estimate(band, free, chosen)
