@@ -202,3 +202,25 @@ def test_coordinates_that_need_a_crs(plain, located, write_geojson):
 def test_files_that_hold_no_single_polygon(plain, write_geojson, document, message):
     with pytest.raises(RegionError, match=message):
         parse_roi(write_geojson(document), plain)
+
+
+def test_longitudes_taken_for_pixels_are_told_so(plain, write_geojson):
+    degrees = [[10.1, 51.9], [10.1001, 51.9], [10.1001, 51.9001], [10.1, 51.9001]]
+    name = write_geojson(polygon(degrees))
+    with pytest.raises(RegionError, match=r"rows 51.9 to 51.9.* were read as pixels .*has a CRS"):
+        parse_roi(name, plain)
+    said = write_geojson(polygon(degrees, crs=PIXEL_CRS), "said.geojson")
+    with pytest.raises(RegionError, match=r"rows 51.9 to 51.9") as error:
+        parse_roi(said, plain)
+    assert "read as pixels" not in str(error.value)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("wrong", [float("nan"), float("inf")])
+def test_corners_that_are_no_numbers_are_refused_without_warnings(
+    plain, located, write_geojson, wrong
+):
+    name = write_geojson(polygon([[9.5, 4.5], [29.5, wrong], [29.5, 14.5], [9.5, 14.5]]))
+    for image in (plain, located):
+        with pytest.raises(RegionError, match=r"a corner that is NaN or infinite: draw it again"):
+            parse_roi(name, image)

@@ -59,13 +59,11 @@ def parse_roi(text: str, image: Image) -> Region:
         box = Box(*(int(number) for number in text.split(",")))
         box.require_inside(image.shape)
         return Region.from_box(box)
-    region = (
-        _lonlat_region(text.removeprefix("lonlat:"), image)
-        if text.startswith("lonlat:")
-        else _geojson_region(text, image)
-    )
-    region.box(image.shape)
-    return region
+    if text.startswith("lonlat:"):
+        region = _lonlat_region(text.removeprefix("lonlat:"), image)
+        region.box(image.shape)
+        return region
+    return _geojson_region(text, image)
 
 
 def _lonlat_region(text: str, image: Image) -> Region:
@@ -86,10 +84,31 @@ def _geojson_region(name: str, image: Image) -> Region:
     document = _load_geojson(name)
     rings = _single_polygon(document, name)
     crs = _declared_crs(document, name)
+    if crs is None and image.geolocation is None:
+        return _bare_region(rings, image, name)
     if crs is None:
-        crs = _PIXELS if image.geolocation is None else LONLAT_CRS
-        if crs == LONLAT_CRS:
-            _require_lonlat(rings[0], name)
+        crs = LONLAT_CRS
+        _require_lonlat(rings[0], name)
+    region = _region(rings, crs, image)
+    region.box(image.shape)
+    return region
+
+
+def _bare_region(rings: list[Floats], image: Image, name: str) -> Region:
+    """Coordinates that nobody says the meaning of, on an image without a CRS: pixels."""
+    try:
+        region = _region(rings, _PIXELS, image)
+        region.box(image.shape)
+    except RegionError as error:
+        raise RegionError(
+            f"{error}. The coordinates of {name} were read as pixels (x the column, y the row), "
+            "as neither the file nor the image has a CRS: if they are longitudes and latitudes, "
+            "use an image that has one"
+        ) from None
+    return region
+
+
+def _region(rings: list[Floats], crs: str, image: Image) -> Region:
     outline, *holes = (_to_pixels(ring, crs, image) for ring in rings)
     return Region(outline, tuple(holes))
 
@@ -165,11 +184,16 @@ def _members(node: dict[str, Any], key: str, name: str) -> list[Any]:
 
 def _ring(ring: Any, name: str) -> Floats:
     try:
-        return np.array([[float(x), float(y)] for x, y, *_ in ring])
+        corners = np.array([[float(x), float(y)] for x, y, *_ in ring])
     except (TypeError, ValueError):
         raise RegionError(
             f"{name} holds a polygon whose corners are not pairs of numbers: draw it again"
         ) from None
+    if not np.isfinite(corners).all():
+        raise RegionError(
+            f"{name} holds a polygon with a corner that is NaN or infinite: draw it again"
+        )
+    return corners
 
 
 def _declared_crs(document: dict[str, Any], name: str) -> str | None:
