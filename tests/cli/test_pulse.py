@@ -72,7 +72,7 @@ def test_a_held_width_has_no_deviation(acutance, pulse_image):
 def test_region_gsd_and_limits_reach_the_measurement(acutance, pulse_image):
     result = acutance(
         *("pulse", pulse_image, "--roi", "5,4,48,32", "--gsd", 2.4, "--width-px", 3.15, "--json"),
-        *("--limit", "plateau_behind_px=3", "--limit", "ground_step=0.5", "--rer-centre", "peak"),
+        *("--limit", "plateau_px=3", "--limit", "ground_step=0.5", "--rer-centre", "peak"),
     )
     assert result.exit_code == 0, result.stderr
     document = json.loads(result.stdout)

@@ -59,6 +59,12 @@ def test_scenes_that_cannot_be_rendered(acutance, folder, words, message):
     [
         (("edge", "--limit", "rows=nan"), "--limit rows=nan: write a number, as in rows=10"),
         (("edge", "--limit", "rows=many"), "write a number"),
+        (("edge", "--limit", "plateau_dark_px=30"), "; plateau_px holds for every side"),
+        (("pulse", "--limit", "uniformity_behind=30"), "; uniformity holds for every side"),
+        (("edge", "--limit", "plateau_darkpx=30"), "uniformity"),
+        (("edge", "--method", "fermi", "--no-robust"), "--no-robust) is a choice of the reference"),
+        (("edge", "--all", "--method", "fermi", "--no-robust"), "fermi bounds no weights"),
+        (("edge", "--compare", "sdsu-2005", "--no-robust"), "sdsu-2005 bounds no weights"),
         (("edge", "--compare", "spline"), "sets nothing beside spline: name others, of sdsu-2005"),
         (("edge", "--compare", ","), "sets nothing beside spline"),
         (("pulse", "--compare", "spline"), "sets nothing beside spline"),

@@ -95,6 +95,32 @@ def test_the_message_says_what_is_wanted(make, message):
         make()
 
 
+@pytest.fixture(scope="module")
+def sensor():
+    return ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
+
+
+@pytest.mark.parametrize("name", ["sdsu-2005", "kompsat-2014", "iso12233", "fermi"])
+def test_published_methods_refuse_what_only_the_reference_has(sensor, name):
+    image, _ = ac.simulate.edge(sensor, snr=100, rng=np.random.default_rng(1))
+    refusal = rf"robust=False \(--no-robust\) .*: {name} bounds no weights"
+    for measure in (ac.measure_edge, ac.measure_edges):
+        with pytest.raises(ac.OptionError, match=refusal):
+            measure(image, method=name, options=EdgeOptions(robust=False))
+
+
+def test_published_pulse_and_points_refuse_it_too(sensor):
+    rng = np.random.default_rng(1)
+    stripe, _ = ac.simulate.pulse(sensor, width_px=4.0, snr=100, rng=rng)
+    with pytest.raises(ac.OptionError, match="sdsu-2005 bounds no weights"):
+        ac.measure_pulse(
+            stripe, width_px=4.0, method="sdsu-2005", options=PulseOptions(robust=False)
+        )
+    mirrors, _ = ac.simulate.points(sensor, snr=100, rng=rng)
+    with pytest.raises(ac.OptionError, match="gaussian-2003 bounds no weights"):
+        ac.measure_points(mirrors, method="gaussian-2003", options=PointsOptions(robust=False))
+
+
 def test_what_means_the_same_is_taken():
     assert EdgeLimits(angle_deg=20, rows=math.inf).angle_deg == 20
     assert EdgeOptions(robust=np.bool_(False)).robust == False  # noqa: E712

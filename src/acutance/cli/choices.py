@@ -74,11 +74,10 @@ def change_limits(defaults: LimitsT, changes: Sequence[str]) -> LimitsT:
 
 def _parse_limit(text: str, known: set[str]) -> tuple[str, float]:
     name, _, number = text.partition("=")
-    # A limit holds for both sides: the names of a side's check are understood too.
-    for side in SIDES:
-        name = name.replace(side, "")
     if name not in known:
-        raise OptionError(f"--limit {text}: the limits are {', '.join(sorted(known))}")
+        both = next((limit for side in SIDES if (limit := name.replace(side, "")) in known), None)
+        hint = f"; {both} holds for every side" if both else ""
+        raise OptionError(f"--limit {text}: the limits are {', '.join(sorted(known))}{hint}")
     try:
         value = float(number)
     except ValueError:

@@ -18,7 +18,7 @@ from acutance.fit.locate import Segment, find_segments
 from acutance.fit.trim import Extent, trim
 from acutance.measure.checks import EdgeChecks, sample_phases
 from acutance.measure.cut import Cut, RoiLike, cut
-from acutance.measure.given import chosen_options
+from acutance.measure.given import chosen_options, published_options
 from acutance.measure.measurement import Measurement, Samples
 from acutance.measure.one_thread import one_thread
 from acutance.measure.options import EdgeOptions
@@ -43,12 +43,7 @@ def _spline(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
 
 def _published(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
     def measure(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
-        chosen, wanted = options.method_options, PUBLISHED_OPTIONS[name]
-        if chosen is not None and not isinstance(chosen, wanted):
-            raise OptionError(
-                f"method_options are {type(chosen).__name__}: method {name} takes {wanted.__name__}"
-            )
-        return PUBLISHED[name](band, wanted() if chosen is None else chosen)
+        return PUBLISHED[name](band, published_options(options, name, PUBLISHED_OPTIONS[name]))
 
     return measure
 

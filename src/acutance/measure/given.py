@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from acutance.errors import OptionError, RegionError
 from acutance.raster import Box, Region
 
-__all__ = ["chosen_options", "chosen_region"]
+__all__ = ["chosen_options", "chosen_region", "published_options"]
 
 Options = TypeVar("Options")
 
@@ -29,6 +29,39 @@ def chosen_options(options: Any, kind: type[Options]) -> Options:
             "them out"
         )
     return options
+
+
+class _HasMethodOptions(Protocol):
+    """Options of a target that published methods measure too."""
+
+    @property
+    def robust(self) -> bool: ...
+
+    @property
+    def method_options(self) -> Any: ...
+
+
+def published_options(options: _HasMethodOptions, method: str, kind: type[Options]) -> Options:
+    """What the options of a measurement hold for a published method.
+
+    Raises
+    ------
+    OptionError
+        If they hold what the method does not have.
+    """
+    if not options.robust:
+        raise OptionError(
+            f"robust=False (--no-robust) is a choice of the reference method: {method} bounds no "
+            "weights, so leave it out"
+        )
+    chosen = options.method_options
+    if chosen is None:
+        return kind()
+    if not isinstance(chosen, kind):
+        raise OptionError(
+            f"method_options are {type(chosen).__name__}: method {method} takes {kind.__name__}"
+        )
+    return chosen
 
 
 def chosen_region(roi: Any) -> Region | Box:

@@ -17,7 +17,7 @@ from acutance.fit.point_sources import PointsFit, fit_points
 from acutance.fit.point_stamps import cut_stamps
 from acutance.fit.point_start import fit_blurred_points, unlike_sources
 from acutance.measure.cut import Cut, RoiLike, cut
-from acutance.measure.given import chosen_options
+from acutance.measure.given import chosen_options, published_options
 from acutance.measure.measurement import Check, ImageInfo
 from acutance.measure.measurement2d import Measurement2d
 from acutance.measure.one_thread import one_thread
@@ -135,7 +135,7 @@ def _unlike(place: tuple[float, float], departure: float) -> RejectedSpot:
 
 
 def _gaussian(pixels: Cut, places: Floats, rejected: _Rejected, options: PointsOptions) -> _Answer:
-    chosen = options.method_options or SdsuMirrorsOptions()
+    chosen = published_options(options, "gaussian-2003", SdsuMirrorsOptions)
     found = sdsu_2003_mirrors(_covered(pixels.pixels, rejected), places, chosen)
     origin = (pixels.box.row, pixels.box.col)
     sources = sources_of_mirrors(found, pixels.pixels, origin, chosen.window_px)

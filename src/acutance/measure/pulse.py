@@ -16,7 +16,7 @@ from acutance.fit.locate import find_segments
 from acutance.fit.pulse import PulseBand, fit_pulse
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.edge import require_phases
-from acutance.measure.given import chosen_options
+from acutance.measure.given import chosen_options, published_options
 from acutance.measure.measurement import Measurement, Samples
 from acutance.measure.one_thread import one_thread
 from acutance.measure.options import PulseOptions
@@ -51,12 +51,8 @@ def _spline(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
 
 def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
     def measure(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
-        chosen, wanted = options.method_options, PUBLISHED_PULSE_OPTIONS[name]
-        if chosen is not None and not isinstance(chosen, wanted):
-            raise OptionError(
-                f"method_options are {type(chosen).__name__}: method {name} takes {wanted.__name__}"
-            )
-        fit = PUBLISHED_PULSE[name](band, wanted() if chosen is None else chosen)
+        wanted = PUBLISHED_PULSE_OPTIONS[name]
+        fit = PUBLISHED_PULSE[name](band, published_options(options, name, wanted))
         along_normal = fit.prf_fwhm_px.scaled(1.0 / fit.px_per_normal)
         return _Fitted(fit, fit.pulse_width, fit.fall, along_normal)
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.one_line import OneLine
-from acutance.errors import AcutanceError
+from acutance.errors import TargetError
 from acutance.fit.line import Line, Orientation
 from acutance.fit.locate import find_segments
 from acutance.measure.cut import RoiLike, cut
@@ -143,7 +143,7 @@ def measure_edges(
             break
         try:
             found = measure_segment(pixels, segment, method, chosen)
-        except AcutanceError as error:
+        except TargetError as error:
             where = _where(_in_image(segment.line, pixels.box))
             rejected.append(Rejected("fit", str(error), where))
             continue
