@@ -45,7 +45,8 @@ COMMANDS: dict[str, list[str]] = {
     "simulate-edge": ["simulate", "edge"],
     "simulate-pair": ["simulate", "pair"],
     "study": ["study"],
-    "plan": ["plan"],
+    "plan-edge": ["plan", "edge"],
+    "plan-pulse": ["plan", "pulse"],
     "plan-mirrors": ["plan", "mirrors"],
     "demo": ["demo"],
 }

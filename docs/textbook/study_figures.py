@@ -9,7 +9,8 @@ from textwrap import fill
 from matplotlib.figure import Figure
 
 from acutance.report import study_figure, study_text
-from acutance.studies import STUDIES, StudyResult, run_study
+from acutance.report.study_figures import plan_text
+from acutance.studies import STUDIES, PlanOptions, StudyResult, plan_target, run_study
 
 __all__ = ["FIGURES", "TEXTS"]
 
@@ -29,9 +30,24 @@ def _text(name: str) -> str:
     return "\n".join(wrapped) + "\n"
 
 
+@cache
+def _plan() -> StudyResult:
+    return plan_target(PlanOptions(target="pulse", snr=70.0, draws=60))
+
+
+def _plan_figure() -> Figure:
+    return study_figure(_plan())
+
+
+def _plan_text() -> str:
+    return plan_text(_plan()) + "\n"
+
+
 FIGURES: dict[str, Callable[[], Figure]] = {
-    f"study-{name}": partial(_figure, name) for name in STUDIES
+    **{f"study-{name}": partial(_figure, name) for name in STUDIES},
+    "study-plan": _plan_figure,
 }
 TEXTS: dict[str, Callable[[], str]] = {
-    f"study-{name}.inc": partial(_text, name) for name in STUDIES
+    **{f"study-{name}.inc": partial(_text, name) for name in STUDIES},
+    "study-plan.inc": _plan_text,
 }

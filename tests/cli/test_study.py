@@ -59,6 +59,7 @@ def test_json_is_the_document_alone(acutance):
     ("words", "message"),
     [
         (("snow",), "there is no study 'snow'"),
+        (("plan",), "plan is a command of its own: acutance plan edge"),
         (("angle", "--set", "colour=1"), "the options are angles_deg"),
         (("angle", "--set", "places=many"), "write a number"),
         (("angle", "--set", "places=1.5"), "places is a whole number"),
@@ -118,10 +119,18 @@ def test_a_pulse_is_planned_in_metres(acutance):
         (("pulse", "--width-m", "8", "--sensor", "gaussian"), "add --gsd"),
         (("edge", "--csv", "plan.txt"), "has to be .csv"),
         (("edge", "--width-px", "3"), "an edge has no width"),
-        (("bars",), "it has to be edge or pulse"),
+        (("bars",), "No such command 'bars'"),
+        (("edge", "--rows", "100000"), "2000 are the most"),
     ],
 )
 def test_impossible_plans_are_refused(acutance, words, message):
     done = acutance("plan", *words)
     assert done.exit_code == 2
     assert message in done.stderr
+
+
+@pytest.mark.parametrize("target", ["edge", "pulse", "mirrors"])
+def test_the_usage_of_a_plan_names_its_command(acutance, target):
+    assert acutance("plan", target, "--help").stdout.startswith(
+        f"Usage: acutance plan {target} [OPTIONS]\n"
+    )

@@ -18,13 +18,39 @@ PULSE = Design("pulse", 40, 6.0, 3.0)
 
 
 def test_the_known_values_of_40_rows_at_snr_100():
-    assert free_bound(EDGE, 100.0) == pytest.approx(0.0111, abs=5e-5)
+    assert free_bound(Blur(0.45), EDGE, 100.0) == pytest.approx(0.0111, abs=5e-5)
     assert shape_bound(Blur(0.4), EDGE, 100.0).mtf_nyquist == pytest.approx(0.0045, abs=3e-4)
 
 
 def test_a_pulse_of_three_pixels_needs_half_the_snr_of_an_edge():
-    assert free_bound(PULSE, 50.0) == pytest.approx(free_bound(EDGE, 100.0))
-    assert free_bound(replace(PULSE, width_px=2.0), 100.0) == math.inf
+    blur = Blur(0.45)
+    # The fitted width costs a pulse of three pixels next to nothing at Nyquist.
+    assert free_bound(blur, PULSE, 50.0) == pytest.approx(free_bound(blur, EDGE, 100.0), rel=0.01)
+    assert free_bound(blur, replace(PULSE, width_px=2.0), 100.0) == math.inf
+
+
+def test_a_fitted_width_costs_where_the_ratio_depends_on_it():
+    blur, narrow = Blur(0.45), replace(PULSE, width_px=1.5)
+    free, shape = free_bound(blur, narrow, 50.0), shape_bound(blur, narrow, 50.0)
+    by_noise = math.pi * 0.5 / math.sin(0.75 * math.pi) * math.sqrt(10 / 2 / 40.22) / 50
+    by_width = blur.otf(np.array([0.5]))[0] * (0.5 * math.pi / math.tan(0.75 * math.pi) - 1 / 1.5)
+    assert free == pytest.approx(math.hypot(by_noise, by_width * shape.width_px), rel=1e-3)
+
+
+@pytest.mark.parametrize("sigma", [0.2, 0.45, 0.9])
+@pytest.mark.parametrize("rows", [20, 80])
+@pytest.mark.parametrize("width", [math.nan, 0.6, 1.0, 1.5, 2.5, 3.0, 5.0])
+def test_a_free_lsf_is_known_no_better_than_one_of_known_shape(sigma, rows, width):
+    design = Design("edge" if math.isnan(width) else "pulse", rows, 6.0, width)
+    blur = Blur(sigma)
+    assert free_bound(blur, design, 70.0) >= shape_bound(blur, design, 70.0).mtf_nyquist
+
+
+def test_many_rows_are_the_sum_of_few(monkeypatch):
+    whole = shape_bound(Blur(0.4), PULSE, 50.0)
+    monkeypatch.setattr("acutance.studies.bound._PIXELS_AT_ONCE", 130)
+    parts = shape_bound(Blur(0.4), PULSE, 50.0)
+    assert vars(parts) == pytest.approx(vars(whole), rel=1e-9)
 
 
 def test_bounds_scale_with_noise_and_rows():

@@ -42,6 +42,19 @@ def test_the_questions_are_answered(pulse):
     assert rows == math.ceil(30 * (expected / 0.005) ** 2)
 
 
+def test_of_several_widths_the_best_is_planned_and_named():
+    options = PlanOptions(target="pulse", widths_px=(1.0, 3.0, 1.5), draws=0)
+    plan = plan_target(options, ALONE)
+    assert plan.table["target_width_px"][0] == 3.0
+    assert sorted(plan.table.where(varied="width")["target_width_px"]) == [1.0, 1.5, 3.0]
+    told = plan.finding("planned_width_px")
+    assert told.value == 3.0
+    assert "of the widths 1, 3, 1.5 px, 3 px has the least bound" in told.text
+    assert "3 px wide" in plan.finding("expected_mtf_nyquist").text
+    single = plan_target(PlanOptions(target="pulse", widths_px=(1.5,), draws=0), ALONE)
+    assert "planned_width_px" not in [found.name for found in single.findings]
+
+
 def test_an_edge_without_simulation_has_bounds_alone():
     plan = plan_target(PlanOptions(draws=0), ALONE)
     assert set(plan.table.columns["varied"]) == {"plan", "rows", "angle"}
@@ -60,6 +73,7 @@ def test_the_simulation_can_refuse():
     ("wrong", "words"),
     [
         ({"rows": (5,)}, "at least 20"),
+        ({"rows": (100_000,)}, "2000 are the most"),
         ({"angles_deg": (0.0,)}, "no sub-pixel phases"),
         ({"widths_px": (80.0,)}, "check the width and the GSD"),
         ({"snr": 0.0}, "above 0"),

@@ -25,14 +25,16 @@ EXAMPLE = (
     "  acutance plan pulse --width-m 8.83 --gsd 2.8 --snr 70 --accuracy 0.005"
 )
 
-_TARGETS: dict[str, Literal["edge", "pulse"]] = {"edge": "edge", "pulse": "pulse"}
-
 
 def plan(
-    target: Annotated[str, typer.Argument(metavar="edge|pulse", help="What is to be laid out.")],
+    context: typer.Context,
     width_px: Annotated[
         str | None,
-        typer.Option(metavar="PX,...", help="Width of the pulse; 3 if not given."),
+        typer.Option(
+            metavar="PX,...",
+            help="Width of the pulse; 3 if not given. Several are compared, and the one with the "
+            "least bound is the plan.",
+        ),
     ] = None,
     width_m: Annotated[
         str | None, typer.Option(metavar="M,...", help="The same in metres; needs a GSD.")
@@ -55,11 +57,17 @@ def plan(
     ] = None,
     rows: Annotated[
         str,
-        typer.Option(metavar="N,...", help="Image rows across the target; several are compared."),
+        typer.Option(
+            metavar="N,...",
+            help="Image rows across the target; several are compared, the first is the plan.",
+        ),
     ] = "40",
     angle: Annotated[
         str,
-        typer.Option(metavar="DEG,...", help="Tilt against the columns; several are compared."),
+        typer.Option(
+            metavar="DEG,...",
+            help="Tilt against the columns; several are compared, the first is the plan.",
+        ),
     ] = "6",
     accuracy: Annotated[
         float | None,
@@ -88,15 +96,14 @@ def plan(
     from acutance.report.study_figures import plan_text, study_figure
     from acutance.studies import PlanOptions, plan_target
 
-    if target not in _TARGETS:
-        raise OptionError(f"acutance plan {target}: it has to be edge or pulse")
+    target: Literal["edge", "pulse"] = "pulse" if context.info_name == "pulse" else "edge"
     if target == "edge" and (width_px is not None or width_m is not None):
         raise OptionError("--width-px and --width-m belong to a pulse: an edge has no width")
     table = check_optional("--csv", csv, (".csv",), keep=(sensor,))
     drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
     system = _sensor(sensor, gsd)
     options = PlanOptions(
-        target=_TARGETS[target], sensor=system, snr=_snr(snr, contrast, noise),
+        target=target, sensor=system, snr=_snr(snr, contrast, noise),
         rows=_whole_numbers("--rows", rows),
         angles_deg=_numbers("--angle", angle), widths_px=_widths(width_px, width_m, system),
         draws=draws, accuracy=accuracy,

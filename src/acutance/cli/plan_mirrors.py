@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from typer.core import TyperGroup
 
 from acutance.cli.output import check_optional
 from acutance.cli.plan import EXAMPLE as TARGETS_EXAMPLE
@@ -23,27 +22,15 @@ EXAMPLE = (
     "\b\nExample:\n"
     "  acutance plan mirrors --count 20 --gsd 0.7 --sensor quickbird-like --csv mirrors.csv"
 )
-_OTHERS = "edge|pulse"
-
-
-class _Targets(TyperGroup):
-    """Edges and pulses are planned by one command, which reads the target's name itself."""
-
-    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[Any, Any, list[str]]:
-        if args[0] == "mirrors":
-            return super().resolve_command(ctx, args)
-        return "", self.commands[_OTHERS], args
-
 
 app = typer.Typer(
-    cls=_Targets,
     no_args_is_help=True,
     rich_markup_mode=None,
-    context_settings={"ignore_unknown_options": True},
     help="Plan a target: the accuracy to expect of it, where its parts have to stand.",
     epilog=f"{TARGETS_EXAMPLE}\n{EXAMPLE.splitlines()[-1]}",
 )
-app.command(_OTHERS, epilog=TARGETS_EXAMPLE)(plan)
+for _name in ("edge", "pulse"):
+    app.command(_name, epilog=TARGETS_EXAMPLE)(plan)
 
 
 @app.command("mirrors", epilog=EXAMPLE)

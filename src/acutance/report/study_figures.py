@@ -82,7 +82,7 @@ def plan_text(result: StudyResult) -> str:
     ]
     caption = [
         "free LSF, shape: bounds of the std of the MTF at Nyquist with a free LSF and with a blur "
-        "of known shape."
+        f"of known shape, both with a fitted line{' and width' if is_pulse else ''}."
     ]
     if simulated:
         caption.append(

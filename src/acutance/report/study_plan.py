@@ -48,10 +48,11 @@ def plan_figure(result: StudyResult) -> Figure:
         for place, name in zip(axes[-1], varied, strict=True):
             place.set_xlabel(_VARIED[name][1])
         axes[0, 0].legend(loc="best")
-        options = result.options
+        width = float(table["target_width_px"][0])
+        across = f" {width:.3g} px wide" if np.isfinite(width) else ""
         figure.suptitle(
-            f"{result.title}: {options.rows[0]} rows at {options.angles_deg[0]:g}°, "
-            f"SNR {options.snr:g}",
+            f"{result.title}: {table['rows'][0]:.0f} rows{across} at {table['angle_deg'][0]:g}°, "
+            f"SNR {result.options.snr:g}",
             fontsize=12.5, fontweight="bold", x=0.01, ha="left",
         )  # fmt: skip
         return figure

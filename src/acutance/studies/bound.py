@@ -9,8 +9,13 @@ Two bounds, for white noise:
 - of a free LSF: nothing is known of the LSF but that it ends within a window. For an edge
   ``std M(f) = 2 pi f sqrt(W / (2 n)) / SNR``, for a pulse, whose response is divided by that of
   the ground, ``pi f / |sin(pi w f)| sqrt(W / (2 n)) / SNR``, with W the window's length and n
-  the samples per pixel of distance: the rows over the cosine of the angle. Estimators that use
-  the smoothness of real LSFs come below it.
+  the samples per pixel of distance: the rows over the cosine of the angle. A fitted line costs
+  nothing to first order: a turn about the target's middle looks like no change of the LSF. A
+  fitted width costs its own standard deviation, here the least it can have (that of the known
+  shape), times what it does to the ratio of the spectra, ``M (pi f cot(pi w f) - 1 / w)``. A
+  known shape is one of the free ones, so this bound is nowhere below the other.
+
+Estimators that use the smoothness of real LSFs come below the second bound, none below the first.
 """
 
 from __future__ import annotations
@@ -20,11 +25,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.fit.blur import Blur
+from acutance.measure.pulse_spectrum import width_sensitivity_per_px
 from acutance.optics import Sensor
 from acutance.optics.sensor import DISTANCE_PX, FREQ_CPP
 
@@ -32,6 +39,7 @@ __all__ = ["Design", "MetricBound", "equivalent_blur", "free_bound", "shape_boun
 
 _STEP_PX = 1e-4
 _ZERO = 1e-9
+_PIXELS_AT_ONCE = 100_000
 
 
 @dataclass(frozen=True)
@@ -95,10 +103,10 @@ def shape_bound(blur: Blur, design: Design, snr: float) -> MetricBound:
     snr : float
         Height of the target over the noise's standard deviation.
     """
-    jacobian = _jacobian(blur, design)
-    scale = np.linalg.norm(jacobian, axis=1, keepdims=True)
-    covariance = np.linalg.inv((jacobian / scale) @ (jacobian / scale).T)
-    std = np.sqrt(np.diag(covariance)) / scale[:, 0] / snr
+    information = _information(blur, design)
+    scale = np.sqrt(np.diag(information))
+    covariance = np.linalg.inv(information / np.outer(scale, scale))
+    std = np.sqrt(np.diag(covariance)) / scale / snr
     by_sigma = (
         _numbers(Blur(blur.sigma_px + _STEP_PX)) - _numbers(Blur(blur.sigma_px - _STEP_PX))
     ) / (2 * _STEP_PX)
@@ -107,28 +115,46 @@ def shape_bound(blur: Blur, design: Design, snr: float) -> MetricBound:
     return MetricBound(mtf, rer, fwhm, width)
 
 
-def free_bound(design: Design, snr: float, window_px: float = 10.0) -> float:
-    """Bound of the MTF at Nyquist with a free LSF.
+def free_bound(blur: Blur, design: Design, snr: float, window_px: float = 10.0) -> float:
+    """Bound of the MTF at Nyquist with a free LSF, line and width.
 
     Parameters
     ----------
+    blur : Blur
+        The true LSF, which the estimator does not know.
     design : Design
     snr : float
     window_px : float, optional
         Length of the window the LSF, or the pulse's response, lies in.
     """
+    shape = shape_bound(blur, design, snr)
     samples = design.rows / math.cos(math.radians(design.angle_deg))
     per_edge = math.sqrt(window_px / (2 * samples)) / snr
     if design.target == "edge":
-        return 2 * math.pi * NYQUIST_CPP * per_edge
+        return max(2 * math.pi * NYQUIST_CPP * per_edge, shape.mtf_nyquist)
     lobe = abs(math.sin(math.pi * design.width_px * NYQUIST_CPP))
-    return math.pi * NYQUIST_CPP / lobe * per_edge if lobe > _ZERO else math.inf
+    if lobe < _ZERO:
+        return math.inf
+    mtf = float(blur.otf(np.array([NYQUIST_CPP]))[0])
+    by_width = mtf * float(width_sensitivity_per_px(design.width_px, NYQUIST_CPP))
+    by_noise = math.pi * NYQUIST_CPP / lobe * per_edge
+    return max(math.hypot(by_noise, by_width * shape.width_px), shape.mtf_nyquist)
 
 
-def _jacobian(blur: Blur, design: Design) -> Floats:
-    """Derivatives of the image by level, height, offset, turn, sigma, and width and fall."""
+def _information(blur: Blur, design: Design) -> Floats:
+    """Information matrix of all unknowns at an SNR of 1, some rows of the image at a time."""
+    at_once = max(1, _PIXELS_AT_ONCE // design.cols)
+    parts = (
+        _jacobian(blur, design, np.arange(first, min(first + at_once, design.rows)))
+        for first in range(0, design.rows, at_once)
+    )
+    return np.asarray(sum(part @ part.T for part in parts))
+
+
+def _jacobian(blur: Blur, design: Design, rows: NDArray[np.int_]) -> Floats:
+    """Derivatives of some rows by level, height, offset, turn, sigma, and width and fall."""
     angle = math.radians(design.angle_deg)
-    row = np.arange(design.rows)[:, None] - 0.5 * (design.rows - 1)
+    row = rows[:, None] - 0.5 * (design.rows - 1)
     col = np.arange(design.cols)[None, :] - 0.5 * (design.cols - 1)
     s = (math.cos(angle) * col + math.sin(angle) * row).ravel()
     t = (math.cos(angle) * row - math.sin(angle) * col).ravel()

@@ -24,13 +24,17 @@ __all__ = ["PLAN_METRICS", "PlanOptions", "plan_target"]
 PLAN_METRICS = ("mtf_nyquist", "rer", "fwhm_px", "width_px")
 _ROWS_SHARES = (0.5, 1.0, 1.5, 2.0)
 _FEWEST_ROWS = 20
+_MOST_ROWS = 2000
 _ROOM_PX = 10.0
 _OVER_THE_BEST = 0.1
 
 
 @dataclass(frozen=True)
 class PlanOptions:
-    """What is planned, and what it is varied by; the first of each tuple is the plan itself.
+    """What is planned, and what it is varied by.
+
+    The first number of rows and the first angle are the plan itself; of several widths it is
+    the one with the least bound of a free LSF.
 
     Parameters
     ----------
@@ -39,7 +43,7 @@ class PlanOptions:
     snr : float
         Height of the target over the standard deviation of the noise.
     rows : tuple of int
-        Image rows that cross the target. A single number is varied from half to twice.
+        Image rows that cross the target, 20 to 2000. A single number is varied from half to twice.
     angles_deg : tuple of float
         Tilts against the image's columns. A single number is compared with the usual ones.
     widths_px : tuple of float
@@ -75,9 +79,11 @@ class PlanOptions:
                 "draws (--draws) is 1: a single simulated image says nothing of the scatter; ask "
                 "for 2 or more, or for 0 to have the bounds alone"
             )
-        if not self.rows or min(self.rows) < _FEWEST_ROWS:
+        if not self.rows or min(self.rows) < _FEWEST_ROWS or max(self.rows) > _MOST_ROWS:
             raise OptionError(
-                f"rows are {self.rows}: a target needs at least {_FEWEST_ROWS} to be measured"
+                f"rows (--rows) are {self.rows}: a target needs at least {_FEWEST_ROWS} to be "
+                f"measured, and {_MOST_ROWS} are the most that are planned; beyond, deviations "
+                "fall with the square root of the rows"
             )
         if not self.angles_deg or not all(0 < angle <= 30 for angle in self.angles_deg):
             raise OptionError(
@@ -128,21 +134,35 @@ def plan_target(
 
 def _designs(options: PlanOptions) -> Iterator[tuple[str, Design]]:
     """The plan, then every design that differs from it in one thing, by that thing's name."""
-    rows, angle, width = options.rows[0], options.angles_deg[0], options.widths_px[0]
+    rows, angle, width = options.rows[0], options.angles_deg[0], _planned_width(options)
     is_pulse = options.target == "pulse"
     plan = Design(options.target, rows, angle, width if is_pulse else math.nan)
     yield "plan", _wide_enough(plan, options.sensor)
     more_rows = options.rows[1:] or [
-        max(_FEWEST_ROWS, round(share * rows)) for share in _ROWS_SHARES
+        min(max(_FEWEST_ROWS, round(share * rows)), _MOST_ROWS) for share in _ROWS_SHARES
     ]
     more_angles = options.angles_deg[1:] or (2.0, 4.0, 6.0, 8.0, 11.0, 14.0)
-    more_widths = options.widths_px[1:] or (1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
+    single = len(options.widths_px) == 1
+    more_widths = (1.5, 2.0, 2.5, 3.0, 3.5, 4.0) if single else options.widths_px
     for count in sorted({rows, *more_rows}):
         yield "rows", _wide_enough(replace(plan, rows=count), options.sensor)
     for tilt in sorted({angle, *more_angles}):
         yield "angle", _wide_enough(replace(plan, angle_deg=tilt), options.sensor)
     for size in sorted({width, *more_widths}) if is_pulse else ():
         yield "width", _wide_enough(replace(plan, width_px=size), options.sensor)
+
+
+def _planned_width(options: PlanOptions) -> float:
+    """Of several widths the one with the least bound of a free LSF, in pixels."""
+    rows, angle = options.rows[0], options.angles_deg[0]
+    blur = equivalent_blur(options.sensor, angle)
+
+    def bound(width: float) -> float:
+        design = _wide_enough(Design("pulse", rows, angle, width), options.sensor)
+        return free_bound(blur, design, options.snr, options.window_px)
+
+    several = len(options.widths_px) > 1 and options.target == "pulse"
+    return min(options.widths_px, key=bound) if several else options.widths_px[0]
 
 
 def _wide_enough(design: Design, sensor: Sensor) -> Design:
@@ -185,14 +205,15 @@ def measure_plan_trial(options: PlanOptions, design: Design, rng: np.random.Gene
 
 def _row(options: PlanOptions, design: Design, records: list[Record]) -> dict[str, Cell]:
     gsd_m = options.sensor.gsd_along_normal_m(design.angle_deg) or math.nan
-    bound = shape_bound(equivalent_blur(options.sensor, design.angle_deg), design, options.snr)
+    blur = equivalent_blur(options.sensor, design.angle_deg)
+    bound = shape_bound(blur, design, options.snr)
     row: dict[str, Cell] = {
         "rows": design.rows,
         "length_m": design.rows * gsd_m / math.cos(math.radians(design.angle_deg)),
         "angle_deg": design.angle_deg,
         "target_width_px": design.width_px,
         "target_width_m": design.width_px * gsd_m,
-        "mtf_nyquist_free": free_bound(design, options.snr, options.window_px),
+        "mtf_nyquist_free": free_bound(blur, design, options.snr, options.window_px),
     }
     for name in PLAN_METRICS:
         error = np.array([record[f"{name}_error"] for record in records])
@@ -216,12 +237,24 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
     expected = float(table[kind][0])
     rows = int(table["rows"][0])
     how = "rms error of our estimator" if simulated else "bound of a free LSF"
-    design = f"{rows} rows at {options.angles_deg[0]:g} deg and an SNR of {options.snr:g}"
+    width = float(table["target_width_px"][0])
+    across = "" if math.isnan(width) else f" {width:.3g} px wide"
+    design = f"{rows} rows{across} at {options.angles_deg[0]:g} deg and an SNR of {options.snr:g}"
     if math.isfinite(expected):
         answer = f"MTF at Nyquist: {expected:.4f} ({how}) from {design}"
     else:
         answer = f"MTF at Nyquist: no number ({how}) from {design}: choose another design"
     found = [Finding("expected_mtf_nyquist", expected, answer)]
+    if len(options.widths_px) > 1 and options.target == "pulse":
+        listed = ", ".join(f"{one:.3g}" for one in options.widths_px)
+        found.append(
+            Finding(
+                "planned_width_px",
+                width,
+                f"plan: of the widths {listed} px, {width:.3g} px has the least bound of a free "
+                "LSF and is taken; name one alone to plan another",
+            )
+        )
     if options.accuracy is not None and math.isfinite(expected):
         needed = math.ceil(rows * (expected / options.accuracy) ** 2)
         found.append(
