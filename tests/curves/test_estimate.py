@@ -9,7 +9,7 @@ def test_prints_two_digits_of_the_standard_deviation() -> None:
     assert str(Estimate(0.15112, 0.0032)) == "0.1511 ± 0.0032"
     assert str(Estimate(1.4567, 0.12)) == "1.46 ± 0.12"
     assert str(Estimate(12.3, 4.0)) == "12.3 ± 4.0"
-    assert str(Estimate(0.0, 1e-15)) == "0.000000 ± 0.000000"
+    assert str(Estimate(0.0, 1e-15)) == "0.000000 ± 1e-15"
     assert str(Estimate(0.25)) == "0.2500"
     assert str(Estimate(math.nan, math.nan)) == "undefined"
 

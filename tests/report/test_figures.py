@@ -162,6 +162,16 @@ def test_nothing_overlaps_and_nothing_leaves_the_page(measurement, compared, tru
         assert not outside(figure), name
 
 
+def test_a_long_path_is_shortened_in_the_titles(make_edge, compared):
+    path = "/".join(["W" * 29] * 5) + "/scene.tif"
+    long = make_edge(path=path)
+    others = [replace(one, image=long.image) for one in compared]
+    for figure in (edge_figure(long), comparison_figure(others)):
+        assert not outside(figure)
+        assert "/scene.tif, band 1" in texts(figure)
+        assert path not in texts(figure)
+
+
 def test_the_check_for_overlaps_sees_one(measurement):
     figure = panel_figures(measurement)["lsf"]
     axes = figure.axes[0]

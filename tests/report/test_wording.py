@@ -11,6 +11,7 @@ from acutance.report.wording import (
     flatten_options,
     format_number,
     metric_words,
+    shorten_name,
     split_message,
     verdict,
     word_estimate,
@@ -24,10 +25,21 @@ def test_an_estimate_gets_two_digits_of_its_standard_deviation():
     assert words.interval == "0.1448 … 0.1574"
 
 
+def test_a_standard_deviation_too_small_for_decimals_is_told():
+    words = word_estimate(Estimate(0.28911, 8.2e-10))
+    assert words.value_and_std == "0.289110 ± 8e−10"
+    assert words.interval == "0.289110 … 0.289110"
+    assert word_estimate(Estimate(0.0, 8e-10)).interval == "0.000000 … 0.000000"
+
+
+def test_long_names_are_shortened_in_the_middle():
+    assert shorten_name("scene.tif", 9) == "scene.tif"
+    assert shorten_name("/data/campaigns/2026/brookings/scene.tif", 20) == "/data/…ngs/scene.tif"
+
+
 def test_a_truth_has_no_interval_and_an_undefined_number_says_so():
     assert word_estimate(Estimate(0.28911)).value_and_std == "0.2891"
     assert word_estimate(Estimate(0.28911)).interval == "–"
-    assert word_estimate(Estimate(0.0, 1e-9)).value_and_std == "0.0000"
     assert word_estimate(Estimate(math.nan, math.nan)).value_and_std == "undefined"
 
 

@@ -83,5 +83,7 @@ class Estimate:
             return "undefined"
         if not (self.std > 0 and math.isfinite(self.std)):
             return f"{self.value:.4f}"
+        if self.std < 10.0**-_MAX_DIGITS:
+            return f"{self.value:.{_MAX_DIGITS}f} ± {self.std:.0e}"
         digits = min(max(0, 1 - math.floor(math.log10(self.std))), _MAX_DIGITS)
         return f"{self.value:.{digits}f} ± {self.std:.{digits}f}"

@@ -10,7 +10,7 @@ import numpy as np
 
 from acutance.curves import Estimate
 from acutance.report.grids import write_grid
-from acutance.report.page import INK, PALETTE, new_page, split_page, styled
+from acutance.report.page import INK, NAME_WITH_ROOM, PALETTE, new_page, split_page, styled
 from acutance.report.panels import TOP_BESIDE_ZEROS, band_edges, mark_frequencies, mark_zeros
 from acutance.report.wording import MISSING, describe_image, metric_words, numbers_of, word_estimate
 
@@ -74,7 +74,8 @@ def comparison_figure(
         numbers = {label: numbers_of(one) for label, one in zip(labels, measurements, strict=True)}
         _write_comparison(lower.subplots(), numbers, true_numbers(truth, true_width_px))
         figure.suptitle(
-            f"One target measured by {len(labels)} methods: {describe_image(measurements[0])}",
+            f"One target measured by {len(labels)} methods\n"
+            f"{describe_image(measurements[0], NAME_WITH_ROOM)}",
             x=0.012,
             ha="left",
             fontsize=11,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from acutance.report.grids import FONT_SIZE, ROW_HEIGHT, write_below, write_grid
-from acutance.report.page import INK, VERMILION, new_page, split_page, styled
+from acutance.report.page import INK, NAME_WITH_ROOM, VERMILION, new_page, split_page, styled
 from acutance.report.panels import draw_cut, draw_esf, draw_lsf, draw_mtf, draw_residuals
 from acutance.report.pulse_panels import draw_prf
 from acutance.report.wording import (
@@ -57,7 +57,7 @@ def edge_figure(measurement: Measurement) -> Figure:
         figure.suptitle(
             f"{measurement.kind.capitalize()} by {measurement.method}, "
             f"{measurement.orientation}: {describe_line(measurement)}\n"
-            f"{describe_image(measurement)}",
+            f"{describe_image(measurement, NAME_WITH_ROOM)}",
             x=0.012,
             ha="left",
             fontsize=11,

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 __all__ = [
     "FIGURE_ENDINGS",
     "INK",
+    "NAME_WITH_ROOM",
     "PALETTE",
     "figure_bytes",
     "new_page",
@@ -33,6 +34,9 @@ BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY = (
 )
 PALETTE = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
 INK, FAINT, SHADE = "#1b2530", "#66717d", "#eceff2"
+
+NAME_WITH_ROOM = 48
+"""Characters of a file's name that have room in the title of a page 13 inches wide."""
 
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from acutance.report.grids import FONT_SIZE, ROW_HEIGHT, write_below, write_grid
-from acutance.report.page import INK, VERMILION, new_page, split_page, styled
+from acutance.report.page import INK, NAME_WITH_ROOM, VERMILION, new_page, split_page, styled
 from acutance.report.plane_panels import (
     PlanePanel,
     draw_plane_lsf,
@@ -105,7 +105,7 @@ def plane_figure(measurement: Measurement2d, extra_panels: Sequence[PlanePanel] 
         plane.draw(map_)
         _write_checks(checks.subplots(), measurement, words[1])
         figure.suptitle(
-            f"{describe_plane(measurement)}\n{describe_plane_image(measurement)}",
+            f"{describe_plane(measurement)}\n{describe_plane_image(measurement, NAME_WITH_ROOM)}",
             x=0.012, ha="left", fontsize=11,
         )  # fmt: skip
     return figure

@@ -27,6 +27,7 @@ __all__ = [
     "format_number",
     "metric_words",
     "numbers_of",
+    "shorten_name",
     "split_message",
     "verdict",
     "word_estimate",
@@ -127,15 +128,18 @@ class NumberWords:
 def word_estimate(estimate: Estimate) -> NumberWords:
     """Write an estimate with two significant digits of its standard deviation.
 
-    A truth, which has no standard deviation (or one too small to be written), gets four decimals
-    and no interval.
+    A truth, which has no standard deviation, gets four decimals and no interval. A standard
+    deviation too small for decimals is written as a power of ten.
     """
     if not math.isfinite(estimate.value):
         return NumberWords("undefined", MISSING, MISSING, MISSING)
-    if not (math.isfinite(estimate.std) and estimate.std >= SMALLEST_STD):
+    if not (math.isfinite(estimate.std) and estimate.std > 0):
         return NumberWords(f"{estimate.value:.4f}", MISSING, MISSING, MISSING)
     digits = min(max(0, 1 - math.floor(math.log10(estimate.std))), 7)
     low, high = estimate.interval(0.95)
+    if estimate.std < SMALLEST_STD:
+        value, least, most = (write_fixed(part, 6) for part in (estimate.value, low, high))
+        return NumberWords(value, f"{estimate.std:.0e}".replace("-", "−"), least, most)
     parts = (estimate.value, estimate.std, low, high)
     return NumberWords(*(write_fixed(part, digits) for part in parts))
 
@@ -164,11 +168,19 @@ def count_edges(count: int) -> str:
     return f"{count} edge" if count == 1 else f"{count} edges"
 
 
-def describe_image(measurement: Measurement) -> str:
-    """Where the pixels came from, in one line."""
+def shorten_name(name: str, most: int | None) -> str:
+    """A name of at most `most` characters: a longer one keeps its beginning and its end."""
+    if most is None or len(name) <= most:
+        return name
+    end = 2 * most // 3
+    return f"{name[: most - end - 1]}…{name[-end:]}"
+
+
+def describe_image(measurement: Measurement, most_name: int | None = None) -> str:
+    """Where the pixels came from, in one line; names longer than `most_name` are shortened."""
     image = measurement.image
     row, col, height, width = image.roi
-    parts = [image.path or "array in memory", f"band {image.band}"]
+    parts = [shorten_name(image.path or "array in memory", most_name), f"band {image.band}"]
     parts.append(f"rows {row}–{row + height - 1}, columns {col}–{col + width - 1}")
     gsd_m = measurement.response.gsd_m
     if gsd_m is not None:
@@ -186,16 +198,16 @@ def describe_plane(measurement: Measurement2d) -> str:
     return ", ".join(parts)
 
 
-def describe_plane_image(measurement: Measurement2d) -> str:
-    """Where the pixels of a 2-D measurement came from, in one line."""
+def describe_plane_image(measurement: Measurement2d, most_name: int | None = None) -> str:
+    """Where the pixels of a 2-D measurement came from, in one line; see `describe_image`."""
     image = measurement.image
     row, col, height, width = image.roi
     if height and width:
-        parts = [image.path or "array in memory", f"band {image.band}"]
+        parts = [shorten_name(image.path or "array in memory", most_name), f"band {image.band}"]
         parts.append(f"rows {row}–{row + height - 1}, columns {col}–{col + width - 1}")
     else:
         # A combination has no pixels of its own.
-        parts = [image.path or "several images"]
+        parts = [shorten_name(image.path or "several images", most_name)]
     gsd_m = measurement.otf.gsd_m
     if gsd_m is not None:
         same = format_number(gsd_m[0]) == format_number(gsd_m[1])
