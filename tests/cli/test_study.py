@@ -104,7 +104,8 @@ def test_a_pulse_is_planned_in_metres(acutance):
     document = json.loads(done.stdout)
     assert document["options"]["snr"] == 50
     table = document["tables"]["plan"]
-    assert table["target_width_m"][0] == pytest.approx(8.83)
+    # Of two widths the better is planned: 8.4 m are three pixels.
+    assert table["target_width_m"][0] == pytest.approx(8.4)
     assert set(table["varied"]) == {"plan", "rows", "angle", "width"}
 
 
@@ -131,6 +132,5 @@ def test_impossible_plans_are_refused(acutance, words, message):
 
 @pytest.mark.parametrize("target", ["edge", "pulse", "mirrors"])
 def test_the_usage_of_a_plan_names_its_command(acutance, target):
-    assert acutance("plan", target, "--help").stdout.startswith(
-        f"Usage: acutance plan {target} [OPTIONS]\n"
-    )
+    usage = acutance("plan", target, "--help").stdout.splitlines()[0]
+    assert usage.endswith(f" plan {target} [OPTIONS]")
