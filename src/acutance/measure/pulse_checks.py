@@ -85,6 +85,8 @@ class PulseChecks(TargetChecks):
             checks.phases(seen, limits),
             checks.enough_rows(self.extent, limits),
             checks.straightness(seen, limits),
+            structure_checks.ragged(seen, limits),
+            checks.lsf_width(seen, limits),
             checks.plateau(limits, "before", self.extent.dark_px),
             checks.plateau(limits, "behind", self.extent.bright_px),
             pixel_checks.saturation(self.cut, self.band, seen, limits),
