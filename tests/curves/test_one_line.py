@@ -50,7 +50,8 @@ def test_a_measurement_tells_its_numbers_and_its_failed_checks(edge):
         == str(m)
         == (
             f"<Measurement: edge by spline, across, mtf_nyquist {m.mtf_nyquist}, rer {m.rer}, "
-            f"fwhm_px {m.fwhm_px}, snr {m.snr:.3g}, 1 of 17 checks failed (contrast_snr)>"
+            f"fwhm_px {m.fwhm_px}, snr {m.snr:.3g}, "
+            f"1 of {len(m.checks)} checks failed (contrast_snr)>"
         )
     )
 
@@ -80,5 +81,5 @@ def test_measurements_over_the_plane_print_both_directions():
     image, truth = ac.simulate.star(SENSOR, snr=100, rng=np.random.default_rng(4))
     m = ac.measure_star(image, cycles=truth.star.cycles)
     assert f"across: {m.across.in_words()}, along: {m.along.in_words()}, " in repr(m)
-    assert "of 9 checks failed" in repr(m)
+    assert f"of {len(m.checks)} checks failed" in repr(m)
     assert len(repr(truth)) < 200
