@@ -88,6 +88,67 @@ def test_a_campaign(render):
     assert np.array(truth["edges"]["vertical"]["region"]).shape == (4, 2)
 
 
+def test_a_checkerboard(render, acutance):
+    image, truth, result = render(
+        "checkerboard",
+        "--tile",
+        30,
+        "--turn",
+        -5,
+        "--size",
+        "130,120",
+        "--snr",
+        100,
+        "--quantum",
+        1,
+    )
+    assert image.shape == (130, 120)
+    assert truth["schema"] == "acutance/scene/1"
+    assert set(truth["edges"]) == {"upper", "lower", "left", "right"}
+    assert truth["edges"]["left"]["truth"]["noise"]["read"] == pytest.approx(10.0)
+    assert np.array_equal(image.read(), np.round(image.read()))
+    assert result.stdout.count("true MTF at Nyquist") == 4
+    refused = acutance("simulate", "checkerboard", "--tile", 90, "--out", "board.tif")
+    assert refused.exit_code == 2
+    assert "use smaller tiles" in refused.stderr
+
+
+@pytest.mark.parametrize("kind", ["edge", "pulse", "bars", "star", "points", "site"])
+def test_every_target_can_have_shot_noise_steps_and_a_limit(render, kind):
+    words = ("--read-noise", 3, "--shot-gain", 0.5, "--quantum", 4, "--saturation", 900)
+    image, truth, _ = render(kind, *words, "--sensor", "generic-2005")
+    pixels = image.read()
+    assert pixels.max() <= 900
+    assert np.array_equal(pixels % 4, np.zeros_like(pixels))
+    if kind != "site":
+        expected = {"read": 3.0, "shot_gain": 0.5, "quantum": 4.0, "saturation": 900.0}
+        assert truth["noise"] == expected
+
+
+def test_shot_noise_grows_with_the_signal(render):
+    image, _, _ = render("edge", "--shot-gain", 1, "--size", "200,60", "--sensor", "generic-2005")
+    pixels = image.read()
+    # 200 and 1200 DN at one DN an electron: 14.1 and 34.6 DN.
+    assert pixels[:, :15].std() == pytest.approx(200**0.5, rel=0.06)
+    assert pixels[:, -15:].std() == pytest.approx(1200**0.5, rel=0.06)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("pulse", "--width", 200), "use a larger image (--size)"),
+        (("pulse", "--size", "1,1"), "use a larger image (--size)"),
+        (("edge", "--snr", 50, "--read-noise", 3), "give one of them"),
+        (("edge", "--read-noise", -3), "read is -3"),
+    ],
+)
+def test_what_shows_no_target_or_contradicts_itself_is_refused(acutance, tmp_path, words, message):
+    result = acutance("simulate", *words, "--out", tmp_path / "a.tif")
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_field_of_tarps(render):
     image, truth, result = render("site", "--targets", 9, "--size", "300,310", "--texture", 0)
     assert image.shape == (300, 310)

@@ -96,6 +96,17 @@ def test_a_wrong_width_is_detected_and_does_not_hurt():
     assert held.width_px.std == 0
 
 
+@pytest.mark.parametrize("stated", [8.0, 20.0])
+def test_a_width_that_finds_no_strip_is_set_beside_the_one_that_is_seen(stated):
+    image, _ = simulated(shape=(60, 60))
+    with pytest.raises(ac.TargetError, match=r"a strip of about 3\.\d\d px where .* were stated"):
+        ac.measure_pulse(image, width_px=stated)
+    noise = np.random.default_rng(0).normal(100, 5, (50, 50))
+    with pytest.raises(ac.TargetError) as refused:
+        ac.measure_pulse(noise, width_px=stated)
+    assert "were stated" not in str(refused.value)
+
+
 def test_a_zero_at_nyquist_does_not_spoil_the_joint_fit():
     image, truth = simulated(width_px=4.0, snr=100.0, shape=(60, 60))
     m = ac.measure_pulse(image, width_px=4.0)

@@ -7,6 +7,7 @@ import pytest
 
 from acutance.errors import ModelError, OptionError
 from acutance.simulate import (
+    Noise,
     bars,
     brookings,
     checkerboard,
@@ -152,3 +153,27 @@ def test_a_pair_shows_the_same_ground(change, message):
 def test_arguments_of_the_wrong_kind_are_refused_by_name(render, message):
     with pytest.raises(OptionError, match=message):
         render()
+
+
+@pytest.mark.parametrize(
+    "described",
+    [
+        {"width_px": 200.0},
+        {"shape": (1, 1)},
+        {"offset_px": 25.0},
+        {"width_px": 70.0, "orientation": "along"},
+    ],
+)
+def test_an_image_without_the_sides_of_its_pulse_is_refused(described):
+    with pytest.raises(ModelError, match=r"the sides of the pulse lie .* use a larger image"):
+        pulse(SENSOR, **described)
+
+
+def test_an_snr_goes_with_noise_that_leaves_the_strength_open():
+    image, truth = edge(SENSOR, snr=100.0, noise=Noise(quantum=1.0), rng=np.random.default_rng(1))
+    assert (truth.noise.read, truth.noise.quantum) == (10.0, 1.0)
+    assert np.array_equal(image, np.round(image))
+    with pytest.raises(ModelError, match="both say how strong the white noise is"):
+        edge(SENSOR, snr=100.0, noise=Noise(read=3.0), rng=np.random.default_rng(1))
+    with pytest.raises(ModelError, match="saturation is nan"):
+        Noise(saturation=NAN)

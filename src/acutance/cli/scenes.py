@@ -1,13 +1,13 @@
-"""``acutance simulate pulse | bars | star | points | site``: the image, and its truth beside it."""
+"""``acutance simulate pulse | bars | star | points``: the image, and its truth beside it."""
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from acutance.cli.noise import Quantum, ReadNoise, Saturation, ShotGain, Snr, described_noise
 from acutance.cli.output import OutputFile, check_output
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.cli.terminal import say
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EXAMPLES",
+    "Out",
     "Seed",
     "SimulatedFiles",
     "bars",
     "parse_size",
     "points",
     "pulse",
-    "site",
     "star",
 ]
 
@@ -34,8 +34,6 @@ EXAMPLES = {
     "bars": "  acutance simulate bars --periods 8,4,3,2 --angle 6 --out bars.tif",
     "star": "  acutance simulate star --square --sensor my-sensor.toml --out star.tif",
     "points": "  acutance simulate points --peak 1500 --snr 80 --out mirrors.tif",
-    "site": "  acutance simulate site --out site.tif\n"
-    "  acutance simulate site --targets 1000 --size 4000,4000 --out scene.tif",
 }
 
 Out = Annotated[
@@ -48,10 +46,6 @@ Angle = Annotated[
 Along = Annotated[bool, typer.Option("--along", help="Nearly horizontal: the MTF along track.")]
 Dark = Annotated[float, typer.Option(metavar="DN", help="Level of the ground.")]
 Bright = Annotated[float, typer.Option(metavar="DN", help="Level of the target.")]
-Snr = Annotated[
-    float | None,
-    typer.Option(metavar="RATIO", help="Contrast over noise; no noise if not given."),
-]
 Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")]
 
 
@@ -129,6 +123,10 @@ def pulse(
     ] = None,
     bright: Bright = 1200.0,
     snr: Snr = None,
+    read_noise: ReadNoise = None,
+    shot_gain: ShotGain = None,
+    quantum: Quantum = None,
+    saturation: Saturation = None,
     ground_noise: Annotated[
         bool,
         typer.Option("--ground-noise", help="Uneven ground: 20 grains of variance 100 each."),
@@ -155,6 +153,7 @@ def pulse(
         right_dark=right_dark,
         bright=bright,
         snr=snr,
+        noise=described_noise(read_noise, shot_gain, quantum, saturation),
         ground_noise=simulate.GroundNoise() if ground_noise else None,
         rng=np.random.default_rng(seed),
     )
@@ -194,6 +193,10 @@ def bars(
     dark: Dark = 200.0,
     bright: Bright = 1200.0,
     snr: Snr = None,
+    read_noise: ReadNoise = None,
+    shot_gain: ShotGain = None,
+    quantum: Quantum = None,
+    saturation: Saturation = None,
     seed: Seed = 0,
 ) -> None:
     """Render groups of bars below one another."""
@@ -218,6 +221,7 @@ def bars(
         dark=dark,
         bright=bright,
         snr=snr,
+        noise=described_noise(read_noise, shot_gain, quantum, saturation),
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, system, target_truth_document(truth, system), seed)
@@ -241,6 +245,10 @@ def star(
     dark: Annotated[float, typer.Option(metavar="DN", help="Lowest level of the spokes.")] = 200.0,
     bright: Annotated[float, typer.Option(metavar="DN", help="Highest level.")] = 1200.0,
     snr: Snr = None,
+    read_noise: ReadNoise = None,
+    shot_gain: ShotGain = None,
+    quantum: Quantum = None,
+    saturation: Saturation = None,
     seed: Seed = 0,
 ) -> None:
     """Render a Siemens star."""
@@ -262,6 +270,7 @@ def star(
         dark=dark,
         bright=bright,
         snr=snr,
+        noise=described_noise(read_noise, shot_gain, quantum, saturation),
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, system, target_truth_document(truth, system), seed)
@@ -281,8 +290,12 @@ def points(
     background: Annotated[float, typer.Option(metavar="DN", help="Level of the ground.")] = 200.0,
     snr: Annotated[
         float | None,
-        typer.Option(metavar="RATIO", help="Peak over noise; no noise if not given."),
+        typer.Option(metavar="RATIO", help="Peak over noise; no noise if nothing says it."),
     ] = None,
+    read_noise: ReadNoise = None,
+    shot_gain: ShotGain = None,
+    quantum: Quantum = None,
+    saturation: Saturation = None,
     seed: Seed = 0,
 ) -> None:
     """Render an array of mirrors."""
@@ -306,6 +319,7 @@ def points(
         peak=peak,
         background=background,
         snr=snr,
+        noise=described_noise(read_noise, shot_gain, quantum, saturation),
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, system, target_truth_document(truth, system), seed)
@@ -313,56 +327,3 @@ def points(
     typer.echo(
         f"{len(truth.positions)} mirrors, true MTF at Nyquist {across} across, {along} along"
     )
-
-
-def site(
-    out: Out,
-    sensor: SensorName = "generic-2005",
-    targets: Annotated[
-        int | None,
-        typer.Option(metavar="N", min=1, help="Fill the image with N tarps, no campaign."),
-    ] = None,
-    size: Annotated[
-        str | None,
-        typer.Option(metavar="ROWS,COLS", help="Size of the image, with --targets; 1000,1000."),
-    ] = None,
-    turn: Annotated[float, typer.Option(metavar="DEG", help="Turn of the targets.")] = 6.0,
-    texture: Annotated[
-        float, typer.Option(metavar="DN", help="Standard deviation of the grass.")
-    ] = 14.0,
-    read_noise: Annotated[
-        float, typer.Option(metavar="DN", help="Standard deviation of the noise.")
-    ] = 8.0,
-    seed: Seed = 0,
-) -> None:
-    """Render a campaign on grass: edge and pulse tarps, mirrors, bars, a star."""
-    if size is not None and targets is None:
-        raise OptionError(
-            f"--size {size} belongs to --targets: the campaign has a size of its own, leave it out"
-        )
-    files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor)
-    shape = parse_size(size or "1000,1000")
-
-    import numpy as np
-
-    from acutance import simulate
-    from acutance.report.scene_truth import scene_document
-
-    rng, noise = np.random.default_rng(seed), simulate.Noise(read=read_noise)
-    if targets is None:
-        scene = simulate.brookings(system, rng, turn_deg=turn, texture_std=texture, noise=noise)
-    else:
-        tarps = simulate.tarp_rows(shape, targets, turn_deg=turn)
-        with typer.progressbar(length=targets, label="rendering", file=sys.stderr) as bar:
-            scene = simulate.render_site(
-                system,
-                tarps,
-                shape,
-                texture_std=texture,
-                noise=noise,
-                rng=rng,
-                progress=lambda done, total: bar.update(1),
-                description=f"{targets} tarps on grass, turned by {turn:g} deg",
-            )
-    files.write(scene.image, system, scene_document(scene), seed)
-    typer.echo(f"{scene.description}: {len(scene.edges)} edges, {len(scene.targets)} other targets")

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from acutance.cli import scenes, simulate_pair
+from acutance.cli import scenes, simulate_pair, simulate_site
+from acutance.cli.noise import Quantum, ReadNoise, Saturation, ShotGain, Snr, described_noise
 from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
 from acutance.cli.sensor import BUDGET_EXAMPLE, named_sensor, sensor_budget
 from acutance.errors import OptionError
@@ -97,10 +98,11 @@ def edge(
     ] = "60,40",
     dark: Annotated[float, typer.Option(metavar="DN", help="Level of the dark side.")] = 200.0,
     bright: Annotated[float, typer.Option(metavar="DN", help="Level of the bright side.")] = 1200.0,
-    snr: Annotated[
-        float | None,
-        typer.Option(metavar="RATIO", help="Contrast over noise; no noise if not given."),
-    ] = None,
+    snr: Snr = None,
+    read_noise: ReadNoise = None,
+    shot_gain: ShotGain = None,
+    quantum: Quantum = None,
+    saturation: Saturation = None,
     seed: Seed = 0,
 ) -> None:
     """Render a straight edge as a sensor sees it, and write what a perfect measurement finds."""
@@ -137,6 +139,7 @@ def edge(
         dark=dark,
         bright=bright,
         snr=snr,
+        noise=described_noise(read_noise, shot_gain, quantum, saturation),
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, sensor_seen, truth_document(truth, sensor_seen), seed)
@@ -179,8 +182,10 @@ for _name, _command in (
     ("bars", scenes.bars),
     ("star", scenes.star),
     ("points", scenes.points),
-    ("site", scenes.site),
+    ("site", simulate_site.site),
+    ("checkerboard", simulate_site.checkerboard),
 ):
-    app.command(_name, epilog=f"\b\nExample:\n{scenes.EXAMPLES[_name]}")(_command)
+    _example = (scenes.EXAMPLES | simulate_site.SITE_EXAMPLES)[_name]
+    app.command(_name, epilog=f"\b\nExample:\n{_example}")(_command)
 app.command("pair", epilog=f"\b\nExample:\n{simulate_pair.PAIR_EXAMPLE}")(simulate_pair.pair)
 app.command("sensor-budget", epilog=BUDGET_EXAMPLE)(sensor_budget)

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves import Estimate
-from acutance.errors import OptionError
+from acutance.errors import OptionError, TargetError
 from acutance.fit.band import EdgeFit
 from acutance.fit.find_pulse import find_pulse
 from acutance.fit.locate import find_segments
 from acutance.fit.pulse import PulseBand, fit_pulse
+from acutance.fit.trim import Extent
 from acutance.measure.cut import Cut, RoiLike, cut
 from acutance.measure.edge import require_phases
 from acutance.measure.given import chosen_options, published_options
@@ -114,7 +115,7 @@ def measure_pulse(
     pixels = cut(image, roi, gsd_m)
     stated_px = _stated_width(pixels, width_px, width_m)
     free = fit_width or stated_px is None
-    band, extent = find_pulse(pixels.pixels, stated_px, fit_width=free)
+    band, extent = _find(pixels, stated_px, free)
     require_phases(band, band.line, chosen.limits.sample_phases)
     if stated_px is not None and method in PUBLISHED_PULSE:
         band = replace(band, pulse_width_px=stated_px)
@@ -128,6 +129,30 @@ def measure_pulse(
         by_ratio=method != "spline",
     )  # fmt: skip
     return _measurement(pixels, band, found, checks, method, chosen, stated_px)
+
+
+def _find(pixels: Cut, stated_px: float | None, free: bool) -> tuple[PulseBand, Extent]:
+    """The strongest pulse; where there is none of the stated width, what there is instead."""
+    try:
+        return find_pulse(pixels.pixels, stated_px, fit_width=free)
+    except TargetError as error:
+        if stated_px is None:
+            raise
+        seen_px = _width_seen(pixels)
+        if seen_px is None or not _is_far(seen_px, stated_px):
+            raise
+        raise type(error)(
+            f"{error}; the image shows a strip of about {seen_px:.2f} px where {stated_px:.2f} px "
+            "were stated: check the width and the GSD, or state no width"
+        ) from error
+
+
+def _width_seen(pixels: Cut) -> float | None:
+    """Width in pixels of the strip that is found when no width is stated."""
+    try:
+        return find_pulse(pixels.pixels)[0].pulse_width_px
+    except TargetError:
+        return None
 
 
 def _is_far(found_px: float, stated_px: float) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -38,6 +39,8 @@ class Noise:
 
     def __post_init__(self) -> None:
         require(self, read=self.read, shot_gain=self.shot_gain, quantum=self.quantum)
+        if self.saturation is not None:
+            require(self, -math.inf, saturation=self.saturation)
 
     def std(self, signal: Floats) -> Floats:
         """Standard deviation of the random part where the signal is `signal`, same shape."""
@@ -63,18 +66,24 @@ class Noise:
 
 
 def noise_of_snr(contrast: float, snr: float | None, noise: Noise | None) -> Noise | None:
-    """The noise a target was asked to have: white noise of a given SNR, or a full description.
+    """The noise a target was asked to have: of a given SNR, of a full description, or both.
+
+    With both, the SNR is that of the white noise, and the rest is as described.
 
     Raises
     ------
     ModelError
-        If both are given, or the SNR is not above 0.
+        If both say how strong the white noise is, or the SNR is not above 0.
     """
     if snr is None:
         return noise
-    if noise is not None:
-        raise ModelError("snr and noise were both given: the noise already says how strong it is")
     require_numbers(snr=snr)
     if not snr > 0:
         raise ModelError(f"snr is {snr:g}, it has to be above 0")
-    return Noise(read=abs(contrast) / snr)
+    described = Noise() if noise is None else noise
+    if described.read > 0:
+        raise ModelError(
+            f"snr is {snr:g} (--snr) and the noise has a read of {described.read:g} "
+            "(--read-noise): both say how strong the white noise is, give one of them"
+        )
+    return replace(described, read=abs(contrast) / snr)

@@ -160,7 +160,7 @@ def points(
     snr : float, optional
         Peak of the brightest source over the standard deviation of added white noise.
     noise : Noise, optional
-        A full description of the noise, instead of `snr`.
+        A description of the noise, instead of `snr` or, without `read`, beside it.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 

@@ -220,7 +220,7 @@ def pulse(
         Height of the pulse over the mean ground, divided by the standard deviation of added
         white noise.
     noise : Noise, optional
-        A full description of the noise, instead of `snr`.
+        A description of the noise, instead of `snr` or, without `read`, beside it.
     regrid : Regrid, optional
         Resample the noisy image; line, width, shape and truth are those of the new image.
     ground_noise : GroundNoise, optional
@@ -236,7 +236,7 @@ def pulse(
     Raises
     ------
     ModelError
-        If the arguments contradict each other.
+        If the arguments contradict each other, or the pulse does not fit in the image.
     """
     behind = dark if right_dark is None else right_dark
     require_shape(shape)
@@ -244,6 +244,7 @@ def pulse(
     require_finite(length_px=length_px or 0.0, offset_px=offset_px)
     _require_pulse(width_px, length_px, (dark, bright, behind))
     line = line_through_centre(shape, angle_deg, orientation).moved(offset_px, 0.0)
+    _require_inside(line, width_px, shape)
     added = noise_of_snr(bright - 0.5 * (dark + behind), snr, noise)
 
     def drawn(at: Line, size: tuple[int, int], scale: float = 1.0) -> Floats:
@@ -284,4 +285,20 @@ def _require_pulse(
         raise ModelError(
             f"the pulse has level {level:g} between grounds of {left:g} and {right:g}: it has to "
             "be above both or below both"
+        )
+
+
+def _require_inside(line: Line, width_px: float, shape: tuple[int, int]) -> None:
+    """Refuse a pulse whose sides do not both cross the middle of the image."""
+    rows, cols = shape
+    row, col = 0.5 * (rows - 1), 0.5 * (cols - 1)
+    ends = ((row, 0.0), (row, cols - 1.0)) if line.orientation == "across" else (
+        (0.0, col), (rows - 1.0, col)
+    )  # fmt: skip
+    before, behind = (float(line.normal_distance(*end)) for end in ends)
+    if not before < -0.5 * width_px < 0.5 * width_px < behind:
+        raise ModelError(
+            f"the sides of the pulse lie {0.5 * width_px:.1f} px on either hand of its middle, "
+            f"the image of {rows} by {cols} px ends {-before:.1f} px before and {behind:.1f} px "
+            "behind it: use a larger image (--size), or a narrower pulse (--width)"
         )

@@ -18,7 +18,7 @@ from acutance.optics.sensor import Sensor
 from acutance.simulate.bars import BarsTruth
 from acutance.simulate.edge import Truth
 from acutance.simulate.limits import require_finite, require_rng, require_shape
-from acutance.simulate.noise import Noise
+from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.points import PointsTruth
 from acutance.simulate.pulse import PulseTruth
 from acutance.simulate.scene import Patch, Strip, render_patches, render_strip, texture
@@ -101,6 +101,7 @@ def checkerboard(
     texture_std: float = 0.0,
     texture_grain_px: float = 1.5,
     strips: Sequence[Strip] = (),
+    snr: float | None = None,
     noise: Noise | None = None,
     rng: np.random.Generator | None = None,
 ) -> Scene:
@@ -125,7 +126,10 @@ def checkerboard(
         Standard deviation of the ground and size of its grain; the board has none.
     strips : sequence of Strip, optional
         Roads; they must not cross the board.
+    snr : float, optional
+        Contrast of the tiles over the standard deviation of added white noise.
     noise : Noise, optional
+        A description of the noise, instead of `snr` or, without `read`, beside it.
     rng : numpy.random.Generator, optional
         Needed for texture and noise.
 
@@ -154,10 +158,11 @@ def checkerboard(
         whole = Patch(*centre, 2 * tile_px, 2 * tile_px, turn_deg, 1.0)
         bare = 1 - render_patches(sensor, [whole], shape)
         image = image + bare * texture(sensor, shape, texture_std, texture_grain_px, drawn)
-    if noise is not None:
-        image = noise.added_to(image, rng)
+    added = noise_of_snr(bright - dark, snr, noise)
+    if added is not None:
+        image = added.added_to(image, rng)
     edges = tuple(
-        _board_edge(sensor, name, direction, centre, tile_px, turn_deg, dark, bright, noise)
+        _board_edge(sensor, name, direction, centre, tile_px, turn_deg, dark, bright, added)
         for name, direction in (("right", 0.0), ("lower", 90.0), ("left", 180.0), ("upper", 270.0))
     )
     description = (

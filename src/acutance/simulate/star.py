@@ -247,7 +247,7 @@ def star(
     snr : float, optional
         Contrast over the standard deviation of added white noise.
     noise : Noise, optional
-        A full description of the noise, instead of `snr`.
+        A description of the noise, instead of `snr` or, without `read`, beside it.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 
