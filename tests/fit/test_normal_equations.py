@@ -1,6 +1,7 @@
 """The fast sums over the pixels against the dense design matrix."""
 
 import numpy as np
+import pytest
 
 from acutance.fit.normal import accumulate, renewed
 from acutance.fit.spline import HALF_SUPPORT, edge_weights, spread
@@ -22,10 +23,12 @@ def test_sums_are_those_of_the_dense_design():
     assert found.count == N
 
 
-def test_combined_equations_are_those_of_the_combined_design():
+@pytest.mark.parametrize("taken", [83, 84, 85])
+def test_combined_equations_are_those_of_the_combined_design(taken):
     found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS, N)
-    directions = RNG.standard_normal((found.projection.size, 6))
-    design = np.hstack([spread(*edge_weights(U)), COLUMNS.T]) @ directions
+    directions = RNG.standard_normal((taken, 6))
+    dense = np.hstack([spread(*edge_weights(U)), COLUMNS.T])
+    design = np.hstack([dense[:, :taken] @ directions, dense[:, taken:]])
     combined = found.combined(directions)
     assert np.allclose(combined.gram, design.T @ (WEIGHT[:, None] * design))
     assert np.allclose(combined.projection, design.T @ (WEIGHT * Y))

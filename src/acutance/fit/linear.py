@@ -72,8 +72,9 @@ class Linear:
         Number of those that hang on the LSF: turn, width, fall.
     directions : Directions
         In which the LSF may depart from the blur.
-    design : (CELLS + 3 + q + derivatives, m) array
-        What every unknown does to the spline and to the regressors beside it.
+    design : (CELLS + 3 + k, r) array
+        What level, directions and tail do to the spline and to the first k of the regressors beside
+        it. Every other regressor has an unknown of its own.
     prior : Prior
     """
 
@@ -104,11 +105,11 @@ class Linear:
             cell, basis = edge_weights(distance / width)
             stencils.append((cell, basis if share == 1 else share * basis))
         trends = ground.ground_trends(profile.sides(seen, s), t)
-        fixed = [_beyond(profile, s, width)[None], trends]
+        beside = [_beyond(profile, s, width)]
         is_edge = len(profile.shares) == 1
         if not is_edge:
             # The dark level is under every pixel once, whatever the steps.
-            fixed.append(np.ones((1, s.size)))
+            beside.append(np.ones(s.size))
         derivatives = 1 if is_edge else 2 + fit_width
         directions = lsf_prior.directions(start.blur)
         departure = pixels.value - start.dark - start.height * mean
@@ -116,8 +117,8 @@ class Linear:
         np.clip(departure, -start.height, start.height, out=departure)
         return cls(
             start, s, t, seen, mean, slope, departure,
-            stencils, np.vstack(fixed), derivatives, directions,
-            _design(directions, len(trends), derivatives, level_beside=not is_edge),
+            stencils, np.vstack([*beside, trends]), derivatives, directions,
+            _design(directions, len(beside)),
             _prior(start, directions, len(trends), derivatives),
         )  # fmt: skip
 
@@ -170,8 +171,10 @@ class Linear:
 
     def image(self, columns: Floats, beta: Floats) -> Floats:
         """What the unknowns make of the pixels, beside the start, (n,)."""
-        coefficients = self.design @ beta
-        image = coefficients[CELLS + 3 :] @ columns
+        r = self.design.shape[1]
+        coefficients = self.design @ beta[:r]
+        beside = np.concatenate([coefficients[CELLS + 3 :], beta[r:]])
+        image = beside @ columns
         for cell, basis in self.stencils:
             image = image + combine(cell, basis, coefficients[: CELLS + 3])
         return image
@@ -196,23 +199,20 @@ def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
     return total
 
 
-def _design(
-    directions: lsf_prior.Directions, trends: int, derivatives: int, *, level_beside: bool
-) -> Floats:
-    """What every unknown does to the spline and to the regressors beside it.
+def _design(directions: lsf_prior.Directions, beside: int) -> Floats:
+    """What level, directions and tail do to the spline and to the regressors beside it.
 
-    The tail is the last direction, within the support and beyond. The dark level lifts every ESF
-    coefficient alike, because the B-splines sum to one, or has a regressor of its own.
+    The tail is the last direction, within the support and beyond: the first regressor. The dark
+    level lifts every ESF coefficient alike, because the B-splines sum to one, unless it has a
+    regressor of its own: the second.
     """
-    tail = directions.block.size
-    beside = np.arange(tail, tail + 1 + trends + derivatives)
-    size = tail + beside.size
-    if level_beside:
-        beside = np.insert(beside, 1 + trends, 0)
-    design = np.zeros((CELLS + 3 + beside.size, size))
-    design[: CELLS + 3, 0] = not level_beside
-    design[: CELLS + 3, 1 : tail + 1] = directions.esf
-    design[np.arange(CELLS + 3, len(design)), beside] = 1.0
+    design = np.zeros((CELLS + 3 + beside, 1 + directions.block.size))
+    design[: CELLS + 3, 1:] = directions.esf
+    design[CELLS + 3, -1] = 1.0
+    if beside > 1:
+        design[CELLS + 4, 0] = 1.0
+    else:
+        design[: CELLS + 3, 0] = 1.0
     return design
 
 

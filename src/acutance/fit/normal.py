@@ -38,9 +38,15 @@ class Normal:
     count: float
 
     def combined(self, directions: Floats) -> Normal:
-        """The equations of r coefficients beta, where the m + q are ``directions @ beta``."""
-        gram = directions.T @ self.gram @ directions
-        return Normal(gram, directions.T @ self.projection, self.data, self.count)
+        """The equations where r unknowns beta make the first p ones, (p, r): the others stay."""
+        p, r = directions.shape
+        rest = self.projection.size - p
+        half = directions.T @ self.gram[:p]
+        gram = np.empty((r + rest, r + rest))
+        gram[:r, :r], gram[:r, r:] = half[:, :p] @ directions, half[:, p:]
+        gram[r:, :r], gram[r:, r:] = half[:, p:].T, self.gram[p:, p:]
+        projection = np.concatenate([directions.T @ self.projection[:p], self.projection[p:]])
+        return Normal(gram, projection, self.data, self.count)
 
 
 def accumulate(
