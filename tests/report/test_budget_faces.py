@@ -36,7 +36,9 @@ def test_the_document_is_strict_json():
 def test_the_figure_draws_both_directions():
     page = budget_figure(GENERIC)
     across, along = page.axes
-    assert (across.get_title(loc="left"), along.get_title(loc="left")) == ("Across", "Along")
+    # The number stands where no curve can cross it.
+    assert across.get_title(loc="left") == "Across: 0.2665 at 0.5 c/px"
+    assert along.get_title(loc="left") == "Along: 0.2597 at 0.5 c/px"
     # Four blocks, the whole, and the mark at Nyquist.
     assert len(across.lines) == len(along.lines) == 6
     assert along.lines[-1].get_ydata()[0] == pytest.approx(0.2597, abs=5e-5)

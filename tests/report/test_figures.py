@@ -8,7 +8,8 @@ import pytest
 from matplotlib.axis import Axis, Tick
 from matplotlib.text import Text
 
-from acutance.measure import Check, TargetResult
+from acutance import optics, simulate
+from acutance.measure import Check, TargetResult, measure_pulse
 from acutance.report import (
     comparison_figure,
     edge_figure,
@@ -108,6 +109,24 @@ def test_the_drawn_response_is_the_fitted_one(pulse):
     middle = np.abs(line.get_xdata() - 0.5 * 3.153) < 0.2
     assert line.get_ydata()[middle] == pytest.approx(1.0, abs=0.02)
     assert line.get_ydata()[np.abs(line.get_xdata() - 6.0) < 1] == pytest.approx(0.0, abs=0.02)
+
+
+def test_no_curve_passes_the_names_of_the_zeros():
+    sensor = optics.Sensor([optics.Gaussian(0.4), optics.Detector()])
+    image, _ = simulate.pulse(sensor, snr=70.0, rng=np.random.default_rng(1))
+    both = [measure_pulse(image, width_px=3.0, method=name) for name in ("spline", "sdsu-2005")]
+    figure = comparison_figure(both)
+    figure.canvas.draw()
+    axes, renderer = figure.axes[0], figure.canvas.get_renderer()
+    named = [one for one in axes.texts if one.get_text().endswith("/w")]
+    assert [one.get_text() for one in named] == ["1/w", "2/w"]
+    for box in (one.get_window_extent(renderer) for one in named):
+        for line in axes.lines:
+            points = axes.transData.transform(line.get_xydata())
+            if np.ptp(points[:, 0]) > 0:
+                x = np.linspace(box.x0, box.x1, 20)
+                y = np.interp(x, *points.T)
+                assert not np.any((y > box.y0) & (y < box.y1))
 
 
 def test_the_zeros_are_at_the_multiples_of_one_over_the_width(make_pulse):

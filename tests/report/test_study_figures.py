@@ -65,6 +65,22 @@ def test_the_noise_figure_marks_the_minimum_snr(results):
     assert f"ours (spline) below 5 %: SNR {least:.0f}" in shown
 
 
+@pytest.mark.parametrize("name", ["snr", "ground-noise"])
+def test_no_curve_passes_an_answer(results, name):
+    figure = study_figure(results[name])
+    figure.canvas.draw()
+    renderer = figure.canvas.get_renderer()
+    for axes in figure.axes:
+        boxes = [one.get_window_extent(renderer) for one in axes.texts if "below" in one.get_text()]
+        curves = [line for line in axes.lines if len(line.get_xdata()) > 2]
+        for box in boxes:
+            for line in curves:
+                points = axes.transData.transform(line.get_xydata())
+                known = points[np.isfinite(points).all(axis=1)]
+                inside = (known > (box.x0, box.y0)) & (known < (box.x1, box.y1))
+                assert not inside.all(axis=1).any()
+
+
 def test_a_limit_that_is_never_reached_is_said(results):
     result = results["ground-noise"]
     lost = tuple(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,6 +39,7 @@ __all__ = [
 
 TWO_SIDED_95 = 1.959964
 MOST_ZEROS_NAMED = 8
+HEIGHTS_OF_NAMES = (0.585, 0.45, 0.3, 0.15)
 TOP_BESIDE_ZEROS = 1.2
 """A ratio of spectra has spikes at the zeros of the pulse's; they are not drawn whole."""
 
@@ -275,15 +277,31 @@ def mark_zeros(axes: Axes, width_px: float) -> None:
         axes.axvline(zero, color=PURPLE, linewidth=0.9, linestyle=":", zorder=1)
         if k == 1 or len(zeros) <= MOST_ZEROS_NAMED:
             near_end = zero > 0.93
+            ends = (zero - 0.05, zero) if near_end else (zero, zero + 0.05)
             axes.text(
                 zero + (-0.006 if near_end else 0.006),
-                0.585,
+                _clear_height(axes, *ends),
                 f"{k}/w",
                 transform=axes.get_xaxis_transform(),
                 ha="right" if near_end else "left",
+                va="center",
                 color=PURPLE,
                 fontsize=7,
             )
+
+
+def _clear_height(axes: Axes, left: float, right: float) -> float:
+    """Where between two frequencies no curve passes: of some heights of the axes the clearest."""
+    bottom, top = axes.get_ylim()
+    passed = [np.array([bottom, top], float)]
+    for line in axes.lines:
+        x, y = (np.asarray(part, float) for part in line.get_data())
+        inside = (x >= left - 0.01) & (x <= right + 0.01)
+        if np.count_nonzero(inside) > 1 and np.ptp(x) > 0:
+            # A spike passes every height between its neighbouring samples.
+            passed.append(np.concatenate([np.linspace(*pair) for pair in pairwise(y[inside])]))
+    taken = (np.concatenate(passed) - bottom) / (top - bottom)
+    return max(HEIGHTS_OF_NAMES, key=lambda height: float(np.min(np.abs(taken - height))))
 
 
 def _mark_point(axes: Axes, mtf: Mtf, freq_cpp: float, color: str) -> None:
