@@ -106,3 +106,11 @@ def test_a_check_that_passed_gives_no_advice():
         assert check.passed
         for word in ("choose", "use data", "something else", "not what the sensor"):
             assert word not in check.message, check
+
+
+def test_checks_print_how_many_failed():
+    image, _ = edge(3)
+    found = ac.measure_edge(image)
+    assert repr(found.checks) == f"<{len(found.checks)} checks, 0 failed>"
+    strict = ac.measure.EdgeOptions(limits=ac.measure.EdgeLimits(rows=1000))
+    assert repr(ac.measure_edge(image, options=strict).checks).endswith("1 failed: rows>")

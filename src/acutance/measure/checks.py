@@ -39,7 +39,7 @@ _MOST_BY_ROWS_DEG = 30.0
 _MOST_DEG = 45.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EdgeChecks(TargetChecks):
     """All target checks of an edge.
 

@@ -141,6 +141,10 @@ class TargetChecks(Sequence[Check]):
         """All checks."""
         raise NotImplementedError
 
+    def __repr__(self) -> str:
+        failed = [check.name for check in self.answers if not check.passed]
+        return f"<{len(self)} checks, {len(failed)} failed{': ' * bool(failed)}{', '.join(failed)}>"
+
     def __len__(self) -> int:
         return len(self.answers)
 

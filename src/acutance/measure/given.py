@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any, Protocol, TypeVar
 
 from acutance.errors import OptionError, RegionError
@@ -22,13 +23,19 @@ def chosen_options(options: Any, kind: type[Options]) -> Options:
         If they are those of another measurement, or none at all.
     """
     if options is None:
-        return kind()
+        return _default(kind)
     if not isinstance(options, kind):
         raise OptionError(
             f"options are of type {type(options).__name__}: give {kind.__name__}(...), or leave "
             "them out"
         )
     return options
+
+
+@cache
+def _default(kind: Callable[[], Options]) -> Options:
+    """Options nobody changed: frozen, so one of them serves all."""
+    return kind()
 
 
 class _HasMethodOptions(Protocol):

@@ -30,7 +30,7 @@ __all__ = ["PulseChecks"]
 _MUCH = 999.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PulseChecks(TargetChecks):
     """All target checks of a pulse.
 
