@@ -73,6 +73,13 @@ class TestEveryBlock:
         assert grid.shape == (5, 7)
         assert grid[3, 2] == pytest.approx(complex(block.otf(u[2:3], v[3])[0]), abs=1e-14)
 
+    def test_gives_one_number_for_one_frequency(self, block):
+        found = block.otf(np.float64(0.3), np.float64(0.2))
+        assert np.shape(found) == ()
+        assert complex(found) == pytest.approx(
+            complex(block.otf(np.array([0.3]), np.array([0.2]))[0])
+        )
+
     def test_compares_and_hashes_by_value(self, block):
         assert hash(block) == hash(type(block)(**vars(block)))
 

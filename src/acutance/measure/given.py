@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Hashable, Sequence
 from functools import cache
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar, cast
 
 from acutance.errors import OptionError, RegionError
 from acutance.raster import Box, Region
@@ -23,7 +23,9 @@ def chosen_options(options: Any, kind: type[Options]) -> Options:
         If they are those of another measurement, or none at all.
     """
     if options is None:
-        return _default(kind)
+        # To mypy a class hashes as its objects do.
+        default: Options = _default(cast(Hashable, kind))
+        return default
     if not isinstance(options, kind):
         raise OptionError(
             f"options are of type {type(options).__name__}: give {kind.__name__}(...), or leave "
@@ -33,7 +35,7 @@ def chosen_options(options: Any, kind: type[Options]) -> Options:
 
 
 @cache
-def _default(kind: Callable[[], Options]) -> Options:
+def _default(kind: Any) -> Any:
     """Options nobody changed: frozen, so one of them serves all."""
     return kind()
 
