@@ -108,6 +108,13 @@ def test_a_check_that_passed_gives_no_advice():
             assert word not in check.message, check
 
 
+def test_an_edge_torn_by_missing_pixels_is_refused_with_that_reason():
+    image, _ = edge(4, shape=(40, 40))
+    image[np.random.default_rng(0).random(image.shape) < 0.45] = np.nan
+    with pytest.raises(ac.NoEdgeError, match="4[0-9] % of it without data"):
+        ac.measure_edge(image)
+
+
 def test_checks_print_how_many_failed():
     image, _ = edge(3)
     found = ac.measure_edge(image)

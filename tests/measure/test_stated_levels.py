@@ -17,10 +17,10 @@ from acutance.measure.periodic import known_levels
         ({"dark": 1.0}, "one level was given"),
         ({"bright": 1.0, "level_std": 1.0}, "one level was given"),
         ({"dark": 3.0, "bright": 2.0}, "dark has to be the lower one"),
-        ({"dark": 3.0, "bright": math.nan}, "dark has to be the lower one"),
+        ({"dark": 3.0, "bright": math.nan}, "bright has to be a number"),
         ({"dark": 3.0, "bright": math.inf}, "dark has to be the lower one"),
         ({"dark": 1.0, "bright": 2.0, "level_std": -1.0}, "0 or more"),
-        ({"dark": 1.0, "bright": 2.0, "level_std": math.nan}, "0 or more"),
+        ({"dark": 1.0, "bright": 2.0, "level_std": math.nan}, "level_std has to be a number"),
         ({"dark": 1.0, "bright": 2.0, "level_std": math.inf}, "0 or more"),
     ],
 )

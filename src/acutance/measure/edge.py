@@ -28,6 +28,7 @@ from acutance.raster import Gsd, Image
 __all__ = ["METHODS", "measure_edge", "measure_segment", "require_phases"]
 
 _MIN_PHASES = 2.0
+_MANY_MISSING = 0.05
 _CANDIDATES = 4
 _ALIGNED_DEG = 0.1
 _NEAR_45_DEG = 40.0
@@ -109,10 +110,13 @@ def _measure_first(pixels: Cut, method: str, options: EdgeOptions) -> Measuremen
             return measure_segment(pixels, segment, method, options)
         except TargetError as error:
             first = first or error
+    missing = float(np.mean(np.isnan(pixels.pixels)))
+    reason = "the region is flat, or its longest edge is too short"
+    if missing > _MANY_MISSING:
+        reason += f", or torn by the {100 * missing:.0f} % of it without data"
     raise first or NoEdgeError(
-        f"no straight edge stands out in the {pixels.box.height} x {pixels.box.width} pixels: the "
-        "region is flat, or its longest edge is too short; choose a region that holds one bright "
-        "and one dark side"
+        f"no straight edge stands out in the {pixels.box.height} x {pixels.box.width} pixels: "
+        f"{reason}; choose a region that holds one bright and one dark side"
     )
 
 
