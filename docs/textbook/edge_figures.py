@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 import acutance as ac
 from acutance.fit import prior
 from acutance.fit.blur import Blur
-from acutance.fit.spline import combine, line_weights
+from acutance.fit.spline import combine, edge_and_line_weights
 from acutance.report.page import BLUE, FAINT, INK, PALETTE, VERMILION, new_page
 
 __all__ = ["measured_beside_truth", "prior_directions", "what_truncation_does"]
@@ -66,7 +66,7 @@ def prior_directions() -> Figure:
     blur = Blur(0.4)
     known = prior.directions(blur)
     u = np.linspace(-6, 6, 601)
-    weights = line_weights(u)
+    cell, _, slopes = edge_and_line_weights(u)
     rng = np.random.default_rng(4)
     names = ("shape", "detail", "halo", "tail")
     figure = new_page(10.4, 4.0)
@@ -80,7 +80,7 @@ def prior_directions() -> Figure:
                 drawn = known.esf[:, own] @ np.array([(i + 1) * amplitude])
             else:
                 drawn = known.esf[:, own] @ (amplitude * rng.standard_normal(own.size))
-            axes.plot(u, combine(*weights, drawn), color=PALETTE[i], lw=1.5)
+            axes.plot(u, combine(cell, slopes, drawn), color=PALETTE[i], lw=1.5)
         axes.plot(u, 0.2 * plain, color=FAINT, lw=1, ls="--")
         axes.set_ylim(-0.165, 0.215)
         axes.set(title=f"{name}, {100 * amplitude:.1f} %", xlabel="distance, widths")
