@@ -111,7 +111,7 @@ def test_a_check_that_passed_gives_no_advice():
 def test_an_edge_torn_by_missing_pixels_is_refused_with_that_reason():
     image, _ = edge(4, shape=(40, 40))
     image[np.random.default_rng(0).random(image.shape) < 0.45] = np.nan
-    with pytest.raises(ac.NoEdgeError, match="4[0-9] % of it without data"):
+    with pytest.raises(ac.NoEdgeError, match=r"4[0-9] % of it without data"):
         ac.measure_edge(image)
 
 

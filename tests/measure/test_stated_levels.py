@@ -38,8 +38,9 @@ def test_levels_are_optional():
     ("place", "message"),
     [
         ({"inner_px": -5.0}, r"inner_px \(--inner\) is -5"),
-        ({"inner_px": math.nan}, "0 or more"),
-        ({"centre": (math.nan, 3.0)}, "two finite numbers"),
+        ({"inner_px": math.nan}, "inner_px has to be a number"),
+        ({"centre": (math.inf, 3.0)}, "two finite numbers"),
+        ({"centre": (math.nan, 3.0)}, "a number, a number"),
     ],
 )
 def test_a_star_lies_somewhere(place, message):
