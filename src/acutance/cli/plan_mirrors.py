@@ -29,8 +29,11 @@ app = typer.Typer(
     help="Plan a target: the accuracy to expect of it, where its parts have to stand.",
     epilog=f"{TARGETS_EXAMPLE}\n{EXAMPLE.splitlines()[-1]}",
 )
-for _name in ("edge", "pulse"):
-    app.command(_name, epilog=TARGETS_EXAMPLE)(plan)
+for _name, _words in (
+    ("edge", "How many rows, which angle: the accuracy to expect."),
+    ("pulse", "How many rows, which angle and width: the accuracy to expect."),
+):
+    app.command(_name, short_help=_words, epilog=TARGETS_EXAMPLE)(plan)
 
 
 @app.command("mirrors", epilog=EXAMPLE)
