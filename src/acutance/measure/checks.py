@@ -193,7 +193,7 @@ def _change_along(seen: Evidence, column: Floats) -> float:
     share = np.bincount(part, column * clipped, parts)
     told = power > 0.3 * np.median(power)
     amount = share[told] / power[told]
-    variance = seen.noise**2 / power[told]
+    variance = seen.noise**2 * seen.smoothness / power[told]
     # What all parts have alike is the fit's, and no change.
     amount -= np.average(amount, weights=power[told])
     freedom = int(told.sum()) - 1

@@ -12,6 +12,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.fit.band import EdgeBand, EdgeFit
+from acutance.fit.noise import correlation
 from acutance.measure.measurement import Check
 
 __all__ = [
@@ -36,6 +37,7 @@ PLACES = {
 """Where a target's two grounds lie."""
 
 _FAR_WIDTHS = 2.0
+_OUTLYING = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +109,25 @@ class Evidence:
         ordered = np.sort(np.abs(self.residual))
         bulk = ordered[: max(int(0.95 * ordered.size), 1)]
         return max(1.4826 * float(ordered[ordered.size // 2]), 1.15 * math.sqrt(np.mean(bulk**2)))
+
+    @cached_property
+    def smoothness(self) -> float:
+        """How much more low-pass noise moves what is fitted to many pixels than white noise does.
+
+        The largest ratio of the grounds' noise power to that of white noise of the same variance,
+        along the normal times along the target.
+        """
+        flat = self.outside > self.far_px
+        if not (self.noise > 0 and flat.any()):
+            return 1.0
+        standard = np.clip(self.residual[flat] / self.noise, -_OUTLYING, _OUTLYING)
+        rows, cols = (at[flat] for at in self.band.pixels.at)
+        x, y = self.fit.line.normal
+        along, across = (
+            correlation(standard, rows, cols, direction).inflation
+            for direction in ((x, y), (-y, x))
+        )
+        return along * across
 
     @cached_property
     def plateau_std(self) -> float:
