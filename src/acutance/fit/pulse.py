@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from acutance.curves import Estimate
+from acutance.curves.grid import Floats
 from acutance.fit.band import EdgeBand
 from acutance.fit.edge import SplineEdge, spline_edge
 from acutance.fit.profile import pulse_profile
@@ -48,10 +51,14 @@ class SplinePulse(SplineEdge):
         Width along the normal in pixels; without deviation where it was given and held.
     fall : Estimate
         Height of the falling side over that of the rising one.
+    width_factor : (m,) array
+        Factor of the width's variance in the latent variables of the curves; zeros where it was
+        held.
     """
 
     pulse_width: Estimate
     fall: Estimate
+    width_factor: Floats
 
 
 def fit_pulse(band: PulseBand, *, fit_width: bool = True, robust: bool = True) -> SplinePulse:
@@ -80,6 +87,7 @@ def fit_pulse(band: PulseBand, *, fit_width: bool = True, robust: bool = True) -
             -solved.start.profile.shares[1] + float(solved.solution.steps[-1]),
             float(solved.solution.steps_std[-1]),
         ),
+        width_factor=_width_factor(solved, fit_width),
     )
 
 
@@ -103,3 +111,9 @@ def _width(solved: Solved, fit_width: bool) -> Estimate:
         return Estimate(width_px)
     solution = solved.solution
     return Estimate(width_px + float(solution.steps[0]), float(solution.steps_std[0]))
+
+
+def _width_factor(solved: Solved, fit_width: bool) -> Floats:
+    factor = solved.solution.posterior.factor
+    # Last but one of the unknowns: the fall comes after it.
+    return factor[-2] if fit_width else np.zeros(factor.shape[1])

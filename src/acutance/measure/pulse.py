@@ -47,7 +47,8 @@ def _spline(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
         raise OptionError("method_options belong to the published methods: leave them out")
     fit = fit_pulse(band, fit_width=fit_width, robust=options.robust)
     told = replace(fit, response=with_uncertain_foot(fit.response))
-    return _Fitted(told, fit.pulse_width, fit.fall, prf_fwhm(told.response, fit.pulse_width))
+    prf = prf_fwhm(told.response, fit.pulse_width.value, fit.width_factor)
+    return _Fitted(told, fit.pulse_width, fit.fall, prf)
 
 
 def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
