@@ -162,8 +162,7 @@ def test_the_width_of_the_pulse_response_is_told_with_an_interval_that_holds(nam
         m = ac.measure_pulse(image, width_px=width_px, gsd_m=2.0)
         z.append((m.prf_fwhm_px.value - truth.prf_fwhm_px) / m.prf_fwhm_px.std)
         assert m.prf_fwhm_px.std < 0.03
-    # The deviation is on the safe side, and not by an order of magnitude.
-    assert 0.2 < np.sqrt(np.mean(np.square(z))) < 1.5
+    assert 0.5 < np.sqrt(np.mean(np.square(z))) < 1.6
     document = m.to_dict()
     assert document["prf_fwhm_m"]["value"] == pytest.approx(2.0 * m.prf_fwhm_px.value)
     assert document["width_m"]["value"] == pytest.approx(2.0 * m.width_px.value)
