@@ -17,6 +17,7 @@ from acutance.report import (
     save_figure,
     target_figure,
 )
+from acutance.report.comparison_page import true_numbers
 from acutance.report.page import figure_bytes
 
 
@@ -275,3 +276,14 @@ def test_the_same_measurement_gives_the_same_bytes(measurement):
 def test_a_dollar_sign_in_a_path_is_a_dollar_sign(measurement):
     odd = replace(measurement, image=replace(measurement.image, path="a$\\frac{$.tif"))
     assert "a$\\frac{$.tif" in texts(edge_figure(odd))
+
+
+def test_the_truth_of_a_pulse_knows_the_width_of_its_response():
+    sensor = ac.simulate.reference_systems()["halo"]
+    rng = np.random.default_rng(0)
+    _, truth = ac.simulate.pulse(sensor, width_px=3.1, angle_deg=6, snr=80, rng=rng)
+    known = true_numbers(truth.response, truth.width_px)
+    assert known["prf_fwhm_px"].value == pytest.approx(truth.prf_fwhm_px, abs=1e-3)
+    assert known["prf_fwhm_px"].std == 0
+    assert "prf_fwhm_m" not in known
+    assert true_numbers(None, 3.1) == {"width_px": ac.Estimate(3.1)}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.curves import Estimate
+from acutance.measure.pulse_response import prf_fwhm
 from acutance.report.grids import write_grid
 from acutance.report.page import INK, NAME_WITH_ROOM, PALETTE, new_page, split_page, styled
 from acutance.report.panels import TOP_BESIDE_ZEROS, band_edges, mark_frequencies, mark_zeros
@@ -151,10 +152,15 @@ def _esf_at(response: Response, places: Floats) -> tuple[Floats, Floats]:
 
 def true_numbers(truth: Response | None, true_width_px: float | None) -> dict[str, Estimate]:
     """What is known of a simulated target, under the names its measurements have."""
-    width = {} if true_width_px is None else {"width_px": Estimate(true_width_px)}
-    if true_width_px is not None and truth is not None and truth.gsd_m is not None:
-        width["width_m"] = Estimate(true_width_px * truth.gsd_m)
-    return width if truth is None else {**width, **truth.metrics()}
+    widths = {} if true_width_px is None else {"width": Estimate(true_width_px)}
+    if truth is None:
+        return {f"{name}_px": width for name, width in widths.items()}
+    if true_width_px is not None:
+        widths["prf_fwhm"] = prf_fwhm(truth, true_width_px, np.empty(0))
+    known = {f"{name}_px": width for name, width in widths.items()}
+    if truth.gsd_m is not None:
+        known |= {f"{name}_m": width.scaled(truth.gsd_m) for name, width in widths.items()}
+    return {**known, **truth.metrics()}
 
 
 def _write_comparison(
