@@ -8,7 +8,7 @@ import pytest
 from matplotlib.axis import Axis, Tick
 from matplotlib.text import Text
 
-from acutance import optics, simulate
+from acutance import Estimate, optics, simulate
 from acutance.measure import Check, TargetResult, measure_pulse
 from acutance.report import (
     comparison_figure,
@@ -279,11 +279,11 @@ def test_a_dollar_sign_in_a_path_is_a_dollar_sign(measurement):
 
 
 def test_the_truth_of_a_pulse_knows_the_width_of_its_response():
-    sensor = ac.simulate.reference_systems()["halo"]
+    sensor = simulate.reference_systems()["halo"]
     rng = np.random.default_rng(0)
-    _, truth = ac.simulate.pulse(sensor, width_px=3.1, angle_deg=6, snr=80, rng=rng)
+    _, truth = simulate.pulse(sensor, width_px=3.1, angle_deg=6, snr=80, rng=rng)
     known = true_numbers(truth.response, truth.width_px)
     assert known["prf_fwhm_px"].value == pytest.approx(truth.prf_fwhm_px, abs=1e-3)
     assert known["prf_fwhm_px"].std == 0
     assert "prf_fwhm_m" not in known
-    assert true_numbers(None, 3.1) == {"width_px": ac.Estimate(3.1)}
+    assert true_numbers(None, 3.1) == {"width_px": Estimate(3.1)}
