@@ -87,11 +87,8 @@ def _at(
             f"{sign * right:.4g}: no strip of {width_px:.2f} px between two like grounds; choose "
             "a region with one strip, or state another width"
         )
-    # A bad pixel pulls by no more than a whole height.
-    height = level - min(left, right)
-    bounded = np.clip(pixels.value[along], min(left, right) - height, level + height)
     pulse = fit_blurred_edge(
-        pixels.row[along], pixels.col[along], bounded, segment.line,
+        pixels.row[along], pixels.col[along], pixels.value[along], segment.line,
         dark=left, bright=level, profile=pulse_profile(width_px, (level - right) / (level - left)),
         fit_width=fit_width,
     )  # fmt: skip

@@ -86,6 +86,10 @@ def fit_blurred_edge(
     """
     t = line.tangent_distance(row, col)
     s = line.normal_distance(row, col)
+    # A bad pixel pulls by no more than a whole height.
+    levels = (dark, bright, dark + (bright - dark) * sum(profile.shares))
+    span = max(levels) - min(levels)
+    value = np.clip(value, min(levels) - span, max(levels) + span)
     p = np.array([dark, bright - dark, 0.0, 0.0, sigma_px, APERTURE_PX[0], 0.0, *_steps(profile)])
     scale = noise if noise else 0.02 * abs(bright - dark)
     reach = max(6.0, 4 * _REACH_WIDTHS * sigma_px)

@@ -187,11 +187,8 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
                 f"the strongest edge separates levels of {levels[0]:.4g} and {levels[1]:.4g}, "
                 "which is a line and not a step: choose a region with one bright and one dark side"
             )
-        # A bad pixel pulls by no more than a whole height.
-        height = levels[1] - levels[0]
-        bounded = np.clip(value[near], levels[0] - height, levels[1] + height)
         edge = fit_blurred_edge(
-            row[near], col[near], bounded, segment.line,
+            row[near], col[near], value[near], segment.line,
             dark=levels[0], bright=levels[1], sigma_px=sigma_px,
         )  # fmt: skip
         if edge.blur.width_px * _REACH_WIDTHS <= reach:
