@@ -12,10 +12,11 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.fit.band import EdgeBand, EdgeFit
-from acutance.fit.noise import correlation
+from acutance.fit.noise import Correlation, correlation
 from acutance.measure.measurement import Check
 
 __all__ = [
+    "MISFIT",
     "MUCH",
     "PLACES",
     "Evidence",
@@ -35,6 +36,9 @@ PLACES = {
     "behind": "behind the strip",
 }
 """Where a target's two grounds lie."""
+
+MISFIT = 3e-4
+"""Residuals below this share of the contrast are the model's own, not noise."""
 
 _FAR_WIDTHS = 2.0
 _OUTLYING = 4.0
@@ -117,17 +121,28 @@ class Evidence:
         The largest ratio of the grounds' noise power to that of white noise of the same variance,
         along the normal times along the target.
         """
-        flat = self.outside > self.far_px
-        if not (self.noise > 0 and flat.any()):
-            return 1.0
-        standard = np.clip(self.residual[flat] / self.noise, -_OUTLYING, _OUTLYING)
-        rows, cols = (at[flat] for at in self.band.pixels.at)
         x, y = self.fit.line.normal
-        along, across = (
-            correlation(standard, rows, cols, direction).inflation
-            for direction in ((x, y), (-y, x))
-        )
-        return along * across
+        return self.correlation((x, y)).inflation * self.correlation((-y, x)).inflation
+
+    def correlation(self, direction: tuple[float, float]) -> Correlation:
+        """Correlation of the grounds' noise, and its power along a direction (x, y).
+
+        On the plateaus alone, each about its own level: across the edge a method's own misfit
+        would pass for correlation, and so would a level that a published method takes from few
+        pixels.
+        """
+        flat = self.outside > self.far_px
+        residual = self.residual[flat]
+        behind = self.behind[flat] > 0
+        for side in (behind, ~behind):
+            if side.any():
+                residual[side] -= np.mean(residual[side])
+        noise = 1.4826 * float(np.median(np.abs(residual))) if residual.size else 0.0
+        if noise <= MISFIT:
+            return Correlation(1.0, 0.0, 0.0)
+        rows, cols = (at[flat] for at in self.band.pixels.at)
+        bounded = np.clip(residual / noise, -_OUTLYING, _OUTLYING)
+        return correlation(bounded, rows, cols, direction)
 
     @cached_property
     def plateau_std(self) -> float:

@@ -8,9 +8,8 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.fit.band import EdgeBand
-from acutance.fit.noise import correlation as noise_correlation
 from acutance.measure.cut import Cut
-from acutance.measure.evidence import MUCH, Evidence, at_least, at_most
+from acutance.measure.evidence import MISFIT, MUCH, Evidence, at_least, at_most
 from acutance.measure.measurement import Check
 from acutance.measure.options import EdgeLimits
 
@@ -22,8 +21,6 @@ _MIN_SIDE = 24
 _MIN_PILED = 20
 _TAIL_PX = 0.1
 """The LSF of an aperture falls as a / s^2: a is 0.065 px for a cutoff of 1 c/px, 0.1 for 0.65."""
-_MISFIT = 3e-4
-"""Residuals below this share of the contrast are the model's own, not noise."""
 
 
 def saturation(cut: Cut, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> Check:
@@ -119,27 +116,13 @@ def _fall(seen: Evidence, from_px: float) -> tuple[float, float, float]:
         weighed += own * _TAIL_PX / float(place.mean()) ** 2
     if power <= 0:
         return 0.0, 0.0, 1.0
-    return covariance / power, max(seen.noise, _MISFIT) / math.sqrt(power), weighed / power
+    return covariance / power, max(seen.noise, MISFIT) / math.sqrt(power), weighed / power
 
 
 def correlation(seen: Evidence, limits: EdgeLimits) -> Check:
     """Correlation of the noise between neighbouring pixels."""
-    # On the plateaus alone, each about its own level: across the edge a method's own misfit would
-    # pass for correlation, and so would a level that a published method takes from few pixels.
-    flat = seen.outside > seen.far_px
-    residual = seen.residual[flat]
-    behind = seen.behind[flat] > 0
-    for side in (behind, ~behind):
-        if side.any():
-            residual[side] -= np.mean(residual[side])
-    noise = 1.4826 * float(np.median(np.abs(residual))) if residual.size else 0.0
-    if noise <= _MISFIT:
-        found, significance = 0.0, 0.0
-    else:
-        rows, cols = seen.rows[flat].astype(np.intp), seen.cols[flat].astype(np.intp)
-        bounded = np.clip(residual / noise, -4, 4)
-        measured = noise_correlation(bounded, rows, cols, seen.fit.line.normal)
-        found, significance = abs(measured.strongest), measured.significance
+    noise = seen.correlation(seen.fit.line.normal)
+    found, significance = abs(noise.strongest), noise.significance
     value = found if significance >= 4 else 0.0
     return at_most(
         "correlated_noise", value, limits.correlated_noise,
@@ -153,7 +136,7 @@ def correlation(seen: Evidence, limits: EdgeLimits) -> Check:
 def outliers(seen: Evidence, limits: EdgeLimits) -> Check:
     """Share of the pixels that lie far from the fit."""
     noise = seen.noise
-    many = np.abs(seen.residual) > _OUTLIER_SIGMAS * noise if noise > _MISFIT else np.zeros(1, bool)
+    many = np.abs(seen.residual) > _OUTLIER_SIGMAS * noise if noise > MISFIT else np.zeros(1, bool)
     value = float(np.mean(many))
     return at_most(
         "outliers", value, limits.outliers,
