@@ -19,15 +19,20 @@ from acutance.fit.pulse import PulseBand
 from acutance.fit.trim import Extent
 from acutance.measure import checks, pixel_checks, structure_checks
 from acutance.measure.cut import Cut
-from acutance.measure.evidence import Evidence, TargetChecks
+from acutance.measure.evidence import (
+    MUCH,
+    Evidence,
+    TargetChecks,
+    at_least,
+    at_most,
+    at_most_much,
+)
 from acutance.measure.measurement import Check
 from acutance.measure.options import PulseLimits
 from acutance.measure.published import PublishedPulse
 from acutance.measure.pulse_spectrum import zeros_cpp
 
 __all__ = ["PulseChecks"]
-
-_MUCH = 999.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -103,16 +108,17 @@ class PulseChecks(TargetChecks):
         )
 
     def _contrast(self) -> Check:
-        value, limit = min(self.snr, _MUCH), self.limits.contrast_snr
-        return Check(
-            "contrast_snr", value, f">= {limit:g}", value >= limit,
-            f"the pulse's peak stands {value:.0f} standard deviations of the ground above it "
-            "(the report of 2005, 3.4, asks 50)",
+        value = min(self.snr, MUCH)
+        return at_least(
+            "contrast_snr", value, self.limits.contrast_snr,
+            f"the pulse's peak stands {at_most_much(value)} standard deviations of the ground "
+            "above it (the report of 2005, 3.4, asks 50)",
+            "the intervals widen; choose a target of more contrast, or a longer one",
         )  # fmt: skip
 
     def _parallel(self) -> Check:
         """Whether the falling side turns against the rising one, from the residuals beside it."""
-        seen, limit = self._seen, self.limits.parallel_deg
+        seen = self._seen
         lsf = self.fit.response.lsf
         slope = -self.fall.value * np.interp(
             seen.behind, lsf.distance_px, lsf.value, left=0.0, right=0.0
@@ -122,18 +128,19 @@ class PulseChecks(TargetChecks):
         turn = -float((slope * seen.t) @ seen.residual) / power if power > 0 else 0.0
         std = seen.noise / math.sqrt(power) if power > 0 else 0.0
         value = 2 * abs(math.degrees(turn)) if abs(turn) > 3 * std else 0.0
-        return Check(
-            "parallel_deg", value, f"<= {limit:g}", value <= limit,
+        return at_most(
+            "parallel_deg", value, self.limits.parallel_deg,
             f"the two sides are inclined by {value:.2f} degrees to each other (Li et al. 3.2: a "
             "pulse has parallel sides)",
+            "the width then changes along the target; choose another part, or another target",
         )  # fmt: skip
 
     def _grounds(self) -> Check:
-        value, limit = abs(1 - self.fall.value), self.limits.ground_step
-        return Check(
-            "ground_step", value, f"<= {limit:g}", value <= limit,
-            f"the two grounds differ by {100 * value:.0f} % of the pulse's height: the joint fit "
-            "allows for it, the ratio to a symmetric pulse does not",
+        value = abs(1 - self.fall.value)
+        return at_most(
+            "ground_step", value, self.limits.ground_step,
+            f"the two grounds differ by {100 * value:.0f} % of the pulse's height",
+            "the joint fit allows for it, the ratio to a symmetric pulse does not",
         )  # fmt: skip
 
     def _width(self) -> Check:
@@ -146,20 +153,20 @@ class PulseChecks(TargetChecks):
             )  # fmt: skip
         away = self.width.value - self.stated_px
         value = abs(away) / self.width.std
-        return Check(
-            "width_sigmas", value, f"<= {limit:g}", value <= limit,
+        return at_most(
+            "width_sigmas", value, limit,
             f"the fitted width is {self.width} px, the stated one {self.stated_px:.4f} px: "
-            f"{away:+.4f} px, {value:.1f} standard deviations; measure the target again, and check "
-            "the GSD",
+            f"{away:+.4f} px, {value:.1f} standard deviations",
+            "measure the target again, and check the GSD",
         )  # fmt: skip
 
     def _wide_enough(self) -> Check:
-        value, limit = self.width.value, self.limits.width_px
-        return Check(
-            "width_px", value, f">= {limit:g}", value >= limit,
-            f"the pulse is {value:.2f} px wide: the narrower, the less signal, and with one pixel "
-            "or less no good estimate is left; 3 px is the best (Li et al. 3.2): use a target of "
-            "three times the GSD",
+        value = self.width.value
+        return at_least(
+            "width_px", value, self.limits.width_px,
+            f"the pulse is {value:.2f} px wide (Li et al. 3.2: 3 px is the best, and with one or "
+            "less no good estimate is left)",
+            "the narrower, the less signal; use a target of three times the GSD",
         )  # fmt: skip
 
     def _zeros(self) -> Check:
@@ -183,10 +190,10 @@ class PulseChecks(TargetChecks):
                 "intervals near it",
             )  # fmt: skip
         told = [words for distance, words in near if distance < limit] or [min(near)[1]]
-        return Check(
-            "zero_distance_cpp", value, f">= {limit:g}", value >= limit,
-            f"of the pulse's spectrum, {'; '.join(told)}: the ratio is unusable at a zero and "
-            "says little near it (Li et al. 3.2); use method spline, or a target of another width",
+        return at_least(
+            "zero_distance_cpp", value, limit, f"of the pulse's spectrum, {'; '.join(told)}",
+            "the ratio is unusable at a zero and says little near it (Li et al. 3.2); use method "
+            "spline, or a target of another width",
         )  # fmt: skip
 
     @property
