@@ -189,10 +189,20 @@ def _interrupts_held_back() -> Iterator[None]:
         yield
         return
     earlier = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    # Another thread may catch it for this one: then it is only noted here.
+    heard: list[int] = []
+    is_main = threading.current_thread() is threading.main_thread()
+    handler = signal.getsignal(signal.SIGINT) if is_main else None
+    if handler is not None:
+        signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
     try:
         yield
     finally:
+        if handler is not None:
+            signal.signal(signal.SIGINT, handler)
         signal.pthread_sigmask(signal.SIG_SETMASK, earlier)
+    if heard:
+        signal.raise_signal(signal.SIGINT)
 
 
 _stop: Event | None = None
