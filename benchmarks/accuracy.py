@@ -16,7 +16,7 @@ import numpy as np
 from trials import COMBINATIONS, Ranges, command, publish, random_edge, table, work_through
 
 import acutance as ac
-from acutance.measure import METHODS
+from acutance.targets.straight import METHODS
 
 ANGLES_DEG = (2.0, 6.0, 7.125, 11.31, 14.036, 18.435, 26.565, 33.0, 43.0)
 NOISY = [(20, 100.0), (20, 50.0), (40, 100.0), (40, 50.0), (100, 100.0), (100, 50.0)]

@@ -18,7 +18,7 @@ import numpy as np
 from trials import command, publish, table, work_through
 
 import acutance as ac
-from acutance.measure import BarsOptions, StarOptions, measure_bars, measure_star
+from acutance.targets.periodic import BarsOptions, StarOptions, measure_bars, measure_star
 
 FREQ = np.arange(10, 51, 2) / 100
 DARK, BRIGHT, SNR = 200.0, 1200.0, 100.0

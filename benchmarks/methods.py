@@ -14,9 +14,9 @@ from trials import command, publish, table, work_through
 import acutance as ac
 from acutance import optics
 from acutance.curves import Response
-from acutance.measure import Measurement, Measurement2d
 from acutance.raster import Region
 from acutance.simulate import PointsTruth, PulseTruth, SceneTarget
+from acutance.targets import Measurement, Measurement2d
 
 GROUNDS = {"uniform ground": 0.0, "grass": 14.0}
 NUMBERS = ("mtf_nyquist", "rer", "fwhm_px")

@@ -20,8 +20,8 @@ import numpy as np
 from trials import Ranges, command, publish, random_edge, table, work_through
 
 import acutance as ac
-from acutance.measure.options import EdgeOptions
-from acutance.measure.published import Iso12233Options
+from acutance.targets.straight.options import EdgeOptions
+from acutance.targets.straight.published import Iso12233Options
 
 WITHOUT_STD = EdgeOptions(method_options=Iso12233Options(replicates=0))
 

@@ -10,8 +10,8 @@ import numpy as np
 
 import acutance as ac
 from acutance import report
-from acutance.measure import METHODS
-from acutance.measure.published import SdsuOptions
+from acutance.targets.straight import METHODS
+from acutance.targets.straight.published import SdsuOptions
 
 # %%
 # A sensor with a tenth of its light in a halo: a long foot that short windows cut.

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from numpydoc.docscrape import ClassDoc
 
 import acutance as ac
-from acutance.measure import BiresolutionLimits
 from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, VERMILION, new_page
 from acutance.simulate import NativeGrid
+from acutance.targets.pair import BiresolutionLimits
 from textbook.rst import list_table
 
 __all__ = ["FIGURES", "TEXTS", "checks", "measured_pair", "products", "what_limits"]

@@ -9,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import acutance as ac
-from acutance.measure import CombinedMeasurement, CombineOptions, Measurement
 from acutance.report.page import BLUE, FAINT, INK, ORANGE, PALETTE, VERMILION, new_page
+from acutance.targets import Measurement
+from acutance.targets.combine import CombinedMeasurement, CombineOptions
 
 __all__ = ["FIGURES", "departure", "slices_and_plane"]
 

@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import acutance as ac
-from acutance.fit import prior
-from acutance.fit.blur import Blur
-from acutance.fit.spline import combine, edge_and_line_weights
+from acutance.numerics.gaussian_pixel import Blur
 from acutance.report.page import BLUE, FAINT, INK, PALETTE, VERMILION, new_page
+from acutance.targets.straight import lsf_prior as prior
+from acutance.targets.straight.spline import combine, edge_and_line_weights
 
 __all__ = ["measured_beside_truth", "prior_directions", "what_truncation_does"]
 

@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 from numpydoc.docscrape import ClassDoc
 
 import acutance as ac
-from acutance.measure import BarsLimits, BarsOptions, StarLimits, StarOptions
 from acutance.report.page import (
     BLUE,
     FAINT,
@@ -24,6 +23,7 @@ from acutance.report.page import (
     VERMILION,
     new_page,
 )
+from acutance.targets.periodic import BarsLimits, BarsOptions, StarLimits, StarOptions
 from textbook.rst import list_table
 
 __all__ = ["FIGURES", "TEXTS", "finite_bars", "measured_bars", "measured_star", "what_levels_do"]

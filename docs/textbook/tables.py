@@ -11,9 +11,9 @@ from numpydoc.docscrape import ClassDoc
 
 import acutance as ac
 from acutance import optics, simulate
-from acutance.fit.blur import Blur
-from acutance.measure import METHODS, EdgeLimits
-from acutance.measure.published import PUBLISHED
+from acutance.numerics.gaussian_pixel import Blur
+from acutance.targets.straight import METHODS, EdgeLimits
+from acutance.targets.straight.published import PUBLISHED
 from textbook.rst import list_table
 
 __all__ = [
@@ -174,11 +174,16 @@ def _asked(name: str, asked: dict[str, str]) -> str:
 
 def methods() -> str:
     """Methods by name."""
-    rows = [["``spline``", "The reference estimator: see `acutance.fit.edge.fit_edge`."]]
+    rows = [
+        [
+            "``spline``",
+            "The reference estimator: see `acutance.targets.straight.fit_edge.fit_edge`.",
+        ]
+    ]
     for name in METHODS:
         if name in PUBLISHED:
             method = PUBLISHED[name]
-            link = f":py:func:`acutance.measure.published.{method.__name__}`"
+            link = f":py:func:`acutance.targets.straight.published.{method.__name__}`"
             rows.append([f"``{name}``", f"{_summary(method)} See {link}."])
     return list_table(["name", "what it is"], rows, (20, 80))
 

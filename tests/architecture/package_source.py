@@ -26,7 +26,7 @@ class Import:
 
 
 def dotted_name(module: str) -> str:
-    """``acutance.fit.line`` of ``fit/line.py``."""
+    """``acutance.geometry.line`` of ``geometry/line.py``."""
     parts = ["acutance", *module.removesuffix(".py").split("/")]
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 

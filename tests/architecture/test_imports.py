@@ -7,33 +7,43 @@ import subprocess
 import sys
 
 import pytest
-from package_source import MODULES, ROOT, Import, all_imports, imports_of
+from package_source import MODULES, ROOT, Import, all_imports, dotted_name, imports_of
 
 # From the roof to the ground. A floor imports itself and what stands after it.
 FLOORS = (
     "cli",
     "report",
     "studies",
-    "measure",
+    "targets",
     "simulate",
     "raster",
-    "fit",
+    "numerics",
+    "geometry",
     "optics",
     "curves",
     "errors",
 )
 
+# The kinds of target: rooms of one floor that do not know one another.
+KINDS = ("straight", "points", "pair", "periodic", "combine")
+
+# Floors that may not be used although they stand lower: why.
+FORBIDDEN = {
+    ("simulate", "numerics"): "the truth shares no numerics with the estimators",
+    ("raster", "numerics"): "files know nothing of fits",
+}
+
 # Libraries, and the floors that may use them.
 LIBRARIES = {
     "numpy": set(FLOORS) - {"errors"},
-    "scipy": {"measure", "simulate", "fit", "optics"},
+    "scipy": {"targets", "simulate", "numerics", "optics"},
     "rasterio": {"raster"},
     "matplotlib": {"report"},
     "jinja2": {"report"},
     "markupsafe": {"report"},
     "typer": {"cli"},
     "rich": {"cli"},
-    "threadpoolctl": {"measure"},
+    "threadpoolctl": {"numerics"},
 }
 
 # (module, imported module): why it is right all the same.
@@ -68,6 +78,36 @@ def test_own_imports_point_down(module: str) -> None:
     named = [found for found in own if found.target != "acutance.__version__"]
     wrong = [str(found) for found in named if upward(found)]
     assert not wrong, wrong
+
+
+def kind_of(module: str) -> str | None:
+    """The kind of target a module of the package belongs to, by its dotted name."""
+    parts = module.split(".")
+    return parts[2] if parts[1:2] == ["targets"] and parts[2:3] and parts[2] in KINDS else None
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_kinds_of_target_do_not_know_one_another(module: str) -> None:
+    own = dotted_name(module)
+    if not own.startswith("acutance.targets"):
+        return
+    kind = kind_of(own)
+    strangers = [
+        str(found)
+        for found in imports_of(module)
+        if kind_of(found.target) is not None and kind_of(found.target) != kind
+    ]
+    assert not strangers, strangers
+
+
+@pytest.mark.parametrize(("floor", "other"), FORBIDDEN)
+def test_floors_that_may_not_be_used(floor: str, other: str) -> None:
+    wrong = [
+        str(found)
+        for found in all_imports()
+        if floor_of(found.importer) == floor and found.target.split(".")[1:2] == [other]
+    ]
+    assert not wrong, FORBIDDEN[floor, other]
 
 
 def test_no_relative_imports() -> None:
@@ -138,3 +178,18 @@ def test_measuring_an_array_needs_no_file_library() -> None:
     )
     assert "scipy" in loaded
     assert not loaded & {"rasterio", "matplotlib", "jinja2", "typer"}
+
+
+def test_measuring_an_edge_loads_the_straight_room_only() -> None:
+    program = (
+        "import acutance as ac\n"
+        "sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])\n"
+        "ac.measure_edge(ac.simulate.edge(sensor)[0])\n"
+        "import sys\n"
+        "print(*[m for m in sys.modules if m.startswith('acutance.targets.')])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    loaded = {kind_of(name) for name in done.stdout.split()} - {None}
+    assert loaded == {"straight"}

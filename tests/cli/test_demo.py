@@ -7,7 +7,8 @@ import pytest
 
 from acutance.cli.demo_folder import FILES, demo_folder
 from acutance.errors import OptionError
-from acutance.measure import METHODS, POINTS_METHODS, PULSE_METHODS
+from acutance.targets.points import POINTS_METHODS
+from acutance.targets.straight import METHODS, PULSE_METHODS
 
 TARGETS = ("vertical edge", "horizontal edge", "pulse tarp", "bars", "star", "mirrors")
 

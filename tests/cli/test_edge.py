@@ -142,7 +142,7 @@ def test_strict_is_exit_3_after_the_result(acutance, edge_image):
 def _snr_limit():
     from dataclasses import fields
 
-    from acutance.measure import EdgeOptions
+    from acutance.targets.straight import EdgeOptions
 
     return next(one.name for one in fields(EdgeOptions().limits) if "snr" in one.name)
 

@@ -7,9 +7,9 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from acutance import optics, simulate
-from acutance.measure import PULSE_METHODS
 from acutance.raster import write_geotiff
 from acutance.report import measurement_schema
+from acutance.targets.straight import PULSE_METHODS
 
 SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=2.8)
 WIDTH_M = 8.83

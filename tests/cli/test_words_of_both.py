@@ -49,7 +49,7 @@ def test_both_images_of_a_pair_have_a_nodata(acutance, tmp_path, monkeypatch):
         seen.extend(int(np.isnan(one.read()).sum()) for one in (low, high))
         raise OptionError("enough seen")
 
-    monkeypatch.setattr("acutance.measure.measure_biresolution", measure)
+    monkeypatch.setattr("acutance.targets.pair.measure_biresolution", measure)
     pair = (tmp_path / "low.npy", tmp_path / "high.npy")
     acutance("biresolution", *pair, "--nodata", 1, "--high-nodata", 0)
     acutance("biresolution", *pair)

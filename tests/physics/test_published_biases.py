@@ -11,8 +11,8 @@ import pytest
 
 import acutance as ac
 from acutance import optics, simulate
-from acutance.measure.options import EdgeOptions
-from acutance.measure.published import Iso12233Options
+from acutance.targets.straight.options import EdgeOptions
+from acutance.targets.straight.published import Iso12233Options
 
 SENSOR = ac.Sensor([optics.Gaussian(0.5), optics.Detector()])
 

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from acutance.fit.band import EdgeBand
-from acutance.fit.line import Line
+from acutance.geometry.line import Line
+from acutance.targets.straight.pixels import EdgeBand
 
 _erf = np.vectorize(math.erf)
 

@@ -7,9 +7,14 @@ import pytest
 from closed_form_edge import edge_band, gaussian_pixel_esf, gaussian_pixel_mtf
 
 from acutance.errors import NoEdgeError, PhaseError, SupportError
-from acutance.fit.band import EdgeBand
-from acutance.fit.line import Line
-from acutance.measure.published import PUBLISHED, Iso12233Options, KompsatOptions, SdsuOptions
+from acutance.geometry.line import Line
+from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.published import (
+    PUBLISHED,
+    Iso12233Options,
+    KompsatOptions,
+    SdsuOptions,
+)
 
 METHODS = sorted(PUBLISHED)
 ROW_BOOTSTRAP = {

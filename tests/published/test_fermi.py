@@ -9,9 +9,9 @@ from closed_form_edge import edge_band, gaussian_pixel_mtf
 
 from acutance import simulate
 from acutance.errors import OptionError
-from acutance.fit.band import EdgeBand
-from acutance.measure.published import FermiOptions, fermi
-from acutance.measure.published.fermi_sum import FermiSum
+from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.published import FermiOptions, fermi
+from acutance.targets.straight.published.fermi_sum import FermiSum
 
 SINGLE = FermiSum(np.array([1.0]), np.array([0.0]), np.array([0.25]))
 OVERSHOOT = FermiSum(np.array([1.2, -0.2]), np.array([0.0, 1.2]), np.array([0.25, 0.35]))

@@ -8,10 +8,10 @@ import pytest
 from closed_form_edge import edge_band, gaussian_pixel_esf, gaussian_pixel_mtf
 
 from acutance.errors import OptionError
-from acutance.fit.band import EdgeBand
-from acutance.fit.line import Line
-from acutance.measure.published import Iso12233Options, iso12233
-from acutance.measure.published.windows import hamming_window, tukey_window
+from acutance.geometry.line import Line
+from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.published import Iso12233Options, iso12233
+from acutance.targets.straight.published.windows import hamming_window, tukey_window
 
 IRRATIONAL_DEG = math.degrees(math.atan((math.sqrt(5) - 1) / 6))
 DATA = Path(__file__).parents[3] / "shared" / "data"

@@ -7,10 +7,10 @@ import pytest
 from closed_form_edge import edge_band, gaussian_pixel_esf, gaussian_pixel_mtf
 
 from acutance.errors import OptionError, SupportError
-from acutance.measure.published import KompsatOptions, kompsat_2014
-from acutance.measure.published.edge_location import cubic_locations
-from acutance.measure.published.kompsat import start_points
-from acutance.measure.published.smoothing_spline import fit_smoothing_spline
+from acutance.targets.straight.published import KompsatOptions, kompsat_2014
+from acutance.targets.straight.published.edge_location import cubic_locations
+from acutance.targets.straight.published.kompsat import start_points
+from acutance.targets.straight.published.smoothing_spline import fit_smoothing_spline
 
 
 def test_inflection_is_exact_for_a_cubic():

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import acutance as ac
-from acutance.measure import EdgeOptions
-from acutance.measure.published import Iso12233Options
+from acutance.targets.straight import EdgeOptions
+from acutance.targets.straight.published import Iso12233Options
 
 FOLDER = Path(__file__).parents[3] / "shared" / "data"
 BANDS = {1: "SFR_R", 2: "SFR_G", 3: "SFR_B"}

@@ -8,10 +8,10 @@ from closed_form_edge import edge_band, gaussian_pixel_mtf
 
 from acutance import simulate
 from acutance.errors import OptionError, PhaseError, SupportError
-from acutance.fit.band import EdgeBand
-from acutance.measure.published import SdsuOptions, sdsu_2005
-from acutance.measure.published.edge_location import fermi_locations
-from acutance.measure.published.local_polynomial import modified_savitzky_golay
+from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.published import SdsuOptions, sdsu_2005
+from acutance.targets.straight.published.edge_location import fermi_locations
+from acutance.targets.straight.published.local_polynomial import modified_savitzky_golay
 
 NYQUIST = 0.5
 IRRATIONAL_DEG = math.degrees(math.atan((math.sqrt(5) - 1) / 6))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from acutance.curves import Otf2d
-from acutance.measure import survey_errors
-from acutance.measure.published import GaussianPsf, SdsuMirrorsOptions, sdsu_2003_mirrors
+from acutance.targets.points import survey_errors
+from acutance.targets.points.published import GaussianPsf, SdsuMirrorsOptions, sdsu_2003_mirrors
 
 # Tables 5.13 and 5.14: FWHM across and along, MTF at Nyquist across and along.
 CAMPAIGNS = {

@@ -8,16 +8,16 @@ import pytest
 
 from acutance import simulate
 from acutance.errors import NoEdgeError, OptionError, PhaseError, SupportError
-from acutance.fit.pulse import PulseBand
-from acutance.measure.published import (
+from acutance.optics.preset import preset
+from acutance.targets.straight.fit_pulse import PulseBand
+from acutance.targets.straight.published import (
     PUBLISHED_PULSE,
     PUBLISHED_PULSE_OPTIONS,
     SdsuPulseOptions,
     sdsu_2005_pulse,
 )
-from acutance.measure.published.pulse_gains import sdsu_pulse_gains
-from acutance.measure.pulse_width import width_error_gain
-from acutance.optics.preset import preset
+from acutance.targets.straight.published.pulse_gains import sdsu_pulse_gains
+from acutance.targets.straight.pulse_width import width_error_gain
 
 SENSOR = preset("generic-2005")
 CYCLES_OF_6_DEG = 95  # rows: ten whole cycles of the sample phases

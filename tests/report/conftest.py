@@ -11,10 +11,10 @@ import pytest
 from scipy.special import erf
 
 from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
-from acutance.fit.line import Line
-from acutance.measure import Rejected, TargetResult
-from acutance.measure.measurement import Check, ImageInfo, Measurement, Samples
-from acutance.measure.target import combine_edges
+from acutance.geometry.line import Line
+from acutance.targets.measurement import Check, ImageInfo, Measurement, Samples
+from acutance.targets.straight import Rejected, TargetResult
+from acutance.targets.straight.many_edges import combine_edges
 
 DISTANCE_PX = np.linspace(-8.0, 8.0, 641)
 FREQ_CPP = np.linspace(0.0, 1.0, 101)

@@ -9,7 +9,6 @@ from matplotlib.axis import Axis, Tick
 from matplotlib.text import Text
 
 from acutance import Estimate, optics, simulate
-from acutance.measure import Check, TargetResult, measure_pulse
 from acutance.report import (
     comparison_figure,
     edge_figure,
@@ -19,6 +18,8 @@ from acutance.report import (
 )
 from acutance.report.comparison_page import true_numbers
 from acutance.report.page import figure_bytes
+from acutance.targets import Check
+from acutance.targets.straight import TargetResult, measure_pulse
 
 
 def written(figure):

@@ -4,9 +4,9 @@ import re
 from dataclasses import replace
 from xml.etree import ElementTree
 
-from acutance.measure.measurement import Check
 from acutance.report import comparison_report, edge_report, target_report
 from acutance.report.html import Headline, Link, Section, Table, Verdict, render_report
+from acutance.targets.measurement import Check
 
 
 def parsed(page):

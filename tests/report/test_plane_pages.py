@@ -15,7 +15,6 @@ from matplotlib.text import Text
 
 from acutance import optics
 from acutance.curves import Otf2d
-from acutance.measure import Check, ImageInfo, Measurement2d
 from acutance.optics import Sensor
 from acutance.report import (
     PlanePanel,
@@ -28,6 +27,7 @@ from acutance.report import (
     plane_text,
 )
 from acutance.report.page import figure_bytes
+from acutance.targets import Check, ImageInfo, Measurement2d
 
 SENSOR = Sensor([optics.Gaussian(0.4, 0.5), optics.Detector(), optics.Smear(0.7, "along")])
 CHECKS = (

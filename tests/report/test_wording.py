@@ -5,7 +5,6 @@ import math
 import pytest
 
 from acutance.curves import METRICS, Estimate
-from acutance.measure.measurement import Check
 from acutance.report.wording import (
     METRIC_WORDS,
     flatten_options,
@@ -17,6 +16,7 @@ from acutance.report.wording import (
     word_estimate,
     write_fixed,
 )
+from acutance.targets.measurement import Check
 
 
 def test_an_estimate_gets_two_digits_of_its_standard_deviation():

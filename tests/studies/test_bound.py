@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import least_squares
 
 from acutance import optics, simulate
-from acutance.fit.blur import Blur
+from acutance.numerics.gaussian_pixel import Blur
 from acutance.studies import Design, equivalent_blur, free_bound, shape_bound
 from acutance.studies.bound import _numbers
 

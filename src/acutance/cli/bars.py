@@ -32,7 +32,7 @@ from acutance.cli.target import (
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
-    from acutance.measure import Bars
+    from acutance.geometry.bar_group import Bars
 
 __all__ = ["EXAMPLE", "bars", "parse_group"]
 
@@ -91,7 +91,7 @@ def bars(
         strict=strict,
     )
 
-    from acutance.measure import BarsLimits, BarsOptions, measure_bars
+    from acutance.targets.periodic import BarsLimits, BarsOptions, measure_bars
 
     _require_bars("--count", count)
     options = BarsOptions(
@@ -125,7 +125,7 @@ def parse_group(text: str) -> Bars:
     OptionError
         If it is not six numbers, or the number of bars is not a whole one above 1.
     """
-    from acutance.measure import Bars
+    from acutance.geometry.bar_group import Bars
 
     try:
         numbers = [float(part) for part in text.split(",")]

@@ -31,7 +31,7 @@ from acutance.cli.target import (
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
-    from acutance.measure.biresolution_reference import ReferenceLike
+    from acutance.targets.pair.reference import ReferenceLike
 
 __all__ = ["EXAMPLE", "biresolution", "parse_reference"]
 
@@ -117,8 +117,8 @@ def biresolution(
         strict=strict,
     )
 
-    from acutance.measure import BiresolutionLimits, BiresolutionOptions, measure_biresolution
     from acutance.raster import open_image
+    from acutance.targets.pair import BiresolutionLimits, BiresolutionOptions, measure_biresolution
 
     options = BiresolutionOptions(
         stop_change=stop,
@@ -166,7 +166,7 @@ def parse_reference(text: str | None) -> ReferenceLike:
 
         return read_sensor(text)
     if ending == ".json":
-        from acutance.measure import measured_reference
+        from acutance.targets.pair import measured_reference
 
         try:
             document = json.loads(Path(text).read_text(encoding="utf-8"))

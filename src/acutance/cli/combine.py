@@ -70,8 +70,8 @@ def combine(
     )
     documents = [_read(name) for name in files]
 
-    from acutance.measure import CombineLimits, CombineOptions
-    from acutance.measure import combine as combine_measurements
+    from acutance.targets.combine import CombineLimits, CombineOptions
+    from acutance.targets.combine import combine as combine_measurements
 
     options = CombineOptions(
         detector_px=_parse_detector(detector), limits=change_limits(CombineLimits(), limit or [])

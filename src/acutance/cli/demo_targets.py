@@ -13,12 +13,13 @@ from acutance.errors import AcutanceError
 if TYPE_CHECKING:
     from acutance.curves import Response
     from acutance.curves.grid import Floats
-    from acutance.measure import CombinedMeasurement, Measurement, Measurement2d
     from acutance.raster import Image, Region
     from acutance.report.campaign import CampaignEntry
     from acutance.report.html import Section
     from acutance.report.plane_panels import PlanePanel
     from acutance.simulate import Scene
+    from acutance.targets import Measurement, Measurement2d
+    from acutance.targets.combine import CombinedMeasurement
 
 __all__ = ["Campaign", "PlaneTarget", "StraightTarget", "measure_campaign"]
 
@@ -131,7 +132,7 @@ def _straight_entries(target: StraightTarget, orientation: str) -> list[Campaign
 
 def measure_campaign(scene: Scene, image: Image) -> Campaign:
     """Measure every target of a site by every method, and combine the reference ones."""
-    from acutance.measure import combine
+    from acutance.targets.combine import combine
 
     straight = (*_edges(scene, image), *_pulses(scene, image))
     plane = _plane_targets(scene, image)
@@ -144,8 +145,8 @@ def measure_campaign(scene: Scene, image: Image) -> Campaign:
 
 
 def _edges(scene: Scene, image: Image) -> list[StraightTarget]:
-    from acutance.measure import METHODS
     from acutance.raster import Region
+    from acutance.targets.straight import METHODS
 
     found = []
     for edge in scene.edges:
@@ -156,15 +157,15 @@ def _edges(scene: Scene, image: Image) -> list[StraightTarget]:
 
 
 def _edge(image: Image, region: Region, method: str) -> Measurement:
-    from acutance.measure import measure_edge
+    from acutance.targets.straight import measure_edge
 
     return measure_edge(image, region, method=method)
 
 
 def _pulses(scene: Scene, image: Image) -> list[StraightTarget]:
-    from acutance.measure import PULSE_METHODS
     from acutance.raster import Region
     from acutance.simulate import PulseTruth
+    from acutance.targets.straight import PULSE_METHODS
 
     found = []
     for target in scene.targets:
@@ -179,16 +180,17 @@ def _pulses(scene: Scene, image: Image) -> list[StraightTarget]:
 
 
 def _pulse(image: Image, region: Region, width_px: float, method: str) -> Measurement:
-    from acutance.measure import measure_pulse
+    from acutance.targets.straight import measure_pulse
 
     return measure_pulse(image, region, width_px=width_px, method=method)
 
 
 def _plane_targets(scene: Scene, image: Image) -> tuple[PlaneTarget, ...]:
     from acutance import report
-    from acutance.measure import POINTS_METHODS, measure_bars, measure_star
     from acutance.raster import Region
     from acutance.simulate import PointsTruth
+    from acutance.targets.periodic import measure_bars, measure_star
+    from acutance.targets.points import POINTS_METHODS
 
     found = []
     for target in scene.targets:
@@ -212,7 +214,7 @@ def _plane_targets(scene: Scene, image: Image) -> tuple[PlaneTarget, ...]:
 
 
 def _mirrors(image: Image, region: Region, places: Floats, method: str) -> Measurement2d:
-    from acutance.measure import measure_points
+    from acutance.targets.points import measure_points
 
     return measure_points(image, region, positions=places, surveyed=places, method=method)
 

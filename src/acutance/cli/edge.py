@@ -35,9 +35,9 @@ from acutance.cli.target import (
 from acutance.errors import NoEdgeError, OptionError
 
 if TYPE_CHECKING:
-    from acutance.measure import EdgeOptions
-    from acutance.measure.measurement import Measurement
     from acutance.raster import Image, Region
+    from acutance.targets.measurement import Measurement
+    from acutance.targets.straight import EdgeOptions
 
 __all__ = ["EXAMPLE", "edge"]
 
@@ -84,7 +84,7 @@ def edge(
         strict=strict,
     )
 
-    from acutance.measure import METHODS, EdgeLimits, EdgeOptions, measure_edge
+    from acutance.targets.straight import METHODS, EdgeLimits, EdgeOptions, measure_edge
 
     methods = choose_methods(method, compare, METHODS)
     options = EdgeOptions(
@@ -105,8 +105,8 @@ def edge(
 def _measure_all(
     image: Image, region: Region | None, method: str, options: EdgeOptions
 ) -> tuple[Sequence[Measurement], Faces]:
-    from acutance.measure import measure_edges
     from acutance.raster import Box
+    from acutance.targets.straight import measure_edges
 
     result = measure_edges(image, region, method=method, options=options)
     if not result.measurements:

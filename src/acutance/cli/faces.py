@@ -15,10 +15,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from acutance.curves.grid import Floats
-    from acutance.measure import Measurement2d, TargetResult
-    from acutance.measure.measurement import Measurement
     from acutance.report import PlanePanel
     from acutance.report.html import Section
+    from acutance.targets import Measurement2d
+    from acutance.targets.measurement import Measurement
+    from acutance.targets.straight import TargetResult
 
 __all__ = ["Faces", "deliver", "faces_by_method", "faces_of_plane", "faces_of_target"]
 

@@ -107,8 +107,8 @@ def points(
     if survey_reference not in ("mean", "first"):
         raise OptionError(f"--survey-reference {survey_reference}: it has to be mean or first")
 
-    from acutance.measure import POINTS_METHODS, PointsLimits, PointsOptions, measure_points
     from acutance.raster import read_positions
+    from acutance.targets.points import POINTS_METHODS, PointsLimits, PointsOptions, measure_points
 
     choose_methods(method, None, POINTS_METHODS)
     options = PointsOptions(

@@ -94,7 +94,7 @@ def pulse(
         strict=strict,
     )
 
-    from acutance.measure import PULSE_METHODS, PulseLimits, PulseOptions, measure_pulse
+    from acutance.targets.straight import PULSE_METHODS, PulseLimits, PulseOptions, measure_pulse
 
     methods = choose_methods(method, compare, PULSE_METHODS)
     options = PulseOptions(

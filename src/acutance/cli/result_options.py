@@ -13,8 +13,8 @@ from acutance.cli.terminal import FAILED_CHECK, say
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
-    from acutance.measure import Measurement2d
-    from acutance.measure.measurement import Measurement
+    from acutance.targets import Measurement2d
+    from acutance.targets.measurement import Measurement
 
 __all__ = [
     "CompareOption",

@@ -105,7 +105,7 @@ def star(
         strict=strict,
     )
 
-    from acutance.measure import StarLimits, StarOptions, measure_star
+    from acutance.targets.periodic import StarLimits, StarOptions, measure_star
 
     options = StarOptions(
         wave=cast("Literal['sine', 'square']", wave),

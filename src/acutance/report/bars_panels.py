@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
 
-    from acutance.measure import BarsGroup, BarsMeasurement
+    from acutance.targets.periodic import BarsGroup, BarsMeasurement
 
 __all__ = ["bars_panels"]
 

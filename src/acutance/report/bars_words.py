@@ -14,7 +14,7 @@ from acutance.report.text import align_columns
 from acutance.report.wording import metric_words, word_estimate
 
 if TYPE_CHECKING:
-    from acutance.measure import BarsMeasurement
+    from acutance.targets.periodic import BarsMeasurement
 
 __all__ = ["bars_blocks", "bars_csv", "bars_sections"]
 

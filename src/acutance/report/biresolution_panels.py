@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
 
-    from acutance.measure import BiresolutionMeasurement
+    from acutance.targets.pair import BiresolutionMeasurement
 
 __all__ = ["biresolution_panels"]
 

@@ -12,7 +12,7 @@ from acutance.report.text import align_columns
 from acutance.report.wording import format_number, word_estimate
 
 if TYPE_CHECKING:
-    from acutance.measure import BiresolutionMeasurement
+    from acutance.targets.pair import BiresolutionMeasurement
 
 __all__ = ["biresolution_blocks", "biresolution_sections"]
 

@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, FigureBase
 
     from acutance.curves.grid import Floats
-    from acutance.measure import Measurement
     from acutance.report.campaign import CampaignEntry
     from acutance.report.plane_panels import PlanePanel
     from acutance.simulate import Scene
+    from acutance.targets import Measurement
 
 __all__ = [
     "Drawing",

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
 
-    from acutance.measure import CombinedMeasurement, CombinedPart
+    from acutance.targets.combine import CombinedMeasurement, CombinedPart
 
 __all__ = ["combine_panels"]
 

@@ -10,7 +10,7 @@ from acutance.report.wording import format_number, word_estimate
 
 if TYPE_CHECKING:
     from acutance.curves import Estimate
-    from acutance.measure import CombinedMeasurement
+    from acutance.targets.combine import CombinedMeasurement
 
 __all__ = ["combine_blocks", "combine_sections"]
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.curves import Estimate
-from acutance.measure.pulse_response import prf_fwhm
 from acutance.report.grids import write_grid
 from acutance.report.page import INK, NAME_WITH_ROOM, PALETTE, new_page, split_page, styled
 from acutance.report.panels import TOP_BESIDE_ZEROS, band_edges, mark_frequencies, mark_zeros
 from acutance.report.wording import MISSING, describe_image, metric_words, numbers_of, word_estimate
+from acutance.targets.straight.pulse_response import prf_fwhm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from acutance.curves import Response
     from acutance.curves.grid import Floats
-    from acutance.measure.measurement import Measurement
+    from acutance.targets.measurement import Measurement
 
 __all__ = ["COMPARED", "comparison_figure", "edge_labels", "true_numbers"]
 

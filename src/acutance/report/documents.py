@@ -10,10 +10,10 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from acutance.measure import TargetResult
-    from acutance.measure.measurement import Measurement
     from acutance.optics import Sensor
     from acutance.simulate import PulseTruth, Truth
+    from acutance.targets.measurement import Measurement
+    from acutance.targets.straight import TargetResult
 
 __all__ = [
     "comparison_document",

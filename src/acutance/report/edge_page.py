@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, FigureBase
 
-    from acutance.measure.measurement import Measurement
+    from acutance.targets.measurement import Measurement
 
 __all__ = ["edge_figure", "panel_figures"]
 

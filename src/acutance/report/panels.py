@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 
 from acutance.curves import metrics
 from acutance.curves.grid import Floats, crossing
-from acutance.measure.pulse_spectrum import zeros_cpp
 from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, SHADE, VERMILION
 from acutance.report.wording import word_estimate
+from acutance.targets.straight.pulse_spectrum import zeros_cpp
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from acutance.curves import Lsf, Mtf
-    from acutance.fit.line import Line
-    from acutance.measure.measurement import Measurement, Samples
+    from acutance.geometry.line import Line
+    from acutance.targets.measurement import Measurement, Samples
 
 __all__ = [
     "band_edges",

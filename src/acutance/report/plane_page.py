@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, FigureBase
 
-    from acutance.measure import Measurement2d
+    from acutance.targets import Measurement2d
 
 __all__ = ["plane_figure", "plane_panels"]
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import FigureBase
 
     from acutance.curves import Mtf, Response
-    from acutance.measure import Measurement2d
+    from acutance.targets import Measurement2d
 
 __all__ = [
     "PlanePanel",

@@ -26,7 +26,7 @@ from acutance.report.wording import (
 )
 
 if TYPE_CHECKING:
-    from acutance.measure import Measurement2d
+    from acutance.targets import Measurement2d
 
 __all__ = ["plane_report", "plane_sections"]
 

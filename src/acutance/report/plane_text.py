@@ -20,7 +20,7 @@ from acutance.report.wording import (
 
 if TYPE_CHECKING:
     from acutance.curves import Response
-    from acutance.measure import Measurement2d
+    from acutance.targets import Measurement2d
 
 __all__ = ["plane_csv", "plane_document", "plane_text"]
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
 
-    from acutance.measure import PointsMeasurement
-    from acutance.measure.points_evidence import PointSource
+    from acutance.targets.points import PointsMeasurement
+    from acutance.targets.points.sources import PointSource
 
 __all__ = ["points_panels"]
 

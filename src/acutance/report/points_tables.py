@@ -10,7 +10,7 @@ from acutance.report.text import align_columns
 from acutance.report.wording import MISSING, format_number, word_estimate, write_fixed
 
 if TYPE_CHECKING:
-    from acutance.measure import PointsMeasurement
+    from acutance.targets.points import PointsMeasurement
 
 __all__ = ["points_blocks", "points_sections", "sources_csv"]
 

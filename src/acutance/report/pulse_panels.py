@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from acutance.curves import Estimate
-    from acutance.measure.measurement import Measurement
+    from acutance.targets.measurement import Measurement
 
 __all__ = ["draw_prf"]
 

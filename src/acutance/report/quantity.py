@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from acutance.report.wording import MetricWords, metric_words
 
 if TYPE_CHECKING:
-    from acutance.measure import Measurement2d
+    from acutance.targets import Measurement2d
 
 __all__ = ["csv_column", "plane_metric_words", "spread_name", "transfer_name"]
 

@@ -12,8 +12,8 @@ from acutance.report.wording import count_edges, describe_image
 if TYPE_CHECKING:
     from acutance.curves import Response
     from acutance.curves.grid import Floats
-    from acutance.measure import TargetResult
-    from acutance.measure.measurement import Measurement
+    from acutance.targets.measurement import Measurement
+    from acutance.targets.straight import TargetResult
 
 __all__ = ["comparison_report", "edge_report", "target_report"]
 

@@ -31,8 +31,9 @@ from acutance.report.wording import (
 if TYPE_CHECKING:
     from acutance.curves import Response
     from acutance.curves.grid import Floats
-    from acutance.measure import Measurement2d, TargetResult
-    from acutance.measure.measurement import Measurement
+    from acutance.targets import Measurement2d
+    from acutance.targets.measurement import Measurement
+    from acutance.targets.straight import TargetResult
 
 __all__ = [
     "checks_sections",

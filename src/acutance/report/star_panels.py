@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
 
-    from acutance.measure import StarMeasurement
+    from acutance.targets.periodic import StarMeasurement
 
 __all__ = ["star_panels"]
 

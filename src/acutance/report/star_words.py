@@ -13,7 +13,7 @@ from acutance.report.text import align_columns
 from acutance.report.wording import word_estimate
 
 if TYPE_CHECKING:
-    from acutance.measure import StarMeasurement
+    from acutance.targets.periodic import StarMeasurement
 
 __all__ = ["star_blocks", "star_csv", "star_sections"]
 

@@ -11,7 +11,7 @@ import numpy as np
 from acutance.curves import Estimate
 
 if TYPE_CHECKING:
-    from acutance.measure.measurement import Measurement
+    from acutance.targets.measurement import Measurement
 
 __all__ = ["MtfRow", "mtf_csv", "mtf_csv_of_many", "mtf_rows"]
 

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, FigureBase
 
     from acutance.curves.grid import Floats
-    from acutance.measure import EdgeGroup, TargetResult
-    from acutance.measure.measurement import Measurement
+    from acutance.targets.measurement import Measurement
+    from acutance.targets.straight import EdgeGroup, TargetResult
 
 __all__ = ["group_rows", "target_figure"]
 

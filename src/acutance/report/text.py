@@ -20,8 +20,8 @@ from acutance.report.wording import (
 )
 
 if TYPE_CHECKING:
-    from acutance.measure import TargetResult
-    from acutance.measure.measurement import Measurement
+    from acutance.targets.measurement import Measurement
+    from acutance.targets.straight import TargetResult
 
 __all__ = ["align_columns", "comparison_text", "target_text", "text_report"]
 

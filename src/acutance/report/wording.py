@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from acutance.curves import Estimate
-    from acutance.measure import Measurement2d
-    from acutance.measure.measurement import Check, Measurement
+    from acutance.targets import Measurement2d
+    from acutance.targets.measurement import Check, Measurement
 
 __all__ = [
     "METRIC_WORDS",

@@ -13,8 +13,8 @@ from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.curves.one_line import OneLine
 from acutance.errors import ModelError
-from acutance.fit.bars_group import Bars
-from acutance.fit.line import Line, Orientation
+from acutance.geometry.bar_group import Bars
+from acutance.geometry.line import Line, Orientation
 from acutance.optics.block import Transfer
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.limits import require_finite, require_shape

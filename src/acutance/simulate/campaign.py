@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
-from acutance.fit.line import Line
+from acutance.geometry.line import Line
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.bars import BarGroup, BarsTruth
 from acutance.simulate.edge import Truth

@@ -11,7 +11,7 @@ import numpy as np
 from acutance.curves import HasResponse, Response
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
-from acutance.fit.line import Line, Orientation
+from acutance.geometry.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.ground import GroundNoise
 from acutance.simulate.limits import require_finite, require_numbers, require_shape

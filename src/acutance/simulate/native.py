@@ -9,8 +9,8 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from acutance.curves.grid import Floats
-from acutance.fit.kernel_blur import spline_transfer
 from acutance.optics.block import Transfer, require
+from acutance.optics.processing import spline_transfer
 from acutance.simulate.noise import Noise
 
 __all__ = ["NativeGrid"]

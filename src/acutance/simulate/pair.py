@@ -14,7 +14,7 @@ from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.curves.one_line import OneLine
 from acutance.errors import ModelError
-from acutance.fit.line import Orientation
+from acutance.geometry.line import Orientation
 from acutance.optics import Rescaled, Sensor
 from acutance.optics.block import Block, Transfer, require
 from acutance.simulate.ground import alias_bands

@@ -12,7 +12,7 @@ from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.curves.one_line import OneLine
 from acutance.errors import ModelError
-from acutance.fit.line import Orientation
+from acutance.geometry.line import Orientation
 from acutance.optics.sensor import Sensor
 from acutance.simulate.limits import require_finite, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr

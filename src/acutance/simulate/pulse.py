@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from acutance.curves import HasResponse, Response
 from acutance.curves.grid import Floats, crossing
 from acutance.errors import ModelError
-from acutance.fit.line import Line, Orientation
+from acutance.geometry.line import Line, Orientation
 from acutance.optics.sensor import Sensor
 from acutance.simulate.edge import line_through_centre
 from acutance.simulate.ground import GroundNoise

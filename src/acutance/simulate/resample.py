@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
-from acutance.fit.line import Line
+from acutance.geometry.line import Line
 from acutance.optics import Resampling, Rescaled, Sensor, Shift
 from acutance.optics.block import require
 from acutance.optics.processing import KERNEL_REACH_PX, Interpolation, interpolation_weight

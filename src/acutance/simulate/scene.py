@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
-from acutance.fit.line import Line
+from acutance.geometry.line import Line
 from acutance.optics.block import Transfer, require
 from acutance.optics.sensor import Sensor
 from acutance.simulate.ground import alias_bands

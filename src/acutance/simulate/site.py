@@ -13,7 +13,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.one_line import OneLine
 from acutance.errors import ModelError
-from acutance.fit.line import Line
+from acutance.geometry.line import Line
 from acutance.optics.sensor import Sensor
 from acutance.simulate.bars import BarsTruth
 from acutance.simulate.edge import Truth

@@ -9,7 +9,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
-from acutance.fit.line import Line
+from acutance.geometry.line import Line
 from acutance.optics.block import require
 from acutance.optics.sensor import normal_direction_deg
 from acutance.simulate.scene import Patch

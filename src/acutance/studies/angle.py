@@ -11,14 +11,14 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, PhaseError
-from acutance.measure import measure_pulse
-from acutance.measure.published.local_polynomial import window_gain
 from acutance.optics import Sensor, preset
 from acutance.simulate import pulse
 from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import measure_published_pulse
+from acutance.targets.straight import measure_pulse
+from acutance.targets.straight.published.local_polynomial import window_gain
 
 __all__ = ["ANGLE_TERMS", "AngleOptions", "study_angle"]
 

@@ -30,10 +30,10 @@ from numpy.typing import NDArray
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.fit.blur import Blur
-from acutance.measure.pulse_spectrum import width_sensitivity_per_px
+from acutance.numerics.gaussian_pixel import Blur
 from acutance.optics import Sensor
 from acutance.optics.sensor import DISTANCE_PX, FREQ_CPP
+from acutance.targets.straight.pulse_spectrum import width_sensitivity_per_px
 
 __all__ = ["Design", "MetricBound", "equivalent_blur", "free_bound", "shape_bound"]
 

@@ -26,11 +26,11 @@ import numpy as np
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
-from acutance.measure import measure_points
-from acutance.measure.points_checks import phase_gap_px
 from acutance.optics import Sensor
 from acutance.simulate import points
 from acutance.studies.execution import Execution, Record, run_trials
+from acutance.targets.points import measure_points
+from acutance.targets.points.checks import phase_gap_px
 
 __all__ = ["MirrorLayout", "MirrorPlan", "MirrorPlanOptions", "lay_out_mirrors", "plan_mirrors"]
 

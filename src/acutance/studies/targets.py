@@ -9,15 +9,15 @@ from typing import Literal
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.fit.find_pulse import find_pulse
-from acutance.measure import EdgeOptions, measure_edge, measure_pulse
-from acutance.measure.published import (
+from acutance.studies.execution import Record
+from acutance.targets.straight import EdgeOptions, measure_edge, measure_pulse
+from acutance.targets.straight.find_pulse import find_pulse
+from acutance.targets.straight.published import (
     PublishedPulse,
     SdsuOptions,
     SdsuPulseOptions,
     sdsu_2005_pulse,
 )
-from acutance.studies.execution import Record
 
 __all__ = [
     "ESTIMATORS",
@@ -101,7 +101,7 @@ def measure_published_pulse(
     order : {2, 4}, optional
     distance : {"row", "normal"}, optional
     width : {"stated", "axis"}, optional
-        As in `acutance.measure.published.SdsuPulseOptions`.
+        As in `acutance.targets.straight.published.SdsuPulseOptions`.
     """
     band, _ = find_pulse(image, width_px)
     options = SdsuPulseOptions(order=order, distance=distance, width=width, replicates=0)

@@ -9,14 +9,14 @@ import numpy as np
 
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError
-from acutance.measure import measure_pulse
-from acutance.measure.pulse_spectrum import width_error_gain
 from acutance.optics import Sensor, preset
 from acutance.simulate import pulse
 from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
+from acutance.targets.straight import measure_pulse
+from acutance.targets.straight.pulse_spectrum import width_error_gain
 
 __all__ = ["WIDTH_FREQ_CPP", "WidthOptions", "WidthTrial", "study_width"]
 

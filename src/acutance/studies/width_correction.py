@@ -10,9 +10,6 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, TargetError
-from acutance.measure import measure_pulse
-from acutance.measure.pulse_spectrum import width_error_gain
-from acutance.measure.pulse_width import smoothest_width
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.simulate import pulse
 from acutance.studies.execution import Execution, Record, run_trials
@@ -20,6 +17,9 @@ from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
 from acutance.studies.width import WIDTH_FREQ_CPP
+from acutance.targets.straight import measure_pulse
+from acutance.targets.straight.pulse_spectrum import width_error_gain
+from acutance.targets.straight.pulse_width import smoothest_width
 
 __all__ = ["TABLE_3_3", "WidthCase", "WidthCorrectionOptions", "study_width_correction"]
 

@@ -1,1 +1,0 @@
-"""The shared numerics: lines, bands, the spline model of straight targets, its covariance."""

@@ -1,0 +1,7 @@
+"""Lines, bars and stars in the image plane, in pixels: rows downwards, columns to the right."""
+
+from acutance.geometry.bar_group import Bars
+from acutance.geometry.line import Line, Orientation
+from acutance.geometry.star_geometry import FoundStar
+
+__all__ = ["Bars", "FoundStar", "Line", "Orientation"]

@@ -1,0 +1,7 @@
+"""What the fits of two or more target kinds share.
+
+- normal_equations, marginal_likelihood: linear models with priors whose amplitudes the data set.
+- noise: its level, its outliers, its correlation; robust scales.
+- gaussian_pixel, gaussian_pixel_2d: a Gaussian seen through a pixel, with its derivatives.
+- lookup: cubic interpolation of tables; one_thread: linear algebra of many small matrices.
+"""

@@ -1,0 +1,44 @@
+"""Normal equations: all that the pixels say of a linear model, in one small matrix."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+
+__all__ = ["Normal"]
+
+
+@dataclass(frozen=True, eq=False)
+class Normal:
+    """Weighted sums over the pixels, of a model that is linear in its m coefficients.
+
+    Attributes
+    ----------
+    gram : (m, m) array
+        Sum of w a a^T, with a the row of the design every pixel makes.
+    projection : (m,) array
+        Sum of w a y.
+    data : float
+        Sum of w y^2.
+    count : float
+        Number of pixels.
+    """
+
+    gram: Floats
+    projection: Floats
+    data: float
+    count: float
+
+    def combined(self, directions: Floats) -> Normal:
+        """The equations where r unknowns beta make the first p ones, (p, r): the others stay."""
+        p, r = directions.shape
+        rest = self.projection.size - p
+        half = directions.T @ self.gram[:p]
+        gram = np.empty((r + rest, r + rest))
+        gram[:r, :r], gram[:r, r:] = half[:, :p] @ directions, half[:, p:]
+        gram[r:, :r], gram[r:, r:] = half[:, p:].T, self.gram[p:, p:]
+        projection = np.concatenate([directions.T @ self.projection[:p], self.projection[p:]])
+        return Normal(gram, projection, self.data, self.count)

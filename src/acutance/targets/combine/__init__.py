@@ -1,0 +1,18 @@
+"""Several measurements of one sensor as one two-dimensional OTF.
+
+In the order data take: `inputs` (records of measurements), `pixel_size` (do they have the same
+pixels), `curves` (what each says), `sensor_forms` (products of OTF blocks), `correction` (smooth
+departures from them), `fit` (all forms, weighted), `checks`, `combination` (the public
+function).
+"""
+
+from acutance.targets.combine.combination import CombinedMeasurement, CombinedPart, combine
+from acutance.targets.combine.options import CombineLimits, CombineOptions
+
+__all__ = [
+    "CombineLimits",
+    "CombineOptions",
+    "CombinedMeasurement",
+    "CombinedPart",
+    "combine",
+]

@@ -1,0 +1,259 @@
+"""Combine edges, pulses and 2-D measurements of one sensor into one 2-D OTF."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, cast
+
+import numpy as np
+
+from acutance.curves import Estimate, Mtf, Otf2d
+from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
+from acutance.curves.one_line import OneLine
+from acutance.errors import OptionError
+from acutance.numerics.one_thread import one_thread
+from acutance.raster import Gsd
+from acutance.raster.image import AlongTrack
+from acutance.targets.arguments import chosen_options
+from acutance.targets.combine.checks import check_combination, count_directions, direction_gap_deg
+from acutance.targets.combine.pixel_size import common_gsd, without_gsd
+from acutance.targets.combine.curves import ChiSquare, PlaneCurve
+from acutance.targets.combine.fit import CombinedFit, combine_curves
+from acutance.targets.combine.inputs import Combinable, MeasuredInput, common_flight, read_inputs
+from acutance.targets.combine.options import CombineOptions
+from acutance.targets.measurement import ImageInfo
+from acutance.targets.measurement2d import Measurement2d
+
+__all__ = ["CombinedMeasurement", "CombinedPart", "combine"]
+
+_LEAST_GAP_DEG = 20.0
+
+
+@dataclass(frozen=True, eq=False)
+class CombinedPart(OneLine):
+    """One measurement beside what all of them say together.
+
+    Parameters
+    ----------
+    source : MeasuredInput
+    chi_square : ChiSquare
+        Of its residuals.
+    own, combined : Estimate
+        MTF at Nyquist along its direction (across, if it has all): its own, and the combined.
+    freq_cpp : (n,) array
+    value, std, fitted : (m, n) arrays
+        MTF by direction, its standard deviation, and the combined MTF there.
+    """
+
+    source: MeasuredInput
+    chi_square: ChiSquare
+    own: Estimate
+    combined: Estimate
+    freq_cpp: Floats
+    value: Floats
+    std: Floats
+    fitted: Floats
+
+    def to_dict(self) -> dict[str, Any]:
+        """Name, kind, directions and chi-square, for JSON."""
+        return {
+            "name": self.source.name,
+            "kind": self.source.kind,
+            "method": self.source.method,
+            "path": self.source.path,
+            "normal_deg": self.source.slices.normal_deg.tolist(),
+            "mtf_nyquist": self.own.to_dict(),
+            "combined_mtf_nyquist": self.combined.to_dict(),
+            **_chi_square(self.chi_square),
+        }
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CombinedMeasurement(Measurement2d):
+    """What many measurements of one sensor say together.
+
+    Parameters
+    ----------
+    parts : tuple of CombinedPart
+        The measurements, in the order given.
+    fit : CombinedFit
+        The forms, their weights and the chi-squares.
+    """
+
+    parts: tuple[CombinedPart, ...]
+    fit: CombinedFit
+
+    @cached_property
+    def parameters(self) -> dict[str, Estimate]:
+        """Parameters of the sensor of largest weight, by name with their units."""
+        return self.fit.numbers
+
+    @property
+    def chi_square(self) -> ChiSquare:
+        """Of all measurements: whether they agree."""
+        return self.fit.total
+
+    @property
+    def birge_ratio(self) -> float:
+        """What every standard deviation was widened by: 1 where the measurements agree."""
+        return self.fit.birge_ratio
+
+    def evidence(self) -> dict[str, Any]:
+        """The sensor's parameters, the forms and what each measurement contributed."""
+        best = self.fit.best
+        return {
+            "sensor": {
+                "form": best.form.name,
+                "weight": best.weight,
+                "detector_px": list(best.form.detector_px),
+                "parameters": {name: one.to_dict() for name, one in self.parameters.items()},
+            },
+            "forms": [
+                {"form": one.form.name, "departure": one.share, "weight": one.weight}
+                for one in self.fit.forms
+            ],
+            "departure": self.fit.departure,
+            "birge_ratio": self.birge_ratio,
+            "agreement": _chi_square(self.fit.total),
+            "plain_sensor": _chi_square(self.fit.plain),
+            "parts": [one.to_dict() for one in self.parts],
+        }
+
+
+def _chi_square(found: ChiSquare) -> dict[str, float]:
+    return {
+        "chi_square": found.value,
+        "degrees_of_freedom": found.expected,
+        "p_value": found.p_value,
+    }
+
+
+@one_thread
+def combine(
+    measurements: Sequence[Combinable],
+    *,
+    names: Sequence[str] | None = None,
+    gsd_m: float | Gsd | None = None,
+    options: CombineOptions | None = None,
+) -> CombinedMeasurement:
+    """Combine measurements of one sensor into one 2-D OTF.
+
+    Parameters
+    ----------
+    measurements : sequence of Measurement, Measurement2d, TargetResult or dict
+        Results, or their JSON documents. Edges and pulses are slices along their normals.
+    names : sequence of str, optional
+        What to call them.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres, instead of that of the measurements.
+    options : CombineOptions, optional
+
+    Returns
+    -------
+    CombinedMeasurement
+        Across and along are exactly those of the pixel grid.
+
+    Raises
+    ------
+    OptionError
+        If there is only one measurement or one direction, or they do not belong together: other
+        pixels, the same result twice, a ratio instead of an MTF.
+
+    Examples
+    --------
+    >>> both = ac.combine([ac.measure_edge(tarp, across), ac.measure_edge(tarp, along)])
+    ... # doctest: +SKIP
+    >>> print(both.across.mtf_nyquist, both.chi_square.p_value)  # doctest: +SKIP
+    """
+    chosen = chosen_options(options, CombineOptions)
+    inputs = read_inputs(measurements, names)
+    _require_two(inputs)
+    gsd = Gsd.given(gsd_m)
+    unknown = without_gsd(inputs) if gsd is None else ()
+    gsd = gsd or common_gsd(inputs)
+    along_track = cast("AlongTrack", common_flight(inputs))
+    fit = combine_curves(
+        [_curve(one) for one in inputs], detector_px=chosen.detector_px, forms=chosen.forms
+    )
+    otf = Otf2d(fit, None if gsd is None else (gsd.row_m, gsd.col_m))
+    paths = {one.path for one in inputs}
+    return CombinedMeasurement(
+        kind="combined",
+        method="least-squares",
+        otf=otf,
+        snr=math.nan,
+        checks=check_combination(inputs, fit, chosen.limits, unknown),
+        image=ImageInfo(
+            paths.pop() if len(paths) == 1 else None,
+            gsd_m=None if gsd is None else gsd.col_m,
+            along_track=along_track,
+        ),
+        options=chosen.to_dict(),
+        parts=tuple(
+            _part(one, chi_square, otf) for one, chi_square in zip(inputs, fit.members, strict=True)
+        ),
+        fit=fit,
+    )
+
+
+def _require_two(inputs: Sequence[MeasuredInput]) -> None:
+    if not inputs:
+        raise OptionError("there is nothing to combine: give at least two measurements")
+    for i, one in enumerate(inputs):
+        for other in inputs[:i]:
+            same = one.slices.otf.shape == other.slices.otf.shape
+            if same and np.array_equal(one.slices.otf, other.slices.otf):
+                raise OptionError(
+                    f"{other.name} and {one.name} are the same measurement: leave one out"
+                )
+    if len(inputs) == 1:
+        found = "one direction" if not inputs[0].of_plane else "already a 2-D result"
+        raise OptionError(
+            f"only {inputs[0].name} was given, {found}: combine it with measurements in other "
+            "directions or by other methods"
+        )
+    if direction_gap_deg(inputs) < _LEAST_GAP_DEG:
+        named = ", ".join(f"{one.name} {one.direction}" for one in inputs)
+        raise OptionError(
+            f"all measurements look in one direction ({named}), {count_directions(inputs)} of at "
+            f"least two that differ by {_LEAST_GAP_DEG:g} degrees: add an edge or pulse in "
+            "another direction, or points, a star or a pair of images"
+        )
+
+
+def _curve(one: MeasuredInput) -> PlaneCurve:
+    u, v = one.slices.places
+    return PlaneCurve(one.name, u, v, one.slices.otf, one.slices.factor)
+
+
+def _part(one: MeasuredInput, chi_square: ChiSquare, otf: Otf2d) -> CombinedPart:
+    slices = one.slices
+    u, v = slices.places
+    shape = slices.normal_deg.size, slices.freq_cpp.size
+    # As a curve over all places: each with its own value and standard deviation.
+    own = Mtf(u, slices.otf, slices.factor)
+    fitted = np.abs(otf.model.otf(u, v)).reshape(shape)
+    direction = slices.normal_deg[0]
+    at = int(np.argmin(np.abs(slices.freq_cpp - NYQUIST_CPP)))
+    return CombinedPart(
+        one,
+        chi_square,
+        Estimate(float(own.value[at]), float(own.std[at])),
+        _along(otf, float(direction), float(slices.freq_cpp[at])),
+        slices.freq_cpp,
+        own.value.reshape(shape),
+        own.std.reshape(shape),
+        fitted,
+    )
+
+
+def _along(otf: Otf2d, normal_deg: float, freq_cpp: float) -> Estimate:
+    """The combined MTF at one place of the plane."""
+    angle = math.radians(normal_deg)
+    u, v = np.array([freq_cpp * math.cos(angle)]), np.array([freq_cpp * math.sin(angle)])
+    one = Mtf(u, otf.model.otf(u, v), otf.model.factor(u, v))
+    return Estimate(float(one.value[0]), float(one.std[0]))

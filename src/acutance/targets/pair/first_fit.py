@@ -1,0 +1,245 @@
+"""The parametric fit of a pair: shift, blur, gain and offset, by least squares on the pixels.
+
+This is the procedure of Li et al., "On-orbit MTF estimation methods", 5.3: blur the high image
+with a first kernel, sample it at the low pixels, compare, change the kernel, and stop when the
+residual's relative change falls below a threshold that the user sets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.errors import TargetError
+from acutance.targets.pair.axis_blur import LEAST_VARIANCE, MOST_VARIANCE, AxisBlur
+from acutance.targets.pair.tile import TapGrid, Tiles, core, filtered
+
+__all__ = ["BlurFit", "BlurStep", "fit_blur"]
+
+_BOLDEST_SHIFT_PX = 0.6
+_BOLDEST_VARIANCE = 0.25
+_LEAST_PIXELS = 60
+
+
+@dataclass(frozen=True)
+class BlurStep:
+    """One iteration of the parametric fit.
+
+    Parameters
+    ----------
+    residual : float
+        Root mean square of the residual, outliers bounded, in units of the low image.
+    change : float
+        Its relative change against the iteration before.
+    shift_px : (float, float)
+    variance_px2 : (float, float)
+        Shift and variance along (rows, columns), in low pixels.
+    """
+
+    residual: float
+    change: float
+    shift_px: tuple[float, float]
+    variance_px2: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class BlurFit:
+    """What the parametric fit found.
+
+    Parameters
+    ----------
+    down, across : AxisBlur
+    gain, offset : float
+        Of the low image against the blurred high one.
+    noise : float
+        Robust standard deviation of the residuals.
+    signal : float
+        Standard deviation of the blurred high image about the means of tiles, times the gain.
+    correlation : float
+        Between the low image and the blurred high one, local means left out.
+    steps : sequence of BlurStep
+        The iterations.
+    converged : bool
+        Whether the last change was below the threshold.
+    """
+
+    down: AxisBlur
+    across: AxisBlur
+    gain: float
+    offset: float
+    noise: float
+    signal: float
+    correlation: float
+    steps: Sequence[BlurStep]
+    converged: bool
+
+
+@dataclass(frozen=True, eq=False)
+class _Sums:
+    """Weighted sums over the pixels for the five unknowns, and robust statistics."""
+
+    gram: Floats
+    projection: Floats
+    residual: float
+    noise: float
+    offset: float
+    signal: float
+    correlation: float
+
+
+def fit_blur(
+    tiles: Tiles,
+    grid: TapGrid,
+    down: AxisBlur,
+    across: AxisBlur,
+    *,
+    stop_change: float = 1e-4,
+    max_steps: int = 30,
+    robust: bool = True,
+) -> BlurFit:
+    """Fit shift and blur along both axes, gain and offset.
+
+    Parameters
+    ----------
+    tiles : Tiles
+    grid : TapGrid
+    down, across : AxisBlur
+        Where to start: the shifts have to be right to a pixel.
+    stop_change : float, optional
+        Relative change of the residual at which the iteration ends.
+    max_steps : int, optional
+    robust : bool, optional
+        Bound the weight of pixels that fit badly.
+
+    Raises
+    ------
+    TargetError
+        If the two images have nothing in common.
+    """
+    gain, offset, noise = _first_guess(tiles, grid, down, across)
+    steps: list[BlurStep] = []
+    before = np.inf
+    while True:
+        sums = _accumulate(tiles, grid, down, across, (gain, offset, noise), robust)
+        change = abs(before - sums.residual) / sums.residual if sums.residual > 0 else 0.0
+        shifts = (down.shift_px, across.shift_px)
+        variances = (down.variance_px2, across.variance_px2)
+        steps.append(BlurStep(sums.residual, change, shifts, variances))
+        before, noise, offset = sums.residual, sums.noise, sums.offset
+        if change < stop_change or len(steps) > max_steps:
+            break
+        moves = np.linalg.lstsq(sums.gram, sums.projection, rcond=1e-10)[0]
+        gain += float(moves[0])
+        if gain == 0.0:
+            break
+        down = _moved(down, *(moves[[1, 3]] / gain).tolist())
+        across = _moved(across, *(moves[[2, 4]] / gain).tolist())
+    return BlurFit(
+        down, across, gain, offset, noise, abs(gain) * sums.signal, sums.correlation,
+        tuple(steps), change < stop_change,
+    )  # fmt: skip
+
+
+def _moved(blur: AxisBlur, shift: float, variance: float) -> AxisBlur:
+    bold = float(np.clip(variance, -_BOLDEST_VARIANCE, _BOLDEST_VARIANCE))
+    return replace(
+        blur,
+        shift_px=blur.shift_px + float(np.clip(shift, -_BOLDEST_SHIFT_PX, _BOLDEST_SHIFT_PX)),
+        variance_px2=float(np.clip(blur.variance_px2 + bold, LEAST_VARIANCE, MOST_VARIANCE)),
+    )
+
+
+def _first_guess(
+    tiles: Tiles, grid: TapGrid, down: AxisBlur, across: AxisBlur
+) -> tuple[float, float, float]:
+    """Gain, offset and noise as the median tile has them: a cloud spoils few tiles."""
+    gains, offsets, powers, count = [], [], [], 0
+    for tile in tiles():
+        model = filtered(tile, grid, down.taps(grid.down)[:, :1], across.taps(grid.across)[:, :1])
+        for y, m in _blocks(core(tile.low), core(model[:, :, 0, 0])):
+            spread = float(m @ m)
+            if spread > 0:
+                gains.append(float(m @ y[0]) / spread)
+                powers.append(spread)
+                offsets.append(y[1] - gains[-1] * y[2])
+        count += int(np.isfinite(core(tile.low)).sum())
+    if not gains or count < _LEAST_PIXELS:
+        raise TargetError(
+            f"{count} low pixels have both images around them and structure to compare, at least "
+            f"{_LEAST_PIXELS} are needed: choose a larger region, or one with less nodata"
+        )
+    heavy = np.array(powers) >= np.median(powers)
+    gain = float(np.median(np.array(gains)[heavy]))
+    return gain, float(np.median(np.array(offsets)[heavy])), 0.0
+
+
+def _blocks(low: Floats, model: Floats) -> list[tuple[tuple[Floats, float, float], Floats]]:
+    """Blocks of 8 by 8 pixels: low values about their mean, both means, model about its mean."""
+    found = []
+    for i in range(0, low.shape[0], 8):
+        for j in range(0, low.shape[1], 8):
+            y, m = low[i : i + 8, j : j + 8], model[i : i + 8, j : j + 8]
+            usable = np.isfinite(y)
+            if usable.sum() >= 16:
+                y, m = y[usable], m[usable]
+                found.append(((y - y.mean(), float(y.mean()), float(m.mean())), m - m.mean()))
+    return found
+
+
+def _accumulate(
+    tiles: Tiles,
+    grid: TapGrid,
+    down: AxisBlur,
+    across: AxisBlur,
+    level: tuple[float, float, float],
+    robust: bool,
+) -> _Sums:
+    gain, offset, noise = level
+    gram, projection = np.zeros((5, 5)), np.zeros(5)
+    power = weights = moved = tall = wide = both = 0.0
+    sizes: list[Floats] = []
+    for tile in tiles():
+        field = filtered(tile, grid, down.taps(grid.down)[:, :3], across.taps(grid.across)[:, :3])
+        low, columns = core(tile.low), core(field)
+        usable = np.isfinite(low)
+        if usable.sum() < 8:
+            continue
+        y = low[usable]
+        five = np.stack(
+            [columns[usable][:, i, j] for i, j in ((0, 0), (1, 0), (0, 1), (2, 0), (0, 2))], axis=1
+        )
+        rest = y - gain * five[:, 0] - offset
+        weight = _weights(rest - np.median(rest), noise) if robust else np.ones(y.size)
+        total = float(weight.sum())
+        centred = five - weight @ five / total
+        rest_centred = rest - weight @ rest / total
+        pulled = centred * weight[:, None]
+        gram += pulled.T @ centred
+        projection += pulled.T @ rest_centred
+        power += float(weight @ rest_centred**2)
+        moved += float(weight @ rest)
+        weights += total
+        y_centred = y - weight @ y / total
+        tall += float(weight @ y_centred**2)
+        wide += float(weight @ centred[:, 0] ** 2)
+        both += float(weight @ (y_centred * centred[:, 0]))
+        sizes.append(np.abs(rest_centred))
+    scale = 1.4826 * float(np.median(np.concatenate(sizes)))
+    return _Sums(
+        gram,
+        projection,
+        float(np.sqrt(power / weights)),
+        scale,
+        offset + moved / weights,
+        float(np.sqrt(wide / weights)),
+        both / float(np.sqrt(tall * wide)) if tall * wide > 0 else 0.0,
+    )
+
+
+def _weights(residual: Floats, noise: float) -> Floats:
+    """Cauchy weights about four standard deviations; before a noise is known, about the median."""
+    scale = noise if noise > 0 else 1.4826 * float(np.median(np.abs(residual)))
+    return 1 / (1 + (residual / (4 * scale)) ** 2) if scale > 0 else np.ones(residual.size)

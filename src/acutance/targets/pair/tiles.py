@@ -1,0 +1,278 @@
+"""Tiles of an image pair, read a window at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.errors import RegionError
+from acutance.raster import Box, Image, Region
+from acutance.targets.pair.grid import PairGrid
+from acutance.targets.pair.noise import fine_noise
+from acutance.targets.pair.tile import FAR_PX, PAD_PX, PairTile, TapAxis, TapGrid, first_of_cell
+
+__all__ = ["PairTiles"]
+
+_TILE_PX: Final = 96
+_REGION_PX: Final = 24
+_MOST_REGIONS: Final = 8
+_HOLE_PX: Final = 3.0
+"""Distance within which a missing sample of the reference spoils a low pixel."""
+_KEPT_VALUES: Final = 40_000_000
+_LEAST_SIDE_PX: Final = 16
+
+
+@dataclass(frozen=True, eq=False)
+class PairTiles:
+    """The tiles of a pair.
+
+    Parameters
+    ----------
+    low, high : Image
+    grid : PairGrid
+    region : Region or None
+        Where the low image is looked at, in its own pixels.
+    reach_px : float
+        How far the taps of a low pixel go, in low pixels.
+    max_pixels : int
+        Low pixels read at most: of a larger scene, tiles spread evenly over it.
+    """
+
+    low: Image
+    high: Image
+    grid: PairGrid
+    region: Region | None
+    reach_px: float
+    max_pixels: int
+
+    @cached_property
+    def taps(self) -> TapGrid:
+        """The taps of every low pixel."""
+        return TapGrid(self.grid.down.taps(self.reach_px), self.grid.across.taps(self.reach_px))
+
+    @cached_property
+    def box(self) -> Box:
+        """Low pixels that can serve: inside the region, with the reference all around them.
+
+        Raises
+        ------
+        RegionError
+            If there are too few.
+        """
+        whole = Box.whole(self.low.shape)
+        wanted = whole if self.region is None else self.region.box(self.low.shape)
+        rows, cols = (
+            axis.inner(self.reach_px) for axis in (self.grid.down, self.grid.across)
+        )  # fmt: skip
+        sides = rows[1] - rows[0], cols[1] - cols[0]
+        inner = None
+        if min(sides) > 0:
+            inner = wanted.intersection(Box(rows[0], cols[0], *sides))
+        found = (0, 0) if inner is None else inner.shape
+        if inner is None or min(found) < _LEAST_SIDE_PX:
+            raise RegionError(
+                f"{max(found[0], 0)} by {max(found[1], 0)} low pixels lie in the region with the "
+                f"high image {self.reach_px:g} low pixels around them, at least {_LEAST_SIDE_PX} "
+                "both ways are needed: choose a larger region, or a larger high image"
+            )
+        return inner
+
+    @cached_property
+    def _counts(self) -> tuple[int, int]:
+        """Regions of the map of local statistics, down and across."""
+        rows, cols = (int(np.clip(size // _REGION_PX, 1, _MOST_REGIONS)) for size in self.box.shape)
+        return rows, cols
+
+    @property
+    def map_shape(self) -> tuple[int, int]:
+        """Rows and columns of the map of local statistics."""
+        return self._counts
+
+    def region_box(self, number: int) -> Box:
+        """The low pixels of one region of the map."""
+        box = self.box
+        i, j = divmod(number, self._counts[1])
+        rows = [_share(k, box.height, self._counts[0]) for k in (i, i + 1)]
+        cols = [_share(k, box.width, self._counts[1]) for k in (j, j + 1)]
+        return Box(box.row + rows[0], box.col + cols[0], rows[1] - rows[0], cols[1] - cols[0])
+
+    @cached_property
+    def boxes(self) -> tuple[Box, ...]:
+        """The low pixels of every tile that is read."""
+        box = self.box
+        parts = [-(-size // _TILE_PX) for size in box.shape]
+        edges = [
+            [first + _share(k, size, count) for k in range(count + 1)]
+            for first, size, count in zip((box.row, box.col), box.shape, parts, strict=True)
+        ]
+        every = tuple(
+            Box(top, left, bottom - top, right - left)
+            for top, bottom in pairwise(edges[0])
+            for left, right in pairwise(edges[1])
+        )
+        most = max(1, self.max_pixels // _TILE_PX**2)
+        if len(every) <= most:
+            return every
+        # A stride that divides nothing spreads the tiles over rows and columns alike.
+        chosen = np.unique((np.arange(most) + 0.5) * len(every) / most).astype(int)
+        return tuple(every[i] for i in chosen)
+
+    @property
+    def share_read(self) -> float:
+        """Share of the usable low pixels that are read."""
+        read = sum(box.height * box.width for box in self.boxes)
+        return read / (self.box.height * self.box.width)
+
+    @cached_property
+    def _kept(self) -> list[PairTile] | None:
+        """All tiles, where they fit in memory."""
+        per_px = self.taps.down.per_px * self.taps.across.per_px
+        values = sum(box.height * box.width for box in self.boxes) * (per_px + 4)
+        return [self._read(box) for box in self.boxes] if values <= _KEPT_VALUES else None
+
+    def __call__(self) -> Iterator[PairTile]:
+        """The tiles, from the first."""
+        if self._kept is not None:
+            yield from self._kept
+            return
+        for box in self.boxes:
+            yield self._read(box)
+
+    def some(self, count: int) -> Iterator[PairTile]:
+        """Some tiles, spread evenly."""
+        step = max(1, len(self.boxes) // count)
+        yield from (self._read(box) for box in self.boxes[::step])
+
+    @cached_property
+    def high_noise(self) -> float:
+        """Standard deviation of the noise in the samples the kernel acts on."""
+        found = []
+        step = max(1, len(self.boxes) // 16)
+        for box in self.boxes[::step]:
+            window = self._high_box(box)
+            found.append(fine_noise(self.high.read(window)))
+        raw = float(np.median([one for one in found if one > 0] or [0.0]))
+        stretch = 1.0
+        for axis in (self.grid.down, self.grid.across):
+            if not axis.is_native:
+                stretch *= axis.per_px / axis.ratio
+        # Interpolated samples share the noise of fewer pixels, or average that of more.
+        return raw * float(np.sqrt(stretch))
+
+    def _high_box(self, box: Box) -> Box:
+        rows = _window(self.grid.down.taps(self.reach_px), box.row, box.height, far=False)
+        cols = _window(self.grid.across.taps(self.reach_px), box.col, box.width, far=False)
+        row, height = self.grid.down.window(*rows)
+        col, width = self.grid.across.window(*cols)
+        return Box(row, col, height, width)
+
+    def _read(self, box: Box) -> PairTile:
+        padded = Box(
+            box.row - PAD_PX, box.col - PAD_PX, box.height + PAD_PX, box.width + 2 * PAD_PX
+        )
+        low = self._read_low(padded)
+        taps = self.taps
+        rows = _window(taps.down, padded.row, padded.height, far=True)
+        cols = _window(taps.across, padded.col, padded.width, far=True)
+        samples, missing = self._samples(rows, cols)
+        top, left = (
+            FAR_PX * axis.per_px + first_of_cell(axis) * -1 - axis.half
+            for axis in (taps.down, taps.across)
+        )
+        height, width = taps.fine_shape(padded.shape)
+        near = slice(top, top + height), slice(left, left + width)
+        fine = np.ascontiguousarray(samples[near])
+        low[_spoiled(missing[near], taps, padded.shape)] = np.nan
+        shape = [(count // axis.per_px, axis.per_px) for (_, count), axis in
+                 zip((rows, cols), (taps.down, taps.across), strict=True)]  # fmt: skip
+        wide = samples.reshape(*shape[0], *shape[1]).mean(axis=(1, 3))
+        return PairTile(low, fine, wide, (padded.row, padded.col), self._labels(padded))
+
+    def _read_low(self, box: Box) -> Floats:
+        """Low pixels, NaN beyond the image, the region and the reference's cover."""
+        values = np.full(box.shape, np.nan)
+        rows, cols = (
+            axis.inner(self.reach_px) for axis in (self.grid.down, self.grid.across)
+        )  # fmt: skip
+        inner = Box(rows[0], cols[0], rows[1] - rows[0], cols[1] - cols[0])
+        shared = box.intersection(inner)
+        if shared is None:
+            return values
+        read = self.low.read(shared)
+        if self.region is not None:
+            read = np.where(self.region.mask(shared), read, np.nan)
+        top, left = shared.row - box.row, shared.col - box.col
+        values[top : top + shared.height, left : left + shared.width] = read
+        return values
+
+    def _samples(
+        self, rows: tuple[int, int], cols: tuple[int, int]
+    ) -> tuple[Floats, NDArray[np.bool_]]:
+        """Reference samples of a window, holes filled with its mean, and where the holes are."""
+        (row, height), (col, width) = self.grid.down.window(*rows), self.grid.across.window(*cols)
+        values = self.high.read(Box(row, col, height, width))
+        missing = ~np.isfinite(values)
+        if missing.any():
+            known = values[~missing]
+            values = np.where(missing, known.mean() if known.size else 0.0, values)
+        down, across = self.grid.down.weights(*rows), self.grid.across.weights(*cols)
+        holes = missing.astype(float)
+        if down.ndim == 1:
+            values, holes = values[down.astype(np.intp)], holes[down.astype(np.intp)]
+        else:
+            values, holes = down @ values, np.abs(down) @ holes
+        if across.ndim == 1:
+            values, holes = values[:, across.astype(np.intp)], holes[:, across.astype(np.intp)]
+        else:
+            values, holes = values @ across.T, holes @ np.abs(across).T
+        return np.asarray(values, float), holes > 0.02
+
+    def _labels(self, box: Box) -> NDArray[np.intp]:
+        """The region of the map that every low pixel of a box belongs to."""
+        whole = self.box
+        rows = np.clip(np.arange(box.height) + box.row - whole.row, 0, whole.height - 1)
+        cols = np.clip(np.arange(box.width) + box.col - whole.col, 0, whole.width - 1)
+        down, across = self._counts
+        starts = [_share(k, whole.height, down) for k in range(down)]
+        sides = [_share(k, whole.width, across) for k in range(across)]
+        i = np.searchsorted(starts, rows, side="right") - 1
+        j = np.searchsorted(sides, cols, side="right") - 1
+        return np.asarray(i[:, None] * across + j[None, :], np.intp)
+
+
+def _share(part: int, size: int, parts: int) -> int:
+    return part * size // parts
+
+
+def _window(axis: TapAxis, first_px: int, count_px: int, *, far: bool) -> tuple[int, int]:
+    """First sample and number of samples of a run of low pixels: near taps, or whole cells."""
+    if not far:
+        return axis.per_px * first_px - axis.half, axis.per_px * (count_px - 1) + 2 * axis.half + 1
+    first = axis.per_px * (first_px - FAR_PX) + first_of_cell(axis)
+    return first, axis.per_px * (count_px + 2 * FAR_PX)
+
+
+def _spoiled(
+    missing: NDArray[np.bool_], taps: TapGrid, shape: tuple[int, int]
+) -> NDArray[np.bool_]:
+    """Low pixels with a hole in the reference close to them."""
+    if not missing.any():
+        return np.zeros(shape, bool)
+    total = np.zeros((missing.shape[0] + 1, missing.shape[1] + 1), np.int64)
+    total[1:, 1:] = np.cumsum(np.cumsum(missing, axis=0), axis=1)
+    edges = []
+    for axis, size in zip((taps.down, taps.across), shape, strict=True):
+        reach = min(axis.half, round(_HOLE_PX * axis.per_px))
+        middle = axis.half + axis.per_px * np.arange(size)
+        edges.append((middle - reach, middle + reach + 1))
+    (top, bottom), (left, right) = edges
+    count = total[np.ix_(bottom, right)] - total[np.ix_(top, right)]
+    count = count - total[np.ix_(bottom, left)] + total[np.ix_(top, left)]
+    return np.asarray(count > 0)

@@ -1,0 +1,281 @@
+"""Where the groups of bars of an image are, how many bars each has, and their period.
+
+A group stands out of the ground as a whole, also where its bars are too fine to be seen. Its
+direction is that of its gradients; number and period come from comparing its profile with those
+of finite groups, blurred plainly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.special import ndtr
+
+from acutance.curves.grid import Floats
+from acutance.errors import NoBarsError
+from acutance.geometry.bar_group import Bars
+
+__all__ = ["FoundBars", "find_bars"]
+
+_CLOSE_PX = (2.0, 3.5, 6.0)
+_STANDS_OUT = 0.2
+_LEAST_PX = 40
+_COUNTS = range(2, 16)
+_BLUR_PX = 0.65
+_BLURS_PX = (0.5, 0.8)
+_CLOSER = 3
+_LEAST_PERIOD_PX = 1.4
+_COMMON_DEG = 12.0
+_SURE = 0.15
+_ABOUT_AS_WELL = 0.03
+_FULL = 0.8
+
+
+@dataclass(frozen=True, eq=False)
+class FoundBars:
+    """Groups of bars as they were found.
+
+    Attributes
+    ----------
+    groups : tuple of Bars
+        The widest period first.
+    contrast : float
+        Bars less ground, before the sensor.
+    """
+
+    groups: tuple[Bars, ...]
+    contrast: float
+
+
+def find_bars(image: Floats, count: int | None = None) -> FoundBars:
+    """Find the groups of bars of an image.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        NaN where there is nothing to use.
+    count : int, optional
+        Number of bars in every group; counted unless given.
+
+    Raises
+    ------
+    NoBarsError
+        If nothing in the image is a group of bars.
+    """
+    known = np.isfinite(image)
+    ground = float(np.median(image[known]))
+    departure = np.where(known, image - ground, 0.0)
+    low, high = (float(x) for x in np.quantile(departure[known], [0.002, 0.998]))
+    sign = 1.0 if high >= -low else -1.0
+    height = max(high, -low)
+    if not height > 0:
+        raise NoBarsError("the region is uniform: there are no bars to be seen in it")
+    bright = sign * departure / height
+    best: list[_Candidate] = []
+    fewest = math.inf
+    for close in _CLOSE_PX:
+        seen = [_measured(bright, blob, count) for blob in _blobs(bright, close)]
+        groups = [one for one in seen if one is not None and one.bars.count > 1]
+        # Bars that are wider than the gaps closed stand alone, as a patch of the bars' level does.
+        alone = len(seen) - len(groups)
+        if groups and alone < fewest:
+            best, fewest = groups, alone
+        if best and not fewest:
+            break
+    if best:
+        counted = [_recounted(bright, one, _usual_count(best)) for one in best]
+        return FoundBars(_of_one_kind(counted), sign * height)
+    raise NoBarsError(
+        "no whole group of parallel bars stands out of the ground: choose a region that holds "
+        "the groups and some ground on all sides of them, or state where they are (groups)"
+    )
+
+
+def _blobs(bright: Floats, close_px: float) -> list[NDArray[np.bool_]]:
+    """Parts of the image that stand out of the ground once gaps are closed.
+
+    One that reaches the border is no target: a group is known by its ground on all sides.
+    """
+    whole = ndimage.gaussian_filter(bright, close_px) > _STANDS_OUT
+    labels, number = ndimage.label(whole)
+    cut_off = set(np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]]).tolist())
+    size = np.bincount(labels.ravel())
+    return [
+        labels == one
+        for one in range(1, number + 1)
+        if size[one] > _LEAST_PX and one not in cut_off
+    ]
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    bars: Bars
+    sureness: float
+    rest: float
+    blob: NDArray[np.bool_]
+
+
+def _usual_count(groups: list[_Candidate]) -> int:
+    """The number of bars that most groups have; wide bars are counted surely."""
+    votes = np.bincount([one.bars.count for one in groups], [one.bars.period_px for one in groups])
+    return int(np.argmax(votes))
+
+
+def _recounted(bright: Floats, one: _Candidate, count: int) -> _Candidate:
+    """The group with the usual number of bars, if that explains it about as well."""
+    if one.bars.count == count:
+        return one
+    other = _measured(bright, one.blob, count)
+    return other if other is not None and other.rest < 2 * one.rest + _ABOUT_AS_WELL else one
+
+
+def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Candidate | None:
+    """The group a blob holds, or the one bar it is; nothing if it is neither."""
+    near = ndimage.binary_dilation(blob, iterations=2)
+    # Differences of neighbours would turn the direction: they see fine structure too weakly.
+    down = ndimage.gaussian_filter(bright, 1.0, order=(1, 0))
+    right = ndimage.gaussian_filter(bright, 1.0, order=(0, 1))
+    xx, yy = float(np.sum(right[near] ** 2)), float(np.sum(down[near] ** 2))
+    xy = float(np.sum(right[near] * down[near]))
+    sureness = math.hypot(xx - yy, 2 * xy) / max(xx + yy, 1e-300)
+    normal = 0.5 * math.degrees(math.atan2(2 * xy, xx - yy))
+    normal = normal + 180 if normal <= -45 else normal
+    best: tuple[float, Bars] | None = None
+    # A group wider than its bars are long may show its ends more than its bars.
+    for angle in (normal, normal - 90 if normal > 45 else normal + 90):
+        found = _profile_fit(bright, blob, angle, count)
+        if found is not None and (best is None or found[0] < best[0]):
+            best = found
+        if best is not None and sureness > _SURE:
+            break
+    if best is None or best[0] > 0.35:
+        return None
+    return _Candidate(best[1], sureness, best[0], blob)
+
+
+def _profile_fit(
+    bright: Floats, blob: NDArray[np.bool_], normal_deg: float, count: int | None
+) -> tuple[float, Bars] | None:
+    """Share of the profile's variance that the best group leaves, and that group."""
+    rows, cols = np.nonzero(ndimage.binary_dilation(blob, iterations=4))
+    centre = Bars(float(rows.mean()), float(cols.mean()), normal_deg, 1.0, 1, 1.0)
+    across, along = centre.across_and_along(rows.astype(float), cols.astype(float))
+    value = bright[rows, cols]
+    middle, length = _span(along, value)
+    if not length > 6:
+        return None
+    central = np.abs(along - middle) < 0.3 * length
+    bins = np.round(across[central] / 0.25).astype(np.intp)
+    start = int(bins.min())
+    total = np.bincount(bins - start, value[central])
+    number = np.bincount(bins - start)
+    kept = number > 0
+    places = np.asarray(0.25 * (np.flatnonzero(kept) + start), float)
+    profile = np.asarray(total[kept] / number[kept], float)
+    offset, width = _span(across[central], value[central])
+    if not width > 3 or np.ptp(profile) == 0:
+        return None
+    alone, level = min(_rest(places, profile, offset, 2 * width, 1, blur) for blur in _BLURS_PX)
+    counts: Sequence[int] = _COUNTS if count is None else (count,)
+    coarse = [
+        min(
+            (
+                _rest(places, profile, offset + move, period, bars, _BLUR_PX)[0]
+                for period, move in _trials(width, bars, 9, 5)
+            ),
+            default=math.inf,
+        )
+        for bars in counts
+    ]
+    best = (math.inf, 0.0, 0.0, 0)
+    for index in np.argsort(coarse)[:_CLOSER].tolist():
+        for period, move in _trials(width, counts[index], 17, 9):
+            for blur in _BLURS_PX:
+                rest, _ = _rest(places, profile, offset + move, period, counts[index], blur)
+                if rest < best[0]:
+                    best = (rest, offset + move, period, counts[index])
+    rest, place, period, bars = best
+    # Fine bars nobody can resolve look like one wide bar, but of half the height.
+    if level > _FULL and alone < 2 * rest + _ABOUT_AS_WELL:
+        rest, place, period, bars = alone, offset, 2 * width, 1
+    if not bars:
+        return None
+    angle = math.radians(normal_deg)
+    row = centre.row + place * math.sin(angle) + middle * math.cos(angle)
+    col = centre.col + place * math.cos(angle) - middle * math.sin(angle)
+    return rest, Bars(row, col, normal_deg, period, bars, length)
+
+
+def _trials(width: float, count: int, periods: int, moves: int) -> list[tuple[float, float]]:
+    """Periods and places to be tried for a number of bars in a known width."""
+    return [
+        (float(period), float(move))
+        for period in np.linspace(0.9, 1.1, periods) * width / (count - 0.5)
+        if period >= _LEAST_PERIOD_PX
+        for move in np.linspace(-0.4, 0.4, moves) * min(period, 6.0)
+    ]
+
+
+def _span(places: Floats, value: Floats) -> tuple[float, float]:
+    """Middle and width of what stands out along one direction, at half of its height."""
+    bins = np.round(places).astype(np.intp)
+    start = int(bins.min())
+    number = np.bincount(bins - start)
+    mean = np.bincount(bins - start, value) / np.maximum(number, 1)
+    # Bars and gaps make one plateau.
+    peak = ndimage.maximum_filter1d(mean, 3)
+    level = 0.5 * float(np.quantile(peak, 0.85))
+    above = np.flatnonzero(mean > level)
+    if above.size < 2 or level <= 0:
+        return 0.0, 0.0
+    first = _crossing(mean, int(above[0]), -1, level)
+    last = _crossing(mean, int(above[-1]), 1, level)
+    return start + 0.5 * (first + last), last - first
+
+
+def _crossing(mean: Floats, inside: int, step: int, level: float) -> float:
+    outside = inside + step
+    if not 0 <= outside < mean.size:
+        return float(inside)
+    fall = float(mean[inside] - mean[outside])
+    return inside + step * (float(mean[inside]) - level) / fall if fall > 0 else float(inside)
+
+
+def _rest(
+    places: Floats, profile: Floats, offset: float, period: float, count: int, blur: float
+) -> tuple[float, float]:
+    """Share of a profile's variance that a blurred group leaves, and its height in the profile."""
+    centres = offset + (np.arange(count) - 0.5 * (count - 1)) * period
+    scale = 1 / math.hypot(blur, 0.29)
+    edge = 0.25 * period
+    away = places[:, None] - centres
+    model = np.sum(ndtr((away + edge) * scale) - ndtr((away - edge) * scale), axis=1)
+    model = model - np.mean(model)
+    own = profile - np.mean(profile)
+    power = float(own @ own)
+    shared = float(model @ own)
+    size = float(model @ model)
+    if not (power > 0 and size > 0 and shared > 0):
+        return 1.0, 0.0
+    return 1 - shared**2 / (size * power), shared / size
+
+
+def _of_one_kind(found: list[_Candidate]) -> tuple[Bars, ...]:
+    """Groups with one common direction where they have nearly the same, the widest period first."""
+    groups = []
+    for one in found:
+        mates = [
+            other for other in found
+            if abs(other.bars.normal_deg - one.bars.normal_deg) < _COMMON_DEG
+        ]  # fmt: skip
+        weights = np.array([max(mate.sureness, 0.05) * mate.bars.period_px**2 for mate in mates])
+        angles = np.array([mate.bars.normal_deg for mate in mates])
+        common = float(weights @ angles / weights.sum())
+        bars = one.bars
+        groups.append(Bars(bars.row, bars.col, common, bars.period_px, bars.count, bars.length_px))
+    return tuple(sorted(groups, key=lambda bars: -bars.period_px))

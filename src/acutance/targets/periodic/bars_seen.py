@@ -1,0 +1,137 @@
+"""The pixels of a group of bars, and what every mode of a transfer function makes of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.errors import NoBarsError
+from acutance.geometry.bar_group import Bars
+from acutance.numerics.lookup import CubicLookup
+from acutance.targets.periodic.otf_modes import Complexes, PlaneBlur, ProcessModes
+from acutance.targets.periodic.star_waves import HIGHEST_CPP
+
+__all__ = ["SeenGroup", "group_columns"]
+
+_BESIDE_PX: Final = 8.0
+_END_MARGIN_PX: Final = 5.0
+_STEP_PX: Final = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class SeenGroup:
+    """The pixels of a group.
+
+    Attributes
+    ----------
+    bars : Bars
+        Where the group is taken to be.
+    rows, cols : (n,) int arrays
+    value : (n,) array
+        The pixels.
+    across, along : (n,) arrays
+        Their distances from the centre along the normal and along the bars, px.
+    """
+
+    bars: Bars
+    rows: NDArray[np.intp]
+    cols: NDArray[np.intp]
+    value: Floats
+    across: Floats
+    along: Floats
+
+    @classmethod
+    def of(cls, image: Floats, bars: Bars, number: int) -> SeenGroup:
+        """The usable pixels between the bars' ends and some way beside the group."""
+        rows, cols = np.nonzero(np.isfinite(image))
+        across, along = bars.across_and_along(rows.astype(float), cols.astype(float))
+        margin = min(_END_MARGIN_PX, 0.25 * bars.length_px)
+        kept = np.abs(along) < 0.5 * bars.length_px - margin
+        kept &= np.abs(across) < 0.5 * bars.width_px + _BESIDE_PX
+        if np.count_nonzero(kept & (np.abs(across) < 0.5 * bars.width_px)) < 40:
+            raise NoBarsError(
+                f"group {number} of {bars.count} bars with a period of {bars.period_px:.2f} px at "
+                f"row {bars.row:.1f}, column {bars.col:.1f} holds fewer than 40 usable pixels: it "
+                "lies outside the region, or its bars are too short"
+            )
+        rows, cols = rows[kept], cols[kept]
+        return cls(bars, rows, cols, image[rows, cols], across[kept], along[kept])
+
+    def moved(self, step: Floats) -> Bars:
+        """The group where the regression wants it: place, period, direction (radians)."""
+        bars = self.bars
+        place = float(np.clip(step[0], -0.25 * bars.period_px, 0.25 * bars.period_px))
+        most = 0.2 * bars.period_px / bars.count
+        period = bars.period_px + float(np.clip(step[1], -most, most))
+        reach = 0.5 * bars.period_px / bars.length_px
+        angle = math.radians(bars.normal_deg)
+        return replace(
+            bars,
+            row=bars.row + place * math.sin(angle),
+            col=bars.col + place * math.cos(angle),
+            period_px=period,
+            normal_deg=bars.normal_deg + math.degrees(float(np.clip(step[2], -reach, reach))),
+        )
+
+
+def group_columns(
+    seen: SeenGroup, blur: PlaneBlur, states: ProcessModes | None, contrast: float
+) -> tuple[Floats, Floats]:
+    """The images of all modes, and the group's own columns.
+
+    Returns
+    -------
+    modes : (n, m) array
+        Images of the modes, of endless bars with unit contrast.
+    own : (n, 5) array
+        Level, slope, and by place along the normal (px), period (px) and direction (radians).
+    """
+    reach = float(np.max(np.abs(seen.across))) + 1.0
+    places, table = _profiles(seen.bars, blur, states, reach)
+    looked = CubicLookup.of(seen.across, places)(table)
+    by_place = contrast * looked[:, -2]
+    own = (
+        np.ones(by_place.size), seen.across / reach, by_place, contrast * looked[:, -1],
+        # A turn of the normal moves pixels along it by their distance along the bars.
+        -seen.along * by_place,
+    )  # fmt: skip
+    return looked[:, :-2], np.stack(own, axis=1)
+
+
+def _profiles(
+    bars: Bars, blur: PlaneBlur, states: ProcessModes | None, reach: float
+) -> tuple[Floats, Floats]:
+    """Images of all modes along the normal, then the mean's by place and by period.
+
+    Returns
+    -------
+    places : (n,) array
+    table : (n, m + 2) array
+    """
+    places = np.asarray(_STEP_PX * np.arange(-math.ceil(reach / _STEP_PX) - 3,
+                                             math.ceil(reach / _STEP_PX) + 4))  # fmt: skip
+    step = 1 / (2 * reach + bars.width_px + 30.0)
+    freq: Floats = np.asarray(step * (np.arange(math.ceil(HIGHEST_CPP / step)) + 0.5))
+    angle = math.radians(bars.normal_deg)
+    u, v = freq * math.cos(angle), freq * math.sin(angle)
+    transfer: Complexes = blur.modes(u, v)
+    if states is not None:
+        transfer = np.hstack([transfer, states.plane(u, v)])
+    spectrum = bars.spectrum(freq)
+    turns = np.exp(2j * math.pi * np.outer(places, freq))
+    weighted = (2 * step) * turns * spectrum
+    modes = weighted.real @ transfer.real - weighted.imag @ transfer.imag
+    mean = 2 * step * blur.otf(u, v)
+    by_place = (turns * (-2j * math.pi * freq * spectrum * mean)).real.sum(axis=1)
+    small = 1e-4
+    change = (
+        replace(bars, period_px=bars.period_px + small).spectrum(freq)
+        - replace(bars, period_px=bars.period_px - small).spectrum(freq)
+    ) / (2 * small)
+    by_period = (turns * (change * mean)).real.sum(axis=1)
+    return places, np.column_stack([modes, by_place, by_period])

@@ -1,0 +1,186 @@
+"""A transfer function over the plane as a sum of known shapes.
+
+Mean: a Gaussian, elliptical and turned, through a square pixel. Departures: Gaussian processes
+over the plane of the point spread function, with covariance
+``exp(-(|x|^2 + |x'|^2) / 2 L^2) exp(-|x - x'|^2 / 2 l^2)`` as along a straight edge
+(`fit.prior`). Their eigenfunctions are the states of the 2-D harmonic oscillator, whose Fourier
+transforms are states again (Mehler's formula; Refregier, MNRAS 338, 35, 2003), and which are a
+radial function times cos or sin of a whole multiple of the direction. A star needs just that.
+
+Distances of the processes are in units of the blur's width, frequencies in cycles per pixel.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import eval_genlaguerre, gammaln
+
+from acutance.curves.grid import Floats
+from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
+
+__all__ = [
+    "LOG_AMPLITUDE",
+    "LOG_AMPLITUDE_STD",
+    "MEAN_MODES",
+    "PROCESSES",
+    "UNSEEN",
+    "Complexes",
+    "PlaneBlur",
+    "Process",
+    "ProcessModes",
+]
+
+Complexes = NDArray[np.complex128]
+
+MEAN_MODES: Final = 8
+"""Level, three widths, two places, two apertures: the mean's own directions."""
+
+
+@dataclass(frozen=True)
+class Process:
+    """A Gaussian process of extent L and smoothness l (widths), in states up to an order."""
+
+    extent: float
+    smoothness: float
+    orders: int
+
+
+PROCESSES: Final = (Process(1.2, 0.6, 12), Process(0.7, 0.17, 10), Process(3.0, 1.2, 10))
+"""SHAPE, DETAIL and HALO of `fit.prior`."""
+
+LOG_AMPLITUDE: Final[Floats] = np.array([-4.6, -2.8, -4.3, -5.9, -4.0, -5.6, -4.0])
+LOG_AMPLITUDE_STD: Final = 1.2
+"""Amplitudes of the processes' round states, of the other ones, and of the tail, relative to the
+star's: as along an edge (`fit.prior`), shared out over the plane; blur is mostly round."""
+
+UNSEEN: Final[Floats] = np.array([0.0, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0])
+"""Added to them where no level is known: then nothing in the image shows how much light is
+scattered further than the widest spokes, and the prior alone says how much that may be."""
+
+
+@dataclass(frozen=True)
+class PlaneBlur:
+    """Gaussian of covariance (xx, xy, yy) in px^2 through the area of a square pixel."""
+
+    xx: float
+    xy: float
+    yy: float
+
+    @property
+    def width_px(self) -> float:
+        """FWHM of the Gaussian with the same mean variance: the processes' unit of distance."""
+        return FWHM_OF_SIGMA * math.sqrt(0.5 * (self.xx + self.yy) + 1 / 12)
+
+    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
+        """Transfer at frequencies across and along."""
+        power = self.xx * u_cpp**2 + 2 * self.xy * u_cpp * v_cpp + self.yy * v_cpp**2
+        return np.asarray(np.exp(-2 * math.pi**2 * power) * np.sinc(u_cpp) * np.sinc(v_cpp))
+
+    def modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Transfer, and its derivatives by xx, xy, yy, by the place and by the aperture, (n, 8).
+
+        The place in px, x and y; the aperture in px, its width and its height.
+        """
+        otf = self.otf(u_cpp, v_cpp)
+        turn = -2j * math.pi * otf
+        fall = -2 * math.pi**2 * otf
+        return np.stack(
+            [
+                otf, fall * u_cpp**2, 2 * fall * u_cpp * v_cpp, fall * v_cpp**2,
+                turn * u_cpp, turn * v_cpp,
+                otf * _by_aperture(u_cpp), otf * _by_aperture(v_cpp),
+            ],
+            axis=-1,
+        )  # fmt: skip
+
+
+def _by_aperture(freq: Floats) -> Floats:
+    """Logarithmic derivative of ``sinc(w f)`` by w at w = 1; bounded where the sinc is zero."""
+    x = np.pi * np.where(np.abs(freq) < 1e-4, 1e-4, freq)
+    sinc = np.sinc(x / np.pi)
+    safe = np.where(np.abs(sinc) < 1e-6, 1e-6, sinc)
+    return np.asarray((np.cos(x) - sinc) / safe)
+
+
+@dataclass(frozen=True)
+class ProcessModes:
+    """The states of all processes around a blur of a given width."""
+
+    width_px: float
+
+    @property
+    def orders(self) -> int:
+        """Largest angular order."""
+        return max(process.orders for process in PROCESSES)
+
+    def radial(self, order: int, freq_cpp: Floats) -> Floats:
+        """Radial parts with an angular order, (n, r), scaled to a unit process."""
+        parts = [
+            _state(process, order, total, freq_cpp * self.width_px)
+            for process in PROCESSES
+            for total in range(order, process.orders + 1, 2)
+        ]
+        if order == 0:
+            # A term falling like 1/u^2 without end, as diffraction's does, has this transfer.
+            parts.append(np.exp(-2 * math.pi * self.width_px * freq_cpp))
+        return np.stack(parts, axis=-1) if parts else np.empty((freq_cpp.size, 0))
+
+    def blocks(self) -> NDArray[np.intp]:
+        """Which amplitude rules each state, in the order of `plane`: see `_block`."""
+        return _blocks()
+
+    def plane(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """All states at frequencies across and along, (n, r)."""
+        freq, angle = np.hypot(u_cpp, v_cpp), np.arctan2(v_cpp, u_cpp)
+        parts: list[Complexes] = []
+        for order in range(self.orders + 1):
+            radial = self.radial(order, freq) * (1j if order % 2 else 1.0)
+            parts.append(radial * np.cos(order * angle)[:, None])
+            if order:
+                parts.append(radial * np.sin(order * angle)[:, None])
+        return np.asarray(np.hstack(parts), complex)
+
+
+def _mehler(process: Process) -> tuple[float, float, float]:
+    """Scale of the states in widths, ratio q of the eigenvalues, and the first of them.
+
+    Scaled so that the process, integrated over one axis, has unit variance at the origin.
+    """
+    long2, short2 = process.extent**2, process.smoothness**2
+    share = long2 / (long2 + short2)
+    ratio = (1 - math.sqrt(1 - share**2)) / share
+    scale = math.sqrt(2 * ratio * short2 / (1 - ratio**2))
+    first = math.pi * long2 * (1 - ratio) ** 2
+    projected = 2 * math.pi * long2 / math.sqrt(1 + 2 * long2 / short2)
+    return scale, ratio, first / projected
+
+
+def _state(process: Process, order: int, total: int, freq: Floats) -> Floats:
+    """Fourier transform of one state's radial part, times its standard deviation, (n,)."""
+    scale, ratio, first = _mehler(process)
+    nodes = (total - order) // 2
+    x = 2 * math.pi * scale * freq
+    norm = math.exp(0.5 * (math.log(2) + gammaln(nodes + 1) - gammaln(nodes + order + 1)))
+    angular = 1 / math.sqrt(2 * math.pi if order == 0 else math.pi)
+    value = norm * angular * x**order * eval_genlaguerre(nodes, order, x * x) * np.exp(-0.5 * x * x)
+    return np.asarray(2 * math.pi * scale * math.sqrt(first * ratio**total) * value)
+
+
+@cache
+def _blocks() -> NDArray[np.intp]:
+    """Amplitudes 0, 1, 2: the round states of the processes; 3, 4, 5: the others; 6: the tail."""
+    block: list[int] = []
+    for order in range(max(process.orders for process in PROCESSES) + 1):
+        own = [
+            k + (3 if order else 0)
+            for k, process in enumerate(PROCESSES)
+            for _ in range(order, process.orders + 1, 2)
+        ]
+        block += own + ([6] if order == 0 else own)
+    return np.array(block, dtype=np.intp)

@@ -1,0 +1,265 @@
+"""Where the star of an image is: its centre, its phase, its rim, the directions it holds.
+
+Spokes change only round the centre, so every gradient stands at right angles to the radius:
+``g . (x - centre) = 0`` is a linear equation for the centre, which needs no guess and holds for a
+fan too. The spokes' phase along the rings then moves the centre to where the rings agree.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from scipy import ndimage
+
+from acutance.curves.grid import Floats
+from acutance.errors import NoStarError
+from acutance.geometry.star_geometry import Flags, FoundStar
+from acutance.targets.periodic.star_extent import extent_of
+from acutance.targets.periodic.star_rings import members_of, rings_of
+
+__all__ = ["find_star"]
+
+_SMOOTH_PX = 1.5
+_LOCAL_PX = 4.0
+_COARSE_CPP = 0.3
+"""Spokes finer than this do not take part in finding the star: they are aliased or faint."""
+_LEAST_STRENGTH = 0.25
+_SECTORS = 10
+_SECTOR_CYCLES = 2.0
+
+
+def find_star(
+    image: Floats, cycles: int | None, centre: tuple[float, float] | None = None
+) -> FoundStar:
+    """Find the one star of an image.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        NaN where there is nothing to use.
+    cycles : int or None
+        Periods in a full turn; None counts them.
+    centre : (row, col), optional
+        Where to look for the centre, to some pixels.
+
+    Raises
+    ------
+    NoStarError
+        If nothing in the image is a star, or it has another number of cycles.
+    """
+    known = np.isfinite(image)
+    filled = np.where(known, image, float(np.mean(image[known])))
+    smooth = ndimage.gaussian_filter(filled, _SMOOTH_PX)
+    usable = ndimage.binary_erosion(known, iterations=3, border_value=0)
+    if not usable.any() or float(np.ptp(smooth[usable])) == 0.0:
+        raise NoStarError("the region is uniform: there are no spokes to be seen in it")
+    row, col = _gradient_centre(smooth, usable) if centre is None else centre
+    lively = usable & _is_lively(smooth)
+    farthest = _farthest(lively, row, col)
+    local = _strengths(smooth, lively, (row, col), farthest, cycles, turns=1 / _SECTORS)
+    _require_spokes(local, cycles, row, col, farthest)
+    first = max(local, key=lambda n: local[n]) if cycles is None else cycles
+    found = _settled(smooth, lively, FoundStar(row, col, first, 0.0, farthest))
+    whole = _strengths(
+        smooth, lively, (found.row, found.col), farthest, first if cycles is None else cycles
+    )
+    if cycles is not None:
+        _require_count(smooth, lively, found, whole)
+    best = max(whole, key=lambda n: whole[n]) if cycles is None else cycles
+    if best != first:
+        found = _settled(smooth, lively, replace(found, cycles=best))
+    return extent_of(smooth, usable, found, found.radius_at(_COARSE_CPP))
+
+
+def _settled(smooth: Floats, lively: Flags, star: FoundStar) -> FoundStar:
+    """Centre and phase after some steps of `_agreed`."""
+    for _ in range(8):
+        moved = _agreed(smooth, lively, star)
+        step = math.hypot(moved.row - star.row, moved.col - star.col)
+        star = moved
+        if step < 0.005:
+            break
+    return star
+
+
+def _is_lively(smooth: Floats) -> Flags:
+    """Where there is structure: the spokes, not the ground beside a fan."""
+    wave = smooth - ndimage.gaussian_filter(smooth, _LOCAL_PX)
+    power = ndimage.gaussian_filter(wave**2, _LOCAL_PX)
+    return np.asarray(power > 0.15 * np.quantile(power, 0.97))
+
+
+def _gradient_centre(smooth: Floats, usable: Flags) -> tuple[float, float]:
+    """The point most gradients turn round, by least squares with bounded influence."""
+    down, right = (np.asarray(slope, float) for slope in np.gradient(smooth))
+    rows, cols = np.nonzero(usable)
+    gy, gx = down[usable], right[usable]
+    power = gx**2 + gy**2
+    strong = power > 0.05 * np.quantile(power, 0.98)
+    rows, cols, gx, gy, power = (a[strong] for a in (rows, cols, gx, gy, power))
+    length = np.sqrt(power)
+    nx, ny = gx / length, gy / length
+    offset = nx * cols + ny * rows
+    weight = length.copy()
+    centre = np.array([0.5 * smooth.shape[1], 0.5 * smooth.shape[0]])
+    scale = 0.25 * min(smooth.shape)
+    for _ in range(25):
+        a = np.array(
+            [
+                [np.sum(weight * nx * nx), np.sum(weight * nx * ny)],
+                [np.sum(weight * nx * ny), np.sum(weight * ny * ny)],
+            ]
+        )
+        b = np.array([np.sum(weight * nx * offset), np.sum(weight * ny * offset)])
+        if np.linalg.cond(a) > 1e6:
+            raise NoStarError(
+                "all structure in the region runs one way: that is an edge or bars, not the "
+                "spokes of a star; choose a region around the star"
+            )
+        centre = np.linalg.solve(a, b)
+        miss = nx * centre[0] + ny * centre[1] - offset
+        scale = max(0.7 * scale, 1.0)
+        weight = length / (1 + (miss / scale) ** 2)
+    return float(centre[1]), float(centre[0])
+
+
+def _strengths(
+    smooth: Floats,
+    usable: Flags,
+    centre: tuple[float, float],
+    farthest: float,
+    cycles: int | None,
+    turns: float = 1.0,
+) -> dict[int, float]:
+    """How much of the rings each number of cycles explains, in parts of so many turns."""
+    counts = set(range(4, 201)) if cycles is None else {cycles, *range(4, 201)}
+    found = {}
+    for n in sorted(counts):
+        first = n / (2 * math.pi * _COARSE_CPP)
+        if first < 0.85 * farthest:
+            found[n] = _strength(smooth, usable, centre, n, first, farthest, turns)
+    return found
+
+
+def _require_spokes(
+    strength: dict[int, float], cycles: int | None, row: float, col: float, farthest: float
+) -> None:
+    if not strength or (cycles is not None and cycles not in strength):
+        raise NoStarError(
+            f"{cycles or 'all'} cycles are finer than {_COARSE_CPP:g} c/px everywhere within "
+            f"{farthest:.0f} px of the centre found at row {row:.1f}, column {col:.1f}: the star "
+            "is too small, or the region does not hold it"
+        )
+    best = max(strength, key=lambda n: strength[n])
+    if strength[best] < _LEAST_STRENGTH:
+        raise NoStarError(
+            f"no star: about row {row:.1f}, column {col:.1f}, where the structure points to, "
+            f"spokes explain {strength[best]:.0%} of the rings at best; choose a region around "
+            "the star, or give its centre"
+        )
+
+
+def _require_count(
+    smooth: Floats, lively: Flags, star: FoundStar, strength: dict[int, float]
+) -> None:
+    """Refuse a star whose rings are explained better by another number of cycles."""
+    best = max(strength, key=lambda n: strength[n])
+    own = strength.get(star.cycles, 0.0)
+    if own >= _LEAST_STRENGTH and strength[best] < 1.5 * own:
+        return
+    # The centre was settled with the wrong number: count again about the right one.
+    other = _settled(smooth, lively, replace(star, cycles=best))
+    again = _strengths(smooth, lively, (other.row, other.col), star.rim_px, best)
+    best = max(again, key=lambda n: again[n])
+    seen = f"the rings show {best}" if again[best] > _LEAST_STRENGTH else "no number fits"
+    raise NoStarError(
+        f"a star of {star.cycles} cycles was asked for, but about row {other.row:.1f}, column "
+        f"{other.col:.1f} {seen}: check the number of cycles and the region"
+    )
+
+
+def _farthest(usable: Flags, row: float, col: float) -> float:
+    rows, cols = np.nonzero(usable)
+    return float(np.quantile(np.hypot(rows - row, cols - col), 0.98))
+
+
+def _strength(
+    smooth: Floats,
+    usable: Flags,
+    centre: tuple[float, float],
+    n: int,
+    first: float,
+    last: float,
+    turns: float,
+) -> float:
+    """Share of the rings' variance that n cycles explain, by least squares."""
+    explained, power = 0.0, 0.0
+    rings = rings_of(smooth, usable, *centre, first, last)
+    parts = round(1 / turns)
+    for _, angle, value in rings[:: max(len(rings) // 12, 1)]:
+        total = (value - np.mean(value)) ** 2
+        power += float(np.mean(total))
+        part = ((angle + math.pi) / (2 * math.pi) * parts).astype(np.intp) % parts
+        for own in members_of(part, np.ones(angle.size, bool), parts):
+            if own.size < 9:
+                continue
+            turned = n * angle[own]
+            design = np.stack([np.ones(own.size), np.cos(turned), np.sin(turned)], axis=1)
+            gram = design.T @ design + 1e-9 * own.size * np.eye(3)
+            fit = np.linalg.solve(gram, design.T @ value[own])
+            wave = design[:, 1:] @ fit[1:]
+            rest = value[own] - design @ fit
+            spread = float(np.sum((wave - np.mean(wave)) ** 2))
+            explained += max(spread - float(np.sum(rest**2)) * 2 / own.size, 0.0) / angle.size
+    return min(explained / max(power, 1e-300), 1.0)
+
+
+def _agreed(smooth: Floats, usable: Flags, star: FoundStar) -> FoundStar:
+    """Move centre and phase to where the spokes have one phase, in all rings and directions.
+
+    In cells of two cycles by a ring, the phase of ``cos(k phi + alpha)`` about a centre that is
+    off by (dx, dy) departs by ``k (dx sin phi - dy cos phi) / r``: linear least squares.
+    """
+    k = star.cycles
+    sectors = max(round(k / _SECTOR_CYCLES), 1)
+    table = []
+    for radius, angle, value in rings_of(
+        smooth, usable, star.row, star.col, star.radius_at(_COARSE_CPP), star.rim_px
+    ):
+        sector = ((angle + math.pi) / (2 * math.pi) * sectors).astype(np.intp) % sectors
+        for own in members_of(sector, np.ones(angle.size, bool), sectors):
+            if own.size < 9 or np.ptp(angle[own]) < 2.0 / k:
+                continue
+            turned = k * angle[own]
+            design = np.stack([np.ones(own.size), np.cos(turned), np.sin(turned)], axis=1)
+            fit, *_ = np.linalg.lstsq(design, value[own], rcond=None)
+            rest = value[own] - design @ fit
+            power = fit[1] ** 2 + fit[2] ** 2
+            share = power / (power + 2 * float(np.mean(rest**2)) + 1e-300)
+            table.append((radius, float(np.mean(angle[own])), fit[1], -fit[2], power * share**4))
+    if len(table) < 6:
+        raise NoStarError("the rings of the star hold too few pixels: choose a larger region")
+    radius, angle, real, imaginary, weight = np.array(table).T
+    phasor = (real + 1j * imaginary) / np.maximum(np.hypot(real, imaginary), 1e-300)
+    weight *= radius**2
+    alpha = float(np.angle(np.sum(weight * phasor)))
+    design = np.stack(
+        [np.ones(radius.size), k * np.sin(angle) / radius, -k * np.cos(angle) / radius], axis=1
+    )
+    step = np.zeros(3)
+    for _ in range(6):
+        off = np.angle(phasor * np.exp(-1j * (alpha + design @ step)))
+        bounded = weight / (1 + (off / 0.5) ** 2) ** 2
+        root = np.sqrt(bounded)
+        more, *_ = np.linalg.lstsq(root[:, None] * design, root * off, rcond=1e-6)
+        step += more
+    most = 0.3 * star.rim_px
+    move = np.clip(step[1:], -most, most)
+    return replace(
+        star,
+        col=star.col + float(move[0]),
+        row=star.row + float(move[1]),
+        alpha_rad=math.remainder(alpha + float(step[0]), 2 * math.pi),
+    )

@@ -1,0 +1,214 @@
+"""How a star looks through any transfer function, without approximation.
+
+The ground ``cos(k phi + alpha)`` for r < R has a spectrum of one angular order. Let the transfer be
+``sum_m h_m(f) exp(i m theta)``; then the image is the real part of
+
+    sum_m i^m exp(i ((k + m) phi + alpha)) integral_0^inf h_m(f) Q(f) k / f J_(k+m)(2 pi f r) df
+
+with ``Q(f) = 1/k integral_0^(2 pi f R) x J_k(x) dx``, which is 1 for a star without end. The
+integrand rises at the local frequency k / (2 pi r) of the spokes: all that "the MTF at the local
+frequency" leaves out, which counts near the centre, is in the rest of the integral. A square wave
+is the sum of its odd harmonics, each a star of n k cycles.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Final, Literal
+
+import numpy as np
+from scipy.special import jv
+
+from acutance.curves.grid import Floats
+from acutance.numerics.lookup import CubicLookup
+from acutance.targets.periodic.otf_modes import MEAN_MODES, Complexes, PlaneBlur, ProcessModes
+
+__all__ = ["HIGHEST_CPP", "StarTable", "Wave", "star_table"]
+
+Wave = Literal["sine", "square"]
+
+HIGHEST_CPP: Final = 2.5
+"""Nothing a star shows comes from beyond."""
+_HARMONICS_CPP: Final = 1.3
+"""Harmonics whose frequency is beyond this at the rim are not seen anywhere."""
+_STEP_PX: Final = 0.05
+_BESSEL_STEP: Final = 0.02
+_BESSEL_REACH: Final = 64.0
+_DIRECTIONS: Final = 64
+
+
+@dataclass(frozen=True, eq=False)
+class _Harmonic:
+    """Radial tables of one harmonic: (n_r, functions) for every angular order."""
+
+    number: int
+    share: float
+    mean: dict[int, Complexes]
+    states: dict[int, Floats]
+
+
+@dataclass(frozen=True)
+class StarTable:
+    """What every mode of a transfer function makes of a star, by radius.
+
+    Parameters
+    ----------
+    blur : PlaneBlur
+        Mean of the transfer.
+    cycles : int
+    wave : {"sine", "square"}
+    inner_px, outer_px : float
+        Radii between which pixels are looked up.
+    rim_px : float
+        Radius of the star.
+    """
+
+    blur: PlaneBlur
+    cycles: int
+    wave: Wave
+    inner_px: float
+    outer_px: float
+    rim_px: float
+
+    @cached_property
+    def _radii(self) -> Floats:
+        first = max(self.inner_px - 3 * _STEP_PX, _STEP_PX)
+        count = math.ceil((self.outer_px - first) / _STEP_PX) + 4
+        return np.asarray(first + _STEP_PX * np.arange(count))
+
+    @cached_property
+    def _freq(self) -> Floats:
+        step = 1 / (2 * self.rim_px + 24)
+        return np.asarray(step * np.arange(1, math.ceil(HIGHEST_CPP / step)))
+
+    @cached_property
+    def _harmonics(self) -> list[_Harmonic]:
+        states = ProcessModes(self.blur.width_px)
+        mean = _angular_parts(self.blur, self._freq)
+        radial = [states.radial(m, self._freq) for m in range(states.orders + 1)]
+        highest = 1
+        if self.wave == "square":
+            highest = max(int(_HARMONICS_CPP * 2 * math.pi * self.rim_px / self.cycles), 1)
+        found = []
+        for index, number in enumerate(range(1, highest + 1, 2)):
+            tables: tuple[dict[int, Complexes], dict[int, Floats]] = ({}, {})
+            for m, kernel in self._kernels(number * self.cycles, states.orders):
+                tables[0][m] = kernel @ mean[:, :, m % _DIRECTIONS]
+                tables[1][m] = kernel @ radial[abs(m)]
+            found.append(_Harmonic(number, (-1.0) ** index / number, *tables))
+        return found
+
+    def _kernels(self, cycles: int, orders: int) -> Iterator[tuple[int, Floats]]:
+        """The integral's weights (n_r, n_f) for every angular order, highest first."""
+        reach = _reach(max(float(self._radii[-1]), self.rim_px))
+        x = 2 * math.pi * np.outer(self._radii, self._freq)
+        step = self._freq[1] - self._freq[0]
+        weight = cycles * step / self._freq * _rim(cycles, self.rim_px, self._freq)
+        place = x / _BESSEL_STEP
+        cell = place.astype(np.intp)
+        part = place - cell
+        above, here = (
+            table[cell] * (1 - part) + table[cell + 1] * part
+            for table in (_bessel(cycles + orders + extra, reach) for extra in (1, 0))
+        )
+        for m in range(orders, -orders - 1, -1):
+            yield m, here * weight
+            # The recurrence is stable downwards.
+            above, here = here, 2 * (cycles + m) / x * here - above
+
+    def columns(self, radius_px: Floats, phase: Floats, turn: Floats) -> tuple[Floats, Floats]:
+        """The image of every mode at some pixels.
+
+        Parameters
+        ----------
+        radius_px : (n,) array
+            Distance from the centre.
+        phase : (n,) array
+            Phase of the spokes, ``k phi + alpha``.
+        turn : (n,) array
+            Direction phi of the pixels.
+
+        Returns
+        -------
+        columns : (n, MEAN_MODES + states) array
+        by_phase : (n,) array
+            Derivative of the first column (the mean itself) by the phase.
+        """
+        take = CubicLookup.of(radius_px, self._radii)
+        orders = ProcessModes(self.blur.width_px).orders
+        mean = np.zeros((radius_px.size, MEAN_MODES))
+        by_phase = np.zeros(radius_px.size)
+        even = [np.zeros(0)] * (orders + 1)
+        odd = [np.zeros(0)] * (orders + 1)
+        for one in self._harmonics:
+            for m in range(orders + 1):
+                ahead = _wave(one, phase, m * turn, m)
+                behind = _wave(one, phase, -m * turn, -m)
+                for order, wave in ((m, ahead), (-m, behind))[: 2 if m else 1]:
+                    seen = take(one.mean[order]) * wave[:, None]
+                    mean += seen.real
+                    by_phase -= one.number * seen[:, 0].imag
+                plus, minus = take(one.states[m]), take(one.states[-m])
+                first, second = _pair(m, plus, ahead, minus, behind)
+                even[m] = first if even[m].size == 0 else even[m] + first
+                odd[m] = second if odd[m].size == 0 else odd[m] + second
+        states = [even[0]]
+        for m in range(1, orders + 1):
+            states += [even[m], odd[m]]
+        return np.hstack([mean, *states]), by_phase
+
+
+def _wave(one: _Harmonic, phase: Floats, turn: Floats, order: int) -> Complexes:
+    """``share i^m exp(i (n (k phi + alpha) + m phi))``."""
+    unit = (1, 1j, -1, -1j)[order % 4]
+    return np.asarray(one.share * unit * np.exp(1j * (one.number * phase + turn)))
+
+
+def _pair(
+    m: int, plus: Floats, ahead: Complexes, minus: Floats, behind: Complexes
+) -> tuple[Floats, Floats]:
+    """Columns of the states with cos and with sin of m times the direction; odd ones times i."""
+    if m == 0:
+        return plus * ahead.real[:, None], np.zeros(0)
+    one, other = plus * ahead[:, None], minus * behind[:, None]
+    factor = 0.5j if m % 2 else 0.5
+    return (factor * (one + other)).real, (-1j * factor * (one - other)).real
+
+
+def _angular_parts(blur: PlaneBlur, freq: Floats) -> Complexes:
+    """Angular Fourier coefficients of the mean's modes, (n_f, MEAN_MODES, directions)."""
+    angle = 2 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+    u, v = np.outer(freq, np.cos(angle)), np.outer(freq, np.sin(angle))
+    modes = blur.modes(u.ravel(), v.ravel()).reshape(freq.size, _DIRECTIONS, MEAN_MODES)
+    return np.asarray(np.fft.fft(modes, axis=1).transpose(0, 2, 1) / _DIRECTIONS)
+
+
+def _rim(cycles: int, rim_px: float, freq: Floats) -> Floats:
+    """Q: what the star's end does to its spectrum."""
+    reach = _reach(rim_px)
+    x = _BESSEL_STEP * np.arange(_bessel(cycles, reach).size)
+    integrand = x * _bessel(cycles, reach)
+    total = np.concatenate([[0.0], np.cumsum(0.5 * (integrand[1:] + integrand[:-1]))])
+    return np.interp(2 * math.pi * rim_px * freq, x, total * _BESSEL_STEP / cycles)
+
+
+def _reach(radius_px: float) -> float:
+    """Largest argument of a Bessel function, in coarse steps, so that tables serve many stars."""
+    return math.ceil(2 * math.pi * radius_px * HIGHEST_CPP / _BESSEL_REACH) * _BESSEL_REACH
+
+
+@lru_cache(maxsize=32)
+def _bessel(order: int, reach: float) -> Floats:
+    """J of an order at 0, 0.02 ... beyond `reach`."""
+    return np.asarray(jv(order, _BESSEL_STEP * np.arange(math.ceil(reach / _BESSEL_STEP) + 3)))
+
+
+@lru_cache(maxsize=8)
+def star_table(
+    blur: PlaneBlur, cycles: int, wave: Wave, inner_px: float, outer_px: float, rim_px: float
+) -> StarTable:
+    """The table of a star; that of the same star is kept."""
+    return StarTable(blur, cycles, wave, inner_px, outer_px, rim_px)

@@ -1,0 +1,189 @@
+"""Which prior amplitudes of the PSF the data favour, and what follows where they do not say.
+
+The evidence can have several modes: the same pixels may show the wings of an aperture, or none and
+a more crooked core. While the sources still move, the likeliest mode is followed; at the end the
+amplitudes of the wings are integrated over, so that what is not seen enters the uncertainty.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from acutance.curves.grid import Floats
+from acutance.numerics.marginal_likelihood import Posterior, Prior, evidence_of, regress, whiten
+from acutance.numerics.normal_equations import Normal
+from acutance.targets.points.per_source import Blocks
+
+__all__ = ["averaged_posterior", "likelier_growth", "likelier_posterior"]
+
+# SHAPE, DETAIL, HALO, TAIL, APERTURE, FOOT, AIRY as in `psf_prior`: where the search begins.
+_LIGHT_FAR_OUT: Final[Floats] = np.array([-3.5, -4.0, -6.0, -4.5, -3.0, -2.0, -0.3])
+_HALO, _TAIL = 2, 3
+_GRID: Final = (-6.0, -5.2, -4.4, -3.6, -2.8, -2.0, -1.2)
+_SMALL: Final = -4.5
+_LEAST_WEIGHT: Final = 0.003
+_BRIGHTEST_OVER_DARK: Final = (0.5, 1.5, 4.5, 13.5, 40.5, 121.5, 364.5)
+"""Variances of the noise a brightest pixel may have beyond that of a dark one, over the latter."""
+_CLEARLY: Final = 2.0
+_FELT: Final = 0.02
+
+
+def likelier_posterior(
+    normal: Normal, prior: Prior, variance: float, inflation: float, earlier: Posterior | None
+) -> Posterior:
+    """The likelier one of two modes: that near an `earlier` one, and that with light far out.
+
+    The parameters are those of `acutance.numerics.marginal_likelihood.regress`.
+    """
+    starts = [_from(prior, variance, _LIGHT_FAR_OUT), earlier]
+    found = [regress(normal, prior, variance, inflation, start) for start in starts]
+    return max(found, key=lambda one: _evidence_of(normal, prior, one, inflation))
+
+
+def averaged_posterior(
+    normal: Normal, prior: Prior, inflation: float, likeliest: Posterior
+) -> Posterior:
+    """The posterior with the amplitudes of HALO and TAIL integrated over.
+
+    At the likeliest amplitudes alone, wings that the data neither show nor exclude would be taken
+    for absent. Either amplitude runs over a grid, each point weighted by its evidence; what the
+    other amplitudes leave open enters to first order, those two held: the grid has their share.
+
+    Parameters
+    ----------
+    normal, prior, inflation
+        As `acutance.numerics.marginal_likelihood.regress` takes them.
+    likeliest : Posterior
+        What it found.
+    """
+    noise = likeliest.variance * inflation
+    mode = likeliest.log_amplitude
+    points = [mode, *(_at(mode, _HALO, _TAIL, a) for a in _GRID)]
+    points += [_at(mode, _TAIL, _HALO, a) for a in _GRID]
+    evidence = np.array([_log_evidence(normal, prior, point, noise) for point in points])
+    weights = np.exp(evidence - evidence.max())
+    weights[weights < _LEAST_WEIGHT * weights.sum()] = 0.0
+    weights /= weights.sum()
+    kept = [
+        (weight, whiten(normal, prior, point, noise))
+        for weight, point in zip(weights.tolist(), points, strict=True)
+        if weight > 0
+    ]
+    mean = np.asarray(sum(w * one.sigma * one.mean for w, one in kept))
+    covariance = np.zeros((mean.size, mean.size))
+    for w, one in kept:
+        covariance += w * one.covariance * np.outer(one.sigma, one.sigma)
+        away = one.sigma * one.mean - mean
+        covariance += w * np.outer(away, away)
+    power, axes = np.linalg.eigh(covariance)
+    factor = axes * np.sqrt(np.maximum(power, 0.0))
+    share = _share_of_others(normal, prior, mode, noise)
+    return Posterior(mean, np.hstack([factor, share]), mode, likeliest.variance, likeliest.freedom)
+
+
+def _share_of_others(normal: Normal, prior: Prior, mode: Floats, noise: float) -> Floats:
+    """Factor of what the amplitudes but HALO's and TAIL's leave open, those held, (m, k - 2)."""
+    others = np.setdiff1d(np.arange(mode.size), [_HALO, _TAIL])
+    white = whiten(normal, prior, mode, noise)
+    found = evidence_of(white, prior, mode)
+    curvature, axes = np.linalg.eigh(-found.hessian[np.ix_(others, others)])
+    # No amplitude is less certain than before the data.
+    spread = axes / np.sqrt(np.maximum(curvature, 1 / prior.log_amplitude_std**2))
+    return np.asarray(white.sigma[:, None] * (found.moves[:, others] @ spread))
+
+
+def felt_directions(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Floats:
+    """Combinations of coefficients, of unit prior variance, that the data say something of.
+
+    Returns
+    -------
+    (m, r) array
+        Orthonormal in units of the prior; r is what is worth keeping.
+    """
+    sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
+    power, axes = np.linalg.eigh(sigma[:, None] * normal.gram * (sigma / noise))
+    return np.asarray(sigma[:, None] * axes[:, power > _FELT])
+
+
+def likelier_growth(
+    solved: Callable[[float], tuple[Blocks, float]], noise: float, brightest: float
+) -> float:
+    """How much the noise grows with the light, by the evidence.
+
+    Parameters
+    ----------
+    solved : callable
+        For a growth (variance per unit of light over that of the background), the eliminated
+        system in coefficients of unit prior variance, and the sum of the logarithms of the
+        weights.
+    noise : float
+        Variance of the background's noise, its correlation included.
+    brightest : float
+        Light in the brightest pixel.
+
+    Returns
+    -------
+    float
+        0 where the evidence does not speak for growth clearly.
+    """
+
+    def evidence(growth: float) -> float:
+        blocks, weights = solved(growth)
+        normal = blocks.normal
+        precision = normal.gram / noise
+        precision[np.diag_indices_from(precision)] += 1.0
+        lower = np.linalg.cholesky(precision)
+        explained = float(np.sum(solve_triangular(lower, normal.projection, lower=True) ** 2))
+        misfit = (normal.data - explained / noise) / noise
+        volume = float(np.log(np.diagonal(lower)).sum())
+        return 0.5 * (weights - misfit) - volume + blocks.log_volume
+
+    ratios = np.array(_BRIGHTEST_OVER_DARK)
+    values = np.array([evidence(ratio / brightest) for ratio in ratios.tolist()])
+    best = int(np.argmax(values))
+    if values[best] < evidence(0.0) + _CLEARLY:
+        return 0.0
+    place = float(np.clip(best, 1, ratios.size - 2))
+    below, middle, above = values[int(place) - 1 : int(place) + 2].tolist()
+    bend = below - 2 * middle + above
+    shift = float(np.clip(0.5 * (below - above) / bend, -1, 1)) if bend < 0 else best - place
+    step = math.log(ratios[1] / ratios[0])
+    return float(ratios[int(place)] * math.exp(step * shift)) / brightest
+
+
+def _at(mode: Floats, varied: int, other: int, log_amplitude: float) -> Floats:
+    """The mode with one amplitude of the wings set, and the other one small."""
+    point = mode.copy()
+    point[varied] = log_amplitude
+    point[other] = min(float(mode[other]), _SMALL)
+    return point
+
+
+def _from(prior: Prior, variance: float, log_amplitude: Floats) -> Posterior:
+    """A posterior that says nothing but where to begin."""
+    nothing = np.zeros(prior.block.size)
+    return Posterior(nothing, nothing[:, None], log_amplitude, variance, 0.0)
+
+
+def _log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> float:
+    """Logarithm of the evidence at given amplitudes and noise variance, hyperprior included."""
+    sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
+    precision = sigma[:, None] * normal.gram * (sigma / noise)
+    precision[np.diag_indices_from(precision)] += 1.0
+    lower = np.linalg.cholesky(precision)
+    seen = solve_triangular(lower, sigma * normal.projection / noise, lower=True)
+    away = (log_amplitude - prior.log_amplitude) / prior.log_amplitude_std
+    misfit = normal.data / noise - float(seen @ seen) + float(away @ away)
+    return -0.5 * misfit - float(np.log(np.diagonal(lower)).sum())
+
+
+def _evidence_of(normal: Normal, prior: Prior, found: Posterior, inflation: float) -> float:
+    """The same at a posterior's amplitudes and noise, which may differ between posteriors."""
+    noise = found.variance * inflation
+    level = 0.5 * normal.count / inflation * math.log(noise)
+    return _log_evidence(normal, prior, found.log_amplitude, noise) - level

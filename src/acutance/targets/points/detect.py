@@ -1,0 +1,333 @@
+"""Where the point sources of an image are, and which of its bright spots are none.
+
+A spot is a local maximum of the image, smoothed a little, that stands out of the noise. Whether
+it serves is asked one question after the other; what does not serve is kept with its reason:
+
+- ``edge``: pixels around it are missing;
+- ``saturated``: a pixel reached the detector's limit;
+- ``hot pixel``: one pixel alone is bright, no light reached its neighbours;
+- ``cosmic ray``: narrower than the other spots in one direction, so no optics made it;
+- ``blended``: another source is too near, or it is much wider than the others;
+- ``faint``: its peak is too low.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter, map_coordinates, maximum_filter
+from scipy.spatial import cKDTree
+
+from acutance.curves.grid import Floats
+from acutance.numerics.noise import robust_scale
+from acutance.targets.points.moments import SpotShape, spot_shape
+
+__all__ = ["RejectedSpot", "Spot", "find_spots", "sort_spots"]
+
+CLEAR_PX: Final = 3
+"""Pixels that have to be there on all sides of a source."""
+_SMOOTHING_PX: Final = 0.7
+_BLOCK_PX: Final = 24
+_STANDS_OUT: Final = 6.0
+_MOST_SPOTS: Final = 2000
+_LEAST_NEIGHBOURS: Final = 0.12
+"""Light of the eight neighbours, or what is missing there, over that of the pixel: a Gaussian of
+0.3 px seen through the pixel right in its middle gives 0.22."""
+_LEAST_COMPARED: Final = 4
+_NARROW, _WIDE = 0.75, 1.9
+_LEAST_LACK_PX2: Final = 0.06
+"""So much less than the others a cosmic ray's variance is in any case: where optics leave next to
+none, ratios say nothing."""
+_LESSER_BLEND: Final = 0.05
+_LOBE_PX: Final = 6.0
+_RING_PX: Final = 4
+_LEAST_RING: Final = 16
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A bright spot.
+
+    Parameters
+    ----------
+    shape : SpotShape
+        Where it is, and how wide.
+    peak : float
+        Its brightest pixel above the background.
+    snr : float
+        The same over the noise.
+    """
+
+    shape: SpotShape
+    peak: float
+    snr: float
+
+    @property
+    def row(self) -> float:
+        """Row of its centroid."""
+        return self.shape.row
+
+    @property
+    def col(self) -> float:
+        """Column of its centroid."""
+        return self.shape.col
+
+
+@dataclass(frozen=True)
+class RejectedSpot:
+    """A bright spot, or a place that was given, that does not serve.
+
+    Parameters
+    ----------
+    row, col : float
+    reason : str
+        One of the reasons this module's page names, "no source", "unlike" (the others), or
+        "left out" (not asked for).
+    message : str
+        What was found there.
+    """
+
+    row: float
+    col: float
+    reason: str
+    message: str
+
+
+def find_spots(
+    image: Floats, places: Floats | None = None
+) -> tuple[tuple[Spot, ...], tuple[RejectedSpot, ...], Floats, float]:
+    """All bright spots, or those near given places.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        NaN where there is no data.
+    places : (n, 2) array, optional
+        Approximate (row, col), to 1.5 px; all spots of the image without them.
+
+    Returns
+    -------
+    spots : tuple of Spot
+        Brightest first, or in the order of `places`.
+    rejected : tuple of RejectedSpot
+        Places at which there is no spot.
+    residual : (rows, cols) array
+        The image less its background.
+    noise : float
+        Standard deviation of the background's noise.
+    """
+    known = np.isfinite(image)
+    residual = np.where(known, image - _background(image), 0.0)
+    noise = max(robust_scale(residual[known]), 1e-9 * float(np.abs(image[known]).max()), 1e-300)
+    smooth = gaussian_filter(residual, _SMOOTHING_PX)
+    tops = (smooth == maximum_filter(smooth, 3)) & known
+    # Smoothing leaves this share of white noise.
+    level = _STANDS_OUT * noise / (2 * np.sqrt(np.pi) * _SMOOTHING_PX)
+    rows, cols = np.nonzero(tops & (smooth > level))
+    order = np.argsort(-smooth[rows, cols])[:_MOST_SPOTS]
+    middles = np.stack([rows[order], cols[order]], axis=1)
+    middles = middles[~_lobes(middles, smooth[rows[order], cols[order]])]
+    if places is None:
+        found = [_spot(residual, middle, noise) for middle in middles]
+        return tuple(found), (), residual, noise
+    spots, missing, taken = [], [], set()
+    for row, col in places.tolist():
+        near = np.hypot(middles[:, 0] - row, middles[:, 1] - col)
+        nearest = int(near.argmin()) if near.size else -1
+        if not near.size or near[nearest] > 1.5:
+            fault = "no light stands out of the noise there"
+        elif nearest in taken:
+            fault = "the source there was named by an earlier place"
+        else:
+            spots.append(_spot(residual, middles[nearest], noise))
+            taken.add(nearest)
+            continue
+        missing.append(RejectedSpot(row, col, "no source", fault))
+    return tuple(spots), tuple(missing), residual, noise
+
+
+def _lobes(middles: NDArray[np.intp], light: Floats) -> NDArray[np.bool_]:
+    """Which spots are far fainter than one nearby: rings and lobes of its image."""
+    if not light.size:
+        return np.zeros(0, bool)
+    tree = cKDTree(middles)
+    near = tree.query_ball_point(middles, _LOBE_PX)
+    brightest = np.array([light[one].max() for one in near])
+    return np.asarray(light < _LESSER_BLEND * brightest)
+
+
+def _background(image: Floats) -> Floats:
+    """Medians of blocks, joined by bilinear interpolation."""
+    height, width = image.shape
+    rows = _borders(height)
+    cols = _borders(width)
+    table = np.empty((rows.size - 1, cols.size - 1))
+    whole = float(np.median(image[np.isfinite(image)]))
+    for i, (top, bottom) in enumerate(pairwise(rows)):
+        for j, (left, right) in enumerate(pairwise(cols)):
+            block = image[top:bottom, left:right]
+            usable = block[np.isfinite(block)]
+            table[i, j] = np.median(usable) if usable.size else whole
+    places = np.meshgrid(
+        _in_blocks(height, rows), _in_blocks(width, cols), indexing="ij", sparse=False
+    )
+    return np.asarray(map_coordinates(table, places, order=1, mode="nearest"))
+
+
+def _borders(length: int) -> NDArray[np.intp]:
+    return np.linspace(0, length, max(round(length / _BLOCK_PX), 1) + 1).astype(np.intp)
+
+
+def _in_blocks(length: int, borders: NDArray[np.intp]) -> Floats:
+    """Every pixel's place counted in blocks, from the centre of the first one."""
+    centres = 0.5 * (borders[:-1] + borders[1:] - 1)
+    return np.interp(np.arange(length), centres, np.arange(centres.size))
+
+
+def _spot(residual: Floats, middle: NDArray[np.intp], noise: float) -> Spot:
+    """Peak and shape of what is around the brightest pixel nearby."""
+    row, col = (int(number) for number in middle)
+    window = residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2]
+    up, left = np.unravel_index(int(np.argmax(window)), window.shape)
+    row, col = max(row - 1, 0) + int(up), max(col - 1, 0) + int(left)
+    peak = float(residual[row, col])
+    ground, rough = _ground_around(residual, row, col)
+    shape = spot_shape(residual - ground, (row, col), max(noise, rough))
+    return Spot(shape, peak, peak / noise)
+
+
+def _ground_around(residual: Floats, row: int, col: int) -> tuple[float, float]:
+    """Level and roughness of the ring of pixels around a spot: grass is not the block's median."""
+    top, side = max(row - _RING_PX, 0), max(col - _RING_PX, 0)
+    part = residual[top : row + _RING_PX + 1, side : col + _RING_PX + 1]
+    down, right = np.arange(top, top + part.shape[0]), np.arange(side, side + part.shape[1])
+    away = np.maximum(np.abs(down - row)[:, None], np.abs(right - col))
+    ring = part[away >= CLEAR_PX]
+    if ring.size < _LEAST_RING:
+        return 0.0, 0.0
+    level = float(np.median(ring))
+    # Two standard deviations of a scale from so few pixels are chance.
+    return level, robust_scale(ring - level) / (1 + 2 * 1.17 / math.sqrt(ring.size))
+
+
+def sort_spots(
+    image: Floats,
+    residual: Floats,
+    spots: Sequence[Spot],
+    *,
+    saturation: float | None,
+    noise: float,
+    min_snr: float,
+    min_distance_px: float,
+    rivals: Sequence[Spot] | None = None,
+) -> tuple[tuple[Spot, ...], tuple[RejectedSpot, ...]]:
+    """The spots that serve, and the others with their reasons.
+
+    Parameters
+    ----------
+    image, residual : (rows, cols) arrays
+        As `find_spots` takes and gives them.
+    spots : sequence of Spot
+    saturation : float or None
+        The detector's limit; without it, the largest value where several pixels share it.
+    noise : float
+    min_snr : float
+        Least peak over the noise.
+    min_distance_px : float
+        Least distance to another source that is not much fainter.
+    rivals : sequence of Spot, optional
+        All spots of the image, if `spots` are only some of them.
+    """
+    limit = _limit(image) if saturation is None else saturation
+    others = spots if rivals is None else rivals
+    single = [_own_fault(image, residual, one, limit, noise) for one in spots]
+    whole = [one for one, fault in zip(spots, single, strict=True) if fault is None]
+    usual = [one for one in whole if one.snr >= min_snr]
+    shapes = np.array([(one.shape.narrow_px2, one.shape.wide_px2) for one in usual])
+    shapes = shapes.reshape(-1, 2)
+    kept, rejected = [], []
+    for one, fault in zip(spots, single, strict=True):
+        reason = fault
+        if reason is None and one.snr < min_snr:
+            reason = "faint", f"its peak is {one.snr:.1f} times the noise, {min_snr:g} are asked"
+        if reason is None and len(usual) >= _LEAST_COMPARED:
+            reason = _compared(one, *np.median(shapes, axis=0).tolist())
+        if reason is None:
+            reason = _crowded(one, others, min_distance_px)
+        if reason is None:
+            kept.append(one)
+        else:
+            rejected.append(RejectedSpot(one.row, one.col, *reason))
+    return tuple(kept), tuple(rejected)
+
+
+def _limit(image: Floats) -> float:
+    """The largest value, where three pixels have it: a detector's limit."""
+    known = image[np.isfinite(image)]
+    top = float(known.max())
+    return top if np.count_nonzero(known == top) >= 3 else np.inf
+
+
+def _own_fault(
+    image: Floats, residual: Floats, one: Spot, limit: float, noise: float
+) -> tuple[str, str] | None:
+    """What is wrong with a spot by itself."""
+    row, col = round(one.row), round(one.col)
+    part = residual[max(row - 2, 0) : row + 3, max(col - 2, 0) : col + 3]
+    up, left = np.unravel_index(int(np.argmax(part)), part.shape)
+    row, col = max(row - 2, 0) + int(up), max(col - 2, 0) + int(left)
+    clear = image[max(row - CLEAR_PX, 0) : row + CLEAR_PX + 1]
+    clear = clear[:, max(col - CLEAR_PX, 0) : col + CLEAR_PX + 1]
+    side = 2 * CLEAR_PX + 1
+    whole = clear.shape == (side, side) and bool(np.isfinite(clear).all())
+    # A hot pixel may be at the limit as well; a source at the limit lights its neighbours.
+    peak = float(residual[row, col])
+    around = np.abs(residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2])
+    # Eight moduli of noise have this mean, and two of their standard deviations are taken off.
+    neighbours = float(around.sum()) - abs(peak) - (8 * 0.80 - 2 * np.sqrt(8.0) * 0.60) * noise
+    if whole and neighbours < _LEAST_NEIGHBOURS * peak:
+        share = 100 * max(neighbours / peak, 0.0)
+        return "hot pixel", f"its neighbours together hold {share:.0f} % of the brightest pixel"
+    if np.any(clear[1:-1, 1:-1] >= limit):
+        return "saturated", f"a pixel reached {limit:g}, the detector's limit"
+    if not whole:
+        return "edge", f"pixels within {CLEAR_PX} px of it are missing"
+    return None
+
+
+def _compared(one: Spot, narrow: float, wide: float) -> tuple[str, str] | None:
+    """What is wrong with a spot beside the others."""
+    shape = one.shape
+    thin = max(shape.narrow_px2, 0.0)
+    if shape.narrow_at_most_px2 < min(_NARROW * narrow, narrow - _LEAST_LACK_PX2):
+        if shape.wide_px2 < narrow:
+            return (
+                "hot pixel",
+                f"it is as narrow as one pixel: variances of {thin:.2f} and "
+                f"{shape.wide_px2:.2f} px² along its axes, those of the others are at least "
+                f"{narrow:.2f}",
+            )
+        return (
+            "cosmic ray",
+            f"its minor axis has a variance of {thin:.2f} px², the others {narrow:.2f}",
+        )
+    if shape.wide_at_least_px2 > _WIDE * wide:
+        return (
+            "blended",
+            f"its major axis has a variance of {shape.wide_px2:.2f} px², the others {wide:.2f}",
+        )
+    return None
+
+
+def _crowded(one: Spot, others: Sequence[Spot], distance_px: float) -> tuple[str, str] | None:
+    for other in others:
+        away = float(np.hypot(one.row - other.row, one.col - other.col))
+        if 0.5 < away < distance_px and other.peak > _LESSER_BLEND * one.peak:
+            return "blended", f"another source is {away:.1f} px away, {distance_px:g} px are asked"
+    return None

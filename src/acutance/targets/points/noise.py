@@ -1,0 +1,115 @@
+"""The noise of pixels around point sources, as the residuals of a fit show it.
+
+A source's flux and place take up much of the noise of its few bright pixels: what is left there
+is held against the share that the fit leaves (one less the leverage).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
+from acutance.targets.points.stamps import Stamps
+
+__all__ = ["NOISE_FLOOR", "PointNoise", "grows", "noise_around"]
+
+NOISE_FLOOR: Final = 4e-5
+"""The least noise the arithmetic allows for, as a share of the brightest source's peak."""
+_WHITE: Final = Correlation(1.0, 0.0, 0.0)
+_SHAPE_ERROR: Final = 0.004
+_MODEL_ERROR: Final = 0.02
+"""Share of a source's light in a pixel that may be left before noise, and before an outlier, is
+seen in it."""
+_BRIGHT: Final = 0.03
+_MOST_TAKEN: Final = 0.9
+_FEWEST: Final = 20
+_SIGNIFICANT: Final = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class PointNoise:
+    """Noise around point sources.
+
+    Parameters
+    ----------
+    outlier : (n,) array
+        1 where a pixel is no outlier.
+    growth : float
+        Variance per unit of light over that of the background.
+    correlation : Correlation
+        Between neighbouring pixels.
+    """
+
+    outlier: Floats
+    growth: float
+    correlation: Correlation
+
+    @classmethod
+    def white(cls, size: int) -> PointNoise:
+        """The same everywhere."""
+        return cls(np.ones(size), 0.0, _WHITE)
+
+    def weight(self, light: Floats) -> Floats:
+        """Inverse variance of every pixel, 1 on the background."""
+        return np.asarray(self.outlier / (1 + self.growth * np.maximum(light, 0.0)))
+
+    def agrees(self, other: PointNoise) -> bool:
+        """Whether a fit with the other noise would find about the same."""
+        same = math.isclose(self.growth, other.growth, rel_tol=0.2, abs_tol=1e-12)
+        even = math.isclose(self.correlation.inflation, other.correlation.inflation, rel_tol=0.1)
+        return same and even and float(np.abs(self.outlier - other.outlier).mean()) < 0.004
+
+
+def noise_around(
+    stamps: Stamps, residual: Floats, light: Floats, growth: float, *, robust: bool
+) -> PointNoise:
+    """What the residuals say of the noise.
+
+    Parameters
+    ----------
+    stamps : Stamps
+    residual, light : (n,) arrays
+        What the fit leaves of every pixel, and what the pixel's source gives it.
+    growth : float
+        Variance per unit of light over that of the background.
+    robust : bool
+        Bound the weight of outlying pixels.
+    """
+    least = NOISE_FLOOR * float(light.max())
+    standard = residual / np.sqrt(1 + growth * np.maximum(light, 0.0))
+    scale = math.hypot(robust_scale(standard), least)
+    standard = standard / np.hypot(scale, _MODEL_ERROR * light)
+    outlier = outlier_weights(standard) if robust else np.ones(standard.size)
+    if float(np.sqrt(np.mean(residual**2))) < 3 * least:
+        return PointNoise(outlier, growth, _WHITE)
+    bounded = np.clip(standard, -3, 3)
+    rows, cols = stamps.row.astype(np.intp), stamps.col.astype(np.intp)
+    rows, cols = rows - rows.min(), cols - cols.min()
+    found = [correlation(bounded, rows, cols, normal) for normal in ((1.0, 0.0), (0.0, 1.0))]
+    return PointNoise(outlier, growth, max(found, key=lambda one: one.inflation))
+
+
+def grows(residual: Floats, light: Floats, leverage: Floats) -> bool:
+    """Whether bright pixels scatter significantly more than the background.
+
+    Parameters
+    ----------
+    residual, light : (n,) arrays
+        What a fit with equal weights leaves of every pixel, and what the sources give it.
+    leverage : (n,) array
+        How much of a pixel's own noise the fit took up, 0 to 1.
+    """
+    bright = light > _BRIGHT * float(light.max())
+    dark, bright = ~bright, bright & (leverage < _MOST_TAKEN)
+    if bright.sum() < _FEWEST or dark.sum() < _FEWEST:
+        return False
+    base = math.hypot(robust_scale(residual[dark]), NOISE_FLOOR * float(light.max()))
+    free = 1 - leverage[bright]
+    power = np.maximum(residual[bright] ** 2 - (_SHAPE_ERROR * light[bright]) ** 2, 0.0)
+    excess = float(power.sum()) / base**2 - float(free.sum())
+    return excess > _SIGNIFICANT * math.sqrt(2 * float(free @ free))

@@ -1,0 +1,93 @@
+"""The fitted point spread function: a plain blur and its departures, with their covariance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.numerics.gaussian_pixel_2d import PlaneBlur
+from acutance.targets.points.psf_prior import PsfDirections
+
+__all__ = ["PsfModel"]
+
+Complexes = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class PsfModel:
+    """A PSF that fills the plane, and its transfer function: an `acutance.curves.OtfModel`.
+
+    Parameters
+    ----------
+    directions : PsfDirections
+        What the PSF is made of.
+    weights : (m,) array
+        How much of every direction, for a mean blur of unit flux.
+    latent : (m, k) array
+        Factor of the covariance of `weights`.
+    """
+
+    directions: PsfDirections
+    weights: Floats
+    latent: Floats
+
+    @property
+    def blur(self) -> PlaneBlur:
+        """The plain blur the PSF departs from."""
+        return self.directions.blur
+
+    @cached_property
+    def _volumes(self) -> Floats:
+        """Light in every direction, (m,)."""
+        nought = np.zeros(1)
+        return np.ascontiguousarray(self.directions.transform(nought, nought)[0].real)
+
+    @cached_property
+    def volume(self) -> float:
+        """Light of the PSF for a mean blur of unit flux: the fit's fluxes have to be times it."""
+        return float(1.0 + self._volumes @ self.weights)
+
+    @cached_property
+    def volume_gradient(self) -> Floats:
+        """Factor of the covariance of `volume`, (k,)."""
+        return np.asarray(self._volumes @ self.latent)
+
+    @property
+    def band_cpp(self) -> float:
+        """Frequency beyond which nothing is transferred."""
+        return float(np.clip(0.8 / self.blur.least_sigma_px, 3.0, 6.0))
+
+    def psf(self, x: Floats, y: Floats) -> Floats:
+        """Light per square pixel at places (x, y) from the source, pixel area included, (n,)."""
+        return self.directions.sum(x, y, self.weights) / self.volume
+
+    def with_slopes(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
+        """The PSF of a mean blur of unit flux, and its derivatives by x and y."""
+        psf, by_x, by_y = self.directions.sum_with_slopes(x, y, self.weights)
+        return psf, by_x, by_y
+
+    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """OTF about the fit's origin, exactly 1 at zero frequency, (n,)."""
+        design = self.directions.transform(u_cpp, v_cpp)
+        return self._normalised(u_cpp, v_cpp, design)
+
+    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Factor of the OTF's covariance, exactly 0 at zero frequency, (n, k)."""
+        design = self.directions.transform(u_cpp, v_cpp)
+        otf = self._normalised(u_cpp, v_cpp, design)
+        # What adds light lowers the curve.
+        design -= otf[:, None] * self._volumes
+        design /= self.volume
+        nought = (u_cpp == 0) & (v_cpp == 0)
+        design[nought] = 0.0
+        return np.asarray(design.real @ self.latent + 1j * (design.imag @ self.latent))
+
+    def _normalised(self, u_cpp: Floats, v_cpp: Floats, design: Complexes) -> Complexes:
+        departure = design.real @ self.weights + 1j * (design.imag @ self.weights)
+        otf = (self.blur.otf(u_cpp, v_cpp) + departure) / self.volume
+        otf[(u_cpp == 0) & (v_cpp == 0)] = 1.0
+        return np.asarray(otf)

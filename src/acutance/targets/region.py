@@ -1,0 +1,105 @@
+"""The pixels a measurement starts from, cut out of an image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves.grid import Floats
+from acutance.errors import RegionError
+from acutance.geometry.line import Line
+from acutance.raster import Box, Gsd, Image, Region
+from acutance.targets.arguments import chosen_region
+from acutance.targets.measurement import ImageInfo
+
+__all__ = ["Cut", "RoiLike", "cut"]
+
+_MAX_PIXELS = 9_000_000
+_MIN_SIDE_PX = 8
+
+RoiLike = Region | Box | tuple[int, int, int, int] | None
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """Pixels of a region.
+
+    Attributes
+    ----------
+    pixels : (rows, cols) array
+        NaN outside the region and where there is no data.
+    box : Box
+        Where the cut lies in the image.
+    saturation_level : float or None
+        The largest value the detector can give.
+    gsd : Gsd or None
+    image : Image
+    """
+
+    pixels: Floats
+    box: Box
+    saturation_level: float | None
+    gsd: Gsd | None
+    image: Image
+
+    def info(self, line: Line) -> ImageInfo:
+        """What a measurement records of its image; the GSD is that along the line's normal."""
+        gsd_m = None if self.gsd is None else self.gsd.along_normal(line.normal_deg)
+        return ImageInfo(
+            self.image.path, self.image.band, gsd_m, self.box.as_tuple(), self.image.crs,
+            self.image.along_track, None if self.gsd is None else (self.gsd.row_m, self.gsd.col_m),
+        )  # fmt: skip
+
+
+def cut(image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None = None) -> Cut:
+    """Read a region of an image, and only that.
+
+    Parameters
+    ----------
+    image : Image or (rows, cols) array_like
+    roi : Region, Box, (row, col, height, width) or None
+        None reads the whole image.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres, instead of the image's own.
+
+    Raises
+    ------
+    ImageError, OptionError
+        If there is no image, or the GSD is no positive number.
+    RegionError
+        If the region is none, lies outside the image, holds too few usable pixels, or is far
+        larger than any target.
+    """
+    source = image if isinstance(image, Image) else Image.from_array(image)
+    where = Box.whole(source.shape) if roi is None else chosen_region(roi)
+    if isinstance(where, Region):
+        box, region = where.box(source.shape), where
+    else:
+        box, region = where, None
+        box.require_inside(source.shape)
+    if box.height * box.width > _MAX_PIXELS:
+        raise RegionError(
+            f"the region has {box.height} x {box.width} pixels, more than any target: choose "
+            "a region around the target (row, column, height, width, a polygon or a site)"
+        )
+    if min(box.height, box.width) < _MIN_SIDE_PX:
+        raise RegionError(
+            f"the region has {box.height} x {box.width} pixels: a target needs at least "
+            f"{_MIN_SIDE_PX} both ways"
+        )
+    pixels = source.read(box)
+    if region is not None:
+        pixels = np.where(region.mask(box), pixels, np.nan)
+    usable = int(np.count_nonzero(np.isfinite(pixels)))
+    if usable < _MIN_SIDE_PX**2:
+        raise RegionError(
+            f"only {usable} of the region's {pixels.size} pixels hold data: the rest is nodata, "
+            "masked or NaN; choose another region, or correct the nodata value if pixels that "
+            "have it are data (nodata, --nodata)"
+        )
+    gsd = source.gsd(box.row + box.height / 2, box.col + box.width / 2)
+    if gsd_m is not None:
+        gsd = Gsd.given(gsd_m)
+    return Cut(pixels, box, source.saturation_level, gsd, source)

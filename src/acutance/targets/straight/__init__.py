@@ -1,0 +1,31 @@
+"""Straight targets, measured along their normals: edges, and pulses between two grounds.
+
+In the order data take: `find_edges`, `find_pulse` (where is a target), `trim` (which pixels
+serve; `pixels` holds them), `first_fit` (a Gaussian through a pixel), `fit_edge` and `fit_pulse`
+(the reference estimator: `solve` finds the line, `linear_model` the curves, with `spline`,
+`spline_equations`, `lsf`, `lsf_prior`, `gradients`, `step_profile`), `edge` and `pulse` (the public
+functions, `many_edges` for all edges of a target), `edge_checks`, `pulse_checks`, `pixel_checks`
+and `structure_checks` (is the target good enough; `check_data` is what they look at).
+`pulse_halo`, `pulse_response`, `pulse_spectrum`, `pulse_width`: what only pulses have. `published`:
+the methods of the literature, biases included.
+"""
+
+from acutance.targets.straight.edge import METHODS, measure_edge
+from acutance.targets.straight.many_edges import EdgeGroup, Rejected, TargetResult, measure_edges
+from acutance.targets.straight.options import EdgeLimits, EdgeOptions, PulseLimits, PulseOptions
+from acutance.targets.straight.pulse import PULSE_METHODS, measure_pulse
+
+__all__ = [
+    "METHODS",
+    "PULSE_METHODS",
+    "EdgeGroup",
+    "EdgeLimits",
+    "EdgeOptions",
+    "PulseLimits",
+    "PulseOptions",
+    "Rejected",
+    "TargetResult",
+    "measure_edge",
+    "measure_edges",
+    "measure_pulse",
+]

@@ -1,0 +1,211 @@
+"""What the checks of a target read, and how they answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import overload
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.numerics.noise import Correlation, correlation
+from acutance.targets.measurement import Check
+from acutance.targets.straight.pixels import EdgeBand, EdgeFit
+
+__all__ = [
+    "MISFIT",
+    "MUCH",
+    "PLACES",
+    "Evidence",
+    "TargetChecks",
+    "at_least",
+    "at_most",
+    "at_most_much",
+]
+
+MUCH = 999.0
+"""Stands for a ratio without bound: nothing disturbs."""
+
+PLACES = {
+    "dark": "on the dark side",
+    "bright": "on the bright side",
+    "before": "before the strip",
+    "behind": "behind the strip",
+}
+"""Where a target's two grounds lie."""
+
+MISFIT = 3e-4
+"""Residuals below this share of the contrast are the model's own, not noise."""
+
+_FAR_WIDTHS = 2.0
+_OUTLYING = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """The pixels of a fit with their places, as the checks read them.
+
+    Distances in pixels, values and residuals as shares of the contrast. `before` and `behind` are
+    the distances outwards from the target's first and last step: of an edge, its dark and its
+    bright side.
+    """
+
+    band: EdgeBand
+    fit: EdgeFit
+    before: Floats
+    behind: Floats
+
+    @classmethod
+    def of(cls, band: EdgeBand, fit: EdgeFit, last_px: float = 0.0) -> Evidence:
+        """Evidence of a fit whose last step lies `last_px` behind its first."""
+        return cls(band, fit, -fit.distance_px, fit.distance_px - last_px)
+
+    @property
+    def rows(self) -> Floats:
+        """Rows of the pixels."""
+        return self.band.pixels.row
+
+    @property
+    def cols(self) -> Floats:
+        """Columns of the pixels."""
+        return self.band.pixels.col
+
+    @cached_property
+    def t(self) -> Floats:
+        """Distance of the pixels along the target."""
+        return self.fit.line.tangent_distance(self.rows, self.cols)
+
+    @property
+    def value(self) -> Floats:
+        """The pixels, 0 on the dark and 1 on the bright ground."""
+        return self.fit.value
+
+    @property
+    def residual(self) -> Floats:
+        """What the fit leaves of the pixels, as a share of the contrast."""
+        return self.fit.residual
+
+    @property
+    def fwhm_px(self) -> float:
+        """FWHM of the LSF; 1 where it is undefined."""
+        fwhm = self.fit.response.fwhm_px.value
+        return fwhm if math.isfinite(fwhm) else 1.0
+
+    @cached_property
+    def outside(self) -> Floats:
+        """Distance from the target's nearest step outwards (negative within a pulse)."""
+        return np.maximum(self.before, self.behind)
+
+    @cached_property
+    def far_px(self) -> float:
+        """From here on a plateau is flat for every usual blur."""
+        return max(_FAR_WIDTHS * self.fwhm_px, 2.0)
+
+    @cached_property
+    def noise(self) -> float:
+        """Robust standard deviation of the residuals.
+
+        The larger of two: the median alone is zero or one step for coarsely rounded values.
+        """
+        ordered = np.sort(np.abs(self.residual))
+        bulk = ordered[: max(int(0.95 * ordered.size), 1)]
+        return max(1.4826 * float(ordered[ordered.size // 2]), 1.15 * math.sqrt(np.mean(bulk**2)))
+
+    @cached_property
+    def smoothness(self) -> float:
+        """How much more low-pass noise moves what is fitted to many pixels than white noise does.
+
+        The largest ratio of the grounds' noise power to that of white noise of the same variance,
+        along the normal times along the target.
+        """
+        x, y = self.fit.line.normal
+        return self.correlation((x, y)).inflation * self.correlation((-y, x)).inflation
+
+    def correlation(self, direction: tuple[float, float]) -> Correlation:
+        """Correlation of the grounds' noise, and its power along a direction (x, y).
+
+        On the plateaus alone, each about its own level: across the edge a method's own misfit
+        would pass for correlation, and so would a level that a published method takes from few
+        pixels.
+        """
+        flat = self.outside > self.far_px
+        residual = self.residual[flat]
+        behind = self.behind[flat] > 0
+        for side in (behind, ~behind):
+            if side.any():
+                residual[side] -= np.mean(residual[side])
+        noise = 1.4826 * float(np.median(np.abs(residual))) if residual.size else 0.0
+        if noise <= MISFIT:
+            return Correlation(1.0, 0.0, 0.0)
+        rows, cols = (at[flat] for at in self.band.pixels.at)
+        bounded = np.clip(residual / noise, -_OUTLYING, _OUTLYING)
+        return correlation(bounded, rows, cols, direction)
+
+    @cached_property
+    def plateau_std(self) -> float:
+        """Mean standard deviation of the two plateaus."""
+        sides = (self.value[side > self.far_px] for side in (self.before, self.behind))
+        stds = [_std(side) for side in sides if side.size > 1]
+        return sum(stds) / len(stds) if stds else 0.0
+
+    @cached_property
+    def slope(self) -> Floats:
+        """How much every pixel changes when the first step moves by one pixel against s."""
+        lsf = self.fit.response.lsf
+        return np.interp(-self.before, lsf.distance_px, lsf.value, left=0.0, right=0.0)
+
+
+def _std(values: Floats) -> float:
+    """What `numpy.std` gives, but quicker."""
+    centred = values - float(np.add.reduce(values)) / values.size
+    return math.sqrt(float(centred @ centred) / values.size)
+
+
+def at_most_much(ratio: float) -> str:
+    """A ratio in words: beyond `MUCH` nobody asks how large it is."""
+    return f"more than {MUCH:.0f}" if ratio >= MUCH else f"{ratio:.0f}"
+
+
+class TargetChecks(Sequence[Check]):
+    """Checks of a target, answered when somebody first asks."""
+
+    @cached_property
+    def answers(self) -> tuple[Check, ...]:
+        """All checks."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        failed = [check.name for check in self.answers if not check.passed]
+        return f"<{len(self)} checks, {len(failed)} failed{': ' * bool(failed)}{', '.join(failed)}>"
+
+    def __len__(self) -> int:
+        return len(self.answers)
+
+    @overload
+    def __getitem__(self, index: int) -> Check: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Check, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Check | tuple[Check, ...]:
+        return self.answers[index]
+
+
+def at_least(name: str, value: float, limit: float, found: str, otherwise: str = "") -> Check:
+    """The check that `value` is not below `limit`."""
+    passed = bool(value >= limit)
+    return Check(name, value, f">= {limit:g}", passed, _message(passed, found, otherwise))
+
+
+def at_most(name: str, value: float, limit: float, found: str, otherwise: str = "") -> Check:
+    """The check that `value` is not above `limit`."""
+    passed = bool(value <= limit)
+    return Check(name, value, f"<= {limit:g}", passed, _message(passed, found, otherwise))
+
+
+def _message(passed: bool, found: str, otherwise: str) -> str:
+    """What was found and, only where the limit is not kept, what it means and what to do."""
+    return found if passed or not otherwise else f"{found}: {otherwise}"

@@ -1,0 +1,216 @@
+"""Measure a straight edge: from pixels to MTF, RER and FWHM with their standard deviations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves.grid import Floats
+from acutance.errors import NoEdgeError, OptionError, PhaseError, TargetError
+from acutance.geometry.line import Line
+from acutance.numerics.one_thread import one_thread
+from acutance.raster import Gsd, Image
+from acutance.targets.arguments import chosen_options, published_options
+from acutance.targets.measurement import Measurement, Samples
+from acutance.targets.region import Cut, RoiLike, cut
+from acutance.targets.straight.edge_checks import EdgeChecks, sample_phases
+from acutance.targets.straight.find_edges import Segment, find_segments
+from acutance.targets.straight.fit_edge import fit_edge
+from acutance.targets.straight.options import EdgeOptions
+from acutance.targets.straight.pixels import EdgeBand, EdgeFit
+from acutance.targets.straight.published import PUBLISHED, PUBLISHED_OPTIONS
+from acutance.targets.straight.trim import Extent, trim
+
+__all__ = ["METHODS", "measure_edge", "measure_segment", "require_phases"]
+
+_MIN_PHASES = 2.0
+_MANY_MISSING = 0.05
+_CANDIDATES = 4
+_ALIGNED_DEG = 0.1
+_NEAR_45_DEG = 40.0
+_SIGNIFICANT = 3.0
+_BESIDE_PX = 1.0
+
+
+def _spline(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
+    if options.method_options is not None:
+        raise OptionError("method_options belong to the published methods: leave them out")
+    return fit_edge(band, robust=options.robust)
+
+
+def _published(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
+    def measure(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
+        return PUBLISHED[name](band, published_options(options, name, PUBLISHED_OPTIONS[name]))
+
+    return measure
+
+
+METHODS: dict[str, Callable[[EdgeBand, EdgeOptions], EdgeFit]] = {
+    "spline": _spline,
+    **{name: _published(name) for name in PUBLISHED},
+}
+
+
+@one_thread
+def measure_edge(
+    image: Image | ArrayLike,
+    roi: RoiLike = None,
+    *,
+    gsd_m: float | Gsd | None = None,
+    method: str = "spline",
+    options: EdgeOptions | None = None,
+) -> Measurement:
+    """Measure the dominant straight edge of a region.
+
+    Parameters
+    ----------
+    image : Image or (rows, cols) array_like
+        From `acutance.open_image`, or pixels in memory; NaN and masked pixels are not used.
+    roi : Region, Box, (row, col, height, width) or None
+        A loose region is normal: the edge is found in it, and what serves is trimmed.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres, instead of the image's own.
+    method : {"spline", "sdsu-2005", "kompsat-2014", "iso12233", "fermi"}, optional
+        The reference estimator, or a published one with its biases.
+    options : EdgeOptions, optional
+
+    Returns
+    -------
+    Measurement
+        Numbers with standard deviations, curves, evidence and checks. The line is in pixels of
+        the whole image, row and column, integers at pixel centres.
+
+    Raises
+    ------
+    ImageError, RegionError
+        If there are no pixels to measure.
+    NoEdgeError, PhaseError, SupportError
+        If there is no edge, it is aligned with the grid, or too little of it is there.
+
+    Examples
+    --------
+    >>> import acutance as ac
+    >>> image, truth = ac.simulate.edge(sensor, angle_deg=6, snr=100, rng=rng)  # doctest: +SKIP
+    >>> print(ac.measure_edge(image).mtf_nyquist)  # doctest: +SKIP
+    0.2893 ± 0.0061
+    """
+    chosen = chosen_options(options, EdgeOptions)
+    return _measure_first(cut(image, roi, gsd_m), method, chosen)
+
+
+def _measure_first(pixels: Cut, method: str, options: EdgeOptions) -> Measurement:
+    """Measure the strongest edge that can be measured; if none can, say why the strongest not."""
+    first: TargetError | None = None
+    for segment in find_segments(pixels.pixels, _CANDIDATES):
+        try:
+            return measure_segment(pixels, segment, method, options)
+        except TargetError as error:
+            first = first or error
+    missing = float(np.mean(np.isnan(pixels.pixels)))
+    reason = "the region is flat, or its longest edge is too short"
+    if missing > _MANY_MISSING:
+        reason += f", or torn by the {100 * missing:.0f} % of it without data"
+    raise first or NoEdgeError(
+        f"no straight edge stands out in the {pixels.box.height} x {pixels.box.width} pixels: "
+        f"{reason}; choose a region that holds one bright and one dark side"
+    )
+
+
+def measure_segment(
+    pixels: Cut, segment: Segment, method: str, options: EdgeOptions
+) -> Measurement:
+    """Measure one segment that was found in a cut; see `measure_edge`."""
+    estimate = _method(method)
+    band, extent = trim(pixels.pixels, segment)
+    require_phases(band, band.line, options.limits.sample_phases)
+    fit = estimate(band, options)
+    return _measurement(pixels, band, extent, fit, method, options)
+
+
+def _method(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
+    if name not in METHODS:
+        raise OptionError(f"there is no edge method {name!r}: choose one of {', '.join(METHODS)}")
+    return METHODS[name]
+
+
+def require_phases(band: EdgeBand, line: Line, wanted: float) -> None:
+    """Refuse an edge whose samples repeat at the same sub-pixel phases.
+
+    Parameters
+    ----------
+    band : EdgeBand
+    line : Line
+    wanted : float
+        What the check `sample_phases` asks for, which is more than can be measured with.
+    """
+    distance = line.normal_distance(band.pixels.row, band.pixels.col)
+    phases = sample_phases(distance)
+    if phases >= _MIN_PHASES:
+        return
+    fill = _fill_value(distance, band.pixels.value)
+    wanted = max(wanted, _MIN_PHASES)
+    raise PhaseError(
+        f"edge angle {line.angle_deg:.2f} deg gives {phases:.1f} sample phases over "
+        f"{line.length_px:.0f} rows, at least {_MIN_PHASES:g} are needed and {wanted:g} wanted: "
+        + (_advice(line, wanted) if fill is None else _fill_advice(fill))
+    )
+
+
+def _fill_value(distance: Floats, value: Floats) -> float | None:
+    """The number that all pixels of one side hold where those of the other differ, as data do."""
+    sides = (value[distance < -_BESIDE_PX], value[distance > _BESIDE_PX])
+    low, high = (float(np.ptp(side)) if side.size else 0.0 for side in sides)
+    if (low == 0) == (high == 0):
+        return None
+    flat = sides[0] if low == 0 else sides[1]
+    return float(flat[0]) if flat.size else None
+
+
+def _fill_advice(fill: float) -> str:
+    return (
+        f"all pixels on one side of it are {fill:.9g}, as where there is no data; if so, declare "
+        f"it (nodata={fill:.9g}, --nodata {fill:.9g}) or choose a region without such pixels, and "
+        "otherwise one with a more inclined edge"
+    )
+
+
+def _advice(line: Line, wanted: float) -> str:
+    """What to do about too few phases.
+
+    The length an edge needs goes as 1 / angle, which for an aligned one is noise.
+    """
+    angle = line.angle_deg
+    if angle > _NEAR_45_DEG:
+        return "use an edge that is not at 45 degrees to the grid"
+    if angle < max(_ALIGNED_DEG, _SIGNIFICANT * line.angle_std_deg):
+        return (
+            "the edge is aligned with the grid, as nearly as can be told, and no length of it "
+            "helps: use a more inclined edge, by 2 degrees or more"
+        )
+    needed = (1 - 1 / wanted) / math.tan(math.radians(angle))
+    return f"use a region of at least {needed:.0f} rows or a more inclined edge"
+
+
+def _measurement(
+    pixels: Cut, band: EdgeBand, extent: Extent, fit: EdgeFit, method: str, options: EdgeOptions
+) -> Measurement:
+    """Put together what a measurement holds; the line moves into the whole image's pixels."""
+    info = pixels.info(fit.line)
+    centre = options.rer_centre or fit.response.rer_centre
+    response = replace(fit.response, gsd_m=info.gsd_m, rer_centre=centre)
+    fit = replace(fit, response=response)
+    line: Line = replace(
+        fit.line, row=fit.line.row + pixels.box.row, col=fit.line.col + pixels.box.col
+    )
+    samples = Samples(
+        pixels.pixels, np.isfinite(band.image), fit.distance_px, fit.value, fit.residual,
+        fit.dark, fit.bright,
+    )  # fmt: skip
+    checks = EdgeChecks(pixels, band, extent, fit, options.limits, method in PUBLISHED)
+    return Measurement(
+        "edge", method, line, response, samples, checks.snr, checks, info, options.to_dict()
+    )

@@ -1,0 +1,139 @@
+"""Find a pulse, a strip between two grounds, and trim a region to it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acutance.curves.grid import Floats, crossing
+from acutance.errors import NoEdgeError, SupportError, TargetError
+from acutance.numerics.noise import median
+from acutance.targets.straight.find_edges import Segment, find_segments
+from acutance.targets.straight.first_fit import fit_blurred_edge
+from acutance.targets.straight.fit_pulse import PulseBand
+from acutance.targets.straight.pixels import Pixels
+from acutance.targets.straight.step_profile import pulse_profile
+from acutance.targets.straight.trim import Extent, beside, serving
+
+__all__ = ["find_pulse"]
+
+_CANDIDATES = 6
+_REACH_PX = 7.0
+_MIN_PIXELS = 8
+_MIN_SNR = 3.0
+_MAX_WIDTH_PX = 24.0
+_PROFILE_STEP_PX = 0.5
+_SPOILED = 0.005
+
+
+def find_pulse(
+    image: Floats, width_px: float | None = None, *, fit_width: bool = True
+) -> tuple[PulseBand, Extent]:
+    """The strongest pulse of an image and the pixels that serve it.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        NaN where a pixel must not be used. The strip may be brighter or darker than the ground.
+    width_px : float, optional
+        Its width along the normal; without it the width is guessed from the profile.
+    fit_width : bool, optional
+        Whether the width may move while the pulse is placed.
+
+    Raises
+    ------
+    NoEdgeError, SupportError
+        If there is none, or too little of it; of several candidates the first one's reason.
+    """
+    first: TargetError | None = None
+    for sign in (1.0, -1.0):
+        for segment in find_segments(sign * image, _CANDIDATES):
+            try:
+                return _at(sign * image, segment, width_px, sign, fit_width)
+            except TargetError as error:
+                first = first or error
+    raise first or NoEdgeError(
+        f"no straight strip stands out in the {image.shape[0]} x {image.shape[1]} pixels: choose "
+        "a region that holds one strip with ground on both sides"
+    )
+
+
+def _at(
+    image: Floats, segment: Segment, stated_px: float | None, sign: float, fit_width: bool
+) -> tuple[PulseBand, Extent]:
+    """The pulse whose rising side is `segment`."""
+    image = beside(image, segment.line)
+    pixels = Pixels.of(image)
+    s = segment.line.normal_distance(pixels.row, pixels.col)
+    t = segment.line.tangent_distance(pixels.row, pixels.col)
+    along = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
+    width_px = _guessed_width(s[along], pixels.value[along]) if stated_px is None else stated_px
+    reach = _REACH_PX
+    grounds = [
+        pixels.value[along & (outside > 0.5 * reach) & (outside < reach)]
+        for outside in (-s, s - width_px)
+    ]
+    strip = pixels.value[along & (np.abs(s - 0.5 * width_px) < max(0.25 * width_px, 0.6))]
+    if min(strip.size, *(ground.size for ground in grounds)) < _MIN_PIXELS:
+        raise SupportError(
+            f"beside the strip of {width_px:.2f} px lie {grounds[0].size} and {grounds[1].size} "
+            f"usable pixels between {0.5 * reach:g} and {reach:g} px from it, at least "
+            f"{_MIN_PIXELS} are needed: choose a region that reaches further to both sides, and "
+            "check the width if it was stated"
+        )
+    left, right, level = (median(part) for part in (*grounds, strip))
+    if not (level > left and level > right):
+        raise NoEdgeError(
+            f"the strongest line separates levels of {sign * left:.4g}, {sign * level:.4g} and "
+            f"{sign * right:.4g}: no strip of {width_px:.2f} px between two like grounds; choose "
+            "a region with one strip, or state another width"
+        )
+    pulse = fit_blurred_edge(
+        pixels.row[along], pixels.col[along], pixels.value[along], segment.line,
+        dark=left, bright=level, profile=pulse_profile(width_px, (level - right) / (level - left)),
+        fit_width=fit_width,
+    )  # fmt: skip
+    if pulse.height < _MIN_SNR * pulse.noise:
+        raise NoEdgeError(
+            f"the strongest strip has a height of {pulse.height:.4g} in noise of "
+            f"{pulse.noise:.3g}: an SNR of {pulse.height / pulse.noise:.1f} where {_MIN_SNR:g} is "
+            "the least"
+        )
+    served = serving(image, pixels, pulse, 0.5 * (segment.stop_px - segment.start_px))
+    width, falling = pulse.profile.positions_px[1], -pulse.profile.shares[1]
+    band = PulseBand(
+        served.image, served.line, pulse.dark, pulse.dark + pulse.height, pulse.blur.sigma_px,
+        pulse.noise, pulse.blur, width, falling, sign,
+    )  # fmt: skip
+    return band, served.extent
+
+
+def _guessed_width(s: Floats, value: Floats) -> float:
+    """Distance from the rising side to where the profile has fallen half way back."""
+    # Means of few pixels each: a bad one would pass for the strip.
+    value = np.clip(value, *np.quantile(value, (_SPOILED, 1 - _SPOILED)))
+    bins = ((s + _REACH_PX) / _PROFILE_STEP_PX).astype(np.intp)
+    inside = (bins >= 0) & (s < _MAX_WIDTH_PX)
+    count = np.bincount(bins[inside])
+    total = np.bincount(bins[inside], value[inside])
+    known = count > 0
+    centre = (np.flatnonzero(known) + 0.5) * _PROFILE_STEP_PX - _REACH_PX
+    profile = total[known] / count[known]
+    grid = np.arange(float(centre[0]), float(centre[-1]), _PROFILE_STEP_PX)
+    level = np.interp(grid, centre, profile)
+    behind = grid > 0
+    if not behind.any():
+        raise SupportError(
+            "the region ends at the strip's first side: choose one that holds both sides"
+        )
+    ground = median(level[grid < -1.0]) if (grid < -1.0).any() else float(level[0])
+    # The first top behind the rising side, not the scene's brightest place.
+    falling = np.flatnonzero(np.diff(level[behind]) < 0)
+    top = float(level[behind][int(falling[0])]) if falling.size else float(level.max())
+    place = grid[behind][int(falling[0])] if falling.size else 0.0
+    width = crossing(grid, level, 0.5 * (ground + top), float(place))
+    if not width > 0:
+        raise NoEdgeError(
+            f"the strip's second side was not found within {_MAX_WIDTH_PX:g} px: state its width, "
+            "or choose a region that holds both sides"
+        )
+    return float(width)

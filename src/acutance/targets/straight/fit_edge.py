@@ -1,0 +1,95 @@
+"""The reference estimator of an edge."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.noise import Correlation
+from acutance.targets.straight.first_fit import BlurredEdge, fit_blurred_edge
+from acutance.targets.straight.pixels import EdgeBand, EdgeFit, Pixels
+from acutance.targets.straight.solve import Solved, solve
+
+__all__ = ["SplineEdge", "fit_edge", "spline_edge"]
+
+
+@dataclass(frozen=True, eq=False)
+class SplineEdge(EdgeFit):
+    """The reference estimator's fit, with what its checks ask for.
+
+    Attributes
+    ----------
+    blur : Blur
+        The plain blur that explains the edge best.
+    noise_dark, noise_bright : float
+        Standard deviation of the noise on either side, in image units.
+    correlation : Correlation
+        What the residuals say of the noise's correlation.
+    weights : (n,) array
+        Weight of every pixel used, 1 where it is no outlier.
+    tail : float
+        Share of the LSF in the 1/x^2 tail.
+    """
+
+    blur: Blur
+    noise_dark: float
+    noise_bright: float
+    correlation: Correlation
+    weights: Floats
+    tail: float
+
+
+def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
+    """Measure the edge of a band.
+
+    Parameters
+    ----------
+    band : EdgeBand
+    robust : bool, optional
+        Bound the weight of outliers.
+
+    Raises
+    ------
+    NoEdgeError
+        If the band holds no step.
+    """
+    return spline_edge(band.pixels, solve(band.pixels, _start(band), robust=robust))
+
+
+def _start(band: EdgeBand) -> BlurredEdge:
+    """The plain blurred edge the linear model departs from."""
+    if band.blur is not None:
+        return BlurredEdge(band.line, band.blur, band.dark, band.bright - band.dark, band.noise)
+    pixels = band.pixels
+    return fit_blurred_edge(
+        pixels.row, pixels.col, pixels.value, band.line,
+        dark=band.dark, bright=band.bright, sigma_px=band.width_px, noise=band.noise,
+    )  # fmt: skip
+
+
+def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
+    """Turn the coefficients into curves about the 50 % point, with their covariance."""
+    start, solution, model = solved.start, solved.solution, solved.model
+    middle = model.half_point()
+    response = model.response(middle)
+    line = start.line.moved(middle, math.degrees(solution.turn_rad))
+    t = line.tangent_distance(pixels.row, pixels.col)
+    s = line.normal_distance(pixels.row, pixels.col)
+    near = np.abs(s) < start.blur.width_px
+    length = float(np.ptp(t[near])) if near.any() else math.nan
+    dark, height = solved.dark, model.height
+    line = replace(
+        line,
+        angle_std_deg=math.degrees(solution.turn_std_rad),
+        offset_std_px=model.half_point_std(response),
+        length_px=length,
+    )
+    return SplineEdge(
+        line, response, dark, dark + height, s, (pixels.value - dark) / height,
+        solution.residual / height, start.blur, *solution.side_noise, solved.correlation,
+        solved.outlier, model.tail / height,
+    )  # fmt: skip

@@ -1,0 +1,49 @@
+"""Ground that is not uniform: slow trends of the plateaus, kept apart from the sensor's halo.
+
+A slope of the ground beside an edge looks like a halo of the sensor and takes MTF away. Trends
+along the edge tell them apart: no sensor makes them. Every side of the edge gets low polynomials
+in both directions, whose common amplitude the data decide.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.targets.straight.step_profile import Sides
+
+__all__ = ["LOG_AMPLITUDE", "ground_trends"]
+
+LOG_AMPLITUDE: Final = -2.5
+"""Hyperprior mean of the trends' amplitude relative to the edge's height, logarithm.
+
+Larger than any ground one would measure on, on purpose: an amplitude that may vanish does so where
+a slope is too weak to be seen, and the slope is then taken for a halo. An amplitude of 2 % (-4)
+saves 2 % of the deviation of MTF(0.25) on uniform ground, and errs a fifth more on slopes of 1 %.
+"""
+
+
+def ground_trends(sides: Sides, t: Floats) -> Floats:
+    """Trends of the two sides, (10, n): five modes a side, each about 1 at its largest.
+
+    Parameters
+    ----------
+    sides : pairs of (n,) arrays
+        For either plateau how much of a pixel sees it, and how far out the pixel lies.
+    t : (n,) array
+        Distance along the edge, pixels.
+    """
+    along = t * (1 / max(float(np.max(np.abs(t))), 1e-9))
+    bow = 1.5 * along * along - 0.5
+    modes = np.empty((5 * len(sides), t.size))
+    for side, (share, outwards) in zip(modes.reshape(-1, 5, t.size), sides, strict=True):
+        away = np.maximum(outwards, 0.0)
+        away *= 1 / max(float(away.max()), 1e-9)
+        np.multiply(share, along, out=side[0])
+        np.multiply(share, bow, out=side[1])
+        np.multiply(share, away, out=side[2])
+        np.multiply(side[0], away, out=side[3])
+        np.multiply(side[2], away, out=side[4])
+    return modes

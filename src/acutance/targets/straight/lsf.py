@@ -1,0 +1,155 @@
+"""The fitted line spread function: a plain blur, a spline and a tail, with their covariance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves import Esf, Lsf, Mtf, Response
+from acutance.curves.grid import Floats, crossing, sample
+from acutance.numerics.gaussian_pixel import Blur
+from acutance.targets.straight.lsf_prior import tail_esf, tail_lsf, tail_otf
+from acutance.targets.straight.spline import (
+    CENTRES,
+    HALF_SUPPORT,
+    SIZE,
+    SplineRows,
+    combine,
+    edge_and_line_weights,
+    edge_weights,
+    transform,
+    waves,
+)
+
+__all__ = ["LsfModel"]
+
+_FREQ_CPP: Floats = np.asarray(np.arange(101) * 0.01)
+_STEP_PX = 0.05
+_MIN_HALF_PX = 10.0
+_Linear = tuple[Floats, SplineRows]
+_Parts = tuple[Floats, NDArray[np.intp], Floats, Floats]
+
+
+@dataclass(frozen=True, eq=False)
+class LsfModel:
+    """The response to the fitted step, not yet normalised.
+
+    Every curve is linear in the spline's ESF coefficients and the tail: its design has one column
+    for each, and its error is ``design @ latent @ z`` with z standard normal.
+
+    Parameters
+    ----------
+    blur : Blur
+        The plain blur the spline departs from.
+    level : float
+        Height of the blur's step, in image units.
+    spline : (CELLS + 3,) array
+        ESF coefficients of the departure, in image units.
+    tail : float
+        Height of the tail's step, in image units.
+    latent : (CELLS + 4, k) array
+        Factor of the covariance of spline and tail.
+    """
+
+    blur: Blur
+    level: float
+    spline: Floats
+    tail: float
+    latent: Floats
+
+    @property
+    def height(self) -> float:
+        """Bright less dark: the integral of the LSF."""
+        return float(self.level + self.spline[-1] + self.tail)
+
+    def esf(self, s: Floats) -> Floats:
+        """Normalised ESF at normal distances `s` in pixels, (n,)."""
+        u = s / self.blur.width_px
+        return self._sum(self.blur.esf(s), *edge_weights(u), tail_esf(u)) / self.height
+
+    def step(self, s: Floats, blurred: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
+        """Response to the step and its derivative at normal distances `s`, in image units.
+
+        `blurred` is the plain blur's ESF and LSF there.
+        """
+        esf, lsf = self._parts(s, blurred)
+        return self._sum(*esf), self._sum(*lsf)
+
+    def half_point(self) -> float:
+        """Normal distance of the 50 % point."""
+        s = np.asarray(np.arange(-40, 41) * (0.05 * self.blur.width_px))
+        value = self.esf(s)
+        steep = int(np.argmax(value[1:] - value[:-1]))
+        # The last place below one half: of a ramp any part may be the steepest.
+        below = (value[: steep + 2] < 0.5).nonzero()[0]
+        return crossing(s, value, 0.5, float(s[below[-1]] if below.size else s[0]))
+
+    def response(self, middle: float) -> Response:
+        """The curves on their grids, 0 at `middle`."""
+        half = math.ceil(max(_MIN_HALF_PX, HALF_SUPPORT * self.blur.width_px) / _STEP_PX)
+        distance = np.asarray(np.arange(-half, half + 1) * _STEP_PX)
+        s = distance + middle
+        (esf, esf_design), (lsf, lsf_design) = (
+            self._normalised(*parts) for parts in self._parts(s, self.blur.esf_and_lsf(s))
+        )
+        otf, otf_design = self._otf(_FREQ_CPP)
+        return Response(
+            Esf(distance, esf, esf_design, self.latent),
+            Lsf(distance, lsf, lsf_design, self.latent),
+            Mtf(_FREQ_CPP, otf, otf_design, self.latent),
+        )
+
+    def half_point_std(self, response: Response) -> float:
+        """Standard deviation of the 50 % point of a `response` about it."""
+        steepness = float(sample(response.lsf.distance_px, response.lsf.value, 0.0))
+        return float(np.linalg.norm(response.esf.gradient(0.0))) / abs(steepness)
+
+    def _parts(self, s: Floats, blurred: tuple[Floats, Floats]) -> tuple[_Parts, _Parts]:
+        """What the ESF, and the LSF per pixel, are sums of."""
+        width = self.blur.width_px
+        u = s / width
+        esf, lsf = blurred
+        cell, weights, slopes = edge_and_line_weights(u)
+        return (
+            (esf, cell, weights, tail_esf(u)),
+            (lsf, cell, slopes / width, tail_lsf(u) / width),
+        )
+
+    def _sum(
+        self, blurred: Floats, cell: NDArray[np.intp], weights: Floats, tail: Floats
+    ) -> Floats:
+        """The blur, the spline and the tail, each with what was fitted of it, in image units."""
+        return self.level * blurred + combine(cell, weights, self.spline) + self.tail * tail
+
+    def _normalised(
+        self, blurred: Floats, cell: NDArray[np.intp], weights: Floats, tail: Floats
+    ) -> _Linear:
+        """The sum, of height 1, and its design."""
+        height = self.height
+        value = self._sum(blurred, cell, weights, tail) / height
+        # What lifts the height lowers the curve: so do the last coefficient and the tail.
+        dense = np.empty((value.size, 2))
+        np.multiply(value, -1 / height, out=dense[:, 0])
+        np.add(dense[:, 0], tail * (1 / height), out=dense[:, 1])
+        return value, SplineRows(cell, weights * (1 / height), dense, further=1)
+
+    def _otf(self, freq_cpp: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Normalised OTF about the LSF's centroid, and its design."""
+        freq, centroid = freq_cpp * self.blur.width_px, self._centroid()
+        about = waves(freq, -centroid)[0] / self.height
+        design = transform(freq, centroid, 1 / self.height, further=1)
+        design[:, -1] = tail_otf(freq) * about
+        # A real product: a complex one of this size would wake the threads of BLAS.
+        coefficients = np.append(self.spline, self.tail)
+        value = self.level * self.blur.otf(freq_cpp) * about
+        value += (coefficients @ design.T.view(float)).view(complex)
+        design[:, -2:] -= (value / self.height)[:, None]
+        return value, design
+
+    def _centroid(self) -> float:
+        """Centroid of the LSF in widths."""
+        shares = np.diff(self.spline[2 : 3 + SIZE])
+        return float(shares @ CENTRES) / self.height

@@ -1,0 +1,123 @@
+"""What is known of a line spread function before the pixels are seen.
+
+The LSF is the mean blur (`fit.blur`) with free level, width, aperture and place, plus three
+Gaussian processes and a tail, each with an amplitude that the data decide (`fit.posterior`):
+
+- SHAPE: smooth departures near the peak (sharpening, asymmetry, shoulders);
+- DETAIL: fine structure of the peak (a hard aperture, little optical blur);
+- HALO: broad departures out to many widths (stray light, halo, charge trails);
+- TAIL: a term falling like 1/u^2 without end, as diffraction does.
+
+A Gaussian process has covariance ``exp(-(u^2 + u'^2) / 2 L^2) exp(-(u - u')^2 / 2 l^2)``: its
+departures live within L widths of the edge and vary over l widths. Nothing here knows a sensor.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.numerics.gaussian_pixel import Blur
+from acutance.targets.straight.spline import (
+    CENTRES,
+    HALF_SUPPORT,
+    SIZE,
+    esf_from_lsf,
+    quasi_interpolant,
+)
+
+__all__ = [
+    "APERTURE_PX",
+    "LOG_AMPLITUDE",
+    "LOG_AMPLITUDE_STD",
+    "TAIL_WIDTH",
+    "Directions",
+    "directions",
+    "tail_esf",
+    "tail_lsf",
+    "tail_otf",
+]
+
+_SHAPE: Final = (1.2, 0.6)
+_DETAIL: Final = (0.7, 0.17)
+_HALO: Final = (3.0, 1.2)
+TAIL_WIDTH: Final = 1.0
+"""Extent L and smoothness l of the processes, and the tail's half width, in widths."""
+
+LOG_AMPLITUDE: Final[Floats] = np.array([-4.4, -2.5, -4.1, -4.0])
+LOG_AMPLITUDE_STD: Final = 1.2
+"""Amplitudes of SHAPE, DETAIL, HALO and TAIL relative to the edge's height: 1 to 2 % (detail
+8 %), within a factor 3.3 either way. Chosen once, over systems of many shapes, so that the
+intervals hold the truth as often as they say (benchmarks/coverage.py)."""
+APERTURE_PX: Final = (1.0, 0.18)
+"""Mean and standard deviation of the detector's aperture: fill factors are near one."""
+
+
+class Directions(NamedTuple):
+    """The directions in which the LSF may differ from the mean blur.
+
+    Attributes
+    ----------
+    esf : (CELLS + 3, r) array
+        ESF coefficients of every direction, for an LSF per width.
+    block : (r,) int array
+        0 level, width and place (free), 1 aperture, 2 shape, 3 detail, 4 halo, 5 tail.
+    """
+
+    esf: Floats
+    block: NDArray[np.intp]
+
+
+def _process(extent: float, smoothness: float) -> Floats:
+    """Square root of a Gaussian process's covariance, (SIZE, r), to 1e-4 of its variance."""
+    u = CENTRES
+    envelope = np.exp(-0.5 * (u / extent) ** 2)
+    kernel = np.exp(-0.5 * ((u[:, None] - u) / smoothness) ** 2) * envelope[:, None] * envelope
+    power, shape = np.linalg.eigh(kernel)
+    kept = power > 1e-4 * power[-1]
+    return np.asarray(shape[:, kept] * np.sqrt(power[kept]))
+
+
+def tail_esf(u: Floats) -> Floats:
+    """ESF of the tail term: its LSF is the Lorentz curve of half width TAIL_WIDTH."""
+    return np.arctan(u / TAIL_WIDTH) / np.pi + 0.5
+
+
+def tail_lsf(u: Floats) -> Floats:
+    """LSF of the tail term, per width."""
+    return np.asarray(TAIL_WIDTH / np.pi / (u * u + TAIL_WIDTH**2))
+
+
+def tail_otf(freq: Floats) -> Floats:
+    """Transfer function of the tail term, at frequencies in cycles per width."""
+    return np.exp(-2 * np.pi * TAIL_WIDTH * freq)
+
+
+@cache
+def _fixed() -> tuple[Floats, NDArray[np.intp]]:
+    """All directions, with room for the four of the mean blur in front, and their blocks."""
+    processes = [_process(*scales) for scales in (_SHAPE, _DETAIL, _HALO)]
+    tail = quasi_interpolant(tail_lsf(CENTRES))
+    lsf = np.hstack([np.zeros((SIZE, 4)), *processes, tail[:, None]])
+    block = np.repeat([0, 1, 2, 3, 4, 5], [3, 1, *(p.shape[1] for p in processes), 1])
+    esf = esf_from_lsf(lsf)
+    esf[:, -1] += float(tail_esf(np.array(-HALF_SUPPORT)))
+    return esf, block
+
+
+def directions(blur: Blur) -> Directions:
+    """The directions of the prior around the mean `blur`.
+
+    The level, width, place and aperture of the mean come first, then the processes and the tail.
+    """
+    esf, block = _fixed()
+    width = blur.width_px
+    lsf, by_place, by_sigma, by_aperture = blur.lsf_slopes(CENTRES * width)
+    shapes = np.stack([lsf, by_sigma, -by_place, by_aperture], axis=1)
+    everything = esf.copy()
+    everything[:, :4] = esf_from_lsf(quasi_interpolant(width * shapes))
+    return Directions(everything, block)

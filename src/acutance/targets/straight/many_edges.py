@@ -1,0 +1,243 @@
+"""Every usable edge of a target, grouped across and along, with the means and their consistency."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves import Estimate
+from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
+from acutance.errors import TargetError
+from acutance.geometry.line import Line, Orientation
+from acutance.numerics.one_thread import one_thread
+from acutance.raster import Box, Gsd, Image
+from acutance.targets.arguments import chosen_options
+from acutance.targets.measurement import Measurement
+from acutance.targets.region import RoiLike, cut
+from acutance.targets.straight.edge import measure_segment
+from acutance.targets.straight.find_edges import find_segments
+from acutance.targets.straight.options import EdgeOptions
+
+__all__ = ["EdgeGroup", "Rejected", "TargetResult", "combine_edges", "measure_edges"]
+
+_CONTRAST_SHARE = 0.8
+_STRENGTH_SHARE = 0.1
+_MAIN = ("mtf_nyquist", "rer", "fwhm_px")
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A candidate that was not measured: at which stage, why, and the numbers behind it.
+
+    Attributes
+    ----------
+    stage : {"fit", "contrast"}
+    reason : str
+    values : dict
+        Where it lies in pixels of the whole image (``row``, ``col``), and its ``normal_deg``.
+    """
+
+    stage: str
+    reason: str
+    values: Mapping[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeGroup(OneLine):
+    """Edges of one orientation and what they say together.
+
+    Attributes
+    ----------
+    orientation : {"across", "along"}
+    measurements : tuple of Measurement
+    metrics : dict of Estimate
+        Means weighted by 1 / std^2. Where the edges disagree beyond their standard deviations,
+        that of the mean is widened by the square root of chi-square per degree of freedom.
+    chi_square, p_value : dict of float
+        Consistency: chi-square of the edges about the mean, and the chance of a larger one; ``nan``
+        for a single edge, and where it means nothing (below).
+    degrees_of_freedom : int
+
+    Notes
+    -----
+    No metric can be negative: a modulus that drowns in noise, or an overshoot that is not there,
+    is reported as 0. Where one of the edges lies within its standard deviation of 0, the values
+    are no longer Gaussian, and neither weights nor chi-square mean anything. The mean is then the
+    plain one. As clipped errors do not average out, its standard deviation is the root mean square
+    of the edges', or what the edges' scatter says if that is more; chi-square and p are ``nan``.
+    """
+
+    orientation: Orientation
+    measurements: tuple[Measurement, ...]
+    metrics: Mapping[str, Estimate]
+    chi_square: Mapping[str, float]
+    p_value: Mapping[str, float]
+    degrees_of_freedom: int
+
+    def in_words(self) -> str:
+        """Direction, how many edges, and the main means."""
+        means = (f"{name} {self.metrics[name]}" for name in _MAIN if name in self.metrics)
+        return ", ".join((self.orientation, f"edges {len(self.measurements)}", *means))
+
+
+@dataclass(frozen=True, eq=False)
+class TargetResult(OneLine):
+    """All edges of a target.
+
+    Attributes
+    ----------
+    measurements : tuple of Measurement
+        The strongest edge first.
+    rejected : tuple of Rejected
+    groups : dict of EdgeGroup
+        By orientation.
+    """
+
+    measurements: tuple[Measurement, ...]
+    rejected: tuple[Rejected, ...]
+    groups: Mapping[str, EdgeGroup]
+
+    def in_words(self) -> str:
+        """How many edges, and the main means of each group."""
+        count = f"measured {len(self.measurements)}, rejected {len(self.rejected)}"
+        return "; ".join((count, *(group.in_words() for group in self.groups.values())))
+
+
+@one_thread
+def measure_edges(
+    image: Image | ArrayLike,
+    roi: RoiLike = None,
+    *,
+    gsd_m: float | Gsd | None = None,
+    method: str = "spline",
+    options: EdgeOptions | None = None,
+) -> TargetResult:
+    """Measure every usable edge of a target: four of a 2 x 2 checkerboard, the sides of a tarp.
+
+    Edges with less than four fifths of the strongest contrast are left out: they are the
+    target's border with its surroundings, or not of the target.
+
+    Parameters
+    ----------
+    image, roi, gsd_m, method, options
+        As in `acutance.measure_edge`.
+
+    Returns
+    -------
+    TargetResult
+    """
+    pixels = cut(image, roi, gsd_m)
+    chosen = chosen_options(options, EdgeOptions)
+    measured: list[Measurement] = []
+    rejected: list[Rejected] = []
+    strongest = 0.0
+    for segment in find_segments(pixels.pixels):
+        strongest = max(strongest, segment.strength)
+        if segment.strength < _STRENGTH_SHARE * strongest:
+            break
+        try:
+            found = measure_segment(pixels, segment, method, chosen)
+        except TargetError as error:
+            where = _where(_in_image(segment.line, pixels.box))
+            rejected.append(Rejected("fit", str(error), where))
+            continue
+        if not any(_same_edge(found, other) for other in measured):
+            measured.append(found)
+    kept, dim = _of_the_target(measured)
+    return TargetResult(kept, (*rejected, *dim), combine_edges(kept))
+
+
+def _in_image(line: Line, box: Box) -> Line:
+    """A line of the cut, in pixels of the whole image."""
+    return replace(line, row=line.row + box.row, col=line.col + box.col)
+
+
+def _where(line: Line) -> dict[str, float]:
+    return {"row": line.row, "col": line.col, "normal_deg": line.normal_deg}
+
+
+def _same_edge(one: Measurement, other: Measurement) -> bool:
+    """Whether two measurements took the same stretch of the same edge."""
+    turn = abs((one.line.normal_deg - other.line.normal_deg + 180) % 360 - 180)
+    beside = abs(float(other.line.normal_distance(one.line.row, one.line.col)))
+    apart = abs(float(other.line.tangent_distance(one.line.row, one.line.col)))
+    reach = 0.5 * min(one.line.length_px, other.line.length_px)
+    return turn < 5 and beside < 2 and apart < reach
+
+
+def _of_the_target(
+    measured: Sequence[Measurement],
+) -> tuple[tuple[Measurement, ...], tuple[Rejected, ...]]:
+    """Keep the edges with the target's contrast."""
+    heights = [one.samples.bright - one.samples.dark for one in measured]
+    least = _CONTRAST_SHARE * max(heights, default=0.0)
+    kept = tuple(one for one, height in zip(measured, heights, strict=True) if height >= least)
+    dim = tuple(
+        Rejected(
+            "contrast",
+            f"contrast {height:.4g} is less than {_CONTRAST_SHARE:g} of the strongest edge's "
+            f"{max(heights):.4g}: probably not of the target",
+            _where(one.line),
+        )
+        for one, height in zip(measured, heights, strict=True)
+        if height < least
+    )
+    return kept, dim
+
+
+def combine_edges(measurements: Sequence[Measurement]) -> dict[str, EdgeGroup]:
+    """Group measurements by orientation and average each group."""
+    groups: dict[str, EdgeGroup] = {}
+    for orientation in ("across", "along"):
+        own = tuple(one for one in measurements if one.orientation == orientation)
+        if own:
+            groups[orientation] = _group(own)
+    return groups
+
+
+def _group(own: tuple[Measurement, ...]) -> EdgeGroup:
+    metrics, chi_square, p_value = {}, {}, {}
+    for name in own[0].metrics():
+        numbers = [one.metrics().get(name, Estimate(math.nan)) for one in own]
+        mean, scatter = _weighted_mean(numbers)
+        metrics[name] = mean
+        chi_square[name] = scatter
+        p_value[name] = _chance(scatter, len(own) - 1)
+    return EdgeGroup(own[0].orientation, own, metrics, chi_square, p_value, len(own) - 1)
+
+
+def _weighted_mean(numbers: Sequence[Estimate]) -> tuple[Estimate, float]:
+    """Mean weighted by 1 / std^2, and chi-square about it; the Birge ratio widens the std."""
+    value = np.array([number.value for number in numbers])
+    std = np.array([number.std for number in numbers])
+    if not (np.isfinite(value).all() and np.isfinite(std).all() and (std > 0).all()):
+        return Estimate(float(np.mean(value)), math.nan), math.nan
+    if len(numbers) > 1 and (value < std).any():
+        return _plain_mean(value, std), math.nan
+    weight = 1 / std**2
+    mean = float(weight @ value / weight.sum())
+    scatter = float(weight @ (value - mean) ** 2)
+    freedom = len(numbers) - 1
+    widened = max(1.0, math.sqrt(scatter / freedom)) if freedom else 1.0
+    return Estimate(mean, widened / math.sqrt(weight.sum())), scatter
+
+
+def _plain_mean(value: Floats, std: Floats) -> Estimate:
+    """Mean of numbers of which some lie at their bound 0; see `EdgeGroup`."""
+    scatter = float(np.std(value, ddof=1)) / math.sqrt(value.size)
+    return Estimate(float(np.mean(value)), max(math.sqrt(float(np.mean(std**2))), scatter))
+
+
+def _chance(chi_square: float, freedom: int) -> float:
+    """Chance of a larger chi-square."""
+    from scipy.special import gammaincc
+
+    if freedom < 1 or not math.isfinite(chi_square):
+        return math.nan
+    return float(gammaincc(freedom / 2, chi_square / 2))

@@ -1,0 +1,102 @@
+"""The pixels around one straight edge that serve its measurement, and a fit of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves import Response
+from acutance.curves.grid import Floats
+from acutance.geometry.line import Line
+from acutance.numerics.gaussian_pixel import Blur
+
+__all__ = ["EdgeBand", "EdgeFit", "Pixels"]
+
+
+@dataclass(frozen=True, eq=False)
+class Pixels:
+    """The pixels of a fit, (n,) each.
+
+    Attributes
+    ----------
+    at : two int arrays
+        Their rows and columns, as an index of the image.
+    row, col : arrays
+        The same as places; integers are pixel centres.
+    value : array
+    """
+
+    at: tuple[NDArray[np.intp], NDArray[np.intp]]
+    row: Floats
+    col: Floats
+    value: Floats
+
+    @classmethod
+    def of(cls, image: Floats) -> Pixels:
+        """The finite pixels of an image, in row-major order."""
+        rows, cols = np.isfinite(image).nonzero()
+        return cls((rows, cols), rows.astype(float), cols.astype(float), image[rows, cols])
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeBand:
+    """A region trimmed to one edge: what every edge method starts from.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        The cut. Pixels that must not be used (nodata, masked, outside the band) are NaN.
+    line : Line
+        The edge in the cut's own coordinates, good to a tenth of a pixel or better.
+    dark, bright : float
+        Plateau levels, in the image's units.
+    width_px : float
+        Standard deviation of the Gaussian that fits the blur of the edge, in pixels.
+    noise : float
+        Standard deviation of the noise about the edge model, in the image's units.
+    blur : Blur, optional
+        The plain blur fitted to the edge, with line and levels to match; without it the
+        reference method fits its own.
+    """
+
+    image: Floats
+    line: Line
+    dark: float
+    bright: float
+    width_px: float
+    noise: float
+    blur: Blur | None = None
+
+    @cached_property
+    def pixels(self) -> Pixels:
+        """The pixels that may be used."""
+        return Pixels.of(self.image)
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeFit:
+    """What a method makes of a band.
+
+    Parameters
+    ----------
+    line : Line
+        The edge as the method located it, in the cut's coordinates, with standard deviations.
+    response : Response
+        The curves with their covariance; 0 of their distance axis is the 50 % point.
+    dark, bright : float
+        Plateau levels as the method fitted them.
+    distance_px, value, residual : (n,) arrays
+        The pixels used (row-major order of the band's finite pixels): normal distance from the
+        50 % point, edge response normalised to 0..1, and what the fit leaves of it.
+    """
+
+    line: Line
+    response: Response
+    dark: float
+    bright: float
+    distance_px: Floats
+    value: Floats
+    residual: Floats

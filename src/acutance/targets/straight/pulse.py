@@ -1,0 +1,216 @@
+"""Measure a pulse target: a strip between two grounds, as a tarp on grass, a bridge, a stripe."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves import Estimate
+from acutance.errors import OptionError, TargetError
+from acutance.numerics.one_thread import one_thread
+from acutance.raster import Gsd, Image
+from acutance.targets.arguments import chosen_options, published_options
+from acutance.targets.measurement import Measurement, Samples
+from acutance.targets.region import Cut, RoiLike, cut
+from acutance.targets.straight.edge import require_phases
+from acutance.targets.straight.find_edges import find_segments
+from acutance.targets.straight.find_pulse import find_pulse
+from acutance.targets.straight.fit_pulse import PulseBand, fit_pulse
+from acutance.targets.straight.options import PulseOptions
+from acutance.targets.straight.pixels import EdgeFit
+from acutance.targets.straight.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
+from acutance.targets.straight.pulse_checks import PulseChecks
+from acutance.targets.straight.pulse_halo import with_uncertain_foot
+from acutance.targets.straight.pulse_response import prf_fwhm
+from acutance.targets.straight.trim import Extent
+
+__all__ = ["PULSE_METHODS", "measure_pulse"]
+
+_MOST_CORRECTED = 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """What a method makes of a pulse."""
+
+    fit: EdgeFit
+    width: Estimate
+    fall: Estimate
+    prf_fwhm: Estimate
+
+
+def _spline(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
+    if options.method_options is not None:
+        raise OptionError("method_options belong to the published methods: leave them out")
+    fit = fit_pulse(band, fit_width=fit_width, robust=options.robust)
+    told = replace(fit, response=with_uncertain_foot(fit.response))
+    prf = prf_fwhm(told.response, fit.pulse_width.value, fit.width_factor)
+    return _Fitted(told, fit.pulse_width, fit.fall, prf)
+
+
+def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
+    def measure(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
+        wanted = PUBLISHED_PULSE_OPTIONS[name]
+        fit = PUBLISHED_PULSE[name](band, published_options(options, name, wanted))
+        along_normal = fit.prf_fwhm_px.scaled(1.0 / fit.px_per_normal)
+        return _Fitted(fit, fit.pulse_width, fit.fall, along_normal)
+
+    return measure
+
+
+PULSE_METHODS: dict[str, Callable[[PulseBand, bool, PulseOptions], _Fitted]] = {
+    "spline": _spline,
+    **{name: _published(name) for name in PUBLISHED_PULSE},
+}
+
+
+@one_thread
+def measure_pulse(
+    image: Image | ArrayLike,
+    roi: RoiLike = None,
+    *,
+    width_px: float | None = None,
+    width_m: float | None = None,
+    gsd_m: float | Gsd | None = None,
+    fit_width: bool = True,
+    method: str = "spline",
+    options: PulseOptions | None = None,
+) -> Measurement:
+    """Measure the strongest pulse of a region.
+
+    Parameters
+    ----------
+    image : Image or (rows, cols) array_like
+    roi : Region, Box, (row, col, height, width) or None
+        A loose region is normal: the pulse is found in it, and what serves is trimmed.
+    width_px, width_m : float, optional
+        Width of the target along its normal, in pixels or in metres (which needs a GSD); without
+        either it is guessed from the profile and fitted.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres, instead of the image's own.
+    fit_width : bool, optional
+        Whether the width is fitted with the LSF, with its own standard deviation (method
+        "spline"); the stated one is then the start, and a check compares the two.
+    method : {"spline", "sdsu-2005"}, optional
+        The joint fit, or the published ratio of spectra with its biases: its width is the stated
+        one, or else the one at which the pulse was found.
+    options : PulseOptions, optional
+
+    Returns
+    -------
+    Measurement
+        With `width_px` and `prf_fwhm_px`. The MTF is the sensor's, not that of the pulse response.
+
+    Raises
+    ------
+    ImageError, RegionError, OptionError
+        If there are no pixels to measure, or the width makes no sense.
+    NoEdgeError, PhaseError, SupportError
+        If there is no pulse, it is aligned with the grid, or too little of it is there.
+    """
+    chosen = chosen_options(options, PulseOptions)
+    estimate = _method(method)
+    pixels = cut(image, roi, gsd_m)
+    stated_px = _stated_width(pixels, width_px, width_m)
+    free = fit_width or stated_px is None
+    band, extent = _find(pixels, stated_px, free)
+    require_phases(band, band.line, chosen.limits.sample_phases)
+    if stated_px is not None and method in PUBLISHED_PULSE:
+        band = replace(band, pulse_width_px=stated_px)
+    found = estimate(band, free, chosen)
+    if free and stated_px is not None and _is_far(found.width.value, stated_px):
+        # So far from its start the fit may have stopped in a place of its own: start near the end.
+        band, extent = find_pulse(pixels.pixels, found.width.value)
+        found = estimate(band, free, chosen)
+    checks = PulseChecks(
+        pixels, band, extent, found.fit, found.width, found.fall, stated_px, chosen.limits,
+        by_ratio=method != "spline",
+    )  # fmt: skip
+    return _measurement(pixels, band, found, checks, method, chosen, stated_px)
+
+
+def _find(pixels: Cut, stated_px: float | None, free: bool) -> tuple[PulseBand, Extent]:
+    """The strongest pulse; where there is none of the stated width, what there is instead."""
+    try:
+        return find_pulse(pixels.pixels, stated_px, fit_width=free)
+    except TargetError as error:
+        if stated_px is None:
+            raise
+        seen_px = _width_seen(pixels)
+        if seen_px is None or not _is_far(seen_px, stated_px):
+            raise
+        raise type(error)(
+            f"{error}; the image shows a strip of about {seen_px:.2f} px where {stated_px:.2f} px "
+            "were stated: check the width and the GSD, or state no width"
+        ) from error
+
+
+def _width_seen(pixels: Cut) -> float | None:
+    """Width in pixels of the strip that is found when no width is stated."""
+    try:
+        return find_pulse(pixels.pixels)[0].pulse_width_px
+    except TargetError:
+        return None
+
+
+def _is_far(found_px: float, stated_px: float) -> bool:
+    """Whether a fitted width is another one than what was stated, not a correction of it."""
+    return abs(found_px / stated_px - 1) > _MOST_CORRECTED
+
+
+def _method(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
+    if name not in PULSE_METHODS:
+        known = ", ".join(PULSE_METHODS)
+        raise OptionError(f"there is no pulse method {name!r}: choose one of {known}")
+    return PULSE_METHODS[name]
+
+
+def _stated_width(pixels: Cut, width_px: float | None, width_m: float | None) -> float | None:
+    """The stated width in pixels along the normal of the region's strongest side."""
+    if width_px is not None and width_m is not None:
+        raise OptionError("the width was given in pixels and in metres: give one of them")
+    if width_m is not None:
+        if pixels.gsd is None:
+            raise OptionError(
+                f"a width of {width_m:g} m needs a GSD, and the image has none: give gsd_m "
+                "(--gsd), or the width in pixels"
+            )
+        side = next(find_segments(pixels.pixels, 1), None)
+        width_px = width_m / pixels.gsd.along_normal(side.line.normal_deg if side else 0.0)
+    if width_px is not None and not 0.3 <= width_px <= 100:
+        raise OptionError(
+            f"a pulse {width_px:.3g} px wide cannot be measured: widths of 2 to 6 px serve best; "
+            "check the width and the GSD"
+        )
+    return width_px
+
+
+def _measurement(
+    pixels: Cut,
+    band: PulseBand,
+    found: _Fitted,
+    checks: PulseChecks,
+    method: str,
+    options: PulseOptions,
+    stated_px: float | None,
+) -> Measurement:
+    """Put together what a measurement holds; the line moves into the whole image's pixels."""
+    fit = found.fit
+    info = pixels.info(fit.line)
+    response = replace(
+        fit.response,
+        gsd_m=info.gsd_m,
+        rer_centre=options.rer_centre or fit.response.rer_centre,
+    )
+    line = replace(fit.line, row=fit.line.row + pixels.box.row, col=fit.line.col + pixels.box.col)
+    samples = Samples(
+        pixels.pixels, np.isfinite(band.image), fit.distance_px, fit.value, fit.residual,
+        band.sign * fit.dark, band.sign * fit.bright,
+    )  # fmt: skip
+    return Measurement(
+        "pulse", method, line, response, samples, checks.snr, checks, info, options.to_dict(),
+        found.width, found.prf_fwhm, stated_px,
+    )  # fmt: skip

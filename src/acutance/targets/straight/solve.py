@@ -1,0 +1,291 @@
+"""The reference estimator: every straight target is one linear model.
+
+The image of a straight target is ``dark + height * sum_k share_k R(s - position_k)`` with s the
+normal distance and R the response to a unit step (`fit.profile`). R is that of the plain blurred
+edge (`fit.start`) plus a free spline and a tail (`fit.spline`, `fit.prior`), whose amplitudes the
+data decide (`fit.posterior`). The line's direction and, of a pulse, its width and its fall are
+further unknowns of the same linear model (`fit.linear`), solved again where they have moved.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.errors import NoEdgeError
+from acutance.numerics.marginal_likelihood import Posterior, regress
+from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
+from acutance.numerics.normal_equations import Normal
+from acutance.targets.straight.first_fit import BlurredEdge
+from acutance.targets.straight.linear_model import Linear
+from acutance.targets.straight.lsf import LsfModel
+from acutance.targets.straight.pixels import Pixels
+from acutance.targets.straight.spline_equations import accumulate, renewed
+from acutance.targets.straight.step_profile import Profile
+
+__all__ = ["Solution", "Solved", "solve"]
+
+_SETTLED_PX = 0.01
+_SETTLED_FALL = 0.003
+"""A linear step this short leaves less than 1e-4 of the edge's height behind."""
+_RESTING = 3.0
+_MAX_PASSES = 10
+_MIN_STEEP = 20
+_SIGNIFICANT = 4.0
+_OUTLYING = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A straight target, solved.
+
+    Attributes
+    ----------
+    solution : Solution
+        The last pass.
+    outlier : (n,) array
+        Weight of every pixel, 1 where it is no outlier.
+    correlation : Correlation
+        What the residuals say of the noise's correlation.
+    """
+
+    solution: Solution
+    outlier: Floats
+    correlation: Correlation
+
+    @property
+    def start(self) -> BlurredEdge:
+        """What the linear model departs from: line, blur, levels and profile as they settled."""
+        return self.solution.linear.start
+
+    @property
+    def model(self) -> LsfModel:
+        """The LSF."""
+        return self.solution.model
+
+    @property
+    def dark(self) -> float:
+        """Level before the first step."""
+        return self.start.dark + float(self.solution.posterior.beta[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """One pass: the linear model solved at given weights.
+
+    Attributes
+    ----------
+    linear : Linear
+    weight : (n,) array
+        Weights of the pixels.
+    normal : Normal
+        Their equations.
+    posterior : Posterior
+        Of the unknowns.
+    residual, noise : (n,) arrays
+        What is left of every pixel, and the noise's standard deviation there, in image units.
+    side_noise : (float, float)
+        Standard deviation of the noise on dark and on bright ground.
+    roughness : float
+        Noise variance the edge's raggedness adds where the image is steepest, relative to the
+        rest.
+    """
+
+    linear: Linear
+    weight: Floats
+    normal: Normal
+    posterior: Posterior
+    residual: Floats
+    noise: Floats
+    side_noise: tuple[float, float]
+    roughness: float
+
+    @property
+    def model(self) -> LsfModel:
+        """The LSF of this pass."""
+        return self.linear.model(self.posterior)
+
+    @property
+    def turn_rad(self) -> float:
+        """How the line wants to turn."""
+        return float(self.posterior.beta[-self.linear.derivatives])
+
+    @property
+    def turn_std_rad(self) -> float:
+        """Standard deviation of the turn."""
+        return _norm(self.posterior.factor[-self.linear.derivatives])
+
+    @property
+    def steps(self) -> Floats:
+        """How a pulse's width (if free) and its fall want to change, (k,)."""
+        return self.posterior.beta[self._first_step :]
+
+    @property
+    def steps_std(self) -> Floats:
+        """Standard deviations of the steps, (k,)."""
+        return np.array([_norm(row) for row in self.posterior.factor[self._first_step :]])
+
+    @property
+    def _first_step(self) -> int:
+        return self.posterior.beta.size - self.linear.derivatives + 1
+
+
+def solve(
+    pixels: Pixels, start: BlurredEdge, *, robust: bool = True, fit_width: bool = False
+) -> Solved:
+    """Solve the linear model until line, profile, outliers and noise have settled.
+
+    Parameters
+    ----------
+    pixels : Pixels
+    start : BlurredEdge
+        Line, blur, levels and profile to depart from.
+    robust : bool, optional
+        Bound the weight of outliers.
+    fit_width : bool, optional
+        Whether a pulse's width is unknown (its fall always is).
+    """
+    linear = Linear.about(start, pixels, fit_width=fit_width)
+    outlier = np.ones(pixels.value.size)
+    whiteness = Correlation(1.0, 0.0, 0.0)
+    earlier: Solution | None = None
+    roughness = 0.0
+    for _ in range(_MAX_PASSES):
+        solved = _pass(linear, outlier, whiteness.inflation, roughness, earlier)
+        standard = solved.residual / solved.noise
+        heavy = robust and float(np.abs(standard).max()) > _OUTLYING
+        again = _reweighted(standard, linear) if heavy else outlier
+        found = correlation(_bounded(standard), *pixels.at, linear.start.line.normal)
+        short = _are_short(solved, fit_width)
+        settled = (
+            short
+            # The derivative by the width is that of the blur until there is an LSF.
+            and not (fit_width and earlier is None)
+            and np.max(np.abs(again - outlier)) < 0.05
+            and abs(found.inflation / whiteness.inflation - 1) < 0.05
+            and abs(solved.roughness - roughness) < 0.1 * (1 + roughness)
+        )
+        if settled:
+            break
+        outlier, whiteness, earlier = again, found, solved
+        roughness = solved.roughness
+        if not (short and _rest(solved)):
+            linear = Linear.about(_moved(solved, fit_width), pixels, fit_width=fit_width)
+    return Solved(solved, outlier, whiteness)
+
+
+def _are_short(solved: Solution, fit_width: bool) -> bool:
+    """Whether the steps of line and profile are so short that the linear model serves.
+
+    What a linear step in the width leaves behind is about its square in pixels, of a step in the
+    fall a twentieth: it has to be small beside the standard deviation.
+    """
+    if abs(solved.turn_rad) * solved.linear.half_length_px >= _SETTLED_PX:
+        return False
+    steps, stds = np.abs(solved.steps), solved.steps_std
+    tolerance = np.maximum(_SETTLED_FALL, 6.0 * stds)
+    if fit_width:
+        tolerance[0] = max(_SETTLED_PX, math.sqrt(0.06 * stds[0]))
+    return bool(np.all(steps < tolerance))
+
+
+def _rest(solved: Solution) -> bool:
+    """Whether the steps of line and profile are no longer than the pixels tell of them."""
+    still = np.abs(solved.steps) < _RESTING * solved.steps_std
+    return bool(abs(solved.turn_rad) < _RESTING * solved.turn_std_rad and np.all(still))
+
+
+def _moved(solved: Solution, fit_width: bool) -> BlurredEdge:
+    """The start, with the line and the profile moved to where the solution wants them."""
+    start = solved.linear.start
+    if not (math.isfinite(solved.turn_rad) and np.all(np.isfinite(solved.steps))):
+        raise NoEdgeError(
+            "the fit of the target did not settle: its pixels do not follow one straight line; "
+            "choose a region with one straight target"
+        )
+    # A turn that is too large for the linear model is cut: three pixels at the ends a pass.
+    most = 3.0 / max(solved.linear.half_length_px, 1.0)
+    line = start.line.moved(0.0, math.degrees(float(np.clip(solved.turn_rad, -most, most))))
+    if not solved.steps.size:
+        return replace(start, line=line)
+    width_px, fall = start.profile.positions_px[1], -start.profile.shares[1]
+    if fit_width:
+        # A step that is too long for the linear model is cut: half the width a pass.
+        width_px += float(np.clip(solved.steps[0], -0.5 * width_px, 0.5 * width_px))
+    fall += float(np.clip(solved.steps[-1], -0.5 * fall, 0.5 * fall))
+    profile = Profile((0.0, width_px), (1.0, -fall))
+    return replace(start, line=line, profile=profile)
+
+
+def _pass(
+    linear: Linear, outlier: Floats, inflation: float, roughness: float, earlier: Solution | None
+) -> Solution:
+    """Solve for the LSF's departures from the start, the levels, the line and the steps."""
+    noise = linear.noise(outlier, roughness)
+    weight = outlier / noise.relative
+    columns = linear.columns(None if earlier is None else earlier.model)
+    normal = _equations(linear, weight, columns, float(np.add.reduce(outlier)), earlier)
+    posterior = regress(
+        normal.combined(linear.design), linear.prior, noise.scale, inflation,
+        None if earlier is None else earlier.posterior,
+    )  # fmt: skip
+    residual = linear.departure - linear.image(columns, posterior.beta)
+    std = np.sqrt(posterior.variance * noise.relative)
+    standard, steep = _bounded(residual / std), linear.steepness
+    dark, bright = np.sqrt(posterior.variance * noise.sides).tolist()
+    return Solution(
+        linear, weight, normal, posterior, residual, std, (dark, bright),
+        _raggedness(standard, np.where(np.abs(standard) < _OUTLYING, steep, 0.0), roughness),
+    )  # fmt: skip
+
+
+def _equations(
+    linear: Linear, weight: Floats, columns: Floats, count: float, earlier: Solution | None
+) -> Normal:
+    """The pixels' equations; where only the LSF has become known since, most of them are there."""
+    stencils, departure = linear.stencils, linear.departure
+    if (
+        earlier is None
+        or earlier.linear is not linear
+        or not np.array_equal(earlier.weight, weight)
+    ):
+        return accumulate(stencils, departure, weight, columns, count)
+    return renewed(earlier.normal, stencils, departure, weight, columns, linear.derivatives)
+
+
+def _raggedness(standard: Floats, steep: Floats, assumed: float) -> float:
+    """How much noisier the steep pixels are than the rest, beyond what chance explains."""
+    there = steep > 0.25
+    count = int(np.count_nonzero(there))
+    if count < _MIN_STEEP:
+        return assumed
+    # Per pixel, in units of the noise without raggedness.
+    power = float(np.mean(standard[there] ** 2 * (1 + assumed * steep[there])))
+    if assumed == 0 and power < 1 + _SIGNIFICANT * math.sqrt(2 / count):
+        return 0.0
+    return max((power - 1) / float(np.mean(steep[there])), 0.0)
+
+
+def _norm(row: Floats) -> float:
+    """Standard deviation that a row of a factor stands for."""
+    return math.sqrt(float(row @ row))
+
+
+def _bounded(standard: Floats) -> Floats:
+    """Residuals in standard deviations, outliers bounded."""
+    return np.minimum(np.maximum(standard, -_OUTLYING), _OUTLYING)
+
+
+def _reweighted(standard: Floats, linear: Linear) -> Floats:
+    """Weights of the pixels by their standardised residuals.
+
+    An outlier stands out from pixels like itself. Where many depart together, as in the
+    transition when the model does not yet follow the edge, nobody is one.
+    """
+    start = linear.start
+    transition = start.profile.near(linear.s, start.blur.width_px)
+    bulk = [robust_scale(standard[place]) for place in (transition, ~transition) if place.any()]
+    return outlier_weights(standard / min(max(bulk), 1.0))

@@ -1,0 +1,147 @@
+"""Sums of an edge's pixels into the normal equations of its ESF spline."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.numerics.normal_equations import Normal
+from acutance.targets.straight.spline import CELLS
+
+__all__ = ["Stencil", "accumulate", "renewed"]
+
+Stencil = tuple[NDArray[np.intp], Floats]
+
+
+def accumulate(
+    stencils: Sequence[Stencil], y: Floats, weight: Floats, columns: Floats, count: float
+) -> Normal:
+    """Sum the pixels into the normal equations of ``y = sum of ESFs + columns^T a``.
+
+    Parameters
+    ----------
+    stencils : sequence of ((n,) int, (4, n)) arrays
+        For every step of the ground: each pixel's place in the ESF's spline, as
+        `spline.edge_weights` gives it, the weights times the step's share.
+    y, weight : (n,) arrays
+        Value, and inverse variance (any common scale) of the pixels.
+    columns : (q, n) array
+        Further regressors, one row each.
+    count : float
+        Number of pixels; an outlier counts for less.
+    """
+    m, q = CELLS + 3, columns.shape[0]
+    gram = np.zeros((m + q, m + q))
+    projection = np.zeros(m + q)
+    for i, (cell, basis) in enumerate(stencils):
+        weighted, rows = basis * weight, np.vstack([basis, y, columns])
+        sums = _sums_by_cell(cell, weighted, rows)
+        for a in range(4):
+            _add_own(gram, a, sums[:, a, a:4].T)
+            projection[a : a + CELLS] += sums[:, a, 4]
+            gram[a : a + CELLS, m:] += sums[:, a, 5:]
+        for other, other_basis in stencils[i + 1 :]:
+            _add_pair(gram, cell, weighted, other, other_basis)
+    gram += gram.T
+    products = rows[4:] * weight @ rows[4:].T
+    gram[m:, m:], projection[m:] = products[1:, 1:], products[0, 1:]
+    return Normal(gram, projection, products.item(0), count)
+
+
+def renewed(
+    normal: Normal,
+    stencils: Sequence[Stencil],
+    y: Floats,
+    weight: Floats,
+    columns: Floats,
+    changed: int,
+) -> Normal:
+    """The equations of the same pixels after the last columns have changed.
+
+    Parameters
+    ----------
+    normal : Normal
+        As `accumulate` made it of these pixels and weights.
+    stencils, y, weight
+        As they were.
+    columns : (q, n) array
+    changed : int
+        How many of the columns, from the last, are others than they were.
+    """
+    first = normal.projection.size - changed
+    weighted = columns[-changed:] * weight
+    rows = np.zeros((changed, normal.projection.size))
+    for cell, basis in stencils:
+        sums = _sums_by_cell(cell, basis, weighted)
+        for a in range(4):
+            rows[:, a : a + CELLS] += sums[:, a].T
+    rows[:, CELLS + 3 :] = weighted @ columns.T
+    gram, projection = normal.gram.copy(), normal.projection.copy()
+    gram[first:], gram[:, first:], projection[first:] = rows, rows.T, weighted @ y
+    return replace(normal, gram=gram, projection=projection)
+
+
+def _sums_by_cell(cell: NDArray[np.intp], left: Floats, right: Floats) -> Floats:
+    """Products of the rows of `left` and `right`, summed over each cell's pixels.
+
+    Parameters
+    ----------
+    cell : (n,) int array
+    left, right : (j, n) and (k, n) arrays
+
+    Returns
+    -------
+    (CELLS, j, k) array
+    """
+    order = np.argsort(cell.astype(np.int16), kind="stable")
+    stops = np.add.accumulate(np.bincount(cell, minlength=CELLS))
+    sums = np.empty((CELLS, left.shape[0], right.shape[0]))
+    # The outermost cells hold all that lies beyond the support, often half of the pixels.
+    for end, own in ((0, order[: stops[0]]), (-1, order[stops[-2] :])):
+        sums[end] = left.take(own, axis=1) @ right.take(own, axis=1).T
+    # The others hold about as many each: one stack of small products, filled up with nothing.
+    starts, stops = stops[:-2, None], stops[1:-1, None]
+    places = starts + np.arange(int((stops - starts).max()))
+    own = order.take(places, mode="clip")
+    some = left.take(own, axis=1) * (places < stops)
+    np.matmul(some.transpose(1, 0, 2), right.take(own, axis=1).transpose(1, 2, 0), out=sums[1:-1])
+    return sums
+
+
+def _first_of_each(place: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Where in sorted places each of them comes first."""
+    starts = np.empty(place.size, bool)
+    starts[0] = True
+    np.not_equal(place[1:], place[:-1], out=starts[1:])
+    return starts.nonzero()[0]
+
+
+def _add_own(gram: Floats, a: int, sums: Floats) -> None:
+    """Products of one step's spline with itself: the upper triangle, and half the diagonal."""
+    # Entries (cell + a, cell + b) lie on one diagonal: a strided slice of the flat matrix.
+    size = gram.shape[0]
+    flat, stride = gram.reshape(-1), size + 1
+    for b, products in enumerate(sums, start=a):
+        start = a * size + b
+        diagonal = flat[start : start + CELLS * stride : stride]
+        diagonal += products if a < b else 0.5 * products
+
+
+def _add_pair(
+    gram: Floats, cell: NDArray[np.intp], weighted: Floats, other: NDArray[np.intp], basis: Floats
+) -> None:
+    """Products of two steps' splines, one way: its transpose is the other."""
+    m = CELLS + 3
+    offsets = (np.arange(4)[:, None] * m + np.arange(4)).reshape(16, 1)
+    place = cell * m + other
+    order = np.argsort(place.astype(np.int16), kind="stable")
+    place = place[order]
+    starts = _first_of_each(place)
+    products = weighted.take(order, axis=1)[:, None] * basis.take(order, axis=1)
+    sums = np.add.reduceat(products.reshape(16, -1), starts, axis=1)
+    found = np.bincount((place[starts] + offsets).reshape(-1), sums.reshape(-1), m * m)
+    gram[:m, :m] += found.reshape(m, m)

@@ -1,0 +1,83 @@
+"""What lies on the ground along the normal of a straight target: one step, or several."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.numerics.gaussian_pixel import Blur
+
+__all__ = ["EDGE", "Profile", "Sides", "pulse_profile"]
+
+Sides = tuple[tuple[Floats, Floats], ...]
+"""Of either plateau, how much of every pixel sees it, and how far outwards the pixel lies."""
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Steps of the ground's brightness along the normal.
+
+    With R the response to a unit step, a pixel at normal distance s sees
+
+        dark + height * sum_k share_k R(s - position_k)
+
+    Parameters
+    ----------
+    positions_px : tuple of float
+        Where the steps are; the first at 0.
+    shares : tuple of float
+        Their heights, relative to the first: 1 for it, negative for a step down.
+    """
+
+    positions_px: tuple[float, ...]
+    shares: tuple[float, ...]
+
+    def distances(self, s: Floats) -> list[Floats]:
+        """Normal distance from every step, (n,) each."""
+        return [s - position if position else s for position in self.positions_px]
+
+    def seen(self, blur: Blur, s: Floats) -> list[tuple[Floats, Floats]]:
+        """ESF and LSF of a plain blur at the distances from every step, (n,) each."""
+        return [blur.esf_and_lsf(distance) for distance in self.distances(s)]
+
+    def response(self, seen: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+        """What a blur makes of the profile, and its derivative by s, (n,) each."""
+        value, slope = seen[0]
+        for share, (esf, lsf) in zip(self.shares[1:], seen[1:], strict=True):
+            value, slope = value + share * esf, slope + share * lsf
+        return value, slope
+
+    def mean(self, blur: Blur, s: Floats) -> Floats:
+        """What a plain blur makes of the profile, (n,)."""
+        value = blur.esf(s)
+        for position, share in zip(self.positions_px[1:], self.shares[1:], strict=True):
+            value += share * blur.esf(s - position)
+        return value
+
+    def sides(self, seen: list[tuple[Floats, Floats]], s: Floats) -> Sides:
+        """The two outermost plateaus: how much of a pixel sees each, and how far out it lies."""
+        last = self.positions_px[-1]
+        return (1 - seen[0][0], -s), (seen[-1][0], s - last if last else s)
+
+    def near(self, s: Floats, reach_px: float) -> NDArray[np.bool_]:
+        """Which pixels lie nearer than `reach_px` to a step."""
+        first, *others = (np.abs(distance) < reach_px for distance in self.distances(s))
+        for close in others:
+            first |= close
+        return first
+
+    def outside(self, s: Floats) -> Floats:
+        """Distance from the profile's nearest end, negative within it."""
+        return np.maximum(-s, s - self.positions_px[-1])
+
+
+EDGE: Final = Profile((0.0,), (1.0,))
+
+
+def pulse_profile(width_px: float, fall: float = 1.0) -> Profile:
+    """A step up and one down after `width_px`; `fall` is the second's height over the first's."""
+    return Profile((0.0, width_px), (1.0, -fall))

@@ -1,0 +1,305 @@
+"""Trim a region to the pixels that serve one edge.
+
+Beside a real edge there are other things: the target's end, a road, a second edge. A pixel
+serves when, going outwards from the line, everything up to it looks like the plateau of its side.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.errors import NoEdgeError, SupportError
+from acutance.geometry.line import Line
+from acutance.numerics.noise import median
+from acutance.targets.straight.find_edges import Segment
+from acutance.targets.straight.first_fit import BlurredEdge, fit_blurred_edge
+from acutance.targets.straight.pixels import EdgeBand, Pixels
+
+__all__ = ["Extent", "Serving", "beside", "serving", "trim"]
+
+_MIN_ROWS = 8
+_MIN_SNR = 3.0
+_TOLERANCE = 0.12
+_MAX_TOLERANCE = 0.22
+_NEAR_TOLERANCE = 0.3
+_SIGNIFICANCE = 4.0
+_MAX_HALF_WIDTH_PX = 40.0
+_FAR_PX = 100.0
+_FIRST_REACH_PX = 7.0
+_REACH_WIDTHS = 2.5
+_WIDER: Floats = np.array([1.0, 1.5, 2.0, 3.0, 4.0])
+"""Plateaus to ask for, in units of what is needed."""
+
+
+@dataclass(frozen=True)
+class Extent:
+    """What of a region serves the edge.
+
+    Attributes
+    ----------
+    dark_px, bright_px : float
+        How far the plateaus reach from the line (the width nine rows in ten have).
+    length_px : float
+        How long the edge is.
+    whole : bool
+        Whether the whole region serves.
+    """
+
+    dark_px: float
+    bright_px: float
+    length_px: float
+    whole: bool
+
+
+def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
+    """The pixels that serve the edge found as `segment`.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+        NaN where a pixel must not be used.
+    segment : Segment
+
+    Returns
+    -------
+    band : EdgeBand
+    extent : Extent
+
+    Raises
+    ------
+    NoEdgeError
+        If the edge drowns in the noise.
+    SupportError
+        If it is too short, or a side has no plateau.
+    """
+    image = beside(image, segment.line)
+    pixels = Pixels.of(image)
+    edge = _first_fit(pixels.row, pixels.col, pixels.value, segment)
+    served = serving(image, pixels, edge, 0.5 * (segment.stop_px - segment.start_px))
+    band = EdgeBand(
+        served.image, served.line, edge.dark, edge.dark + edge.height,
+        edge.blur.sigma_px, edge.noise, edge.blur,
+    )  # fmt: skip
+    return band, served.extent
+
+
+def beside(image: Floats, line: Line) -> Floats:
+    """An image without what lies too far from a line to tell of the sensor, (rows, cols)."""
+    rows, cols = image.shape
+    if max(rows, cols) <= _FAR_PX:
+        return image
+    x, y = line.normal
+    distance = np.add.outer(y * (np.arange(rows) - line.row), x * (np.arange(cols) - line.col))
+    return np.where(np.abs(distance) < _FAR_PX, image, np.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class Serving:
+    """What of an image serves a target: its pixels (NaN elsewhere), line and extent."""
+
+    image: Floats
+    line: Line
+    extent: Extent
+
+
+def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: float) -> Serving:
+    """The longest and widest stretch of the target whose surroundings look like its plateaus.
+
+    Parameters
+    ----------
+    image : (rows, cols) array
+    pixels : Pixels
+        The image's finite pixels.
+    edge : BlurredEdge
+        The plain blurred target: an edge or a pulse.
+    half_length_px : float
+        Half the length over which it was found.
+
+    Raises
+    ------
+    NoEdgeError
+        If the plateaus are too rough for the target's height.
+    SupportError
+        If too few rows serve.
+    """
+    rows, cols = pixels.at
+    s = edge.line.normal_distance(pixels.row, pixels.col)
+    t = edge.line.tangent_distance(pixels.row, pixels.col)
+    departure = (pixels.value - edge.dark) / edge.height - edge.profile.mean(edge.blur, s)
+    # One bad pixel is an outlier, and no structure of the ground.
+    np.clip(departure, -1.0, 1.0, out=departure)
+    strange = _strange(image.shape, rows, cols, departure, s, t, edge, half_length_px)
+    need = 1.5 * edge.blur.width_px + 1.5
+    first, bins, dark_reach, bright_reach = _reaches(edge, s, t, strange, need)
+    start, stop = _best_run(np.minimum(dark_reach, bright_reach), need)
+    length = stop - start
+    if length < _MIN_ROWS:
+        raise SupportError(
+            f"only {length} rows of the target have at least {need:.1f} px of plateau on both "
+            f"sides (at least {_MIN_ROWS} are needed): choose a region with more of it"
+        )
+    whole = not strange.any()
+    used = np.ones(s.size, bool)
+    if not whole:
+        last = edge.profile.positions_px[-1]
+        used = (bins >= start) & (bins < stop)
+        used &= (-s < dark_reach[bins]) & (s - last < bright_reach[bins])
+        image = image.copy()
+        image[rows[~used], cols[~used]] = np.nan
+    tenth = length // 10
+    dark_px, bright_px = (
+        float(np.sort(reach[start:stop])[tenth]) for reach in (dark_reach, bright_reach)
+    )
+    middle = first + 0.5 * (start + stop)
+    x, y = edge.line.normal
+    line = Line(
+        edge.line.row + x * middle, edge.line.col - y * middle, edge.line.normal_deg,
+        length_px=float(length),
+    )  # fmt: skip
+    _require_contrast(edge, departure[used])
+    extent = Extent(dark_px, bright_px, float(length), whole)
+    return Serving(image, line, extent)
+
+
+def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> BlurredEdge:
+    """Fit the plain blurred edge to the pixels close to the segment: closer for a sharper one."""
+    s = segment.line.normal_distance(row, col)
+    t = segment.line.tangent_distance(row, col)
+    along = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
+    reach, sigma_px = _FIRST_REACH_PX, 0.6
+    for _ in range(3):
+        near = along & (np.abs(s) < reach)
+        dark, bright = value[near & (s < -0.5 * reach)], value[near & (s > 0.5 * reach)]
+        if min(dark.size, bright.size) < _MIN_ROWS:
+            raise SupportError(
+                f"the strongest edge has {dark.size} usable pixels on its dark and {bright.size} "
+                f"on its bright side between {0.5 * reach:.1f} and {reach:.1f} px from it: choose "
+                "a region that reaches further to both sides of the edge"
+            )
+        levels = median(dark), median(bright)
+        if not levels[1] > levels[0]:
+            raise NoEdgeError(
+                f"the strongest edge separates levels of {levels[0]:.4g} and {levels[1]:.4g}, "
+                "which is a line and not a step: choose a region with one bright and one dark side"
+            )
+        edge = fit_blurred_edge(
+            row[near], col[near], value[near], segment.line,
+            dark=levels[0], bright=levels[1], sigma_px=sigma_px,
+        )  # fmt: skip
+        if edge.blur.width_px * _REACH_WIDTHS <= reach:
+            break
+        reach, sigma_px = 1.2 * _REACH_WIDTHS * edge.blur.width_px, edge.blur.sigma_px
+    if edge.height < _MIN_SNR * edge.noise:
+        raise NoEdgeError(
+            f"the strongest edge has a height of {edge.height:.4g} in noise of {edge.noise:.3g}: "
+            f"an SNR of {edge.height / edge.noise:.1f} where {_MIN_SNR:g} is the least"
+        )
+    return edge
+
+
+def _require_contrast(edge: BlurredEdge, departure: Floats) -> None:
+    """Refuse an edge that is lower than its own plateaus are rough."""
+    roughness = math.sqrt(float(departure @ departure) / departure.size)
+    if roughness * _MIN_SNR > 1:
+        raise NoEdgeError(
+            f"the edge has a height of {edge.height:.4g}, and its sides vary by "
+            f"{roughness * edge.height:.3g}: a ratio of {1 / roughness:.1f} where {_MIN_SNR:g} is "
+            "the least; choose a region whose two sides are uniform"
+        )
+
+
+def _strange(
+    shape: tuple[int, ...],
+    rows: NDArray[np.intp],
+    cols: NDArray[np.intp],
+    departure: Floats,
+    s: Floats,
+    t: Floats,
+    edge: BlurredEdge,
+    half_length_px: float,
+) -> NDArray[np.bool_]:
+    """Which pixels do not look like the plateau of their side, in the mean of 3 x 3 pixels."""
+    place = rows * shape[1] + cols
+    fields = np.zeros((2, *shape))
+    fields[0].reshape(-1)[place] = departure
+    fields[1].reshape(-1)[place] = 1.0
+    total, known = _box(fields)
+    smooth: Floats = (total / np.maximum(known, 1.0)).reshape(-1)[place]
+    width = edge.blur.width_px
+    outside = edge.profile.outside(s)
+    around = (np.abs(t) < half_length_px) & (outside > width)
+    around &= outside < _FIRST_REACH_PX + width
+    noise = median(np.abs(smooth[around])) / 0.6745 if around.any() else 0.0
+    # Beyond a fifth of the contrast nothing passes for noise, however rough the ground is.
+    tolerance = max(_TOLERANCE, min(_SIGNIFICANCE * noise, _MAX_TOLERANCE))
+    near = outside < 1.5 * width
+    return np.abs(smooth) > np.where(near, max(_NEAR_TOLERANCE, tolerance), tolerance)
+
+
+def _box(values: Floats) -> Floats:
+    """Sums over 3 x 3 pixels of every image, (k, rows, cols), zero beyond it."""
+    images, rows, cols = values.shape
+    padded = np.zeros((images, rows + 2, cols + 2))
+    padded[:, 1:-1, 1:-1] = values
+    down = padded[:, :-2] + padded[:, 1:-1] + padded[:, 2:]
+    return np.asarray(down[..., :-2] + down[..., 1:-1] + down[..., 2:])
+
+
+def _reaches(
+    edge: BlurredEdge, s: Floats, t: Floats, strange: NDArray[np.bool_], need: float
+) -> tuple[float, NDArray[np.intp], Floats, Floats]:
+    """How far every row of the target is clear, before its first and behind its last step.
+
+    Rows are one pixel long along the edge; the reach of a row ends before the first strange pixel
+    of it or of the rows beside it, or at the last pixel there is. What is strange is blurred too:
+    where there is more than `need`, the reach keeps the blur's width away from it.
+    """
+    first = math.floor(float(t.min()))
+    bins = (t - first).astype(np.intp)
+    count = int(bins.max()) + 1
+    reaches = []
+    nothing = not strange.any()
+    blur_px, last_step = edge.blur.width_px, edge.profile.positions_px[-1]
+    for outwards in (-s, s - last_step):
+        outside = outwards > 0
+        last = np.zeros(count)
+        np.maximum.at(last, bins[outside], outwards[outside])
+        last = np.minimum(last + 0.5, _MAX_HALF_WIDTH_PX)
+        if nothing:
+            reaches.append(last)
+            continue
+        stop = np.full(count, np.inf)
+        # Within the target a strange pixel spoils its row on both sides.
+        wrong = strange & (outwards > -0.5 - last_step)
+        np.minimum.at(stop, bins[wrong], np.maximum(outwards[wrong] - 1.0, 0.0))
+        close = _spoiled(stop, 1)
+        wary = _spoiled(stop, math.ceil(blur_px)) - blur_px
+        reaches.append(np.minimum(last, np.maximum(wary, np.minimum(close, need))))
+    return float(first), bins, reaches[0], reaches[1]
+
+
+def _spoiled(stop: Floats, rows: int) -> Floats:
+    """What is left where a strange pixel also spoils the `rows` beside its own."""
+    padded = np.pad(stop, rows, constant_values=np.inf)
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * rows + 1).min(axis=1))
+
+
+def _best_run(reach: Floats, need: float) -> tuple[int, int]:
+    """The run of rows that serves best: long, with plateaus of at least `need` pixels.
+
+    Asking for a wider plateau shortens the run; twice the need is worth a third of the rows.
+    """
+    wide = np.zeros((_WIDER.size, reach.size + 2), np.int8)
+    wide[:, 1:-1] = reach >= need * _WIDER[:, None]
+    turns = wide[:, 1:] - wide[:, :-1]
+    plateau, starts = (turns > 0).nonzero()
+    stops = (turns < 0).nonzero()[1]
+    if starts.size == 0:
+        return 0, 0
+    best = int(np.argmax((stops - starts) * (1 - 0.5 ** _WIDER[plateau])))
+    return int(starts[best]), int(stops[best])

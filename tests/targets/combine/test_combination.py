@@ -1,0 +1,205 @@
+"""Measurements combined: results or documents in, one 2-D OTF out."""
+
+import copy
+import json
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance import optics, simulate
+from acutance.targets.combine import CombineLimits
+
+SENSOR = optics.Sensor([optics.Gaussian(0.36, 0.48), optics.Detector()], gsd_m=0.7)
+
+
+def edge(angle, orientation, seed, sensor=SENSOR):
+    image, _ = simulate.edge(
+        sensor, angle_deg=angle, orientation=orientation, shape=(50, 50), dark=200, bright=1200,
+        snr=100, rng=np.random.default_rng(seed),
+    )  # fmt: skip
+    return ac.measure_edge(image, gsd_m=0.7)
+
+
+@pytest.fixture(scope="module")
+def edges():
+    return [edge(6, "across", 1), edge(7, "along", 2), edge(30, "across", 3)]
+
+
+@pytest.fixture(scope="module")
+def mirrors():
+    image, _ = simulate.points(SENSOR, snr=80, rng=np.random.default_rng(4))
+    return ac.measure_points(image, gsd_m=0.7)
+
+
+@pytest.fixture(scope="module")
+def together(edges, mirrors):
+    return ac.combine([*edges, mirrors], names=["a", "b", "c", "mirrors"])
+
+
+def test_across_and_along_are_those_of_the_grid(together):
+    for name, angle in (("across", 0.0), ("along", 90.0)):
+        found, true = getattr(together, name), SENSOR.response_along(angle)
+        for metric in ("mtf_nyquist", "rer", "fwhm_px"):
+            number = getattr(found, metric)
+            assert abs(number.value - getattr(true, metric).value) < 3.5 * number.std
+            assert number.std < 0.02
+
+
+def test_the_combination_is_more_exact_than_any_of_its_parts(together, edges, mirrors):
+    stds = [edges[0].mtf_nyquist.std, mirrors.across.mtf_nyquist.std]
+    assert together.across.mtf_nyquist.std < min(stds)
+    assert together.trusted, together.failed_checks
+
+
+def test_parameters_have_standard_deviations(together):
+    for name, true in (("sigma_across_px", 0.36), ("sigma_along_px", 0.48)):
+        number = together.parameters[name]
+        assert 0 < number.std < 0.05
+        assert abs(number.value - true) < 4 * number.std + 0.02
+
+
+def test_documents_say_the_same_as_results(together, edges, mirrors):
+    documents = [json.loads(json.dumps(one.to_dict())) for one in (*edges, mirrors)]
+    again = ac.combine(documents, names=["a", "b", "c", "mirrors"])
+    for name in ("across", "along"):
+        old, new = (getattr(one, name).mtf_nyquist for one in (together, again))
+        assert new.value == pytest.approx(old.value, abs=1e-3)
+        assert new.std == pytest.approx(old.std, rel=0.05)
+
+
+def test_a_document_without_covariance_is_used_and_said_so(edges):
+    documents = [one.to_dict() for one in edges]
+    del documents[0]["plane"]
+    found = ac.combine(documents)
+    assert [check.name for check in found.failed_checks] == ["assumed_covariance"]
+    assert abs(found.across.mtf_nyquist.value - SENSOR.mtf()(0.5).value) < 0.03
+
+
+def test_two_directions_leave_the_rotation_to_the_prior(edges):
+    found = ac.combine(edges[:2])
+    assert "directions" in [check.name for check in found.failed_checks]
+
+
+def test_another_sensor_among_them_is_named():
+    blurred = optics.Sensor([optics.Gaussian(0.6), optics.Detector()])
+    parts = [edge(6, "across", 1), edge(7, "along", 2), edge(9, "across", 5, blurred)]
+    found = ac.combine(parts, names=["tarp", "roof", "road"])
+    failed = {check.name: check for check in found.failed_checks}
+    assert {"agreement", "worst_member"} <= set(failed)
+    assert found.birge_ratio > 2
+    assert "widened by the Birge ratio" in failed["agreement"].message
+
+
+def test_limits_can_be_changed(edges):
+    options = ac.CombineOptions(limits=CombineLimits(directions=2))
+    assert ac.combine(edges[:2], options=options).trusted
+
+
+def test_the_document_keeps_what_was_combined(together):
+    document = together.to_dict()
+    assert document["kind"] == "combined"
+    assert [part["name"] for part in document["parts"]] == ["a", "b", "c", "mirrors"]
+    assert document["sensor"]["parameters"]["sigma_across_px"]["std"] > 0
+    assert sum(form["weight"] for form in document["forms"]) == pytest.approx(1)
+
+
+def _without_deviations(plane):
+    for part in ("factor_real", "factor_imag"):
+        plane[part] = [[] for _ in plane[part]]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda d: d[0].update(schema="acutance/truth/1"), "acutance/truth/1, no measurement"),
+        (lambda d: d[0].update(schema="other"), "no measurement of acutance"),
+        (lambda d: d[0].pop("image"), "cannot be read as a measurement"),
+        (lambda d: d[0].update(plane={"normal_deg": [0]}), "cannot be read"),
+        (lambda d: d[0]["plane"]["otf_real"].pop(), "cannot be read"),
+        (lambda d: d[0]["plane"].update(normal_deg=[float("nan")]), "not finite"),
+        (lambda d: d[0]["plane"].update(otf_real=[50.0] * 16), "near 1"),
+        (lambda d: _without_deviations(d[0]["plane"]), "no standard deviations"),
+        (lambda d: d[0]["image"].update(gsd_m=2.8), "different pixels"),
+        (lambda d: d[0]["image"].update(along_track="x"), "measure them alike"),
+        (lambda d: d[0].update(kind="combined"), "a combination already"),
+        (
+            lambda d: d[0].update(kind="biresolution", options={"reference_given": False}),
+            "the ratio MTF_low / MTF_high",
+        ),
+        (lambda d: d.append(copy.deepcopy(d[0])), "the same measurement"),
+        (lambda d: d.__delitem__(slice(1, None)), "only one was given, one direction"),
+        (lambda d: d.clear(), "nothing to combine"),
+        (lambda d: d.__setitem__(0, {"schema": "acutance/comparison/1"}), "several methods"),
+        (lambda d: d.__setitem__(0, 5), "is a int: give results"),
+    ],
+)
+def test_what_does_not_belong_together_is_refused(edges, change, message):
+    documents = [copy.deepcopy(one.to_dict()) for one in edges[:2]]
+    change(documents)
+    names = ["one", "two", "three"][: len(documents)]
+    with pytest.raises(ac.OptionError, match=message):
+        ac.combine(documents, names=names)
+
+
+def test_one_direction_alone_is_refused(edges):
+    with pytest.raises(ac.OptionError, match="look in one direction"):
+        ac.combine([edges[0], edge(9, "across", 8)])
+
+
+def test_square_pixels_can_be_denied(edges):
+    documents = [copy.deepcopy(one.to_dict()) for one in edges]
+    documents[1]["image"]["gsd_m"] = 1.0
+    found = ac.combine(documents, gsd_m=ac.Gsd(1.0, 0.7))
+    assert found.along.gsd_m == pytest.approx(1.0)
+    assert found.across.gsd_m == pytest.approx(0.7)
+
+
+def _edge_of_pixels(gsd, seed, angle=6, orientation="across"):
+    image, _ = simulate.edge(
+        SENSOR, angle_deg=angle, orientation=orientation, shape=(50, 50), dark=200, bright=1200,
+        snr=100, rng=np.random.default_rng(seed),
+    )  # fmt: skip
+    return ac.measure_edge(image, gsd_m=gsd)
+
+
+def test_pixels_that_are_not_square_are_known_from_the_measurements():
+    wide = ac.Gsd(0.5, 0.7)
+    both = [_edge_of_pixels(wide, 1), _edge_of_pixels(wide, 2, 7, "along")]
+    found = ac.combine(both)
+    assert found.across.gsd_m == pytest.approx(0.7)
+    assert found.along.gsd_m == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("orientation", ["across", "along"])
+def test_square_and_other_pixels_are_told_apart_in_any_direction(orientation):
+    other = "along" if orientation == "across" else "across"
+    square = _edge_of_pixels(0.5, 1, 6, other)
+    wide = _edge_of_pixels(ac.Gsd(0.5, 0.7), 2, 7, orientation)
+    with pytest.raises(ac.OptionError, match=r"0\.5 m, .* 0\.5 x 0\.7 m"):
+        ac.combine([square, wide])
+    old = wide.to_dict()
+    del old["image"]["pixel_gsd_m"]
+    if orientation == "across":
+        with pytest.raises(ac.OptionError, match="different pixels"):
+            ac.combine([square, old])
+
+
+def test_a_gsd_that_some_lack_fails_a_check_that_names_them():
+    known, unknown = _edge_of_pixels(2.0, 1), _edge_of_pixels(None, 2, 7, "along")
+    found = ac.combine([known, unknown], names=["a", "b"])
+    (check,) = (one for one in found.failed_checks if one.name == "unknown_gsd")
+    assert "have one: b;" in check.message
+    for given, gsd_m in (([known, unknown], 2.0), ([_edge_of_pixels(None, 1), unknown], None)):
+        stated = ac.combine(given, gsd_m=gsd_m)
+        assert "unknown_gsd" not in [one.name for one in stated.failed_checks]
+
+
+def test_a_target_document_is_taken_apart(edges):
+    target = {"schema": "acutance/target/1", "measurements": [one.to_dict() for one in edges]}
+    found = ac.combine([target], names=["tarp.json"])
+    assert [part.source.name for part in found.parts] == [
+        "tarp.json 1",
+        "tarp.json 2",
+        "tarp.json 3",
+    ]

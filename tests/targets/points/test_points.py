@@ -1,0 +1,208 @@
+"""Points against known truth: curves, places, coverage, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from jsonschema import Draft202012Validator
+
+import acutance as ac
+from acutance.report import json_text, measurement_schema, plane_document
+from acutance.targets.points import PointsOptions
+
+STARS = Path(__file__).parents[3] / "shared" / "data" / "15_tetra3_stars.tif"
+PIXEL = ac.optics.Detector()
+GAUSSIAN = ac.Sensor([ac.optics.Gaussian(0.45), PIXEL])
+
+
+def image_of(sensor, **options):
+    return ac.simulate.points(sensor, **options)
+
+
+def worst(found, truth):
+    """Largest error of both slices up to Nyquist."""
+    return max(
+        float(np.abs(response.mtf.value[:51] - truth.response(name).mtf.value[:51]).max())
+        for name, response in (("across", found.across), ("along", found.along))
+    )
+
+
+@pytest.mark.parametrize("name", ["gaussian", "diffraction", "halo", "asymmetric", "smeared"])
+def test_without_noise_both_slices_are_the_truth(name):
+    image, truth = image_of(ac.simulate.reference_systems()[name])
+    found = ac.measure_points(image, positions=truth.positions)
+    assert worst(found, truth) < (1e-4 if name == "gaussian" else 0.01)
+
+
+def test_the_lsf_is_the_integral_of_a_leaning_psf_and_not_its_slice():
+    """Smear at 45 degrees: the slice through the peak would be narrower than the LSF."""
+    smear = ac.Sensor([ac.optics.Gaussian(0.35), ac.optics.Smear(0.6, "along"), PIXEL])
+    image, truth = image_of(smear)
+    found = ac.measure_points(image)
+    for name, response in (("across", found.across), ("along", found.along)):
+        assert response.fwhm_px.value == pytest.approx(truth.response(name).fwhm_px.value, abs=0.02)
+    assert found.along.fwhm_px.value > found.across.fwhm_px.value + 0.02
+
+
+def test_intervals_and_places_hold_what_they_promise():
+    z, places, told = [], [], []
+    for seed in range(14):
+        rng = np.random.default_rng([seed, 5])
+        layout = ac.simulate.mirror_columns((12.0, 12.0)) + rng.uniform(0, 1, (1, 2))
+        image, truth = image_of(GAUSSIAN, positions=layout, snr=50, rng=rng)
+        found = ac.measure_points(image, positions=layout)
+        for name, response in (("across", found.across), ("along", found.along)):
+            true = truth.response(name)
+            for read in ("mtf_nyquist", "rer", "fwhm_px"):
+                estimate = getattr(response, read)
+                z.append((estimate.value - getattr(true, read).value) / estimate.std)
+        places.append(found.positions - layout)
+        told.append([(one.row.std, one.col.std) for one in found.sources])
+    assert np.mean(np.abs(z) < 1.96) > 0.9
+    assert 0.35 < np.std(z) < 1.15
+    rms = np.sqrt(np.mean(np.square(places)))
+    assert rms < 1.2 * 0.80 / 50
+    assert 0.92 < np.mean(np.abs(places) < 1.96 * np.array(told)) < 0.99
+
+
+def test_the_published_gaussian_takes_the_pixel_for_blur():
+    """Its FWHM is that of a Gaussian fitted to pixel values: exact for points sampled as points."""
+    image, truth = image_of(ac.simulate.reference_systems()["wide"])
+    found = ac.measure_points(image, method="gaussian-2003")
+    assert found.across.fwhm_px.value == pytest.approx(1.57, abs=0.03)
+    assert worst(found, truth) < 0.03
+    assert found.published is not None
+    assert len(found.published.mirrors) == 20
+
+
+def test_what_outlines_one_source_is_in_the_document():
+    image, truth = image_of(GAUSSIAN, snr=60, rng=np.random.default_rng(8))
+    image[60, 8] += 3000.0
+    found = ac.measure_points(image, surveyed=truth.positions + 0.4, gsd_m=0.7)
+    document = json.loads(json_text(plane_document(found)))
+    Draft202012Validator(measurement_schema()).validate(document)
+    assert len(document["sources"]) == 20
+    assert "hot pixel" in [one["reason"] for one in document["rejected"]]
+    assert document["survey"]["rmse_cm"][0] == pytest.approx(70 * 0.013, rel=0.5)
+    assert document["across"]["fwhm_m"]["value"] == pytest.approx(0.7 * found.across.fwhm_px.value)
+    flux = np.array([one.flux.value for one in found.sources])
+    assert np.abs(flux / truth.fluxes - 1).max() < 0.08
+
+
+@pytest.mark.parametrize("change", ["gain", "shift", "transpose"])
+def test_gain_place_and_transposition_leave_the_mtf_alone(change):
+    image, truth = image_of(GAUSSIAN, snr=100, rng=np.random.default_rng(6))
+    places = truth.positions
+    base = ac.measure_points(image, positions=places)
+    if change == "gain":
+        other = ac.measure_points(3.0 * image + 50.0, positions=places)
+    elif change == "shift":
+        padded = np.pad(image, ((3, 0), (0, 2)), mode="reflect")
+        other = ac.measure_points(padded, (3, 0, *image.shape), positions=places + np.array([3, 0]))
+    else:
+        other = ac.measure_points(image.T, positions=places[:, ::-1])
+    pair = (other.across, other.along)
+    if change == "transpose":
+        pair = pair[::-1]
+    assert pair[0].mtf_nyquist.value == pytest.approx(base.across.mtf_nyquist.value, abs=5e-4)
+    assert pair[1].mtf_nyquist.value == pytest.approx(base.along.mtf_nyquist.value, abs=5e-4)
+
+
+def test_one_source_is_measured_with_wider_intervals():
+    image, _ = image_of(
+        GAUSSIAN, positions=[[15.3, 15.2]], shape=(31, 31), snr=80, rng=np.random.default_rng(2)
+    )
+    few = ac.measure_points(image)
+    many, _ = image_of(GAUSSIAN, snr=80, rng=np.random.default_rng(2))
+    assert few.across.mtf_nyquist.std > 1.5 * ac.measure_points(many).across.mtf_nyquist.std
+    assert [check.name for check in few.failed_checks] == ["sources", "phase_gap_px"]
+
+
+def test_sources_that_were_not_asked_for_do_not_disturb_the_others():
+    image, truth = image_of(GAUSSIAN, snr=80, rng=np.random.default_rng(2))
+    found = ac.measure_points(image, positions=truth.positions[:3])
+    assert len(found.sources) == 3
+    assert [one.reason for one in found.rejected] == ["left out"] * 17
+    assert found.across.mtf_nyquist.value == pytest.approx(0.2344, abs=0.03)
+
+
+def test_a_spot_that_is_no_point_is_unlike_the_others():
+    image, truth = image_of(GAUSSIAN, snr=200, rng=np.random.default_rng(2))
+    image[57:60, 8] += [250.0, 500.0, 250.0]
+    image[58, 7:10] += [60.0, 0.0, 60.0]
+    found = ac.measure_points(image)
+    assert len(found.sources) == 20
+    assert {one.reason for one in found.rejected} <= {"cosmic ray", "unlike"}
+    assert np.abs(found.positions - truth.positions[0]).min() < 0.1
+
+
+def test_noise_that_grows_with_the_light_is_seen():
+    noise = ac.simulate.Noise(read=3.0, shot_gain=0.6)
+    gains = []
+    for seed in range(3, 7):
+        image, truth = image_of(GAUSSIAN, noise=noise, peak=4000.0, rng=np.random.default_rng(seed))
+        found = ac.measure_points(image, positions=truth.positions)
+        assert found.fit is not None
+        gains.append(found.fit.gain)
+    assert np.mean(gains) == pytest.approx(0.6, abs=0.3)
+    assert min(gains) > 0
+
+
+@pytest.mark.parametrize(
+    ("image", "error", "message"),
+    [
+        (np.full((40, 40), 9.0), ac.TargetError, "no point source stands out"),
+        (np.full((40, 40), np.nan), ac.RegionError, "hold data"),
+        (np.zeros((4, 4)), ac.RegionError, "at least"),
+        (np.random.default_rng(1).normal(size=(50, 50)), ac.TargetError, "point source"),
+    ],
+)
+def test_images_without_points_are_refused(image, error, message):
+    with pytest.raises(error, match=message):
+        ac.measure_points(image)
+
+
+def test_senseless_options_are_refused():
+    image, _ = image_of(GAUSSIAN)
+    for positions in ([1.0, 2.0], [[1.0, np.nan]], np.empty((0, 2))):
+        with pytest.raises(ac.OptionError):
+            ac.measure_points(image, positions=positions)
+    with pytest.raises(ac.OptionError, match="no points method"):
+        ac.measure_points(image, method="median")
+    with pytest.raises(ac.OptionError, match="min_snr"):
+        PointsOptions(min_snr=0.0)
+    with pytest.raises(ac.TargetError, match="no source"):
+        ac.measure_points(image, positions=[[60.0, 4.0]])
+
+
+@pytest.mark.skipif(not STARS.is_file(), reason="the folder of real images is absent")
+def test_real_stars_saturated_ones_and_hot_pixel_named():
+    image = ac.open_image(str(STARS))
+    found = ac.measure_points(image, options=PointsOptions(min_snr=20.0))
+    reasons = {(round(one.row), round(one.col)): one.reason for one in found.rejected}
+    assert reasons[539, 228] == reasons[194, 302] == "saturated"
+    assert reasons[206, 120] == "hot pixel"
+    for row, col, across, along in (
+        (38.93, 187.84, 1.40, 1.51),
+        (527.97, 23.80, 1.51, 1.72),
+        (345.55, 519.87, 1.43, 1.79),
+    ):
+        region = (max(int(row) - 18, 0), int(col) - 18, 37, 37)
+        one = ac.measure_points(image, region, positions=[(row, col)])
+        for response, listed in ((one.across, across), (one.along, along)):
+            width = response.fwhm_px
+            assert abs(width.value - listed) < 3 * width.std + 0.1
+
+
+def test_the_spokes_of_a_star_are_refused_as_points_in_words():
+    image, _ = ac.simulate.star(
+        ac.simulate.reference_systems()["gaussian"], wave="square", snr=100.0,
+        rng=np.random.default_rng(0),
+    )  # fmt: skip
+    with pytest.raises(ac.TargetError, match="no points"):
+        ac.measure_points(image)
+    # The published Gaussian knows no better, but what it leaves out is no traceback.
+    assert ac.measure_points(image, method="gaussian-2003").failed_checks

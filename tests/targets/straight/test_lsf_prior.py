@@ -1,0 +1,66 @@
+"""The prior of the LSF: its layout, its tail, and the covariance its processes stand for."""
+
+import numpy as np
+import pytest
+
+from acutance.numerics.gaussian_pixel import Blur
+from acutance.targets.straight.lsf_prior import TAIL_WIDTH, directions, tail_esf, tail_lsf, tail_otf
+from acutance.targets.straight.spline import (
+    CELLS,
+    CENTRES,
+    combine,
+    edge_and_line_weights,
+    edge_weights,
+)
+
+BLURS = [Blur(0.4), Blur(1.3, 0.6)]
+
+
+@pytest.mark.parametrize("blur", BLURS)
+def test_layout(blur):
+    found = directions(blur)
+    assert found.esf.shape == (CELLS + 3, found.block.size)
+    assert np.isfinite(found.esf).all()
+    assert found.block.tolist() == sorted(found.block.tolist())
+    assert np.bincount(found.block)[[0, 1, 5]].tolist() == [3, 1, 1]
+    assert np.bincount(found.block)[[2, 3, 4]].min() >= 8
+
+
+@pytest.mark.parametrize("blur", BLURS)
+def test_mean_directions_are_the_blur_and_its_slopes(blur):
+    found = directions(blur)
+    u = np.linspace(-3, 3, 61)
+    s = u * blur.width_px
+    _, by_place, by_sigma, by_aperture = blur.lsf_slopes(s)
+    for column, shape in enumerate((blur.lsf(s), by_sigma, -by_place, by_aperture)):
+        lsf = combine(*edge_and_line_weights(u)[::2], found.esf[:, column]) / blur.width_px
+        assert np.max(np.abs(lsf - shape)) < 0.02 * np.max(np.abs(shape))
+
+
+def test_processes_have_the_covariance_they_promise():
+    found = directions(Blur(0.4))
+    for block, extent, smoothness in ((2, 1.2, 0.6), (3, 0.7, 0.17), (4, 3.0, 1.2)):
+        root = np.diff(found.esf[2:-2, found.block == block], axis=0) / (CENTRES[1] - CENTRES[0])
+        u = CENTRES
+        expected = np.exp(-0.5 * (u**2 + u[:, None] ** 2) / extent**2)
+        expected *= np.exp(-0.5 * ((u - u[:, None]) / smoothness) ** 2)
+        assert np.max(np.abs(root @ root.T - expected)) < 2e-4
+
+
+def test_tail_curves_belong_together():
+    u = np.linspace(-9, 9, 181)
+    slope = (tail_esf(u + 1e-5) - tail_esf(u - 1e-5)) / 2e-5
+    assert np.max(np.abs(slope - tail_lsf(u))) < 1e-8
+    grid = (np.arange(400000) + 0.5) * 0.005 - 1000
+    freq = np.array([0.0, 0.1, 0.3, 0.7])
+    numerical = np.cos(2 * np.pi * np.outer(freq, grid)) @ tail_lsf(grid) * 0.005
+    # The grid's ends leave 2 * TAIL_WIDTH / (1000 pi) out.
+    assert np.max(np.abs(tail_otf(freq) - numerical)) < 1e-3
+
+
+def test_tail_direction_is_the_tail_within_the_support():
+    found = directions(Blur(0.4))
+    u = np.linspace(-7, 7, 141)
+    spline = combine(*edge_weights(u), found.esf[:, -1])
+    assert np.max(np.abs(spline - tail_esf(u))) < 2e-3
+    assert TAIL_WIDTH > 0

@@ -1,0 +1,139 @@
+"""All edges of a target: found, grouped, averaged, and consistent."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance.curves import Estimate
+from acutance.report.documents import json_text, target_document
+from acutance.report.target_page import group_rows
+from acutance.simulate import site
+from acutance.targets.straight.many_edges import TargetResult, _weighted_mean, combine_edges
+
+SYSTEM = ac.Sensor(
+    [ac.optics.Gaussian(0.4), ac.optics.Detector(1.0), ac.optics.Smear(0.5, "along")]
+)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return site(SYSTEM, np.random.default_rng(4))
+
+
+def test_a_checkerboard_gives_its_four_edges(scene):
+    result = ac.measure_edges(scene.image)
+    assert len(result.measurements) == 4
+    assert {key: len(group.measurements) for key, group in result.groups.items()} == {
+        "across": 2,
+        "along": 2,
+    }
+    for m in result.measurements:
+        truth = min(
+            (one.truth for one in scene.edges),
+            key=lambda one: math.hypot(one.line.row - m.line.row, one.line.col - m.line.col),
+        )
+        assert m.orientation == truth.orientation
+        assert abs(m.mtf_nyquist.value - truth.mtf_nyquist.value) < 4 * m.mtf_nyquist.std
+        assert abs(m.rer.value - truth.rer.value) < 4 * m.rer.std
+
+
+def test_group_means_are_better_than_their_edges_and_consistent(scene):
+    for group in ac.measure_edges(scene.image).groups.values():
+        stds = [m.mtf_nyquist.std for m in group.measurements]
+        assert group.metrics["mtf_nyquist"].std < 1.5 * min(stds)
+        assert group.degrees_of_freedom == 1
+        assert group.p_value["mtf_nyquist"] > 1e-3
+
+
+def test_border_edges_are_rejected_with_their_reason(scene):
+    result = ac.measure_edges(scene.image)
+    reasons = [one for one in result.rejected if one.stage == "contrast"]
+    assert reasons
+    assert all("probably not of the target" in one.reason for one in reasons)
+    assert all({"row", "col", "normal_deg"} <= set(one.values) for one in reasons)
+
+
+def test_an_image_without_edges_gives_an_empty_result():
+    result = ac.measure_edges(np.random.default_rng(0).normal(100, 1, (60, 60)))
+    assert result.measurements == ()
+    assert result.groups == {}
+
+
+def test_weighted_mean_and_chi_square():
+    mean, chi_square = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.3, 0.2)])
+    assert mean.value == pytest.approx((1.0 / 0.01 + 1.3 / 0.04) / (1 / 0.01 + 1 / 0.04))
+    assert chi_square == pytest.approx(
+        (1.0 - mean.value) ** 2 / 0.01 + (1.3 - mean.value) ** 2 / 0.04
+    )
+    # chi-square 1.8 with one degree of freedom: the Birge ratio widens the mean's deviation.
+    assert mean.std == pytest.approx(math.sqrt(chi_square) / math.sqrt(125))
+    agreeing, small = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)])
+    assert small < 1
+    assert agreeing.std == pytest.approx(0.1 / math.sqrt(2))
+
+
+def test_numbers_at_zero_are_not_averaged_as_if_gaussian():
+    clipped = [Estimate(0.0, 0.017), Estimate(0.0, 0.015), Estimate(0.0, 0.017), Estimate(0, 0.011)]
+    mean, chi_square = _weighted_mean(clipped)
+    assert mean.value == 0.0
+    assert 0.011 < mean.std < 0.017
+    assert math.isnan(chi_square)
+    # Two overshoots that are not there, with next to no deviation, beside one that is.
+    mean, chi_square = _weighted_mean(
+        [Estimate(0, 0.0007), Estimate(0, 0.0009), Estimate(0.042, 0.012)]
+    )
+    assert mean.value == pytest.approx(0.014)
+    assert mean.std == pytest.approx(0.014)
+    assert math.isnan(chi_square)
+    alone, _ = _weighted_mean([Estimate(0.0, 0.017)])
+    assert alone == Estimate(0.0, 0.017)
+
+
+def test_a_blur_without_nyquist_has_no_chi_square_in_any_face():
+    wide = ac.Sensor([ac.optics.Gaussian(1.1), ac.optics.Detector(1.0)])
+    edges = []
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        image, _ = ac.simulate.edge(wide, angle_deg=8, snr=60, rng=rng, shape=(48, 48))
+        edges.append(ac.measure_edge(image))
+    assert min(m.mtf_nyquist.value / m.mtf_nyquist.std for m in edges) < 1
+    (group,) = combine_edges(edges).values()
+    assert math.isnan(group.chi_square["mtf_nyquist"])
+    assert math.isnan(group.p_value["mtf_nyquist"])
+    assert group.metrics["mtf_nyquist"].std >= min(m.mtf_nyquist.std for m in edges)
+    assert group.p_value["rer"] > 1e-3
+    result = TargetResult(tuple(edges), (), {group.orientation: group})
+    (row,) = group_rows(result, ("mtf_nyquist",))
+    assert row[3:] == ("–", "–")
+    document = json.loads(json_text(target_document(result)))
+    (written,) = document["groups"].values()
+    assert written["chi_square"]["mtf_nyquist"] is None
+    assert written["p_value"]["mtf_nyquist"] is None
+
+
+def test_a_scene_may_declare_that_along_track_is_the_x_axis(scene):
+    as_taken = ac.measure_edges(scene.image)
+    turned = ac.measure_edges(ac.Image.from_array(scene.image, along_track="x"))
+    for name, other in (("across", "along"), ("along", "across")):
+        mean, same = as_taken.groups[name].metrics["rer"], turned.groups[other].metrics["rer"]
+        assert same == mean
+        assert {m.orientation for m in turned.groups[other].measurements} == {other}
+        assert turned.groups[other].measurements[0].to_dict()["line"]["orientation"] == other
+    with pytest.raises(ac.OptionError, match="along_track is 'z'"):
+        ac.Image.from_array(scene.image, along_track="z")
+
+
+def test_every_rejected_edge_is_told_in_pixels_of_the_whole_image(scene):
+    canvas = np.full((500, 700), 500.0) + np.random.default_rng(5).normal(0, 5, (500, 700))
+    rows, cols = scene.image.shape
+    canvas[300 : 300 + rows, 400 : 400 + cols] = scene.image
+    canvas[290:430, 530:] += 700.0
+    roi = (290, 390, rows + 20, cols + 40)
+    rejected = ac.measure_edges(canvas, roi).rejected
+    assert {one.stage for one in rejected} == {"fit", "contrast"}
+    for one in rejected:
+        assert roi[0] <= one.values["row"] < roi[0] + roi[2]
+        assert roi[1] <= one.values["col"] < roi[1] + roi[3]
