@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +12,11 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 
 __all__ = [
+    "ALL_DIRECTIONS",
     "Correlation",
     "correlation",
     "median",
+    "outlier_share",
     "outlier_weights",
     "robust_scale",
     "side_variances",
@@ -28,6 +31,15 @@ _FURTHER = ((1, 1), (1, -1), (0, 2), (2, 0))
 _MIN_PAIRS = 20
 _FREQ_CPP: Floats = np.linspace(0.0, 0.5, 11)
 _SIGNIFICANT = 4.0
+_OUTLYING = 4.5
+
+ALL_DIRECTIONS = (
+    (1.0, 0.0),
+    (math.sqrt(0.5), math.sqrt(0.5)),
+    (0.0, 1.0),
+    (-math.sqrt(0.5), math.sqrt(0.5)),
+)
+"""Unit vectors (x, y) of the directions in which a two-dimensional target is judged."""
 
 
 def side_variances(residual: Floats, esf: Floats) -> tuple[float, float]:
@@ -81,6 +93,22 @@ def outlier_weights(standard: Floats) -> Floats:
     return np.asarray((_HARMLESS / np.maximum(np.abs(standard), _HARMLESS)) ** 4)
 
 
+def outlier_share(residual: Floats, noise: float, floor: float = 0.0) -> float:
+    """Share of some residuals, (n,), beyond 4.5 standard deviations of the noise.
+
+    Parameters
+    ----------
+    residual : (n,) array
+    noise : float
+        Standard deviation of the noise.
+    floor : float, optional
+        Noise below which residuals are the arithmetic's or the model's own, and no outliers.
+    """
+    if not noise > floor or residual.size == 0:
+        return 0.0
+    return float(np.mean(np.abs(residual) > _OUTLYING * noise))
+
+
 @dataclass(frozen=True)
 class Correlation:
     """Correlation of the noise between neighbouring pixels.
@@ -88,7 +116,7 @@ class Correlation:
     Attributes
     ----------
     inflation : float
-        Largest ratio of the noise power along the normal, 0..Nyquist, to white noise of the
+        Largest ratio of the noise power along some directions, 0..Nyquist, to white noise of the
         same variance (1 when the noise is white).
     strongest : float
         The strongest correlation found among the direct neighbours.
@@ -100,9 +128,17 @@ class Correlation:
     strongest: float
     significance: float
 
+    @property
+    def told(self) -> float:
+        """Modulus of the strongest correlation, 0 where chance explains it: what checks judge."""
+        return abs(self.strongest) if self.significance >= _SIGNIFICANT else 0.0
+
 
 def correlation(
-    residual: Floats, rows: NDArray[np.intp], cols: NDArray[np.intp], normal: tuple[float, float]
+    residual: Floats,
+    rows: NDArray[np.intp],
+    cols: NDArray[np.intp],
+    directions: Sequence[tuple[float, float]] = ALL_DIRECTIONS,
 ) -> Correlation:
     """Noise correlation from the residuals of a fit.
 
@@ -112,8 +148,9 @@ def correlation(
         Residuals in units of their standard deviation, outliers bounded.
     rows, cols : (n,) int arrays
         Their pixels.
-    normal : (float, float)
-        Unit normal of the edge, (x, y).
+    directions : sequence of (float, float), optional
+        Unit vectors (x, y) along which the power is taken: the normal of a straight target; of
+        others the largest of several directions counts.
     """
     height, width = int(rows.max()) + 1, int(cols.max()) + 1
     field = np.zeros((height + _LAGS, width + 2 * _LAGS))
@@ -130,15 +167,16 @@ def correlation(
             strongest, significance = rho, abs(rho) * math.sqrt(pairs)
     if significance < _SIGNIFICANT:
         return Correlation(1.0, strongest, significance)
-    spectrum = np.ones(_FREQ_CPP.size)
+    spectra = np.ones((len(directions), _FREQ_CPP.size))
     further = [_lagged(field, known, lag) for lag in _FURTHER]
     for (down, right), (covariance, pairs) in zip(
         _NEAREST + _FURTHER, nearest + further, strict=True
     ):
         if pairs >= _MIN_PAIRS:
-            along_px = right * normal[0] + down * normal[1]
-            spectrum += 2 * covariance / power * np.cos(2 * np.pi * _FREQ_CPP * along_px)
-    return Correlation(max(float(spectrum.max()), 1.0), strongest, significance)
+            for spectrum, (x, y) in zip(spectra, directions, strict=True):
+                along_px = right * x + down * y
+                spectrum += 2 * covariance / power * np.cos(2 * np.pi * _FREQ_CPP * along_px)
+    return Correlation(max(float(spectra.max()), 1.0), strongest, significance)
 
 
 def _lagged(field: Floats, known: Floats, lag: tuple[int, int]) -> tuple[float, float]:

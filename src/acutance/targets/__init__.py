@@ -1,8 +1,9 @@
 """Targets: an image in, a `Measurement` out. One folder a kind of target.
 
-What the kinds share stands here: `region` (the pixels a measurement starts from), `arguments` and
-`option_types` (what callers hand in), `slices` (an OTF along some directions, with covariance) and
-`measurement` (what comes out). The kinds, which do not know one another:
+What the kinds share stands here: `region` (the pixels a measurement starts from), `options` (what
+callers choose), `check` and `check_table` (what is asked of a target), `slices` (an OTF along some
+directions, with covariance), `measurement` and its light half, `record`, and `target_result`
+(several measurements of one target). The kinds, which do not know one another:
 
 - `straight`: edges and pulses, along their normals
 - `points`: mirrors, lamps, stars of the sky
@@ -11,8 +12,23 @@ What the kinds share stands here: `region` (the pixels a measurement starts from
 - `combine`: several measurements of one sensor
 """
 
-from acutance.targets.measurement import Check, ImageInfo, Measurement, Samples
-from acutance.targets.measurement2d import Measurement2d
+from acutance.targets.check import Check, Verdict
+from acutance.targets.check_table import QUESTIONS, Question
+from acutance.targets.measurement import Measurement
+from acutance.targets.record import ImageInfo, Record
 from acutance.targets.slices import PlaneSlices
+from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
 
-__all__ = ["Check", "ImageInfo", "Measurement", "Measurement2d", "PlaneSlices", "Samples"]
+__all__ = [
+    "QUESTIONS",
+    "Check",
+    "EdgeGroup",
+    "ImageInfo",
+    "Measurement",
+    "PlaneSlices",
+    "Question",
+    "Record",
+    "Rejected",
+    "TargetResult",
+    "Verdict",
+]

@@ -1,260 +1,251 @@
-"""What a measurement is: the curves, the evidence they rest on, and the checks."""
+"""A measurement: numbers and curves of one direction or of two, checks, provenance, and evidence."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from typing import Any
+from functools import cached_property
+from typing import Any, Self
 
-import numpy as np
-from numpy.typing import NDArray
-
-from acutance.curves import Estimate, HasResponse, Response
+from acutance.curves import Estimate, HasResponse, Mtf, Otf2d, Response
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
-from acutance.geometry.line import Line, Orientation
-from acutance.raster.image import AlongTrack
+from acutance.geometry.line import Orientation
+from acutance.targets.check import Check, Verdict, count_failed, verdict_of
+from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
 from acutance.targets.slices import PlaneSlices
 
-__all__ = ["Check", "ImageInfo", "Measurement", "Samples", "count_failed"]
-
-SCHEMA = "acutance/measurement/1"
+__all__ = ["Measurement"]
 
 
-@dataclass(frozen=True)
-class Check:
-    """One question asked of the target, with what was found and what is asked.
-
-    Parameters
-    ----------
-    name : str
-    value : float
-        What was found.
-    limit : str
-        What is asked, as text: ``">= 50"``.
-    passed : bool
-    message : str
-        What it means and what to do; with where the limit comes from.
-    """
-
-    name: str
-    value: float
-    limit: str
-    passed: bool
-    message: str
-
-    def to_dict(self) -> dict[str, Any]:
-        value = self.value if math.isfinite(self.value) else None
-        return {
-            "name": self.name,
-            "value": value,
-            "limit": self.limit,
-            "passed": self.passed,
-            "message": self.message,
-        }
-
-
-def count_failed(checks: Sequence[Check]) -> str:
-    """ "2 of 17 checks failed (rows, profile)"."""
-    failed = [check.name for check in checks if not check.passed]
-    names = f" ({', '.join(failed)})" if failed else ""
-    return f"{len(failed)} of {len(checks)} checks failed{names}"
-
-
-@dataclass(frozen=True)
-class ImageInfo:
-    """Where the pixels came from.
-
-    `roi` is (row, col, height, width) of the cut, in pixels of the whole image; `along_track` the
-    axis the satellite flew along. `gsd_m` is the GSD along the normal of a straight target, along
-    the rows of any other; `pixel_gsd_m` that between rows and that between columns.
-    """
-
-    path: str | None = None
-    band: int = 1
-    gsd_m: float | None = None
-    roi: tuple[int, int, int, int] = (0, 0, 0, 0)
-    crs: str | None = None
-    along_track: AlongTrack = "y"
-    pixel_gsd_m: tuple[float, float] | None = None
-
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "path": self.path,
-            "band": self.band,
-            "gsd_m": self.gsd_m,
-            "pixel_gsd_m": None if self.pixel_gsd_m is None else list(self.pixel_gsd_m),
-            "roi": list(self.roi),
-            "crs": self.crs,
-            "along_track": self.along_track,
-        }
-
-
-@dataclass(frozen=True, eq=False)
-class Samples(OneLine):
-    """The pixels a measurement used, seen along the normal: evidence for figures.
-
-    Parameters
-    ----------
-    image : (rows, cols) array
-        The cut; unusable pixels are NaN.
-    used : (rows, cols) bool array
-        Which pixels entered the fit.
-    distance_px : (n,) array
-        Normal distance of the used pixels, in row-major order; 0 at the 50 % point.
-    value : (n,) array
-        Their edge response, normalised to 0 (dark plateau) .. 1 (bright plateau).
-    residual : (n,) array
-        Value less the fitted ESF, same scale.
-    dark, bright : float
-        Plateau levels in the image's units.
-    """
-
-    image: Floats
-    used: NDArray[np.bool_]
-    distance_px: Floats
-    value: Floats
-    residual: Floats
-    dark: float
-    bright: float
-
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Measurement(HasResponse):
-    """A measurement of one straight target: numbers, curves, evidence and checks.
+    """What was measured on a target of any kind.
 
-    The numbers (`mtf_nyquist`, `rer`, `fwhm_px` ...) are those of `response`.
+    A straight target shows one direction: `m.mtf_nyquist`, `m.rer`, `m.mtf(0.25)` and all other
+    numbers are those of its normal. Other targets show two: `m.across` and `m.along` have the same
+    numbers and curves, and `m.mtf_at` those of any direction. The classes of the kinds add what
+    only they know (a line, sources, groups of bars).
 
     Parameters
     ----------
     kind : str
-        The target: "edge" or "pulse".
+        The target: "edge", "pulse", "points", "biresolution", "bars", "star", "combined".
     method : str
         The estimator.
-    line : Line
-        The edge, or the rising side of a pulse, in pixels of the whole image.
-    response : Response
-        The curves and their metrics.
-    samples : Samples
-        The pixels used, as evidence.
+    transfer : Response or Otf2d
+        The curves of one direction, or the OTF over the plane of frequencies.
     snr : float
-        Contrast over the mean standard deviation of the plateaus.
+        Signal to noise ratio, as the kind defines it.
     checks : sequence of Check
         What was asked of the target.
     image : ImageInfo
         Where the pixels came from.
-    options : dict
+    options : mapping
         The options of the measurement.
-    width_px : Estimate, optional
-        Width of a pulse along the normal.
-    prf_fwhm_px : Estimate, optional
-        Width of the pulse response function at half of its maximum, along the normal.
-    stated_width_px : float, optional
-        Width of a pulse as it was stated; ``None`` where it was guessed from the image.
+    details : object, optional
+        The heavy half: pixels, fits, residuals. ``None`` after `without_details`.
     measured_at : datetime
         When (UTC).
     """
 
     kind: str
     method: str
-    line: Line
-    response: Response
-    samples: Samples
+    transfer: Response | Otf2d
     snr: float
     checks: Sequence[Check] = ()
-    image: ImageInfo = ImageInfo()
+    image: ImageInfo = field(default_factory=ImageInfo)
     options: Mapping[str, Any] = field(default_factory=dict)
-    width_px: Estimate | None = None
-    prf_fwhm_px: Estimate | None = None
-    stated_width_px: float | None = None
+    details: Any = None
     measured_at: datetime = field(default_factory=lambda: datetime.now(UTC))
 
     @property
+    def normal_deg(self) -> float | None:
+        """Direction of the one slice that was measured; ``None`` where all were."""
+        return None
+
+    @property
+    def is_ratio(self) -> bool:
+        """Whether the curves are a sensor's MTF over another's, and not its own."""
+        return False
+
+    @property
     def orientation(self) -> Orientation:
-        """Which direction the MTF belongs to: across or along track."""
-        if self.image.along_track == "y":
-            return self.line.orientation
-        return "along" if self.line.orientation == "across" else "across"
+        """Which direction the numbers belong to, across or along track."""
+        if self.normal_deg is None:
+            raise AttributeError(f"{self.kind} shows two directions: use .across and .along")
+        nearer_columns = abs(math.cos(math.radians(self.normal_deg))) >= math.sqrt(0.5)
+        return "across" if nearer_columns == (self.image.along_track == "y") else "along"
 
     @property
-    def fwhm_m(self) -> Estimate | None:
-        """The same in metres; ``None`` without a GSD."""
-        return self.response.fwhm_m
+    def response(self) -> Response:
+        """The curves and numbers of the one direction that was measured."""
+        if isinstance(self.transfer, Otf2d):
+            raise AttributeError(
+                f"{self.kind} shows two directions: use .across, .along or .response_at(angle_deg)"
+            )
+        return self.transfer
 
     @property
-    def angle_deg(self) -> Estimate:
-        """Acute angle between the edge and the nearer image axis."""
-        return Estimate(self.line.angle_deg, self.line.angle_std_deg)
+    def otf(self) -> Otf2d:
+        """The OTF over the plane of frequencies."""
+        if isinstance(self.transfer, Response):
+            raise AttributeError(
+                f"{self.kind} shows one direction: its OTF is .mtf.otf; combine() makes a plane of "
+                "several"
+            )
+        return self.transfer
+
+    @cached_property
+    def directions(self) -> dict[Orientation, Response]:
+        """The curves by direction: "across", "along", or both."""
+        if isinstance(self.transfer, Response):
+            return {self.orientation: self.transfer}
+        return {
+            "across": self.response_at(self._across_deg),
+            "along": self.response_at(self._along_deg),
+        }
 
     @property
-    def trusted(self) -> bool:
-        """Whether every check passed."""
-        return all(check.passed for check in self.checks)
+    def _across_deg(self) -> float:
+        return 0.0 if self.image.along_track == "y" else 90.0
+
+    @property
+    def _along_deg(self) -> float:
+        return 90.0 - self._across_deg
+
+    @property
+    def across(self) -> Response:
+        """The curves and numbers across track: along the rows of pixels, if not declared else."""
+        return self._direction("across")
+
+    @property
+    def along(self) -> Response:
+        """The curves and numbers along track: down the columns of pixels, if not declared else."""
+        return self._direction("along")
+
+    def _direction(self, name: Orientation) -> Response:
+        found = self.directions.get(name)
+        if found is None:
+            raise AttributeError(
+                f"this {self.kind} was measured {self.orientation} track, not {name}: its numbers "
+                "stand on the measurement itself"
+            )
+        return found
+
+    def response_at(self, angle_deg: float) -> Response:
+        """The curves of any direction, from the column axis (0) towards the row axis (90)."""
+        return self.otf.response(angle_deg)
+
+    def mtf_at(self, angle_deg: float) -> Mtf:
+        """The MTF in any direction, from the column axis (0) towards the row axis (90)."""
+        return self.response_at(angle_deg).mtf
+
+    def psf(self, half_width_px: float = 5.0, step_px: float = 0.1) -> tuple[Floats, Floats]:
+        """Point spread function: see `Otf2d.psf`."""
+        return self.otf.psf(half_width_px, step_px)
+
+    @cached_property
+    def slices(self) -> PlaneSlices:
+        """The OTF along the measured directions, with their common covariance."""
+        if self.normal_deg is not None:
+            return PlaneSlices.of_curve(self.mtf, self.normal_deg)
+        return PlaneSlices.of_plane(self.otf)
 
     @property
     def failed_checks(self) -> tuple[Check, ...]:
         """The checks that did not pass."""
         return tuple(check for check in self.checks if not check.passed)
 
-    def in_words(self) -> str:
-        """Target, method and direction, the main numbers, and how many checks failed."""
-        width = "" if self.width_px is None else f"width_px {self.width_px}, "
-        return (
-            f"{self.kind} by {self.method}, {self.orientation}, {width}"
-            f"{self.response.in_words()}, snr {self.snr:.3g}, {count_failed(self.checks)}"
-        )
+    @property
+    def trusted(self) -> bool:
+        """Whether every check passed."""
+        return not self.failed_checks
 
     @property
-    def slices(self) -> PlaneSlices:
-        """The slice of the 2-D OTF along the normal, with its covariance."""
-        return PlaneSlices.of_curve(self.mtf, self.line.normal_deg)
+    def verdict(self) -> Verdict:
+        """What the checks come to, in a word and a sentence."""
+        return verdict_of(self.checks)
+
+    def numbers(self) -> dict[str, dict[str, Estimate]]:
+        """All numbers by direction ("across", "along") and name."""
+        return {name: response.metrics() for name, response in self.directions.items()}
 
     def metrics(self) -> dict[str, Estimate]:
-        """All numbers by name."""
+        """All numbers of the one direction that was measured, by name."""
         return self.response.metrics()
 
-    def pulse_numbers(self) -> dict[str, Estimate]:
-        """What only a pulse has, by name: its width and that of its response; metres by a GSD."""
-        gsd_m = self.response.gsd_m
-        found: dict[str, Estimate] = {}
-        for name, number in (("width", self.width_px), ("prf_fwhm", self.prf_fwhm_px)):
-            if number is not None:
-                found[f"{name}_px"] = number
-                if gsd_m is not None:
-                    found[f"{name}_m"] = number.scaled(gsd_m)
-        return found
+    def without_details(self) -> Self:
+        """The same measurement without pixels and fits: light enough to be sent and kept."""
+        return replace(self, details=None, checks=tuple(self.checks))
+
+    @cached_property
+    def record(self) -> Record:
+        """The light half: what is written, archived and combined."""
+        return Record(self._document())
 
     def to_dict(self) -> dict[str, Any]:
         """The measurement as the JSON document ``acutance/measurement/1``."""
+        return self.record.to_dict()
+
+    def target_document(self) -> dict[str, Any]:
+        """What the kind of target adds to the document; nothing unless it says so."""
+        return {}
+
+    def _document(self) -> dict[str, Any]:
         from acutance import __version__
 
-        numbers = {name: number.to_dict() for name, number in self.metrics().items()}
-        stated: dict[str, float | None] = {}
-        if self.width_px is not None:
-            numbers |= {name: one.to_dict() for name, one in self.pulse_numbers().items()}
-            stated = {"stated_width_px": self.stated_width_px}
+        one_direction = self.normal_deg is not None
+        named = {name: _direction_document(one) for name, one in self.directions.items()}
+        curves = named[self.orientation] if one_direction else named
         return {
             "schema": SCHEMA,
             "kind": self.kind,
             "method": self.method,
-            "orientation": self.orientation,
+            **({"orientation": self.orientation} if one_direction else {}),
             "image": self.image.to_dict(),
-            "line": {**self.line.to_dict(), "orientation": self.orientation},
-            "angle_deg": self.angle_deg.to_dict(),
             "snr": self.snr if math.isfinite(self.snr) else None,
-            "dark": self.samples.dark,
-            "bright": self.samples.bright,
-            **numbers,
-            **stated,
-            "rer_centre": self.response.rer_centre,
-            "mtf": self.mtf.to_dict(),
-            "lsf": self.lsf.to_dict(),
-            "esf": self.esf.to_dict(),
+            **self.target_document(),
+            **curves,
             "plane": self.slices.to_dict(),
             "checks": [check.to_dict() for check in self.checks],
+            "verdict": {"word": self.verdict.word, "sentence": self.verdict.sentence},
             "options": dict(self.options),
             "software": {"acutance": __version__},
             "measured_at": self.measured_at.isoformat(timespec="seconds"),
         }
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Measurement):
+            return NotImplemented
+        return self.record == other.record
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def in_words(self) -> str:
+        """Target and method, the main numbers by direction, and how many checks failed."""
+        named = (f"{name}: {one.in_words()}" for name, one in self.directions.items())
+        snr = f", snr {self.snr:.3g}" if math.isfinite(self.snr) else ""
+        failed = count_failed(self.checks)
+        return f"{self.kind} by {self.method}, {', '.join(named)}{snr}, {failed}"
+
+    def _repr_html_(self) -> str:
+        from acutance.report import notebook_html
+
+        return notebook_html(self)
+
+
+def _direction_document(response: Response) -> dict[str, Any]:
+    """Numbers and curves of one direction, for JSON."""
+    return {
+        **{name: number.to_dict() for name, number in response.metrics().items()},
+        "rer_centre": response.rer_centre,
+        "gsd_m": response.gsd_m,
+        **{
+            name: {key: rounded(values) for key, values in curve.to_dict().items()}
+            for name, curve in (
+                ("mtf", response.mtf), ("lsf", response.lsf), ("esf", response.esf),
+            )
+        },
+    }  # fmt: skip

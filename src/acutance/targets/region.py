@@ -1,20 +1,20 @@
-"""The pixels a measurement starts from, cut out of an image."""
+"""The pixels a measurement starts from, read from a region of an image."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
-from acutance.geometry.line import Line
 from acutance.raster import Box, Gsd, Image, Region
-from acutance.targets.arguments import chosen_region
-from acutance.targets.measurement import ImageInfo
+from acutance.targets.record import ImageInfo
 
-__all__ = ["Cut", "RoiLike", "cut"]
+__all__ = ["RegionPixels", "RoiLike", "read_region"]
 
 _MAX_PIXELS = 9_000_000
 _MIN_SIDE_PX = 8
@@ -23,7 +23,7 @@ RoiLike = Region | Box | tuple[int, int, int, int] | None
 
 
 @dataclass(frozen=True, eq=False)
-class Cut:
+class RegionPixels:
     """Pixels of a region.
 
     Attributes
@@ -31,7 +31,7 @@ class Cut:
     pixels : (rows, cols) array
         NaN outside the region and where there is no data.
     box : Box
-        Where the cut lies in the image.
+        Where they lie in the image.
     saturation_level : float or None
         The largest value the detector can give.
     gsd : Gsd or None
@@ -44,16 +44,19 @@ class Cut:
     gsd: Gsd | None
     image: Image
 
-    def info(self, line: Line) -> ImageInfo:
-        """What a measurement records of its image; the GSD is that along the line's normal."""
-        gsd_m = None if self.gsd is None else self.gsd.along_normal(line.normal_deg)
+    @property
+    def info(self) -> ImageInfo:
+        """What a measurement records of its image: the same for every kind of target."""
+        image, box = self.image, self.box
         return ImageInfo(
-            self.image.path, self.image.band, gsd_m, self.box.as_tuple(), self.image.crs,
-            self.image.along_track, None if self.gsd is None else (self.gsd.row_m, self.gsd.col_m),
+            image.path, image.band, box.as_tuple(), image.crs, image.along_track,
+            None if self.gsd is None else (self.gsd.row_m, self.gsd.col_m),
         )  # fmt: skip
 
 
-def cut(image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None = None) -> Cut:
+def read_region(
+    image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None = None
+) -> RegionPixels:
     """Read a region of an image, and only that.
 
     Parameters
@@ -73,7 +76,7 @@ def cut(image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None
         larger than any target.
     """
     source = image if isinstance(image, Image) else Image.from_array(image)
-    where = Box.whole(source.shape) if roi is None else chosen_region(roi)
+    where = Box.whole(source.shape) if roi is None else _chosen_region(roi)
     if isinstance(where, Region):
         box, region = where.box(source.shape), where
     else:
@@ -102,4 +105,33 @@ def cut(image: Image | ArrayLike, roi: RoiLike = None, gsd_m: float | Gsd | None
     gsd = source.gsd(box.row + box.height / 2, box.col + box.width / 2)
     if gsd_m is not None:
         gsd = Gsd.given(gsd_m)
-    return Cut(pixels, box, source.saturation_level, gsd, source)
+    return RegionPixels(pixels, box, source.saturation_level, gsd, source)
+
+
+def _chosen_region(roi: Any) -> Region | Box:
+    """A region, a box, or the box of four numbers.
+
+    Raises
+    ------
+    RegionError
+        If it is none of these.
+    """
+    if isinstance(roi, Region | Box):
+        return roi
+    if isinstance(roi, str):
+        raise RegionError(
+            f"roi is the text {roi!r}: read it with acutance.raster.parse_roi(text, image), or "
+            "give (row, column, height, width)"
+        )
+    try:
+        numbers: Sequence[Any] = tuple(roi)
+    except TypeError:
+        raise RegionError(
+            f"roi is of type {type(roi).__name__}: give (row, column, height, width), a Box or a "
+            "Region"
+        ) from None
+    if len(numbers) != 4:
+        raise RegionError(
+            f"roi has {len(numbers)} numbers: give four, (row, column, height, width), in pixels"
+        )
+    return Box(*numbers)

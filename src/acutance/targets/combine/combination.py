@@ -18,15 +18,15 @@ from acutance.errors import OptionError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd
 from acutance.raster.image import AlongTrack
-from acutance.targets.arguments import chosen_options
 from acutance.targets.combine.checks import check_combination, count_directions, direction_gap_deg
-from acutance.targets.combine.pixel_size import common_gsd, without_gsd
 from acutance.targets.combine.curves import ChiSquare, PlaneCurve
 from acutance.targets.combine.fit import CombinedFit, combine_curves
 from acutance.targets.combine.inputs import Combinable, MeasuredInput, common_flight, read_inputs
 from acutance.targets.combine.options import CombineOptions
+from acutance.targets.combine.pixel_size import common_gsd, without_gsd
 from acutance.targets.measurement import ImageInfo
 from acutance.targets.measurement2d import Measurement2d
+from acutance.targets.options import chosen_options
 
 __all__ = ["CombinedMeasurement", "CombinedPart", "combine"]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from acutance.errors import OptionError
 from acutance.targets.combine.sensor_forms import FORMS, TERMS
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 
 __all__ = ["CombineLimits", "CombineOptions"]
 
@@ -43,7 +43,7 @@ class CombineLimits:
     unknown_gsd: float = 0.0
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class CombineOptions:
     limits: CombineLimits = field(default_factory=CombineLimits)
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
         if not all(0 < size <= 4 for size in self.detector_px):
             raise OptionError(
                 f"detector_px is {self.detector_px}: it has to be two widths, across and along, "

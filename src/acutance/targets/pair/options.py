@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.errors import OptionError
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 
 __all__ = ["BiresolutionLimits", "BiresolutionOptions"]
 
@@ -63,7 +63,7 @@ class BiresolutionLimits:
     iteration_change: float = 1.0
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class BiresolutionOptions:
     limits: BiresolutionLimits = field(default_factory=BiresolutionLimits)
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
         reach = 4.0 if self.reach_px is None else self.reach_px
         noise = 0.0 if self.noise_high is None else self.noise_high
         asked = (

@@ -18,8 +18,8 @@ from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, Region
-from acutance.targets.arguments import chosen_options, chosen_region
 from acutance.targets.measurement import ImageInfo
+from acutance.targets.options import chosen_options, chosen_region
 from acutance.targets.pair.axis_blur import AxisBlur
 from acutance.targets.pair.checks import PairEvidence, check_pair
 from acutance.targets.pair.first_fit import BlurFit, fit_blur

@@ -18,15 +18,15 @@ from acutance.geometry.bar_group import Bars
 from acutance.numerics.noise import robust_scale
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
-from acutance.targets.arguments import chosen_options
 from acutance.targets.measurement import ImageInfo
 from acutance.targets.measurement2d import Measurement2d
+from acutance.targets.options import chosen_options
 from acutance.targets.periodic.bars_checks import bars_checks
 from acutance.targets.periodic.bars_find import find_bars
 from acutance.targets.periodic.bars_options import BarsOptions
 from acutance.targets.periodic.bars_readings import GroupReading, central, coltman_mtf, read_group
 from acutance.targets.periodic.fit_bars import BarsSolution, GroupFit, solve_bars
-from acutance.targets.region import Cut, RoiLike, cut
+from acutance.targets.region import RegionPixels, RoiLike, read_region
 from acutance.targets.slices import PlaneSlices
 
 __all__ = ["BARS_METHODS", "BarsGroup", "BarsMeasurement", "measure_bars"]
@@ -187,7 +187,7 @@ def measure_bars(
     chosen = chosen_options(options, BarsOptions)
     if method not in BARS_METHODS:
         raise OptionError(f"there is no bars method {method!r}: {', '.join(BARS_METHODS)} is known")
-    pixels = cut(image, roi, gsd_m)
+    pixels = read_region(image, roi, gsd_m)
     if chosen.groups:
         groups = tuple(_moved(one, -pixels.box.row, -pixels.box.col) for one in chosen.groups)
         contrast = _contrast(pixels.pixels, groups)
@@ -229,7 +229,7 @@ def _contrast(image: Floats, groups: tuple[Bars, ...]) -> float:
 
 
 def _measurement(
-    pixels: Cut, solved: BarsSolution, method: str, options: BarsOptions
+    pixels: RegionPixels, solved: BarsSolution, method: str, options: BarsOptions
 ) -> BarsMeasurement:
     """Put together what a measurement holds; the groups move into the whole image's pixels."""
     model = solved.model
@@ -281,7 +281,7 @@ def _turn_deg(one: float, other: float) -> float:
     return abs((one - other + 90) % 180 - 90)
 
 
-def _groups(pixels: Cut, solved: BarsSolution, otf: Otf2d) -> tuple[BarsGroup, ...]:
+def _groups(pixels: RegionPixels, solved: BarsSolution, otf: Otf2d) -> tuple[BarsGroup, ...]:
     contrast = solved.model.level
     readings = []
     for one in solved.groups:

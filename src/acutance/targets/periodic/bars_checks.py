@@ -8,14 +8,17 @@ from acutance.targets.measurement import Check
 from acutance.targets.periodic.bars_options import BarsLimits
 from acutance.targets.periodic.clipped_and_outlying import QUIET_SNR, clipped_share, outlier_share
 from acutance.targets.periodic.fit_bars import BarsSolution
-from acutance.targets.region import Cut
+from acutance.targets.region import RegionPixels
 from acutance.targets.straight.check_data import MUCH, at_least, at_most
 
 __all__ = ["bars_checks"]
 
 
 def bars_checks(
-    pixels: Cut, solved: BarsSolution, directions_deg: tuple[float, ...], limits: BarsLimits
+    pixels: RegionPixels,
+    solved: BarsSolution,
+    directions_deg: tuple[float, ...],
+    limits: BarsLimits,
 ) -> tuple[Check, ...]:
     """All target checks of bars."""
     snr = abs(solved.model.level) / solved.noise if solved.noise > 0 else MUCH

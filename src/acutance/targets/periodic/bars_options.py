@@ -7,7 +7,7 @@ from typing import Any
 
 from acutance.errors import OptionError
 from acutance.geometry.bar_group import Bars
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 from acutance.targets.periodic.clipped_and_outlying import known_levels
 from acutance.targets.periodic.stated_contrast import Levels
 
@@ -55,7 +55,7 @@ class BarsLimits:
     outliers: float = 0.02
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class BarsOptions:
     limits: BarsLimits = field(default_factory=BarsLimits)
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
         known_levels(self.dark, self.bright, self.level_std)
         if self.count is not None and not 2 <= self.count <= 40:
             raise OptionError(

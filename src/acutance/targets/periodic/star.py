@@ -20,16 +20,16 @@ from acutance.geometry.star_geometry import FoundStar
 from acutance.numerics.noise import robust_scale
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
-from acutance.targets.arguments import chosen_options
 from acutance.targets.measurement import ImageInfo
 from acutance.targets.measurement2d import Measurement2d
+from acutance.targets.options import chosen_options
 from acutance.targets.periodic.fit_star import SIDE_MARGIN_PX, StarSolution, solve_star
 from acutance.targets.periodic.otf_model import PlaneModel
 from acutance.targets.periodic.star_checks import star_checks
 from acutance.targets.periodic.star_find import find_star
 from acutance.targets.periodic.star_options import StarOptions
 from acutance.targets.periodic.star_rings import ring_modulations
-from acutance.targets.region import Cut, RoiLike, cut
+from acutance.targets.region import RegionPixels, RoiLike, read_region
 
 __all__ = ["STAR_METHODS", "Rings", "StarMeasurement", "measure_star"]
 
@@ -218,7 +218,7 @@ def measure_star(
     if method not in STAR_METHODS:
         raise OptionError(f"there is no star method {method!r}: {', '.join(STAR_METHODS)} is known")
     _require_cycles(cycles)
-    pixels = cut(image, roi, gsd_m)
+    pixels = read_region(image, roi, gsd_m)
     found = find_star(pixels.pixels, cycles, _local(chosen.centre, pixels))
     solved = solve_star(
         pixels.pixels, found, wave=chosen.wave, levels=chosen.levels,
@@ -239,12 +239,12 @@ def _require_cycles(cycles: Any) -> None:
         raise OptionError(f"a star of {cycles} cycles: 4 to 1000 can be measured")
 
 
-def _local(centre: tuple[float, float] | None, pixels: Cut) -> tuple[float, float] | None:
+def _local(centre: tuple[float, float] | None, pixels: RegionPixels) -> tuple[float, float] | None:
     return None if centre is None else (centre[0] - pixels.box.row, centre[1] - pixels.box.col)
 
 
 def _measurement(
-    pixels: Cut, solved: StarSolution, method: str, options: StarOptions
+    pixels: RegionPixels, solved: StarSolution, method: str, options: StarOptions
 ) -> StarMeasurement:
     """Put together what a measurement holds; the star moves into the whole image's pixels."""
     model = solved.model
@@ -292,7 +292,7 @@ def _contrast(model: PlaneModel, options: StarOptions) -> float:
     return 2 * model.level * (math.pi / 4 if options.wave == "square" else 1.0)
 
 
-def _info(pixels: Cut) -> ImageInfo:
+def _info(pixels: RegionPixels) -> ImageInfo:
     gsd_m = None
     if pixels.gsd is not None:
         gsd_m = math.sqrt(pixels.gsd.row_m * pixels.gsd.col_m)

@@ -10,14 +10,14 @@ from acutance.targets.measurement import Check
 from acutance.targets.periodic.clipped_and_outlying import QUIET_SNR, clipped_share, outlier_share
 from acutance.targets.periodic.fit_star import StarSolution
 from acutance.targets.periodic.star_options import StarLimits
-from acutance.targets.region import Cut
+from acutance.targets.region import RegionPixels
 from acutance.targets.straight.check_data import MUCH, at_least, at_most
 
 __all__ = ["star_checks", "third_harmonic"]
 
 
 def star_checks(
-    pixels: Cut, solved: StarSolution, snr: float, limits: StarLimits
+    pixels: RegionPixels, solved: StarSolution, snr: float, limits: StarLimits
 ) -> tuple[Check, ...]:
     """All target checks of a star."""
     star, level = solved.star, solved.model

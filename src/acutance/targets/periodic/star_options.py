@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.errors import OptionError
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 from acutance.targets.periodic.clipped_and_outlying import known_levels
 from acutance.targets.periodic.star_waves import Wave
 from acutance.targets.periodic.stated_contrast import Levels
@@ -53,7 +53,7 @@ class StarLimits:
     outliers: float = 0.02
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class StarOptions:
     limits: StarLimits = field(default_factory=StarLimits)
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
         known_levels(self.dark, self.bright, self.level_std)
         if self.inner_px is not None and not 0 <= self.inner_px < math.inf:
             raise OptionError(f"inner_px (--inner) is {self.inner_px:g}, it has to be 0 or more")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.errors import OptionError
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 from acutance.targets.points.published import SdsuMirrorsOptions
 
 __all__ = ["PointsLimits", "PointsOptions"]
@@ -52,7 +52,7 @@ class PointsLimits:
     survey_px: float = 0.1
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class PointsOptions:
     method_options: SdsuMirrorsOptions | None = None
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
         bounds = {
             "min_snr": (self.min_snr, 1.0, 1e6),
             "min_distance_px": (self.min_distance_px, 0.0, 100.0),

@@ -14,9 +14,9 @@ from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
-from acutance.targets.arguments import chosen_options, published_options
 from acutance.targets.measurement import Check, ImageInfo
 from acutance.targets.measurement2d import Measurement2d
+from acutance.targets.options import chosen_options, published_options
 from acutance.targets.points.checks import check_points, check_survey
 from acutance.targets.points.detect import RejectedSpot, Spot, find_spots, sort_spots
 from acutance.targets.points.first_fit import fit_blurred_points, unlike_sources
@@ -30,7 +30,7 @@ from acutance.targets.points.published import (
 from acutance.targets.points.sources import PointSource, sources_of_fit, sources_of_mirrors
 from acutance.targets.points.stamps import cut_stamps
 from acutance.targets.points.survey import SurveyErrors, SurveyReference, survey_errors
-from acutance.targets.region import Cut, RoiLike, cut
+from acutance.targets.region import RegionPixels, RoiLike, read_region
 
 __all__ = ["POINTS_METHODS", "PointsMeasurement", "measure_points"]
 
@@ -107,7 +107,9 @@ class _Answer:
 _Rejected = tuple[RejectedSpot, ...]
 
 
-def _psf_fit(pixels: Cut, places: Floats, rejected: _Rejected, options: PointsOptions) -> _Answer:
+def _psf_fit(
+    pixels: RegionPixels, places: Floats, rejected: _Rejected, options: PointsOptions
+) -> _Answer:
     if options.method_options is not None:
         raise OptionError("method_options belong to the published method: leave them out")
     stamps = cut_stamps(_covered(pixels.pixels, rejected), places, options.radius_px)
@@ -134,7 +136,9 @@ def _unlike(place: tuple[float, float], departure: float) -> RejectedSpot:
     )  # fmt: skip
 
 
-def _gaussian(pixels: Cut, places: Floats, rejected: _Rejected, options: PointsOptions) -> _Answer:
+def _gaussian(
+    pixels: RegionPixels, places: Floats, rejected: _Rejected, options: PointsOptions
+) -> _Answer:
     chosen = published_options(options, "gaussian-2003", SdsuMirrorsOptions)
     found = sdsu_2003_mirrors(_covered(pixels.pixels, rejected), places, chosen)
     origin = (pixels.box.row, pixels.box.col)
@@ -143,7 +147,7 @@ def _gaussian(pixels: Cut, places: Floats, rejected: _Rejected, options: PointsO
     return _Answer(found.psf, sources, rejected, checks, published=found)
 
 
-POINTS_METHODS: dict[str, Callable[[Cut, Floats, _Rejected, PointsOptions], _Answer]] = {
+POINTS_METHODS: dict[str, Callable[[RegionPixels, Floats, _Rejected, PointsOptions], _Answer]] = {
     "psf-fit": _psf_fit,
     "gaussian-2003": _gaussian,
 }
@@ -195,7 +199,7 @@ def measure_points(
     if method not in POINTS_METHODS:
         known = ", ".join(POINTS_METHODS)
         raise OptionError(f"there is no points method {method!r}: choose one of {known}")
-    pixels = cut(image, roi, gsd_m)
+    pixels = read_region(image, roi, gsd_m)
     origin = np.array([pixels.box.row, pixels.box.col])
     wanted = None if positions is None else _places("positions", positions) - origin
     spots, rejected = _choose(pixels, wanted, chosen)
@@ -246,7 +250,7 @@ def _places(name: str, given: ArrayLike) -> Floats:
 
 
 def _choose(
-    pixels: Cut, wanted: Floats | None, options: PointsOptions
+    pixels: RegionPixels, wanted: Floats | None, options: PointsOptions
 ) -> tuple[tuple[Spot, ...], tuple[RejectedSpot, ...]]:
     """The spots to be fitted, and those that do not serve."""
     image = pixels.pixels
@@ -314,7 +318,7 @@ def _shifted(one: RejectedSpot, origin: Floats) -> RejectedSpot:
     return RejectedSpot(one.row + row, one.col + col, one.reason, one.message)
 
 
-def _info(pixels: Cut) -> ImageInfo:
+def _info(pixels: RegionPixels) -> ImageInfo:
     gsd_m = None if pixels.gsd is None else pixels.gsd.along_normal(0.0)
     image = pixels.image
     return ImageInfo(image.path, image.band, gsd_m, pixels.box.as_tuple(), image.crs)

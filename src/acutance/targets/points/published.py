@@ -27,7 +27,7 @@ from scipy.optimize import least_squares
 
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, SupportError
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 
 __all__ = [
     "GaussianPsf",
@@ -57,7 +57,7 @@ class SdsuMirrorsOptions:
     window_px: int = 5
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
         for name, value in vars(self).items():
             if value not in (3, 5, 7, 9):
                 raise OptionError(f"{name} is {value}: windows have 3, 5, 7 or 9 pixels")

@@ -11,20 +11,17 @@ the methods of the literature, biases included.
 """
 
 from acutance.targets.straight.edge import METHODS, measure_edge
-from acutance.targets.straight.many_edges import EdgeGroup, Rejected, TargetResult, measure_edges
+from acutance.targets.straight.many_edges import measure_edges
 from acutance.targets.straight.options import EdgeLimits, EdgeOptions, PulseLimits, PulseOptions
 from acutance.targets.straight.pulse import PULSE_METHODS, measure_pulse
 
 __all__ = [
     "METHODS",
     "PULSE_METHODS",
-    "EdgeGroup",
     "EdgeLimits",
     "EdgeOptions",
     "PulseLimits",
     "PulseOptions",
-    "Rejected",
-    "TargetResult",
     "measure_edge",
     "measure_edges",
     "measure_pulse",

@@ -142,7 +142,7 @@ class Evidence:
             return Correlation(1.0, 0.0, 0.0)
         rows, cols = (at[flat] for at in self.band.pixels.at)
         bounded = np.clip(residual / noise, -_OUTLYING, _OUTLYING)
-        return correlation(bounded, rows, cols, direction)
+        return correlation(bounded, rows, cols, [direction])
 
     @cached_property
     def plateau_std(self) -> float:

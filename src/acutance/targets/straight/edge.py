@@ -14,9 +14,9 @@ from acutance.errors import NoEdgeError, OptionError, PhaseError, TargetError
 from acutance.geometry.line import Line
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
-from acutance.targets.arguments import chosen_options, published_options
 from acutance.targets.measurement import Measurement, Samples
-from acutance.targets.region import Cut, RoiLike, cut
+from acutance.targets.options import chosen_options, published_options
+from acutance.targets.region import RegionPixels, RoiLike, read_region
 from acutance.targets.straight.edge_checks import EdgeChecks, sample_phases
 from acutance.targets.straight.find_edges import Segment, find_segments
 from acutance.targets.straight.fit_edge import fit_edge
@@ -99,10 +99,10 @@ def measure_edge(
     0.2893 ± 0.0061
     """
     chosen = chosen_options(options, EdgeOptions)
-    return _measure_first(cut(image, roi, gsd_m), method, chosen)
+    return _measure_first(read_region(image, roi, gsd_m), method, chosen)
 
 
-def _measure_first(pixels: Cut, method: str, options: EdgeOptions) -> Measurement:
+def _measure_first(pixels: RegionPixels, method: str, options: EdgeOptions) -> Measurement:
     """Measure the strongest edge that can be measured; if none can, say why the strongest not."""
     first: TargetError | None = None
     for segment in find_segments(pixels.pixels, _CANDIDATES):
@@ -121,7 +121,7 @@ def _measure_first(pixels: Cut, method: str, options: EdgeOptions) -> Measuremen
 
 
 def measure_segment(
-    pixels: Cut, segment: Segment, method: str, options: EdgeOptions
+    pixels: RegionPixels, segment: Segment, method: str, options: EdgeOptions
 ) -> Measurement:
     """Measure one segment that was found in a cut; see `measure_edge`."""
     estimate = _method(method)
@@ -196,7 +196,12 @@ def _advice(line: Line, wanted: float) -> str:
 
 
 def _measurement(
-    pixels: Cut, band: EdgeBand, extent: Extent, fit: EdgeFit, method: str, options: EdgeOptions
+    pixels: RegionPixels,
+    band: EdgeBand,
+    extent: Extent,
+    fit: EdgeFit,
+    method: str,
+    options: EdgeOptions,
 ) -> Measurement:
     """Put together what a measurement holds; the line moves into the whole image's pixels."""
     info = pixels.info(fit.line)

@@ -15,7 +15,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.targets.measurement import Check
-from acutance.targets.region import Cut
+from acutance.targets.region import RegionPixels
 from acutance.targets.straight import pixel_checks, structure_checks
 from acutance.targets.straight.check_data import (
     MUCH,
@@ -52,7 +52,7 @@ class EdgeChecks(TargetChecks):
         Whether the method works row by row, which limits the angle.
     """
 
-    cut: Cut
+    cut: RegionPixels
     band: EdgeBand
     extent: Extent
     fit: EdgeFit

@@ -3,110 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
 from acutance.errors import TargetError
-from acutance.geometry.line import Line, Orientation
+from acutance.geometry.line import Line
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image
-from acutance.targets.arguments import chosen_options
 from acutance.targets.measurement import Measurement
-from acutance.targets.region import RoiLike, cut
+from acutance.targets.options import chosen_options
+from acutance.targets.region import RoiLike, read_region
 from acutance.targets.straight.edge import measure_segment
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.options import EdgeOptions
+from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
 
-__all__ = ["EdgeGroup", "Rejected", "TargetResult", "combine_edges", "measure_edges"]
+__all__ = ["combine_edges", "measure_edges"]
 
 _CONTRAST_SHARE = 0.8
 _STRENGTH_SHARE = 0.1
-_MAIN = ("mtf_nyquist", "rer", "fwhm_px")
-
-
-@dataclass(frozen=True)
-class Rejected:
-    """A candidate that was not measured: at which stage, why, and the numbers behind it.
-
-    Attributes
-    ----------
-    stage : {"fit", "contrast"}
-    reason : str
-    values : dict
-        Where it lies in pixels of the whole image (``row``, ``col``), and its ``normal_deg``.
-    """
-
-    stage: str
-    reason: str
-    values: Mapping[str, Any]
-
-
-@dataclass(frozen=True, eq=False)
-class EdgeGroup(OneLine):
-    """Edges of one orientation and what they say together.
-
-    Attributes
-    ----------
-    orientation : {"across", "along"}
-    measurements : tuple of Measurement
-    metrics : dict of Estimate
-        Means weighted by 1 / std^2. Where the edges disagree beyond their standard deviations,
-        that of the mean is widened by the square root of chi-square per degree of freedom.
-    chi_square, p_value : dict of float
-        Consistency: chi-square of the edges about the mean, and the chance of a larger one; ``nan``
-        for a single edge, and where it means nothing (below).
-    degrees_of_freedom : int
-
-    Notes
-    -----
-    No metric can be negative: a modulus that drowns in noise, or an overshoot that is not there,
-    is reported as 0. Where one of the edges lies within its standard deviation of 0, the values
-    are no longer Gaussian, and neither weights nor chi-square mean anything. The mean is then the
-    plain one. As clipped errors do not average out, its standard deviation is the root mean square
-    of the edges', or what the edges' scatter says if that is more; chi-square and p are ``nan``.
-    """
-
-    orientation: Orientation
-    measurements: tuple[Measurement, ...]
-    metrics: Mapping[str, Estimate]
-    chi_square: Mapping[str, float]
-    p_value: Mapping[str, float]
-    degrees_of_freedom: int
-
-    def in_words(self) -> str:
-        """Direction, how many edges, and the main means."""
-        means = (f"{name} {self.metrics[name]}" for name in _MAIN if name in self.metrics)
-        return ", ".join((self.orientation, f"edges {len(self.measurements)}", *means))
-
-
-@dataclass(frozen=True, eq=False)
-class TargetResult(OneLine):
-    """All edges of a target.
-
-    Attributes
-    ----------
-    measurements : tuple of Measurement
-        The strongest edge first.
-    rejected : tuple of Rejected
-    groups : dict of EdgeGroup
-        By orientation.
-    """
-
-    measurements: tuple[Measurement, ...]
-    rejected: tuple[Rejected, ...]
-    groups: Mapping[str, EdgeGroup]
-
-    def in_words(self) -> str:
-        """How many edges, and the main means of each group."""
-        count = f"measured {len(self.measurements)}, rejected {len(self.rejected)}"
-        return "; ".join((count, *(group.in_words() for group in self.groups.values())))
 
 
 @one_thread
@@ -132,7 +52,7 @@ def measure_edges(
     -------
     TargetResult
     """
-    pixels = cut(image, roi, gsd_m)
+    pixels = read_region(image, roi, gsd_m)
     chosen = chosen_options(options, EdgeOptions)
     measured: list[Measurement] = []
     rejected: list[Rejected] = []

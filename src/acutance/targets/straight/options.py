@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.curves.metrics import RerCentre
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 from acutance.targets.straight.published import (
     FermiOptions,
     Iso12233Options,
@@ -85,7 +85,7 @@ class EdgeLimits:
     outliers: float = 0.02
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ class PulseOptions:
     method_options: SdsuPulseOptions | None = None
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""
@@ -172,7 +172,7 @@ class EdgeOptions:
     method_options: MethodOptions | None = None
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.targets.measurement import Check
-from acutance.targets.region import Cut
+from acutance.targets.region import RegionPixels
 from acutance.targets.straight.check_data import MISFIT, MUCH, Evidence, at_least, at_most
 from acutance.targets.straight.options import EdgeLimits
 from acutance.targets.straight.pixels import EdgeBand
@@ -23,7 +23,7 @@ _TAIL_PX = 0.1
 """The LSF of an aperture falls as a / s^2: a is 0.065 px for a cutoff of 1 c/px, 0.1 for 0.65."""
 
 
-def saturation(cut: Cut, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> Check:
+def saturation(cut: RegionPixels, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> Check:
     """Pixels at the detector's limit, or a side whose values are all one."""
     used = np.isfinite(band.image)
     values = cut.pixels[used]
@@ -58,7 +58,7 @@ def _piled_up(side: Floats, *, bright: bool, seen: Evidence) -> float:
     return end / side.size if end >= 5 and end > 2 * beside else 0.0
 
 
-def quantisation(cut: Cut, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> Check:
+def quantisation(cut: RegionPixels, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> Check:
     """Noise in steps of the image's numbers: with less, rounding is no noise but a distortion."""
     values = np.unique(cut.pixels[np.isfinite(band.image)])
     step = float(np.min(np.diff(values))) if values.size > 1 else 0.0

@@ -12,9 +12,9 @@ from acutance.curves import Estimate
 from acutance.errors import OptionError, TargetError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
-from acutance.targets.arguments import chosen_options, published_options
 from acutance.targets.measurement import Measurement, Samples
-from acutance.targets.region import Cut, RoiLike, cut
+from acutance.targets.options import chosen_options, published_options
+from acutance.targets.region import RegionPixels, RoiLike, read_region
 from acutance.targets.straight.edge import require_phases
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.find_pulse import find_pulse
@@ -113,7 +113,7 @@ def measure_pulse(
     """
     chosen = chosen_options(options, PulseOptions)
     estimate = _method(method)
-    pixels = cut(image, roi, gsd_m)
+    pixels = read_region(image, roi, gsd_m)
     stated_px = _stated_width(pixels, width_px, width_m)
     free = fit_width or stated_px is None
     band, extent = _find(pixels, stated_px, free)
@@ -132,7 +132,7 @@ def measure_pulse(
     return _measurement(pixels, band, found, checks, method, chosen, stated_px)
 
 
-def _find(pixels: Cut, stated_px: float | None, free: bool) -> tuple[PulseBand, Extent]:
+def _find(pixels: RegionPixels, stated_px: float | None, free: bool) -> tuple[PulseBand, Extent]:
     """The strongest pulse; where there is none of the stated width, what there is instead."""
     try:
         return find_pulse(pixels.pixels, stated_px, fit_width=free)
@@ -148,7 +148,7 @@ def _find(pixels: Cut, stated_px: float | None, free: bool) -> tuple[PulseBand, 
         ) from error
 
 
-def _width_seen(pixels: Cut) -> float | None:
+def _width_seen(pixels: RegionPixels) -> float | None:
     """Width in pixels of the strip that is found when no width is stated."""
     try:
         return find_pulse(pixels.pixels)[0].pulse_width_px
@@ -168,7 +168,9 @@ def _method(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
     return PULSE_METHODS[name]
 
 
-def _stated_width(pixels: Cut, width_px: float | None, width_m: float | None) -> float | None:
+def _stated_width(
+    pixels: RegionPixels, width_px: float | None, width_m: float | None
+) -> float | None:
     """The stated width in pixels along the normal of the region's strongest side."""
     if width_px is not None and width_m is not None:
         raise OptionError("the width was given in pixels and in metres: give one of them")
@@ -189,7 +191,7 @@ def _stated_width(pixels: Cut, width_px: float | None, width_m: float | None) ->
 
 
 def _measurement(
-    pixels: Cut,
+    pixels: RegionPixels,
     band: PulseBand,
     found: _Fitted,
     checks: PulseChecks,

@@ -15,7 +15,7 @@ from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.targets.measurement import Check
-from acutance.targets.region import Cut
+from acutance.targets.region import RegionPixels
 from acutance.targets.straight import edge_checks as checks
 from acutance.targets.straight import pixel_checks, structure_checks
 from acutance.targets.straight.check_data import (
@@ -53,7 +53,7 @@ class PulseChecks(TargetChecks):
         Whether the method divides by the pulse's spectrum.
     """
 
-    cut: Cut
+    cut: RegionPixels
     band: PulseBand
     extent: Extent
     fit: EdgeFit

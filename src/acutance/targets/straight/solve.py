@@ -158,7 +158,7 @@ def solve(
         standard = solved.residual / solved.noise
         heavy = robust and float(np.abs(standard).max()) > _OUTLYING
         again = _reweighted(standard, linear) if heavy else outlier
-        found = correlation(_bounded(standard), *pixels.at, linear.start.line.normal)
+        found = correlation(_bounded(standard), *pixels.at, [linear.start.line.normal])
         short = _are_short(solved, fit_width)
         settled = (
             short

@@ -18,7 +18,7 @@ from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, SupportError
 from acutance.geometry.line import Line
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 from acutance.targets.straight.pixels import EdgeBand, EdgeFit
 from acutance.targets.straight.published.fermi_sum import FermiSum
 from acutance.targets.straight.published.resampled_response import (
@@ -52,7 +52,7 @@ class FermiOptions:
     criterion: Literal["bic", "aicc"] = "bic"
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
 
 
 _DEFAULT = FermiOptions()

@@ -14,7 +14,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, SupportError
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 from acutance.targets.straight.pixels import EdgeBand, EdgeFit
 from acutance.targets.straight.published.edge_location import centroid_locations
 from acutance.targets.straight.published.resampled_response import (
@@ -61,7 +61,7 @@ class Iso12233Options:
     seed: int = 12233
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
         if not 1 <= self.bins_per_px <= 16 or not 1 <= self.edge_order <= 5:
             raise OptionError(
                 f"bins_per_px must be 1 to 16 and edge_order 1 to 5, "

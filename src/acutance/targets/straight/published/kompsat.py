@@ -16,7 +16,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import RerCentre
 from acutance.errors import OptionError, SupportError
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 from acutance.targets.straight.pixels import EdgeBand, EdgeFit
 from acutance.targets.straight.published.edge_location import cubic_locations
 from acutance.targets.straight.published.fermi_sum import fit_profile
@@ -71,7 +71,7 @@ class KompsatOptions:
     seed: int = 2014
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
         if not (0 < self.smoothness < 1 and 0 < self.start_smoothness < 1):
             raise OptionError(
                 f"smoothness and start_smoothness lie between 0 and 1, "

@@ -15,7 +15,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, OptionError, SupportError
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 from acutance.targets.straight.pixels import EdgeBand, EdgeFit
 from acutance.targets.straight.published.edge_location import fermi_locations
 from acutance.targets.straight.published.local_polynomial import modified_savitzky_golay
@@ -71,7 +71,7 @@ class SdsuOptions:
     seed: int = 2005
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
         if not 4.0 <= self.trim_px <= 40.0:
             raise OptionError(f"trim_px must be 4 to 40 px, found {self.trim_px}")
         frame = self.smoothing_points

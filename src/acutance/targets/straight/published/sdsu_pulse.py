@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
 from acutance.curves.grid import Floats, crossing
 from acutance.errors import NoEdgeError, OptionError, SupportError
-from acutance.targets.option_types import require_kinds
+from acutance.targets.options import require_types
 from acutance.targets.straight.fit_pulse import PulseBand
 from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published.edge_location import fermi_locations
@@ -80,7 +80,7 @@ class SdsuPulseOptions:
     seed: int = 2005
 
     def __post_init__(self) -> None:
-        require_kinds(self)
+        require_types(self)
         if not 6.0 <= self.trim_px <= 40.0:
             raise OptionError(f"trim_px must be 6 to 40 px, found {self.trim_px}")
 

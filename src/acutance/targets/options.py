@@ -1,4 +1,4 @@
-"""Options hold what their classes declare: a number where a number is meant."""
+"""Options of a measurement: those a caller gave or the default ones, holding what they declare."""
 
 from __future__ import annotations
 
@@ -6,19 +6,91 @@ import types
 from collections.abc import Hashable
 from functools import cache
 from numbers import Integral, Real
-from typing import Any, Literal, Union, cast, get_args, get_origin, get_type_hints
+from typing import (
+    Any,
+    Literal,
+    Protocol,
+    TypeVar,
+    Union,
+    cast,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 
 from acutance.errors import OptionError
 
-__all__ = ["require_kinds"]
+__all__ = ["chosen_options", "published_options", "require_types"]
+
+Options = TypeVar("Options")
+
+
+def chosen_options(options: Any, kind: type[Options]) -> Options:
+    """The options given, or the default ones for ``None``.
+
+    Raises
+    ------
+    OptionError
+        If they are those of another measurement, or none at all.
+    """
+    if options is None:
+        # To mypy a class hashes as its objects do.
+        default: Options = _default(cast(Hashable, kind))
+        return default
+    if not isinstance(options, kind):
+        raise OptionError(
+            f"options are of type {type(options).__name__}: give {kind.__name__}(...), or leave "
+            "them out"
+        )
+    return options
+
+
+@cache
+def _default(kind: Any) -> Any:
+    """Options nobody changed: frozen, so one of them serves all."""
+    return kind()
+
+
+class _HasMethodOptions(Protocol):
+    """Options of a target that published methods measure too."""
+
+    @property
+    def robust(self) -> bool: ...
+
+    @property
+    def method_options(self) -> Any: ...
+
+
+def published_options(options: _HasMethodOptions, method: str, kind: type[Options]) -> Options:
+    """What the options of a measurement hold for a published method.
+
+    Raises
+    ------
+    OptionError
+        If they hold what the method does not have.
+    """
+    if not options.robust:
+        raise OptionError(
+            f"robust=False (--no-robust) is a choice of the reference method: {method} bounds no "
+            "weights, so leave it out"
+        )
+    chosen = options.method_options
+    if chosen is None:
+        return kind()
+    if not isinstance(chosen, kind):
+        raise OptionError(
+            f"method_options are {type(chosen).__name__}: method {method} takes {kind.__name__}"
+        )
+    return chosen
+
 
 _WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "text"}
 
 
-def require_kinds(options: object) -> None:
-    """Refuse a field of a dataclass that is not of the kind its class declares.
+def require_types(options: object) -> None:
+    """Refuse a field of a dataclass that is not of the type its class declares.
 
     Parameters
     ----------
@@ -32,7 +104,7 @@ def require_kinds(options: object) -> None:
         Names the class, the field, what was given and what it has to be.
     """
     # To mypy a class hashes as its objects do.
-    for name, kind in _declared_by(cast(Hashable, type(options))).items():
+    for name, kind in _declared_types(cast(Hashable, type(options))).items():
         value = getattr(options, name)
         if not _is_of(value, kind):
             raise OptionError(
@@ -41,7 +113,7 @@ def require_kinds(options: object) -> None:
 
 
 @cache
-def _declared_by(of: Any) -> dict[str, Any]:
+def _declared_types(of: Any) -> dict[str, Any]:
     return get_type_hints(of)
 
 

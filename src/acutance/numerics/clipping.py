@@ -1,0 +1,53 @@
+"""Clipped pixels: at the detector's limit, or piled up at an end of what the values reach."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+
+__all__ = ["at_limit_share", "clipped_share", "piled_up_share"]
+
+_MIN_PILED_UP = 5
+_MIN_EXCESS = 3
+
+
+def clipped_share(
+    values: Floats, saturation_level: float | None = None, *, noisy: bool = True
+) -> float:
+    """Share of some pixels, (n,), that reach the detector's limit or pile up at either end.
+
+    Parameters
+    ----------
+    values : (n,) array
+    saturation_level : float or None
+        The largest value the detector can give.
+    noisy : bool, optional
+        Whether noise should have spread the values: uniform ground in an image without noise is
+        all one number, and no sign of clipping.
+    """
+    limit = at_limit_share(values, saturation_level)
+    if not noisy:
+        return limit
+    return max(limit, piled_up_share(values), piled_up_share(-values))
+
+
+def at_limit_share(values: Floats, saturation_level: float | None) -> float:
+    """Share of some pixels, (n,), that have the largest value the detector can give."""
+    if saturation_level is None or values.size == 0:
+        return 0.0
+    return float(np.mean(values >= saturation_level))
+
+
+def piled_up_share(values: Floats) -> float:
+    """Share of some pixels, (n,), that have the largest value of all, where it is more than chance.
+
+    Clipping before writing leaves many pixels at the end and few next to it; noise has few at its
+    end.
+    """
+    _, counts = np.unique(values, return_counts=True)
+    if counts.size == 0:
+        return 0.0
+    last, before = int(counts[-1]), int(counts[-2]) if counts.size > 1 else 0
+    piled_up = last >= _MIN_PILED_UP and last > _MIN_EXCESS * before
+    return last / values.size if piled_up else 0.0

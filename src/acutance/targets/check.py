@@ -1,0 +1,271 @@
+"""Checks: what is asked of a target, what was found, and the verdict that follows.
+
+The questions of all kinds of target, with their limits, sources and advice, stand in
+`acutance.targets.check_table`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from numbers import Real
+from typing import Any, Literal, overload
+
+from acutance.errors import OptionError
+from acutance.targets.check_table import QUESTIONS, Sense, Severity
+
+__all__ = [
+    "MAX_RATIO",
+    "Check",
+    "Checks",
+    "Limits",
+    "Verdict",
+    "VerdictWord",
+    "answer",
+    "bounded_ratio",
+    "count_failed",
+    "limit_of",
+    "require_limits",
+    "verdict_of",
+]
+
+Limits = Mapping[str, float]
+"""Limits that a caller sets instead of those of the table, by the names of the checks."""
+
+VerdictWord = Literal["good", "usable", "doubtful", "invalid"]
+
+MAX_RATIO = 999.0
+"""Stands for a ratio without bound: nothing disturbs."""
+
+_WORDS: dict[Severity, VerdictWord] = {"fail": "invalid", "caution": "doubtful", "note": "usable"}
+
+
+@dataclass(frozen=True)
+class Check:
+    """One question asked of a target, with what was found and what is asked.
+
+    Parameters
+    ----------
+    name : str
+        The question's name in `QUESTIONS`.
+    value : float
+        What was found.
+    sense : {">=", "<="}
+        Whether the limit is a minimum or a maximum.
+    limit : float
+        What is asked.
+    passed : bool
+    message : str
+        What was found, in words; where the limit is not kept, also what it means and what to do.
+    severity : {"note", "caution", "fail"}
+        What it means if it does not pass: wide intervals; a bias that the intervals may not hold;
+        numbers that mean nothing.
+    """
+
+    name: str
+    value: float
+    sense: Sense
+    limit: float
+    passed: bool
+    message: str
+    severity: Severity = "caution"
+
+    @property
+    def asked(self) -> str:
+        """The limit as text: ">= 50"."""
+        return f"{self.sense} {self.limit:g}"
+
+    @property
+    def question(self) -> str:
+        """What is asked, as a sentence; empty for a check that the table does not have."""
+        found = QUESTIONS.get(self.name)
+        return "" if found is None else found.question
+
+    @property
+    def source(self) -> str:
+        """Where the limit comes from; empty where simulations of this program set it."""
+        found = QUESTIONS.get(self.name)
+        return "" if found is None else found.source
+
+    def to_dict(self) -> dict[str, Any]:
+        """The check for JSON: `limit` as text, `limit_value` as a number."""
+        return {
+            "name": self.name,
+            "value": self.value if math.isfinite(self.value) else None,
+            "limit": self.asked,
+            "sense": self.sense,
+            "limit_value": self.limit if math.isfinite(self.limit) else None,
+            "severity": self.severity,
+            "passed": self.passed,
+            "message": self.message,
+        }
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> Check:
+        """The check that `to_dict` wrote; of older documents the limit is read from its text."""
+        sense, _, number = str(document["limit"]).partition(" ")
+        limit = document.get("limit_value", number or math.nan)
+        value = document["value"]
+        return cls(
+            str(document["name"]),
+            math.nan if value is None else float(value),
+            "<=" if sense == "<=" else ">=",
+            math.nan if limit is None else float(limit),
+            bool(document["passed"]),
+            str(document["message"]),
+            document.get("severity", "caution"),
+        )
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the checks of a measurement come to.
+
+    Parameters
+    ----------
+    word : {"good", "usable", "doubtful", "invalid"}
+        All checks passed; only notes failed (the intervals are wide, but hold); a check failed
+        that may bias the numbers; the numbers mean nothing.
+    sentence : str
+        What matters most.
+    """
+
+    word: VerdictWord
+    sentence: str
+
+    def __str__(self) -> str:
+        return f"{self.word}: {self.sentence}"
+
+
+def limit_of(name: str, limits: Limits) -> float:
+    """The limit of a check: the caller's, or that of the table."""
+    return limits.get(name, QUESTIONS[name].limit)
+
+
+def answer(
+    name: str,
+    value: float,
+    found: str,
+    limits: Limits,
+    *,
+    default: float | None = None,
+    advice: str | None = None,
+) -> Check:
+    """Ask one question of the table.
+
+    Parameters
+    ----------
+    name : str
+        Of the question.
+    value : float
+        What was found.
+    found : str
+        The same in words.
+    limits : mapping of str to float
+        Limits the caller changed.
+    default : float, optional
+        The limit of a method for which the table's means nothing.
+    advice : str, optional
+        What to do, where the target at hand tells more than the table.
+    """
+    asked = QUESTIONS[name]
+    limit = limits.get(name, asked.limit if default is None else default)
+    passed = bool(value >= limit if asked.sense == ">=" else value <= limit)
+    advice = asked.advice if advice is None else advice
+    message = found if passed or not advice else f"{found}: {advice}"
+    return Check(name, float(value), asked.sense, limit, passed, message, asked.severity)
+
+
+def bounded_ratio(over: float, under: float) -> float:
+    """A ratio, at most `MAX_RATIO`: beyond it nobody asks how large it is."""
+    return min(over / under, MAX_RATIO) if under > 0 else MAX_RATIO
+
+
+def count_failed(checks: Sequence[Check]) -> str:
+    """ "2 of 17 checks failed (rows, profile)"."""
+    failed = [check.name for check in checks if not check.passed]
+    names = f" ({', '.join(failed)})" if failed else ""
+    return f"{len(failed)} of {len(checks)} checks failed{names}"
+
+
+def verdict_of(checks: Iterable[Check]) -> Verdict:
+    """The verdict: that of the gravest check that failed, with what it says."""
+    failed = [check for check in checks if not check.passed]
+    if not failed:
+        return Verdict("good", "every check passed")
+    gravest = max(failed, key=lambda check: list(_WORDS)[::-1].index(check.severity))
+    return Verdict(_WORDS[gravest.severity], gravest.message)
+
+
+def require_limits(limits: Any, known: Sequence[str], options: str) -> None:
+    """Refuse limits that no check has, and those that are no numbers.
+
+    Parameters
+    ----------
+    limits : mapping of str to float
+    known : sequence of str
+        The checks of the kind of target.
+    options : str
+        The class that holds them, for the message.
+
+    Raises
+    ------
+    OptionError
+        Names the limit, and those that there are.
+    """
+    if not isinstance(limits, Mapping):
+        raise OptionError(
+            f"{options}: limits has to be a dict of numbers by the names of checks, found "
+            f"{limits!r:.80}"
+        )
+    for name, limit in limits.items():
+        if name not in known:
+            raise OptionError(
+                f"{options}: there is no check {name!r} to limit, only {', '.join(sorted(known))}"
+            )
+        if not isinstance(limit, Real) or isinstance(limit, bool) or math.isnan(limit):
+            raise OptionError(f"{options}: the limit of {name} has to be a number, found {limit!r}")
+
+
+class Checks(Sequence[Check]):
+    """Checks of a target, answered when somebody first reads them: they cost as much as a fit.
+
+    Parameters
+    ----------
+    ask : function without arguments
+        Gives the checks.
+    """
+
+    def __init__(self, ask: Callable[[], tuple[Check, ...]]) -> None:
+        self._ask = ask
+
+    @cached_property
+    def answers(self) -> tuple[Check, ...]:
+        """All checks."""
+        return self._ask()
+
+    def __repr__(self) -> str:
+        return f"<{count_failed(self.answers)}>"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and self.answers == tuple(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[type, tuple[tuple[Check, ...]]]:
+        # What the answers were read from (pixels, fits) stays where it is.
+        return tuple, (self.answers,)
+
+    def __len__(self) -> int:
+        return len(self.answers)
+
+    @overload
+    def __getitem__(self, index: int) -> Check: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Check, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Check | tuple[Check, ...]:
+        return self.answers[index]

@@ -1,0 +1,348 @@
+"""Every question asked of a target: its limit, what a failure means and what to do, its source.
+
+Sources: the KOMPSAT-3 draft (Lee et al. 2014); Li et al., "On-orbit MTF estimation methods"; the
+QuickBird report (Helder et al. 2003); the pulse report (Helder and Choi 2005). Limits without a
+source were set by simulation: documentation, "Edges", "Pulses", "Points" and so on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+__all__ = ["QUESTIONS", "Question", "Sense", "Severity"]
+
+Sense = Literal[">=", "<="]
+Severity = Literal["note", "caution", "fail"]
+
+
+@dataclass(frozen=True)
+class Question:
+    """One question.
+
+    Parameters
+    ----------
+    question : str
+    sense : {">=", "<="}
+        Whether the limit is a minimum or a maximum.
+    limit : float
+        The default limit.
+    advice : str
+        What it means where the limit is not kept, and what to do.
+    source : str
+        Where the limit comes from.
+    severity : {"note", "caution", "fail"}
+        note: the intervals are wide, or a fact to know. caution: a bias that the intervals may not
+        hold. fail: the numbers mean nothing.
+    """
+
+    question: str
+    sense: Sense
+    limit: float
+    advice: str
+    source: str = ""
+    severity: Severity = "caution"
+
+
+_RESAMPLED = (
+    "a resampled product, textured background, or structure the fit does not follow; the intervals "
+    "allow for correlated noise, and the MTF is the product's"
+)
+
+_ANY_TARGET = {
+    "contrast_snr": Question(
+        "How large is the contrast beside the noise?", ">=", 50.0,
+        "the intervals widen; choose a target of more contrast, or a longer one",
+        "KOMPSAT-3 draft 3c; pulse report 3.4", "note",
+    ),
+    "saturation": Question(
+        "Which share of the pixels is clipped at an end of the scale?", "<=", 0.001,
+        "the target's height and shape are then not what the sensor saw", severity="fail",
+    ),
+    "correlated_noise": Question(
+        "How much do neighbouring pixels' noise correlate?", "<=", 0.1, _RESAMPLED, severity="note",
+    ),
+    "outliers": Question(
+        "Which share of the pixels lies far from the fit?", "<=", 0.02,
+        "objects on the target, or a fit that does not hold; choose a cleaner region",
+    ),
+}  # fmt: skip
+
+_PLATEAUS = {
+    "dark": "on the dark side",
+    "bright": "on the bright side",
+    "before": "before the pulse",
+    "behind": "behind the pulse",
+}
+
+_STRAIGHT = {
+    **{
+        f"uniformity_{side}": Question(
+            f"How uniform is the plateau {where}, contrast over variation?", ">=", 50.0,
+            "choose a more uniform background", "KOMPSAT-3 draft 3b",
+        )
+        for side, where in _PLATEAUS.items()
+    },
+    "uniformity_target": Question(
+        "How uniform is the pulse itself, height over variation?", ">=", 50.0,
+        "seams, dirt, a ridge or sides that are not straight", "as KOMPSAT-3 draft 3b",
+    ),
+    "angle_deg": Question(
+        "How inclined is the edge to the grid?", "<=", 45.0,
+        "use the method spline, or another edge",
+        "KOMPSAT-3 draft 3d (30 degrees for methods that work row by row)",
+    ),
+    "sample_phases": Question(
+        "How many sub-pixel phases do the samples have?", ">=", 3.0,
+        "with so few phases fine structure is not determined and the intervals are wider",
+        severity="note",
+    ),
+    "rows": Question(
+        "How many rows of the edge are used?", ">=", 20.0,
+        "the intervals are wide; choose a region with more of it",
+        "KOMPSAT-3 draft 3e (more than 10 to 20)", "note",
+    ),
+    "straightness_px": Question(
+        "How far does the edge leave its line?", "<=", 0.05, "choose a straighter part",
+    ),
+    "blur_uniformity": Question(
+        "How much of the MTF at Nyquist does the blur change along the edge?", "<=", 0.05,
+        "another edge crosses it, or it is not equally sharp everywhere; choose a shorter part",
+    ),
+    "edge_roughness_px": Question(
+        "How far does the edge move to and fro from pixel to pixel?", "<=", 0.05,
+        "it is rough, another edge crosses it, or the fit does not follow; choose another part",
+    ),
+    "lsf_width_px": Question(
+        "Is the LSF as wide as that of any detector?", ">=", 0.5,
+        "no detector is that narrow: the numbers are no sampled light (wrapped around the end of "
+        "their type, thresholded, or drawn)", severity="fail",
+    ),
+    **{
+        f"plateau_{side}_px": Question(
+            f"How wide is the uniform plateau {where}?", ">=", 7.0,
+            "what lies further of a halo is not seen and raises the MTF", "Li et al. 4.2 (7 to 10)",
+        )
+        for side, where in _PLATEAUS.items()
+    },
+    "quantisation": Question(
+        "How many steps of the image's numbers is the noise?", ">=", 0.55,
+        "so much rounding is no noise: it is equal for the pixels of a plateau and shifts its "
+        "level by more than the intervals say; use data of more bits",
+    ),
+    "gradient": Question(
+        "How steep is the background far from the target, beside an aperture's wings?", "<=", 1.0,
+        "the fit cannot separate a slope from a wide halo; choose a region with flat sides",
+    ),
+    "structure": Question(
+        "How much does the profile go up and down beside the edge?", "<=", 0.02,
+        "something else lies there, and its spectrum is taken for the sensor's",
+    ),
+    "asymmetric_wings": Question(
+        "Do the far wings of the LSF hold equal light on both sides?", "<=", 0.01,
+        "no halo does this; a step of the background parallel to the edge does, or a long charge "
+        "trail; choose another side or a narrower region",
+    ),
+    "profile": Question(
+        "How far do the pixels leave the fit in the same way all along the target?", "<=", 0.0005,
+        "lines parallel to it, a pulse that is not of one brightness, or ringing finer than the "
+        "fit follows; the intervals do not allow for it",
+    ),
+    "parallel_deg": Question(
+        "Are the two sides of the pulse parallel?", "<=", 0.5,
+        "the width changes along the target; choose another part, or another target",
+        "Li et al. 3.2",
+    ),
+    "background_step": Question(
+        "How much do the backgrounds before and behind the pulse differ?", "<=", 0.25,
+        "the joint fit allows for it, the ratio to a symmetric pulse does not",
+    ),
+    "width_px": Question(
+        "Is the pulse wide enough?", ">=", 2.0,
+        "the narrower, the less signal; use a target of three times the GSD",
+        "Li et al. 3.2", "note",
+    ),
+    "width_sigmas": Question(
+        "Does the stated width agree with the image?", "<=", 3.0,
+        "measure the target again, and check the GSD",
+    ),
+    "zero_distance_cpp": Question(
+        "How far are the reported frequencies from the zeros of the pulse's spectrum?", ">=", 0.08,
+        "the ratio is unusable at a zero and uncertain near it; use method spline, or a target of "
+        "another width", "Li et al. 3.2",
+    ),
+}  # fmt: skip
+
+_POINTS = {
+    "sources": Question(
+        "How many sources were measured?", ">=", 15.0,
+        "the intervals are wide; 15 to 20 give a reasonable result", "Li et al. 2.2", "note",
+    ),
+    "peak_snr": Question(
+        "How many times the background's noise is the median source's peak?", ">=", 50.0,
+        "the intervals widen; use larger mirrors, or more of them", "QuickBird report 3.6", "note",
+    ),
+    "spacing_px": Question(
+        "How far apart are the two nearest sources?", ">=", 5.0,
+        "their wings overlap; set them further apart", "QuickBird report 5.7.2; Li et al. 2.2",
+    ),
+    "phase_gap_px": Question(
+        "How large is the gap in the sub-pixel phases?", "<=", 0.25,
+        "fine structure is not determined and the intervals are wider; steps of 0.2 by 0.25 px "
+        "leave 0.16", "QuickBird report 5.7.2", "note",
+    ),
+    "full_scale": Question(
+        "Where in the detector's range is the brightest pixel?", "<=", 0.9,
+        "near its end the detector may not be linear; about 75 % is best", "Li et al. 2.2",
+    ),
+    "source_misfit": Question(
+        "How many times the noise are the residuals of the worst source?", "<=", 1.5,
+        "it is no point, or the PSF differs over the region; leave it out",
+    ),
+    "background_uniformity": Question(
+        "How much do the backgrounds differ, beside the median peak?", "<=", 0.05,
+        "use a uniform grassy area", "QuickBird report 4.4",
+    ),
+    "survey_px": Question(
+        "How far are the measured places from the surveyed ones?", "<=", 0.1,
+        "check the survey, or the order of its points", "QuickBird report 5.7.3 (0.017 to 0.047)",
+    ),
+}  # fmt: skip
+
+_PERIODIC = {
+    "level": Question(
+        "How well is the contrast before the sensor known?", "<=", 0.01,
+        "it scales the whole MTF: state the levels of wide patches of the same materials (dark and "
+        "bright), add a group of wide bars, or use a star with fewer cycles or a larger radius",
+    ),
+    "coarsest_cpp": Question(
+        "Which is the lowest frequency of the target?", "<=", 0.2,
+        "below it the MTF is continued to 1 at zero frequency, not measured", severity="note",
+    ),
+    "finest_cpp": Question(
+        "Which is the highest frequency of the target?", ">=", 0.4,
+        "beyond it the MTF is continued, not measured", severity="note",
+    ),
+    "bars": Question(
+        "How many bars has the smallest group?", ">=", 3.0,
+        "with fewer than 3 its frequency is not one",
+    ),
+    "bar_directions": Question(
+        "In how many directions do the bars point?", ">=", 1.0,
+        "other directions follow from what all sensors have in common, with wide intervals",
+        severity="note",
+    ),
+    "misfit": Question(
+        "How many times the noise are the residuals of the worst group?", "<=", 1.5,
+        "it may be damaged, or have other bars than it was taken for",
+    ),
+    "sweep_deg": Question(
+        "Which angle of directions does the star hold?", ">=", 90.0,
+        "the other directions follow from what all sensors have in common, with wide intervals",
+        severity="note",
+    ),
+    "wave": Question(
+        "Which share of the contrast is a third harmonic that the stated wave does not have?",
+        "<=", 0.01,
+        "the star may be a square wave instead of a sine, or the other way round, or bright and "
+        "dark spokes may not be equally wide",
+    ),
+}  # fmt: skip
+
+_PAIR = {
+    "ratio": Question(
+        "How many times finer are the high image's pixels?", ">=", 2.0,
+        "its own blur and aliasing count the less the finer it is", "Li et al. 5.2",
+    ),
+    "reference_mtf": Question(
+        "Which is the high image's own MTF at the low one's Nyquist frequency?", ">=", 0.5,
+        "it is divided out, and every per cent it is wrong by is in the result",
+        "Li et al. 5.1, 5.2",
+    ),
+    "reference_directions": Question(
+        "In how many directions was the reference measured?", ">=", 2.0,
+        "the one is taken for all: smear or asymmetry of its sensor is then in the result; combine "
+        "measurements in two directions, or use points or a star",
+    ),
+    "correlation": Question(
+        "How much do the low image and the blurred high one correlate?", ">=", 0.9,
+        "other bands, dates or views show other things", "Li et al. 5.1",
+    ),
+    "coherence": Question(
+        "Which share of the low image's detail at Nyquist does the high one explain?", ">=", 0.1,
+        "the rest is noise, aliasing and what the two see differently; choose a region with roads, "
+        "shorelines, buildings", "Li et al. 5.2", "note",
+    ),
+    "pixels": Question(
+        "How many low pixels were used?", ">=", 2000.0,
+        "the standard deviations fall with their root; choose a larger region", severity="note",
+    ),
+    "left_out": Question(
+        "Which share of the low pixels does not fit the rest?", "<=", 0.2,
+        "clouds, shadows, changes between the two dates, defects: mask them, or choose another "
+        "region",
+    ),
+    "registration_px": Question(
+        "How much do the images shift against each other from place to place?", "<=", 0.1,
+        "that blurs the kernel; choose a smaller region",
+    ),
+    "shift_px": Question(
+        "How far does the low image lie off its geometry?", "<=", 3.0,
+        "measured and allowed for, but a sign of a wrong pair or ratio", severity="note",
+    ),
+    "residual_correlation": Question(
+        "How much do neighbouring residuals correlate?", "<=", 0.2,
+        "the two bands see different colours, or the scene changed; the fit whitens the residuals "
+        "and the intervals allow for it, but a difference that looks like blur stays in the MTF",
+    ),
+    "inflation": Question(
+        "How many times more than white residuals explain do the regions scatter?", "<=", 2.0,
+        "the standard deviations were raised by that", severity="note",
+    ),
+    "iteration_change": Question(
+        "Did the parametric fit settle, change over threshold?", "<=", 1.0,
+        "allow more steps, or a larger threshold", "Li et al. 5.3",
+    ),
+}  # fmt: skip
+
+_COMBINED = {
+    "agreement": Question(
+        "Which is the chance of a larger chi-square, if the measurements agree?", ">=", 0.01,
+        "they differ by more than their deviations explain, which were widened for it",
+    ),
+    "worst_member": Question(
+        "Which is that chance for the measurement that fits least?", ">=", 0.01,
+        "leave it out, or find why it differs",
+    ),
+    "plain_sensor": Question(
+        "Which is that chance for the best product of OTF blocks?", ">=", 0.01,
+        "its parameters are only a description", severity="note",
+    ),
+    "directions": Question(
+        "How many directions differ by 15 degrees?", ">=", 3.0,
+        "rotation and asymmetry follow from the prior alone: add an edge at 30 to 60 degrees, "
+        "points or a star", severity="note",
+    ),
+    "failed_inputs": Question(
+        "How many measurements have a failed check of their own?", "<=", 0.0,
+        "read what those checks say, or leave the measurements out",
+    ),
+    "shared_targets": Question(
+        "How many pairs of measurements used the same pixels?", "<=", 0.0,
+        "the same pixels count only once, or the deviations become too small",
+    ),
+    "assumed_covariance": Question(
+        "How many measurements come without covariance?", "<=", 0.0,
+        "errors at frequencies within 0.08 c/px are taken to be equal: write the JSON again with "
+        "this version", severity="note",
+    ),
+    "unknown_gsd": Question(
+        "How many measurements come without a GSD, where others have one?", "<=", 0.0,
+        "their pixels may be others: state the GSD when measuring, or that of all when combining",
+    ),
+}  # fmt: skip
+
+QUESTIONS: dict[str, Question] = {
+    **_ANY_TARGET, **_STRAIGHT, **_POINTS, **_PERIODIC, **_PAIR, **_COMBINED,
+}  # fmt: skip
+"""All questions by name; each kind of target asks some of them."""

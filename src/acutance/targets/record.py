@@ -1,0 +1,352 @@
+"""The light half of a measurement: numbers, curves, covariance, checks and provenance, no pixels.
+
+A `Record` is the JSON document ``acutance/measurement/1`` with names to read it by. It is what files,
+archives, pages and combinations keep of a measurement; pickled or stored it takes some ten kB.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.curves import METRICS, Estimate
+from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
+from acutance.errors import OptionError
+from acutance.raster.image import AlongTrack
+from acutance.targets.check import Check, Verdict, count_failed, verdict_of
+from acutance.targets.slices import PlaneSlices
+
+__all__ = ["SCHEMA", "ImageInfo", "Record", "RecordedDirection", "rounded"]
+
+SCHEMA = "acutance/measurement/1"
+
+_REQUIRED = ("schema", "kind", "method", "image", "snr", "checks", "options", "measured_at")
+_SQUARE = 1e-9
+
+
+@dataclass(frozen=True)
+class ImageInfo:
+    """Where the pixels came from.
+
+    Parameters
+    ----------
+    path : str or None
+        The file; ``None`` for an array in memory.
+    band : int
+        From 1.
+    roi : (int, int, int, int)
+        Row, column, height and width of the region, in pixels of the whole image.
+    crs : str or None
+    along_track : {"y", "x"}
+        The image axis the satellite flew along.
+    pixel_gsd_m : (float, float) or None
+        GSD from row to row and from column to column.
+    """
+
+    path: str | None = None
+    band: int = 1
+    roi: tuple[int, int, int, int] = (0, 0, 0, 0)
+    crs: str | None = None
+    along_track: AlongTrack = "y"
+    pixel_gsd_m: tuple[float, float] | None = None
+
+    @property
+    def gsd_m(self) -> float | None:
+        """The GSD of square pixels; ``None`` where it is not known, or differs by direction."""
+        if self.pixel_gsd_m is None:
+            return None
+        row_m, col_m = self.pixel_gsd_m
+        return col_m if math.isclose(row_m, col_m, rel_tol=_SQUARE) else None
+
+    def gsd_along(self, normal_deg: float) -> float | None:
+        """GSD along a direction, from the column axis (0) towards the row axis (90)."""
+        if self.pixel_gsd_m is None:
+            return None
+        row_m, col_m = self.pixel_gsd_m
+        angle = math.radians(normal_deg)
+        return 1.0 / math.hypot(math.cos(angle) / col_m, math.sin(angle) / row_m)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All fields by name, for JSON."""
+        return {
+            "path": self.path,
+            "band": self.band,
+            "gsd_m": self.gsd_m,
+            "pixel_gsd_m": None if self.pixel_gsd_m is None else list(self.pixel_gsd_m),
+            "roi": list(self.roi),
+            "crs": self.crs,
+            "along_track": self.along_track,
+        }
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> ImageInfo:
+        """What `to_dict` wrote; older documents knew but one GSD, of square pixels."""
+        row, col, height, width = document["roi"]
+        sides, gsd_m = document.get("pixel_gsd_m"), document.get("gsd_m")
+        if sides is None and gsd_m is not None:
+            sides = (gsd_m, gsd_m)
+        return cls(
+            document["path"],
+            int(document.get("band", 1)),
+            (int(row), int(col), int(height), int(width)),
+            document.get("crs"),
+            "x" if document.get("along_track", "y") == "x" else "y",
+            None if sides is None else (float(sides[0]), float(sides[1])),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedDirection(OneLine):
+    """Numbers and curves of one direction, as a document holds them.
+
+    Parameters
+    ----------
+    document : mapping
+        The part of the document: numbers, and the curves "mtf", "lsf" and "esf".
+    """
+
+    document: Mapping[str, Any]
+
+    @cached_property
+    def numbers(self) -> dict[str, Estimate]:
+        """All numbers by name, in the order a report prints them."""
+        return {
+            name: estimate_of(self.document[name])
+            for name in METRICS
+            if self.document.get(name) is not None
+        }
+
+    @property
+    def mtf_nyquist(self) -> Estimate:
+        """MTF at 0.5 cycles per pixel."""
+        return self.numbers["mtf_nyquist"]
+
+    @property
+    def rer(self) -> Estimate:
+        """Relative edge response."""
+        return self.numbers["rer"]
+
+    @property
+    def fwhm_px(self) -> Estimate:
+        """Full width of the LSF at half maximum, pixels."""
+        return self.numbers["fwhm_px"]
+
+    def curve(self, name: str) -> tuple[Floats, Floats, Floats]:
+        """Places, values and standard deviations of a curve, (n,) each.
+
+        Parameters
+        ----------
+        name : {"mtf", "lsf", "esf"}
+        """
+        found = self.document[name]
+        place = "freq_cpp" if name == "mtf" else "distance_px"
+        at, value, std = (np.array(found[key], float) for key in (place, "value", "std"))
+        return at, value, std
+
+    def in_words(self) -> str:
+        """The three numbers everybody asks for."""
+        return f"mtf_nyquist {self.mtf_nyquist}, rer {self.rer}, fwhm_px {self.fwhm_px}"
+
+
+@dataclass(frozen=True, eq=False)
+class Record(OneLine):
+    """A measurement without its pixels: the document ``acutance/measurement/1``, read by name.
+
+    Parameters
+    ----------
+    document : mapping
+        Strict JSON types. What this version does not know is kept as it is.
+
+    Examples
+    --------
+    >>> record = ac.Record.from_dict(json.loads(text))  # doctest: +SKIP
+    >>> record.across.mtf_nyquist, record.verdict.word  # doctest: +SKIP
+    """
+
+    document: Mapping[str, Any]
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> Record:
+        """The record of a document.
+
+        Raises
+        ------
+        OptionError
+            If it is none of a measurement, or damaged.
+        """
+        schema = document.get("schema") if isinstance(document, Mapping) else None
+        if schema != SCHEMA:
+            raise OptionError(
+                f"this is no document {SCHEMA} (its schema is {schema!r}): write one with a "
+                "measuring command and --json, or with to_dict()"
+            )
+        missing = [name for name in _REQUIRED if name not in document]
+        if missing:
+            raise OptionError(f"the document lacks {', '.join(missing)}: it was cut or changed")
+        record = cls(document)
+        try:
+            _ = record.image, record.checks, record.directions
+        except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
+            raise OptionError(
+                f"the document cannot be read as a measurement ({error!r})"
+            ) from error
+        return record
+
+    def to_dict(self) -> dict[str, Any]:
+        """The document; nothing is lost by `from_dict`."""
+        return dict(self.document)
+
+    def to_bytes(self) -> bytes:
+        """The document as compressed JSON: what a file or an archive stores."""
+        text = json.dumps(_finite(self.document), ensure_ascii=False, separators=(",", ":"))
+        return zlib.compress(text.encode(), 9)
+
+    @classmethod
+    def from_bytes(cls, stored: bytes) -> Record:
+        """The record that `to_bytes` stored."""
+        return cls.from_dict(json.loads(zlib.decompress(stored)))
+
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]:
+        return Record.from_bytes, (self.to_bytes(),)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Record):
+            return NotImplemented
+        return bool(_finite(self.document) == _finite(other.document))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @property
+    def kind(self) -> str:
+        """The target."""
+        return str(self.document["kind"])
+
+    @property
+    def method(self) -> str:
+        """The estimator."""
+        return str(self.document["method"])
+
+    @cached_property
+    def image(self) -> ImageInfo:
+        """Where the pixels came from."""
+        return ImageInfo.from_dict(self.document["image"])
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """What was asked of the target."""
+        return tuple(map(Check.from_dict, self.document["checks"]))
+
+    @property
+    def failed_checks(self) -> tuple[Check, ...]:
+        """The checks that did not pass."""
+        return tuple(check for check in self.checks if not check.passed)
+
+    @property
+    def trusted(self) -> bool:
+        """Whether every check passed."""
+        return not self.failed_checks
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the checks come to."""
+        return verdict_of(self.checks)
+
+    @cached_property
+    def directions(self) -> dict[str, RecordedDirection]:
+        """Numbers and curves by direction: "across", "along", or both."""
+        if "orientation" in self.document:
+            return {str(self.document["orientation"]): RecordedDirection(self.document)}
+        return {name: RecordedDirection(self.document[name]) for name in ("across", "along")}
+
+    @property
+    def across(self) -> RecordedDirection:
+        """Numbers and curves across track."""
+        return self._direction("across")
+
+    @property
+    def along(self) -> RecordedDirection:
+        """Numbers and curves along track."""
+        return self._direction("along")
+
+    def _direction(self, name: str) -> RecordedDirection:
+        found = self.directions.get(name)
+        if found is None:
+            raise AttributeError(
+                f"this {self.kind} was measured {' and '.join(self.directions)} track, not {name}"
+            )
+        return found
+
+    @cached_property
+    def slices(self) -> PlaneSlices:
+        """The OTF along the measured directions, with its covariance.
+
+        Raises
+        ------
+        OptionError
+            If the document does not hold them.
+        """
+        if "plane" not in self.document:
+            raise OptionError(
+                "the document holds no slices of the OTF (plane): write it again with this version"
+            )
+        return PlaneSlices.from_dict(self.document["plane"])
+
+    @property
+    def snr(self) -> float:
+        """Signal to noise ratio; ``nan`` where none is known."""
+        snr = self.document["snr"]
+        return math.nan if snr is None else float(snr)
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """The options of the measurement."""
+        options: Mapping[str, Any] = self.document["options"]
+        return options
+
+    @property
+    def measured_at(self) -> datetime:
+        """When (UTC)."""
+        return datetime.fromisoformat(self.document["measured_at"])
+
+    def in_words(self) -> str:
+        """Target and method, the main numbers, and how many checks failed."""
+        named = (f"{name}: {one.in_words()}" for name, one in self.directions.items())
+        return f"{self.kind} by {self.method}, {', '.join(named)}, {count_failed(self.checks)}"
+
+
+def estimate_of(document: Mapping[str, Any]) -> Estimate:
+    """The number that `Estimate.to_dict` wrote."""
+    value, std = (
+        math.nan if document.get(key) is None else float(document[key]) for key in ("value", "std")
+    )
+    return Estimate(value, std)
+
+
+def rounded(values: ArrayLike, digits: int = 6) -> list[Any]:
+    """Numbers of a curve as lists, with so many significant digits: a document has no more."""
+    array = np.asarray(values, float)
+    finite = np.where(np.isfinite(array) & (array != 0), np.abs(array), 1.0)
+    scale = 10.0 ** (digits - 1 - np.floor(np.log10(finite)))
+    listed: list[Any] = (np.round(array * scale) / scale).tolist()
+    return listed
+
+
+def _finite(value: Any) -> Any:
+    """Strict JSON: what is not a finite number becomes null."""
+    if isinstance(value, Mapping):
+        return {str(key): _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
