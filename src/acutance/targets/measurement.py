@@ -1,4 +1,4 @@
-"""A measurement: numbers and curves of one direction or of two, checks, provenance, and evidence."""
+"""A measurement: numbers and curves of one direction or two, checks, provenance, details."""
 
 from __future__ import annotations
 
@@ -102,18 +102,11 @@ class Measurement(HasResponse):
         """The curves by direction: "across", "along", or both."""
         if isinstance(self.transfer, Response):
             return {self.orientation: self.transfer}
+        across_deg = 0.0 if self.image.along_track == "y" else 90.0
         return {
-            "across": self.response_at(self._across_deg),
-            "along": self.response_at(self._along_deg),
+            "across": self.response_at(across_deg),
+            "along": self.response_at(90.0 - across_deg),
         }
-
-    @property
-    def _across_deg(self) -> float:
-        return 0.0 if self.image.along_track == "y" else 90.0
-
-    @property
-    def _along_deg(self) -> float:
-        return 90.0 - self._across_deg
 
     @property
     def across(self) -> Response:

@@ -1,7 +1,7 @@
 """The light half of a measurement: numbers, curves, covariance, checks and provenance, no pixels.
 
-A `Record` is the JSON document ``acutance/measurement/1`` with names to read it by. It is what files,
-archives, pages and combinations keep of a measurement; pickled or stored it takes some ten kB.
+A `Record` is the JSON document ``acutance/measurement/1`` with names to read it by. It is what
+files, archives, pages and combinations keep of a measurement; stored it takes some ten kB.
 """
 
 from __future__ import annotations
