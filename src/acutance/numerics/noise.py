@@ -129,7 +129,7 @@ class Correlation:
     significance: float
 
     @property
-    def told(self) -> float:
+    def significant(self) -> float:
         """Modulus of the strongest correlation, 0 where chance explains it: what checks judge."""
         return abs(self.strongest) if self.significance >= _SIGNIFICANT else 0.0
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import types
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from functools import cache
 from numbers import Integral, Real
 from typing import (
@@ -125,6 +125,9 @@ def _is_of(value: Any, kind: Any) -> bool:
         return isinstance(value, str | int) and value in parts
     if origin is tuple:
         return _are_of(value, parts)
+    if origin is Mapping:
+        # What it maps is checked by `require_limits`, which knows the names.
+        return isinstance(value, Mapping)
     if kind is bool:
         return isinstance(value, bool | np.bool_)
     if kind in (int, float):
@@ -154,4 +157,6 @@ def _word(kind: Any) -> str:
         return f"({', '.join(map(_word, parts))})"
     if kind is types.NoneType:
         return "None"
+    if origin is Mapping:
+        return "a dict"
     return _WORDS.get(kind, f"{kind.__name__}(...)")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from acutance.curves import Estimate
 from acutance.curves.one_line import OneLine
@@ -12,6 +12,8 @@ from acutance.geometry.line import Orientation
 from acutance.targets.measurement import Measurement
 
 __all__ = ["EdgeGroup", "Rejected", "TargetResult"]
+
+One = TypeVar("One", bound=Measurement, covariant=True)
 
 _MAIN = ("mtf_nyquist", "rer", "fwhm_px")
 
@@ -34,7 +36,7 @@ class Rejected:
 
 
 @dataclass(frozen=True, eq=False)
-class EdgeGroup(OneLine):
+class EdgeGroup(OneLine, Generic[One]):
     """Edges of one orientation and what they say together.
 
     Attributes
@@ -59,7 +61,7 @@ class EdgeGroup(OneLine):
     """
 
     orientation: Orientation
-    measurements: tuple[Measurement, ...]
+    measurements: tuple[One, ...]
     metrics: Mapping[str, Estimate]
     chi_square: Mapping[str, float]
     p_value: Mapping[str, float]
@@ -72,7 +74,7 @@ class EdgeGroup(OneLine):
 
 
 @dataclass(frozen=True, eq=False)
-class TargetResult(OneLine):
+class TargetResult(OneLine, Generic[One]):
     """All edges of a target.
 
     Attributes
@@ -84,9 +86,9 @@ class TargetResult(OneLine):
         By orientation.
     """
 
-    measurements: tuple[Measurement, ...]
+    measurements: tuple[One, ...]
     rejected: tuple[Rejected, ...]
-    groups: Mapping[str, EdgeGroup]
+    groups: Mapping[str, EdgeGroup[One]]
 
     def in_words(self) -> str:
         """How many edges, and the main means of each group."""

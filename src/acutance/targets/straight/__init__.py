@@ -12,16 +12,17 @@ the methods of the literature, biases included.
 
 from acutance.targets.straight.edge import METHODS, measure_edge
 from acutance.targets.straight.many_edges import measure_edges
-from acutance.targets.straight.options import EdgeLimits, EdgeOptions, PulseLimits, PulseOptions
+from acutance.targets.straight.options import EdgeOptions, PulseOptions
 from acutance.targets.straight.pulse import PULSE_METHODS, measure_pulse
+from acutance.targets.straight.straight_measurement import StraightDetails, StraightMeasurement
 
 __all__ = [
     "METHODS",
     "PULSE_METHODS",
-    "EdgeLimits",
     "EdgeOptions",
-    "PulseLimits",
     "PulseOptions",
+    "StraightDetails",
+    "StraightMeasurement",
     "measure_edge",
     "measure_edges",
     "measure_pulse",

@@ -1,41 +1,27 @@
-"""What the checks of a target read, and how they answer."""
+"""What the checks of a straight target read: its pixels, with their places, after the fit."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import overload
 
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.noise import Correlation, correlation
-from acutance.targets.measurement import Check
+from acutance.numerics.noise import Correlation, correlation, robust_scale, side_variances
+from acutance.targets.check import MAX_RATIO
 from acutance.targets.straight.pixels import EdgeBand, EdgeFit
 
-__all__ = [
-    "MISFIT",
-    "MUCH",
-    "PLACES",
-    "Evidence",
-    "TargetChecks",
-    "at_least",
-    "at_most",
-    "at_most_much",
-]
-
-MUCH = 999.0
-"""Stands for a ratio without bound: nothing disturbs."""
+__all__ = ["MISFIT", "PLACES", "CheckData", "ratio_in_words"]
 
 PLACES = {
     "dark": "on the dark side",
     "bright": "on the bright side",
-    "before": "before the strip",
-    "behind": "behind the strip",
+    "before": "before the pulse",
+    "behind": "behind the pulse",
 }
-"""Where a target's two grounds lie."""
+"""Where a target's two plateaus lie."""
 
 MISFIT = 3e-4
 """Residuals below this share of the contrast are the model's own, not noise."""
@@ -45,7 +31,7 @@ _OUTLYING = 4.0
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class CheckData:
     """The pixels of a fit with their places, as the checks read them.
 
     Distances in pixels, values and residuals as shares of the contrast. `before` and `behind` are
@@ -59,8 +45,8 @@ class Evidence:
     behind: Floats
 
     @classmethod
-    def of(cls, band: EdgeBand, fit: EdgeFit, last_px: float = 0.0) -> Evidence:
-        """Evidence of a fit whose last step lies `last_px` behind its first."""
+    def of(cls, band: EdgeBand, fit: EdgeFit, last_px: float = 0.0) -> CheckData:
+        """Check data of a fit whose last step lies `last_px` behind its first."""
         return cls(band, fit, -fit.distance_px, fit.distance_px - last_px)
 
     @property
@@ -106,13 +92,12 @@ class Evidence:
 
     @cached_property
     def noise(self) -> float:
-        """Robust standard deviation of the residuals.
+        """Standard deviation of the noise, outliers aside: the fit's own estimate of it.
 
-        The larger of two: the median alone is zero or one step for coarsely rounded values.
+        The root of the mean of the variances on the two plateaus, as `side_variances` finds them.
         """
-        ordered = np.sort(np.abs(self.residual))
-        bulk = ordered[: max(int(0.95 * ordered.size), 1)]
-        return max(1.4826 * float(ordered[ordered.size // 2]), 1.15 * math.sqrt(np.mean(bulk**2)))
+        dark, bright = side_variances(self.residual, self.value - self.residual)
+        return math.sqrt(0.5 * (dark + bright))
 
     @cached_property
     def smoothness(self) -> float:
@@ -137,7 +122,7 @@ class Evidence:
         for side in (behind, ~behind):
             if side.any():
                 residual[side] -= np.mean(residual[side])
-        noise = 1.4826 * float(np.median(np.abs(residual))) if residual.size else 0.0
+        noise = robust_scale(residual) if residual.size else 0.0
         if noise <= MISFIT:
             return Correlation(1.0, 0.0, 0.0)
         rows, cols = (at[flat] for at in self.band.pixels.at)
@@ -164,48 +149,6 @@ def _std(values: Floats) -> float:
     return math.sqrt(float(centred @ centred) / values.size)
 
 
-def at_most_much(ratio: float) -> str:
-    """A ratio in words: beyond `MUCH` nobody asks how large it is."""
-    return f"more than {MUCH:.0f}" if ratio >= MUCH else f"{ratio:.0f}"
-
-
-class TargetChecks(Sequence[Check]):
-    """Checks of a target, answered when somebody first asks."""
-
-    @cached_property
-    def answers(self) -> tuple[Check, ...]:
-        """All checks."""
-        raise NotImplementedError
-
-    def __repr__(self) -> str:
-        failed = [check.name for check in self.answers if not check.passed]
-        return f"<{len(self)} checks, {len(failed)} failed{': ' * bool(failed)}{', '.join(failed)}>"
-
-    def __len__(self) -> int:
-        return len(self.answers)
-
-    @overload
-    def __getitem__(self, index: int) -> Check: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> tuple[Check, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> Check | tuple[Check, ...]:
-        return self.answers[index]
-
-
-def at_least(name: str, value: float, limit: float, found: str, otherwise: str = "") -> Check:
-    """The check that `value` is not below `limit`."""
-    passed = bool(value >= limit)
-    return Check(name, value, f">= {limit:g}", passed, _message(passed, found, otherwise))
-
-
-def at_most(name: str, value: float, limit: float, found: str, otherwise: str = "") -> Check:
-    """The check that `value` is not above `limit`."""
-    passed = bool(value <= limit)
-    return Check(name, value, f"<= {limit:g}", passed, _message(passed, found, otherwise))
-
-
-def _message(passed: bool, found: str, otherwise: str) -> str:
-    """What was found and, only where the limit is not kept, what it means and what to do."""
-    return found if passed or not otherwise else f"{found}: {otherwise}"
+def ratio_in_words(ratio: float) -> str:
+    """A ratio in words: beyond `MAX_RATIO` nobody asks how large it is."""
+    return f"more than {MAX_RATIO:.0f}" if ratio >= MAX_RATIO else f"{ratio:.0f}"

@@ -9,25 +9,37 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.curves import Response
 from acutance.curves.grid import Floats
+from acutance.curves.metrics import RerCentre
 from acutance.errors import NoEdgeError, OptionError, PhaseError, TargetError
 from acutance.geometry.line import Line
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
-from acutance.targets.measurement import Measurement, Samples
+from acutance.targets.check import Checks, limit_of
 from acutance.targets.options import chosen_options, published_options
 from acutance.targets.region import RegionPixels, RoiLike, read_region
-from acutance.targets.straight.edge_checks import EdgeChecks, sample_phases
+from acutance.targets.straight.check_data import CheckData
+from acutance.targets.straight.edge_checks import check_edge, edge_snr, sample_phases
 from acutance.targets.straight.find_edges import Segment, find_segments
 from acutance.targets.straight.fit_edge import fit_edge
 from acutance.targets.straight.options import EdgeOptions
 from acutance.targets.straight.pixels import EdgeBand, EdgeFit
 from acutance.targets.straight.published import PUBLISHED, PUBLISHED_OPTIONS
+from acutance.targets.straight.straight_measurement import StraightDetails, StraightMeasurement
 from acutance.targets.straight.trim import Extent, trim
+from acutance.targets.straight.tuned import MIN_PHASES
 
-__all__ = ["METHODS", "measure_edge", "measure_segment", "require_phases"]
+__all__ = [
+    "METHODS",
+    "described",
+    "details_of",
+    "in_whole_image",
+    "measure_edge",
+    "measure_segment",
+    "require_phases",
+]
 
-_MIN_PHASES = 2.0
 _MANY_MISSING = 0.05
 _CANDIDATES = 4
 _ALIGNED_DEG = 0.1
@@ -63,7 +75,7 @@ def measure_edge(
     gsd_m: float | Gsd | None = None,
     method: str = "spline",
     options: EdgeOptions | None = None,
-) -> Measurement:
+) -> StraightMeasurement:
     """Measure the dominant straight edge of a region.
 
     Parameters
@@ -80,7 +92,7 @@ def measure_edge(
 
     Returns
     -------
-    Measurement
+    StraightMeasurement
         Numbers with standard deviations, curves, evidence and checks. The line is in pixels of
         the whole image, row and column, integers at pixel centres.
 
@@ -102,33 +114,33 @@ def measure_edge(
     return _measure_first(read_region(image, roi, gsd_m), method, chosen)
 
 
-def _measure_first(pixels: RegionPixels, method: str, options: EdgeOptions) -> Measurement:
+def _measure_first(region: RegionPixels, method: str, options: EdgeOptions) -> StraightMeasurement:
     """Measure the strongest edge that can be measured; if none can, say why the strongest not."""
     first: TargetError | None = None
-    for segment in find_segments(pixels.pixels, _CANDIDATES):
+    for segment in find_segments(region.pixels, _CANDIDATES):
         try:
-            return measure_segment(pixels, segment, method, options)
+            return measure_segment(region, segment, method, options)
         except TargetError as error:
             first = first or error
-    missing = float(np.mean(np.isnan(pixels.pixels)))
+    missing = float(np.mean(np.isnan(region.pixels)))
     reason = "the region is flat, or its longest edge is too short"
     if missing > _MANY_MISSING:
         reason += f", or torn by the {100 * missing:.0f} % of it without data"
     raise first or NoEdgeError(
-        f"no straight edge stands out in the {pixels.box.height} x {pixels.box.width} pixels: "
+        f"no straight edge stands out in the {region.box.height} x {region.box.width} pixels: "
         f"{reason}; choose a region that holds one bright and one dark side"
     )
 
 
 def measure_segment(
-    pixels: RegionPixels, segment: Segment, method: str, options: EdgeOptions
-) -> Measurement:
+    region: RegionPixels, segment: Segment, method: str, options: EdgeOptions
+) -> StraightMeasurement:
     """Measure one segment that was found in a cut; see `measure_edge`."""
     estimate = _method(method)
-    band, extent = trim(pixels.pixels, segment)
-    require_phases(band, band.line, options.limits.sample_phases)
+    band, extent = trim(region.pixels, segment)
+    require_phases(band, band.line, limit_of("sample_phases", options.limits))
     fit = estimate(band, options)
-    return _measurement(pixels, band, extent, fit, method, options)
+    return _measurement(region, band, extent, fit, method, options)
 
 
 def _method(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
@@ -149,13 +161,13 @@ def require_phases(band: EdgeBand, line: Line, wanted: float) -> None:
     """
     distance = line.normal_distance(band.pixels.row, band.pixels.col)
     phases = sample_phases(distance)
-    if phases >= _MIN_PHASES:
+    if phases >= MIN_PHASES:
         return
     fill = _fill_value(distance, band.pixels.value)
-    wanted = max(wanted, _MIN_PHASES)
+    wanted = max(wanted, MIN_PHASES)
     raise PhaseError(
         f"edge angle {line.angle_deg:.2f} deg gives {phases:.1f} sample phases over "
-        f"{line.length_px:.0f} rows, at least {_MIN_PHASES:g} are needed and {wanted:g} wanted: "
+        f"{line.length_px:.0f} rows, at least {MIN_PHASES:g} are needed and {wanted:g} wanted: "
         + (_advice(line, wanted) if fill is None else _fill_advice(fill))
     )
 
@@ -196,26 +208,49 @@ def _advice(line: Line, wanted: float) -> str:
 
 
 def _measurement(
-    pixels: RegionPixels,
+    region: RegionPixels,
     band: EdgeBand,
     extent: Extent,
     fit: EdgeFit,
     method: str,
     options: EdgeOptions,
-) -> Measurement:
+) -> StraightMeasurement:
     """Put together what a measurement holds; the line moves into the whole image's pixels."""
-    info = pixels.info(fit.line)
-    centre = options.rer_centre or fit.response.rer_centre
-    response = replace(fit.response, gsd_m=info.gsd_m, rer_centre=centre)
-    fit = replace(fit, response=response)
-    line: Line = replace(
-        fit.line, row=fit.line.row + pixels.box.row, col=fit.line.col + pixels.box.col
+    fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
+    data = CheckData.of(band, fit)
+    by_rows = method in PUBLISHED
+    return StraightMeasurement(
+        kind="edge",
+        method=method,
+        transfer=fit.response,
+        line=in_whole_image(fit.line, region),
+        dark=fit.dark,
+        bright=fit.bright,
+        snr=edge_snr(data),
+        checks=Checks(lambda: check_edge(region, data, extent, options.limits, by_rows=by_rows)),
+        image=region.info,
+        options=options.to_dict(),
+        details=details_of(region, band, fit),
     )
-    samples = Samples(
-        pixels.pixels, np.isfinite(band.image), fit.distance_px, fit.value, fit.residual,
-        fit.dark, fit.bright,
-    )  # fmt: skip
-    checks = EdgeChecks(pixels, band, extent, fit, options.limits, method in PUBLISHED)
-    return Measurement(
-        "edge", method, line, response, samples, checks.snr, checks, info, options.to_dict()
+
+
+def described(
+    response: Response, line: Line, region: RegionPixels, rer_centre: RerCentre | None
+) -> Response:
+    """The curves with the GSD along their normal, and with the centre of RER that was asked for."""
+    return replace(
+        response,
+        gsd_m=region.info.gsd_along(line.normal_deg),
+        rer_centre=rer_centre or response.rer_centre,
     )
+
+
+def in_whole_image(line: Line, region: RegionPixels) -> Line:
+    """A line of the region, in pixels of the whole image."""
+    return replace(line, row=line.row + region.box.row, col=line.col + region.box.col)
+
+
+def details_of(region: RegionPixels, band: EdgeBand, fit: EdgeFit) -> StraightDetails:
+    """The pixels of a fit, seen along the normal."""
+    used = np.isfinite(band.image)
+    return StraightDetails(region.pixels, used, fit.distance_px, fit.value, fit.residual)

@@ -13,13 +13,13 @@ from acutance.targets.straight.fit_pulse import PulseBand
 from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.step_profile import pulse_profile
 from acutance.targets.straight.trim import Extent, beside, serving
+from acutance.targets.straight.tuned import MIN_SNR
 
 __all__ = ["find_pulse"]
 
 _CANDIDATES = 6
 _REACH_PX = 7.0
 _MIN_PIXELS = 8
-_MIN_SNR = 3.0
 _MAX_WIDTH_PX = 24.0
 _PROFILE_STEP_PX = 0.5
 _SPOILED = 0.005
@@ -92,10 +92,10 @@ def _at(
         dark=left, bright=level, profile=pulse_profile(width_px, (level - right) / (level - left)),
         fit_width=fit_width,
     )  # fmt: skip
-    if pulse.height < _MIN_SNR * pulse.noise:
+    if pulse.height < MIN_SNR * pulse.noise:
         raise NoEdgeError(
             f"the strongest strip has a height of {pulse.height:.4g} in noise of "
-            f"{pulse.noise:.3g}: an SNR of {pulse.height / pulse.noise:.1f} where {_MIN_SNR:g} is "
+            f"{pulse.noise:.3g}: an SNR of {pulse.height / pulse.noise:.1f} where {MIN_SNR:g} is "
             "the least"
         )
     served = serving(image, pixels, pulse, 0.5 * (segment.stop_px - segment.start_px))

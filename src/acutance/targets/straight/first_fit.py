@@ -12,8 +12,9 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
 from acutance.geometry.line import Line
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, Blur
-from acutance.targets.straight.lsf_prior import APERTURE_PX, tail_esf, tail_lsf
+from acutance.targets.straight.lsf_prior import tail_esf, tail_lsf
 from acutance.targets.straight.step_profile import EDGE, Profile, pulse_profile
+from acutance.targets.straight.tuned import APERTURE_PX
 
 __all__ = ["BlurredEdge", "fit_blurred_edge"]
 

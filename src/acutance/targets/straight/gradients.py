@@ -7,25 +7,15 @@ in both directions, whose common amplitude the data decide.
 
 from __future__ import annotations
 
-from typing import Final
-
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.targets.straight.step_profile import Sides
 
-__all__ = ["LOG_AMPLITUDE", "ground_trends"]
-
-LOG_AMPLITUDE: Final = -2.5
-"""Hyperprior mean of the trends' amplitude relative to the edge's height, logarithm.
-
-Larger than any ground one would measure on, on purpose: an amplitude that may vanish does so where
-a slope is too weak to be seen, and the slope is then taken for a halo. An amplitude of 2 % (-4)
-saves 2 % of the deviation of MTF(0.25) on uniform ground, and errs a fifth more on slopes of 1 %.
-"""
+__all__ = ["plateau_trends"]
 
 
-def ground_trends(sides: Sides, t: Floats) -> Floats:
+def plateau_trends(sides: Sides, t: Floats) -> Floats:
     """Trends of the two sides, (10, n): five modes a side, each about 1 at its largest.
 
     Parameters

@@ -15,14 +15,20 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import side_variances
-from acutance.targets.straight import gradients as ground
 from acutance.targets.straight import lsf_prior
 from acutance.targets.straight.first_fit import BlurredEdge
+from acutance.targets.straight.gradients import plateau_trends
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.spline import CELLS, HALF_SUPPORT, combine, edge_weights
 from acutance.targets.straight.spline_equations import Stencil
 from acutance.targets.straight.step_profile import Profile
+from acutance.targets.straight.tuned import (
+    APERTURE_PX,
+    LOG_AMPLITUDE,
+    LOG_AMPLITUDE_STD,
+    TREND_LOG_AMPLITUDE,
+)
 
 __all__ = ["Linear", "NoiseModel"]
 
@@ -104,7 +110,7 @@ class Linear:
         for distance, share in zip(profile.distances(s), profile.shares, strict=True):
             cell, basis = edge_weights(distance / width)
             stencils.append((cell, basis if share == 1 else share * basis))
-        trends = ground.ground_trends(profile.sides(seen, s), t)
+        trends = plateau_trends(profile.sides(seen, s), t)
         beside = [_beyond(profile, s, width)]
         is_edge = len(profile.shares) == 1
         if not is_edge:
@@ -224,18 +230,18 @@ def _prior(
     m = after_tail + trends + derivatives
     block = np.full(m, -1)
     block[1:after_tail] = np.where(directions.block >= 2, directions.block - 2, -1)
-    log_amplitude = lsf_prior.LOG_AMPLITUDE
+    log_amplitude = LOG_AMPLITUDE
     block[after_tail : after_tail + trends] = log_amplitude.size
-    log_amplitude = np.append(log_amplitude, ground.LOG_AMPLITUDE)
+    log_amplitude = np.append(log_amplitude, TREND_LOG_AMPLITUDE)
     scale = np.ones(m)
     # Turn (radians), width (pixels) and fall are known to about one before the pixels are seen.
     scale[-derivatives:] = 1 / start.height
-    aperture, aperture_std = lsf_prior.APERTURE_PX
+    aperture, aperture_std = APERTURE_PX
     mean = np.zeros(m)
     where = 1 + int(np.flatnonzero(directions.block == 1)[0])
     scale[where] = aperture_std
     mean[where] = (aperture - start.blur.aperture_px) * start.height
     return Prior(
-        block, scale, mean, log_amplitude, lsf_prior.LOG_AMPLITUDE_STD,
+        block, scale, mean, log_amplitude, LOG_AMPLITUDE_STD,
         start.height, _NOISE_FLOOR * start.height,
     )  # fmt: skip

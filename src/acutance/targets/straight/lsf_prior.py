@@ -15,7 +15,7 @@ departures live within L widths of the edge and vary over l widths. Nothing here
 from __future__ import annotations
 
 from functools import cache
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,32 +29,15 @@ from acutance.targets.straight.spline import (
     esf_from_lsf,
     quasi_interpolant,
 )
+from acutance.targets.straight.tuned import DETAIL, HALO, SHAPE, TAIL_WIDTH
 
 __all__ = [
-    "APERTURE_PX",
-    "LOG_AMPLITUDE",
-    "LOG_AMPLITUDE_STD",
-    "TAIL_WIDTH",
     "Directions",
     "directions",
     "tail_esf",
     "tail_lsf",
     "tail_otf",
 ]
-
-_SHAPE: Final = (1.2, 0.6)
-_DETAIL: Final = (0.7, 0.17)
-_HALO: Final = (3.0, 1.2)
-TAIL_WIDTH: Final = 1.0
-"""Extent L and smoothness l of the processes, and the tail's half width, in widths."""
-
-LOG_AMPLITUDE: Final[Floats] = np.array([-4.4, -2.5, -4.1, -4.0])
-LOG_AMPLITUDE_STD: Final = 1.2
-"""Amplitudes of SHAPE, DETAIL, HALO and TAIL relative to the edge's height: 1 to 2 % (detail
-8 %), within a factor 3.3 either way. Chosen once, over systems of many shapes, so that the
-intervals hold the truth as often as they say (benchmarks/coverage.py)."""
-APERTURE_PX: Final = (1.0, 0.18)
-"""Mean and standard deviation of the detector's aperture: fill factors are near one."""
 
 
 class Directions(NamedTuple):
@@ -100,7 +83,7 @@ def tail_otf(freq: Floats) -> Floats:
 @cache
 def _fixed() -> tuple[Floats, NDArray[np.intp]]:
     """All directions, with room for the four of the mean blur in front, and their blocks."""
-    processes = [_process(*scales) for scales in (_SHAPE, _DETAIL, _HALO)]
+    processes = [_process(*scales) for scales in (SHAPE, DETAIL, HALO)]
     tail = quasi_interpolant(tail_lsf(CENTRES))
     lsf = np.hstack([np.zeros((SIZE, 4)), *processes, tail[:, None]])
     block = np.repeat([0, 1, 2, 3, 4, 5], [3, 1, *(p.shape[1] for p in processes), 1])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,19 +13,17 @@ from acutance.curves.grid import Floats
 from acutance.errors import TargetError
 from acutance.geometry.line import Line
 from acutance.numerics.one_thread import one_thread
-from acutance.raster import Box, Gsd, Image
-from acutance.targets.measurement import Measurement
+from acutance.raster import Gsd, Image
 from acutance.targets.options import chosen_options
 from acutance.targets.region import RoiLike, read_region
-from acutance.targets.straight.edge import measure_segment
+from acutance.targets.straight.edge import in_whole_image, measure_segment
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.options import EdgeOptions
+from acutance.targets.straight.straight_measurement import StraightMeasurement
+from acutance.targets.straight.tuned import MIN_CONTRAST_SHARE, MIN_STRENGTH_SHARE
 from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
 
 __all__ = ["combine_edges", "measure_edges"]
-
-_CONTRAST_SHARE = 0.8
-_STRENGTH_SHARE = 0.1
 
 
 @one_thread
@@ -37,7 +34,7 @@ def measure_edges(
     gsd_m: float | Gsd | None = None,
     method: str = "spline",
     options: EdgeOptions | None = None,
-) -> TargetResult:
+) -> TargetResult[StraightMeasurement]:
     """Measure every usable edge of a target: four of a 2 x 2 checkerboard, the sides of a tarp.
 
     Edges with less than four fifths of the strongest contrast are left out: they are the
@@ -52,19 +49,19 @@ def measure_edges(
     -------
     TargetResult
     """
-    pixels = read_region(image, roi, gsd_m)
+    region = read_region(image, roi, gsd_m)
     chosen = chosen_options(options, EdgeOptions)
-    measured: list[Measurement] = []
+    measured: list[StraightMeasurement] = []
     rejected: list[Rejected] = []
     strongest = 0.0
-    for segment in find_segments(pixels.pixels):
+    for segment in find_segments(region.pixels):
         strongest = max(strongest, segment.strength)
-        if segment.strength < _STRENGTH_SHARE * strongest:
+        if segment.strength < MIN_STRENGTH_SHARE * strongest:
             break
         try:
-            found = measure_segment(pixels, segment, method, chosen)
+            found = measure_segment(region, segment, method, chosen)
         except TargetError as error:
-            where = _where(_in_image(segment.line, pixels.box))
+            where = _where(in_whole_image(segment.line, region))
             rejected.append(Rejected("fit", str(error), where))
             continue
         if not any(_same_edge(found, other) for other in measured):
@@ -73,16 +70,11 @@ def measure_edges(
     return TargetResult(kept, (*rejected, *dim), combine_edges(kept))
 
 
-def _in_image(line: Line, box: Box) -> Line:
-    """A line of the cut, in pixels of the whole image."""
-    return replace(line, row=line.row + box.row, col=line.col + box.col)
-
-
 def _where(line: Line) -> dict[str, float]:
     return {"row": line.row, "col": line.col, "normal_deg": line.normal_deg}
 
 
-def _same_edge(one: Measurement, other: Measurement) -> bool:
+def _same_edge(one: StraightMeasurement, other: StraightMeasurement) -> bool:
     """Whether two measurements took the same stretch of the same edge."""
     turn = abs((one.line.normal_deg - other.line.normal_deg + 180) % 360 - 180)
     beside = abs(float(other.line.normal_distance(one.line.row, one.line.col)))
@@ -92,16 +84,16 @@ def _same_edge(one: Measurement, other: Measurement) -> bool:
 
 
 def _of_the_target(
-    measured: Sequence[Measurement],
-) -> tuple[tuple[Measurement, ...], tuple[Rejected, ...]]:
+    measured: Sequence[StraightMeasurement],
+) -> tuple[tuple[StraightMeasurement, ...], tuple[Rejected, ...]]:
     """Keep the edges with the target's contrast."""
-    heights = [one.samples.bright - one.samples.dark for one in measured]
-    least = _CONTRAST_SHARE * max(heights, default=0.0)
+    heights = [one.bright - one.dark for one in measured]
+    least = MIN_CONTRAST_SHARE * max(heights, default=0.0)
     kept = tuple(one for one, height in zip(measured, heights, strict=True) if height >= least)
     dim = tuple(
         Rejected(
             "contrast",
-            f"contrast {height:.4g} is less than {_CONTRAST_SHARE:g} of the strongest edge's "
+            f"contrast {height:.4g} is less than {MIN_CONTRAST_SHARE:g} of the strongest edge's "
             f"{max(heights):.4g}: probably not of the target",
             _where(one.line),
         )
@@ -111,9 +103,11 @@ def _of_the_target(
     return kept, dim
 
 
-def combine_edges(measurements: Sequence[Measurement]) -> dict[str, EdgeGroup]:
+def combine_edges(
+    measurements: Sequence[StraightMeasurement],
+) -> dict[str, EdgeGroup[StraightMeasurement]]:
     """Group measurements by orientation and average each group."""
-    groups: dict[str, EdgeGroup] = {}
+    groups: dict[str, EdgeGroup[StraightMeasurement]] = {}
     for orientation in ("across", "along"):
         own = tuple(one for one in measurements if one.orientation == orientation)
         if own:
@@ -121,7 +115,7 @@ def combine_edges(measurements: Sequence[Measurement]) -> dict[str, EdgeGroup]:
     return groups
 
 
-def _group(own: tuple[Measurement, ...]) -> EdgeGroup:
+def _group(own: tuple[StraightMeasurement, ...]) -> EdgeGroup[StraightMeasurement]:
     metrics, chi_square, p_value = {}, {}, {}
     for name in own[0].metrics():
         numbers = [one.metrics().get(name, Estimate(math.nan)) for one in own]

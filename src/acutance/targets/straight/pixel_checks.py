@@ -7,140 +7,115 @@ import math
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.targets.measurement import Check
+from acutance.numerics.clipping import at_limit_share, piled_up_share
+from acutance.numerics.noise import outlier_share
+from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.region import RegionPixels
-from acutance.targets.straight.check_data import MISFIT, MUCH, Evidence, at_least, at_most
-from acutance.targets.straight.options import EdgeLimits
-from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.check_data import MISFIT, CheckData
+from acutance.targets.straight.tuned import (
+    APERTURE_TAIL_PX,
+    GRADIENT_SIGMAS,
+    HARMLESS_STEP,
+    MIN_PILED_PIXELS,
+    MIN_SIDE_PIXELS,
+    OUTLIER_SIGMAS,
+    QUIET_SIDE,
+    QUIET_TRANSITION,
+)
 
-__all__ = ["correlation", "gradient", "outliers", "quantisation", "saturation"]
-
-_OUTLIER_SIGMAS = 4.5
-_SIGNIFICANT = 3.5
-_MIN_SIDE = 24
-_MIN_PILED = 20
-_TAIL_PX = 0.1
-"""The LSF of an aperture falls as a / s^2: a is 0.065 px for a cutoff of 1 c/px, 0.1 for 0.65."""
+__all__ = ["correlated_noise", "gradient", "outliers", "quantisation", "saturation"]
 
 
-def saturation(cut: RegionPixels, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> Check:
-    """Pixels at the detector's limit, or a side whose values are all one."""
-    used = np.isfinite(band.image)
-    values = cut.pixels[used]
-    share = 0.0
-    if cut.saturation_level is not None:
-        share = float(np.mean(values >= cut.saturation_level))
+def saturation(region: RegionPixels, data: CheckData, limits: Limits) -> Check:
+    """Pixels at the detector's limit, or a side that piles up at its outer end."""
+    values = region.pixels[data.band.pixels.at]
+    share = at_limit_share(values, region.saturation_level)
     middle = float(np.median(values))
-    # The two grounds and, of a pulse, the strip.
-    for there in (seen.before > seen.far_px, seen.behind > seen.far_px, seen.outside < 0):
+    # The two plateaus and, of a pulse, the pulse itself.
+    for there in (data.before > data.far_px, data.behind > data.far_px, data.outside < 0):
         side = values[there]
-        if side.size >= _MIN_PILED:
-            share = max(share, _piled_up(side, bright=bool(np.median(side) > middle), seen=seen))
-    return at_most(
-        "saturation", share, limits.saturation,
-        f"{100 * share:.1f} % of the pixels are clipped at the end of a scale",
-        "the target's height and shape are then not what the sensor saw",
-    )  # fmt: skip
+        if side.size >= MIN_PILED_PIXELS and not _quiet(data, side):
+            outwards = 1.0 if float(np.median(side)) > middle else -1.0
+            share = max(share, piled_up_share(outwards * side))
+    found = f"{100 * share:.1f} % of the pixels are clipped at an end of the scale"
+    return answer("saturation", share, found, limits)
 
 
-def _piled_up(side: Floats, *, bright: bool, seen: Evidence) -> float:
-    """Share of a side's pixels that pile up at its outer end, as clipping before writing does.
-
-    Noise has few pixels at its end. A side without any noise has nothing to clip, unless the
-    transition is noisy.
-    """
-    _, counts = np.unique(side if bright else -side, return_counts=True)
-    end, beside = int(counts[-1]), int(counts[-2]) if counts.size > 1 else 0
-    contrast = abs(seen.fit.bright - seen.fit.dark)
-    quiet = float(np.std(side)) < 1e-4 * contrast
-    if quiet and float(np.std(seen.residual[seen.outside < 1.0])) < 2e-3:
-        return 0.0
-    return end / side.size if end >= 5 and end > 2 * beside else 0.0
+def _quiet(data: CheckData, side: Floats) -> bool:
+    """Whether a side has no noise that clipping could cut, and the transition none either."""
+    contrast = abs(data.fit.bright - data.fit.dark)
+    quiet = float(np.std(side)) < QUIET_SIDE * contrast
+    return quiet and float(np.std(data.residual[data.outside < 1.0])) < QUIET_TRANSITION
 
 
-def quantisation(cut: RegionPixels, band: EdgeBand, seen: Evidence, limits: EdgeLimits) -> Check:
+def quantisation(region: RegionPixels, data: CheckData, limits: Limits) -> Check:
     """Noise in steps of the image's numbers: with less, rounding is no noise but a distortion."""
-    values = np.unique(cut.pixels[np.isfinite(band.image)])
+    values = np.unique(region.pixels[data.band.pixels.at])
     step = float(np.min(np.diff(values))) if values.size > 1 else 0.0
-    contrast = abs(seen.fit.bright - seen.fit.dark)
-    # Steps far below what the curves resolve do no harm, whatever the noise.
-    harmless = step < 1e-4 * contrast
-    noise = seen.plateau_std * contrast
-    value = MUCH if harmless else min(noise / step, MUCH)
-    return at_least(
-        "quantisation", value, limits.quantisation,
-        "the image's numbers are finer than the curves resolve"
-        if harmless
-        else f"the plateaus' noise is {value:.2f} steps of the image's numbers",
-        "so much rounding is no noise: it is alike for the pixels of a plateau and shifts its "
-        "level by more than the intervals say; use data of more bits",
-    )  # fmt: skip
+    contrast = abs(data.fit.bright - data.fit.dark)
+    if step < HARMLESS_STEP * contrast:
+        found = "the image's numbers are finer than the curves resolve"
+        return answer("quantisation", MAX_RATIO, found, limits)
+    value = min(data.plateau_std * contrast / step, MAX_RATIO)
+    found = f"the plateaus' noise is {value:.2f} steps of the image's numbers"
+    return answer("quantisation", value, found, limits)
 
 
-def gradient(seen: Evidence, limits: EdgeLimits) -> Check:
-    """Slope of the ground far from the target, beyond what an aperture's tail explains.
+def gradient(data: CheckData, limits: Limits) -> Check:
+    """Slope of the background far from the target, beyond what an aperture's wings explain.
 
-    Outwards the tail of an aperture falls, alike on both sides, and no steeper than a small
-    aperture's: a slope of 0 to 1 in that unit. One below 0 counts as 1 and what it lacks.
+    Outwards the wings of an aperture fall, equally on both sides, and no steeper than a small
+    aperture's: a slope of 0 to 1 in that unit. One below 0 counts as 1 plus its modulus.
     """
-    near = max(seen.far_px, 3 * seen.fwhm_px)
-    slope, std, tail = _fall(seen, near)
-    value = 1 - slope / tail if slope < -_SIGNIFICANT * std else 0.0
-    slope, std, tail = _fall(seen, 0.5 * (near + float(seen.outside.max())))
-    if slope - tail > _SIGNIFICANT * std:
+    near = max(data.far_px, 3 * data.fwhm_px)
+    slope, std, tail = _slope_outwards(data, near)
+    value = 1 - slope / tail if slope < -GRADIENT_SIGMAS * std else 0.0
+    slope, std, tail = _slope_outwards(data, 0.5 * (near + float(data.outside.max())))
+    if slope - tail > GRADIENT_SIGMAS * std:
         value = max(value, slope / tail)
-    return at_most(
-        "gradient", value, limits.gradient,
-        f"far from the target the ground slopes, {value:.1f} in units of a small aperture's tail, "
-        "which falls outwards (0 to 1)",
-        "the fit cannot tell a slope from a wide halo for sure; choose a region whose sides are "
-        "flat",
-    )  # fmt: skip
+    found = (
+        f"far from the target the background slopes by {value:.1f} times a small aperture's "
+        "wings, which fall outwards (0 to 1)"
+    )
+    return answer("gradient", value, found, limits)
 
 
-def _fall(seen: Evidence, from_px: float) -> tuple[float, float, float]:
+def _slope_outwards(data: CheckData, from_px: float) -> tuple[float, float, float]:
     """How fast the sides come to their levels outwards, 1/px; its std; a small aperture's."""
     covariance, power, weighed = 0.0, 0.0, 0.0
-    for outwards in (seen.before, seen.behind):
+    for outwards in (data.before, data.behind):
         there = outwards > from_px
-        if np.count_nonzero(there) < _MIN_SIDE:
+        if np.count_nonzero(there) < MIN_SIDE_PIXELS:
             continue
-        place, value = outwards[there], seen.value[there]
+        place, value = outwards[there], data.value[there]
         # A bright side rises to its level, a dark one falls to it.
         sign = 1.0 if float(np.median(value)) > 0.5 else -1.0
         offset = place - place.mean()
         own = float(offset @ offset)
-        most = _OUTLIER_SIGMAS * seen.noise
+        most = OUTLIER_SIGMAS * data.noise
         covariance += sign * float(offset @ np.clip(value - np.median(value), -most, most))
         power += own
-        weighed += own * _TAIL_PX / float(place.mean()) ** 2
+        weighed += own * APERTURE_TAIL_PX / float(place.mean()) ** 2
     if power <= 0:
         return 0.0, 0.0, 1.0
-    return covariance / power, max(seen.noise, MISFIT) / math.sqrt(power), weighed / power
+    return covariance / power, max(data.noise, MISFIT) / math.sqrt(power), weighed / power
 
 
-def correlation(seen: Evidence, limits: EdgeLimits) -> Check:
+def correlated_noise(data: CheckData, limits: Limits) -> Check:
     """Correlation of the noise between neighbouring pixels."""
-    noise = seen.correlation(seen.fit.line.normal)
-    found, significance = abs(noise.strongest), noise.significance
-    value = found if significance >= 4 else 0.0
-    return at_most(
-        "correlated_noise", value, limits.correlated_noise,
-        f"neighbouring pixels' noise correlates by {found:.2f} ({significance:.0f} standard "
-        "deviations)",
-        "a resampled product or textured ground; the intervals allow for it, and the MTF is the "
-        "product's",
-    )  # fmt: skip
+    noise = data.correlation(data.fit.line.normal)
+    found = (
+        f"neighbouring pixels' noise correlates by {abs(noise.strongest):.2f} "
+        f"({noise.significance:.0f} standard deviations)"
+    )
+    return answer("correlated_noise", noise.significant, found, limits)
 
 
-def outliers(seen: Evidence, limits: EdgeLimits) -> Check:
+def outliers(data: CheckData, limits: Limits) -> Check:
     """Share of the pixels that lie far from the fit."""
-    noise = seen.noise
-    many = np.abs(seen.residual) > _OUTLIER_SIGMAS * noise if noise > MISFIT else np.zeros(1, bool)
-    value = float(np.mean(many))
-    return at_most(
-        "outliers", value, limits.outliers,
-        f"{100 * value:.2f} % of the pixels lie further than {_OUTLIER_SIGMAS:g} standard "
-        "deviations from the fit",
-        "objects on the target, or a bad fit",
-    )  # fmt: skip
+    value = outlier_share(data.residual, data.noise, MISFIT)
+    found = (
+        f"{100 * value:.2f} % of the pixels lie further than {OUTLIER_SIGMAS:g} standard "
+        "deviations from the fit"
+    )
+    return answer("outliers", value, found, limits)

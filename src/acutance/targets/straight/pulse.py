@@ -3,52 +3,47 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves import Estimate
 from acutance.errors import OptionError, TargetError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
-from acutance.targets.measurement import Measurement, Samples
+from acutance.targets.check import Check, Checks, limit_of
 from acutance.targets.options import chosen_options, published_options
 from acutance.targets.region import RegionPixels, RoiLike, read_region
-from acutance.targets.straight.edge import require_phases
+from acutance.targets.straight.check_data import CheckData
+from acutance.targets.straight.edge import described, details_of, in_whole_image, require_phases
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.find_pulse import find_pulse
 from acutance.targets.straight.fit_pulse import PulseBand, fit_pulse
 from acutance.targets.straight.options import PulseOptions
 from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
-from acutance.targets.straight.pulse_checks import PulseChecks
-from acutance.targets.straight.pulse_halo import with_uncertain_foot
+from acutance.targets.straight.pulse_checks import check_pulse, pulse_snr
+from acutance.targets.straight.pulse_halo import with_uncertain_halo
 from acutance.targets.straight.pulse_response import prf_fwhm
+from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.trim import Extent
+from acutance.targets.straight.tuned import MAX_CORRECTED_WIDTH
 
 __all__ = ["PULSE_METHODS", "measure_pulse"]
 
-_MOST_CORRECTED = 0.15
 
-
-@dataclass(frozen=True, eq=False)
-class _Fitted:
-    """What a method makes of a pulse."""
-
-    fit: EdgeFit
-    width: Estimate
-    fall: Estimate
-    prf_fwhm: Estimate
+_Fitted = tuple[EdgeFit, Estimate, Estimate, Estimate]
+"""What a method makes of a pulse: its fit, its width, the height of its falling side over that of
+the rising one, and the FWHM of its response."""
 
 
 def _spline(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
     if options.method_options is not None:
         raise OptionError("method_options belong to the published methods: leave them out")
     fit = fit_pulse(band, fit_width=fit_width, robust=options.robust)
-    told = replace(fit, response=with_uncertain_foot(fit.response))
-    prf = prf_fwhm(told.response, fit.pulse_width.value, fit.width_factor)
-    return _Fitted(told, fit.pulse_width, fit.fall, prf)
+    response = with_uncertain_halo(fit.response)
+    prf = prf_fwhm(response, fit.pulse_width.value, fit.width_factor)
+    return replace(fit, response=response), fit.pulse_width, fit.fall, prf
 
 
 def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
@@ -56,7 +51,7 @@ def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
         wanted = PUBLISHED_PULSE_OPTIONS[name]
         fit = PUBLISHED_PULSE[name](band, published_options(options, name, wanted))
         along_normal = fit.prf_fwhm_px.scaled(1.0 / fit.px_per_normal)
-        return _Fitted(fit, fit.pulse_width, fit.fall, along_normal)
+        return fit, fit.pulse_width, fit.fall, along_normal
 
     return measure
 
@@ -78,7 +73,7 @@ def measure_pulse(
     fit_width: bool = True,
     method: str = "spline",
     options: PulseOptions | None = None,
-) -> Measurement:
+) -> StraightMeasurement:
     """Measure the strongest pulse of a region.
 
     Parameters
@@ -101,7 +96,7 @@ def measure_pulse(
 
     Returns
     -------
-    Measurement
+    StraightMeasurement
         With `width_px` and `prf_fwhm_px`. The MTF is the sensor's, not that of the pulse response.
 
     Raises
@@ -113,33 +108,29 @@ def measure_pulse(
     """
     chosen = chosen_options(options, PulseOptions)
     estimate = _method(method)
-    pixels = read_region(image, roi, gsd_m)
-    stated_px = _stated_width(pixels, width_px, width_m)
+    region = read_region(image, roi, gsd_m)
+    stated_px = _stated_width(region, width_px, width_m)
     free = fit_width or stated_px is None
-    band, extent = _find(pixels, stated_px, free)
-    require_phases(band, band.line, chosen.limits.sample_phases)
+    band, extent = _find(region, stated_px, free)
+    require_phases(band, band.line, limit_of("sample_phases", chosen.limits))
     if stated_px is not None and method in PUBLISHED_PULSE:
         band = replace(band, pulse_width_px=stated_px)
     found = estimate(band, free, chosen)
-    if free and stated_px is not None and _is_far(found.width.value, stated_px):
+    if free and stated_px is not None and _is_far(found[1].value, stated_px):
         # So far from its start the fit may have stopped in a place of its own: start near the end.
-        band, extent = find_pulse(pixels.pixels, found.width.value)
+        band, extent = find_pulse(region.pixels, found[1].value)
         found = estimate(band, free, chosen)
-    checks = PulseChecks(
-        pixels, band, extent, found.fit, found.width, found.fall, stated_px, chosen.limits,
-        by_ratio=method != "spline",
-    )  # fmt: skip
-    return _measurement(pixels, band, found, checks, method, chosen, stated_px)
+    return _measurement(region, band, extent, found, method, chosen, stated_px)
 
 
-def _find(pixels: RegionPixels, stated_px: float | None, free: bool) -> tuple[PulseBand, Extent]:
+def _find(region: RegionPixels, stated_px: float | None, free: bool) -> tuple[PulseBand, Extent]:
     """The strongest pulse; where there is none of the stated width, what there is instead."""
     try:
-        return find_pulse(pixels.pixels, stated_px, fit_width=free)
+        return find_pulse(region.pixels, stated_px, fit_width=free)
     except TargetError as error:
         if stated_px is None:
             raise
-        seen_px = _width_seen(pixels)
+        seen_px = _width_seen(region)
         if seen_px is None or not _is_far(seen_px, stated_px):
             raise
         raise type(error)(
@@ -148,17 +139,17 @@ def _find(pixels: RegionPixels, stated_px: float | None, free: bool) -> tuple[Pu
         ) from error
 
 
-def _width_seen(pixels: RegionPixels) -> float | None:
+def _width_seen(region: RegionPixels) -> float | None:
     """Width in pixels of the strip that is found when no width is stated."""
     try:
-        return find_pulse(pixels.pixels)[0].pulse_width_px
+        return find_pulse(region.pixels)[0].pulse_width_px
     except TargetError:
         return None
 
 
 def _is_far(found_px: float, stated_px: float) -> bool:
     """Whether a fitted width is another one than what was stated, not a correction of it."""
-    return abs(found_px / stated_px - 1) > _MOST_CORRECTED
+    return abs(found_px / stated_px - 1) > MAX_CORRECTED_WIDTH
 
 
 def _method(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
@@ -169,19 +160,19 @@ def _method(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
 
 
 def _stated_width(
-    pixels: RegionPixels, width_px: float | None, width_m: float | None
+    region: RegionPixels, width_px: float | None, width_m: float | None
 ) -> float | None:
     """The stated width in pixels along the normal of the region's strongest side."""
     if width_px is not None and width_m is not None:
         raise OptionError("the width was given in pixels and in metres: give one of them")
     if width_m is not None:
-        if pixels.gsd is None:
+        if region.gsd is None:
             raise OptionError(
                 f"a width of {width_m:g} m needs a GSD, and the image has none: give gsd_m "
                 "(--gsd), or the width in pixels"
             )
-        side = next(find_segments(pixels.pixels, 1), None)
-        width_px = width_m / pixels.gsd.along_normal(side.line.normal_deg if side else 0.0)
+        side = next(find_segments(region.pixels, 1), None)
+        width_px = width_m / region.gsd.along_normal(side.line.normal_deg if side else 0.0)
     if width_px is not None and not 0.3 <= width_px <= 100:
         raise OptionError(
             f"a pulse {width_px:.3g} px wide cannot be measured: widths of 2 to 6 px serve best; "
@@ -191,28 +182,39 @@ def _stated_width(
 
 
 def _measurement(
-    pixels: RegionPixels,
+    region: RegionPixels,
     band: PulseBand,
+    extent: Extent,
     found: _Fitted,
-    checks: PulseChecks,
     method: str,
     options: PulseOptions,
     stated_px: float | None,
-) -> Measurement:
+) -> StraightMeasurement:
     """Put together what a measurement holds; the line moves into the whole image's pixels."""
-    fit = found.fit
-    info = pixels.info(fit.line)
-    response = replace(
-        fit.response,
-        gsd_m=info.gsd_m,
-        rer_centre=options.rer_centre or fit.response.rer_centre,
+    fit, width, height_ratio, prf_fwhm_px = found
+    fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
+    data = CheckData.of(band, fit, width.value)
+
+    def ask() -> tuple[Check, ...]:
+        return check_pulse(
+            region, data, extent, options.limits,
+            width=width, height_ratio=height_ratio, stated_px=stated_px,
+            by_ratio=method in PUBLISHED_PULSE,
+        )  # fmt: skip
+
+    return StraightMeasurement(
+        kind="pulse",
+        method=method,
+        transfer=fit.response,
+        line=in_whole_image(fit.line, region),
+        dark=band.sign * fit.dark,
+        bright=band.sign * fit.bright,
+        width_px=width,
+        prf_fwhm_px=prf_fwhm_px,
+        stated_width_px=stated_px,
+        snr=pulse_snr(data),
+        checks=Checks(ask),
+        image=region.info,
+        options=options.to_dict(),
+        details=details_of(region, band, fit),
     )
-    line = replace(fit.line, row=fit.line.row + pixels.box.row, col=fit.line.col + pixels.box.col)
-    samples = Samples(
-        pixels.pixels, np.isfinite(band.image), fit.distance_px, fit.value, fit.residual,
-        band.sign * fit.dark, band.sign * fit.bright,
-    )  # fmt: skip
-    return Measurement(
-        "pulse", method, line, response, samples, checks.snr, checks, info, options.to_dict(),
-        found.width, found.prf_fwhm, stated_px,
-    )  # fmt: skip

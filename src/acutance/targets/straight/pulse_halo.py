@@ -1,9 +1,9 @@
-"""How well a pulse tells the far foot of its LSF from the ground: a systematic of its own.
+"""How well a pulse tells the halo of its LSF from the ground: a systematic of its own.
 
-Of an edge a halo lifts a whole plateau; of a pulse it is a faint foot beside the strip, which
-the level and the slope of the ground take up or feed. What the fit takes for foot is wrong by a
+Of an edge a halo lifts a whole plateau; of a pulse it is a faint halo beside the strip, which
+the level and the slope of the ground take up or feed. What the fit takes for halo is wrong by a
 share of it, more than its covariance says: 0 to 28 % over halos of 1.5 to 4 px, diffraction and
-defocus (documentation, "Pulses"). Every LSF is therefore uncertain by a share of its own foot.
+defocus (documentation, "Pulses"). Every LSF is therefore uncertain by a share of its own halo.
 """
 
 from __future__ import annotations
@@ -15,18 +15,16 @@ import numpy as np
 
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats
+from acutance.targets.straight.tuned import HALO_SHARE
 
-__all__ = ["FOOT_SHARE", "foot", "with_uncertain_foot"]
-
-FOOT_SHARE = 0.2
-"""Standard deviation of the foot, relative to the foot."""
+__all__ = ["halo", "with_uncertain_halo"]
 
 _FROM_WIDTHS, _TO_WIDTHS = 1.0, 2.0
 
 Curve = TypeVar("Curve", Esf, Lsf, Mtf)
 
 
-def foot(lsf: Lsf, fwhm_px: float) -> Floats:
+def halo(lsf: Lsf, fwhm_px: float) -> Floats:
     """The light of an LSF beyond 1.5 FWHM, (n,): it sets in smoothly from 1 to 2 FWHM.
 
     The dark fringe of a sharpened system is none: no ground looks like it.
@@ -36,17 +34,17 @@ def foot(lsf: Lsf, fwhm_px: float) -> Floats:
     return np.asarray(np.maximum(lsf.value, 0.0) * (0.5 - 0.5 * np.cos(np.pi * within)))
 
 
-def with_uncertain_foot(response: Response, share: float = FOOT_SHARE) -> Response:
-    """The same curves, with one more common cause of error: `share` of the foot.
+def with_uncertain_halo(response: Response, share: float = HALO_SHARE) -> Response:
+    """The same curves, with one more common cause of error: `share` of the halo.
 
-    Of an LSF L = core + F with the foot's energy E, one standard deviation more of it is
+    Of an LSF L = core + F with the halo's energy E, one standard deviation more of it is
     ``share (F - E L)``, normalised again; ESF and OTF err by its integral and its transform.
 
     Parameters
     ----------
     response : Response
     share : float, optional
-        Standard deviation of the foot, relative to the foot.
+        Standard deviation of the halo, relative to the halo.
     """
     esf, lsf, mtf = response.esf, response.lsf, response.mtf
     width = response.fwhm_px.value
@@ -54,7 +52,7 @@ def with_uncertain_foot(response: Response, share: float = FOOT_SHARE) -> Respon
         return response
     s = lsf.distance_px
     step = float(s[1] - s[0])
-    part = foot(lsf, width)
+    part = halo(lsf, width)
     change = share * (part - part.sum() * step * lsf.value)
     # No light is gained: what the grid does not hold of the LSF lies beyond it.
     change -= change.sum() / lsf.value.sum() * lsf.value

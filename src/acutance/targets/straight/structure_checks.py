@@ -1,8 +1,8 @@
-"""Does something lie there that is no sensor's blur? Structure of sides, strip and residuals.
+"""Does something lie there that is no sensor's blur? Structure of plateaus, pulse and residuals.
 
-What lies on the ground is taken for the sensor's where the fit can follow it, and is left over
-where it cannot. The curves tell the first (`structure`, `lopsided`), the residuals the second
-(`profile`, `strip`).
+What lies on the background is taken for the sensor's where the fit can follow it, and is left over
+where it cannot. The curves show the first (`structure`, `asymmetric_wings`), the residuals the
+second (`profile`, `target_uniformity`).
 """
 
 from __future__ import annotations
@@ -13,11 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.targets.measurement import Check
-from acutance.targets.straight.check_data import MUCH, PLACES, Evidence, at_least, at_most
-from acutance.targets.straight.options import EdgeLimits
+from acutance.targets.check import Check, Limits, answer, bounded_ratio
+from acutance.targets.straight.check_data import PLACES, CheckData
+from acutance.targets.straight.tuned import (
+    REPEATED_SIGMAS,
+    STRUCTURE_OUTLIER_SIGMAS,
+    STRUCTURE_SIGMAS,
+)
 
-__all__ = ["lopsided", "profile", "ragged", "strip", "structure", "uniformity"]
+__all__ = [
+    "asymmetric_wings",
+    "edge_roughness",
+    "profile",
+    "structure",
+    "target_uniformity",
+    "uniformity",
+]
 
 _FAR_WIDTHS = 2.5
 _STEEP_WIDTHS, _NEAR_WIDTHS = 1.25, 4.0
@@ -25,40 +36,30 @@ _REACH_PX = 40.0
 _BIN_PX = 1.0
 _PART_PX = 5.0
 _MIN_PARTS, _MAX_PARTS = 4, 12
-_SIGNIFICANT = 3.0
 _STEEP_SHARE = 0.3
-_REPEATED = 5.0
-_OUTLIER_SIGMAS = 4.0
 _BLOCK_PX = 4
 
 
-def uniformity(seen: Evidence, limits: EdgeLimits, side: str, outwards: Floats) -> Check:
+def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> Check:
     """Structure of one plateau: what means over 4 x 4 pixels vary beyond what noise explains."""
-    found = _blotches(seen, seen.value, outwards > seen.far_px)
-    value = min(1 / found, MUCH) if found > 0 else MUCH
-    return at_least(
-        f"uniformity_{side}", value, limits.uniformity,
-        f"the ground {PLACES[side]} varies by {100 * found:.1f} % of the contrast from place to "
-        "place (KOMPSAT-3 draft 3b: contrast at least 50 times the variation)",
-        "choose a more uniform ground",
-    )  # fmt: skip
+    variation = _blotches(data, data.value, outwards > data.far_px)
+    found = (
+        f"the plateau {PLACES[side]} varies by {100 * variation:.1f} % of the contrast from place "
+        "to place"
+    )
+    return answer(f"uniformity_{side}", bounded_ratio(1.0, variation), found, limits)
 
 
-def strip(seen: Evidence, limits: EdgeLimits) -> Check:
-    """Structure of the strip itself and of its two sides, from what the fit leaves there."""
-    found = _blotches(seen, seen.residual, seen.outside < 0.5 * seen.fwhm_px)
-    value = min(1 / found, MUCH) if found > 0 else MUCH
-    return at_least(
-        "uniformity_strip", value, limits.uniformity,
-        f"the strip varies by {100 * found:.1f} % of its height from place to place (asked of it "
-        "as of its grounds: 2 %)",
-        "seams, dirt, a ridge or sides that are not straight",
-    )  # fmt: skip
+def target_uniformity(data: CheckData, limits: Limits) -> Check:
+    """Structure of a pulse and of its two sides, from what the fit leaves there."""
+    variation = _blotches(data, data.residual, data.outside < 0.5 * data.fwhm_px)
+    found = f"the pulse varies by {100 * variation:.1f} % of its height from place to place"
+    return answer("uniformity_target", bounded_ratio(1.0, variation), found, limits)
 
 
-def _blotches(seen: Evidence, field: Floats, there: NDArray[np.bool_]) -> float:
+def _blotches(data: CheckData, field: Floats, there: NDArray[np.bool_]) -> float:
     """Standard deviation of means over blocks of pixels, without the share of noise."""
-    blocks = (seen.rows[there] // _BLOCK_PX) * 4096 + seen.cols[there] // _BLOCK_PX
+    blocks = (data.rows[there] // _BLOCK_PX) * 4096 + data.cols[there] // _BLOCK_PX
     _, block = np.unique(blocks, return_inverse=True)
     count = np.bincount(block)
     mean = np.bincount(block, field[there]) / np.maximum(count, 1)
@@ -71,14 +72,14 @@ def _blotches(seen: Evidence, field: Floats, there: NDArray[np.bool_]) -> float:
     return math.sqrt(max(excess, 0.0))
 
 
-def structure(seen: Evidence, limits: EdgeLimits) -> Check:
+def structure(data: CheckData, limits: Limits) -> Check:
     """Bumps of the ESF where it should be flat: a line, a road, a second edge."""
-    esf = seen.fit.response.esf
-    reach = float(np.sort(seen.outside)[int(0.95 * seen.outside.size)])
+    esf = data.fit.response.esf
+    reach = float(np.sort(data.outside)[int(0.95 * data.outside.size)])
     worst = 0.0
     for sign in (-1.0, 1.0):
         outwards = sign * esf.distance_px
-        there = (outwards > _FAR_WIDTHS * seen.fwhm_px) & (outwards < reach)
+        there = (outwards > _FAR_WIDTHS * data.fwhm_px) & (outwards < reach)
         if np.count_nonzero(there) < 3:
             continue
         coarse = esf.value[there][::10]
@@ -86,46 +87,42 @@ def structure(seen: Evidence, limits: EdgeLimits) -> Check:
         noise = 2.0 * float(np.median(esf.std[there]))
         worst = max(worst, detour - noise)
     value = max(worst, 0.0)
-    return at_most(
-        "structure", value, limits.structure,
-        f"beside the edge the profile goes up and down by {100 * value:.1f} % of the contrast",
-        "something else lies there, and its spectrum is taken for the sensor's",
-    )  # fmt: skip
+    found = f"next to the edge the profile goes up and down by {100 * value:.1f} % of the contrast"
+    return answer("structure", value, found, limits)
 
 
-def ragged(seen: Evidence, limits: EdgeLimits) -> Check:
+def edge_roughness(data: CheckData, limits: Limits) -> Check:
     """How far the target's border moves to and fro from pixel to pixel, beyond noise.
 
     Pixels on a border that is a distance d off its line differ by d times the slope of the image:
-    d is the root of what the residuals there have more than those of the noisier ground, by the
+    d is the root of what the residuals there have more than those of the noisier plateau, by the
     squared slope.
     """
-    slope = seen.slope
+    slope = data.slope
     steep = np.abs(slope) > _STEEP_SHARE * float(np.max(np.abs(slope)))
-    grounds = [seen.residual[side > seen.far_px] for side in (seen.before, seen.behind)]
-    noise = max((float(np.mean(side**2)) for side in grounds if side.size), default=0.0)
+    sides = [data.residual[side > data.far_px] for side in (data.before, data.behind)]
+    noise = max((float(np.mean(side**2)) for side in sides if side.size), default=0.0)
     count = int(np.count_nonzero(steep))
-    there = seen.residual[steep]
+    there = data.residual[steep]
     excess = float(np.mean(there**2)) - noise if count else 0.0
     # The variance of count squares of Gaussian noise.
-    chance = _SIGNIFICANT * noise * math.sqrt(2 / max(count, 1))
+    chance = STRUCTURE_SIGMAS * noise * math.sqrt(2 / max(count, 1))
     value = math.sqrt(excess / float(np.mean(slope[steep] ** 2))) if excess > chance else 0.0
-    return at_most(
-        "ragged_px", value, limits.ragged_px,
-        f"from pixel to pixel the border lies {value:.3f} px rms off the fitted line and profile",
-        "it is ragged, another edge crosses it, or the fit does not follow: choose another part",
-    )  # fmt: skip
+    found = (
+        f"from pixel to pixel the border lies {value:.3f} px rms off the fitted line and profile"
+    )
+    return answer("edge_roughness_px", value, found, limits)
 
 
-def lopsided(seen: Evidence, limits: EdgeLimits) -> Check:
-    """Whether the far foot of the LSF holds more light on one side than on the other.
+def asymmetric_wings(data: CheckData, limits: Limits) -> Check:
+    """Whether the far wings of the LSF hold more light on one side than on the other.
 
-    Halo, stray light and diffraction scatter to both sides alike. A step of the ground parallel to
-    the edge lies on one.
+    Halo, stray light and diffraction scatter to both sides equally. A step of the background
+    parallel to the edge lies on one.
     """
-    esf = seen.fit.response.esf
-    near = _FAR_WIDTHS * seen.fwhm_px
-    far = min(float(esf.distance_px[-1]), float(seen.before.max()), float(seen.behind.max()))
+    esf = data.fit.response.esf
+    near = _FAR_WIDTHS * data.fwhm_px
+    far = min(float(esf.distance_px[-1]), float(data.before.max()), float(data.behind.max()))
     value, significance = 0.0, 0.0
     if far > near + 1:
         terms = [(1.0, -far), (-1.0, -near), (-1.0, near), (1.0, far)]
@@ -133,32 +130,30 @@ def lopsided(seen: Evidence, limits: EdgeLimits) -> Check:
         rows = [sign * esf.gradient(place) for sign, place in terms]
         std = float(np.linalg.norm(np.sum(rows, axis=0)))
         significance = abs(excess) / max(std, 1e-9)
-        value = abs(excess) if significance > _SIGNIFICANT else 0.0
-    return at_most(
-        "lopsided", value, limits.lopsided,
+        value = abs(excess) if significance > STRUCTURE_SIGMAS else 0.0
+    found = (
         f"beyond {near:.1f} px the ESF moves by {100 * value:.1f} % of the contrast more on one "
-        f"side than on the other ({significance:.0f} standard deviations)",
-        "no halo does; a step of the ground parallel to the edge does, or a long charge trail; "
-        "choose another side or a narrower region",
-    )  # fmt: skip
+        f"side than on the other ({significance:.0f} standard deviations)"
+    )
+    return answer("asymmetric_wings", value, found, limits)
 
 
-def profile(seen: Evidence, limits: EdgeLimits, last_px: float, own_misfit: bool) -> Check:
+def profile(data: CheckData, limits: Limits, last_px: float, *, own_misfit: bool) -> Check:
     """What the fit leaves along the normal and repeats all along the target.
 
     Noise, however coloured, differs from part to part of the target; a line parallel to it, a
-    striped strip or ringing the LSF cannot follow is the same in all of them.
+    striped pulse or ringing the LSF cannot follow is the same in all of them.
 
     Parameters
     ----------
-    seen, limits
+    data, limits
     last_px : float
         Place of the target's last step: 0 for an edge.
     own_misfit : bool
         Whether the method's curves do not claim to follow the pixels (the published ones smooth).
     """
-    s = -seen.before
-    steep, near = _STEEP_WIDTHS * seen.fwhm_px, _NEAR_WIDTHS * seen.fwhm_px
+    s = -data.before
+    steep, near = _STEEP_WIDTHS * data.fwhm_px, _NEAR_WIDTHS * data.fwhm_px
     ends = (
         max(float(s.min()) + 0.5 * _BIN_PX, -_REACH_PX),
         min(float(s.max()) - 0.5 * _BIN_PX, last_px + _REACH_PX),
@@ -168,20 +163,18 @@ def profile(seen: Evidence, limits: EdgeLimits, last_px: float, own_misfit: bool
         windows += [(-near, -steep), (-steep, last_px + steep), (last_px + steep, last_px + near)]
     value, most = 0.0, 0.0
     for start, stop in windows:
-        common, significance = _common_profile(seen, s, start, stop)
-        if significance > _REPEATED:
+        common, significance = _common_profile(data, s, start, stop)
+        if significance > REPEATED_SIGMAS:
             value = max(value, common)
         most = max(most, significance)
-    return at_most(
-        "profile", value, limits.profile,
+    found = (
         f"all along the target the pixels leave the fit by the same {100 * value:.2f} % of the "
-        f"contrast ({most:.0f} standard deviations)",
-        "lines parallel to it, a strip that is not of one brightness, or ringing finer than the "
-        "fit follows; the intervals do not allow for it",
-    )  # fmt: skip
+        f"contrast ({most:.0f} standard deviations)"
+    )
+    return answer("profile", value, found, limits)
 
 
-def _common_profile(seen: Evidence, s: Floats, start: float, stop: float) -> tuple[float, float]:
+def _common_profile(data: CheckData, s: Floats, start: float, stop: float) -> tuple[float, float]:
     """Root mean square of the profile that all parts of the target share, and its significance.
 
     With the mean residual P (K, B) of K parts in B bins, the products of different parts,
@@ -194,12 +187,12 @@ def _common_profile(seen: Evidence, s: Floats, start: float, stop: float) -> tup
     there = (s >= start) & (s < stop)
     if bins < 2 or np.count_nonzero(there) < _MIN_PARTS * bins:
         return 0.0, 0.0
-    t = seen.t[there]
+    t = data.t[there]
     parts = min(int(np.ptp(t) // _PART_PX), _MAX_PARTS)
     if parts < _MIN_PARTS:
         return 0.0, 0.0
-    most = _OUTLIER_SIGMAS * seen.noise
-    residual = np.clip(seen.residual[there], -most, most)
+    most = STRUCTURE_OUTLIER_SIGMAS * data.noise
+    residual = np.clip(data.residual[there], -most, most)
     column = np.minimum(((s[there] - start) / (stop - start) * bins).astype(np.intp), bins - 1)
     row = np.minimum(((t - t.min()) / np.ptp(t) * parts).astype(np.intp), parts - 1)
     cell = row * bins + column

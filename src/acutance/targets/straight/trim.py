@@ -19,14 +19,16 @@ from acutance.numerics.noise import median
 from acutance.targets.straight.find_edges import Segment
 from acutance.targets.straight.first_fit import BlurredEdge, fit_blurred_edge
 from acutance.targets.straight.pixels import EdgeBand, Pixels
+from acutance.targets.straight.tuned import (
+    MAX_TOLERANCE,
+    MIN_ROWS,
+    MIN_SNR,
+    NEAR_TOLERANCE,
+    PLATEAU_TOLERANCE,
+)
 
 __all__ = ["Extent", "Serving", "beside", "serving", "trim"]
 
-_MIN_ROWS = 8
-_MIN_SNR = 3.0
-_TOLERANCE = 0.12
-_MAX_TOLERANCE = 0.22
-_NEAR_TOLERANCE = 0.3
 _SIGNIFICANCE = 4.0
 _MAX_HALF_WIDTH_PX = 40.0
 _FAR_PX = 100.0
@@ -138,10 +140,10 @@ def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: fl
     first, bins, dark_reach, bright_reach = _reaches(edge, s, t, strange, need)
     start, stop = _best_run(np.minimum(dark_reach, bright_reach), need)
     length = stop - start
-    if length < _MIN_ROWS:
+    if length < MIN_ROWS:
         raise SupportError(
             f"only {length} rows of the target have at least {need:.1f} px of plateau on both "
-            f"sides (at least {_MIN_ROWS} are needed): choose a region with more of it"
+            f"sides (at least {MIN_ROWS} are needed): choose a region with more of it"
         )
     whole = not strange.any()
     used = np.ones(s.size, bool)
@@ -175,7 +177,7 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
     for _ in range(3):
         near = along & (np.abs(s) < reach)
         dark, bright = value[near & (s < -0.5 * reach)], value[near & (s > 0.5 * reach)]
-        if min(dark.size, bright.size) < _MIN_ROWS:
+        if min(dark.size, bright.size) < MIN_ROWS:
             raise SupportError(
                 f"the strongest edge has {dark.size} usable pixels on its dark and {bright.size} "
                 f"on its bright side between {0.5 * reach:.1f} and {reach:.1f} px from it: choose "
@@ -194,10 +196,10 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
         if edge.blur.width_px * _REACH_WIDTHS <= reach:
             break
         reach, sigma_px = 1.2 * _REACH_WIDTHS * edge.blur.width_px, edge.blur.sigma_px
-    if edge.height < _MIN_SNR * edge.noise:
+    if edge.height < MIN_SNR * edge.noise:
         raise NoEdgeError(
             f"the strongest edge has a height of {edge.height:.4g} in noise of {edge.noise:.3g}: "
-            f"an SNR of {edge.height / edge.noise:.1f} where {_MIN_SNR:g} is the least"
+            f"an SNR of {edge.height / edge.noise:.1f} where {MIN_SNR:g} is the least"
         )
     return edge
 
@@ -205,10 +207,10 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
 def _require_contrast(edge: BlurredEdge, departure: Floats) -> None:
     """Refuse an edge that is lower than its own plateaus are rough."""
     roughness = math.sqrt(float(departure @ departure) / departure.size)
-    if roughness * _MIN_SNR > 1:
+    if roughness * MIN_SNR > 1:
         raise NoEdgeError(
             f"the edge has a height of {edge.height:.4g}, and its sides vary by "
-            f"{roughness * edge.height:.3g}: a ratio of {1 / roughness:.1f} where {_MIN_SNR:g} is "
+            f"{roughness * edge.height:.3g}: a ratio of {1 / roughness:.1f} where {MIN_SNR:g} is "
             "the least; choose a region whose two sides are uniform"
         )
 
@@ -236,9 +238,9 @@ def _strange(
     around &= outside < _FIRST_REACH_PX + width
     noise = median(np.abs(smooth[around])) / 0.6745 if around.any() else 0.0
     # Beyond a fifth of the contrast nothing passes for noise, however rough the ground is.
-    tolerance = max(_TOLERANCE, min(_SIGNIFICANCE * noise, _MAX_TOLERANCE))
+    tolerance = max(PLATEAU_TOLERANCE, min(_SIGNIFICANCE * noise, MAX_TOLERANCE))
     near = outside < 1.5 * width
-    return np.abs(smooth) > np.where(near, max(_NEAR_TOLERANCE, tolerance), tolerance)
+    return np.abs(smooth) > np.where(near, max(NEAR_TOLERANCE, tolerance), tolerance)
 
 
 def _box(values: Floats) -> Floats:

@@ -1,0 +1,104 @@
+"""What a straight target gives: numbers and curves along its normal, the line, the pixels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves import Estimate
+from acutance.curves.grid import Floats
+from acutance.curves.one_line import OneLine
+from acutance.geometry.line import Line
+from acutance.targets.measurement import Measurement
+
+__all__ = ["StraightDetails", "StraightMeasurement"]
+
+
+@dataclass(frozen=True, eq=False)
+class StraightDetails(OneLine):
+    """The pixels a measurement used, seen along the normal.
+
+    Parameters
+    ----------
+    pixels : (rows, cols) array
+        Of the region; unusable pixels are NaN.
+    used : (rows, cols) bool array
+        Which pixels entered the fit.
+    distance_px : (n,) array
+        Normal distance of the used pixels, in row-major order; 0 at the 50 % point.
+    value : (n,) array
+        Their edge response, normalised to 0 (dark plateau) .. 1 (bright plateau).
+    residual : (n,) array
+        Value minus the fitted ESF, same scale.
+    """
+
+    pixels: Floats
+    used: NDArray[np.bool_]
+    distance_px: Floats
+    value: Floats
+    residual: Floats
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class StraightMeasurement(Measurement):
+    """A measurement of an edge or a pulse.
+
+    Parameters
+    ----------
+    line : Line
+        The edge, or the rising side of a pulse, in pixels of the whole image.
+    dark, bright : float
+        Plateau levels in the image's units; of a pulse its background and its own level.
+    width_px : Estimate, optional
+        Width of a pulse along the normal.
+    prf_fwhm_px : Estimate, optional
+        Width of the pulse response function at half of its maximum, along the normal.
+    stated_width_px : float, optional
+        Width of a pulse as it was stated; ``None`` where it was guessed from the image.
+    """
+
+    line: Line
+    dark: float
+    bright: float
+    width_px: Estimate | None = None
+    prf_fwhm_px: Estimate | None = None
+    stated_width_px: float | None = None
+
+    @property
+    def normal_deg(self) -> float:
+        """Direction of the normal, from the column axis (0) towards the row axis (90)."""
+        return self.line.normal_deg
+
+    @property
+    def angle_deg(self) -> Estimate:
+        """Acute angle between the edge and the nearer image axis."""
+        return Estimate(self.line.angle_deg, self.line.angle_std_deg)
+
+    def pulse_numbers(self) -> dict[str, Estimate]:
+        """What only a pulse has, by name: its width and that of its response; metres by a GSD."""
+        gsd_m = self.response.gsd_m
+        found: dict[str, Estimate] = {}
+        for name, number in (("width", self.width_px), ("prf_fwhm", self.prf_fwhm_px)):
+            if number is not None:
+                found[f"{name}_px"] = number
+                if gsd_m is not None:
+                    found[f"{name}_m"] = number.scaled(gsd_m)
+        return found
+
+    def target_document(self) -> dict[str, Any]:
+        """Line, levels and, of a pulse, its widths, for JSON."""
+        widths: dict[str, Any] = {
+            name: number.to_dict() for name, number in self.pulse_numbers().items()
+        }
+        if self.width_px is not None:
+            widths["stated_width_px"] = self.stated_width_px
+        return {
+            "line": {**self.line.to_dict(), "orientation": self.orientation},
+            "angle_deg": self.angle_deg.to_dict(),
+            "dark": self.dark,
+            "bright": self.bright,
+            **widths,
+        }

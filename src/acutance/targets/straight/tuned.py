@@ -1,0 +1,116 @@
+"""Numbers of this room that were tuned: what each is, which benchmark set it, what it gave.
+
+Lengths named WIDTHS are in units of the blur's FWHM, shares in units of the contrast. Tolerances
+of iterations and the sizes of grids stand where they are used.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+
+__all__ = [
+    "APERTURE_PX",
+    "APERTURE_TAIL_PX",
+    "CHANGE_SIGMAS",
+    "DETAIL",
+    "GRADIENT_SIGMAS",
+    "HALO",
+    "HALO_SHARE",
+    "HARMLESS_STEP",
+    "LOG_AMPLITUDE",
+    "LOG_AMPLITUDE_STD",
+    "MAX_ANGLE_BY_ROWS_DEG",
+    "MAX_CORRECTED_WIDTH",
+    "MAX_TOLERANCE",
+    "MIN_CONTRAST_SHARE",
+    "MIN_PHASES",
+    "MIN_PILED_PIXELS",
+    "MIN_ROWS",
+    "MIN_SIDE_PIXELS",
+    "MIN_SNR",
+    "MIN_STRENGTH_SHARE",
+    "NEAR_TOLERANCE",
+    "OUTLIER_SIGMAS",
+    "PLATEAU_TOLERANCE",
+    "QUIET_SIDE",
+    "QUIET_TRANSITION",
+    "REPEATED_SIGMAS",
+    "SHAPE",
+    "STRUCTURE_OUTLIER_SIGMAS",
+    "STRUCTURE_SIGMAS",
+    "TAIL_WIDTH",
+    "TREND_LOG_AMPLITUDE",
+]
+
+# The prior of the LSF (lsf_prior.py): extent L and smoothness l of its processes, in widths.
+SHAPE: Final = (1.2, 0.6)
+"""Smooth departures near the peak: sharpening, asymmetry, shoulders (benchmarks/accuracy.py)."""
+DETAIL: Final = (0.7, 0.17)
+"""Fine structure of the peak. At (1.5, .25) obscured telescopes go from 36 to 85 % coverage of
+MTF(.25), but RMS at SNR 50 from .0105 to .0111 (benchmarks/coverage.py)."""
+HALO: Final = (3.0, 1.2)
+"""Broad departures. At (3, .6) obscured telescopes 36 to 62 %, for 15 more unknowns."""
+TAIL_WIDTH: Final = 1.0
+"""Half width of the 1/u^2 tail: diffraction's noise-free error .002 (benchmarks/accuracy.py)."""
+LOG_AMPLITUDE: Final[Floats] = np.array([-4.4, -2.5, -4.1, -4.0])
+LOG_AMPLITUDE_STD: Final = 1.2
+"""Amplitudes of SHAPE, DETAIL, HALO and tail relative to the height: 1 to 2 % (detail 8 %), within
+a factor 3.3 either way. Set once over systems of many shapes: 2400 images, intervals hold 94.6 to
+97 % (benchmarks/coverage.py)."""
+APERTURE_PX: Final = (1.0, 0.18)
+"""Mean and standard deviation of the detector's aperture: fill factors are near one."""
+TREND_LOG_AMPLITUDE: Final = -2.5
+"""Trends of the plateaus (gradients.py): 8 % of the height, larger than any on purpose. An
+amplitude that may vanish does so where a slope is too weak to be seen, and the slope is then taken
+for a halo; -4 saves 2 % of the deviation of MTF(.25) on uniform plateaus and errs a fifth more on
+slopes of 1 % (benchmarks/trials.py)."""
+HALO_SHARE: Final = 0.2
+"""Standard deviation of a pulse's halo relative to itself (pulse_halo.py): fits are wrong by 0 to
+28 % of it over halos of 1.5 to 4 px, diffraction and defocus (benchmarks/pulse.py)."""
+
+# Which pixels are used (trim.py, find_edges.py, find_pulse.py, edge.py, many_edges.py).
+PLATEAU_TOLERANCE: Final = 0.12
+MAX_TOLERANCE: Final = 0.22
+NEAR_TOLERANCE: Final = 0.3
+"""How far the mean of 3 x 3 pixels may leave its plateau: at least, on the roughest background, and
+within 1.5 widths (benchmarks/trials.py)."""
+MIN_ROWS: Final = 8
+"""Rows of an edge with plateaus on both sides: one cycle of phases at 7 degrees."""
+MIN_SNR: Final = 3.0
+"""Height over noise, and over the plateaus' roughness, below which there is no edge."""
+MIN_PHASES: Final = 2.0
+"""Sub-pixel phases below which nothing is measured: the profile has gaps of half a pixel."""
+MIN_STRENGTH_SHARE: Final = 0.1
+MIN_CONTRAST_SHARE: Final = 0.8
+"""Of all edges of a target: weakest segment that is tried, and lowest contrast that is kept,
+relative to the strongest: those of the target's border with its surroundings are lower."""
+MAX_CORRECTED_WIDTH: Final = 0.15
+"""A fitted pulse width further from the stated one is another width: the fit starts again there."""
+
+# Checks (edge_checks.py, pixel_checks.py, structure_checks.py, pulse_checks.py).
+OUTLIER_SIGMAS: Final = 4.5
+"""Beyond: an outlier. Of Gaussian noise one pixel in 150 000."""
+CHANGE_SIGMAS: Final = 4.0
+"""Chi-square of the parts along an edge, in its deviations: of 200 clean edges none beyond."""
+STRUCTURE_SIGMAS: Final = 3.0
+GRADIENT_SIGMAS: Final = 3.5
+REPEATED_SIGMAS: Final = 5.0
+STRUCTURE_OUTLIER_SIGMAS: Final = 4.0
+"""Structure, slopes and repeated residuals below so many deviations are chance: at these, 200 of
+200 clean simulated edges pass every check (tests of false targets)."""
+MAX_ANGLE_BY_ROWS_DEG: Final = 30.0
+"""Of methods that work row by row (KOMPSAT-3 draft 3d)."""
+MIN_PILED_PIXELS: Final = 20
+MIN_SIDE_PIXELS: Final = 24
+"""Pixels of a side that clipping, and slopes, are judged by."""
+QUIET_SIDE: Final = 1e-4
+QUIET_TRANSITION: Final = 2e-3
+"""Noise of a side and of the transition below which an image has none: nothing to clip."""
+HARMLESS_STEP: Final = 1e-4
+"""Steps of the image's numbers that curves do not resolve."""
+APERTURE_TAIL_PX: Final = 0.1
+"""The LSF of an aperture falls as a / s^2: a is .065 px for a cutoff of 1 c/px, .1 for .65."""
