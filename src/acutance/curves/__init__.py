@@ -1,6 +1,7 @@
 """Curves and the metrics that read them: the ground floor, numpy only."""
 
 from acutance.curves.estimate import Estimate
+from acutance.curves.estimates import Estimates
 from acutance.curves.plane import Otf2d, OtfModel
 from acutance.curves.response import METRICS, HasResponse, Response
 from acutance.curves.spread import Esf, Lsf
@@ -10,6 +11,7 @@ __all__ = [
     "METRICS",
     "Esf",
     "Estimate",
+    "Estimates",
     "HasResponse",
     "Lsf",
     "Mtf",

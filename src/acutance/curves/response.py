@@ -53,7 +53,7 @@ class Response(OneLine):
     @cached_property
     def fwhm_m(self) -> Estimate | None:
         """FWHM in metres; ``None`` without a GSD."""
-        return None if self.gsd_m is None else self.fwhm_px.scaled(self.gsd_m)
+        return None if self.gsd_m is None else self.fwhm_px * self.gsd_m
 
     @cached_property
     def mtf50_cpp(self) -> Estimate:
