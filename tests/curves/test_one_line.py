@@ -1,12 +1,14 @@
-"""Whatever holds arrays prints as one line."""
+"""Whatever holds arrays prints as one line and compares by what it holds."""
 
-from dataclasses import dataclass
+import math
+import pickle
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import pytest
 
 import acutance as ac
-from acutance.curves import Estimate
+from acutance.curves import Esf, Estimate, Lsf
 from acutance.curves.one_line import OneLine
 
 SENSOR = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()], gsd_m=0.7)
@@ -83,3 +85,75 @@ def test_measurements_over_the_plane_print_both_directions():
     assert f"across: {m.across.in_words()}, along: {m.along.in_words()}, " in repr(m)
     assert f"of {len(m.checks)} checks failed" in repr(m)
     assert len(repr(truth)) < 200
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Whose own equality would ask for the truth of an array."""
+
+    name: str
+    samples: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Holder(OneLine):
+    samples: object
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (np.array([1.0, math.nan]), np.array([1.0, 2.0])),
+        (np.array([1.0, 1j]), np.array([1.0, 2j])),
+        (np.array(["a", "b"]), np.array(["a", "c"])),
+        (np.zeros(3), np.zeros(4)),
+        (np.zeros(3), None),
+        (None, np.zeros(3)),
+        (math.nan, 1.0),
+        ((1, np.zeros(2)), (1, np.ones(2))),
+        ([np.zeros(2)], [np.zeros(2), np.zeros(2)]),
+        ({"a": np.zeros(2)}, {"a": np.ones(2)}),
+        ({"a": np.zeros(2)}, {"b": np.zeros(2)}),
+        (Pair("a", np.zeros(2)), Pair("a", np.ones(2))),
+        (Pair("a", np.zeros(2)), Holder(np.zeros(2))),
+        (Estimate(0.5, math.nan), Estimate(0.5, 0.1)),
+        ("a", "b"),
+    ],
+)
+def test_equal_to_a_copy_and_to_nothing_else(one, other):
+    assert Holder(one) == pickle.loads(pickle.dumps(Holder(one)))
+    assert Holder(one) != Holder(other)
+
+
+def test_only_those_of_one_class_are_equal():
+    @dataclass(frozen=True, eq=False)
+    class Further(Holder):
+        pass
+
+    assert Further(1) != Holder(1)
+    assert Holder(1) != 1
+    assert Esf(np.arange(4.0), np.zeros(4), np.zeros((4, 0))) != Lsf(
+        np.arange(4.0), np.zeros(4), np.zeros((4, 0))
+    )
+
+
+def test_like_arrays_they_have_no_hash(edge):
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(edge[1].mtf)
+
+
+def test_results_equal_their_pickled_copies(edge):
+    m = ac.measure_edge(edge[0])
+    image, truth = ac.simulate.star(SENSOR, snr=100, rng=np.random.default_rng(4))
+    star = ac.measure_star(image, cycles=truth.star.cycles)
+    for one in (m, m.response, m.esf, m.lsf, m.mtf, edge[1], star, star.otf, truth):
+        assert pickle.loads(pickle.dumps(one)) == one, type(one)
+
+
+@pytest.mark.parametrize("name", ["esf", "lsf", "mtf"])
+def test_a_curve_differs_in_any_of_its_fields(edge, name):
+    curve = getattr(ac.measure_edge(edge[0]), name)
+    for field in fields(curve):
+        part = getattr(curve, field.name)
+        assert replace(curve, **{field.name: np.asarray(part) * 1.1}) != curve
+    assert replace(curve) == curve

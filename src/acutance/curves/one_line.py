@@ -1,9 +1,9 @@
-"""How a result that holds arrays prints: on one line."""
+"""How a result that holds arrays prints, on one line, and compares, by what it holds."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -16,10 +16,14 @@ _FEW = 3
 
 
 class OneLine:
-    """A dataclass that prints as one line: its name, and what `in_words` says of it.
+    """A dataclass of arrays that prints as one line and compares by its fields.
 
     A class made from it has this representation instead of that of dataclasses, which writes out
-    every array. Unless it finds better words, it tells its fields, arrays by their shapes.
+    every array: its name, and what `in_words` says. Unless it finds better words, these are its
+    fields, arrays by their shapes.
+
+    Two of one class are equal when all their fields are, arrays element by element and ``nan``
+    equal to ``nan``; so a result equals its pickled copy. Like arrays they have no hash.
 
     Examples
     --------
@@ -29,8 +33,15 @@ class OneLine:
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
-        # A dataclass writes itself no representation where the class body has one.
+        # A dataclass writes itself none of these where the class body has them.
         cls.__repr__ = OneLine.__repr__  # type: ignore[method-assign]
+        cls.__eq__ = OneLine.__eq__  # type: ignore[method-assign]
+        cls.__hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        return _equal(self, other) if type(other) is type(self) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self.in_words()}>"
@@ -56,3 +67,21 @@ def _in_short(value: Any) -> str:
     if isinstance(value, tuple | list | Mapping):
         return f"({len(value)} of them)"
     return f"<{type(value).__name__}>"
+
+
+def _equal(one: Any, other: Any) -> bool:
+    """Whether two values are equal, arrays and whatever holds them included."""
+    if one is other:
+        return True
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return np.array_equal(one, other, equal_nan=one.dtype.kind in "fc")
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return False
+    if is_dataclass(one) and type(one) is type(other):
+        names = [field.name for field in fields(one) if field.compare]
+        return all(_equal(getattr(one, name), getattr(other, name)) for name in names)
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(_equal(one[key], other[key]) for key in one)
+    if isinstance(one, tuple | list) and isinstance(other, tuple | list):
+        return len(one) == len(other) and all(map(_equal, one, other))
+    return bool(one == other or (one != one and other != other))

@@ -28,7 +28,9 @@ class Mtf(OneLine):
     freq_cpp : (n,) array
         Regular grid of frequencies in cycles per pixel, from 0 to 1 at least.
     otf : (n,) complex array
-        Phase relative to the centroid of the LSF, so that an asymmetric system shows.
+        Phase relative to the centroid of the LSF, so that an asymmetric system shows: the
+        Fourier transform of the LSF with the kernel ``exp(-2 pi i f s)``. A trail towards the
+        bright side has a positive phase at low frequencies.
     factor : (n, k) complex array
         Factor of the covariance: the error of `otf` is ``factor @ z``, z standard normal.
     latent : (k, m) array, optional
