@@ -165,6 +165,15 @@ def test_noise_in_quadrature_does_not_raise_the_mtf() -> None:
     assert abs(np.mean(curve.value) - true) < 0.0015
 
 
+def test_only_errors_in_phase_with_the_otf_are_errors_of_the_mtf() -> None:
+    otf = np.exp(-3 * FREQ**2 + 2j * FREQ)
+    along = 0.01 * otf / np.abs(otf)
+    curve = Mtf(FREQ, otf, np.column_stack([along, 3j * along]))
+    np.testing.assert_allclose(curve.std, 0.01)
+    np.testing.assert_allclose(curve.value**2, np.maximum(np.abs(otf) ** 2 - 0.03**2, 0))
+    assert curve(0.333).std == pytest.approx(0.01, rel=1e-4)
+
+
 def test_curves_refuse_shapes_that_do_not_fit() -> None:
     with pytest.raises(ValueError, match="factor"):
         Esf(DISTANCE, DISTANCE[:-1], np.zeros((DISTANCE.size, 0)))

@@ -74,15 +74,21 @@ def test_psf_is_the_sensors() -> None:
 
 @dataclass(frozen=True)
 class TrailingGaussian:
-    """A Gaussian of two widths with an exponential trail towards higher columns (+x)."""
+    """A Gaussian of two widths with an exponential trail towards higher columns (+x).
+
+    `oblique_px2` is the Gaussian's covariance of columns with rows: above 0 it is drawn out
+    towards higher columns and rows.
+    """
 
     across_px: float = 0.35
     along_px: float = 0.7
     trail_px: float = 0.6
+    oblique_px2: float = 0.0
     band_cpp: float = 6.0
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> np.ndarray:
         power = (self.across_px * u_cpp) ** 2 + (self.along_px * v_cpp) ** 2
+        power = power + 2 * self.oblique_px2 * u_cpp * v_cpp
         return np.exp(-2 * math.pi**2 * power) / (1 + 2j * math.pi * self.trail_px * u_cpp)
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> np.ndarray:
@@ -138,6 +144,15 @@ def test_across_and_along_keep_their_own_widths() -> None:
     rows, cols = (psf @ distance**2), (psf.T @ distance**2)
     assert rows.sum() * 0.01 == pytest.approx(0.09, rel=1e-3)
     assert cols.sum() * 0.01 == pytest.approx(0.36, rel=1e-3)
+
+
+@pytest.mark.parametrize("normal_deg", [30.0, -30.0, 150.0])
+def test_directions_turn_from_columns_towards_rows(normal_deg: float) -> None:
+    otf = Otf2d(TrailingGaussian(0.5, 0.5, 0.0, oblique_px2=0.1))
+    sigma = math.sqrt(0.25 + 0.1 * math.sin(2 * math.radians(normal_deg)))
+    assert otf.response(normal_deg).fwhm_px.value == pytest.approx(2.3548200 * sigma, abs=1e-3)
+    distance, psf = otf.psf(4.0, 0.1)
+    assert distance @ psf @ distance * 0.01 == pytest.approx(0.1, rel=1e-3)
 
 
 @pytest.mark.parametrize(
