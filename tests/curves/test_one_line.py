@@ -137,6 +137,22 @@ def test_only_those_of_one_class_are_equal():
     )
 
 
+def test_an_equality_of_its_own_stays_and_is_inherited():
+    class ByName(OneLine):
+        def __eq__(self, other: object) -> bool:
+            return isinstance(other, ByName) and other.name == self.name
+
+        __hash__ = None
+
+    @dataclass(frozen=True)
+    class Named(ByName):
+        name: str
+        samples: np.ndarray
+
+    assert Named("a", np.zeros(2)) == Named("a", np.ones(2))
+    assert repr(Named("a", np.zeros(2))) == "<Named: name 'a', samples array of 2>"
+
+
 def test_like_arrays_they_have_no_hash(edge):
     with pytest.raises(TypeError, match="unhashable"):
         hash(edge[1].mtf)

@@ -33,10 +33,9 @@ class OneLine:
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
-        # A dataclass writes itself none of these where the class body has them.
-        cls.__repr__ = OneLine.__repr__  # type: ignore[method-assign]
-        cls.__eq__ = OneLine.__eq__  # type: ignore[method-assign]
-        cls.__hash__ = None  # type: ignore[assignment]
+        # A dataclass writes itself none of these where the class itself has them.
+        for name in ("__repr__", "__eq__", "__hash__"):
+            setattr(cls, name, getattr(cls, name))
 
     def __eq__(self, other: object) -> bool:
         return _equal(self, other) if type(other) is type(self) else NotImplemented
