@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import acutance as ac
-from acutance.curves import Esf, Estimate, Lsf
+from acutance.curves import Esf, Estimate, Lsf, Mtf, Otf2d, Response
 from acutance.curves.one_line import OneLine
 
 SENSOR = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()], gsd_m=0.7)
@@ -158,18 +158,42 @@ def test_like_arrays_they_have_no_hash(edge):
         hash(edge[1].mtf)
 
 
-def test_results_equal_their_pickled_copies(edge):
-    m = ac.measure_edge(edge[0])
-    image, truth = ac.simulate.star(SENSOR, snr=100, rng=np.random.default_rng(4))
-    star = ac.measure_star(image, cycles=truth.star.cycles)
-    for one in (m, m.response, m.esf, m.lsf, m.mtf, edge[1], star, star.otf, truth):
-        assert pickle.loads(pickle.dumps(one)) == one, type(one)
+@dataclass(frozen=True)
+class Flat:
+    """A model of a 2-D OTF that holds an array."""
+
+    heights: np.ndarray
+
+
+def uncertain_response() -> Response:
+    rng = np.random.default_rng(6)
+    places, latent = np.arange(11) * 0.1, rng.normal(size=(2, 3))
+    return Response(
+        Esf(places, rng.normal(size=11), rng.normal(size=(11, 2)), latent),
+        Lsf(places, rng.normal(size=11), rng.normal(size=(11, 2)), latent),
+        Mtf(places, rng.normal(size=11) + 1j, rng.normal(size=(11, 2)) + 1j, latent),
+        gsd_m=0.7,
+    )
 
 
 @pytest.mark.parametrize("name", ["esf", "lsf", "mtf"])
-def test_a_curve_differs_in_any_of_its_fields(edge, name):
-    curve = getattr(ac.measure_edge(edge[0]), name)
+def test_a_curve_equals_its_copy_and_differs_in_any_field(name):
+    curve = getattr(uncertain_response(), name)
+    assert pickle.loads(pickle.dumps(curve)) == curve
     for field in fields(curve):
-        part = getattr(curve, field.name)
-        assert replace(curve, **{field.name: np.asarray(part) * 1.1}) != curve
-    assert replace(curve) == curve
+        assert replace(curve, **{field.name: 1.1 * getattr(curve, field.name)}) != curve
+
+
+def test_whatever_holds_curves_equals_its_copy(edge):
+    plane = Otf2d(Flat(np.array([1.0, math.nan])), (1.0, 2.0))
+    for one in (uncertain_response(), plane, edge[1], edge[1].response):
+        assert pickle.loads(pickle.dumps(one)) == one
+    assert replace(uncertain_response(), rer_centre="peak") != uncertain_response()
+    assert replace(plane, model=Flat(np.zeros(2))) != plane
+    assert replace(plane, gsd_m=(2.0, 1.0)) != plane
+
+
+def test_what_was_computed_already_is_no_difference():
+    read, unread = uncertain_response(), uncertain_response()
+    _ = read.mtf.std, read.mtf_nyquist
+    assert read == unread

@@ -80,10 +80,6 @@ class Estimate:
         low, high = self.value - half, self.value + half
         return (low, high) if self.lowest is None else (max(low, self.lowest), high)
 
-    def scaled(self, factor: float) -> Estimate:
-        """The same quantity in another unit."""
-        return factor * self
-
     def to_dict(self) -> dict[str, float | list[float] | None]:
         """Value, standard deviation and 95 % interval; ``None`` where they do not exist.
 

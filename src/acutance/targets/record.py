@@ -121,7 +121,7 @@ class RecordedDirection(OneLine):
     def numbers(self) -> dict[str, Estimate]:
         """All numbers by name, in the order a report prints them."""
         return {
-            name: estimate_of(self.document[name])
+            name: Estimate.from_dict(self.document[name])
             for name in METRICS
             if self.document.get(name) is not None
         }
@@ -224,7 +224,7 @@ class Record(OneLine):
             return NotImplemented
         return bool(_finite(self.document) == _finite(other.document))
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
     @property
     def kind(self) -> str:
@@ -322,14 +322,6 @@ class Record(OneLine):
         """Target and method, the main numbers, and how many checks failed."""
         named = (f"{name}: {one.in_words()}" for name, one in self.directions.items())
         return f"{self.kind} by {self.method}, {', '.join(named)}, {count_failed(self.checks)}"
-
-
-def estimate_of(document: Mapping[str, Any]) -> Estimate:
-    """The number that `Estimate.to_dict` wrote."""
-    value, std = (
-        math.nan if document.get(key) is None else float(document[key]) for key in ("value", "std")
-    )
-    return Estimate(value, std)
 
 
 def rounded(values: ArrayLike, digits: int = 6) -> list[Any]:
