@@ -10,13 +10,13 @@ import numpy as np
 
 from acutance.curves.estimate import Estimate, normal_quantile
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["Estimates", "estimates_of"]
 
 
 @dataclass(frozen=True, eq=False)
-class Estimates(OneLine):
+class Estimates(ShortRepr):
     """What a curve answers at an array of places: one estimate a place.
 
     Parameters

@@ -11,13 +11,13 @@ import numpy as np
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
 from acutance.curves.grid import Floats, Places, Rows, as_places, sample
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["Esf", "Lsf"]
 
 
 @dataclass(frozen=True, eq=False)
-class _SpreadCurve(OneLine):
+class _SpreadCurve(ShortRepr):
     """A real curve over the distance along the edge's normal, with its covariance.
 
     Parameters
@@ -94,7 +94,7 @@ class _SpreadCurve(OneLine):
         std = np.sqrt(np.einsum("...j,...j->...", gradient, gradient))
         return estimates_of(sample(self.distance_px, self.value, at), std)
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """Where it runs."""
         first, last = self.distance_px[[0, -1]]
         return f"distance_px {first:g} to {last:g}, {self.distance_px.size} places"

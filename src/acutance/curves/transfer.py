@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
 from acutance.curves.grid import Floats, Places, as_places, sample
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["Mtf"]
 
@@ -20,7 +20,7 @@ Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)
-class Mtf(OneLine):
+class Mtf(ShortRepr):
     """OTF along one direction, normalised to 1 at zero frequency, with its covariance.
 
     Parameters
@@ -128,7 +128,7 @@ class Mtf(OneLine):
         """Phase of the OTF in radians, relative to the centroid of the LSF, (n,)."""
         return np.asarray(np.angle(self.otf))
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """Where it runs."""
         first, last = self.freq_cpp[[0, -1]]
         return f"freq_cpp {first:g} to {last:g}, {self.freq_cpp.size} places"

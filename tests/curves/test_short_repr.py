@@ -9,13 +9,13 @@ import pytest
 
 import acutance as ac
 from acutance.curves import Esf, Estimate, Lsf, Mtf, Otf2d, Response
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 
 SENSOR = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()], gsd_m=0.7)
 
 
 @dataclass(frozen=True)
-class Thing(OneLine):
+class Thing(ShortRepr):
     name: str
     size: float
     width: Estimate
@@ -82,7 +82,7 @@ def test_results_curves_and_truths_print_as_one_line(edge):
 def test_measurements_over_the_plane_print_both_directions():
     image, truth = ac.simulate.star(SENSOR, snr=100, rng=np.random.default_rng(4))
     m = ac.measure_star(image, cycles=truth.star.cycles)
-    assert f"across: {m.across.in_words()}, along: {m.along.in_words()}, " in repr(m)
+    assert f"across: {m.across.summary()}, along: {m.along.summary()}, " in repr(m)
     assert f"of {len(m.checks)} checks failed" in repr(m)
     assert len(repr(truth)) < 200
 
@@ -96,7 +96,7 @@ class Pair:
 
 
 @dataclass(frozen=True, eq=False)
-class Holder(OneLine):
+class Holder(ShortRepr):
     samples: object
 
 
@@ -138,7 +138,7 @@ def test_only_those_of_one_class_are_equal():
 
 
 def test_an_equality_of_its_own_stays_and_is_inherited():
-    class ByName(OneLine):
+    class ByName(ShortRepr):
         def __eq__(self, other: object) -> bool:
             return isinstance(other, ByName) and other.name == self.name
 

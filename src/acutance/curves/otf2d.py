@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import DISTANCE_PX, FREQ_CPP, Floats, crossing
-from acutance.curves.one_line import OneLine
 from acutance.curves.response import Response
+from acutance.curves.short_repr import ShortRepr
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
 
@@ -47,7 +47,7 @@ class OtfModel(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Otf2d(OneLine):
+class Otf2d(ShortRepr):
     """A 2-D OTF, from which the curves of every direction follow.
 
     Parameters

@@ -10,16 +10,16 @@ import numpy as np
 
 from acutance.curves.estimate import Estimate
 
-__all__ = ["OneLine"]
+__all__ = ["ShortRepr"]
 
 _FEW = 3
 
 
-class OneLine:
+class ShortRepr:
     """A dataclass of arrays that prints as one line and compares by its fields.
 
     A class made from it has this representation instead of that of dataclasses, which writes out
-    every array: its name, and what `in_words` says. Unless it finds better words, these are its
+    every array: its name, and what `summary` says. Unless it finds better words, these are its
     fields, arrays by their shapes.
 
     Two of one class are equal when all their fields are, arrays element by element and ``nan``
@@ -43,9 +43,9 @@ class OneLine:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__}: {self.in_words()}>"
+        return f"<{type(self).__name__}: {self.summary()}>"
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """What it is and its main numbers, in one line; nothing slow is computed for it."""
         names = (field.name for field in fields(self))  # type: ignore[arg-type]
         return ", ".join(f"{name} {_in_short(getattr(self, name))}" for name in names)
