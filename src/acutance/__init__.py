@@ -29,7 +29,7 @@ from acutance.errors import (
 
 if TYPE_CHECKING:
     from acutance import optics, report, simulate
-    from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
+    from acutance.curves import Esf, Estimate, Estimates, Lsf, Mtf, Response
     from acutance.geometry import Line
     from acutance.optics import Sensor
     from acutance.raster import Box, Gsd, Image, Region, open_image, sites
@@ -82,6 +82,7 @@ _HOMES = {
     "EdgeOptions": "acutance.targets.straight",
     "Esf": "acutance.curves",
     "Estimate": "acutance.curves",
+    "Estimates": "acutance.curves",
     "Gsd": "acutance.raster",
     "Image": "acutance.raster",
     "ImageInfo": "acutance.targets",
@@ -128,6 +129,7 @@ __all__ = [
     "EdgeOptions",
     "Esf",
     "Estimate",
+    "Estimates",
     "Gsd",
     "Image",
     "ImageError",

@@ -1,5 +1,9 @@
+import json
 import math
+import operator
+import pickle
 
+import numpy as np
 import pytest
 
 from acutance.curves import Estimate
@@ -30,10 +34,82 @@ def test_interval_is_symmetric_and_normal() -> None:
     assert high - low == pytest.approx(0.2)
 
 
-def test_scaling_carries_the_standard_deviation() -> None:
-    scaled = Estimate(2.0, 0.5).scaled(-0.7)
-    assert (scaled.value, scaled.std) == (-1.4, 0.35)
-    assert float(scaled) == -1.4
+def test_numbers_scale_and_shift_an_estimate() -> None:
+    rer = Estimate(2.0, 0.5)
+    assert 3 * rer == rer * 3 == Estimate(6.0, 1.5)
+    assert -0.5 * rer == rer / -2 == Estimate(-1.0, 0.25)
+    assert -rer == Estimate(-2.0, 0.5)
+    assert rer + 0.25 == 0.25 + rer == Estimate(2.25, 0.5)
+    assert rer - 0.25 == Estimate(1.75, 0.5)
+    assert 1 - rer == Estimate(-1.0, 0.5)
+    assert np.float64(3) * rer == np.int64(3) * rer == Estimate(6.0, 1.5)
+    assert np.float64(1) - rer == Estimate(-1.0, 0.5)
+    assert type((np.float64(3) * rer).value) is float
+    assert float(rer) == 2.0
+
+
+def test_estimates_compare_by_value() -> None:
+    rer = Estimate(0.5, 0.1)
+    assert rer > 0.4
+    assert rer >= 0.5
+    assert rer <= 0.5
+    assert rer < np.float64(0.6)
+    assert 0.4 < rer <= Estimate(0.5, 0.3)
+    assert not rer < Estimate(0.5)
+    assert not Estimate(math.nan, math.nan) > 0
+    assert sorted([rer, Estimate(0.2, 9.0), Estimate(0.3)])[1] == Estimate(0.3)
+
+
+@pytest.mark.parametrize("operation", [operator.add, operator.sub, operator.mul, operator.truediv])
+def test_the_covariance_of_two_estimates_is_not_guessed(operation) -> None:
+    with pytest.raises(TypeError, match=r"two estimates has no standard deviation.*covariance"):
+        operation(Estimate(1.0, 0.1), Estimate(2.0, 0.1))
+
+
+@pytest.mark.parametrize("other", ["0.5", None, [1.0], np.ones(2), 1j])
+def test_an_estimate_adds_and_compares_to_nothing_but_numbers(other) -> None:
+    rer = Estimate(1.0, 0.1)
+    for operation in (operator.add, operator.sub, operator.mul, operator.truediv, operator.lt):
+        with pytest.raises(TypeError):
+            operation(rer, other)
+        with pytest.raises(TypeError):
+            operation(other, rer)
+
+
+def test_equal_where_all_fields_are() -> None:
+    rer = Estimate(0.5, 0.1)
+    assert rer == Estimate(0.5, 0.1)
+    assert rer != Estimate(0.5, 0.2)
+    assert rer != Estimate(0.5, 0.1, lowest=0.0)
+    assert rer != 0.5
+    assert len({rer, Estimate(0.5, 0.1), Estimate(0.4, 0.1)}) == 2
+
+
+@pytest.mark.parametrize(
+    "number",
+    [Estimate(0.5, 0.1, 0.0), Estimate(0.5, math.nan), Estimate(math.nan, math.nan)],
+)
+def test_equal_after_pickling(number: Estimate) -> None:
+    copy = pickle.loads(pickle.dumps(number))
+    assert copy == number
+    assert hash(copy) == hash(number)
+
+
+def test_an_interval_ends_at_what_the_quantity_cannot_fall_below() -> None:
+    mtf = Estimate(0.01, 0.02, lowest=0.0)
+    low, high = mtf.interval(0.95)
+    assert low == 0.0
+    assert high == pytest.approx(0.01 + 0.02 * 1.9599640)
+    assert mtf.interval(0.3)[0] == Estimate(0.01, 0.02).interval(0.3)[0] > 0
+    assert math.isnan(Estimate(math.nan, math.nan, lowest=0.0).interval()[0])
+
+
+def test_a_lower_bound_follows_shift_and_scale_and_ends_with_the_sign() -> None:
+    width = Estimate(1.0, 0.2, lowest=0.0)
+    assert (2 * width + 3).lowest == 3.0
+    assert (width / 4).lowest == 0.0
+    assert (1 - width).lowest is None
+    assert (-width).lowest is None
 
 
 def test_document_has_none_where_there_is_no_number() -> None:
@@ -41,3 +117,20 @@ def test_document_has_none_where_there_is_no_number() -> None:
     assert Estimate(1.0, math.nan).to_dict() == {"value": 1.0, "std": None, "interval95": None}
     document = Estimate(0.2, 0.01).to_dict()
     assert document["interval95"] == pytest.approx([0.1804004, 0.2195996])
+    assert "lowest" not in document
+    clipped = Estimate(0.01, 0.02, lowest=0.0).to_dict()
+    assert clipped["interval95"] == [0.0, pytest.approx(0.0491993)]
+    assert clipped["lowest"] == 0.0
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        Estimate(0.1 / 3, 0.02 / 7, lowest=0.0),
+        Estimate(0.5),
+        Estimate(0.5, math.nan),
+        Estimate(math.nan, math.nan),
+    ],
+)
+def test_a_document_loses_nothing(number: Estimate) -> None:
+    assert Estimate.from_dict(json.loads(json.dumps(number.to_dict()))) == number

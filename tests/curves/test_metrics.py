@@ -100,6 +100,46 @@ def test_rer_at_the_peak_of_an_asymmetric_lsf_differs() -> None:
     assert abs(peak.value - half.value) > 0.003
 
 
+TRAIL_PX = 0.9
+
+
+def trailing_edge(factor: np.ndarray) -> tuple[Esf, Lsf]:
+    """An LSF that rises at once and decays as exp(-x / L), whose ESF passes 50 % at 0."""
+    begun = -TRAIL_PX * math.log(2) < DISTANCE
+    decay = np.where(begun, 0.5 * np.exp(-DISTANCE / TRAIL_PX), 0.0)
+    return (
+        Esf(DISTANCE, np.where(begun, 1 - decay, 0.0), factor),
+        Lsf(DISTANCE, decay / TRAIL_PX, np.zeros_like(factor)),
+    )
+
+
+def test_rer_has_the_uncertainty_of_its_own_half_point() -> None:
+    # Independent errors of the ESF at -0.5, 0 and 0.5 px. That at 0 moves the half point by
+    # error / lsf(0), and with it RER by (lsf(0.5) - lsf(-0.5)) times as much.
+    std = 0.01
+    at = [int(np.argmin(np.abs(DISTANCE - place))) for place in (-0.5, 0.0, 0.5)]
+    factor = np.zeros((DISTANCE.size, 3))
+    factor[at, range(3)] = std
+    ratio = math.exp(-0.5 / TRAIL_PX) - math.exp(0.5 / TRAIL_PX)
+    expected = std * math.sqrt(2 + ratio**2)
+    assert expected > 1.25 * std * math.sqrt(2)
+    assert metrics.rer(*trailing_edge(factor)).std == pytest.approx(expected, rel=1e-3)
+
+
+def test_an_error_of_the_edges_place_is_none_of_rer() -> None:
+    lsf = trailing_edge(np.zeros((DISTANCE.size, 0)))[1].value
+    moved = 0.01 * lsf[:, None]
+    tilt = abs(math.exp(-0.5 / TRAIL_PX) - math.exp(0.5 / TRAIL_PX)) / (2 * TRAIL_PX)
+    assert metrics.rer(*trailing_edge(moved)).std < 1e-3 * 0.01 * tilt
+
+
+def test_metrics_that_cannot_be_negative_say_so() -> None:
+    numbers = gaussian_response().metrics()
+    assert numbers["fwhm_m"].lowest == 0
+    bounded = {name for name, number in numbers.items() if number.lowest == 0}
+    assert set(numbers) - bounded == {"rer", "giqe_h"}
+
+
 def test_a_level_that_is_never_reached_is_undefined() -> None:
     flat = Mtf(FREQ, np.full(FREQ.size, 0.8 + 0j), np.zeros((FREQ.size, 0), complex))
     assert math.isnan(metrics.mtf_crossing(flat, 0.5).value)
@@ -123,6 +163,15 @@ def test_noise_in_quadrature_does_not_raise_the_mtf() -> None:
     curve = Mtf(np.arange(otf.size) * 1.0, otf, factor)
     assert np.mean(np.abs(otf)) > true + 0.003
     assert abs(np.mean(curve.value) - true) < 0.0015
+
+
+def test_only_errors_in_phase_with_the_otf_are_errors_of_the_mtf() -> None:
+    otf = np.exp(-3 * FREQ**2 + 2j * FREQ)
+    along = 0.01 * otf / np.abs(otf)
+    curve = Mtf(FREQ, otf, np.column_stack([along, 3j * along]))
+    np.testing.assert_allclose(curve.std, 0.01)
+    np.testing.assert_allclose(curve.value**2, np.maximum(np.abs(otf) ** 2 - 0.03**2, 0))
+    assert curve(0.333).std == pytest.approx(0.01, rel=1e-4)
 
 
 def test_curves_refuse_shapes_that_do_not_fit() -> None:

@@ -1,7 +1,8 @@
 """Curves and the metrics that read them: the ground floor, numpy only."""
 
 from acutance.curves.estimate import Estimate
-from acutance.curves.plane import Otf2d, OtfModel
+from acutance.curves.estimates import Estimates
+from acutance.curves.otf2d import Otf2d, OtfModel
 from acutance.curves.response import METRICS, HasResponse, Response
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
@@ -10,6 +11,7 @@ __all__ = [
     "METRICS",
     "Esf",
     "Estimate",
+    "Estimates",
     "HasResponse",
     "Lsf",
     "Mtf",

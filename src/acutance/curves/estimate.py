@@ -3,20 +3,40 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Real
 from statistics import NormalDist
+from typing import Any, ClassVar
 
 from acutance.errors import OptionError
 
-__all__ = ["Estimate"]
+__all__ = ["Estimate", "normal_quantile"]
 
 _MAX_DIGITS = 6
 
 
-@dataclass(frozen=True)
+def normal_quantile(level: float) -> float:
+    """Half the width, in standard deviations, of the interval of probability `level`.
+
+    Raises
+    ------
+    OptionError
+        If `level` is no probability, or 1, which no interval reaches.
+    """
+    if not (isinstance(level, Real) and 0 <= level < 1):
+        raise OptionError(f"level is {level!r}: give a probability between 0 and 1, such as 0.95")
+    return NormalDist().inv_cdf(0.5 + level / 2)
+
+
+@dataclass(frozen=True, eq=False)
 class Estimate:
     """A measured number with its standard deviation.
+
+    It adds to and multiplies with plain numbers, and compares to them and to other estimates by
+    value (``<``, ``<=``, ``>``, ``>=``). Equality is that of all fields, so an estimate never
+    equals a plain number. The sum or product of two estimates is refused: their covariance is
+    known to the curves they were read from, not to them.
 
     Parameters
     ----------
@@ -24,6 +44,8 @@ class Estimate:
         The estimate; ``nan`` where the quantity does not exist (an MTF that never falls to 0.3).
     std : float, optional
         One standard deviation, of everything the data can show. A truth has 0.
+    lowest : float, optional
+        What the quantity cannot fall below, 0 for an MTF or a width: intervals end there.
 
     Examples
     --------
@@ -33,40 +55,107 @@ class Estimate:
     >>> print(f"{mtf_nyquist:.3f}")
     0.151 ± 0.003
     >>> low, high = mtf_nyquist.interval(0.95)
+    >>> print(2 * mtf_nyquist, mtf_nyquist > 0.1)
+    0.3022 ± 0.0064 True
     """
 
     value: float
     std: float = 0.0
+    lowest: float | None = None
+
+    # numpy then leaves sums and products with its own scalars to the methods below.
+    __array_ufunc__: ClassVar[None] = None
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """The symmetric interval that holds the truth with probability `level` (0..1).
+        """The interval that holds the truth with probability `level` (0..1).
+
+        It is symmetric about the value, cut off where it would reach below `lowest`.
 
         Raises
         ------
         OptionError
             If `level` is no probability, or 1, which no interval reaches.
         """
-        if not (isinstance(level, Real) and 0 <= level < 1):
-            raise OptionError(
-                f"level is {level!r}: give a probability between 0 and 1, such as 0.95"
-            )
-        half = NormalDist().inv_cdf(0.5 + level / 2) * self.std
-        return self.value - half, self.value + half
-
-    def scaled(self, factor: float) -> Estimate:
-        """The same quantity in another unit."""
-        return Estimate(self.value * factor, abs(factor) * self.std)
+        half = normal_quantile(level) * self.std
+        low, high = self.value - half, self.value + half
+        return (low, high) if self.lowest is None else (max(low, self.lowest), high)
 
     def to_dict(self) -> dict[str, float | list[float] | None]:
-        """Value, standard deviation and 95 % interval; ``None`` where they do not exist."""
+        """Value, standard deviation and 95 % interval; ``None`` where they do not exist.
+
+        A quantity with a lower bound has it as ``lowest``: an interval that begins there was
+        cut off.
+        """
         if not math.isfinite(self.value):
             return {"value": None, "std": None, "interval95": None}
-        if not math.isfinite(self.std):
-            return {"value": self.value, "std": None, "interval95": None}
-        return {"value": self.value, "std": self.std, "interval95": list(self.interval(0.95))}
+        stated = math.isfinite(self.std)
+        document: dict[str, float | list[float] | None] = {
+            "value": self.value,
+            "std": self.std if stated else None,
+            "interval95": list(self.interval(0.95)) if stated else None,
+        }
+        return document if self.lowest is None else {**document, "lowest": self.lowest}
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> Estimate:
+        """The estimate that `to_dict` wrote; ``nan`` where it has ``None``."""
+        value, std = (
+            math.nan if document[name] is None else document[name] for name in ("value", "std")
+        )
+        return cls(value, std, document.get("lowest"))
 
     def __float__(self) -> float:
-        return self.value
+        return float(self.value)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all fields are equal; ``nan`` equals ``nan``."""
+        return self._key() == other._key() if isinstance(other, Estimate) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def _key(self) -> tuple[float | None, ...]:
+        value, std = (None if math.isnan(part) else part for part in (self.value, self.std))
+        return value, std, self.lowest
+
+    def __lt__(self, other: float | Estimate) -> bool:
+        return self.value < float(other) if _is_number(other) else NotImplemented
+
+    def __le__(self, other: float | Estimate) -> bool:
+        return self.value <= float(other) if _is_number(other) else NotImplemented
+
+    def __gt__(self, other: float | Estimate) -> bool:
+        return self.value > float(other) if _is_number(other) else NotImplemented
+
+    def __ge__(self, other: float | Estimate) -> bool:
+        return self.value >= float(other) if _is_number(other) else NotImplemented
+
+    def __add__(self, other: float) -> Estimate:
+        return self._linear(1.0, other) if _is_plain(other, "sum") else NotImplemented
+
+    def __sub__(self, other: float) -> Estimate:
+        return self._linear(1.0, -other) if _is_plain(other, "difference") else NotImplemented
+
+    def __rsub__(self, other: float) -> Estimate:
+        return self._linear(-1.0, other) if _is_plain(other, "difference") else NotImplemented
+
+    def __mul__(self, other: float) -> Estimate:
+        return self._linear(other, 0.0) if _is_plain(other, "product") else NotImplemented
+
+    def __truediv__(self, other: float) -> Estimate:
+        return self._linear(1 / other, 0.0) if _is_plain(other, "ratio") else NotImplemented
+
+    def __neg__(self) -> Estimate:
+        return self._linear(-1.0, 0.0)
+
+    __radd__ = __add__
+    __rmul__ = __mul__
+
+    def _linear(self, slope: float, offset: float) -> Estimate:
+        """``slope * self + offset``; a negative slope turns a lower bound into an upper one."""
+        slope, offset = float(slope), float(offset)
+        lowest = None if self.lowest is None or slope < 0 else slope * self.lowest + offset
+        return Estimate(slope * self.value + offset, abs(slope) * self.std, lowest)
 
     def __format__(self, spec: str) -> str:
         """Value and standard deviation, both by `spec`; without one as `str` does."""
@@ -87,3 +176,23 @@ class Estimate:
             return f"{self.value:.{_MAX_DIGITS}f} ± {self.std:.0e}"
         digits = min(max(0, 1 - math.floor(math.log10(self.std))), _MAX_DIGITS)
         return f"{self.value:.{digits}f} ± {self.std:.{digits}f}"
+
+
+def _is_number(other: object) -> bool:
+    return isinstance(other, Real | Estimate)
+
+
+def _is_plain(other: object, operation: str) -> bool:
+    """Whether `other` is a number without a deviation of its own.
+
+    Raises
+    ------
+    TypeError
+        If it is an estimate.
+    """
+    if isinstance(other, Estimate):
+        raise TypeError(
+            f"the {operation} of two estimates has no standard deviation as long as their "
+            "covariance is not known: use float() of one of them, or of both"
+        )
+    return isinstance(other, Real)

@@ -1,9 +1,9 @@
-"""Reading a curve that is sampled on a regular grid, and its covariance with it."""
+"""The grids that curves are sampled on, and reading a curve, with its covariance, between them."""
 
 from __future__ import annotations
 
 import math
-from numbers import Real
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,9 +11,36 @@ from numpy.typing import NDArray
 
 from acutance.errors import OptionError
 
-__all__ = ["Floats", "Rows", "crossing", "one_place", "sample", "slope"]
+__all__ = [
+    "DISTANCE_PX",
+    "FREQ_CPP",
+    "Floats",
+    "Places",
+    "Rows",
+    "as_places",
+    "crossing",
+    "sample",
+    "slope",
+]
 
 Floats = NDArray[np.float64]
+
+Places = Sequence[float] | Floats
+"""Many places of a curve; arrays of them may have any number of axes."""
+
+
+def _regular(first: int, last: int, step: float) -> Floats:
+    """Whole multiples of `step`, from ``first * step`` to ``last * step``; cannot be written to."""
+    grid = np.asarray(np.arange(first, last + 1) * step)
+    grid.setflags(write=False)
+    return grid
+
+
+FREQ_CPP = _regular(0, 100, 0.01)
+"""Frequencies of transfer curves, (101,): 0 to 1 cycles per pixel."""
+
+DISTANCE_PX = _regular(-200, 200, 0.05)
+"""Distances of spread functions, (401,): 10 px on either side of the 50 % point."""
 
 
 class Rows(Protocol):
@@ -31,57 +58,100 @@ class Rows(Protocol):
         """The matrix with one more column, (n,), at its end."""
 
 
+def as_places(at: Any, name: str) -> float | Floats:
+    """The place, or the array of places, at which a curve was called.
+
+    Parameters
+    ----------
+    at : float or array_like
+    name : str
+        What the places of the curve are called, for the message.
+
+    Raises
+    ------
+    OptionError
+        If it holds anything but real numbers.
+    """
+    if isinstance(at, float):
+        return at
+    try:
+        places = np.asarray(at)
+        if places.dtype.kind not in "biufO":
+            raise TypeError
+        # Objects one by one: numpy alone would take None for nan.
+        numbers = [float(one) for one in places.flat] if places.dtype.kind == "O" else places
+        places = np.asarray(numbers, np.float64).reshape(places.shape)
+    except (TypeError, ValueError):
+        raise OptionError(
+            f"{name} is {at!r}, which is no number: call a curve at a number or an array of them"
+        ) from None
+    return float(places) if places.ndim == 0 else places
+
+
+def _outside(grid: Floats, at: float) -> OptionError:
+    return OptionError(
+        f"{at:g} lies outside the curve, which runs from {grid[0]:g} to {grid[-1]:g}"
+    )
+
+
 def _cell(grid: Floats, at: float) -> tuple[slice, float, float]:
     """The four grid points around `at`, its place among them (0 to 3) and the grid's step."""
     start, size = grid.item(0), grid.size
     step = grid.item(1) - start
     position = (at - start) / step
     if not -1e-9 <= position <= size - 1 + 1e-9:
-        stop = start + step * (size - 1)
-        raise OptionError(f"{at:g} lies outside the curve, which runs from {start:g} to {stop:g}")
+        raise _outside(grid, at)
     first = min(max(math.floor(position) - 1, 0), size - 4)
     return slice(first, first + 4), position - first, step
 
 
-def one_place(at: Any, grid: str) -> float:
-    """The place at which somebody asks for a curve.
-
-    Parameters
-    ----------
-    at : float
-    grid : str
-        What the curve's own places are called, for the message.
-
-    Raises
-    ------
-    OptionError
-        If it is not one number.
-    """
-    if not isinstance(at, Real) and np.ndim(at) > 0:
-        raise OptionError(
-            f"a curve was called at {np.size(at)} places: call it at one, or take its arrays, "
-            f"`value` and `std` on `{grid}`"
-        )
-    try:
-        return float(at)
-    except (TypeError, ValueError):
-        raise OptionError(f"a curve was called at {at!r}, which is no number") from None
+def _cells(grid: Floats, at: Floats) -> tuple[NDArray[np.intp], Floats]:
+    """As `_cell`, at every place of an array: indices (..., 4) and places among them (...)."""
+    size = grid.size
+    position = (at - grid[0]) / (grid[1] - grid[0])
+    inside = (position >= -1e-9) & (position <= size - 1 + 1e-9)
+    if not inside.all():
+        raise _outside(grid, at[~inside][0])
+    first = np.clip(np.floor(position).astype(np.intp) - 1, 0, size - 4)
+    return first[..., None] + np.arange(4), position - first
 
 
-def sample(grid: Floats, values: NDArray[Any] | Rows, at: float) -> Any:
+def _cubic_weights(t: Any) -> Any:
+    """Weights (4, ...) of Lagrange's cubic through the points 0, 1, 2 and 3, at `t`."""
+    a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
+    return np.array([-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0])
+
+
+def sample(grid: Floats, values: NDArray[Any] | Rows, at: float | Floats) -> Any:
     """Cubic interpolation of `values` (n,) or (n, k), given on a regular `grid` (n,).
 
     Interpolation is linear in the values, so it carries a covariance factor as well.
 
+    Parameters
+    ----------
+    grid : (n,) array
+    values : (n,) or (n, k) array, or Rows
+        Rows can be read at one place only.
+    at : float or array
+
+    Returns
+    -------
+    array
+        In the shape of `at`, followed by k where there are k columns.
+
     Raises
     ------
     OptionError
-        If `at` lies outside the grid.
+        If any of `at` lies outside the grid.
     """
+    if isinstance(at, np.ndarray):
+        cells, places = _cells(grid, at)
+        columns = np.asarray(values)
+        columns = columns if columns.ndim == 2 else columns[:, None]
+        found = np.einsum("i...,...ij->...j", _cubic_weights(places), columns[cells])
+        return found if len(values.shape) == 2 else found[..., 0]
     window, t, _ = _cell(grid, at)
-    a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
-    weights = np.array([-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0])
-    return weights @ values[window]
+    return _cubic_weights(t) @ values[window]
 
 
 def slope(grid: Floats, values: Floats, at: float) -> float:

@@ -7,6 +7,7 @@ Every function returns an `Estimate`. Definitions: the documentation's page
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -38,6 +39,10 @@ _UNDEFINED = Estimate(math.nan, math.nan)
 
 def _estimate(value: float, gradient: Floats) -> Estimate:
     return Estimate(float(value), math.sqrt(float(gradient @ gradient)))
+
+
+def _non_negative(value: float, gradient: Floats) -> Estimate:
+    return replace(_estimate(value, gradient), lowest=0.0)
 
 
 def _level_position(esf: Esf, level: float) -> tuple[float, Floats]:
@@ -106,7 +111,7 @@ def full_width(lsf: Lsf, level: float = 0.5) -> Estimate:
     for place, sign in ((left, -1.0), (right, 1.0)):
         shortfall = level * peak_gradient - lsf.gradient(place)
         gradient = gradient + sign * shortfall / slope(grid, lsf.value, place)
-    return _estimate(right - left, gradient)
+    return _non_negative(right - left, gradient)
 
 
 def mtf_crossing(mtf: Mtf, level: float) -> Estimate:
@@ -115,7 +120,7 @@ def mtf_crossing(mtf: Mtf, level: float) -> Estimate:
     if math.isnan(place):
         return _UNDEFINED
     gradient = -mtf.gradient(place) / slope(mtf.freq_cpp, mtf.value, place)
-    return _estimate(place, gradient)
+    return _non_negative(place, gradient)
 
 
 def mtf_area(mtf: Mtf) -> Estimate:
@@ -123,7 +128,9 @@ def mtf_area(mtf: Mtf) -> Estimate:
     inside = mtf.freq_cpp <= NYQUIST_CPP + 1e-9
     weights = np.full(int(inside.sum()), mtf.freq_cpp[1] - mtf.freq_cpp[0])
     weights[[0, -1]] /= 2
-    return _estimate(float(weights @ mtf.value[inside]), weights @ mtf.covariance_factor[inside])
+    return _non_negative(
+        float(weights @ mtf.value[inside]), weights @ mtf.covariance_factor[inside]
+    )
 
 
 def edge_slope(esf: Esf) -> Estimate:
@@ -133,7 +140,7 @@ def edge_slope(esf: Esf) -> Estimate:
     if math.isnan(low) or math.isnan(high):
         return _UNDEFINED
     run = high - low
-    return _estimate(0.2 / run, -0.2 / run**2 * (high_moves - low_moves))
+    return _non_negative(0.2 / run, -0.2 / run**2 * (high_moves - low_moves))
 
 
 def half_extent(esf: Esf, side: Literal["dark", "bright"]) -> Estimate:
@@ -143,19 +150,19 @@ def half_extent(esf: Esf, side: Literal["dark", "bright"]) -> Estimate:
     if math.isnan(middle) or math.isnan(end):
         return _UNDEFINED
     sign = 1.0 if end > middle else -1.0
-    return _estimate(abs(end - middle), sign * (end_moves - middle_moves))
+    return _non_negative(abs(end - middle), sign * (end_moves - middle_moves))
 
 
 def overshoot(esf: Esf) -> Estimate:
     """How far the ESF rises above the bright plateau at most (0 where it never does)."""
     i = int(np.argmax(esf.value))
-    return _estimate(max(esf.value[i] - 1.0, 0.0), esf.gradient(float(esf.distance_px[i])))
+    return _non_negative(max(esf.value[i] - 1.0, 0.0), esf.gradient(float(esf.distance_px[i])))
 
 
 def undershoot(esf: Esf) -> Estimate:
     """How far the ESF falls below the dark plateau at most (0 where it never does)."""
     i = int(np.argmin(esf.value))
-    return _estimate(max(-esf.value[i], 0.0), esf.gradient(float(esf.distance_px[i])))
+    return _non_negative(max(-esf.value[i], 0.0), esf.gradient(float(esf.distance_px[i])))
 
 
 def giqe_h(esf: Esf) -> Estimate:

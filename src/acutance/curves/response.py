@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from acutance.curves import metrics
 from acutance.curves.estimate import Estimate
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
 
@@ -16,7 +16,7 @@ __all__ = ["METRICS", "HasResponse", "Response"]
 
 
 @dataclass(frozen=True, eq=False)
-class Response(OneLine):
+class Response(ShortRepr):
     """ESF, LSF and MTF of one direction, measured or true, and the metrics they hold.
 
     Parameters
@@ -53,7 +53,7 @@ class Response(OneLine):
     @cached_property
     def fwhm_m(self) -> Estimate | None:
         """FWHM in metres; ``None`` without a GSD."""
-        return None if self.gsd_m is None else self.fwhm_px.scaled(self.gsd_m)
+        return None if self.gsd_m is None else self.fwhm_px * self.gsd_m
 
     @cached_property
     def mtf50_cpp(self) -> Estimate:
@@ -100,7 +100,7 @@ class Response(OneLine):
         """Edge height overshoot H of GIQE 4."""
         return metrics.giqe_h(self.esf)
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """The three numbers everybody asks for."""
         return f"mtf_nyquist {self.mtf_nyquist}, rer {self.rer}, fwhm_px {self.fwhm_px}"
 
@@ -110,7 +110,7 @@ class Response(OneLine):
         return {name: number for name, number in found.items() if number is not None}
 
 
-class HasResponse(OneLine):
+class HasResponse(ShortRepr):
     """Shortcuts of whatever holds a `response`: a measurement, or the truth of a simulation."""
 
     if TYPE_CHECKING:
@@ -148,9 +148,9 @@ class HasResponse(OneLine):
         """Full width of the LSF at half maximum, pixels."""
         return self.response.fwhm_px
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """The main numbers of the response."""
-        return self.response.in_words()
+        return self.response.summary()
 
 
 METRICS = (

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, overload
 
 import numpy as np
 
 from acutance.curves.estimate import Estimate
-from acutance.curves.grid import Floats, Rows, one_place, sample
-from acutance.curves.one_line import OneLine
+from acutance.curves.estimates import Estimates, estimates_of
+from acutance.curves.grid import Floats, Places, Rows, as_places, sample
+from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["Esf", "Lsf"]
 
 
 @dataclass(frozen=True, eq=False)
-class _SpreadCurve(OneLine):
+class _SpreadCurve(ShortRepr):
     """A real curve over the distance along the edge's normal, with its covariance.
 
     Parameters
@@ -59,27 +60,41 @@ class _SpreadCurve(OneLine):
         factor = np.asarray(self.factor)
         return factor if self.latent is None else factor @ self.latent
 
-    def gradient(self, distance_px: float) -> Floats:
-        """The row of `covariance_factor` at any distance, (m,)."""
+    def gradient(self, distance_px: float | Floats) -> Floats:
+        """The row of `covariance_factor` at any distance, (m,); at an array of them (..., m)."""
+        if isinstance(distance_px, np.ndarray):
+            return np.asarray(sample(self.distance_px, self.covariance_factor, distance_px))
         row: Floats = sample(self.distance_px, self.factor, distance_px)
         return row if self.latent is None else row @ self.latent
 
-    def __call__(self, distance_px: float) -> Estimate:
-        """The curve at one normal distance, by cubic interpolation.
+    @overload
+    def __call__(self, distance_px: float) -> Estimate: ...
+    @overload
+    def __call__(self, distance_px: Places) -> Estimates: ...
+    def __call__(self, distance_px: Any) -> Estimate | Estimates:
+        """The curve at normal distances, by cubic interpolation.
 
-        At many, take `value` and `std` on `distance_px`.
+        Parameters
+        ----------
+        distance_px : float or array_like
+            Normal distance from the 50 % point in pixels.
+
+        Returns
+        -------
+        Estimate or Estimates
+            Of a number an `Estimate`, of an array as many in its shape.
 
         Raises
         ------
         OptionError
-            If it is not one number, or lies outside the curve.
+            If it holds anything but numbers, or one lies outside the curve.
         """
-        distance_px = one_place(distance_px, "distance_px")
-        gradient = self.gradient(distance_px)
-        value = float(sample(self.distance_px, self.value, distance_px))
-        return Estimate(value, math.sqrt(float(gradient @ gradient)))
+        at = as_places(distance_px, "distance_px")
+        gradient = self.gradient(at)
+        std = np.sqrt(np.einsum("...j,...j->...", gradient, gradient))
+        return estimates_of(sample(self.distance_px, self.value, at), std)
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """Where it runs."""
         first, last = self.distance_px[[0, -1]]
         return f"distance_px {first:g} to {last:g}, {self.distance_px.size} places"

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.estimate import Estimate
-from acutance.curves.grid import Floats, one_place, sample
-from acutance.curves.one_line import OneLine
+from acutance.curves.estimates import Estimates, estimates_of
+from acutance.curves.grid import Floats, Places, as_places, sample
+from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["Mtf"]
 
@@ -19,7 +20,7 @@ Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)
-class Mtf(OneLine):
+class Mtf(ShortRepr):
     """OTF along one direction, normalised to 1 at zero frequency, with its covariance.
 
     Parameters
@@ -27,7 +28,9 @@ class Mtf(OneLine):
     freq_cpp : (n,) array
         Regular grid of frequencies in cycles per pixel, from 0 to 1 at least.
     otf : (n,) complex array
-        Phase relative to the centroid of the LSF, so that an asymmetric system shows.
+        Phase relative to the centroid of the LSF, so that an asymmetric system shows: the
+        Fourier transform of the LSF with the kernel ``exp(-2 pi i f s)``. A trail towards the
+        bright side has a positive phase at low frequencies.
     factor : (n, k) complex array
         Factor of the covariance: the error of `otf` is ``factor @ z``, z standard normal.
     latent : (k, m) array, optional
@@ -48,18 +51,14 @@ class Mtf(OneLine):
             )
 
     @cached_property
-    def _along_and_quadrature(self) -> tuple[Floats, Floats]:
-        """Covariance factors, (n, m), of the OTF's part in phase with itself and of the rest."""
-        modulus = np.abs(self.otf)
-        known = modulus > 0
-        turn = np.conj(np.where(known, self.otf, 1.0)) / np.where(known, modulus, 1.0)
-        along, quadrature = _parts(turn[:, None] * self.factor, self.latent)
-        return along, quadrature
+    def _modulus(self) -> tuple[Floats, Floats]:
+        """The MTF, (n,), and the factor of its covariance, (n, m)."""
+        return _modulus(self.otf, self.factor, self.latent)
 
     @property
     def covariance_factor(self) -> Floats:
         """Factor of the covariance of the MTF itself, (n, m)."""
-        return self._along_and_quadrature[0]
+        return self._modulus[1]
 
     @property
     def otf_factor(self) -> Complexes:
@@ -68,16 +67,14 @@ class Mtf(OneLine):
             return self.factor
         return np.asarray(self.factor.real @ self.latent + 1j * (self.factor.imag @ self.latent))
 
-    @cached_property
+    @property
     def value(self) -> Floats:
         """The MTF, (n,): modulus of the OTF, less what noise in quadrature adds to a modulus.
 
         Noise perpendicular to the OTF lengthens it (Rice), by var / (2 M) to first order. Where
         it is longer than the OTF itself, nothing is left: the MTF is clipped at 0.
         """
-        quadrature = self._along_and_quadrature[1]
-        power = np.abs(self.otf) ** 2 - np.einsum("ij,ij->i", quadrature, quadrature)
-        return np.asarray(np.sqrt(np.maximum(power, 0.0)))
+        return self._modulus[0]
 
     @cached_property
     def std(self) -> Floats:
@@ -89,37 +86,49 @@ class Mtf(OneLine):
         along = self.covariance_factor
         return np.asarray(np.sqrt(np.einsum("ij,ij->i", along, along)))
 
-    def gradient(self, freq_cpp: float) -> Floats:
-        """The row of `covariance_factor` at any frequency, (m,)."""
+    def gradient(self, freq_cpp: float | Floats) -> Floats:
+        """The row of `covariance_factor` at any frequency, (m,); at an array of them (..., m)."""
         return self._at(freq_cpp)[1]
 
-    def __call__(self, freq_cpp: float) -> Estimate:
-        """The MTF at one frequency (cycles per pixel), by cubic interpolation of the OTF.
+    @overload
+    def __call__(self, freq_cpp: float) -> Estimate: ...
+    @overload
+    def __call__(self, freq_cpp: Places) -> Estimates: ...
+    def __call__(self, freq_cpp: Any) -> Estimate | Estimates:
+        """The MTF at any frequencies, by cubic interpolation of the OTF.
 
-        At many, take `value` and `std` on `freq_cpp`.
+        Parameters
+        ----------
+        freq_cpp : float or array_like
+            Frequencies in cycles per pixel.
+
+        Returns
+        -------
+        Estimate or Estimates
+            Of a number an `Estimate`, of an array as many in its shape.
 
         Raises
         ------
         OptionError
-            If it is not one number, or lies outside the curve.
+            If it holds anything but numbers, or one lies outside the curve.
         """
-        value, gradient = self._at(one_place(freq_cpp, "freq_cpp"))
-        return Estimate(value, math.sqrt(float(gradient @ gradient)))
+        value, along = self._at(as_places(freq_cpp, "freq_cpp"))
+        std = np.sqrt(np.einsum("...j,...j->...", along, along))
+        return estimates_of(value, std, lowest=0.0)
 
-    def _at(self, freq_cpp: float) -> tuple[float, Floats]:
-        otf = complex(sample(self.freq_cpp, self.otf, freq_cpp))
-        modulus = abs(otf)
-        turn = otf.conjugate() / modulus if modulus > 0 else 1.0
-        row = sample(self.freq_cpp, self.factor, freq_cpp)
-        along, quadrature = _parts(turn * row, self.latent)
-        return math.sqrt(max(modulus**2 - float(quadrature @ quadrature), 0.0)), along
+    def _at(self, freq_cpp: float | Floats) -> tuple[Floats, Floats]:
+        return _modulus(
+            sample(self.freq_cpp, self.otf, freq_cpp),
+            sample(self.freq_cpp, self.factor, freq_cpp),
+            self.latent,
+        )
 
     @cached_property
     def phase_rad(self) -> Floats:
         """Phase of the OTF in radians, relative to the centroid of the LSF, (n,)."""
         return np.asarray(np.angle(self.otf))
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """Where it runs."""
         first, last = self.freq_cpp[[0, -1]]
         return f"freq_cpp {first:g} to {last:g}, {self.freq_cpp.size} places"
@@ -134,7 +143,16 @@ class Mtf(OneLine):
         }
 
 
-def _parts(turned: Complexes, latent: Floats | None) -> Floats:
-    """Covariance factors of a complex error's real and imaginary part, (2, ..., m)."""
+def _modulus(otf: Complexes, factor: Complexes, latent: Floats | None) -> tuple[Floats, Floats]:
+    """MTF (...) and factor of its covariance (..., m), of an OTF (...) and its factor (..., k).
+
+    The error of a modulus is that of the OTF's part in phase with itself.
+    """
+    modulus = np.abs(otf)
+    known = modulus > 0
+    turn = np.conj(np.where(known, otf, 1.0)) / np.where(known, modulus, 1.0)
+    turned = turn[..., None] * factor
     parts = np.stack([turned.real, turned.imag])
-    return parts if latent is None else parts @ latent
+    along, quadrature = parts if latent is None else parts @ latent
+    power = modulus**2 - np.einsum("...j,...j->...", quadrature, quadrature)
+    return np.asarray(np.sqrt(np.maximum(power, 0.0))), along

@@ -8,7 +8,7 @@ import numpy as np
 
 from acutance.curves import Response
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.optics.sensor import Sensor, spread_over_plane
 
@@ -16,7 +16,7 @@ __all__ = ["GroundCurves", "on_the_ground", "psf_on_the_ground"]
 
 
 @dataclass(frozen=True, eq=False)
-class GroundCurves(OneLine):
+class GroundCurves(ShortRepr):
     """ESF, LSF and MTF of one direction on the ground.
 
     Parameters

@@ -13,16 +13,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves import Esf, Lsf, Mtf, Response
-from acutance.curves.grid import Floats
+from acutance.curves.grid import FREQ_CPP, Floats
 from acutance.errors import ModelError
 from acutance.optics.aperture import Defocus, Diffraction
 from acutance.optics.block import Axis, Block, Transfer
 from acutance.optics.profile import Profile
 
-__all__ = ["DISTANCE_PX", "FREQ_CPP", "Sensor", "normal_direction_deg", "spread_over_plane"]
+__all__ = ["TRUTH_DISTANCE_PX", "Sensor", "normal_direction_deg", "spread_over_plane"]
 
-FREQ_CPP: Floats = np.linspace(0.0, 1.0, 101)
-DISTANCE_PX: Floats = np.linspace(-16.0, 16.0, 641)
+TRUTH_DISTANCE_PX: Floats = np.linspace(-16.0, 16.0, 641)
+"""Distances of a truth's spread functions: farther than measured ones, since nothing is noise."""
 
 
 def normal_direction_deg(angle_deg: float, orientation: Axis) -> float:
@@ -166,11 +166,11 @@ class Sensor:
         """
         profile = self.profile(normal_deg)
         shift = np.exp(2j * math.pi * FREQ_CPP * profile.centroid_px)
-        places = DISTANCE_PX + profile.half_px
-        nothing = np.zeros((DISTANCE_PX.size, 0))
+        places = TRUTH_DISTANCE_PX + profile.half_px
+        nothing = np.zeros((TRUTH_DISTANCE_PX.size, 0))
         return Response(
-            esf=Esf(DISTANCE_PX, profile.esf(places), nothing),
-            lsf=Lsf(DISTANCE_PX, profile.lsf(places), nothing),
+            esf=Esf(TRUTH_DISTANCE_PX, profile.esf(places), nothing),
+            lsf=Lsf(TRUTH_DISTANCE_PX, profile.lsf(places), nothing),
             mtf=Mtf(
                 FREQ_CPP,
                 _slice(self, normal_deg, FREQ_CPP) * shift,

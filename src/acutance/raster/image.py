@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, OptionError
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
@@ -31,7 +31,7 @@ _GDAL_NAME = re.compile(r"^(/vsi\w+/|\w+://|[A-Za-z0-9_]{2,}:)")
 
 
 @dataclass(frozen=True, eq=False)
-class Image(OneLine):
+class Image(ShortRepr):
     """One band of an image, whether a file or an array: nothing is read before `read`.
 
     Made by `open_image` and `Image.from_array`. It holds no open file, so it can be pickled and

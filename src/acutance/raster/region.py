@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import RegionError
 
 __all__ = ["Box", "Region"]
@@ -116,7 +116,7 @@ class Box:
 
 
 @dataclass(frozen=True, eq=False)
-class Region(OneLine):
+class Region(ShortRepr):
     """A polygon in pixel coordinates, with or without holes.
 
     A pixel belongs to the region when its centre lies inside. Of a centre exactly on the outline

@@ -159,7 +159,7 @@ def true_numbers(truth: Response | None, true_width_px: float | None) -> dict[st
         widths["prf_fwhm"] = prf_fwhm(truth, true_width_px, np.empty(0))
     known = {f"{name}_px": width for name, width in widths.items()}
     if truth.gsd_m is not None:
-        known |= {f"{name}_m": width.scaled(truth.gsd_m) for name, width in widths.items()}
+        known |= {f"{name}_m": truth.gsd_m * width for name, width in widths.items()}
     return {**known, **truth.metrics()}
 
 

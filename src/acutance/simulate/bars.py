@@ -11,7 +11,7 @@ import numpy as np
 
 from acutance.curves import Response
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.geometry.bar_group import Bars
 from acutance.geometry.line import Line, Orientation
@@ -43,7 +43,7 @@ class BarGroup(Bars):
 
 
 @dataclass(frozen=True, eq=False)
-class BarsTruth(OneLine):
+class BarsTruth(ShortRepr):
     """What a perfect measurement of simulated bars would return.
 
     Parameters

@@ -12,7 +12,7 @@ from scipy import fft
 
 from acutance.curves import Response
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.geometry.line import Orientation
 from acutance.optics import Rescaled, Sensor
@@ -59,7 +59,7 @@ class Landscape:
 
 
 @dataclass(frozen=True, eq=False)
-class PairTruth(OneLine):
+class PairTruth(ShortRepr):
     """What a perfect measurement of a simulated pair would return.
 
     Frequencies and distances are in pixels of the low image.

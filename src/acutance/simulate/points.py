@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from acutance.curves import Response
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.geometry.line import Orientation
 from acutance.optics.sensor import Sensor
@@ -22,7 +22,7 @@ __all__ = ["PointsTruth", "mirror_columns", "mirror_square", "points"]
 
 
 @dataclass(frozen=True, eq=False)
-class PointsTruth(OneLine):
+class PointsTruth(ShortRepr):
     """What a perfect measurement of simulated point sources would return.
 
     Parameters

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.geometry.line import Line
 from acutance.optics.sensor import Sensor
@@ -31,7 +31,7 @@ GUARD_PX = 3.0
 
 
 @dataclass(frozen=True, eq=False)
-class SceneEdge(OneLine):
+class SceneEdge(ShortRepr):
     """One measurable edge of a scene.
 
     Parameters
@@ -48,7 +48,7 @@ class SceneEdge(OneLine):
 
 
 @dataclass(frozen=True, eq=False)
-class SceneTarget(OneLine):
+class SceneTarget(ShortRepr):
     """A target of a scene that is not one edge.
 
     Parameters
@@ -67,7 +67,7 @@ class SceneTarget(OneLine):
 
 
 @dataclass(frozen=True, eq=False)
-class Scene(OneLine):
+class Scene(ShortRepr):
     """A simulated image with all that is known about it.
 
     Parameters

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.optics.block import require, require_count
 from acutance.optics.sensor import Sensor
@@ -102,7 +102,7 @@ class Star:
 
 
 @dataclass(frozen=True, eq=False)
-class StarTruth(OneLine):
+class StarTruth(ShortRepr):
     """What a perfect measurement of a simulated star would return.
 
     Parameters

@@ -28,11 +28,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves import Esf, Lsf, Mtf, Response
-from acutance.curves.grid import Floats
+from acutance.curves.grid import FREQ_CPP, Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.gaussian_pixel import Blur
 from acutance.optics import Sensor
-from acutance.optics.sensor import DISTANCE_PX, FREQ_CPP
+from acutance.optics.sensor import TRUTH_DISTANCE_PX
 from acutance.targets.straight.pulse_spectrum import width_sensitivity_per_px
 
 __all__ = ["Design", "MetricBound", "equivalent_blur", "free_bound", "shape_bound"]
@@ -180,9 +180,9 @@ def _numbers(blur: Blur) -> Floats:
 
 def _response(blur: Blur) -> Response:
     """The curves of a plain blur."""
-    nothing = np.zeros((DISTANCE_PX.size, 0))
+    nothing = np.zeros((TRUTH_DISTANCE_PX.size, 0))
     return Response(
-        Esf(DISTANCE_PX, blur.esf(DISTANCE_PX), nothing),
-        Lsf(DISTANCE_PX, blur.lsf(DISTANCE_PX), nothing),
+        Esf(TRUTH_DISTANCE_PX, blur.esf(TRUTH_DISTANCE_PX), nothing),
+        Lsf(TRUTH_DISTANCE_PX, blur.lsf(TRUTH_DISTANCE_PX), nothing),
         Mtf(FREQ_CPP, blur.otf(FREQ_CPP).astype(complex), np.zeros((FREQ_CPP.size, 0), complex)),
     )

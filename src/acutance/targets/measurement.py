@@ -216,9 +216,9 @@ class Measurement(HasResponse):
 
     __hash__ = None  # type: ignore[assignment]
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """Target and method, the main numbers by direction, and how many checks failed."""
-        named = (f"{name}: {one.in_words()}" for name, one in self.directions.items())
+        named = (f"{name}: {one.summary()}" for name, one in self.directions.items())
         snr = f", snr {self.snr:.3g}" if math.isfinite(self.snr) else ""
         failed = count_failed(self.checks)
         return f"{self.kind} by {self.method}, {', '.join(named)}{snr}, {failed}"

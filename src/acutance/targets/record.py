@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from acutance.curves import METRICS, Estimate
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.raster.image import AlongTrack
 from acutance.targets.check import Check, Verdict, count_failed, verdict_of
@@ -106,7 +106,7 @@ class ImageInfo:
 
 
 @dataclass(frozen=True, eq=False)
-class RecordedDirection(OneLine):
+class RecordedDirection(ShortRepr):
     """Numbers and curves of one direction, as a document holds them.
 
     Parameters
@@ -121,7 +121,7 @@ class RecordedDirection(OneLine):
     def numbers(self) -> dict[str, Estimate]:
         """All numbers by name, in the order a report prints them."""
         return {
-            name: estimate_of(self.document[name])
+            name: Estimate.from_dict(self.document[name])
             for name in METRICS
             if self.document.get(name) is not None
         }
@@ -153,13 +153,13 @@ class RecordedDirection(OneLine):
         at, value, std = (np.array(found[key], float) for key in (place, "value", "std"))
         return at, value, std
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """The three numbers everybody asks for."""
         return f"mtf_nyquist {self.mtf_nyquist}, rer {self.rer}, fwhm_px {self.fwhm_px}"
 
 
 @dataclass(frozen=True, eq=False)
-class Record(OneLine):
+class Record(ShortRepr):
     """A measurement without its pixels: the document ``acutance/measurement/1``, read by name.
 
     Parameters
@@ -224,7 +224,7 @@ class Record(OneLine):
             return NotImplemented
         return bool(_finite(self.document) == _finite(other.document))
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
     @property
     def kind(self) -> str:
@@ -318,18 +318,10 @@ class Record(OneLine):
         """When (UTC)."""
         return datetime.fromisoformat(self.document["measured_at"])
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """Target and method, the main numbers, and how many checks failed."""
-        named = (f"{name}: {one.in_words()}" for name, one in self.directions.items())
+        named = (f"{name}: {one.summary()}" for name, one in self.directions.items())
         return f"{self.kind} by {self.method}, {', '.join(named)}, {count_failed(self.checks)}"
-
-
-def estimate_of(document: Mapping[str, Any]) -> Estimate:
-    """The number that `Estimate.to_dict` wrote."""
-    value, std = (
-        math.nan if document.get(key) is None else float(document[key]) for key in ("value", "std")
-    )
-    return Estimate(value, std)
 
 
 def rounded(values: ArrayLike, digits: int = 6) -> list[Any]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from acutance.curves import Mtf, Otf2d
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 
 __all__ = ["PLANE_DIRECTIONS_DEG", "PlaneSlices"]
@@ -27,7 +27,7 @@ _LEAST_STD = 1.5e-4
 
 
 @dataclass(frozen=True, eq=False)
-class PlaneSlices(OneLine):
+class PlaneSlices(ShortRepr):
     """Slices of a 2-D OTF with their common covariance.
 
     Parameters

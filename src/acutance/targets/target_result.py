@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from acutance.curves import Estimate
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Orientation
 from acutance.targets.measurement import Measurement
 
@@ -36,7 +36,7 @@ class Rejected:
 
 
 @dataclass(frozen=True, eq=False)
-class EdgeGroup(OneLine, Generic[One]):
+class EdgeGroup(ShortRepr, Generic[One]):
     """Edges of one orientation and what they say together.
 
     Attributes
@@ -67,14 +67,14 @@ class EdgeGroup(OneLine, Generic[One]):
     p_value: Mapping[str, float]
     degrees_of_freedom: int
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """Direction, how many edges, and the main means."""
         means = (f"{name} {self.metrics[name]}" for name in _MAIN if name in self.metrics)
         return ", ".join((self.orientation, f"edges {len(self.measurements)}", *means))
 
 
 @dataclass(frozen=True, eq=False)
-class TargetResult(OneLine, Generic[One]):
+class TargetResult(ShortRepr, Generic[One]):
     """All edges of a target.
 
     Attributes
@@ -90,7 +90,7 @@ class TargetResult(OneLine, Generic[One]):
     rejected: tuple[Rejected, ...]
     groups: Mapping[str, EdgeGroup[One]]
 
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """How many edges, and the main means of each group."""
         count = f"measured {len(self.measurements)}, rejected {len(self.rejected)}"
-        return "; ".join((count, *(group.in_words() for group in self.groups.values())))
+        return "; ".join((count, *(group.summary() for group in self.groups.values())))

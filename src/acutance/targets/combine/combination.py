@@ -13,7 +13,7 @@ import numpy as np
 from acutance.curves import Estimate, Mtf, Otf2d
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd
@@ -34,7 +34,7 @@ _LEAST_GAP_DEG = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class CombinedPart(OneLine):
+class CombinedPart(ShortRepr):
     """One measurement beside what all of them say together.
 
     Parameters

@@ -11,7 +11,7 @@ import numpy as np
 
 from acutance.curves import Mtf
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.targets.measurement import SCHEMA, Measurement
 from acutance.targets.measurement2d import Measurement2d
@@ -28,7 +28,7 @@ _AT_LOWEST = (0.2, 2.0)
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredInput(OneLine):
+class MeasuredInput(ShortRepr):
     """One measurement as the combination sees it.
 
     Parameters

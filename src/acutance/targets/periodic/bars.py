@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from acutance.curves import Estimate, Mtf, Otf2d, Response
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import NoBarsError, OptionError
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.noise import robust_scale
@@ -36,7 +36,7 @@ _ONE_DIRECTION_DEG = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class BarsGroup(OneLine):
+class BarsGroup(ShortRepr):
     """What one group of bars says.
 
     Attributes

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
 from acutance.curves.grid import Floats
-from acutance.curves.plane import OtfModel
+from acutance.curves.otf2d import OtfModel
 from acutance.geometry.bar_group import Bars
 from acutance.targets.periodic.otf_modes import Complexes
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from acutance.curves import Estimate, Mtf, Otf2d
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP, mtf_crossing
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import NoStarError, OptionError
 from acutance.geometry.star_geometry import FoundStar
 from acutance.numerics.noise import robust_scale
@@ -41,7 +41,7 @@ _MOST_RAISED = 3.0
 
 
 @dataclass(frozen=True, eq=False)
-class Rings(OneLine):
+class Rings(ShortRepr):
     """The plain reading of a star: a sinusoid fitted to every ring of pixels.
 
     Attributes

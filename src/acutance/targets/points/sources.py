@@ -10,7 +10,7 @@ import numpy as np
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.targets.points.fit import PointsFit
 from acutance.targets.points.published import MirrorFit, PublishedMirrors
 
@@ -20,7 +20,7 @@ _SHOWN_PX = 7
 
 
 @dataclass(frozen=True, eq=False)
-class PointSource(OneLine):
+class PointSource(ShortRepr):
     """One source as it was fitted.
 
     Parameters

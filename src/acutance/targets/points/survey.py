@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 
 __all__ = ["SurveyErrors", "survey_errors"]
@@ -21,7 +21,7 @@ _LEAST = 2
 
 
 @dataclass(frozen=True, eq=False)
-class SurveyErrors(OneLine):
+class SurveyErrors(ShortRepr):
     """What is left between measured and surveyed positions after one common shift.
 
     Parameters

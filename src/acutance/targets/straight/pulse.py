@@ -50,7 +50,7 @@ def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
     def measure(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
         wanted = PUBLISHED_PULSE_OPTIONS[name]
         fit = PUBLISHED_PULSE[name](band, published_options(options, name, wanted))
-        along_normal = fit.prf_fwhm_px.scaled(1.0 / fit.px_per_normal)
+        along_normal = fit.prf_fwhm_px / fit.px_per_normal
         return fit, fit.pulse_width, fit.fall, along_normal
 
     return measure

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
-from acutance.curves.one_line import OneLine
+from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Line
 from acutance.targets.measurement import Measurement
 
@@ -18,7 +18,7 @@ __all__ = ["StraightDetails", "StraightMeasurement"]
 
 
 @dataclass(frozen=True, eq=False)
-class StraightDetails(OneLine):
+class StraightDetails(ShortRepr):
     """The pixels a measurement used, seen along the normal.
 
     Parameters
@@ -85,7 +85,7 @@ class StraightMeasurement(Measurement):
             if number is not None:
                 found[f"{name}_px"] = number
                 if gsd_m is not None:
-                    found[f"{name}_m"] = number.scaled(gsd_m)
+                    found[f"{name}_m"] = number * gsd_m
         return found
 
     def target_document(self) -> dict[str, Any]:

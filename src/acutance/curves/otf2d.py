@@ -10,18 +10,15 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from acutance.curves.grid import Floats, crossing
-from acutance.curves.one_line import OneLine
+from acutance.curves.grid import DISTANCE_PX, FREQ_CPP, Floats, crossing
 from acutance.curves.response import Response
+from acutance.curves.short_repr import ShortRepr
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
 
 __all__ = ["Otf2d", "OtfModel"]
 
 Complexes = NDArray[np.complex128]
-
-_FREQ_CPP: Floats = np.asarray(np.arange(101) * 0.01)
-_DISTANCE_PX: Floats = np.asarray(np.arange(-200, 201) * 0.05)
 
 PERIOD_PX = 64
 """Length over which the curves of a slice repeat: light must have died away within half of it."""
@@ -31,7 +28,8 @@ class OtfModel(Protocol):
     """An OTF over the plane of frequencies, with its covariance.
 
     Frequencies are in cycles per pixel: `u_cpp` across (along the rows of pixels, x), `v_cpp`
-    along (down the columns, y).
+    along (down the columns, y). Sign of the phase: the OTF is the Fourier transform of the point
+    spread function with the kernel ``exp(-2 pi i (u x + v y))``.
     """
 
     @property
@@ -49,7 +47,7 @@ class OtfModel(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Otf2d(OneLine):
+class Otf2d(ShortRepr):
     """A 2-D OTF, from which the curves of every direction follow.
 
     Parameters
@@ -79,12 +77,12 @@ class Otf2d(OneLine):
         centroid = self._centroid(normal_deg)
         turn = np.exp(2j * math.pi * freq * centroid)
         esf, lsf, esf_factor, lsf_factor = _spread(freq, otf * turn, factor * turn[:, None])
-        shown, shown_factor = self._slice(normal_deg, _FREQ_CPP)
-        turn = np.exp(2j * math.pi * _FREQ_CPP * centroid)
+        shown, shown_factor = self._slice(normal_deg, FREQ_CPP)
+        turn = np.exp(2j * math.pi * FREQ_CPP * centroid)
         return Response(
-            Esf(_DISTANCE_PX, esf, esf_factor),
-            Lsf(_DISTANCE_PX, lsf, lsf_factor),
-            Mtf(_FREQ_CPP, shown * turn, shown_factor * turn[:, None]),
+            Esf(DISTANCE_PX, esf, esf_factor),
+            Lsf(DISTANCE_PX, lsf, lsf_factor),
+            Mtf(FREQ_CPP, shown * turn, shown_factor * turn[:, None]),
             gsd_m=self._gsd_along(normal_deg),
         )
 
@@ -146,13 +144,13 @@ def _spread(
     out and put back as a straight line.
     """
     integral = 1 / (2j * math.pi * freq[1:])
-    esf = 0.5 + _DISTANCE_PX / PERIOD_PX + _synthesised(otf[1:] * integral)
-    half = crossing(_DISTANCE_PX, esf, 0.5, float(_DISTANCE_PX[_steep(esf)]))
+    esf = 0.5 + DISTANCE_PX / PERIOD_PX + _synthesised(otf[1:] * integral)
+    half = crossing(DISTANCE_PX, esf, 0.5, float(DISTANCE_PX[_steep(esf)]))
     half = 0.0 if math.isnan(half) else half
     turn = np.exp(2j * math.pi * freq[1:] * half)
     spectra = np.column_stack([otf, factor])[1:] * turn[:, None]
     esfs = _synthesised(spectra * integral[:, None])
-    esfs[:, 0] += 0.5 + (_DISTANCE_PX + half) / PERIOD_PX
+    esfs[:, 0] += 0.5 + (DISTANCE_PX + half) / PERIOD_PX
     lsfs = _synthesised(spectra)
     lsfs[:, 0] += 1 / PERIOD_PX
     return esfs[:, 0], lsfs[:, 0], esfs[:, 1:], lsfs[:, 1:]
@@ -167,7 +165,7 @@ def _synthesised(spectrum: Complexes) -> Floats:
 @cache
 def _waves(count: int) -> Floats:
     """Cosines and negative sines of `count` frequencies at the grid's places, (n, 2 count)."""
-    phase = 2 * math.pi * np.outer(_DISTANCE_PX, np.arange(1, count + 1) / PERIOD_PX)
+    phase = 2 * math.pi * np.outer(DISTANCE_PX, np.arange(1, count + 1) / PERIOD_PX)
     return np.hstack([np.cos(phase), -np.sin(phase)])
 
 

@@ -1,0 +1,73 @@
+"""Numbers and their standard deviations at many places of a curve."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, overload
+
+import numpy as np
+
+from acutance.curves.estimate import Estimate, normal_quantile
+from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
+
+__all__ = ["Estimates", "estimates_of"]
+
+
+@dataclass(frozen=True, eq=False)
+class Estimates(ShortRepr):
+    """What a curve answers at an array of places: one estimate a place.
+
+    Parameters
+    ----------
+    value : (n,) array
+        In the shape of the places, which may have any number of axes.
+    std : (n,) array
+        One standard deviation of each.
+    lowest : float, optional
+        What the quantity cannot fall below; see `Estimate`.
+
+    Examples
+    --------
+    >>> found = Estimates(np.array([0.9, 0.5]), np.array([0.01, 0.02]))
+    >>> print(found[1], len(found))
+    0.500 ± 0.020 2
+    """
+
+    value: Floats
+    std: Floats
+    lowest: float | None = None
+
+    def interval(self, level: float = 0.95) -> tuple[Floats, Floats]:
+        """Lower and upper ends of the intervals of probability `level`; see `Estimate.interval`.
+
+        Raises
+        ------
+        OptionError
+            If `level` is no probability, or 1, which no interval reaches.
+        """
+        half = normal_quantile(level) * self.std
+        low, high = self.value - half, self.value + half
+        return low if self.lowest is None else np.maximum(low, self.lowest), high
+
+    def __len__(self) -> int:
+        return len(self.value)
+
+    @overload
+    def __getitem__(self, index: int) -> Estimate: ...
+    @overload
+    def __getitem__(self, index: Any) -> Estimate | Estimates: ...
+    def __getitem__(self, index: Any) -> Estimate | Estimates:
+        """One estimate, or those of a slice or a mask."""
+        return estimates_of(self.value[index], self.std[index], self.lowest)
+
+    def __iter__(self) -> Iterator[Any]:
+        return (self[index] for index in range(len(self)))
+
+
+def estimates_of(value: Any, std: Any, lowest: float | None = None) -> Estimate | Estimates:
+    """An `Estimate` of a number, the `Estimates` of an array."""
+    if np.ndim(value) == 0:
+        return Estimate(float(value), float(std), lowest)
+    return Estimates(value, std, lowest)
