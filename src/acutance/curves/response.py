@@ -148,6 +148,56 @@ class HasResponse(ShortRepr):
         """Full width of the LSF at half maximum, pixels."""
         return self.response.fwhm_px
 
+    @property
+    def fwhm_m(self) -> Estimate | None:
+        """FWHM of the LSF in metres; ``None`` without a GSD."""
+        return self.response.fwhm_m
+
+    @property
+    def mtf50_cpp(self) -> Estimate:
+        """Lowest frequency where the MTF falls to 0.5."""
+        return self.response.mtf50_cpp
+
+    @property
+    def mtf30_cpp(self) -> Estimate:
+        """Lowest frequency where the MTF falls to 0.3."""
+        return self.response.mtf30_cpp
+
+    @property
+    def mtf_area(self) -> Estimate:
+        """Area under the MTF from 0 to Nyquist (cycles per pixel)."""
+        return self.response.mtf_area
+
+    @property
+    def edge_slope_per_px(self) -> Estimate:
+        """Mean slope of the ESF between 40 and 60 %."""
+        return self.response.edge_slope_per_px
+
+    @property
+    def half_extent_dark_px(self) -> Estimate:
+        """Distance from the 5 to the 50 % point."""
+        return self.response.half_extent_dark_px
+
+    @property
+    def half_extent_bright_px(self) -> Estimate:
+        """Distance from the 50 to the 95 % point."""
+        return self.response.half_extent_bright_px
+
+    @property
+    def overshoot(self) -> Estimate:
+        """Largest excess of the ESF over the bright plateau."""
+        return self.response.overshoot
+
+    @property
+    def undershoot(self) -> Estimate:
+        """Largest shortfall of the ESF under the dark plateau."""
+        return self.response.undershoot
+
+    @property
+    def giqe_h(self) -> Estimate:
+        """Edge height overshoot H of GIQE 4."""
+        return self.response.giqe_h
+
     def summary(self) -> str:
         """The main numbers of the response."""
         return self.response.summary()
