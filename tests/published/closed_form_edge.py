@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from acutance.geometry.line import Line
-from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.pixels import EdgePixels
 
 _erf = np.vectorize(math.erf)
 
@@ -50,4 +50,4 @@ def edge_band(
     if snr is not None:
         noise = (bright - dark) / snr
         image = image + rng.normal(0.0, noise, shape)
-    return EdgeBand(image, line, dark, bright, 0.5, noise)
+    return EdgePixels(image, line, dark, bright, 0.5, noise)

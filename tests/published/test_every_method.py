@@ -8,7 +8,7 @@ from closed_form_edge import edge_band, gaussian_pixel_esf, gaussian_pixel_mtf
 
 from acutance.errors import NoEdgeError, PhaseError, SupportError
 from acutance.geometry.line import Line
-from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.pixels import EdgePixels
 from acutance.targets.straight.published import (
     PUBLISHED,
     Iso12233Options,
@@ -28,9 +28,9 @@ def skewed(s):
     return 0.7 * gaussian_pixel_esf(s + 0.2) + 0.3 * gaussian_pixel_esf(s - 0.6, 0.5)
 
 
-def turned(band, *, transpose=False, mirror_cols=False, mirror_rows=False, negative=False):
+def turned(trimmed, *, transpose=False, mirror_cols=False, mirror_rows=False, negative=False):
     """The same band in another position; the line goes with it."""
-    image, line = band.image, band.line
+    image, line = trimmed.image, trimmed.line
     x, y = line.normal
     row, col = line.row, line.col
     if transpose:
@@ -42,8 +42,13 @@ def turned(band, *, transpose=False, mirror_cols=False, mirror_rows=False, negat
     if negative:
         image, x, y = 1400.0 - image, -x, -y
     normal_deg = math.degrees(math.atan2(y, x))
-    return EdgeBand(
-        np.ascontiguousarray(image), Line(row, col, normal_deg), 200.0, 1200.0, 0.5, band.noise
+    return EdgePixels(
+        np.ascontiguousarray(image),
+        Line(row, col, normal_deg),
+        200.0,
+        1200.0,
+        0.5,
+        trimmed.noise,
     )
 
 
@@ -59,9 +64,9 @@ POSITIONS = [
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("position", POSITIONS, ids=lambda p: "+".join(p))
 def test_position_of_the_image_does_not_matter(method, position):
-    band = edge_band(skewed, angle_deg=7.0, snr=300, rng=np.random.default_rng(4))
-    upright = PUBLISHED[method](band)
-    other = PUBLISHED[method](turned(band, **position))
+    trimmed = edge_band(skewed, angle_deg=7.0, snr=300, rng=np.random.default_rng(4))
+    upright = PUBLISHED[method](trimmed)
+    other = PUBLISHED[method](turned(trimmed, **position))
     # A transposition changes nothing; a mirror moves which end of a half-open bin a pixel
     # falls into and which rows make whole phase cycles.
     exact = set(position) == {"transpose"}
@@ -75,26 +80,28 @@ def test_position_of_the_image_does_not_matter(method, position):
 @pytest.mark.parametrize("method", ["fermi", "kompsat-2014", "sdsu-2005"])
 @pytest.mark.parametrize("position", POSITIONS, ids=lambda p: "+".join(p))
 def test_methods_without_bins_do_not_feel_a_mirror(method, position):
-    band = edge_band(skewed, angle_deg=7.0)
-    upright = PUBLISHED[method](band).response.mtf.value
-    other = PUBLISHED[method](turned(band, **position)).response.mtf.value
+    trimmed = edge_band(skewed, angle_deg=7.0)
+    upright = PUBLISHED[method](trimmed).response.mtf.value
+    other = PUBLISHED[method](turned(trimmed, **position)).response.mtf.value
     np.testing.assert_allclose(other[:51], upright[:51], atol=2e-3)
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_gain_and_offset_do_not_matter(method):
-    band = edge_band(snr=100, rng=np.random.default_rng(8))
-    other = EdgeBand(band.image * 0.3 - 40, band.line, 20.0, 320.0, 0.5, band.noise * 0.3)
-    first, second = PUBLISHED[method](band), PUBLISHED[method](other)
+    trimmed = edge_band(snr=100, rng=np.random.default_rng(8))
+    other = EdgePixels(
+        trimmed.image * 0.3 - 40, trimmed.line, 20.0, 320.0, 0.5, trimmed.noise * 0.3
+    )
+    first, second = PUBLISHED[method](trimmed), PUBLISHED[method](other)
     np.testing.assert_allclose(second.response.mtf.value, first.response.mtf.value, atol=2e-5)
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_evidence_agrees_with_the_curves(method):
-    band = edge_band(angle_deg=5.0, snr=200, rng=np.random.default_rng(6))
-    untouched = band.image.copy()
-    fit = PUBLISHED[method](band)
-    np.testing.assert_array_equal(band.image, untouched)
+    trimmed = edge_band(angle_deg=5.0, snr=200, rng=np.random.default_rng(6))
+    untouched = trimmed.image.copy()
+    fit = PUBLISHED[method](trimmed)
+    np.testing.assert_array_equal(trimmed.image, untouched)
     assert fit.distance_px.shape == fit.value.shape == fit.residual.shape == (60 * 40,)
     row, col = np.mgrid[:60, :40]
     np.testing.assert_allclose(fit.distance_px, fit.line.normal_distance(row, col).ravel())
@@ -132,8 +139,8 @@ def test_curves_share_their_latent_variables(method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_same_band_gives_the_same_answer(method):
-    band = edge_band(snr=100, rng=np.random.default_rng(10))
-    first, second = PUBLISHED[method](band), PUBLISHED[method](band)
+    trimmed = edge_band(snr=100, rng=np.random.default_rng(10))
+    first, second = PUBLISHED[method](trimmed), PUBLISHED[method](trimmed)
     np.testing.assert_array_equal(first.response.mtf.std, second.response.mtf.std)
     np.testing.assert_array_equal(first.response.mtf.value, second.response.mtf.value)
 
@@ -141,14 +148,14 @@ def test_the_same_band_gives_the_same_answer(method):
 @pytest.mark.parametrize("method", METHODS)
 def test_unusable_pixels_are_left_out(method):
     rng = np.random.default_rng(12)
-    band = edge_band(snr=200, rng=rng)
-    image = band.image.copy()
+    trimmed = edge_band(snr=200, rng=rng)
+    image = trimmed.image.copy()
     image[7] = np.nan
     image[20:23, 15:25] = np.nan
     image[rng.uniform(size=image.shape) < 0.01] = np.nan
-    distance = band.line.normal_distance(*np.mgrid[:60, :40])
+    distance = trimmed.line.normal_distance(*np.mgrid[:60, :40])
     image[np.abs(distance) > 12] = np.nan
-    holed = EdgeBand(image, band.line, band.dark, band.bright, 0.5, band.noise)
+    holed = EdgePixels(image, trimmed.line, trimmed.dark, trimmed.bright, 0.5, trimmed.noise)
     fit = PUBLISHED[method](holed)
     assert fit.distance_px.size == np.isfinite(image).sum()
     assert np.isfinite(fit.residual).all()
@@ -158,11 +165,11 @@ def test_unusable_pixels_are_left_out(method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_an_edge_that_leaves_the_band_keeps_its_other_rows(method):
-    band = edge_band(angle_deg=25.0, shape=(120, 30), snr=200, rng=np.random.default_rng(13))
+    trimmed = edge_band(angle_deg=25.0, shape=(120, 30), snr=200, rng=np.random.default_rng(13))
     if method == "sdsu-2005":
-        fit = PUBLISHED[method](band, SdsuOptions(distance="normal", trim_px=6.0))
+        fit = PUBLISHED[method](trimmed, SdsuOptions(distance="normal", trim_px=6.0))
     else:
-        fit = PUBLISHED[method](band)
+        fit = PUBLISHED[method](trimmed)
     assert fit.response.mtf(0.25).value == pytest.approx(gaussian_pixel_mtf(0.25), rel=0.04)
     if method != "fermi":
         assert fit.line.length_px < 75
@@ -192,8 +199,8 @@ def test_missing_phases_are_refused_with_advice(method, angle_deg, advice):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_flat_image_holds_no_edge(method):
-    band = edge_band()
-    flat = EdgeBand(np.full((60, 40), 300.0), band.line, 300.0, 300.0, 0.5, 0.0)
+    trimmed = edge_band()
+    flat = EdgePixels(np.full((60, 40), 300.0), trimmed.line, 300.0, 300.0, 0.5, 0.0)
     with pytest.raises((NoEdgeError, SupportError)):
         PUBLISHED[method](flat)
 

@@ -9,7 +9,7 @@ from closed_form_edge import edge_band, gaussian_pixel_mtf
 
 from acutance import simulate
 from acutance.errors import OptionError
-from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.pixels import EdgePixels
 from acutance.targets.straight.published import FermiOptions, fermi
 from acutance.targets.straight.published.fermi_sum import FermiSum
 
@@ -61,20 +61,20 @@ def test_a_fermi_edge_is_measured_exactly(terms):
 
 
 def test_a_wrong_start_line_is_put_right():
-    band = edge_band(esf_of(SINGLE), angle_deg=7.0)
-    start = band.line.moved(0.3, 0.8)
-    moved = EdgeBand(band.image, start, band.dark, band.bright, 0.9, 0.0)
+    trimmed = edge_band(esf_of(SINGLE), angle_deg=7.0)
+    start = trimmed.line.moved(0.3, 0.8)
+    moved = EdgePixels(trimmed.image, start, trimmed.dark, trimmed.bright, 0.9, 0.0)
     fit = fermi(moved)
     assert fit.line.angle_deg == pytest.approx(7.0, abs=1e-6)
-    assert abs(float(band.line.normal_distance(fit.line.row, fit.line.col))) < 1e-6
+    assert abs(float(trimmed.line.normal_distance(fit.line.row, fit.line.col))) < 1e-6
 
 
 def test_offset_deviation_is_that_of_the_middle_of_the_edge():
-    band = edge_band(esf_of(SINGLE), snr=50, rng=np.random.default_rng(5))
-    x, y = band.line.normal
-    end = replace(band.line, row=band.line.row + 25 * x, col=band.line.col - 25 * y)
-    from_end = fermi(EdgeBand(band.image, end, 200.0, 1200.0, 0.5, 20.0)).line
-    from_middle = fermi(band).line
+    trimmed = edge_band(esf_of(SINGLE), snr=50, rng=np.random.default_rng(5))
+    x, y = trimmed.line.normal
+    end = replace(trimmed.line, row=trimmed.line.row + 25 * x, col=trimmed.line.col - 25 * y)
+    from_end = fermi(EdgePixels(trimmed.image, end, 200.0, 1200.0, 0.5, 20.0)).line
+    from_middle = fermi(trimmed).line
     assert from_end.offset_std_px == pytest.approx(from_middle.offset_std_px, rel=1e-3)
     assert from_end.row == pytest.approx(from_middle.row, abs=1e-4)
 
@@ -87,7 +87,7 @@ def _standardised(terms, options, draws, snr):
     for _ in range(draws):
         image = clean.image + rng.normal(0, 1000 / snr, clean.image.shape)
         line = clean.line.moved(rng.normal(0, 0.05), rng.normal(0, 0.2))
-        fit = fermi(EdgeBand(image, line, 200.0, 1200.0, 0.5, 1000 / snr), options)
+        fit = fermi(EdgePixels(image, line, 200.0, 1200.0, 0.5, 1000 / snr), options)
         nyquist = fit.response.mtf_nyquist
         errors["mtf"].append((nyquist.value - truth) / nyquist.std)
         errors["angle"].append((fit.line.angle_deg - 7.0) / fit.line.angle_std_deg)
@@ -128,7 +128,7 @@ def test_two_shoots_are_found_though_one_alone_does_not_help(snr):
     sensor = simulate.reference_systems()["sharpened"]
     rng = np.random.default_rng(7)
     image, truth = simulate.edge(sensor, angle_deg=7.0, shape=(60, 40), snr=snr, rng=rng)
-    response = fermi(EdgeBand(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)).response
+    response = fermi(EdgePixels(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)).response
     assert response.mtf.factor.shape[1] == 2 + 9
     assert response.overshoot.value == pytest.approx(0.09, abs=0.01)
     assert response.mtf(0.25).value == pytest.approx(truth.mtf(0.25).value, abs=0.01)

@@ -9,7 +9,7 @@ from closed_form_edge import edge_band, gaussian_pixel_esf, gaussian_pixel_mtf
 
 from acutance.errors import OptionError
 from acutance.geometry.line import Line
-from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.pixels import EdgePixels
 from acutance.targets.straight.published import Iso12233Options, iso12233
 from acutance.targets.straight.published.windows import hamming_window, tukey_window
 
@@ -38,9 +38,9 @@ def test_window_bias_follows_the_second_derivative_of_the_mtf():
 
 @pytest.mark.parametrize("bins_per_px", [4, 8])
 def test_bins_cost_their_sinc(bins_per_px):
-    band = edge_band(angle_deg=IRRATIONAL_DEG, shape=(800, 110))
+    trimmed = edge_band(angle_deg=IRRATIONAL_DEG, shape=(800, 110))
     options = Iso12233Options(bins_per_px=bins_per_px, replicates=0)
-    found = iso12233(band, options).response.mtf_nyquist.value / gaussian_pixel_mtf(0.5)
+    found = iso12233(trimmed, options).response.mtf_nyquist.value / gaussian_pixel_mtf(0.5)
     loss = np.sinc(0.5 / bins_per_px)
     assert found == pytest.approx(loss, abs=3.5e-3)
 
@@ -51,12 +51,12 @@ def test_four_bins_lose_2_55_percent_at_nyquist():
 
 @pytest.mark.parametrize("width_px", [12.0, 20.0])
 def test_a_narrow_window_raises_the_mtf(width_px):
-    band = edge_band(angle_deg=IRRATIONAL_DEG, shape=(400, 120))
+    trimmed = edge_band(angle_deg=IRRATIONAL_DEG, shape=(400, 120))
     row, col = np.mgrid[:400, :120]
-    distance = band.line.normal_distance(row, col)
-    image = np.where(np.abs(distance) <= width_px / 2, band.image, np.nan)
-    narrow_band = EdgeBand(image, band.line, band.dark, band.bright, 0.5, 0.0)
-    wide = iso12233(band, Iso12233Options(replicates=0)).response
+    distance = trimmed.line.normal_distance(row, col)
+    image = np.where(np.abs(distance) <= width_px / 2, trimmed.image, np.nan)
+    narrow_band = EdgePixels(image, trimmed.line, trimmed.dark, trimmed.bright, 0.5, 0.0)
+    wide = iso12233(trimmed, Iso12233Options(replicates=0)).response
     narrow = iso12233(narrow_band, Iso12233Options(replicates=0)).response
     ratio = narrow.mtf_nyquist.value / wide.mtf_nyquist.value
     # Half of the rows reach half a pixel less on each side; the difference costs two bins.
@@ -65,8 +65,8 @@ def test_a_narrow_window_raises_the_mtf(width_px):
 
 def test_curves_run_along_the_normal():
     for angle_deg in (4.0, 20.0):
-        band = edge_band(angle_deg=angle_deg, shape=(400, 150))
-        response = iso12233(band, Iso12233Options(bins_per_px=8, replicates=0)).response
+        trimmed = edge_band(angle_deg=angle_deg, shape=(400, 150))
+        response = iso12233(trimmed, Iso12233Options(bins_per_px=8, replicates=0)).response
         truth = gaussian_pixel_mtf(0.25)
         assert response.mtf(0.25).value / truth == pytest.approx(1.0, abs=6e-3)
 
@@ -79,9 +79,9 @@ def test_windows_taper_as_named():
 
 
 def test_hamming_of_older_editions_is_available():
-    band = edge_band()
-    tukey = iso12233(band, Iso12233Options(replicates=0)).response.mtf_nyquist.value
-    hamming = iso12233(band, Iso12233Options(window="hamming", replicates=0))
+    trimmed = edge_band()
+    tukey = iso12233(trimmed, Iso12233Options(replicates=0)).response.mtf_nyquist.value
+    hamming = iso12233(trimmed, Iso12233Options(window="hamming", replicates=0))
     assert hamming.response.mtf_nyquist.value == pytest.approx(tukey, rel=5e-3)
     assert hamming.response.mtf_nyquist.value != tukey
 
@@ -92,9 +92,9 @@ def test_a_polynomial_follows_a_bent_edge():
     line = Line(99.5, 19.5, 5.0)
     bow = 0.6 * ((row - 99.5) / 100) ** 2
     image = 200 + 1000 * gaussian_pixel_esf(line.normal_distance(row, col) - bow)
-    band = EdgeBand(image, line, 200.0, 1200.0, 0.5, 0.0)
-    straight = iso12233(band, Iso12233Options(replicates=0)).response.mtf_nyquist.value
-    bent = iso12233(band, Iso12233Options(edge_order=2, replicates=0)).response.mtf_nyquist.value
+    trimmed = EdgePixels(image, line, 200.0, 1200.0, 0.5, 0.0)
+    straight = iso12233(trimmed, Iso12233Options(replicates=0)).response.mtf_nyquist.value
+    bent = iso12233(trimmed, Iso12233Options(edge_order=2, replicates=0)).response.mtf_nyquist.value
     truth = np.sinc(0.125) * gaussian_pixel_mtf(0.5)
     assert bent == pytest.approx(truth, rel=0.015)
     assert straight < 0.97 * bent
@@ -115,9 +115,9 @@ def test_reference_program_on_its_own_chart(channel, mtf50_cpp):
     if not image_path.exists():
         pytest.skip(f"the folder of real images is absent: {DATA}")
     image = _read(image_path)[channel]
-    band = _chart_band(image)
+    trimmed = _chart_band(image)
     # The chart's edge is bent by the lens: the reference program follows it with order 5.
-    response = iso12233(band, Iso12233Options(edge_order=5, replicates=0)).response
+    response = iso12233(trimmed, Iso12233Options(edge_order=5, replicates=0)).response
     assert response.mtf50_cpp.value == pytest.approx(mtf50_cpp, rel=0.01)
 
     table = np.genfromtxt(DATA / "03_sfrmat5_reference_sfr.csv", delimiter=",", skip_header=1)
@@ -125,7 +125,7 @@ def test_reference_program_on_its_own_chart(channel, mtf50_cpp):
     ours = np.interp(table[:, 0], response.mtf.freq_cpp, response.mtf.value)
     np.testing.assert_allclose(ours, table[:, 1 + channel], atol=0.01)
 
-    straight = iso12233(band, Iso12233Options(replicates=0)).response
+    straight = iso12233(trimmed, Iso12233Options(replicates=0)).response
     assert straight.mtf50_cpp.value == pytest.approx(mtf50_cpp, rel=0.045)
 
 
@@ -143,4 +143,4 @@ def _read(path):
 def _chart_band(image):
     angle_deg = math.degrees(math.atan2(79.9 - 46.9, 342.0))
     dark, bright = float(image[-20:].mean()), float(image[:20].mean())
-    return EdgeBand(image, Line(46.9, 0.0, angle_deg - 90.0), dark, bright, 0.8, 1.0)
+    return EdgePixels(image, Line(46.9, 0.0, angle_deg - 90.0), dark, bright, 0.8, 1.0)

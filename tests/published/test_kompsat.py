@@ -64,8 +64,8 @@ def test_repeated_abscissae_count_as_often_as_they_occur():
 
 @pytest.mark.parametrize("rows", [40, 80, 200])
 def test_smoothing_spline_costs_its_closed_form_at_nyquist(rows):
-    band = edge_band(shape=(rows, 40))
-    found = kompsat_2014(band, KompsatOptions(replicates=0)).response.mtf_nyquist.value
+    trimmed = edge_band(shape=(rows, 40))
+    found = kompsat_2014(trimmed, KompsatOptions(replicates=0)).response.mtf_nyquist.value
     gain = 1 / (1 + 0.02 / 0.98 * (2 * np.pi * 0.5) ** 4 / rows)
     assert found / gaussian_pixel_mtf(0.5) == pytest.approx(gain, abs=7e-3)
 
@@ -83,11 +83,11 @@ def test_draft_centres_the_rer_on_the_peak_and_half_is_available():
     def skewed(s):
         return 0.75 * gaussian_pixel_esf(s) + 0.25 * gaussian_pixel_esf(s - 1.3, 0.6)
 
-    band = edge_band(skewed, shape=(300, 60))
+    trimmed = edge_band(skewed, shape=(300, 60))
     # With 1 px the trim would cut the slower side and raise both values.
     stiff = {"replicates": 0, "smoothness": 0.999, "plateau_px": 2.5}
-    by_draft = kompsat_2014(band, KompsatOptions(**stiff)).response
-    by_half = kompsat_2014(band, KompsatOptions(rer_centre="half", **stiff)).response
+    by_draft = kompsat_2014(trimmed, KompsatOptions(**stiff)).response
+    by_half = kompsat_2014(trimmed, KompsatOptions(rer_centre="half", **stiff)).response
     assert by_draft.rer_centre == "peak"
     assert by_half.rer_centre == "half"
     s = np.linspace(-4, 4, 80001)
@@ -111,10 +111,10 @@ def test_dividing_by_the_cosine_costs_what_it_must_at_20_degrees(sigma_px, loss)
     def esf(s):
         return gaussian_pixel_esf(s, sigma_px)
 
-    band = edge_band(esf, angle_deg=20.0, shape=(400, 60))
+    trimmed = edge_band(esf, angle_deg=20.0, shape=(400, 60))
     stiff = {"replicates": 0, "smoothness": 0.999}
-    drafted = kompsat_2014(band, KompsatOptions(distance="as-drafted", **stiff)).response
-    normal = kompsat_2014(band, KompsatOptions(**stiff)).response
+    drafted = kompsat_2014(trimmed, KompsatOptions(distance="as-drafted", **stiff)).response
+    normal = kompsat_2014(trimmed, KompsatOptions(**stiff)).response
     truth = gaussian_pixel_mtf(0.5, sigma_px)
     assert normal.mtf_nyquist.value / truth == pytest.approx(1.0, abs=6e-3)
     assert drafted.mtf_nyquist.value / truth - 1 == pytest.approx(loss, abs=0.012)

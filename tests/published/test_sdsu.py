@@ -8,7 +8,7 @@ from closed_form_edge import edge_band, gaussian_pixel_mtf
 
 from acutance import simulate
 from acutance.errors import OptionError, PhaseError, SupportError
-from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.pixels import EdgePixels
 from acutance.targets.straight.published import SdsuOptions, sdsu_2005
 from acutance.targets.straight.published.edge_location import fermi_locations
 from acutance.targets.straight.published.local_polynomial import modified_savitzky_golay
@@ -29,17 +29,17 @@ def test_window_has_its_published_gain_at_nyquist(order, gain):
 
 @pytest.mark.parametrize(("order", "gain"), [(2, 0.98016), (4, 0.99958)])
 def test_pipeline_along_the_normal_has_the_gains_of_its_steps(order, gain):
-    band = edge_band(angle_deg=IRRATIONAL_DEG, shape=(500, 40))
+    trimmed = edge_band(angle_deg=IRRATIONAL_DEG, shape=(500, 40))
     options = SdsuOptions(order=order, distance="normal", smoothing_points=0, replicates=0)
-    found = sdsu_2005(band, options).response.mtf_nyquist.value
+    found = sdsu_2005(trimmed, options).response.mtf_nyquist.value
     expected = gain * np.sinc(NYQUIST * 0.05) * gaussian_pixel_mtf(NYQUIST)
     # Line and finite number of samples leave 1e-3.
     assert found / expected == pytest.approx(1.0, abs=1.5e-3)
 
 
 def test_adjacent_difference_costs_its_sinc():
-    band = edge_band(angle_deg=IRRATIONAL_DEG, shape=(300, 60))
-    response = sdsu_2005(band, SdsuOptions(smoothing_points=0, replicates=0)).response
+    trimmed = edge_band(angle_deg=IRRATIONAL_DEG, shape=(300, 60))
+    response = sdsu_2005(trimmed, SdsuOptions(smoothing_points=0, replicates=0)).response
     x = response.esf.distance_px
     slope = np.gradient(response.esf.value, x, edge_order=2)
     for freq in (0.5, 0.8):
@@ -52,8 +52,8 @@ def test_adjacent_difference_costs_its_sinc():
 
 @pytest.mark.parametrize("angle_deg", [6.0, 13.0])
 def test_row_distance_stretches_the_frequency_axis(angle_deg):
-    band = edge_band(angle_deg=angle_deg, shape=(300, 60))
-    row = sdsu_2005(band, SdsuOptions(replicates=0)).response
+    trimmed = edge_band(angle_deg=angle_deg, shape=(300, 60))
+    row = sdsu_2005(trimmed, SdsuOptions(replicates=0)).response
     for freq in (0.25, 0.5):
         truth = gaussian_pixel_mtf(freq / math.cos(math.radians(angle_deg)))
         assert row.mtf(freq).value / truth == pytest.approx(1.0, abs=4e-3)
@@ -110,16 +110,16 @@ def test_quartic_over_four_phases_is_refused_and_a_parabola_is_not(beside_deg):
     sensor = simulate.reference_systems()["sharpened"]
     angle_deg = math.degrees(math.atan(0.25)) + beside_deg
     image, truth = simulate.edge(sensor, angle_deg=angle_deg, shape=(40, 60), offset_px=0.1)
-    band = EdgeBand(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)
+    trimmed = EdgePixels(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)
     with pytest.raises(PhaseError, match=r"gives 4 distinct .* or a polynomial of order 2"):
-        sdsu_2005(band, SdsuOptions(distance="normal", order=4))
-    fit = sdsu_2005(band, SdsuOptions(distance="normal", order=2, replicates=0))
+        sdsu_2005(trimmed, SdsuOptions(distance="normal", order=4))
+    fit = sdsu_2005(trimmed, SdsuOptions(distance="normal", order=2, replicates=0))
     assert fit.response.mtf(0.25).value == pytest.approx(truth.mtf(0.25).value, abs=0.015)
 
 
 def test_longer_edge_gives_a_quartic_its_phases_again():
     sensor = simulate.reference_systems()["sharpened"]
     image, truth = simulate.edge(sensor, angle_deg=13.9, shape=(110, 70))
-    band = EdgeBand(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)
-    fit = sdsu_2005(band, SdsuOptions(distance="normal", order=4, replicates=0))
+    trimmed = EdgePixels(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)
+    fit = sdsu_2005(trimmed, SdsuOptions(distance="normal", order=4, replicates=0))
     assert fit.response.mtf(0.25).value == pytest.approx(truth.mtf(0.25).value, abs=2e-3)

@@ -9,7 +9,7 @@ import pytest
 from acutance import simulate
 from acutance.errors import NoEdgeError, OptionError, PhaseError, SupportError
 from acutance.optics.preset import preset
-from acutance.targets.straight.fit_pulse import PulseBand
+from acutance.targets.straight.fit_pulse import PulsePixels
 from acutance.targets.straight.published import (
     PUBLISHED_PULSE,
     PUBLISHED_PULSE_OPTIONS,
@@ -25,7 +25,7 @@ CYCLES_OF_6_DEG = 95  # rows: ten whole cycles of the sample phases
 
 def pulse_band(image, truth, *, width_px=None):
     line = truth.line.moved(-0.5 * truth.width_px, 0.0)
-    return PulseBand(
+    return PulsePixels(
         image, line, truth.left, truth.level, 0.6, 0.0,
         pulse_width_px=width_px or truth.width_px,
     )  # fmt: skip
@@ -41,8 +41,8 @@ def measured(
         shape=(rows, 40 + rows // 4),
         offset_px=offset_px,
     )
-    band = pulse_band(image, truth, width_px=stated_px)
-    return sdsu_2005_pulse(band, SdsuPulseOptions(replicates=0, **options)), truth
+    trimmed = pulse_band(image, truth, width_px=stated_px)
+    return sdsu_2005_pulse(trimmed, SdsuPulseOptions(replicates=0, **options)), truth
 
 
 def error_at_nyquist(*args, **options):
@@ -145,9 +145,9 @@ def test_wrong_width_is_refused_when_the_pulse_lies_elsewhere():
 
 def test_flat_ground_holds_no_pulse():
     image, truth = simulate.pulse(SENSOR)
-    band = replace(pulse_band(image, truth), image=np.full(image.shape, 100.0))
+    trimmed = replace(pulse_band(image, truth), image=np.full(image.shape, 100.0))
     with pytest.raises(NoEdgeError):
-        sdsu_2005_pulse(band)
+        sdsu_2005_pulse(trimmed)
 
 
 @pytest.mark.parametrize(

@@ -103,9 +103,9 @@ def measure_published_pulse(
     width : {"stated", "axis"}, optional
         As in `acutance.targets.straight.published.SdsuPulseOptions`.
     """
-    band, _ = find_pulse(image, width_px)
+    trimmed, _ = find_pulse(image, width_px)
     options = SdsuPulseOptions(order=order, distance=distance, width=width, replicates=0)
-    return sdsu_2005_pulse(replace(band, pulse_width_px=width_px), options)
+    return sdsu_2005_pulse(replace(trimmed, pulse_width_px=width_px), options)
 
 
 def _refused(name: str, error: TargetError) -> Record:

@@ -204,8 +204,8 @@ def test_signal_dependent_noise_is_seen_on_both_sides():
     image, _ = edge(
         SYSTEM, angle_deg=6.0, shape=(60, 60), noise=noise, rng=np.random.default_rng(2)
     )
-    band, _ = trim(image, next(find_segments(image)))
-    fit = fit_edge(band)
+    trimmed, _ = trim(image, next(find_segments(image)))
+    fit = fit_edge(trimmed)
     assert isinstance(fit, SplineEdge)
     assert fit.noise_dark == pytest.approx(np.sqrt(16 + 0.4 * 200), rel=0.1)
     assert fit.noise_bright == pytest.approx(np.sqrt(16 + 0.4 * 1200), rel=0.1)

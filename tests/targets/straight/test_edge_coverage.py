@@ -5,7 +5,7 @@ import pytest
 
 import acutance.simulate as sim
 from acutance.targets.straight.fit_edge import fit_edge
-from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.pixels import EdgePixels
 
 SYSTEMS = sim.reference_systems()
 NAMES = ("mtf_nyquist", "rer", "fwhm_px", "angle")
@@ -29,7 +29,7 @@ def errors():
             snr=snr,
             rng=rng,
         )
-        fit = fit_edge(EdgeBand(image, truth.line.moved(0.1, 0.2), 200, 1200, 0.6, 1000 / snr))
+        fit = fit_edge(EdgePixels(image, truth.line.moved(0.1, 0.2), 200, 1200, 0.6, 1000 / snr))
         row = []
         for name in NAMES[:3]:
             estimate = getattr(fit.response, name)
@@ -78,7 +78,7 @@ def test_ground_that_slopes_across_the_edge_is_told_from_a_halo(system, slope):
             rng=rng,
         )
         image = image + slope * 1000 * across / 50
-        found = fit_edge(EdgeBand(image, truth.line.moved(0.1, 0.2), 200, 1200, 0.6, 10)).response
+        found = fit_edge(EdgePixels(image, truth.line.moved(0.1, 0.2), 200, 1200, 0.6, 10)).response
         errors.append((found.rer.value - truth.rer.value) / found.rer.std)
     # Without trends in the model the mean is 2.5 to 3.3 standard deviations off.
     assert abs(np.mean(errors)) < 1.5

@@ -10,7 +10,7 @@ from acutance.targets.straight.first_fit import (
     _EXPECTED,
     _bounded_solution,
     _Trial,
-    fit_blurred_edge,
+    fit_first,
 )
 
 ROWS, COLS = (places.ravel().astype(float) for places in np.indices((40, 40)))
@@ -19,7 +19,7 @@ LINE = Line(19.5, 19.5, 6.0)
 
 def fit(value, line, **options):
     levels = {"dark": 200.0, "bright": 1200.0} | options
-    return fit_blurred_edge(ROWS, COLS, value, line, **levels)
+    return fit_first(ROWS, COLS, value, line, **levels)
 
 
 def edge(blur, line=LINE, dark=200.0, height=1000.0):

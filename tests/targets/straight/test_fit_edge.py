@@ -14,7 +14,7 @@ from acutance.numerics.gaussian_pixel import Blur
 from acutance.simulate.noise import Noise
 from acutance.simulate.resample import Regrid
 from acutance.targets.straight.fit_edge import fit_edge
-from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.pixels import EdgePixels
 
 SYSTEMS = sim.reference_systems()
 # Commensurable angles (1/8, 1/5, 1/4, 1/3, 1/2) repeat their sample phases.
@@ -24,7 +24,7 @@ FREQ_CPP = np.arange(0, 0.501, 0.02)
 
 def band_of(image, line, *, noise=10.0, dark=200.0, bright=1200.0):
     """A band as the finder hands it over: line and levels roughly known."""
-    return EdgeBand(image, line.moved(0.1, 0.2), dark, bright, 0.6, noise)
+    return EdgePixels(image, line.moved(0.1, 0.2), dark, bright, 0.6, noise)
 
 
 @functools.cache
@@ -103,7 +103,7 @@ def test_gain_offset_and_place_change_nothing(gain, offset, row, col):
 def test_flips_and_transposition_change_nothing(flip_rows, flip_cols, transpose):
     image, truth = noisy_edge(shape=(40, 36))
     start = truth.line.moved(0.1, 0.2)
-    plain = fit_edge(EdgeBand(image, start, 200, 1200, 0.6, 10))
+    plain = fit_edge(EdgePixels(image, start, 200, 1200, 0.6, 10))
     row, col, normal = start.row, start.col, start.normal_deg
     if flip_rows:
         image, row, normal = image[::-1], image.shape[0] - 1 - row, -normal
@@ -111,14 +111,14 @@ def test_flips_and_transposition_change_nothing(flip_rows, flip_cols, transpose)
         image, col, normal = image[:, ::-1], image.shape[1] - 1 - col, 180.0 - normal
     if transpose:
         image, row, col, normal = image.T, col, row, 90.0 - normal
-    found = fit_edge(EdgeBand(image, Line(row, col, normal), 200, 1200, 0.6, 10))
+    found = fit_edge(EdgePixels(image, Line(row, col, normal), 200, 1200, 0.6, 10))
     assert numbers(found) == pytest.approx(numbers(plain), rel=1e-5)
 
 
 def test_the_start_of_the_line_changes_nothing_that_matters():
     image, truth = noisy_edge()
     fits = [
-        fit_edge(EdgeBand(image, truth.line.moved(*moved), 180, 1230, width, 15))
+        fit_edge(EdgePixels(image, truth.line.moved(*moved), 180, 1230, width, 15))
         for moved, width in (((0.0, 0.0), 0.5), ((0.3, -0.5), 0.8), ((-0.3, 0.5), 0.6))
     ]
     found = np.array([numbers(fit) for fit in fits])
@@ -132,7 +132,7 @@ def test_the_blur_it_departs_from_changes_nothing_that_matters():
     fits = []
     for aperture in (0.7, 1.0, 1.2):
         blur = Blur(np.sqrt(variance - aperture**2 / 12), aperture)
-        fits.append(fit_edge(EdgeBand(image, truth.line, 200, 1200, 0.4, 10, blur)))
+        fits.append(fit_edge(EdgePixels(image, truth.line, 200, 1200, 0.4, 10, blur)))
     found = np.array([numbers(fit) for fit in fits])
     assert np.all(np.ptp(found[:, ::2], axis=0) < 0.3 * found[1, 1::2])
 
@@ -217,4 +217,4 @@ def test_a_region_without_an_edge_is_refused():
     rng = np.random.default_rng(9)
     image = 700 + 10 * rng.standard_normal((40, 40))
     with pytest.raises(NoEdgeError):
-        fit_edge(EdgeBand(image, Line(19.5, 19.5, 6.0), 695, 705, 0.6, 10))
+        fit_edge(EdgePixels(image, Line(19.5, 19.5, 6.0), 695, 705, 0.6, 10))

@@ -15,8 +15,8 @@ SYSTEMS = reference_systems()
 def fitted(name, seed=0, **changes):
     options = {"width_px": 3.0, "angle_deg": 8.0, "shape": (45, 50), "snr": 90.0} | changes
     image, truth = pulse(SYSTEMS[name], rng=np.random.default_rng(seed), **options)
-    band, _ = find_pulse(image, 3.0)
-    return fit_pulse(band).response, truth
+    trimmed, _ = find_pulse(image, 3.0)
+    return fit_pulse(trimmed).response, truth
 
 
 def test_the_curves_stay_and_err_together():

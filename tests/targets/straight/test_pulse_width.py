@@ -9,7 +9,7 @@ import pytest
 from acutance import simulate
 from acutance.errors import OptionError
 from acutance.optics.preset import preset
-from acutance.targets.straight.fit_pulse import PulseBand, fit_pulse
+from acutance.targets.straight.fit_pulse import PulsePixels, fit_pulse
 from acutance.targets.straight.published import SdsuPulseOptions, sdsu_2005_pulse
 from acutance.targets.straight.pulse_width import (
     critical_frequencies,
@@ -29,7 +29,7 @@ def band_of(system, *, width_px=3.0, stated_px=3.0, shape=(95, 60), snr=None, rn
         system, width_px=width_px, shape=shape, snr=snr, rng=rng, **{"angle_deg": 6.0, **scene}
     )
     line = truth.line.moved(-0.5 * width_px, 0.0)
-    return PulseBand(
+    return PulsePixels(
         image, line, truth.left, truth.level, 0.6, 0.0, pulse_width_px=stated_px
     )  # fmt: skip
 
@@ -69,10 +69,10 @@ def test_sensitivity_is_the_derivative_of_the_gain():
 
 
 def test_ratio_method_errs_by_the_closed_form():
-    band = band_of(SYSTEMS["gaussian"])
-    right = sdsu_2005_pulse(band, QUIET).response.mtf
+    trimmed = band_of(SYSTEMS["gaussian"])
+    right = sdsu_2005_pulse(trimmed, QUIET).response.mtf
     for used in (2.8, 3.2):
-        wrong = sdsu_2005_pulse(replace(band, pulse_width_px=used), QUIET).response.mtf
+        wrong = sdsu_2005_pulse(replace(trimmed, pulse_width_px=used), QUIET).response.mtf
         for freq in (0.3, 0.4, 0.5):
             expected = width_error_gain(3.0, used, freq)
             assert wrong(freq).value / right(freq).value == pytest.approx(expected, rel=2e-3)
@@ -123,9 +123,9 @@ def test_smoothest_width_under_noise():
 
 
 def test_deformation_has_the_signs_of_the_report():
-    band = band_of(SYSTEMS["gaussian"])
+    trimmed = band_of(SYSTEMS["gaussian"])
     for used, signs, word in ((3.2, (1, -1), "too large"), (2.8, (-1, 1), "too small")):
-        found = smoothest_width(sdsu_2005_pulse(replace(band, pulse_width_px=used), QUIET))
+        found = smoothest_width(sdsu_2005_pulse(replace(trimmed, pulse_width_px=used), QUIET))
         assert tuple(np.sign(found.deformation)) == signs
         for at, freq in zip(found.deformation, (0.3, 0.4), strict=True):
             # 6 degrees make the width along the row 3 / cos.
@@ -136,7 +136,7 @@ def test_deformation_has_the_signs_of_the_report():
             float(width_error_gain(used, 3.0 / math.cos(math.radians(6.0)), 0.5)), rel=3e-3
         )
     right = smoothest_width(
-        sdsu_2005_pulse(band, SdsuPulseOptions(replicates=0, distance="normal"))
+        sdsu_2005_pulse(trimmed, SdsuPulseOptions(replicates=0, distance="normal"))
     )
     assert "no deformation" in right.verdict
     assert right.to_dict()["chosen_px"] == right.chosen_px
@@ -154,8 +154,8 @@ def test_widths_to_try_are_the_callers():
 
 def test_joint_fit_says_whether_a_stated_width_can_be_right():
     rng = np.random.default_rng(11)
-    band = band_of(SYSTEMS["gaussian"], shape=(40, 40), snr=70, rng=rng)
-    fit = fit_pulse(band)
+    trimmed = band_of(SYSTEMS["gaussian"], shape=(40, 40), snr=70, rng=rng)
+    fit = fit_pulse(trimmed)
     good = width_consistency(fit, 3.0)
     assert good.consistent
     assert "agree" in good.verdict
@@ -176,7 +176,7 @@ def test_held_width_cannot_be_asked():
 
 
 def test_width_of_the_generic_sensor_is_found_where_nyquist_is_unusable():
-    band = band_of(preset("generic-2005"), width_px=3.68, stated_px=3.6)
-    found = smoothest_width(sdsu_2005_pulse(band, QUIET))
+    trimmed = band_of(preset("generic-2005"), width_px=3.68, stated_px=3.6)
+    found = smoothest_width(sdsu_2005_pulse(trimmed, QUIET))
     assert found.chosen_px == pytest.approx(3.68, abs=0.01)
-    assert fit_pulse(band).pulse_width.value == pytest.approx(3.68, abs=0.01)
+    assert fit_pulse(trimmed).pulse_width.value == pytest.approx(3.68, abs=0.01)

@@ -13,8 +13,8 @@ from acutance.targets.straight.spline import (
     edge_and_line_weights,
     edge_weights,
     esf_from_lsf,
+    expand,
     quasi_interpolant,
-    spread,
     transform,
 )
 
@@ -46,9 +46,9 @@ def test_edge_weights_sum_to_one_everywhere():
 def test_line_weights_are_the_derivative_of_the_edge_weights():
     inside = U[np.abs(U) < HALF_SUPPORT - 1e-3]
     step = 1e-5
-    high, low = (spread(*edge_weights(inside + k * step)) for k in (0.5, -0.5))
+    high, low = (expand(*edge_weights(inside + k * step)) for k in (0.5, -0.5))
     slope = (high - low) / step
-    assert np.max(np.abs(slope - spread(*line_weights(inside)))) < 1e-4
+    assert np.max(np.abs(slope - expand(*line_weights(inside)))) < 1e-4
 
 
 def test_line_weights_make_the_quadratic_spline_of_every_coefficient():
@@ -73,10 +73,10 @@ def test_esf_is_the_integral_of_the_lsf_and_level_beyond():
 def test_spread_is_the_dense_form_of_combine():
     coefficients = np.random.default_rng(1).standard_normal(CELLS + 3)
     cell, weights = edge_weights(U)
-    dense = spread(cell, weights)
+    dense = expand(cell, weights)
     assert np.max(np.abs(dense @ coefficients - combine(cell, weights, coefficients))) < 1e-13
     assert np.count_nonzero(dense) <= 4 * U.size
-    wider = spread(cell, weights, further=2)
+    wider = expand(cell, weights, further=2)
     assert np.array_equal(wider[:, :-2], dense)
     assert not wider[:, -2:].any()
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from acutance.targets.straight.spline import HALF_SUPPORT, edge_weights, spread
+from acutance.targets.straight.spline import HALF_SUPPORT, edge_weights, expand
 from acutance.targets.straight.spline_equations import accumulate, renewed
 
 RNG = np.random.default_rng(5)
@@ -16,7 +16,7 @@ COLUMNS = RNG.standard_normal((2, N))
 
 def test_sums_are_those_of_the_dense_design():
     found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS, N)
-    design = np.hstack([spread(*edge_weights(U)), COLUMNS.T])
+    design = np.hstack([expand(*edge_weights(U)), COLUMNS.T])
     assert np.allclose(found.gram, design.T @ (WEIGHT[:, None] * design), rtol=0, atol=1e-10)
     assert np.allclose(found.projection, design.T @ (WEIGHT * Y), rtol=0, atol=1e-10)
     assert np.isclose(found.data, Y @ (WEIGHT * Y))
@@ -27,7 +27,7 @@ def test_sums_are_those_of_the_dense_design():
 def test_combined_equations_are_those_of_the_combined_design(taken):
     found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS, N)
     directions = RNG.standard_normal((taken, 6))
-    dense = np.hstack([spread(*edge_weights(U)), COLUMNS.T])
+    dense = np.hstack([expand(*edge_weights(U)), COLUMNS.T])
     design = np.hstack([dense[:, :taken] @ directions, dense[:, taken:]])
     combined = found.combined(directions)
     assert np.allclose(combined.gram, design.T @ (WEIGHT[:, None] * design))
@@ -37,7 +37,7 @@ def test_combined_equations_are_those_of_the_combined_design(taken):
 
 def test_no_further_columns():
     found = accumulate([edge_weights(U)], Y, WEIGHT, np.empty((0, N)), N)
-    dense = spread(*edge_weights(U))
+    dense = expand(*edge_weights(U))
     assert np.allclose(found.gram, dense.T @ (WEIGHT[:, None] * dense), rtol=0, atol=1e-10)
 
 
@@ -45,7 +45,7 @@ def test_two_steps_match_the_dense_design():
     cell, basis = edge_weights(U)
     other, other_basis = edge_weights(U - 2.3)
     stencils = [(cell, basis), (other, -0.8 * other_basis)]
-    dense = np.vstack([(spread(cell, basis) + spread(other, -0.8 * other_basis)).T, COLUMNS]).T
+    dense = np.vstack([(expand(cell, basis) + expand(other, -0.8 * other_basis)).T, COLUMNS]).T
     found = accumulate(stencils, Y, WEIGHT, COLUMNS, N)
     np.testing.assert_allclose(found.gram, dense.T @ (WEIGHT[:, None] * dense), atol=1e-10)
     np.testing.assert_allclose(found.projection, dense.T @ (WEIGHT * Y), atol=1e-10)
@@ -67,6 +67,6 @@ def test_all_pixels_beyond_the_support_or_in_one_cell():
     for u in (np.array([-20.0, 20.0, 21.0]), np.full(5, 0.03)):
         y, weight = RNG.standard_normal((2, u.size)) ** 2
         found = accumulate([edge_weights(u)], y, weight, np.ones((1, u.size)), u.size)
-        dense = np.hstack([spread(*edge_weights(u)), np.ones((u.size, 1))])
+        dense = np.hstack([expand(*edge_weights(u)), np.ones((u.size, 1))])
         np.testing.assert_allclose(found.gram, dense.T @ (weight[:, None] * dense), atol=1e-12)
         np.testing.assert_allclose(found.projection, dense.T @ (weight * y), atol=1e-12)

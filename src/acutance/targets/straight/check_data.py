@@ -11,7 +11,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.numerics.noise import Correlation, correlation, robust_scale, side_variances
 from acutance.targets.check import MAX_RATIO
-from acutance.targets.straight.pixels import EdgeBand, EdgeFit
+from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 
 __all__ = ["MISFIT", "PLACES", "CheckData", "ratio_in_words"]
 
@@ -39,25 +39,25 @@ class CheckData:
     bright side.
     """
 
-    band: EdgeBand
+    trimmed: EdgePixels
     fit: EdgeFit
     before: Floats
     behind: Floats
 
     @classmethod
-    def of(cls, band: EdgeBand, fit: EdgeFit, last_px: float = 0.0) -> CheckData:
+    def of(cls, trimmed: EdgePixels, fit: EdgeFit, last_px: float = 0.0) -> CheckData:
         """Check data of a fit whose last step lies `last_px` behind its first."""
-        return cls(band, fit, -fit.distance_px, fit.distance_px - last_px)
+        return cls(trimmed, fit, -fit.distance_px, fit.distance_px - last_px)
 
     @property
     def rows(self) -> Floats:
         """Rows of the pixels."""
-        return self.band.pixels.row
+        return self.trimmed.pixels.row
 
     @property
     def cols(self) -> Floats:
         """Columns of the pixels."""
-        return self.band.pixels.col
+        return self.trimmed.pixels.col
 
     @cached_property
     def t(self) -> Floats:
@@ -125,7 +125,7 @@ class CheckData:
         noise = robust_scale(residual) if residual.size else 0.0
         if noise <= MISFIT:
             return Correlation(1.0, 0.0, 0.0)
-        rows, cols = (at[flat] for at in self.band.pixels.at)
+        rows, cols = (at[flat] for at in self.trimmed.pixels.at)
         bounded = np.clip(residual / noise, -_OUTLYING, _OUTLYING)
         return correlation(bounded, rows, cols, [direction])
 

@@ -24,7 +24,7 @@ from acutance.targets.straight.edge_checks import check_edge, edge_snr, sample_p
 from acutance.targets.straight.find_edges import Segment, find_segments
 from acutance.targets.straight.fit_edge import fit_edge
 from acutance.targets.straight.options import EdgeOptions
-from acutance.targets.straight.pixels import EdgeBand, EdgeFit
+from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published import PUBLISHED, PUBLISHED_OPTIONS
 from acutance.targets.straight.straight_measurement import StraightDetails, StraightMeasurement
 from acutance.targets.straight.trim import Extent, trim
@@ -48,20 +48,20 @@ _SIGNIFICANT = 3.0
 _BESIDE_PX = 1.0
 
 
-def _spline(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
+def _spline(trimmed: EdgePixels, options: EdgeOptions) -> EdgeFit:
     if options.method_options is not None:
         raise OptionError("method_options belong to the published methods: leave them out")
-    return fit_edge(band, robust=options.robust)
+    return fit_edge(trimmed, robust=options.robust)
 
 
-def _published(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
-    def measure(band: EdgeBand, options: EdgeOptions) -> EdgeFit:
-        return PUBLISHED[name](band, published_options(options, name, PUBLISHED_OPTIONS[name]))
+def _published(name: str) -> Callable[[EdgePixels, EdgeOptions], EdgeFit]:
+    def measure(trimmed: EdgePixels, options: EdgeOptions) -> EdgeFit:
+        return PUBLISHED[name](trimmed, published_options(options, name, PUBLISHED_OPTIONS[name]))
 
     return measure
 
 
-METHODS: dict[str, Callable[[EdgeBand, EdgeOptions], EdgeFit]] = {
+METHODS: dict[str, Callable[[EdgePixels, EdgeOptions], EdgeFit]] = {
     "spline": _spline,
     **{name: _published(name) for name in PUBLISHED},
 }
@@ -137,33 +137,33 @@ def measure_segment(
 ) -> StraightMeasurement:
     """Measure one segment that was found in a cut; see `measure_edge`."""
     estimate = _method(method)
-    band, extent = trim(region.pixels, segment)
-    require_phases(band, band.line, limit_of("sample_phases", options.limits))
-    fit = estimate(band, options)
-    return _measurement(region, band, extent, fit, method, options)
+    trimmed, extent = trim(region.pixels, segment)
+    require_phases(trimmed, trimmed.line, limit_of("sample_phases", options.limits))
+    fit = estimate(trimmed, options)
+    return _measurement(region, trimmed, extent, fit, method, options)
 
 
-def _method(name: str) -> Callable[[EdgeBand, EdgeOptions], EdgeFit]:
+def _method(name: str) -> Callable[[EdgePixels, EdgeOptions], EdgeFit]:
     if name not in METHODS:
         raise OptionError(f"there is no edge method {name!r}: choose one of {', '.join(METHODS)}")
     return METHODS[name]
 
 
-def require_phases(band: EdgeBand, line: Line, wanted: float) -> None:
+def require_phases(trimmed: EdgePixels, line: Line, wanted: float) -> None:
     """Refuse an edge whose samples repeat at the same sub-pixel phases.
 
     Parameters
     ----------
-    band : EdgeBand
+    trimmed : EdgePixels
     line : Line
     wanted : float
         What the check `sample_phases` asks for, which is more than can be measured with.
     """
-    distance = line.normal_distance(band.pixels.row, band.pixels.col)
+    distance = line.normal_distance(trimmed.pixels.row, trimmed.pixels.col)
     phases = sample_phases(distance)
     if phases >= MIN_PHASES:
         return
-    fill = _fill_value(distance, band.pixels.value)
+    fill = _fill_value(distance, trimmed.pixels.value)
     wanted = max(wanted, MIN_PHASES)
     raise PhaseError(
         f"edge angle {line.angle_deg:.2f} deg gives {phases:.1f} sample phases over "
@@ -209,7 +209,7 @@ def _advice(line: Line, wanted: float) -> str:
 
 def _measurement(
     region: RegionPixels,
-    band: EdgeBand,
+    trimmed: EdgePixels,
     extent: Extent,
     fit: EdgeFit,
     method: str,
@@ -217,7 +217,7 @@ def _measurement(
 ) -> StraightMeasurement:
     """Put together what a measurement holds; the line moves into the whole image's pixels."""
     fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
-    data = CheckData.of(band, fit)
+    data = CheckData.of(trimmed, fit)
     by_rows = method in PUBLISHED
     return StraightMeasurement(
         kind="edge",
@@ -230,7 +230,7 @@ def _measurement(
         checks=Checks(lambda: check_edge(region, data, extent, options.limits, by_rows=by_rows)),
         image=region.info,
         options=options.to_dict(),
-        details=details_of(region, band, fit),
+        details=details_of(region, trimmed, fit),
     )
 
 
@@ -250,7 +250,7 @@ def in_whole_image(line: Line, region: RegionPixels) -> Line:
     return replace(line, row=line.row + region.box.row, col=line.col + region.box.col)
 
 
-def details_of(region: RegionPixels, band: EdgeBand, fit: EdgeFit) -> StraightDetails:
+def details_of(region: RegionPixels, trimmed: EdgePixels, fit: EdgeFit) -> StraightDetails:
     """The pixels of a fit, seen along the normal."""
-    used = np.isfinite(band.image)
+    used = np.isfinite(trimmed.image)
     return StraightDetails(region.pixels, used, fit.distance_px, fit.value, fit.residual)

@@ -8,11 +8,11 @@ from acutance.curves.grid import Floats, crossing
 from acutance.errors import NoEdgeError, SupportError, TargetError
 from acutance.numerics.noise import median
 from acutance.targets.straight.find_edges import Segment, find_segments
-from acutance.targets.straight.first_fit import fit_blurred_edge
-from acutance.targets.straight.fit_pulse import PulseBand
+from acutance.targets.straight.first_fit import fit_first
+from acutance.targets.straight.fit_pulse import PulsePixels
 from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.step_profile import pulse_profile
-from acutance.targets.straight.trim import Extent, beside, serving
+from acutance.targets.straight.trim import Extent, near_line, select_usable
 from acutance.targets.straight.tuned import MIN_SNR
 
 __all__ = ["find_pulse"]
@@ -27,7 +27,7 @@ _SPOILED = 0.005
 
 def find_pulse(
     image: Floats, width_px: float | None = None, *, fit_width: bool = True
-) -> tuple[PulseBand, Extent]:
+) -> tuple[PulsePixels, Extent]:
     """The strongest pulse of an image and the pixels that serve it.
 
     Parameters
@@ -59,9 +59,9 @@ def find_pulse(
 
 def _at(
     image: Floats, segment: Segment, stated_px: float | None, sign: float, fit_width: bool
-) -> tuple[PulseBand, Extent]:
+) -> tuple[PulsePixels, Extent]:
     """The pulse whose rising side is `segment`."""
-    image = beside(image, segment.line)
+    image = near_line(image, segment.line)
     pixels = Pixels.of(image)
     s = segment.line.normal_distance(pixels.row, pixels.col)
     t = segment.line.tangent_distance(pixels.row, pixels.col)
@@ -87,7 +87,7 @@ def _at(
             f"{sign * right:.4g}: no strip of {width_px:.2f} px between two like grounds; choose "
             "a region with one strip, or state another width"
         )
-    pulse = fit_blurred_edge(
+    pulse = fit_first(
         pixels.row[along], pixels.col[along], pixels.value[along], segment.line,
         dark=left, bright=level, profile=pulse_profile(width_px, (level - right) / (level - left)),
         fit_width=fit_width,
@@ -98,13 +98,13 @@ def _at(
             f"{pulse.noise:.3g}: an SNR of {pulse.height / pulse.noise:.1f} where {MIN_SNR:g} is "
             "the least"
         )
-    served = serving(image, pixels, pulse, 0.5 * (segment.stop_px - segment.start_px))
+    usable = select_usable(image, pixels, pulse, 0.5 * (segment.stop_px - segment.start_px))
     width, falling = pulse.profile.positions_px[1], -pulse.profile.shares[1]
-    band = PulseBand(
-        served.image, served.line, pulse.dark, pulse.dark + pulse.height, pulse.blur.sigma_px,
+    trimmed = PulsePixels(
+        usable.image, usable.line, pulse.dark, pulse.dark + pulse.height, pulse.blur.sigma_px,
         pulse.noise, pulse.blur, width, falling, sign,
     )  # fmt: skip
-    return band, served.extent
+    return trimmed, usable.extent
 
 
 def _guessed_width(s: Floats, value: Floats) -> float:

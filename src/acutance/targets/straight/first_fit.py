@@ -16,7 +16,7 @@ from acutance.targets.straight.lsf_prior import tail_esf, tail_lsf
 from acutance.targets.straight.step_profile import EDGE, Profile, pulse_profile
 from acutance.targets.straight.tuned import APERTURE_PX
 
-__all__ = ["BlurredEdge", "fit_blurred_edge"]
+__all__ = ["FirstFit", "fit_first"]
 
 _MAX_STEPS = 30
 _SETTLED = 0.02
@@ -33,7 +33,7 @@ _HIGHEST: Floats = np.array([*[np.inf] * 4, np.inf, 4.0, 0.5, np.inf, np.inf])
 
 
 @dataclass(frozen=True)
-class BlurredEdge:
+class FirstFit:
     """A target blurred by a Gaussian and a detector, fitted to the pixels.
 
     `height` is that of the first step (bright minus dark for an edge); `noise` the standard
@@ -48,7 +48,7 @@ class BlurredEdge:
     profile: Profile = EDGE
 
 
-def fit_blurred_edge(
+def fit_first(
     row: Floats,
     col: Floats,
     value: Floats,
@@ -60,7 +60,7 @@ def fit_blurred_edge(
     noise: float | None = None,
     profile: Profile = EDGE,
     fit_width: bool = False,
-) -> BlurredEdge:
+) -> FirstFit:
     """Fit line, blur, levels and, of a pulse, its steps by damped Gauss-Newton.
 
     Parameters
@@ -118,7 +118,7 @@ def fit_blurred_edge(
         )
     found = profile if p.size == 7 else pulse_profile(float(p[7]), float(p[8]))
     moved = line.moved(float(p[2]), math.degrees(float(p[3])))
-    return BlurredEdge(moved, blur, float(p[0]), height, scale, found)
+    return FirstFit(moved, blur, float(p[0]), height, scale, found)
 
 
 def _steps(profile: Profile) -> tuple[float, ...]:

@@ -10,8 +10,8 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import Blur
 from acutance.numerics.noise import Correlation
-from acutance.targets.straight.first_fit import BlurredEdge, fit_blurred_edge
-from acutance.targets.straight.pixels import EdgeBand, EdgeFit, Pixels
+from acutance.targets.straight.first_fit import FirstFit, fit_first
+from acutance.targets.straight.pixels import EdgeFit, EdgePixels, Pixels
 from acutance.targets.straight.solve import Solved, solve
 
 __all__ = ["SplineEdge", "fit_edge", "spline_edge"]
@@ -43,31 +43,37 @@ class SplineEdge(EdgeFit):
     tail: float
 
 
-def fit_edge(band: EdgeBand, *, robust: bool = True) -> SplineEdge:
-    """Measure the edge of a band.
+def fit_edge(trimmed: EdgePixels, *, robust: bool = True) -> SplineEdge:
+    """Measure the edge of trimmed pixels.
 
     Parameters
     ----------
-    band : EdgeBand
+    trimmed : EdgePixels
     robust : bool, optional
         Bound the weight of outliers.
 
     Raises
     ------
     NoEdgeError
-        If the band holds no step.
+        If they hold no step.
     """
-    return spline_edge(band.pixels, solve(band.pixels, _start(band), robust=robust))
+    return spline_edge(trimmed.pixels, solve(trimmed.pixels, _start(trimmed), robust=robust))
 
 
-def _start(band: EdgeBand) -> BlurredEdge:
+def _start(trimmed: EdgePixels) -> FirstFit:
     """The plain blurred edge the linear model departs from."""
-    if band.blur is not None:
-        return BlurredEdge(band.line, band.blur, band.dark, band.bright - band.dark, band.noise)
-    pixels = band.pixels
-    return fit_blurred_edge(
-        pixels.row, pixels.col, pixels.value, band.line,
-        dark=band.dark, bright=band.bright, sigma_px=band.width_px, noise=band.noise,
+    if trimmed.blur is not None:
+        return FirstFit(
+            trimmed.line,
+            trimmed.blur,
+            trimmed.dark,
+            trimmed.bright - trimmed.dark,
+            trimmed.noise,
+        )
+    pixels = trimmed.pixels
+    return fit_first(
+        pixels.row, pixels.col, pixels.value, trimmed.line,
+        dark=trimmed.dark, bright=trimmed.bright, sigma_px=trimmed.width_px, noise=trimmed.noise,
     )  # fmt: skip
 
 
@@ -76,7 +82,7 @@ def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
     start, solution, model = solved.start, solved.solution, solved.model
     middle = model.half_point()
     response = model.response(middle)
-    line = start.line.moved(middle, math.degrees(solution.turn_rad))
+    line = start.line.moved(middle, math.degrees(solution.rotation_rad))
     t = line.tangent_distance(pixels.row, pixels.col)
     s = line.normal_distance(pixels.row, pixels.col)
     near = np.abs(s) < start.blur.width_px
@@ -84,7 +90,7 @@ def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
     dark, height = solved.dark, model.height
     line = replace(
         line,
-        angle_std_deg=math.degrees(solution.turn_std_rad),
+        angle_std_deg=math.degrees(solution.rotation_std_rad),
         offset_std_px=model.half_point_std(response),
         length_px=length,
     )

@@ -8,27 +8,27 @@ import numpy as np
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
-from acutance.targets.straight.first_fit import BlurredEdge, fit_blurred_edge
+from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.fit_edge import SplineEdge, spline_edge
-from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.pixels import EdgePixels
 from acutance.targets.straight.solve import Solved, solve
 from acutance.targets.straight.step_profile import pulse_profile
 
-__all__ = ["PulseBand", "SplinePulse", "fit_pulse"]
+__all__ = ["PulsePixels", "SplinePulse", "fit_pulse"]
 
 
 @dataclass(frozen=True, eq=False)
-class PulseBand(EdgeBand):
+class PulsePixels(EdgePixels):
     """A region trimmed to one pulse.
 
-    The band's line is the rising side of the pulse, its normal pointing into the pulse; `dark` is
+    Their line is the rising side of the pulse, its normal pointing into the pulse; `dark` is
     the ground before it and `bright` the level a wide pulse would have. A dark pulse on bright
     ground is kept with its sign turned: `sign` is -1 then, and the image's values are negated.
 
     Parameters
     ----------
     width_px : float
-        Standard deviation of the Gaussian that fits the blur (as in `EdgeBand`).
+        Standard deviation of the Gaussian that fits the blur (as in `EdgePixels`).
     pulse_width_px : float
         Width of the pulse along the normal, as stated or as first fitted.
     fall : float
@@ -61,14 +61,14 @@ class SplinePulse(SplineEdge):
     width_factor: Floats
 
 
-def fit_pulse(band: PulseBand, *, fit_width: bool = True, robust: bool = True) -> SplinePulse:
-    """Measure the pulse of a band.
+def fit_pulse(trimmed: PulsePixels, *, fit_width: bool = True, robust: bool = True) -> SplinePulse:
+    """Measure the pulse of trimmed pixels.
 
     Parameters
     ----------
-    band : PulseBand
+    trimmed : PulsePixels
     fit_width : bool, optional
-        Whether the width is fitted with the LSF (the band's is the start) or held.
+        Whether the width is fitted with the LSF (that of `trimmed` is the start) or held.
     robust : bool, optional
         Bound the weight of outliers.
 
@@ -77,9 +77,9 @@ def fit_pulse(band: PulseBand, *, fit_width: bool = True, robust: bool = True) -
     NoEdgeError
         If no pulse survives the fit.
     """
-    start = _start(band, fit_width)
-    solved = solve(band.pixels, start, robust=robust, fit_width=fit_width)
-    edge = spline_edge(band.pixels, solved)
+    start = _start(trimmed, fit_width)
+    solved = solve(trimmed.pixels, start, robust=robust, fit_width=fit_width)
+    edge = spline_edge(trimmed.pixels, solved)
     return SplinePulse(
         **vars(edge),
         pulse_width=_width(solved, fit_width),
@@ -91,16 +91,16 @@ def fit_pulse(band: PulseBand, *, fit_width: bool = True, robust: bool = True) -
     )
 
 
-def _start(band: PulseBand, fit_width: bool) -> BlurredEdge:
+def _start(trimmed: PulsePixels, fit_width: bool) -> FirstFit:
     """The plain blurred pulse the linear model departs from."""
-    profile = pulse_profile(band.pulse_width_px, band.fall)
-    if band.blur is not None:
-        height = band.bright - band.dark
-        return BlurredEdge(band.line, band.blur, band.dark, height, band.noise, profile)
-    pixels = band.pixels
-    return fit_blurred_edge(
-        pixels.row, pixels.col, pixels.value, band.line,
-        dark=band.dark, bright=band.bright, sigma_px=band.width_px, noise=band.noise,
+    profile = pulse_profile(trimmed.pulse_width_px, trimmed.fall)
+    if trimmed.blur is not None:
+        height = trimmed.bright - trimmed.dark
+        return FirstFit(trimmed.line, trimmed.blur, trimmed.dark, height, trimmed.noise, profile)
+    pixels = trimmed.pixels
+    return fit_first(
+        pixels.row, pixels.col, pixels.value, trimmed.line,
+        dark=trimmed.dark, bright=trimmed.bright, sigma_px=trimmed.width_px, noise=trimmed.noise,
         profile=profile, fit_width=fit_width,
     )  # fmt: skip
 

@@ -16,7 +16,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import side_variances
 from acutance.targets.straight import lsf_prior
-from acutance.targets.straight.first_fit import BlurredEdge
+from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.gradients import plateau_trends
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
@@ -60,7 +60,7 @@ class Linear:
 
     Attributes
     ----------
-    start : BlurredEdge
+    start : FirstFit
         Line, blur, levels and profile the model departs from.
     s, t : (n,) arrays
         Distance of the pixels from the first step along the normal, and along the line.
@@ -84,7 +84,7 @@ class Linear:
     prior : Prior
     """
 
-    start: BlurredEdge
+    start: FirstFit
     s: Floats
     t: Floats
     seen: list[tuple[Floats, Floats]]
@@ -99,7 +99,7 @@ class Linear:
     prior: Prior
 
     @classmethod
-    def about(cls, start: BlurredEdge, pixels: Pixels, *, fit_width: bool) -> Linear:
+    def about(cls, start: FirstFit, pixels: Pixels, *, fit_width: bool) -> Linear:
         """The model about a `start`, of a width that is free or held."""
         profile, width = start.profile, start.blur.width_px
         s = start.line.normal_distance(pixels.row, pixels.col)
@@ -223,7 +223,7 @@ def _design(directions: lsf_prior.Directions, beside: int) -> Floats:
 
 
 def _prior(
-    start: BlurredEdge, directions: lsf_prior.Directions, trends: int, derivatives: int
+    start: FirstFit, directions: lsf_prior.Directions, trends: int, derivatives: int
 ) -> Prior:
     """The prior of all unknowns."""
     after_tail = 1 + directions.block.size

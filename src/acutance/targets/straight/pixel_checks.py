@@ -28,7 +28,7 @@ __all__ = ["correlated_noise", "gradient", "outliers", "quantisation", "saturati
 
 def saturation(region: RegionPixels, data: CheckData, limits: Limits) -> Check:
     """Pixels at the detector's limit, or a side that piles up at its outer end."""
-    values = region.pixels[data.band.pixels.at]
+    values = region.pixels[data.trimmed.pixels.at]
     share = at_limit_share(values, region.saturation_level)
     middle = float(np.median(values))
     # The two plateaus and, of a pulse, the pulse itself.
@@ -50,7 +50,7 @@ def _quiet(data: CheckData, side: Floats) -> bool:
 
 def quantisation(region: RegionPixels, data: CheckData, limits: Limits) -> Check:
     """Noise in steps of the image's numbers: with less, rounding is no noise but a distortion."""
-    values = np.unique(region.pixels[data.band.pixels.at])
+    values = np.unique(region.pixels[data.trimmed.pixels.at])
     step = float(np.min(np.diff(values))) if values.size > 1 else 0.0
     contrast = abs(data.fit.bright - data.fit.dark)
     if step < HARMLESS_STEP * contrast:

@@ -13,7 +13,7 @@ from acutance.curves.grid import Floats
 from acutance.geometry.line import Line
 from acutance.numerics.gaussian_pixel import Blur
 
-__all__ = ["EdgeBand", "EdgeFit", "Pixels"]
+__all__ = ["EdgeFit", "EdgePixels", "Pixels"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,13 +42,13 @@ class Pixels:
 
 
 @dataclass(frozen=True, eq=False)
-class EdgeBand:
+class EdgePixels:
     """A region trimmed to one edge: what every edge method starts from.
 
     Parameters
     ----------
     image : (rows, cols) array
-        The cut. Pixels that must not be used (nodata, masked, outside the band) are NaN.
+        The cut. Pixels that must not be used (nodata, masked, outside the trimmed) are NaN.
     line : Line
         The edge in the cut's own coordinates, good to a tenth of a pixel or better.
     dark, bright : float
@@ -78,7 +78,7 @@ class EdgeBand:
 
 @dataclass(frozen=True, eq=False)
 class EdgeFit:
-    """What a method makes of a band.
+    """What a method makes of trimmed pixels.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class EdgeFit:
     dark, bright : float
         Plateau levels as the method fitted them.
     distance_px, value, residual : (n,) arrays
-        The pixels used (row-major order of the band's finite pixels): normal distance from the
+        The pixels used (row-major order of the trimmed pixels): normal distance from the
         50 % point, edge response normalised to 0..1, and what the fit leaves of it.
     """
 

@@ -18,7 +18,7 @@ from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.edge import described, details_of, in_whole_image, require_phases
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.find_pulse import find_pulse
-from acutance.targets.straight.fit_pulse import PulseBand, fit_pulse
+from acutance.targets.straight.fit_pulse import PulsePixels, fit_pulse
 from acutance.targets.straight.options import PulseOptions
 from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
@@ -37,26 +37,26 @@ _Fitted = tuple[EdgeFit, Estimate, Estimate, Estimate]
 the rising one, and the FWHM of its response."""
 
 
-def _spline(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
+def _spline(trimmed: PulsePixels, fit_width: bool, options: PulseOptions) -> _Fitted:
     if options.method_options is not None:
         raise OptionError("method_options belong to the published methods: leave them out")
-    fit = fit_pulse(band, fit_width=fit_width, robust=options.robust)
+    fit = fit_pulse(trimmed, fit_width=fit_width, robust=options.robust)
     response = with_uncertain_halo(fit.response)
     prf = prf_fwhm(response, fit.pulse_width.value, fit.width_factor)
     return replace(fit, response=response), fit.pulse_width, fit.fall, prf
 
 
-def _published(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
-    def measure(band: PulseBand, fit_width: bool, options: PulseOptions) -> _Fitted:
+def _published(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted]:
+    def measure(trimmed: PulsePixels, fit_width: bool, options: PulseOptions) -> _Fitted:
         wanted = PUBLISHED_PULSE_OPTIONS[name]
-        fit = PUBLISHED_PULSE[name](band, published_options(options, name, wanted))
+        fit = PUBLISHED_PULSE[name](trimmed, published_options(options, name, wanted))
         along_normal = fit.prf_fwhm_px / fit.px_per_normal
         return fit, fit.pulse_width, fit.fall, along_normal
 
     return measure
 
 
-PULSE_METHODS: dict[str, Callable[[PulseBand, bool, PulseOptions], _Fitted]] = {
+PULSE_METHODS: dict[str, Callable[[PulsePixels, bool, PulseOptions], _Fitted]] = {
     "spline": _spline,
     **{name: _published(name) for name in PUBLISHED_PULSE},
 }
@@ -111,19 +111,19 @@ def measure_pulse(
     region = read_region(image, roi, gsd_m)
     stated_px = _stated_width(region, width_px, width_m)
     free = fit_width or stated_px is None
-    band, extent = _find(region, stated_px, free)
-    require_phases(band, band.line, limit_of("sample_phases", chosen.limits))
+    trimmed, extent = _find(region, stated_px, free)
+    require_phases(trimmed, trimmed.line, limit_of("sample_phases", chosen.limits))
     if stated_px is not None and method in PUBLISHED_PULSE:
-        band = replace(band, pulse_width_px=stated_px)
-    found = estimate(band, free, chosen)
+        trimmed = replace(trimmed, pulse_width_px=stated_px)
+    found = estimate(trimmed, free, chosen)
     if free and stated_px is not None and _is_far(found[1].value, stated_px):
         # So far from its start the fit may have stopped in a place of its own: start near the end.
-        band, extent = find_pulse(region.pixels, found[1].value)
-        found = estimate(band, free, chosen)
-    return _measurement(region, band, extent, found, method, chosen, stated_px)
+        trimmed, extent = find_pulse(region.pixels, found[1].value)
+        found = estimate(trimmed, free, chosen)
+    return _measurement(region, trimmed, extent, found, method, chosen, stated_px)
 
 
-def _find(region: RegionPixels, stated_px: float | None, free: bool) -> tuple[PulseBand, Extent]:
+def _find(region: RegionPixels, stated_px: float | None, free: bool) -> tuple[PulsePixels, Extent]:
     """The strongest pulse; where there is none of the stated width, what there is instead."""
     try:
         return find_pulse(region.pixels, stated_px, fit_width=free)
@@ -152,7 +152,7 @@ def _is_far(found_px: float, stated_px: float) -> bool:
     return abs(found_px / stated_px - 1) > MAX_CORRECTED_WIDTH
 
 
-def _method(name: str) -> Callable[[PulseBand, bool, PulseOptions], _Fitted]:
+def _method(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted]:
     if name not in PULSE_METHODS:
         known = ", ".join(PULSE_METHODS)
         raise OptionError(f"there is no pulse method {name!r}: choose one of {known}")
@@ -183,7 +183,7 @@ def _stated_width(
 
 def _measurement(
     region: RegionPixels,
-    band: PulseBand,
+    trimmed: PulsePixels,
     extent: Extent,
     found: _Fitted,
     method: str,
@@ -193,7 +193,7 @@ def _measurement(
     """Put together what a measurement holds; the line moves into the whole image's pixels."""
     fit, width, height_ratio, prf_fwhm_px = found
     fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
-    data = CheckData.of(band, fit, width.value)
+    data = CheckData.of(trimmed, fit, width.value)
 
     def ask() -> tuple[Check, ...]:
         return check_pulse(
@@ -207,8 +207,8 @@ def _measurement(
         method=method,
         transfer=fit.response,
         line=in_whole_image(fit.line, region),
-        dark=band.sign * fit.dark,
-        bright=band.sign * fit.bright,
+        dark=trimmed.sign * fit.dark,
+        bright=trimmed.sign * fit.bright,
         width_px=width,
         prf_fwhm_px=prf_fwhm_px,
         stated_width_px=stated_px,
@@ -216,5 +216,5 @@ def _measurement(
         checks=Checks(ask),
         image=region.info,
         options=options.to_dict(),
-        details=details_of(region, band, fit),
+        details=details_of(region, trimmed, fit),
     )

@@ -19,7 +19,7 @@ from acutance.errors import NoEdgeError
 from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
-from acutance.targets.straight.first_fit import BlurredEdge
+from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.linear_model import Linear
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
@@ -57,7 +57,7 @@ class Solved:
     correlation: Correlation
 
     @property
-    def start(self) -> BlurredEdge:
+    def start(self) -> FirstFit:
         """What the linear model departs from: line, blur, levels and profile as they settled."""
         return self.solution.linear.start
 
@@ -90,7 +90,7 @@ class Solution:
     side_noise : (float, float)
         Standard deviation of the noise on dark and on bright ground.
     roughness : float
-        Noise variance the edge's raggedness adds where the image is steepest, relative to the
+        Noise variance the edge's edge roughness adds where the image is steepest, relative to the
         rest.
     """
 
@@ -109,12 +109,12 @@ class Solution:
         return self.linear.model(self.posterior)
 
     @property
-    def turn_rad(self) -> float:
+    def rotation_rad(self) -> float:
         """How the line wants to turn."""
         return float(self.posterior.beta[-self.linear.derivatives])
 
     @property
-    def turn_std_rad(self) -> float:
+    def rotation_std_rad(self) -> float:
         """Standard deviation of the turn."""
         return _norm(self.posterior.factor[-self.linear.derivatives])
 
@@ -134,14 +134,14 @@ class Solution:
 
 
 def solve(
-    pixels: Pixels, start: BlurredEdge, *, robust: bool = True, fit_width: bool = False
+    pixels: Pixels, start: FirstFit, *, robust: bool = True, fit_width: bool = False
 ) -> Solved:
     """Solve the linear model until line, profile, outliers and noise have settled.
 
     Parameters
     ----------
     pixels : Pixels
-    start : BlurredEdge
+    start : FirstFit
         Line, blur, levels and profile to depart from.
     robust : bool, optional
         Bound the weight of outliers.
@@ -173,7 +173,7 @@ def solve(
         outlier, whiteness, earlier = again, found, solved
         roughness = solved.roughness
         if not (short and _rest(solved)):
-            linear = Linear.about(_moved(solved, fit_width), pixels, fit_width=fit_width)
+            linear = Linear.about(_updated(solved, fit_width), pixels, fit_width=fit_width)
     return Solved(solved, outlier, whiteness)
 
 
@@ -183,7 +183,7 @@ def _are_short(solved: Solution, fit_width: bool) -> bool:
     What a linear step in the width leaves behind is about its square in pixels, of a step in the
     fall a twentieth: it has to be small beside the standard deviation.
     """
-    if abs(solved.turn_rad) * solved.linear.half_length_px >= _SETTLED_PX:
+    if abs(solved.rotation_rad) * solved.linear.half_length_px >= _SETTLED_PX:
         return False
     steps, stds = np.abs(solved.steps), solved.steps_std
     tolerance = np.maximum(_SETTLED_FALL, 6.0 * stds)
@@ -195,20 +195,20 @@ def _are_short(solved: Solution, fit_width: bool) -> bool:
 def _rest(solved: Solution) -> bool:
     """Whether the steps of line and profile are no longer than the pixels tell of them."""
     still = np.abs(solved.steps) < _RESTING * solved.steps_std
-    return bool(abs(solved.turn_rad) < _RESTING * solved.turn_std_rad and np.all(still))
+    return bool(abs(solved.rotation_rad) < _RESTING * solved.rotation_std_rad and np.all(still))
 
 
-def _moved(solved: Solution, fit_width: bool) -> BlurredEdge:
+def _updated(solved: Solution, fit_width: bool) -> FirstFit:
     """The start, with the line and the profile moved to where the solution wants them."""
     start = solved.linear.start
-    if not (math.isfinite(solved.turn_rad) and np.all(np.isfinite(solved.steps))):
+    if not (math.isfinite(solved.rotation_rad) and np.all(np.isfinite(solved.steps))):
         raise NoEdgeError(
             "the fit of the target did not settle: its pixels do not follow one straight line; "
             "choose a region with one straight target"
         )
     # A turn that is too large for the linear model is cut: three pixels at the ends a pass.
     most = 3.0 / max(solved.linear.half_length_px, 1.0)
-    line = start.line.moved(0.0, math.degrees(float(np.clip(solved.turn_rad, -most, most))))
+    line = start.line.moved(0.0, math.degrees(float(np.clip(solved.rotation_rad, -most, most))))
     if not solved.steps.size:
         return replace(start, line=line)
     width_px, fall = start.profile.positions_px[1], -start.profile.shares[1]
@@ -238,7 +238,7 @@ def _pass(
     dark, bright = np.sqrt(posterior.variance * noise.sides).tolist()
     return Solution(
         linear, weight, normal, posterior, residual, std, (dark, bright),
-        _raggedness(standard, np.where(np.abs(standard) < _OUTLYING, steep, 0.0), roughness),
+        _edge_roughness(standard, np.where(np.abs(standard) < _OUTLYING, steep, 0.0), roughness),
     )  # fmt: skip
 
 
@@ -256,13 +256,13 @@ def _equations(
     return renewed(earlier.normal, stencils, departure, weight, columns, linear.derivatives)
 
 
-def _raggedness(standard: Floats, steep: Floats, assumed: float) -> float:
+def _edge_roughness(standard: Floats, steep: Floats, assumed: float) -> float:
     """How much noisier the steep pixels are than the rest, beyond what chance explains."""
     there = steep > 0.25
     count = int(np.count_nonzero(there))
     if count < _MIN_STEEP:
         return assumed
-    # Per pixel, in units of the noise without raggedness.
+    # Per pixel, in units of the noise without edge roughness.
     power = float(np.mean(standard[there] ** 2 * (1 + assumed * steep[there])))
     if assumed == 0 and power < 1 + _SIGNIFICANT * math.sqrt(2 / count):
         return 0.0

@@ -33,8 +33,8 @@ __all__ = [
     "edge_and_line_weights",
     "edge_weights",
     "esf_from_lsf",
+    "expand",
     "quasi_interpolant",
-    "spread",
     "transform",
     "waves",
 ]
@@ -101,7 +101,7 @@ def _cubics(t: Floats) -> Floats:
     return weights
 
 
-def spread(cell: NDArray[np.intp], weights: Floats, further: int = 0) -> Floats:
+def expand(cell: NDArray[np.intp], weights: Floats, further: int = 0) -> Floats:
     """The (n, CELLS + 3 + further) matrix that holds the local `weights` (4, n), else zero."""
     columns = CELLS + 3 + further
     matrix = np.zeros((cell.size, columns))
@@ -112,7 +112,7 @@ def spread(cell: NDArray[np.intp], weights: Floats, further: int = 0) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class SplineRows:
-    """``spread(cell, weights, further)`` with `dense` added to its last columns, row by row.
+    """``expand(cell, weights, further)`` with `dense` added to its last columns, row by row.
 
     Attributes
     ----------
@@ -134,7 +134,7 @@ class SplineRows:
         return self.cell.size, CELLS + 3 + self.further
 
     def __getitem__(self, rows: slice) -> Floats:
-        some = spread(self.cell[rows], self.weights[:, rows], self.further)
+        some = expand(self.cell[rows], self.weights[:, rows], self.further)
         some[:, -self.dense.shape[1] :] += self.dense[rows]
         return some
 
@@ -148,7 +148,7 @@ class SplineRows:
 
 
 def combine(cell: NDArray[np.intp], weights: Floats, coefficients: Floats) -> Floats:
-    """The spline of `coefficients` (CELLS + 3,): ``spread(cell, weights) @ coefficients``."""
+    """The spline of `coefficients` (CELLS + 3,): ``expand(cell, weights) @ coefficients``."""
     value = weights[0] * coefficients[cell]
     for a in range(1, 4):
         value += weights[a] * coefficients[cell + a]

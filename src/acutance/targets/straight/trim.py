@@ -17,8 +17,8 @@ from acutance.errors import NoEdgeError, SupportError
 from acutance.geometry.line import Line
 from acutance.numerics.noise import median
 from acutance.targets.straight.find_edges import Segment
-from acutance.targets.straight.first_fit import BlurredEdge, fit_blurred_edge
-from acutance.targets.straight.pixels import EdgeBand, Pixels
+from acutance.targets.straight.first_fit import FirstFit, fit_first
+from acutance.targets.straight.pixels import EdgePixels, Pixels
 from acutance.targets.straight.tuned import (
     MAX_TOLERANCE,
     MIN_ROWS,
@@ -27,7 +27,7 @@ from acutance.targets.straight.tuned import (
     PLATEAU_TOLERANCE,
 )
 
-__all__ = ["Extent", "Serving", "beside", "serving", "trim"]
+__all__ = ["Extent", "UsablePixels", "near_line", "select_usable", "trim"]
 
 _SIGNIFICANCE = 4.0
 _MAX_HALF_WIDTH_PX = 40.0
@@ -58,7 +58,7 @@ class Extent:
     whole: bool
 
 
-def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
+def trim(image: Floats, segment: Segment) -> tuple[EdgePixels, Extent]:
     """The pixels that serve the edge found as `segment`.
 
     Parameters
@@ -69,7 +69,7 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
 
     Returns
     -------
-    band : EdgeBand
+    trimmed : EdgePixels
     extent : Extent
 
     Raises
@@ -79,18 +79,18 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgeBand, Extent]:
     SupportError
         If it is too short, or a side has no plateau.
     """
-    image = beside(image, segment.line)
+    image = near_line(image, segment.line)
     pixels = Pixels.of(image)
     edge = _first_fit(pixels.row, pixels.col, pixels.value, segment)
-    served = serving(image, pixels, edge, 0.5 * (segment.stop_px - segment.start_px))
-    band = EdgeBand(
-        served.image, served.line, edge.dark, edge.dark + edge.height,
+    usable = select_usable(image, pixels, edge, 0.5 * (segment.stop_px - segment.start_px))
+    trimmed = EdgePixels(
+        usable.image, usable.line, edge.dark, edge.dark + edge.height,
         edge.blur.sigma_px, edge.noise, edge.blur,
     )  # fmt: skip
-    return band, served.extent
+    return trimmed, usable.extent
 
 
-def beside(image: Floats, line: Line) -> Floats:
+def near_line(image: Floats, line: Line) -> Floats:
     """An image without what lies too far from a line to tell of the sensor, (rows, cols)."""
     rows, cols = image.shape
     if max(rows, cols) <= _FAR_PX:
@@ -101,7 +101,7 @@ def beside(image: Floats, line: Line) -> Floats:
 
 
 @dataclass(frozen=True, eq=False)
-class Serving:
+class UsablePixels:
     """What of an image serves a target: its pixels (NaN elsewhere), line and extent."""
 
     image: Floats
@@ -109,7 +109,9 @@ class Serving:
     extent: Extent
 
 
-def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: float) -> Serving:
+def select_usable(
+    image: Floats, pixels: Pixels, edge: FirstFit, half_length_px: float
+) -> UsablePixels:
     """The longest and widest stretch of the target whose surroundings look like its plateaus.
 
     Parameters
@@ -117,7 +119,7 @@ def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: fl
     image : (rows, cols) array
     pixels : Pixels
         The image's finite pixels.
-    edge : BlurredEdge
+    edge : FirstFit
         The plain blurred target: an edge or a pulse.
     half_length_px : float
         Half the length over which it was found.
@@ -135,9 +137,9 @@ def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: fl
     departure = (pixels.value - edge.dark) / edge.height - edge.profile.mean(edge.blur, s)
     # One bad pixel is an outlier, and no structure of the ground.
     np.clip(departure, -1.0, 1.0, out=departure)
-    strange = _strange(image.shape, rows, cols, departure, s, t, edge, half_length_px)
+    structure = _structure_mask(image.shape, rows, cols, departure, s, t, edge, half_length_px)
     need = 1.5 * edge.blur.width_px + 1.5
-    first, bins, dark_reach, bright_reach = _reaches(edge, s, t, strange, need)
+    first, bins, dark_reach, bright_reach = _reaches(edge, s, t, structure, need)
     start, stop = _best_run(np.minimum(dark_reach, bright_reach), need)
     length = stop - start
     if length < MIN_ROWS:
@@ -145,7 +147,7 @@ def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: fl
             f"only {length} rows of the target have at least {need:.1f} px of plateau on both "
             f"sides (at least {MIN_ROWS} are needed): choose a region with more of it"
         )
-    whole = not strange.any()
+    whole = not structure.any()
     used = np.ones(s.size, bool)
     if not whole:
         last = edge.profile.positions_px[-1]
@@ -165,10 +167,10 @@ def serving(image: Floats, pixels: Pixels, edge: BlurredEdge, half_length_px: fl
     )  # fmt: skip
     _require_contrast(edge, departure[used])
     extent = Extent(dark_px, bright_px, float(length), whole)
-    return Serving(image, line, extent)
+    return UsablePixels(image, line, extent)
 
 
-def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> BlurredEdge:
+def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> FirstFit:
     """Fit the plain blurred edge to the pixels close to the segment: closer for a sharper one."""
     s = segment.line.normal_distance(row, col)
     t = segment.line.tangent_distance(row, col)
@@ -189,7 +191,7 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
                 f"the strongest edge separates levels of {levels[0]:.4g} and {levels[1]:.4g}, "
                 "which is a line and not a step: choose a region with one bright and one dark side"
             )
-        edge = fit_blurred_edge(
+        edge = fit_first(
             row[near], col[near], value[near], segment.line,
             dark=levels[0], bright=levels[1], sigma_px=sigma_px,
         )  # fmt: skip
@@ -204,7 +206,7 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Blu
     return edge
 
 
-def _require_contrast(edge: BlurredEdge, departure: Floats) -> None:
+def _require_contrast(edge: FirstFit, departure: Floats) -> None:
     """Refuse an edge that is lower than its own plateaus are rough."""
     roughness = math.sqrt(float(departure @ departure) / departure.size)
     if roughness * MIN_SNR > 1:
@@ -215,14 +217,14 @@ def _require_contrast(edge: BlurredEdge, departure: Floats) -> None:
         )
 
 
-def _strange(
+def _structure_mask(
     shape: tuple[int, ...],
     rows: NDArray[np.intp],
     cols: NDArray[np.intp],
     departure: Floats,
     s: Floats,
     t: Floats,
-    edge: BlurredEdge,
+    edge: FirstFit,
     half_length_px: float,
 ) -> NDArray[np.bool_]:
     """Which pixels do not look like the plateau of their side, in the mean of 3 x 3 pixels."""
@@ -253,19 +255,19 @@ def _box(values: Floats) -> Floats:
 
 
 def _reaches(
-    edge: BlurredEdge, s: Floats, t: Floats, strange: NDArray[np.bool_], need: float
+    edge: FirstFit, s: Floats, t: Floats, structure: NDArray[np.bool_], need: float
 ) -> tuple[float, NDArray[np.intp], Floats, Floats]:
     """How far every row of the target is clear, before its first and behind its last step.
 
-    Rows are one pixel long along the edge; the reach of a row ends before the first strange pixel
-    of it or of the rows beside it, or at the last pixel there is. What is strange is blurred too:
+    Rows are one pixel long along the edge; the reach of a row ends before the first structure pixel
+    of it or of the rows beside it, or at the last pixel there is. What is structure is blurred too:
     where there is more than `need`, the reach keeps the blur's width away from it.
     """
     first = math.floor(float(t.min()))
     bins = (t - first).astype(np.intp)
     count = int(bins.max()) + 1
     reaches = []
-    nothing = not strange.any()
+    nothing = not structure.any()
     blur_px, last_step = edge.blur.width_px, edge.profile.positions_px[-1]
     for outwards in (-s, s - last_step):
         outside = outwards > 0
@@ -276,8 +278,8 @@ def _reaches(
             reaches.append(last)
             continue
         stop = np.full(count, np.inf)
-        # Within the target a strange pixel spoils its row on both sides.
-        wrong = strange & (outwards > -0.5 - last_step)
+        # Within the target a structure pixel spoils its row on both sides.
+        wrong = structure & (outwards > -0.5 - last_step)
         np.minimum.at(stop, bins[wrong], np.maximum(outwards[wrong] - 1.0, 0.0))
         close = _spoiled(stop, 1)
         wary = _spoiled(stop, math.ceil(blur_px)) - blur_px
@@ -286,7 +288,7 @@ def _reaches(
 
 
 def _spoiled(stop: Floats, rows: int) -> Floats:
-    """What is left where a strange pixel also spoils the `rows` beside its own."""
+    """What is left where a structure pixel also spoils the `rows` beside its own."""
     padded = np.pad(stop, rows, constant_values=np.inf)
     return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * rows + 1).min(axis=1))
 

@@ -1,6 +1,6 @@
 """Published edge and pulse methods, faithful to their papers, biases included.
 
-Every method takes an `EdgeBand` (a `PulseBand`) and a frozen dataclass of options and gives an
+Every method takes an `EdgePixels` (a `PulsePixels`) and a frozen dataclass of options and gives an
 `EdgeFit`, like the reference method, so that they can be compared curve by curve.
 """
 

@@ -1,4 +1,4 @@
-"""Parametric edge: a sum of Fermi functions fitted to all pixels of the band at once.
+"""Parametric edge: a sum of Fermi functions fitted to all pixels at once.
 
 Source: the Fermi function of Tzannes, Mooney, "Measurement of the modulation transfer function
 of infrared cameras", Optical Engineering 34 (1995), doi:10.1117/12.203133, summed where there
@@ -19,7 +19,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, SupportError
 from acutance.geometry.line import Line
 from acutance.targets.options import require_types
-from acutance.targets.straight.pixels import EdgeBand, EdgeFit
+from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.fermi_sum import FermiSum
 from acutance.targets.straight.published.resampled_response import (
     FREQ_CPP,
@@ -71,7 +71,7 @@ class _Fit:
         return FermiSum.from_vector(self.unknown[2:])
 
 
-def fermi(band: EdgeBand, options: FermiOptions = _DEFAULT) -> EdgeFit:
+def fermi(trimmed: EdgePixels, options: FermiOptions = _DEFAULT) -> EdgeFit:
     """Measure an edge by a sum of one to three Fermi functions.
 
     Direction, dark level and all terms are fitted to all pixels together by non-linear least
@@ -80,7 +80,7 @@ def fermi(band: EdgeBand, options: FermiOptions = _DEFAULT) -> EdgeFit:
 
     Parameters
     ----------
-    band : EdgeBand
+    trimmed : EdgePixels
     options : FermiOptions, optional
 
     Returns
@@ -95,10 +95,10 @@ def fermi(band: EdgeBand, options: FermiOptions = _DEFAULT) -> EdgeFit:
     SupportError
         If fewer than ten rows cross the edge, or too few pixels are usable.
     NoEdgeError
-        If no sum of Fermi functions rises from dark to bright in the band.
+        If no sum of Fermi functions rises from dark to bright in the trimmed.
     """
-    crossing_rows(band, Frame.of(band))
-    row, col = band.pixels.row, band.pixels.col
+    crossing_rows(trimmed, Frame.of(trimmed))
+    row, col = trimmed.pixels.row, trimmed.pixels.col
     if row.size < _PIXELS_PER_UNKNOWN * (2 + 3 * options.max_terms):
         raise SupportError(
             f"{options.max_terms} Fermi functions need at least "
@@ -106,15 +106,15 @@ def fermi(band: EdgeBand, options: FermiOptions = _DEFAULT) -> EdgeFit:
             f"found {row.size}: use a larger region or fewer terms"
         )
     pixels = _Pixels(
-        band.line.normal_distance(row, col),
-        band.line.tangent_distance(row, col),
-        band.pixels.value,
+        trimmed.line.normal_distance(row, col),
+        trimmed.line.tangent_distance(row, col),
+        trimmed.pixels.value,
     )
-    fit = _best_sum(pixels, band, options)
+    fit = _best_sum(pixels, trimmed, options)
     response, middle_px, middle_gradient = _response(fit)
-    line = _line(band.line, pixels, fit, middle_px, middle_gradient)
+    line = _line(trimmed.line, pixels, fit, middle_px, middle_gradient)
     dark = float(fit.unknown[1])
-    return edge_fit(band, line, response, dark=dark, bright=dark + fit.terms.contrast)
+    return edge_fit(trimmed, line, response, dark=dark, bright=dark + fit.terms.contrast)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,9 +125,9 @@ class _Pixels:
     tangent_px: Floats
     value: Floats
 
-    def distance(self, turn_rad: float) -> tuple[Floats, Floats]:
+    def distance(self, rotation_rad: float) -> tuple[Floats, Floats]:
         """Normal distance after turning the line about its point, and its derivative."""
-        c, s = math.cos(turn_rad), math.sin(turn_rad)
+        c, s = math.cos(rotation_rad), math.sin(rotation_rad)
         return (
             c * self.normal_px + s * self.tangent_px,
             c * self.tangent_px - s * self.normal_px,
@@ -145,14 +145,14 @@ class _Pixels:
         return np.column_stack((turned, level, terms.value_gradient(distance)))
 
 
-def _best_sum(pixels: _Pixels, band: EdgeBand, options: FermiOptions) -> _Fit:
+def _best_sum(pixels: _Pixels, trimmed: EdgePixels, options: FermiOptions) -> _Fit:
     """The number of terms with the best criterion; each starts from the best with one less."""
-    width = max(0.55 * band.width_px, 0.05)
-    single = FermiSum(np.array([band.bright - band.dark]), np.zeros(1), np.array([width]))
-    best = _fit(pixels, np.concatenate(([0.0, band.dark], single.to_vector())), options)
+    width = max(0.55 * trimmed.width_px, 0.05)
+    single = FermiSum(np.array([trimmed.bright - trimmed.dark]), np.zeros(1), np.array([width]))
+    best = _fit(pixels, np.concatenate(([0.0, trimmed.dark], single.to_vector())), options)
     if best is None:
         raise NoEdgeError(
-            "no Fermi function rises from dark to bright in the band: use a region with one "
+            "no Fermi function rises from dark to bright: use a region with one "
             "edge and more contrast"
         )
     last = single_fit = best

@@ -15,7 +15,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, SupportError
 from acutance.targets.options import require_types
-from acutance.targets.straight.pixels import EdgeBand, EdgeFit
+from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.edge_location import centroid_locations
 from acutance.targets.straight.published.resampled_response import (
     FREQ_CPP,
@@ -74,7 +74,7 @@ class Iso12233Options:
 _DEFAULT = Iso12233Options()
 
 
-def iso12233(band: EdgeBand, options: Iso12233Options = _DEFAULT) -> EdgeFit:
+def iso12233(trimmed: EdgePixels, options: Iso12233Options = _DEFAULT) -> EdgeFit:
     """Measure an edge by the slanted-edge method of ISO 12233.
 
     Centroid of the windowed derivative in each row, line through the centroids, a whole number
@@ -87,7 +87,7 @@ def iso12233(band: EdgeBand, options: Iso12233Options = _DEFAULT) -> EdgeFit:
 
     Parameters
     ----------
-    band : EdgeBand
+    trimmed : EdgePixels
     options : Iso12233Options, optional
 
     Returns
@@ -101,13 +101,13 @@ def iso12233(band: EdgeBand, options: Iso12233Options = _DEFAULT) -> EdgeFit:
     SupportError, NoEdgeError, PhaseError
         See `locate_rows`; SupportError also when the bins reach less than 3 px.
     """
-    rows = _whole_cycles(locate_rows(band, centroid_locations))
+    rows = _whole_cycles(locate_rows(trimmed, centroid_locations))
 
     def pipeline(rows: LocatedRows, weight: Floats) -> SampledEdge:
         return _sample(rows, weight, options)
 
     return fit_with_bootstrap(
-        band,
+        trimmed,
         rows,
         pipeline,
         replicates=options.replicates,

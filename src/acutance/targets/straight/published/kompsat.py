@@ -17,7 +17,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import RerCentre
 from acutance.errors import OptionError, SupportError
 from acutance.targets.options import require_types
-from acutance.targets.straight.pixels import EdgeBand, EdgeFit
+from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.edge_location import cubic_locations
 from acutance.targets.straight.published.fermi_sum import fit_profile
 from acutance.targets.straight.published.resampled_response import (
@@ -84,7 +84,7 @@ class KompsatOptions:
 _DEFAULT = KompsatOptions()
 
 
-def kompsat_2014(band: EdgeBand, options: KompsatOptions = _DEFAULT) -> EdgeFit:
+def kompsat_2014(trimmed: EdgePixels, options: KompsatOptions = _DEFAULT) -> EdgeFit:
     """Measure an edge by the steps of the KOMPSAT-3 draft.
 
     Inflection of the cubic through 4 pixels of each row, straight line, distance of every
@@ -97,7 +97,7 @@ def kompsat_2014(band: EdgeBand, options: KompsatOptions = _DEFAULT) -> EdgeFit:
 
     Parameters
     ----------
-    band : EdgeBand
+    trimmed : EdgePixels
     options : KompsatOptions, optional
 
     Returns
@@ -114,14 +114,14 @@ def kompsat_2014(band: EdgeBand, options: KompsatOptions = _DEFAULT) -> EdgeFit:
     NoEdgeError, PhaseError
         See `locate_rows`.
     """
-    rows = locate_rows(band, cubic_locations)
+    rows = locate_rows(trimmed, cubic_locations)
 
     def pipeline(rows: LocatedRows, weight: Floats) -> SampledEdge:
         return _sample(rows, weight, options)
 
     centre: RerCentre = "peak" if options.esf == "spline" else "half"
     return fit_with_bootstrap(
-        band,
+        trimmed,
         rows,
         pipeline,
         replicates=options.replicates,

@@ -22,7 +22,7 @@ from acutance.curves.grid import Floats, crossing
 from acutance.curves.metrics import RerCentre
 from acutance.errors import AcutanceError, NoEdgeError, SupportError
 from acutance.geometry.line import Line
-from acutance.targets.straight.pixels import EdgeBand, EdgeFit
+from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.row_profiles import LocatedRows, RowLine
 
 __all__ = [
@@ -143,7 +143,7 @@ def _on_grid(edge: SampledEdge) -> tuple[Floats, Floats, Complexes] | None:
 
 
 def fit_with_bootstrap(
-    band: EdgeBand,
+    trimmed: EdgePixels,
     rows: LocatedRows,
     pipeline: Callable[[LocatedRows, Floats], SampledEdge],
     *,
@@ -155,7 +155,7 @@ def fit_with_bootstrap(
 
     Parameters
     ----------
-    band : EdgeBand
+    trimmed : EdgePixels
     rows : LocatedRows
     pipeline : callable
         Takes the rows and how often each one counts (n,), gives a `SampledEdge`.
@@ -194,7 +194,7 @@ def fit_with_bootstrap(
     line = rows.frame.line_in_cut(edge.line)
     per_normal_px = edge.per_row_px / edge.line.cosine
     return edge_fit(
-        band,
+        trimmed,
         line.moved(edge.middle_px() / per_normal_px, 0.0),
         response,
         dark=edge.dark,
@@ -251,7 +251,7 @@ def covariance_factor(drawn: NDArray[Any]) -> NDArray[Any]:
 
 
 def edge_fit(
-    band: EdgeBand,
+    trimmed: EdgePixels,
     line: Line,
     response: Response,
     *,
@@ -259,11 +259,11 @@ def edge_fit(
     bright: float,
     per_normal_px: float = 1.0,
 ) -> EdgeFit:
-    """The fit of a band by its curves, with every usable pixel's distance, value and residual.
+    """The fit of an edge by its curves, with every usable pixel's distance, value and residual.
 
     Parameters
     ----------
-    band : EdgeBand
+    trimmed : EdgePixels
     line : Line
         Through the 50 % point, in the cut's coordinates.
     response : Response
@@ -274,7 +274,7 @@ def edge_fit(
     """
     from scipy.interpolate import CubicSpline
 
-    pixels = band.pixels
+    pixels = trimmed.pixels
     distance = line.normal_distance(pixels.row, pixels.col)
     value = (pixels.value - dark) / (bright - dark)
     esf = response.esf

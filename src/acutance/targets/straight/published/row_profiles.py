@@ -1,7 +1,7 @@
 """Rows that cross an edge: turning the image, fitting the line, distances, sample phases.
 
 The published edge methods all work row by row on an edge that rises to the right. Here
-the band is brought into that position once, and everything found there is taken back to
+the edge is brought into that position once, and everything found there is taken back to
 the coordinates of the cut.
 """
 
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, PhaseError, SupportError
 from acutance.geometry.line import Line
-from acutance.targets.straight.pixels import EdgeBand
+from acutance.targets.straight.pixels import EdgePixels
 
 __all__ = [
     "MIN_ROWS",
@@ -62,11 +62,11 @@ class Frame:
     cols: int
 
     @classmethod
-    def of(cls, band: EdgeBand) -> Frame:
-        """The frame in which the edge of `band` rises to the right."""
-        x, y = band.line.normal
-        transposed = band.line.orientation == "along"
-        rows, cols = band.image.shape
+    def of(cls, trimmed: EdgePixels) -> Frame:
+        """The frame in which the edge rises to the right."""
+        x, y = trimmed.line.normal
+        transposed = trimmed.line.orientation == "along"
+        rows, cols = trimmed.image.shape
         return cls(transposed, (y if transposed else x) < 0, rows if transposed else cols)
 
     def turn(self, image: Floats) -> Floats:
@@ -201,15 +201,15 @@ A row that shows no edge gets NaN.
 """
 
 
-def locate_rows(band: EdgeBand, locate: Locate) -> LocatedRows:
+def locate_rows(trimmed: EdgePixels, locate: Locate) -> LocatedRows:
     """Find the edge in every row that crosses it.
 
-    Rows where the edge leaves the band, or has an unusable pixel within three pixels of it,
+    Rows where the edge leaves the trimmed, or has an unusable pixel within three pixels of it,
     are left out.
 
     Parameters
     ----------
-    band : EdgeBand
+    trimmed : EdgePixels
     locate : callable
         The method's own way to place the edge in a row, see `Locate`.
 
@@ -222,9 +222,9 @@ def locate_rows(band: EdgeBand, locate: Locate) -> LocatedRows:
     PhaseError
         If the phases of the samples leave a gap over `MAX_PHASE_GAP_PX`.
     """
-    frame = Frame.of(band)
-    row, expected, value = crossing_rows(band, frame)
-    col = locate(value, expected, band.width_px)
+    frame = Frame.of(trimmed)
+    row, expected, value = crossing_rows(trimmed, frame)
+    col = locate(value, expected, trimmed.width_px)
     found = np.isfinite(col)
     if found.sum() < MIN_ROWS:
         raise NoEdgeError(
@@ -236,14 +236,14 @@ def locate_rows(band: EdgeBand, locate: Locate) -> LocatedRows:
     return located
 
 
-def crossing_rows(band: EdgeBand, frame: Frame) -> tuple[Floats, Floats, Floats]:
-    """The rows of the turned band that cross the edge with usable pixels around it.
+def crossing_rows(trimmed: EdgePixels, frame: Frame) -> tuple[Floats, Floats, Floats]:
+    """The rows of the turned image that cross the edge with usable pixels around it.
 
     Returns
     -------
     row : (n,) array
     expected : (n,) array
-        Column of the band's line in that row.
+        Column of the line in that row.
     value : (n, cols) array
 
     Raises
@@ -251,8 +251,8 @@ def crossing_rows(band: EdgeBand, frame: Frame) -> tuple[Floats, Floats, Floats]
     SupportError
         If there are fewer than `MIN_ROWS`.
     """
-    image = frame.turn(band.image)
-    slope, intercept = frame.turned_line(band.line)
+    image = frame.turn(trimmed.image)
+    slope, intercept = frame.turned_line(trimmed.line)
     row = np.arange(image.shape[0], dtype=float)
     expected = intercept + slope * row
     crosses = _crosses(image, expected)

@@ -16,7 +16,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, OptionError, SupportError
 from acutance.targets.options import require_types
-from acutance.targets.straight.pixels import EdgeBand, EdgeFit
+from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.edge_location import fermi_locations
 from acutance.targets.straight.published.local_polynomial import modified_savitzky_golay
 from acutance.targets.straight.published.resampled_response import (
@@ -82,7 +82,7 @@ class SdsuOptions:
 _DEFAULT = SdsuOptions()
 
 
-def sdsu_2005(band: EdgeBand, options: SdsuOptions = _DEFAULT) -> EdgeFit:
+def sdsu_2005(trimmed: EdgePixels, options: SdsuOptions = _DEFAULT) -> EdgeFit:
     """Measure an edge the way of South Dakota State University.
 
     Fermi function through the 7 pixels nearest the largest difference of each row, straight
@@ -94,7 +94,7 @@ def sdsu_2005(band: EdgeBand, options: SdsuOptions = _DEFAULT) -> EdgeFit:
 
     Parameters
     ----------
-    band : EdgeBand
+    trimmed : EdgePixels
     options : SdsuOptions, optional
 
     Returns
@@ -112,14 +112,14 @@ def sdsu_2005(band: EdgeBand, options: SdsuOptions = _DEFAULT) -> EdgeFit:
         See `locate_rows`; PhaseError also where the samples have too few phases for a polynomial
         of that order.
     """
-    rows = locate_rows(band, fermi_locations)
+    rows = locate_rows(trimmed, fermi_locations)
     require_phases_for(options.order, rows)
 
     def pipeline(rows: LocatedRows, weight: Floats) -> SampledEdge:
         return _sample(rows, weight, options)
 
     return fit_with_bootstrap(
-        band,
+        trimmed,
         rows,
         pipeline,
         replicates=options.replicates,
@@ -153,7 +153,7 @@ def _sample(rows: LocatedRows, weight: Floats, options: SdsuOptions) -> SampledE
 
 
 def _require_reach(rows: LocatedRows, line: RowLine, per_row_px: float, half_px: float) -> None:
-    """Refuse a band whose rows do not hold the window of the profile."""
+    """Refuse pixels whose rows do not hold the window of the profile."""
     low, high = (reach * per_row_px for reach in rows.reach_px(line))
     if min(low, high) < half_px:
         raise SupportError(

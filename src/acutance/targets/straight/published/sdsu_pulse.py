@@ -18,7 +18,7 @@ from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
 from acutance.curves.grid import Floats, crossing
 from acutance.errors import NoEdgeError, OptionError, SupportError
 from acutance.targets.options import require_types
-from acutance.targets.straight.fit_pulse import PulseBand
+from acutance.targets.straight.fit_pulse import PulsePixels
 from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published.edge_location import fermi_locations
 from acutance.targets.straight.published.local_polynomial import modified_savitzky_golay
@@ -208,7 +208,7 @@ def _curves(profile: _Profile) -> _Curves:
     return _Curves(spline(x), spline(x, 1), profile.otf(), middle, profile.fwhm_px, profile.fall)
 
 
-def sdsu_2005_pulse(band: PulseBand, options: SdsuPulseOptions = _DEFAULT) -> PublishedPulse:
+def sdsu_2005_pulse(trimmed: PulsePixels, options: SdsuPulseOptions = _DEFAULT) -> PublishedPulse:
     """Measure a pulse the way of South Dakota State University.
 
     Fermi function through the 7 pixels nearest the largest difference of each row's rising
@@ -222,7 +222,7 @@ def sdsu_2005_pulse(band: PulseBand, options: SdsuPulseOptions = _DEFAULT) -> Pu
 
     Parameters
     ----------
-    band : PulseBand
+    trimmed : PulsePixels
         Its `pulse_width_px` is the stated width.
     options : SdsuPulseOptions, optional
 
@@ -242,13 +242,13 @@ def sdsu_2005_pulse(band: PulseBand, options: SdsuPulseOptions = _DEFAULT) -> Pu
         See `locate_rows`; also if the profile is no pulse, and if the samples have too few
         phases for a polynomial of that order.
     """
-    rows = locate_rows(band, fermi_locations)
+    rows = locate_rows(trimmed, fermi_locations)
     require_phases_for(options.order, rows)
-    profile = _profile(rows, np.ones(rows.row.size), band.pulse_width_px, options)
+    profile = _profile(rows, np.ones(rows.row.size), trimmed.pulse_width_px, options)
     curves = _curves(profile)
     drawn = draw_rows(
         rows,
-        lambda weight: _curves(_profile(rows, weight, band.pulse_width_px, options)),
+        lambda weight: _curves(_profile(rows, weight, trimmed.pulse_width_px, options)),
         replicates=options.replicates,
         rng=np.random.default_rng(options.seed),
     )
@@ -259,7 +259,7 @@ def sdsu_2005_pulse(band: PulseBand, options: SdsuPulseOptions = _DEFAULT) -> Pu
     )
     rising_px = profile.middle_px - 0.5 * profile.width_px + curves.middle_px
     line = rows.frame.line_in_cut(profile.line).moved(rising_px / profile.px_per_normal, 0.0)
-    pixels = band.pixels
+    pixels = trimmed.pixels
     distance = line.normal_distance(pixels.row, pixels.col)
     height = profile.height
     value = (pixels.value - profile.left) / (profile.bright - profile.left)
@@ -276,7 +276,7 @@ def sdsu_2005_pulse(band: PulseBand, options: SdsuPulseOptions = _DEFAULT) -> Pu
         distance_px=distance,
         value=value,
         residual=value - model / (profile.bright - profile.left),
-        pulse_width=Estimate(band.pulse_width_px),
+        pulse_width=Estimate(trimmed.pulse_width_px),
         fall=Estimate(profile.fall, _scatter([each.fall for each in drawn])),
         prf_distance_px=profile.distance_px,
         prf=profile.value / height,
@@ -346,7 +346,7 @@ def _half_points(grid: Floats, value: Floats) -> tuple[float, float]:
 
 
 def _require_reach(rows: LocatedRows, line: RowLine, per_row_px: float, grid: Floats) -> None:
-    """Refuse a band whose rows do not hold the profile."""
+    """Refuse pixels whose rows do not hold the profile."""
     low, high = (reach * per_row_px for reach in rows.reach_px(line))
     if low < -grid[0] or high < grid[-1]:
         raise SupportError(
