@@ -16,6 +16,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from acutance.curves.grid import Floats
+from acutance.errors import TargetError
 from acutance.numerics.normal_equations import Normal
 
 __all__ = ["Evidence", "Posterior", "Prior", "Whitened", "evidence_of", "regress", "whiten"]
@@ -180,12 +181,23 @@ def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) ->
     precision *= sigma / noise
     precision.reshape(-1)[:: sigma.size + 1] += 1.0
     # The transpose is laid out as Fortran wants it: nothing is copied.
-    lower, _ = _potrf(precision.T, lower=1, clean=1, overwrite_a=1)
-    inverse, _ = _trtri(lower, lower=1, overwrite_c=1)
+    lower, failed = _potrf(precision.T, lower=1, clean=1, overwrite_a=1)
+    _require_solution(failed)
+    inverse, failed = _trtri(lower, lower=1, overwrite_c=1)
+    _require_solution(failed)
     root = inverse.T
     covariance = root @ inverse
     mean = covariance @ (sigma * normal.projection / noise + prior.mean / sigma)
     return Whitened(sigma, mean, covariance, root)
+
+
+def _require_solution(failed: int) -> None:
+    """Refuse what LAPACK could not factor: pixels or starts that are not finite, mostly."""
+    if failed:
+        raise TargetError(
+            f"the pixels do not determine the model: its equations have no solution (LAPACK code "
+            f"{failed}); choose a region with one target and without pixels that are not finite"
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +222,8 @@ class Evidence:
     @cached_property
     def _axes(self) -> tuple[Floats, Floats]:
         """Principal curvatures of the evidence, turned positive at a maximum, and their axes."""
-        power, axes, _ = _syev(-self.hessian)
+        power, axes, failed = _syev(-self.hessian)
+        _require_solution(failed)
         return power, axes
 
     def step(self) -> Floats:

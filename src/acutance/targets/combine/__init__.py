@@ -7,10 +7,9 @@ function).
 """
 
 from acutance.targets.combine.combination import CombinedMeasurement, CombinedPart, combine
-from acutance.targets.combine.options import CombineLimits, CombineOptions
+from acutance.targets.combine.options import CombineOptions
 
 __all__ = [
-    "CombineLimits",
     "CombineOptions",
     "CombinedMeasurement",
     "CombinedPart",

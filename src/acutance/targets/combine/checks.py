@@ -7,13 +7,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.targets.check import Check, Limits, answer
 from acutance.targets.combine.fit import CombinedFit
 from acutance.targets.combine.inputs import MeasuredInput
-from acutance.targets.combine.options import CombineLimits
-from acutance.targets.measurement import Check
-from acutance.targets.straight.check_data import at_least, at_most
 
-__all__ = ["check_combination", "count_directions", "direction_gap_deg"]
+__all__ = ["COMBINE_CHECKS", "check_combination", "count_directions", "direction_gap_deg"]
+
+COMBINE_CHECKS = (
+    "agreement", "worst_member", "plain_sensor", "directions", "failed_inputs", "shared_targets",
+    "assumed_covariance", "unknown_gsd",
+)  # fmt: skip
+"""What is asked of a combination."""
 
 _DISTINCT_DEG = 15.0
 _SAME_LINE_PX = 3.0
@@ -23,7 +27,7 @@ _SAME_LINE_DEG = 5.0
 def check_combination(
     inputs: Sequence[MeasuredInput],
     fit: CombinedFit,
-    limits: CombineLimits,
+    limits: Limits,
     without_gsd: Sequence[str] = (),
 ) -> tuple[Check, ...]:
     """All checks of a combination.
@@ -32,106 +36,86 @@ def check_combination(
     ----------
     inputs : sequence of MeasuredInput
     fit : CombinedFit
-    limits : CombineLimits
+    limits : mapping of str to float
+        Limits the caller changed.
     without_gsd : sequence of str, optional
         Names of measurements without a GSD among others that have one.
     """
+    failed = [f"{one.name} ({', '.join(one.failed_checks)})" for one in inputs if one.failed_checks]
+    assumed = [one.name for one in inputs if not one.covariance_known]
+    directions = count_directions(inputs)
     return (
         _agreement(fit, limits),
         _worst(inputs, fit, limits),
         _plain(fit, limits),
-        at_least(
-            "directions", count_directions(inputs), limits.directions,
-            "rotation and asymmetry are only told by the prior with fewer directions: add an edge "
-            "at 30 to 60 degrees, points or a star",
-        ),
-        _failed(inputs, limits),
-        _shared(inputs, limits),
-        at_most(
-            "assumed_covariance", sum(not one.covariance_known for one in inputs),
-            limits.assumed_covariance,
-            "without covariance, errors at frequencies within 0.08 c/px are taken to be alike: "
-            "write the JSON again with this version",
-        ),
-        at_most(
-            "unknown_gsd", len(without_gsd), limits.unknown_gsd,
-            "measurements without a GSD among others that have one"
-            + (f": {', '.join(without_gsd)}" if without_gsd else "")
-            + "; nothing tells that their pixels are the same, so state the GSD when measuring, "
-            "or of all when combining",
-        ),
-    )  # fmt: skip
+        answer("directions", directions, f"{directions} directions were measured", limits),
+        _counted("failed_inputs", failed, "with a failed check of their own", limits),
+        _counted("shared_targets", _shared(inputs), "of the same pixels", limits),
+        _counted("assumed_covariance", assumed, "without covariance", limits),
+        _counted("unknown_gsd", without_gsd, "without a GSD", limits),
+    )
 
 
-def _agreement(fit: CombinedFit, limits: CombineLimits) -> Check:
+def _counted(name: str, named: Sequence[str], what: str, limits: Limits) -> Check:
+    """A check that counts measurements, with their names."""
+    found = f"{len(named) or 'no'} measurements {what}" + (f": {'; '.join(named)}" if named else "")
+    return answer(name, len(named), found, limits)
+
+
+def _agreement(fit: CombinedFit, limits: Limits) -> Check:
     found = fit.total
     widened = (
         f"all deviations were widened by the Birge ratio {fit.birge_ratio:.2f}"
         if fit.birge_ratio > 1
         else "no deviation was widened"
     )
-    return at_least(
-        "agreement", found.p_value, limits.agreement,
-        f"chance of a larger chi-square than {found.value:.0f}, {found.expected:.0f} being "
-        f"expected if the measurements agree within their deviations; {widened}",
+    return answer(
+        "agreement", found.p_value,
+        f"chi-square is {found.value:.0f}, {found.expected:.0f} being expected if the measurements "
+        f"agree within their deviations (p {found.p_value:.2g}); {widened}", limits,
     )  # fmt: skip
 
 
-def _worst(inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: CombineLimits) -> Check:
+def _worst(inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: Limits) -> Check:
     """The smallest of n chances has to be n times larger."""
     chances = [one.p_value for one in fit.members]
     worst = int(np.nanargmin(chances)) if np.isfinite(chances).any() else 0
-    value = min(1.0, len(chances) * chances[worst])
     member = fit.members[worst]
-    return at_least(
-        "worst_member", value, limits.agreement,
+    return answer(
+        "worst_member", min(1.0, len(chances) * chances[worst]),
         f"{inputs[worst].name} fits least: its chi-square is {member.value:.0f}, "
-        f"{member.expected:.0f} being expected; leave it out or find what ails it",
+        f"{member.expected:.0f} being expected", limits,
     )  # fmt: skip
 
 
-def _plain(fit: CombinedFit, limits: CombineLimits) -> Check:
+def _plain(fit: CombinedFit, limits: Limits) -> Check:
     plain = fit.plain
     added = (
-        f"a smooth departure of {100 * fit.departure:.1f} % of the logarithm of the MTF was "
+        f"a smooth correction of {100 * fit.departure:.1f} % of the logarithm of the MTF was "
         "added, and its uncertainty is part of every deviation"
         if fit.departure > 0
-        else "no departure was added"
+        else "no correction was added"
     )
-    return at_least(
-        "plain_sensor", plain.p_value, limits.plain_sensor,
-        f"no product of Gaussian, detector, smear, halo, charge trail and aperture holds the "
-        f"curves: the best has chi-square {plain.value:.0f}, {plain.expected:.0f} being expected; "
-        f"{added}; parameters are only a description",
+    return answer(
+        "plain_sensor", plain.p_value,
+        "the best product of Gaussian, detector, smear, halo, charge trail and aperture has "
+        f"chi-square {plain.value:.0f}, {plain.expected:.0f} being expected; {added}", limits,
     )  # fmt: skip
 
 
-def _failed(inputs: Sequence[MeasuredInput], limits: CombineLimits) -> Check:
-    failed = [f"{one.name} ({', '.join(one.failed_checks)})" for one in inputs if one.failed_checks]
-    return at_most(
-        "failed_inputs", len(failed), limits.failed_inputs,
-        "measurements with a failed check of their own"
-        + (f": {'; '.join(failed)}" if failed else ""),
-    )  # fmt: skip
-
-
-def _shared(inputs: Sequence[MeasuredInput], limits: CombineLimits) -> Check:
-    pairs = [
+def _shared(inputs: Sequence[MeasuredInput]) -> list[str]:
+    """Pairs that measured the same target of the same image."""
+    return [
         f"{other.name} and {one.name}"
         for i, one in enumerate(inputs)
         for other in inputs[:i]
         if _same_target(one, other)
     ]
-    return at_most(
-        "shared_targets", len(pairs), limits.shared_targets,
-        "the same pixels count only once, or the deviations become too small"
-        + (f": {'; '.join(pairs)}" if pairs else ""),
-    )  # fmt: skip
 
 
 def _same_target(one: MeasuredInput, other: MeasuredInput) -> bool:
     """Whether two measurements took the same target of the same image."""
-    if one.path is None or (one.path, one.kind) != (other.path, other.kind):
+    if one.image.path is None or one.kind != other.kind or one.image.path != other.image.path:
         return False
     if len(one.place) != len(other.place):
         return False

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -17,16 +17,15 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd
-from acutance.raster.image import AlongTrack
 from acutance.targets.combine.checks import check_combination, count_directions, direction_gap_deg
 from acutance.targets.combine.curves import ChiSquare, PlaneCurve
 from acutance.targets.combine.fit import CombinedFit, combine_curves
 from acutance.targets.combine.inputs import Combinable, MeasuredInput, common_flight, read_inputs
 from acutance.targets.combine.options import CombineOptions
 from acutance.targets.combine.pixel_size import common_gsd, without_gsd
-from acutance.targets.measurement import ImageInfo
-from acutance.targets.measurement2d import Measurement2d
+from acutance.targets.measurement import Measurement
 from acutance.targets.options import chosen_options
+from acutance.targets.record import ImageInfo
 
 __all__ = ["CombinedMeasurement", "CombinedPart", "combine"]
 
@@ -63,8 +62,8 @@ class CombinedPart(ShortRepr):
         return {
             "name": self.source.name,
             "kind": self.source.kind,
-            "method": self.source.method,
-            "path": self.source.path,
+            "method": self.source.record.method,
+            "path": self.source.image.path,
             "normal_deg": self.source.slices.normal_deg.tolist(),
             "mtf_nyquist": self.own.to_dict(),
             "combined_mtf_nyquist": self.combined.to_dict(),
@@ -73,7 +72,7 @@ class CombinedPart(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class CombinedMeasurement(Measurement2d):
+class CombinedMeasurement(Measurement):
     """What many measurements of one sensor say together.
 
     Parameters
@@ -102,7 +101,7 @@ class CombinedMeasurement(Measurement2d):
         """What every standard deviation was widened by: 1 where the measurements agree."""
         return self.fit.birge_ratio
 
-    def evidence(self) -> dict[str, Any]:
+    def target_document(self) -> dict[str, Any]:
         """The sensor's parameters, the forms and what each measurement contributed."""
         best = self.fit.best
         return {
@@ -144,8 +143,9 @@ def combine(
 
     Parameters
     ----------
-    measurements : sequence of Measurement, Measurement2d, TargetResult or dict
-        Results, or their JSON documents. Edges and pulses are slices along their normals.
+    measurements : sequence of Measurement, Record, TargetResult or dict
+        Results, their records, or their JSON documents. Edges and pulses are slices along their
+        normals.
     names : sequence of str, optional
         What to call them.
     gsd_m : float or Gsd, optional
@@ -175,22 +175,21 @@ def combine(
     gsd = Gsd.given(gsd_m)
     unknown = without_gsd(inputs) if gsd is None else ()
     gsd = gsd or common_gsd(inputs)
-    along_track = cast("AlongTrack", common_flight(inputs))
     fit = combine_curves(
         [_curve(one) for one in inputs], detector_px=chosen.detector_px, forms=chosen.forms
     )
     otf = Otf2d(fit, None if gsd is None else (gsd.row_m, gsd.col_m))
-    paths = {one.path for one in inputs}
+    paths = {one.image.path for one in inputs}
     return CombinedMeasurement(
         kind="combined",
         method="least-squares",
-        otf=otf,
+        transfer=otf,
         snr=math.nan,
         checks=check_combination(inputs, fit, chosen.limits, unknown),
         image=ImageInfo(
             paths.pop() if len(paths) == 1 else None,
-            gsd_m=None if gsd is None else gsd.col_m,
-            along_track=along_track,
+            along_track=common_flight(inputs),
+            pixel_gsd_m=otf.gsd_m,
         ),
         options=chosen.to_dict(),
         parts=tuple(
@@ -219,7 +218,7 @@ def _require_two(inputs: Sequence[MeasuredInput]) -> None:
     if direction_gap_deg(inputs) < _LEAST_GAP_DEG:
         named = ", ".join(f"{one.name} {one.direction}" for one in inputs)
         raise OptionError(
-            f"all measurements look in one direction ({named}), {count_directions(inputs)} of at "
+            f"all measurements show one direction ({named}), {count_directions(inputs)} of at "
             f"least two that differ by {_LEAST_GAP_DEG:g} degrees: add an edge or pulse in "
             "another direction, or points, a star or a pair of images"
         )

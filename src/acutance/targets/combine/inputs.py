@@ -1,9 +1,9 @@
-"""What is combined: measurements as results or as the JSON documents the commands write."""
+"""What is combined: results, their records, or the JSON documents that the commands write."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import Any
 
@@ -13,15 +13,16 @@ from acutance.curves import Mtf
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
-from acutance.targets.measurement import SCHEMA, Measurement
-from acutance.targets.measurement2d import Measurement2d
+from acutance.raster.image import AlongTrack
+from acutance.targets.measurement import Measurement
+from acutance.targets.record import SCHEMA, ImageInfo, Record
 from acutance.targets.slices import PlaneSlices
-from acutance.targets.straight.many_edges import TargetResult
+from acutance.targets.target_result import TargetResult
 
 __all__ = ["Combinable", "MeasuredInput", "common_flight", "read_inputs"]
 
-Combinable = Measurement | Measurement2d | TargetResult | Mapping[str, Any]
-"""A result, or its JSON document."""
+Combinable = Measurement | Record | TargetResult[Measurement] | Mapping[str, Any]
+"""A result, its record, or its JSON document."""
 
 _COHERENT_CPP = 0.08
 _AT_LOWEST = (0.2, 2.0)
@@ -29,41 +30,48 @@ _AT_LOWEST = (0.2, 2.0)
 
 @dataclass(frozen=True, eq=False)
 class MeasuredInput(ShortRepr):
-    """One measurement as the combination sees it.
+    """One measurement as the combination reads it.
 
     Parameters
     ----------
     name : str
-    kind, method : str
+    record : Record
     slices : PlaneSlices
-    gsd_m : float or None
-        Along the normal of a single direction, else along the rows.
-    pixel_gsd_m : (float, float) or None
-        Between rows and between columns; ``None`` where the document does not say.
-    along_track : {"y", "x"}
-    path : str or None
-    place : tuple of float
-        Where in the image: the line of an edge or a pulse, the region of another target.
-    failed_checks : tuple of str
     covariance_known : bool
-        Whether the measurement tells how errors at different frequencies belong together.
+        Whether the record holds how errors at different frequencies belong together.
     """
 
     name: str
-    kind: str
-    method: str
+    record: Record
     slices: PlaneSlices
-    gsd_m: float | None
-    along_track: str
-    path: str | None
-    place: tuple[float, ...]
-    failed_checks: tuple[str, ...]
     covariance_known: bool
-    pixel_gsd_m: tuple[float, float] | None = None
+
+    @property
+    def kind(self) -> str:
+        """The target."""
+        return self.record.kind
+
+    @property
+    def image(self) -> ImageInfo:
+        """Where the pixels came from."""
+        return self.record.image
+
+    @property
+    def failed_checks(self) -> tuple[str, ...]:
+        """Names of the checks that did not pass."""
+        return tuple(check.name for check in self.record.failed_checks)
+
+    @property
+    def place(self) -> tuple[float, ...]:
+        """Where in the image: row, column and normal of a straight target, else the region."""
+        line = self.record.document.get("line")
+        if line is None:
+            return tuple(map(float, self.image.roi))
+        return tuple(float(line[key]) for key in ("row", "col", "normal_deg"))
 
     @property
     def of_plane(self) -> bool:
-        """Whether it knows all directions."""
+        """Whether it shows all directions."""
         return self.slices.normal_deg.size > 1
 
     @property
@@ -81,16 +89,16 @@ def read_inputs(
 
     Parameters
     ----------
-    measurements : sequence of Measurement, Measurement2d, TargetResult or dict
+    measurements : sequence of Measurement, Record, TargetResult or dict
     names : sequence of str, optional
         One for each; the names of files.
 
     Raises
     ------
     OptionError
-        If one is nothing that can be combined, or they do not belong together.
+        If one is nothing that can be combined.
     """
-    single = (Measurement, Measurement2d, TargetResult, Mapping, str)
+    single = (Measurement, Record, TargetResult, Mapping, str)
     if isinstance(measurements, single) or not isinstance(measurements, Iterable):
         raise OptionError(
             f"a single {type(measurements).__name__} was given: give a list of measurements, "
@@ -101,28 +109,31 @@ def read_inputs(
         raise OptionError(f"{len(names)} names were given for {len(measurements)} measurements")
     found: list[MeasuredInput] = []
     for i, one in enumerate(measurements):
-        found += _parts(one, None if names is None else names[i], i + 1)
+        name = None if names is None else names[i]
+        records = _records(one, name or f"measurement {i + 1}")
+        several = [f"{name or 'edge'} {k + 1}" for k in range(len(records))]
+        called = [name] if len(records) == 1 else several
+        found += [
+            _input(record, name or f"measurement {i + 1}", own)
+            for record, own in zip(records, called, strict=True)
+        ]
     return _distinctly_named(found)
 
 
-def _parts(one: Combinable, name: str | None, number: int) -> list[MeasuredInput]:
-    documents: list[Mapping[str, Any]]
+def _records(one: Combinable, origin: str) -> tuple[Record, ...]:
+    """The records of a result or a document."""
     if isinstance(one, TargetResult):
-        documents = [edge.to_dict() for edge in one.measurements]
-    elif isinstance(one, Measurement | Measurement2d):
-        documents = [one.to_dict()]
-    elif isinstance(one, Mapping):
-        documents = _documents(one, name or f"measurement {number}")
-    else:
-        raise OptionError(
-            f"measurement {number} is a {type(one).__name__}: give results of measure_edge, "
-            "measure_pulse and the like, or their JSON documents"
-        )
-    several = len(documents) > 1
-    return [
-        _input(document, name, f"{name or 'edge'} {i}" if several else name, number)
-        for i, document in enumerate(documents, start=1)
-    ]
+        return tuple(edge.record for edge in one.measurements)
+    if isinstance(one, Measurement):
+        return (one.record,)
+    if isinstance(one, Record):
+        return (one,)
+    if isinstance(one, Mapping):
+        return tuple(_read(document, origin) for document in _documents(one, origin))
+    raise OptionError(
+        f"{origin} is a {type(one).__name__}: give results of measure_edge, measure_pulse and the "
+        "like, their records, or their JSON documents"
+    )
 
 
 def _documents(document: Mapping[str, Any], origin: str) -> list[Mapping[str, Any]]:
@@ -144,84 +155,68 @@ def _documents(document: Mapping[str, Any], origin: str) -> list[Mapping[str, An
     )
 
 
-def _input(
-    document: Mapping[str, Any], origin: str | None, name: str | None, number: int
-) -> MeasuredInput:
-    called = origin or f"measurement {number}"
+def _read(document: Mapping[str, Any], origin: str) -> Record:
     try:
-        return _read(document, called, name)
-    except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
-        if isinstance(error, OptionError):
-            raise
-        raise OptionError(f"{called} cannot be read as a measurement ({error!r})") from error
+        return Record.from_dict(document)
+    except OptionError as error:
+        raise OptionError(f"{origin} cannot be read as a measurement: {error}") from error
 
 
-def _read(document: Mapping[str, Any], called: str, name: str | None) -> MeasuredInput:
-    kind, method, image = document["kind"], document["method"], document["image"]
-    if kind == "combined":
+def _input(record: Record, origin: str, name: str | None) -> MeasuredInput:
+    """One measurement with its slices.
+
+    Raises
+    ------
+    OptionError
+        If it is a combination or a ratio, no transfer function, or without deviations.
+    """
+    if record.kind == "combined":
         raise OptionError(
-            f"{called} is a combination already: combine the measurements it was made of, so "
+            f"{origin} is a combination already: combine the measurements it was made of, so "
             "that none counts twice"
         )
-    if kind == "biresolution" and not document["options"].get("reference_given", True):
+    if record.kind == "biresolution" and not record.options.get("reference_given", True):
         raise OptionError(
-            f"{called} is the ratio MTF_low / MTF_high, since the reference's own MTF was not "
+            f"{origin} is the ratio MTF_low / MTF_high, since the reference's own MTF was not "
             "given: measure it again with --reference"
         )
-    slices, known = _slices(document, called)
-    _require_transfer(slices, called)
-    line = document.get("line")
-    place = [float(one) for one in image["roi"]]
-    if line is not None:
-        place = [float(line[key]) for key in ("row", "col", "normal_deg")]
-    word = document.get("orientation", "")
-    gsd, sides = image["gsd_m"], image.get("pixel_gsd_m")
-    return MeasuredInput(
-        name or " ".join(one for one in (kind, word) if one),
-        str(kind),
-        str(method),
-        slices,
-        None if gsd is None else float(gsd),
-        str(image.get("along_track", "y")),
-        image["path"],
-        tuple(place),
-        tuple(one["name"] for one in document["checks"] if not one["passed"]),
-        known,
-        None if sides is None else (float(sides[0]), float(sides[1])),
-    )
+    try:
+        slices, known = _slices(record)
+    except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
+        raise OptionError(f"{origin} cannot be read as a measurement: {error}") from error
+    _require_transfer(slices, origin)
+    oriented = (record.kind, str(record.document.get("orientation", "")))
+    return MeasuredInput(name or " ".join(filter(None, oriented)), record, slices, known)
 
 
-def _require_transfer(slices: PlaneSlices, called: str) -> None:
+def _require_transfer(slices: PlaneSlices, origin: str) -> None:
     """Refuse what is no transfer function, and one without any standard deviation."""
     lowest = np.abs(slices.otf.reshape(slices.normal_deg.size, -1)[:, 0])
     least, most = _AT_LOWEST
     if not (np.all(lowest > least) and np.all(lowest < most)):
         raise OptionError(
-            f"{called}: its MTF at {slices.freq_cpp[0]:g} c/px is {lowest.min():.3g} to "
+            f"{origin}: its MTF at {slices.freq_cpp[0]:g} c/px is {lowest.min():.3g} to "
             f"{lowest.max():.3g}, that of a sensor is near 1: the document was changed, or the "
             "measurement failed"
         )
     if not np.any(slices.factor):
         raise OptionError(
-            f"{called} has no standard deviations, so it cannot be weighted: measure it with a "
+            f"{origin} has no standard deviations, so it cannot be weighted: measure it with a "
             "method that reports them"
         )
 
 
-def _slices(document: Mapping[str, Any], called: str) -> tuple[PlaneSlices, bool]:
-    if "plane" in document:
-        try:
-            return PlaneSlices.from_dict(document["plane"]), True
-        except OptionError as error:
-            raise OptionError(f"{called}: {error}") from error
-    if "line" in document:
-        curves = [(document["mtf"], float(document["line"]["normal_deg"]))]
-    else:
-        turned = document["image"].get("along_track", "y") == "x"
-        angles = (90.0, 0.0) if turned else (0.0, 90.0)
-        curves = [
-            (document[key]["mtf"], at) for key, at in zip(("across", "along"), angles, strict=True)
-        ]
+def _slices(record: Record) -> tuple[PlaneSlices, bool]:
+    """The slices of a record; of documents of older versions they follow from the curves."""
+    if "plane" in record.document:
+        return record.slices, True
+    line = record.document.get("line")
+    across_deg = 0.0 if record.image.along_track == "y" else 90.0
+    directions_deg = {"across": across_deg, "along": 90.0 - across_deg}
+    curves = [
+        (one.document["mtf"], float(line["normal_deg"]) if line else directions_deg[name])
+        for name, one in record.directions.items()
+    ]
     slices = [PlaneSlices.of_curve(_curve(curve), at) for curve, at in curves]
     blocks = [one.factor for one in slices]
     columns = np.cumsum([0, *(one.shape[1] for one in blocks)])
@@ -240,7 +235,7 @@ def _slices(document: Mapping[str, Any], called: str) -> tuple[PlaneSlices, bool
 
 
 def _curve(curve: Mapping[str, Any]) -> Mtf:
-    """The MTF of a document; without its factor, errors are taken to be alike over 0.08 c/px."""
+    """The MTF of a document; without its factor, errors are taken to be equal over 0.08 c/px."""
     freq, value, std, phase = (
         np.array(curve[key], float) for key in ("freq_cpp", "value", "std", "phase_rad")
     )
@@ -249,17 +244,15 @@ def _curve(curve: Mapping[str, Any]) -> Mtf:
         raise ValueError("its curve has gaps")
     if "factor_real" in curve:
         return Mtf(freq, otf, np.array(curve["factor_real"]) + 1j * np.array(curve["factor_imag"]))
-    alike: Floats = np.exp(-0.5 * ((freq[:, None] - freq) / _COHERENT_CPP) ** 2)
-    size, vector = np.linalg.eigh(alike)
+    coherent: Floats = np.exp(-0.5 * ((freq[:, None] - freq) / _COHERENT_CPP) ** 2)
+    size, vector = np.linalg.eigh(coherent)
     root = std[:, None] * vector * np.sqrt(np.maximum(size, 0.0))
-    turn = np.exp(1j * phase)[:, None]
-    return Mtf(freq, otf, np.concatenate([turn * root, 1j * turn * root], axis=1))
+    phasor = np.exp(1j * phase)[:, None]
+    return Mtf(freq, otf, np.concatenate([phasor * root, 1j * phasor * root], axis=1))
 
 
 def _distinctly_named(inputs: Sequence[MeasuredInput]) -> tuple[MeasuredInput, ...]:
     """Names as short as they can be: files without their folders, equal ones numbered."""
-    from dataclasses import replace
-
     names = [_short(one.name) for one in inputs]
     found = []
     for i, one in enumerate(inputs):
@@ -275,7 +268,7 @@ def _short(name: str) -> str:
     return path.stem if path.suffix == ".json" else name
 
 
-def common_flight(inputs: Sequence[MeasuredInput]) -> str:
+def common_flight(inputs: Sequence[MeasuredInput]) -> AlongTrack:
     """The image axis along track, which all inputs share.
 
     Raises
@@ -285,9 +278,9 @@ def common_flight(inputs: Sequence[MeasuredInput]) -> str:
     """
     first = inputs[0]
     for one in inputs[1:]:
-        if one.along_track != first.along_track:
+        if one.image.along_track != first.image.along_track:
             raise OptionError(
-                f"{first.name} was measured with along-track {first.along_track}, {one.name} with "
-                f"{one.along_track}: measure them alike"
+                f"{first.name} was measured with along-track {first.image.along_track}, {one.name} "
+                f"with {one.image.along_track}: measure both with the same axis along track"
             )
-    return first.along_track
+    return first.image.along_track

@@ -6,44 +6,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.errors import OptionError
+from acutance.targets.check import Limits, require_limits
+from acutance.targets.combine.checks import COMBINE_CHECKS
 from acutance.targets.combine.sensor_forms import FORMS, TERMS
 from acutance.targets.options import require_types
 
-__all__ = ["CombineLimits", "CombineOptions"]
-
-
-@dataclass(frozen=True)
-class CombineLimits:
-    """Limits of the checks of a combination.
-
-    Parameters
-    ----------
-    agreement : float
-        Least chance of a larger chi-square, of all measurements and of any single one.
-    plain_sensor : float
-        Least chance of a larger chi-square about the best plain sensor.
-    directions : float
-        Least number of directions that differ by 15 degrees.
-    failed_inputs : float
-        Largest number of measurements with a failed check of their own.
-    shared_targets : float
-        Largest number of pairs that measured the same pixels.
-    assumed_covariance : float
-        Largest number of measurements without covariance.
-    unknown_gsd : float
-        Largest number of measurements without a GSD, where others have one.
-    """
-
-    agreement: float = 0.01
-    plain_sensor: float = 0.01
-    directions: float = 3.0
-    failed_inputs: float = 0.0
-    shared_targets: float = 0.0
-    assumed_covariance: float = 0.0
-    unknown_gsd: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_types(self)
+__all__ = ["CombineOptions"]
 
 
 @dataclass(frozen=True)
@@ -56,8 +24,8 @@ class CombineOptions:
         Width of the detector across and along, in pixels.
     forms : tuple of tuples of str
         Sensors that are tried: the names of their terms besides the detector.
-    limits : CombineLimits
-        Limits of the checks.
+    limits : mapping of str to float
+        Limits of checks to be asked instead of those of the table, by name.
 
     Raises
     ------
@@ -67,10 +35,11 @@ class CombineOptions:
 
     detector_px: tuple[float, float] = (1.0, 1.0)
     forms: tuple[tuple[str, ...], ...] = FORMS
-    limits: CombineLimits = field(default_factory=CombineLimits)
+    limits: Limits = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_limits(self.limits, COMBINE_CHECKS, "CombineOptions")
         if not all(0 < size <= 4 for size in self.detector_px):
             raise OptionError(
                 f"detector_px is {self.detector_px}: it has to be two widths, across and along, "
@@ -87,5 +56,5 @@ class CombineOptions:
         return {
             "detector_px": list(self.detector_px),
             "forms": [list(one) for one in self.forms],
-            "limits": dict(vars(self.limits)),
+            "limits": dict(self.limits),
         }

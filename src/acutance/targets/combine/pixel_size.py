@@ -15,39 +15,28 @@ _GSD_SHARE = 0.02
 
 
 def without_gsd(inputs: Sequence[MeasuredInput]) -> tuple[str, ...]:
-    """The measurements whose pixels nobody knows, where others' are known."""
-    unknown = tuple(one.name for one in inputs if one.gsd_m is None)
+    """The measurements without a GSD, where others have one."""
+    unknown = tuple(one.name for one in inputs if one.image.pixel_gsd_m is None)
     return unknown if len(unknown) < len(inputs) else ()
 
 
 def common_gsd(inputs: Sequence[MeasuredInput]) -> Gsd | None:
-    """The GSD all inputs share; ``None`` if none of them knows it.
-
-    Documents of older versions hold but the GSD along the normal: with nothing else, pixels are
-    taken to be square.
+    """The GSD all inputs share; ``None`` if none of them has one.
 
     Raises
     ------
     OptionError
         If they differ.
     """
-    known = {one.name: one.gsd_m for one in inputs if one.gsd_m is not None}
-    pixels = {one.name: one.pixel_gsd_m for one in inputs if one.pixel_gsd_m is not None}
-    if not pixels:
-        _require_alike({name: (gsd_m,) for name, gsd_m in known.items()})
-        return Gsd.square(_mean(list(known.values()))) if known else None
-    _require_alike(pixels)
-    rows, cols = zip(*pixels.values(), strict=True)
-    gsd = Gsd(_mean(rows), _mean(cols))
-    for one in inputs:
-        if one.gsd_m is not None:
-            normal = 0.0 if one.of_plane else float(one.slices.normal_deg[0])
-            here = f"the others along its normal ({one.direction})"
-            _require_alike({one.name: (one.gsd_m,), here: (gsd.along_normal(normal),)})
-    return gsd
+    known = {one.name: one.image.pixel_gsd_m for one in inputs if one.image.pixel_gsd_m is not None}
+    if not known:
+        return None
+    _require_equal(known)
+    rows, cols = zip(*known.values(), strict=True)
+    return Gsd(_mean(rows), _mean(cols))
 
 
-def _require_alike(known: Mapping[str, tuple[float, ...]]) -> None:
+def _require_equal(known: Mapping[str, tuple[float, ...]]) -> None:
     """Refuse sizes, (rows, columns) or along a normal, that differ by more than rounding."""
     for axis in range(len(next(iter(known.values()), ()))):
         least, most = (pick(known, key=lambda name: known[name][axis]) for pick in (min, max))

@@ -188,7 +188,7 @@ def _gauss_newton(
 
 def _bounded_solution(gram: Floats, gradient: Floats, low: Floats, high: Floats) -> Floats:
     """The minimum of a quadratic form within bounds, found by holding what would leave them."""
-    step = _gesv(gram, gradient)[2]
+    step = _solution(gram, gradient)
     held = np.zeros(step.size, bool)
     while (outside := ((step < low) | (step > high)) & ~held).any():
         held |= outside
@@ -197,7 +197,24 @@ def _bounded_solution(gram: Floats, gradient: Floats, low: Floats, high: Floats)
         if not free.any():
             break
         rest = gradient[free] - gram[np.ix_(free, held)] @ step[held]
-        step[free] = _gesv(gram[np.ix_(free, free)], rest)[2]
+        step[free] = _solution(gram[np.ix_(free, free)], rest)
+    return step
+
+
+def _solution(gram: Floats, gradient: Floats) -> Floats:
+    """The solution of a small system.
+
+    Raises
+    ------
+    NoEdgeError
+        If LAPACK finds none: pixels that do not depend on the parameters.
+    """
+    _, _, step, failed = _gesv(gram, gradient)
+    if failed:
+        raise NoEdgeError(
+            f"no straight target was fitted: the pixels do not determine it (LAPACK code {failed});"
+            " choose a region with one edge, or one pulse, between uniform plateaus"
+        )
     return np.asarray(step, float)
 
 
