@@ -195,5 +195,7 @@ def test_whatever_holds_curves_equals_its_copy(edge):
 
 def test_what_was_computed_already_is_no_difference():
     read, unread = uncertain_response(), uncertain_response()
-    _ = read.mtf.std, read.mtf_nyquist
+    _ = read.mtf.std, read.esf.covariance_factor, read.mtf_nyquist
     assert read == unread
+    assert len(pickle.dumps(read)) == len(pickle.dumps(unread))
+    assert pickle.loads(pickle.dumps(read)).mtf_nyquist == read.mtf_nyquist

@@ -23,7 +23,8 @@ class ShortRepr:
     fields, arrays by their shapes.
 
     Two of one class are equal when all their fields are, arrays element by element and ``nan``
-    equal to ``nan``; so a result equals its pickled copy. Like arrays they have no hash.
+    equal to ``nan``; so a result equals its pickled copy. Like arrays they have no hash. A copy
+    holds the fields alone: what was computed from them is computed again when asked for.
 
     Examples
     --------
@@ -41,6 +42,9 @@ class ShortRepr:
         return _equal(self, other) if type(other) is type(self) else NotImplemented
 
     __hash__ = None  # type: ignore[assignment]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self.summary()}>"
