@@ -9,6 +9,8 @@ from datetime import UTC, datetime
 from functools import cached_property
 from typing import Any, Self
 
+import numpy as np
+
 from acutance.curves import Estimate, HasResponse, Mtf, Otf2d, Response
 from acutance.curves.grid import Floats
 from acutance.geometry.line import Orientation
@@ -17,6 +19,9 @@ from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
 from acutance.targets.slices import PlaneSlices
 
 __all__ = ["Measurement"]
+
+_STEPS = 2
+"""ESF and LSF are written at every second place of their grid: every 0.1 px."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -190,8 +195,11 @@ class Measurement(HasResponse):
         from acutance import __version__
 
         one_direction = self.normal_deg is not None
-        named = {name: _direction_document(one) for name, one in self.directions.items()}
-        curves = named[self.orientation] if one_direction else named
+        curves: dict[str, Any] = {
+            name: _direction_document(one) for name, one in self.directions.items()
+        }
+        if one_direction:
+            curves = curves[self.orientation]
         return {
             "schema": SCHEMA,
             "kind": self.kind,
@@ -235,10 +243,15 @@ def _direction_document(response: Response) -> dict[str, Any]:
         **{name: number.to_dict() for name, number in response.metrics().items()},
         "rer_centre": response.rer_centre,
         "gsd_m": response.gsd_m,
-        **{
-            name: {key: rounded(values) for key, values in curve.to_dict().items()}
-            for name, curve in (
-                ("mtf", response.mtf), ("lsf", response.lsf), ("esf", response.esf),
-            )
-        },
-    }  # fmt: skip
+        "mtf": _curve_document(response.mtf.to_dict(), 1),
+        "lsf": _curve_document(response.lsf.to_dict(), _STEPS),
+        "esf": _curve_document(response.esf.to_dict(), _STEPS),
+    }
+
+
+def _curve_document(curve: Mapping[str, list[float]], steps: int) -> dict[str, list[float]]:
+    """A curve at every few of its places, with the digits its deviation deserves."""
+    return {
+        key: rounded(values[::steps], 3) if key == "std" else np.round(values[::steps], 6).tolist()
+        for key, values in curve.items()
+    }

@@ -7,8 +7,8 @@ files, archives, pages and combinations keep of a measurement; stored it takes s
 from __future__ import annotations
 
 import json
+import lzma
 import math
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -207,14 +207,14 @@ class Record(ShortRepr):
         return dict(self.document)
 
     def to_bytes(self) -> bytes:
-        """The document as compressed JSON: what a file or an archive stores."""
+        """The document as JSON, compressed by LZMA: what an archive stores."""
         text = json.dumps(_finite(self.document), ensure_ascii=False, separators=(",", ":"))
-        return zlib.compress(text.encode(), 9)
+        return lzma.compress(text.encode())
 
     @classmethod
     def from_bytes(cls, stored: bytes) -> Record:
         """The record that `to_bytes` stored."""
-        return cls.from_dict(json.loads(zlib.decompress(stored)))
+        return cls.from_dict(json.loads(lzma.decompress(stored)))
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]:
         return Record.from_bytes, (self.to_bytes(),)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -81,9 +82,15 @@ class PlaneSlices(ShortRepr):
             "freq_cpp": np.round(self.freq_cpp, 6).tolist(),
             "otf_real": np.round(self.otf.real, 6).tolist(),
             "otf_imag": np.round(self.otf.imag, 6).tolist(),
-            "factor_real": np.round(self.factor.real, 6).tolist(),
-            "factor_imag": np.round(self.factor.imag, 6).tolist(),
+            "factor_real": np.round(self.factor.real, self._decimals).tolist(),
+            "factor_imag": np.round(self.factor.imag, self._decimals).tolist(),
         }
+
+    @property
+    def _decimals(self) -> int:
+        """Decimals of the factor in a document: a thousandth of its largest number and less."""
+        largest = float(np.abs(self.factor).max(initial=0.0))
+        return 3 - math.floor(math.log10(largest)) if largest > 0 else 6
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> PlaneSlices:

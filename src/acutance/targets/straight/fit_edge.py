@@ -11,6 +11,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import Blur
 from acutance.numerics.noise import Correlation
 from acutance.targets.straight.first_fit import FirstFit, fit_first
+from acutance.targets.straight.lsf import SplineResponse
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels, Pixels
 from acutance.targets.straight.solve import Solved, solve
 
@@ -35,6 +36,7 @@ class SplineEdge(EdgeFit):
         Share of the LSF in the 1/x^2 tail.
     """
 
+    response: SplineResponse
     blur: Blur
     noise_dark: float
     noise_bright: float

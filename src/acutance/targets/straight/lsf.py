@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves import Esf, Lsf, Mtf, Response
-from acutance.curves.grid import Floats, crossing, sample
+from acutance.curves.grid import FREQ_CPP, Floats, crossing, sample
+from acutance.curves.metrics import RerCentre
 from acutance.numerics.gaussian_pixel import Blur
 from acutance.targets.straight.lsf_prior import tail_esf, tail_lsf, tail_otf
+from acutance.targets.straight.pulse_halo import with_halo_error
 from acutance.targets.straight.spline import (
     CENTRES,
     HALF_SUPPORT,
@@ -23,10 +26,10 @@ from acutance.targets.straight.spline import (
     transform,
     waves,
 )
+from acutance.targets.straight.tuned import HALO_SHARE
 
-__all__ = ["LsfModel"]
+__all__ = ["LsfModel", "SplineResponse", "with_uncertain_halo"]
 
-_FREQ_CPP: Floats = np.asarray(np.arange(101) * 0.01)
 _STEP_PX = 0.05
 _MIN_HALF_PX = 10.0
 _Linear = tuple[Floats, SplineRows]
@@ -87,7 +90,7 @@ class LsfModel:
         below = (value[: steep + 2] < 0.5).nonzero()[0]
         return crossing(s, value, 0.5, float(s[below[-1]] if below.size else s[0]))
 
-    def response(self, middle: float) -> Response:
+    def response(self, middle: float) -> SplineResponse:
         """The curves on their grids, 0 at `middle`."""
         half = math.ceil(max(_MIN_HALF_PX, HALF_SUPPORT * self.blur.width_px) / _STEP_PX)
         distance = np.asarray(np.arange(-half, half + 1) * _STEP_PX)
@@ -95,11 +98,13 @@ class LsfModel:
         (esf, esf_design), (lsf, lsf_design) = (
             self._normalised(*parts) for parts in self._parts(s, self.blur.esf_and_lsf(s))
         )
-        otf, otf_design = self._otf(_FREQ_CPP)
-        return Response(
+        otf, otf_design = self._otf(FREQ_CPP)
+        return SplineResponse(
             Esf(distance, esf, esf_design, self.latent),
             Lsf(distance, lsf, lsf_design, self.latent),
-            Mtf(_FREQ_CPP, otf, otf_design, self.latent),
+            Mtf(FREQ_CPP, otf, otf_design, self.latent),
+            model=self,
+            middle_px=middle,
         )
 
     def half_point_std(self, response: Response) -> float:
@@ -153,3 +158,45 @@ class LsfModel:
         """Centroid of the LSF in widths."""
         shares = np.diff(self.spline[2 : 3 + SIZE])
         return float(shares @ CENTRES) / self.height
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SplineResponse(Response):
+    """Curves of a spline model. They are pickled as the model, which is a fifth of their size.
+
+    Parameters
+    ----------
+    model : LsfModel
+    middle_px : float
+        Where the model's 50 % point lies.
+    halo_share : float
+        Standard deviation of a pulse's halo relative to itself; 0 for an edge.
+    """
+
+    model: LsfModel
+    middle_px: float
+    halo_share: float = 0.0
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return _restored, (
+            self.model, self.middle_px, self.halo_share, self.gsd_m, self.rer_centre,
+        )  # fmt: skip
+
+
+def _restored(
+    model: LsfModel,
+    middle_px: float,
+    halo_share: float,
+    gsd_m: float | None,
+    rer_centre: RerCentre,
+) -> SplineResponse:
+    response = model.response(middle_px)
+    if halo_share > 0:
+        response = with_uncertain_halo(response, halo_share)
+    return replace(response, gsd_m=gsd_m, rer_centre=rer_centre)
+
+
+def with_uncertain_halo(response: SplineResponse, share: float = HALO_SHARE) -> SplineResponse:
+    """The curves of a pulse, whose halo is uncertain by a share of itself; see `pulse_halo`."""
+    esf, lsf, mtf = with_halo_error(response, share)
+    return replace(response, esf=esf, lsf=lsf, mtf=mtf, halo_share=share)

@@ -19,11 +19,11 @@ from acutance.targets.straight.edge import described, details_of, in_whole_image
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.find_pulse import find_pulse
 from acutance.targets.straight.fit_pulse import PulsePixels, fit_pulse
+from acutance.targets.straight.lsf import with_uncertain_halo
 from acutance.targets.straight.options import PulseOptions
 from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
 from acutance.targets.straight.pulse_checks import check_pulse, pulse_snr
-from acutance.targets.straight.pulse_halo import with_uncertain_halo
 from acutance.targets.straight.pulse_response import prf_fwhm
 from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.trim import Extent

@@ -15,9 +15,8 @@ import numpy as np
 
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats
-from acutance.targets.straight.tuned import HALO_SHARE
 
-__all__ = ["halo", "with_uncertain_halo"]
+__all__ = ["halo", "with_halo_error"]
 
 _FROM_WIDTHS, _TO_WIDTHS = 1.0, 2.0
 
@@ -34,7 +33,7 @@ def halo(lsf: Lsf, fwhm_px: float) -> Floats:
     return np.asarray(np.maximum(lsf.value, 0.0) * (0.5 - 0.5 * np.cos(np.pi * within)))
 
 
-def with_uncertain_halo(response: Response, share: float = HALO_SHARE) -> Response:
+def with_halo_error(response: Response, share: float) -> tuple[Esf, Lsf, Mtf]:
     """The same curves, with one more common cause of error: `share` of the halo.
 
     Of an LSF L = core + F with the halo's energy E, one standard deviation more of it is
@@ -43,13 +42,13 @@ def with_uncertain_halo(response: Response, share: float = HALO_SHARE) -> Respon
     Parameters
     ----------
     response : Response
-    share : float, optional
+    share : float
         Standard deviation of the halo, relative to the halo.
     """
     esf, lsf, mtf = response.esf, response.lsf, response.mtf
     width = response.fwhm_px.value
     if not np.isfinite(width):
-        return response
+        return esf, lsf, mtf
     s = lsf.distance_px
     step = float(s[1] - s[0])
     part = halo(lsf, width)
@@ -63,11 +62,10 @@ def with_uncertain_halo(response: Response, share: float = HALO_SHARE) -> Respon
     cycles = -(-s.size // cycle)
     turn = np.exp(-2j * np.pi * mtf.freq_cpp * (s[0] - centre))
     moved = np.fft.rfft(change, cycles * cycle)[::cycles][: mtf.freq_cpp.size] * turn * step
-    return replace(
-        response,
-        esf=_with_cause(esf, np.interp(esf.distance_px, s, lifted)),
-        lsf=_with_cause(lsf, change),
-        mtf=_with_cause(mtf, moved),
+    return (
+        _with_cause(esf, np.interp(esf.distance_px, s, lifted)),
+        _with_cause(lsf, change),
+        _with_cause(mtf, moved),
     )
 
 
