@@ -26,9 +26,9 @@ def measured_beside_truth() -> Figure:
     figure = new_page(10.4, 7.1)
     (esf, lsf), (mtf, error) = figure.subplots(2, 2)
 
-    s = found.samples.distance_px
+    s = found.details.distance_px
     near = np.abs(s) < 5
-    esf.plot(s[near], found.samples.value[near], ".", ms=3, color=FAINT, label="pixels")
+    esf.plot(s[near], found.details.value[near], ".", ms=3, color=FAINT, label="pixels")
     for axes, curve, true in ((esf, found.esf, truth.esf), (lsf, found.lsf, truth.lsf)):
         _draw_band(axes, curve.distance_px, curve.value, curve.std, 5.0)
         near = np.abs(true.distance_px) < 5

@@ -51,7 +51,7 @@ def test_a_measurement_tells_its_numbers_and_its_failed_checks(edge):
         repr(m)
         == str(m)
         == (
-            f"<Measurement: edge by spline, across, mtf_nyquist {m.mtf_nyquist}, rer {m.rer}, "
+            f"<StraightMeasurement: edge by spline, across: mtf_nyquist {m.mtf_nyquist}, rer {m.rer}, "
             f"fwhm_px {m.fwhm_px}, snr {m.snr:.3g}, "
             f"1 of {len(m.checks)} checks failed (contrast_snr)>"
         )
@@ -67,7 +67,7 @@ def test_results_curves_and_truths_print_as_one_line(edge):
         SENSOR, width_px=4.0, snr=100, rng=np.random.default_rng(3)
     )
     printed = [
-        *(m, m.response, m.esf, m.lsf, m.mtf, m.samples, m.slices, truth, pulse_truth),
+        *(m, m.response, m.esf, m.lsf, m.mtf, m.details, m.slices, truth, pulse_truth),
         *(scene, scene.edges[0], target, *target.groups.values()),
         ac.measure_pulse(stripe, width_px=4.0),
         ac.Image.from_array(image),

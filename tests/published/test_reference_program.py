@@ -55,7 +55,7 @@ def ours(trimmed):
 
 def binned(m, step_px=0.25, half_px=60.0):
     """MTF50 of an e-SFR along our line, the gains of bins and difference divided out."""
-    distance, value = m.samples.distance_px, m.samples.value
+    distance, value = m.details.distance_px, m.details.value
     used = np.abs(distance) < half_px
     place = ((distance[used] + half_px) / step_px).astype(int)
     esf = np.bincount(place, value[used]) / np.bincount(place)

@@ -8,12 +8,19 @@ import pytest
 
 import acutance as ac
 from acutance.geometry.bar_group import Bars
-from acutance.targets.combine import CombineLimits, CombineOptions
-from acutance.targets.pair import BiresolutionLimits, BiresolutionOptions
-from acutance.targets.periodic import BarsLimits, BarsOptions, StarLimits, StarOptions
-from acutance.targets.points import PointsLimits, PointsOptions
+from acutance.targets.check_table import QUESTIONS
+from acutance.targets.combine import CombineOptions
+from acutance.targets.combine.checks import COMBINE_CHECKS
+from acutance.targets.pair import BiresolutionOptions
+from acutance.targets.pair.checks import PAIR_CHECKS
+from acutance.targets.periodic import BarsOptions, StarOptions
+from acutance.targets.periodic.bars_checks import BARS_CHECKS
+from acutance.targets.periodic.star_checks import STAR_CHECKS
+from acutance.targets.points import PointsOptions
+from acutance.targets.points.checks import POINTS_CHECKS
 from acutance.targets.points.published import SdsuMirrorsOptions
-from acutance.targets.straight import EdgeLimits, EdgeOptions, PulseLimits, PulseOptions
+from acutance.targets.straight import EdgeOptions, PulseOptions
+from acutance.targets.straight.edge_checks import EDGE_CHECKS
 from acutance.targets.straight.published import (
     FermiOptions,
     Iso12233Options,
@@ -21,15 +28,16 @@ from acutance.targets.straight.published import (
     SdsuOptions,
     SdsuPulseOptions,
 )
+from acutance.targets.straight.pulse_checks import PULSE_CHECKS
 
-LIMITS = {
-    BarsOptions: BarsLimits,
-    BiresolutionOptions: BiresolutionLimits,
-    CombineOptions: CombineLimits,
-    EdgeOptions: EdgeLimits,
-    PointsOptions: PointsLimits,
-    PulseOptions: PulseLimits,
-    StarOptions: StarLimits,
+CHECKS = {
+    BarsOptions: BARS_CHECKS,
+    BiresolutionOptions: PAIR_CHECKS,
+    CombineOptions: COMBINE_CHECKS,
+    EdgeOptions: EDGE_CHECKS,
+    PointsOptions: POINTS_CHECKS,
+    PulseOptions: PULSE_CHECKS,
+    StarOptions: STAR_CHECKS,
 }
 METHOD_OPTIONS = (
     FermiOptions,
@@ -41,28 +49,36 @@ METHOD_OPTIONS = (
 )
 
 
-@pytest.mark.parametrize("of", [*LIMITS, *LIMITS.values(), *METHOD_OPTIONS])
+@pytest.mark.parametrize("of", [*CHECKS, *METHOD_OPTIONS])
 def test_every_option_refuses_what_no_option_can_be(of):
     for field in fields(of):
-        with pytest.raises(ac.OptionError, match=f"{of.__name__}: {field.name} has to be .* found"):
-            of(**{field.name: {"rows": 3}})
+        if field.name != "limits":
+            wanted = f"{of.__name__}: {field.name} has to be .* found"
+            with pytest.raises(ac.OptionError, match=wanted):
+                of(**{field.name: {"rows": 3}})
 
 
-@pytest.mark.parametrize("of", LIMITS.values())
+@pytest.mark.parametrize("of", CHECKS)
 @pytest.mark.parametrize("wrong", ["a", math.nan, True, None, (3.0,)])
 def test_limits_are_numbers(of, wrong):
-    name = fields(of)[0].name
-    with pytest.raises(ac.OptionError, match=f"{name} has to be a number, found"):
-        of(**{name: wrong})
-    assert getattr(of(**{name: 3}), name) == 3
-    assert getattr(of(**{name: np.float32(3)}), name) == 3
+    name = CHECKS[of][0]
+    with pytest.raises(ac.OptionError, match=f"the limit of {name} has to be a number, found"):
+        of(limits={name: wrong})
+    assert of(limits={name: 3}).limits[name] == 3
+    assert of(limits={name: np.float32(3)}).to_dict()["limits"] == {name: 3}
 
 
-@pytest.mark.parametrize("of", LIMITS)
+@pytest.mark.parametrize("of", CHECKS)
 def test_limits_are_those_of_the_same_target(of):
-    other = StarLimits() if of is not StarOptions else EdgeLimits()
-    with pytest.raises(ac.OptionError, match=rf"limits has to be {LIMITS[of].__name__}\(\.\.\.\)"):
-        of(limits=other)
+    with pytest.raises(ac.OptionError, match=rf"{of.__name__}: there is no check 'sharpness'"):
+        of(limits={"sharpness": 3.0})
+    with pytest.raises(ac.OptionError, match="limits has to be a dict"):
+        of(limits=[3.0])
+
+
+def test_every_question_is_asked_of_some_target():
+    asked = {name for names in CHECKS.values() for name in names}
+    assert asked == set(QUESTIONS)
 
 
 @pytest.mark.parametrize(
@@ -111,7 +127,7 @@ def test_published_pulse_and_points_refuse_it_too(sensor):
 
 
 def test_what_means_the_same_is_taken():
-    assert EdgeLimits(angle_deg=20, rows=math.inf).angle_deg == 20
+    assert EdgeOptions(limits={"angle_deg": 20, "rows": math.inf}).limits["angle_deg"] == 20
     assert EdgeOptions(robust=np.bool_(False)).robust == False  # noqa: E712
     assert tuple(StarOptions(centre=np.array([3.0, 4.0])).centre) == (3.0, 4.0)
     assert BarsOptions(groups=[Bars(20.0, 20.0, 0.0, 8.0, 5, 40.0)]).groups

@@ -56,7 +56,7 @@ def test_outlier_weights():
 
 def test_white_noise_is_left_alone():
     rng = np.random.default_rng(8)
-    found = [correlation(*all_pixels(rng.standard_normal((40, 40))), NORMAL) for _ in range(50)]
+    found = [correlation(*all_pixels(rng.standard_normal((40, 40))), [NORMAL]) for _ in range(50)]
     assert all(c.inflation == 1.0 for c in found)
     # Significances of the stronger of two lags: seldom above 3, on average near 1.1.
     assert 0.8 < np.mean([c.significance for c in found]) < 1.5
@@ -70,7 +70,7 @@ def moving_average(shape, rng):
 
 def test_moving_average_doubles_the_power_at_low_frequency():
     rng = np.random.default_rng(9)
-    found = correlation(*all_pixels(moving_average((200, 200), rng)), (1.0, 0.0))
+    found = correlation(*all_pixels(moving_average((200, 200), rng)), [(1.0, 0.0)])
     assert found.strongest == pytest.approx(0.5, abs=0.03)
     assert found.inflation == pytest.approx(2.0, abs=0.1)
     assert found.significance == pytest.approx(0.5 * 200, rel=0.1)
@@ -79,14 +79,14 @@ def test_moving_average_doubles_the_power_at_low_frequency():
 def test_correlation_along_the_edge_inflates_all_frequencies_across_it():
     rng = np.random.default_rng(10)
     along = moving_average((200, 200), rng).T
-    assert correlation(*all_pixels(along), (1.0, 0.0)).inflation == pytest.approx(2.0, abs=0.1)
+    assert correlation(*all_pixels(along), [(1.0, 0.0)]).inflation == pytest.approx(2.0, abs=0.1)
 
 
 def test_missing_pixels_do_not_bias_the_correlation():
     rng = np.random.default_rng(11)
     field, rows, cols = all_pixels(moving_average((200, 200), rng))
     kept = rng.random(field.size) < 0.5
-    found = correlation(field[kept], rows[kept], cols[kept], (1.0, 0.0))
+    found = correlation(field[kept], rows[kept], cols[kept], [(1.0, 0.0)])
     assert found.strongest == pytest.approx(0.5, abs=0.05)
 
 
@@ -95,7 +95,7 @@ def test_cubic_resampling_is_noticed():
     white = rng.standard_normal((80, 80))
     rows, cols = np.meshgrid(np.arange(70) + 4.5, np.arange(70) + 4.5, indexing="ij")
     field = resample(white, rows, cols)
-    found = correlation(*all_pixels(field / field.std()), NORMAL)
+    found = correlation(*all_pixels(field / field.std()), [NORMAL])
     # Catmull-Rom at half a pixel, weights -1, 9, 9, -1 over 16: power at frequency 0 over variance
     # is 1 / (164 / 256) in either direction.
     assert found.significance > 10
@@ -104,5 +104,5 @@ def test_cubic_resampling_is_noticed():
 
 
 def test_too_few_pixels_say_nothing():
-    found = correlation(np.ones(9), np.arange(9), np.arange(9), NORMAL)
+    found = correlation(np.ones(9), np.arange(9), np.arange(9), [NORMAL])
     assert (found.inflation, found.strongest, found.significance) == (1.0, 0.0, 0.0)

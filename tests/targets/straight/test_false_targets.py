@@ -29,7 +29,7 @@ def crossed(seed, angle_deg, bright):
 @pytest.mark.parametrize("seed", range(3))
 def test_a_second_edge_across_the_first_is_noticed(angle_deg, bright, seed):
     found = ac.measure_edge(crossed(seed, angle_deg, bright))
-    assert failed(found) & {"steadiness", "ragged_px"}
+    assert failed(found) & {"blur_uniformity", "edge_roughness_px"}
 
 
 @pytest.mark.parametrize("system", ["gaussian", "diffraction", "sharpened", "halo", "asymmetric"])
@@ -41,7 +41,7 @@ def test_a_steady_edge_passes(system):
         angle = float(rng.uniform(3, 40))
         image, _ = ac.simulate.edge(sensor, angle_deg=angle, snr=snr, shape=(50, 50), rng=rng)
         checks = {check.name: check for check in ac.measure_edge(image).checks}
-        for name in ("steadiness", "ragged_px", "lsf_width_px"):
+        for name in ("blur_uniformity", "edge_roughness_px", "lsf_width_px"):
             assert checks[name].passed, (seed, checks[name])
 
 
@@ -94,7 +94,7 @@ def test_a_strip_clipped_below_the_end_of_its_type_is_noticed(seed):
 def test_of_a_large_region_only_the_neighbourhood_of_the_edge_is_used():
     image, truth = edge(0, shape=(500, 500))
     found = ac.measure_edge(image)
-    rows, cols = np.nonzero(found.samples.used)
+    rows, cols = np.nonzero(found.details.used)
     assert np.max(np.abs(found.line.normal_distance(rows, cols))) < 101
     error = found.mtf_nyquist.value - truth.mtf_nyquist.value
     assert abs(error) < 4 * found.mtf_nyquist.std
@@ -118,6 +118,8 @@ def test_an_edge_torn_by_missing_pixels_is_refused_with_that_reason():
 def test_checks_print_how_many_failed():
     image, _ = edge(3)
     found = ac.measure_edge(image)
-    assert repr(found.checks) == f"<{len(found.checks)} checks, 0 failed>"
-    strict = ac.measure.EdgeOptions(limits=ac.measure.EdgeLimits(rows=1000))
-    assert repr(ac.measure_edge(image, options=strict).checks).endswith("1 failed: rows>")
+    assert repr(found.checks) == f"<0 of {len(found.checks)} checks failed>"
+    strict = ac.EdgeOptions(limits={"rows": 1000})
+    assert repr(ac.measure_edge(image, options=strict).checks).endswith(
+        "1 of 20 checks failed (rows)>"
+    )

@@ -1,4 +1,4 @@
-"""The foot of a pulse's LSF as a cause of error of its own."""
+"""The halo of a pulse's LSF as a cause of error of its own."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,9 @@ import acutance as ac
 from acutance.simulate import pulse, reference_systems
 from acutance.targets.straight.find_pulse import find_pulse
 from acutance.targets.straight.fit_pulse import fit_pulse
-from acutance.targets.straight.pulse_halo import FOOT_SHARE, foot, with_uncertain_foot
+from acutance.targets.straight.lsf import with_uncertain_halo
+from acutance.targets.straight.pulse_halo import halo
+from acutance.targets.straight.tuned import HALO_SHARE
 
 SYSTEMS = reference_systems()
 
@@ -21,35 +23,35 @@ def fitted(name, seed=0, **changes):
 
 def test_the_curves_stay_and_err_together():
     plain, _ = fitted("halo")
-    told = with_uncertain_foot(plain)
-    assert told.rer.value == plain.rer.value
-    assert np.array_equal(told.mtf.otf, plain.mtf.otf)
-    causes = [curve.covariance_factor[:, -1] for curve in (told.esf, told.lsf)]
+    uncertain = with_uncertain_halo(plain)
+    assert uncertain.rer.value == plain.rer.value
+    assert np.array_equal(uncertain.mtf.otf, plain.mtf.otf)
+    causes = [curve.covariance_factor[:, -1] for curve in (uncertain.esf, uncertain.lsf)]
     step = 0.05
     # One error in three forms: the LSF's is the ESF's slope, and its transform the OTF's.
     assert np.gradient(causes[0], step)[1:-1] == pytest.approx(causes[1][1:-1], abs=2e-4)
-    at = told.mtf.freq_cpp[:60, None] * told.lsf.distance_px
+    at = uncertain.mtf.freq_cpp[:60, None] * uncertain.lsf.distance_px
     transform = np.abs(np.exp(-2j * np.pi * at) @ causes[1]) * step
-    assert np.abs(told.mtf.factor[:60, -1]) == pytest.approx(transform, abs=1e-5)
-    assert told.mtf.std[0] == pytest.approx(0, abs=1e-9)
+    assert np.abs(uncertain.mtf.factor[:60, -1]) == pytest.approx(transform, abs=1e-5)
+    assert uncertain.mtf.std[0] == pytest.approx(0, abs=1e-9)
 
 
 def test_the_width_grows_by_the_share_of_the_foot_alone():
     for name, grows in (("halo", 1.25), ("gaussian", 1.0), ("wide", 1.0), ("sharpened", 1.0)):
         plain, _ = fitted(name)
-        told = with_uncertain_foot(plain)
-        ratio = told.mtf(0.25).std / plain.mtf(0.25).std
+        uncertain = with_uncertain_halo(plain)
+        ratio = uncertain.mtf(0.25).std / plain.mtf(0.25).std
         assert ratio > grows if name == "halo" else ratio < 1.12
-    light = foot(plain.lsf, plain.fwhm_px.value)
+    light = halo(plain.lsf, plain.fwhm_px.value)
     assert light.min() >= 0
 
 
 def test_truths_have_one_cause():
     _, truth = fitted("halo")
-    told = with_uncertain_foot(truth.response)
-    energy = foot(truth.lsf, truth.fwhm_px.value).sum() * 0.05
+    uncertain = with_uncertain_halo(truth.response)
+    energy = halo(truth.lsf, truth.fwhm_px.value).sum() * 0.05
     # RER loses about its own share of what the foot holds.
-    assert told.rer.std == pytest.approx(FOOT_SHARE * energy * truth.rer.value, rel=0.25)
+    assert uncertain.rer.std == pytest.approx(HALO_SHARE * energy * truth.rer.value, rel=0.25)
 
 
 def test_intervals_of_a_halo_hold_the_truth():

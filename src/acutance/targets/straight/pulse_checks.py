@@ -173,10 +173,10 @@ def _zero_distance(data: CheckData, limits: Limits, width_px: float, *, by_ratio
         reported |= {"MTF50": response.mtf50_cpp.value, "MTF30": response.mtf30_cpp.value}
     divided_px = data.fit.ratio_width_px if isinstance(data.fit, PublishedPulse) else width_px
     zeros = zeros_cpp(divided_px)
-    near = [_nearest(zeros, name, freq) for name, freq in reported.items() if freq > 0]
-    if zeros.size == 0 or not near:
+    if zeros.size == 0:
         found = "the pulse's spectrum has no zero up to 1 c/px"
         return answer("zero_distance_cpp", 1.0, found, limits)
+    near = [_nearest(zeros, name, freq) for name, freq in reported.items() if freq > 0]
     value = min(distance for distance, _ in near)
     limit = limit_of("zero_distance_cpp", limits)
     named = [words for distance, words in near if distance < limit] or [min(near)[1]]
