@@ -51,7 +51,8 @@ def test_a_measurement_tells_its_numbers_and_its_failed_checks(edge):
         repr(m)
         == str(m)
         == (
-            f"<StraightMeasurement: edge by spline, across: mtf_nyquist {m.mtf_nyquist}, rer {m.rer}, "
+            "<StraightMeasurement: edge by spline, across: "
+            f"mtf_nyquist {m.mtf_nyquist}, rer {m.rer}, "
             f"fwhm_px {m.fwhm_px}, snr {m.snr:.3g}, "
             f"1 of {len(m.checks)} checks failed (contrast_snr)>"
         )

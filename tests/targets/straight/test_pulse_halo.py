@@ -1,5 +1,7 @@
 """The halo of a pulse's LSF as a cause of error of its own."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from acutance.simulate import pulse, reference_systems
 from acutance.targets.straight.find_pulse import find_pulse
 from acutance.targets.straight.fit_pulse import fit_pulse
 from acutance.targets.straight.lsf import with_uncertain_halo
-from acutance.targets.straight.pulse_halo import halo
+from acutance.targets.straight.pulse_halo import halo, with_halo_error
 from acutance.targets.straight.tuned import HALO_SHARE
 
 SYSTEMS = reference_systems()
@@ -48,9 +50,10 @@ def test_the_width_grows_by_the_share_of_the_foot_alone():
 
 def test_truths_have_one_cause():
     _, truth = fitted("halo")
-    uncertain = with_uncertain_halo(truth.response)
+    esf, lsf, mtf = with_halo_error(truth.response, HALO_SHARE)
+    uncertain = replace(truth.response, esf=esf, lsf=lsf, mtf=mtf)
     energy = halo(truth.lsf, truth.fwhm_px.value).sum() * 0.05
-    # RER loses about its own share of what the foot holds.
+    # RER loses about its own share of what the halo holds.
     assert uncertain.rer.std == pytest.approx(HALO_SHARE * energy * truth.rer.value, rel=0.25)
 
 
