@@ -17,3 +17,16 @@ def test_deviations_that_are_too_small_are_named_where_the_draws_can_tell():
     assert "states too little" not in mirror_plan_text(few)
     assert "states too little for FWHM [px] across, FWHM [px] along" in mirror_plan_text(many)
     assert "states too little" not in mirror_plan_text(replace(many, scatter=plan.std))
+
+
+def test_a_bias_is_named_where_it_is_more_than_chance():
+    plan = plan_mirrors(MirrorPlanOptions(SENSOR, draws=2))
+    name = "fwhm_px across"
+    many = replace(
+        plan, options=replace(plan.options, draws=40), scatter={**plan.std, name: 0.06},
+        bias=dict.fromkeys(plan.bias, 0.0) | {name: 0.058},
+    )  # fmt: skip
+    assert "do not average out: FWHM [px] across 0.058;" in mirror_plan_text(many)
+    by_chance = replace(many, bias=plan.bias | {name: 0.3 * plan.std[name]})
+    assert "average out" not in mirror_plan_text(replace(by_chance, scatter=plan.std))
+    assert "40 simulated images, 3 of them refused" in mirror_plan_text(replace(many, refused=3))

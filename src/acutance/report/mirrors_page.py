@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from acutance.report.page import BLUE, FAINT, INK, new_page, styled
@@ -26,7 +27,10 @@ NUMBERS = {
 
 _ENOUGH_DRAWS = 20
 _MUCH_WIDER = 1.5
-"""Scatter over stated deviation; 20 draws tell it to a sixth."""
+"""Root mean square error over stated deviation; 20 draws show it to a sixth."""
+
+_SURELY_BIASED = 4.0
+"""Mean error over its own standard deviation: by chance in one of 16 000 plans."""
 
 
 def mirror_plan_text(plan: MirrorPlan) -> str:
@@ -67,25 +71,28 @@ def _expected(plan: MirrorPlan) -> str:
     bound = f"{plan.position_std_px:.4f}"
     if not plan.std:
         return f"place of a mirror at SNR {plan.options.snr:g}: no better than ± {bound} px"
-    rows: list[tuple[str, ...]] = [("to expect (std)", "stated", "", "scatter", "")]
-    rows.append(("", "across", "along", "across", "along"))
+    rows: list[tuple[str, ...]] = [
+        ("to expect", "error (rms)", "", "of it bias", "", "std stated", ""),
+        ("", *("across", "along") * 3),
+    ]
     for name, words in NUMBERS.items():
         cells = [
             format_number(numbers.get(f"{name} {direction}", float("nan")), 2) or MISSING
-            for numbers in (plan.std, plan.scatter)
+            for numbers in (plan.scatter, plan.bias, plan.std)
             for direction in ("across", "along")
         ]
         rows.append((words, *cells))
+    refused = f", {plan.refused} of them refused" if plan.refused else ""
     return (
-        align_columns(rows, "lrrrr", indent="")
-        + f"\n  at SNR {plan.options.snr:g}, {plan.options.draws} simulated images; places no "
-        f"better than ± {bound} px" + _narrow(plan)
+        align_columns(rows, "lrrrrrr", indent="")
+        + f"\n  at SNR {plan.options.snr:g}, {plan.options.draws} simulated images{refused}; "
+        f"places no better than ± {bound} px" + _narrow(plan) + _biased(plan)
     )
 
 
 def _narrow(plan: MirrorPlan) -> str:
     """Which stated deviations are too small for this sensor, if the draws can tell."""
-    if plan.options.draws < _ENOUGH_DRAWS:
+    if plan.options.draws - plan.refused < _ENOUGH_DRAWS:
         return ""
     names = [
         f"{words} {direction}"
@@ -96,8 +103,27 @@ def _narrow(plan: MirrorPlan) -> str:
     if not names:
         return ""
     return (
-        f"\n  of this sensor the method states too little for {', '.join(names)}: what its images "
-        "scatter by is the better guide"
+        f"\n  of this sensor a measurement states too little for {', '.join(names)}:\n  plan with "
+        "the error, not with the deviation that a result prints"
+    )
+
+
+def _biased(plan: MirrorPlan) -> str:
+    """Which numbers a bias rules, that neither mirrors nor images average out."""
+    measured = plan.options.draws - plan.refused
+    if measured < _ENOUGH_DRAWS:
+        return ""
+    names = []
+    for key, bias in plan.bias.items():
+        scatter = math.sqrt(max(plan.scatter[key] ** 2 - bias**2, 0.0))
+        if abs(bias) > plan.std[key] and abs(bias) > _SURELY_BIASED * scatter / math.sqrt(measured):
+            name, _, direction = key.rpartition(" ")
+            names.append(f"{NUMBERS[name]} {direction} {format_number(bias, 2)}")
+    if not names:
+        return ""
+    return (
+        f"\n  bias, which more images do not average out: {', '.join(names)};\n  a larger SNR "
+        "lowers it"
     )
 
 

@@ -18,6 +18,7 @@ reach to half of the sum of both zenith angles. (Own derivation: the reports giv
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -32,7 +33,14 @@ from acutance.studies.execution import Execution, Record, run_trials
 from acutance.targets.points import measure_points
 from acutance.targets.points.checks import phase_gap_px
 
-__all__ = ["MirrorLayout", "MirrorPlan", "MirrorPlanOptions", "lay_out_mirrors", "plan_mirrors"]
+__all__ = [
+    "MirrorLayout",
+    "MirrorPlan",
+    "MirrorPlanOptions",
+    "lay_out_mirrors",
+    "place_errors_px",
+    "plan_mirrors",
+]
 
 Arrangement = Literal["columns", "square"]
 _LEAST_SPACING = 5.0
@@ -242,7 +250,12 @@ class MirrorPlan:
         Standard deviations that measurements of simulated images state, by name and direction
         ("mtf_nyquist across"); empty without draws.
     scatter : dict of float
-        Root mean square errors of the same measurements against the truth.
+        Root mean square errors of the same measurements against the truth: what to expect.
+    bias : dict of float
+        Mean errors of the same measurements, which no further image averages out; places have
+        none, since they are compared about their common shift.
+    refused : int
+        Simulated images that could not be measured.
     """
 
     options: MirrorPlanOptions
@@ -252,6 +265,8 @@ class MirrorPlan:
     peak_share: float
     std: dict[str, float]
     scatter: dict[str, float]
+    bias: dict[str, float]
+    refused: int
 
     @property
     def position_std_px(self) -> float:
@@ -283,8 +298,10 @@ class MirrorPlan:
             "snr": options.snr,
             "position_std_px": self.position_std_px,
             "draws": options.draws,
+            "refused": self.refused,
             "std": dict(self.std),
             "scatter": dict(self.scatter),
+            "bias": dict(self.bias),
         }
 
     def to_csv(self) -> str:
@@ -322,8 +339,12 @@ def plan_mirrors(options: MirrorPlanOptions, execution: Execution | None = None)
     zenith = math.cos(math.radians(options.sun_zenith_deg))
     radius = 2 * math.sqrt(light * gsd_m * along_m * zenith / (math.pi * options.mirror))
     half = math.radians(0.5 * (options.sun_zenith_deg + options.view_zenith_deg))
-    std, scatter = _expected(options, execution or Execution(workers=1))
-    return MirrorPlan(options, layout, radius, 2 * radius * math.sin(half), share, std, scatter)
+    records = _simulated(options, execution or Execution(workers=1))
+    return MirrorPlan(
+        options, layout, radius, 2 * radius * math.sin(half), share,
+        std=_mean_stated(records), scatter=_rms_errors(records), bias=_mean_errors(records),
+        refused=options.draws - len(records),
+    )  # fmt: skip
 
 
 def _images_places(layout: MirrorLayout, rng: np.random.Generator | None) -> Floats:
@@ -359,8 +380,7 @@ def _draw(options: MirrorPlanOptions, _: int, rng: np.random.Generator) -> Recor
             estimate: Estimate = getattr(response, name)
             found[f"{name} {direction}"] = estimate.value - getattr(true, name).value
             found[f"{name} {direction} std"] = estimate.std
-    error = measured.positions - places
-    error -= error.mean(axis=0)
+    error = place_errors_px(measured.positions, places)
     found["position_px across"], found["position_px along"] = np.sqrt(
         np.mean(error[:, ::-1] ** 2, axis=0)
     ).tolist()
@@ -369,17 +389,56 @@ def _draw(options: MirrorPlanOptions, _: int, rng: np.random.Generator) -> Recor
     return found
 
 
-def _expected(
-    options: MirrorPlanOptions, execution: Execution
-) -> tuple[dict[str, float], dict[str, float]]:
-    """Mean stated deviations and root mean square errors over the draws."""
+def place_errors_px(found: Floats, places: Floats) -> Floats:
+    """Errors of measured places against the true ones next to them, less their common shift.
+
+    Parameters
+    ----------
+    found : (k, 2) array
+        Measured (row, col); a mirror that was left out of the fit is missing.
+    places : (n, 2) array
+        True ones, pixels apart.
+
+    Returns
+    -------
+    (k, 2) array
+    """
+    away = np.linalg.norm(found[:, None] - places, axis=2)
+    error = found - places[np.argmin(away, axis=1)]
+    return np.asarray(error - error.mean(axis=0))
+
+
+def _simulated(options: MirrorPlanOptions, execution: Execution) -> list[Record]:
+    """Errors and stated deviations of the simulated images that could be measured."""
     if options.draws == 0:
-        return {}, {}
+        return []
     records = run_trials("mirrors", options, list(range(options.draws)), _draw, execution)
-    kept = [one for one in records if "refused" not in one]
-    if not kept:
-        return {}, {}
-    names = [name for name in kept[0] if not name.endswith(" std")]
-    std = {name: float(np.mean([one[f"{name} std"] for one in kept])) for name in names}
-    scatter = {name: float(np.sqrt(np.mean([one[name] ** 2 for one in kept]))) for name in names}
-    return std, scatter
+    return [one for one in records if "refused" not in one]
+
+
+def _names(records: Sequence[Record]) -> list[str]:
+    return [name for name in (records[0] if records else {}) if not name.endswith(" std")]
+
+
+def _mean_stated(records: Sequence[Record]) -> dict[str, float]:
+    """Mean standard deviations that the measurements state."""
+    return {
+        name: float(np.mean([one[f"{name} std"] for one in records])) for name in _names(records)
+    }
+
+
+def _rms_errors(records: Sequence[Record]) -> dict[str, float]:
+    """Root mean square errors of the measurements."""
+    return {
+        name: float(np.sqrt(np.mean([one[name] ** 2 for one in records])))
+        for name in _names(records)
+    }
+
+
+def _mean_errors(records: Sequence[Record]) -> dict[str, float]:
+    """Mean errors of the measurements; those of places have no sign."""
+    return {
+        name: float(np.mean([one[name] for one in records]))
+        for name in _names(records)
+        if not name.startswith("position_px")
+    }
