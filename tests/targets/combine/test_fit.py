@@ -1,5 +1,7 @@
 """Curves of many measurements through one parametric sensor."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -93,20 +95,50 @@ def test_a_term_enters_where_the_curves_show_it(block, term, number, true):
     assert found.std < 0.2
 
 
-def test_intervals_hold_the_truth():
-    """240 numbers at 93 to 97 %: 60 draws; a std a third too small holds 81 %."""
+def symmetric_root(factor):
+    """Of the covariance of stacked real and imaginary errors: every column belongs to a place."""
+    stacked = np.concatenate([factor.real, factor.imag])
+    value, vector = np.linalg.eigh(stacked @ stacked.T)
+    return (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T
+
+
+def campaign(sensor, directions, share, rng):
+    """Curves whose real errors at one frequency have a share of their variance in common."""
+    factor, n = smooth_factor(0.006), FREQ.size
+    root, common = symmetric_root(factor), rng.standard_normal(n)
+    found = []
+    for direction in directions:
+        draw = rng.standard_normal(2 * n)
+        draw[:n] = np.sqrt(1 - share) * draw[:n] + np.sqrt(share) * common
+        error = root @ draw
+        one = curve(sensor.otf, direction, 0.006)
+        found.append(replace(one, otf=one.otf + error[:n] + 1j * error[n:]))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("share", "low", "high"),
+    [
+        # What is stated is for this, and for departures from the form, which are not there.
+        pytest.param(0.25, 0.78, 0.98, id="a quarter in common"),
+        # Three curves a direction: the allowance for what they share makes deviations too wide.
+        pytest.param(0.0, 0.62, 0.81, id="independent"),
+    ],
+)
+def test_stated_deviations_are_those_of_errors(share, low, high):
+    """It is .87 and .73; with deviations 0.8 or 1.25 times those stated, outside the bounds."""
     sensor = optics.Sensor([optics.Gaussian(0.38, 0.5), optics.Detector()])
+    directions = [one + turn for one in DIRECTIONS for turn in (-4.0, 0.0, 4.0)]
     rng = np.random.default_rng(5)
-    u, v = 0.5 * np.cos([0, 0.8, 1.6, 2.4]), 0.5 * np.sin([0, 0.8, 1.6, 2.4])
-    held, ratios = [], []
-    for _ in range(60):
-        curves = [curve(sensor.otf, one, 0.006, rng) for one in DIRECTIONS]
-        fit = combine_curves(curves, forms=FORMS[:3])
-        factor = fit.factor(u, v).real
+    freq, angle = np.repeat([0.25, 0.5], 4), np.tile([0.0, 0.8, 1.6, 2.4], 2)
+    u, v = freq * np.cos(angle), freq * np.sin(angle)
+    z, ratios = [], []
+    for _ in range(48):
+        fit = combine_curves(campaign(sensor, directions, share, rng), forms=FORMS[:1])
         off = (fit.otf(u, v) - sensor.otf(u, v)).real
-        held.append(np.abs(off) < 1.96 * np.linalg.norm(factor, axis=1))
+        z.append(off / np.linalg.norm(fit.factor(u, v).real, axis=1))
         ratios.append(fit.total.value / fit.total.expected)
-    assert 0.89 < np.mean(held) < 0.995
+    assert low < np.sqrt(np.mean(np.square(z))) < high
     assert np.mean(ratios) == pytest.approx(1.0, abs=0.15)
 
 

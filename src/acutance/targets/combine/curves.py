@@ -22,12 +22,15 @@ _FLOOR = 5e-4
 """What an estimator may be wrong by without noise; also what makes a covariance invertible."""
 
 _COMMON = 0.25
-"""Share of the variance of a measurement that is alike in all of one sensor: what its prior leaves.
+"""Share of the variance of a measurement that is common to all of one sensor: what priors leave.
 
-Images of a plain Gaussian, which is what priors expect, scatter by 0.86 to 0.9 of the deviations
+Edges of a plain Gaussian, which is what priors expect, scatter by 0.86 to 0.9 of the deviations
 that are stated (benchmarks/coverage.py): the rest is allowed for other shapes of sensors, and a
-sensor has one shape.
+sensor has one shape. Over the twelve systems of benchmarks/combine.py, 95 % intervals of four edges
+and two pulses hold the truth in 93.6 % with it and in 89.3 % without; with 20 mirrors as well, in
+91.2 and 84.8 %. Where errors are independent indeed, deviations are too wide by up to a third.
 """
+
 _LOW_CPP = 0.12
 _SHIFT_PX = 0.3
 """The curves know their centroid only so well: a phase linear in frequency says nothing."""
