@@ -169,6 +169,7 @@ def main() -> None:
         row(name, [one for job, one in zip(jobs, results, strict=True) if job.system == name])
         for name in names
     ]
+    rows.append(row("all", results))
     head = [
         "system", "draws", *METRICS, "std / %", "chi² ratio", "disagree / %", "no plain / %",
         "departure / %", "form of largest weight",
