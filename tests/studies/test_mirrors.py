@@ -58,7 +58,7 @@ def test_the_expected_deviations_are_those_of_measurements():
 
 
 def test_a_plan_shows_the_bias_of_a_resampled_product():
-    """At SNR 80 the PSF's prior makes the FWHM of a cubic product 4 % too wide, in every image."""
+    """At SNR 80 the prior of apertures makes the FWHM of a cubic product 4 % too wide, always."""
     blocks = [optics.Gaussian(0.35), optics.Detector(), optics.Resampling("cubic")]
     plan = plan_mirrors(MirrorPlanOptions(optics.Sensor(blocks, gsd_m=0.7), count=12, draws=6))
     name = "fwhm_px across"
