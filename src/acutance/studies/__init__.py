@@ -5,13 +5,8 @@ from acutance.studies.bound import Design, MetricBound, equivalent_blur, free_bo
 from acutance.studies.catalogue import STUDIES, Study, run_study
 from acutance.studies.execution import Execution, run_trials
 from acutance.studies.ground_noise import GroundNoiseOptions, study_ground_noise
-from acutance.studies.mirrors import (
-    MirrorLayout,
-    MirrorPlan,
-    MirrorPlanOptions,
-    lay_out_mirrors,
-    plan_mirrors,
-)
+from acutance.studies.mirror_layout import MirrorLayout, lay_out_mirrors
+from acutance.studies.mirrors import MirrorPlan, MirrorPlanOptions, plan_mirrors
 from acutance.studies.plan import PlanOptions, plan_target
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.scatter import minimum_snr

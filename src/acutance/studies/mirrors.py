@@ -1,10 +1,4 @@
-"""Lay out an array of convex mirrors: places, sub-pixel phases, radius, and what to expect.
-
-Mirrors in slanted columns step by an integer plus 1/p pixels across and an integer plus 1/q along,
-with p and q coprime: after p q mirrors every combination of phases was seen once. 20 mirrors give
-p = 4 and q = 5: steps of 1.25 by 10.2 GSD, 7 degrees, as in Brookings in 2003 (QuickBird report,
-5.7.2). A square of n by n mirrors has one pitch, an integer plus 1/n: 4 by 4 at 5.25 px, as Li et
-al. (2.2) show it.
+"""Plan an array of convex mirrors: their places, their radius, and the errors to expect.
 
 A convex mirror of radius of curvature R sends the sun's beam evenly into all directions: its
 radiant intensity is ``rho E R^2 / 4`` under the irradiance E (normal to the beam) and the
@@ -18,9 +12,9 @@ reach to half of the sum of both zenith angles. (Own derivation: the reports giv
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -30,20 +24,16 @@ from acutance.errors import OptionError, TargetError
 from acutance.optics import Sensor
 from acutance.simulate import points
 from acutance.studies.execution import Execution, Record, run_trials
+from acutance.studies.mirror_layout import (
+    LEAST_SPACING_PX,
+    Arrangement,
+    MirrorLayout,
+    lay_out_mirrors,
+)
 from acutance.targets.points import measure_points
-from acutance.targets.points.checks import phase_gap_px
 
-__all__ = [
-    "MirrorLayout",
-    "MirrorPlan",
-    "MirrorPlanOptions",
-    "lay_out_mirrors",
-    "place_errors_px",
-    "plan_mirrors",
-]
+__all__ = ["MirrorPlan", "MirrorPlanOptions", "place_errors_px", "plan_mirrors"]
 
-Arrangement = Literal["columns", "square"]
-_LEAST_SPACING = 5.0
 _MARGIN_PX = 14.0
 _GSD_CHANGES = (-0.05, -0.02, 0.0, 0.02, 0.05)
 POSITION_BOUND = 0.80
@@ -110,7 +100,7 @@ class MirrorPlanOptions:
         bounds = {
             "count": (self.count, 1, 400),
             "columns": (self.columns, 1, self.count),
-            "spacing_px": (self.least_spacing_px, _LEAST_SPACING, 100.0),
+            "spacing_px": (self.least_spacing_px, LEAST_SPACING_PX, 100.0),
             "snr": (self.snr, 1.0, 1e6),
             "ground": (self.ground, 0.0, 0.95),
             "level": (self.level, self.ground + 0.01, 100.0),
@@ -128,108 +118,7 @@ class MirrorPlanOptions:
         """The spacing asked for, or 10 px in columns and 5 px in a square."""
         if self.spacing_px is not None:
             return self.spacing_px
-        return 10.0 if self.arrangement == "columns" else _LEAST_SPACING
-
-
-@dataclass(frozen=True, eq=False)
-class MirrorLayout:
-    """Where the mirrors stand, relative to the first one.
-
-    Parameters
-    ----------
-    places_px : (n, 2) array
-        (along, across) in pixels: rows downwards, columns to the right.
-    step_px : (float, float)
-        (along, across) from one mirror of a column to the next; of a square, its pitch both ways.
-    apart_px : float
-        Distance of the columns; of a square, its pitch.
-    pixel_m : (float, float)
-        GSD (along, across) in metres.
-    """
-
-    places_px: Floats
-    step_px: tuple[float, float]
-    apart_px: float
-    pixel_m: tuple[float, float]
-
-    @property
-    def places_m(self) -> Floats:
-        """The same in metres, (n, 2)."""
-        return np.asarray(self.places_px * np.array(self.pixel_m))
-
-    @property
-    def angle_deg(self) -> float:
-        """Angle of a column against the image's columns."""
-        return math.degrees(math.atan2(self.step_px[1], self.step_px[0]))
-
-    @property
-    def phases(self) -> Floats:
-        """Sub-pixel places (along, across), 0 to 1, (n, 2)."""
-        return np.asarray(np.mod(self.places_px + 1e-9, 1.0))
-
-    @property
-    def spacing_px(self) -> float:
-        """Distance of the two nearest mirrors."""
-        if self.places_px.shape[0] < 2:
-            return math.inf
-        away = np.linalg.norm(self.places_px[:, None] - self.places_px, axis=2)
-        return float(away[away > 0].min())
-
-    def gap_px(self, gsd_change: float = 0.0) -> float:
-        """Largest gap of the phases, when the GSD is larger by a share than planned."""
-        return phase_gap_px(self.places_px / (1 + gsd_change))
-
-
-def lay_out_mirrors(
-    count: int,
-    *,
-    pixel_m: tuple[float, float],
-    arrangement: Arrangement = "columns",
-    columns: int = 2,
-    spacing_px: float = 10.0,
-) -> MirrorLayout:
-    """Places of mirrors whose phases fill the pixel evenly.
-
-    Parameters
-    ----------
-    count : int
-    pixel_m : (float, float)
-        GSD (along, across) in metres.
-    arrangement : {"columns", "square"}, optional
-    columns : int, optional
-        Number of slanted columns.
-    spacing_px : float, optional
-        Least distance along a column, or pitch of the square.
-    """
-    if arrangement == "square":
-        side = math.ceil(math.sqrt(count))
-        pitch = math.ceil(spacing_px - 1e-9) + (1 / side if side > 1 else 0.0)
-        rows, cols = np.divmod(np.arange(count), side)
-        places = np.stack([rows, cols], axis=1) * pitch
-        return MirrorLayout(places, (pitch, 0.0), pitch, pixel_m)
-    across, along = _coprime_phases(count)
-    step = (math.ceil(spacing_px - 1e-9) + 1 / along, 1 + 1 / across)
-    rows_each = math.ceil(count / columns)
-    # The next column goes on where the phases of the one before ended.
-    place = np.arange(count) % rows_each
-    column = np.arange(count) // rows_each
-    shift = np.array([math.fmod(rows_each * one, 1.0) for one in step])
-    apart = max(math.ceil(spacing_px - 1e-9) + 1 + shift[1], _LEAST_SPACING)
-    places = np.stack(
-        [place * step[0] + column * shift[0], place * step[1] + column * apart], axis=1
-    )
-    return MirrorLayout(places, step, float(apart), pixel_m)
-
-
-def _coprime_phases(count: int) -> tuple[int, int]:
-    """Numbers of phases across and along: coprime, alike, their product enough for all."""
-    pairs = [
-        (p, q)
-        for q in range(1, count + 2)
-        for p in range(1, q + 1)
-        if math.gcd(p, q) == 1 and p * q >= count
-    ]
-    return min(pairs, key=lambda pair: (pair[0] * pair[1] - count + 2 * (pair[1] - pair[0]), pair))
+        return 10.0 if self.arrangement == "columns" else LEAST_SPACING_PX
 
 
 @dataclass(frozen=True, eq=False)
@@ -340,9 +229,14 @@ def plan_mirrors(options: MirrorPlanOptions, execution: Execution | None = None)
     radius = 2 * math.sqrt(light * gsd_m * along_m * zenith / (math.pi * options.mirror))
     half = math.radians(0.5 * (options.sun_zenith_deg + options.view_zenith_deg))
     records = _simulated(options, execution or Execution(workers=1))
+    bias = {
+        name: mean
+        for name, mean in _by_name(records, np.mean).items()
+        if not name.startswith("position_px")
+    }
     return MirrorPlan(
         options, layout, radius, 2 * radius * math.sin(half), share,
-        std=_mean_stated(records), scatter=_rms_errors(records), bias=_mean_errors(records),
+        std=_by_name(records, np.mean, stated=True), scatter=_by_name(records, _rms), bias=bias,
         refused=options.draws - len(records),
     )  # fmt: skip
 
@@ -390,18 +284,13 @@ def _draw(options: MirrorPlanOptions, _: int, rng: np.random.Generator) -> Recor
 
 
 def place_errors_px(found: Floats, places: Floats) -> Floats:
-    """Errors of measured places against the true ones next to them, less their common shift.
+    """Errors (k, 2) of measured places against the nearest true ones, less their common shift.
 
     Parameters
     ----------
     found : (k, 2) array
         Measured (row, col); a mirror that was left out of the fit is missing.
     places : (n, 2) array
-        True ones, pixels apart.
-
-    Returns
-    -------
-    (k, 2) array
     """
     away = np.linalg.norm(found[:, None] - places, axis=2)
     error = found - places[np.argmin(away, axis=1)]
@@ -416,29 +305,14 @@ def _simulated(options: MirrorPlanOptions, execution: Execution) -> list[Record]
     return [one for one in records if "refused" not in one]
 
 
-def _names(records: Sequence[Record]) -> list[str]:
-    return [name for name in (records[0] if records else {}) if not name.endswith(" std")]
+def _by_name(
+    records: Sequence[Record], of_draws: Callable[[Floats], float], stated: bool = False
+) -> dict[str, float]:
+    """One number of the errors, or of the stated deviations, of all draws, by name."""
+    names = [name for name in (records[0] if records else {}) if not name.endswith(" std")]
+    end = " std" if stated else ""
+    return {name: float(of_draws(np.array([one[name + end] for one in records]))) for name in names}
 
 
-def _mean_stated(records: Sequence[Record]) -> dict[str, float]:
-    """Mean standard deviations that the measurements state."""
-    return {
-        name: float(np.mean([one[f"{name} std"] for one in records])) for name in _names(records)
-    }
-
-
-def _rms_errors(records: Sequence[Record]) -> dict[str, float]:
-    """Root mean square errors of the measurements."""
-    return {
-        name: float(np.sqrt(np.mean([one[name] ** 2 for one in records])))
-        for name in _names(records)
-    }
-
-
-def _mean_errors(records: Sequence[Record]) -> dict[str, float]:
-    """Mean errors of the measurements; those of places have no sign."""
-    return {
-        name: float(np.mean([one[name] for one in records]))
-        for name in _names(records)
-        if not name.startswith("position_px")
-    }
+def _rms(errors: Floats) -> float:
+    return float(np.sqrt(np.mean(errors**2)))
