@@ -54,7 +54,24 @@ def test_gaussians_sampled_as_points_are_found_exactly():
     assert found.psf.sigma_x_px == pytest.approx(0.7, abs=1e-4)
     assert found.psf.sigma_y_px == pytest.approx(0.8, abs=1e-4)
     assert [one.row for one in found.mirrors] == pytest.approx(places[:, 0], abs=1e-4)
-    assert found.peak_over_background == pytest.approx(9.0, rel=0.01)
+    assert found.aligned.peak_over_background == pytest.approx(9.0, rel=0.01)
+
+
+def test_for_images_of_its_own_model_the_stated_deviations_are_the_scatter():
+    rows, cols = np.indices((80, 32))
+    u, v = np.array([0.25, 0.0]), np.array([0.0, 0.25])
+    truth = GaussianPsf(0.7, 0.8, NO_ERROR).otf(u, v)
+    errors = []
+    for seed in range(30):
+        rng = np.random.default_rng([3, seed])
+        shift = rng.uniform(0, 1, (1, 2))
+        places = np.stack([12 + np.arange(6) * 10.2, 12 + np.arange(6) * 1.25], axis=1) + shift
+        image = 100 + rng.normal(scale=10.0, size=rows.shape)
+        for row, col in places:
+            image += 900 * np.exp(-0.5 * (((cols - col) / 0.7) ** 2 + ((rows - row) / 0.8) ** 2))
+        psf = sdsu_2003_mirrors(image, np.rint(places)).psf
+        errors.append((psf.otf(u, v) - truth).real / np.linalg.norm(psf.factor(u, v), axis=1))
+    assert 0.95 < np.sqrt(np.mean(np.square(errors))) < 1.3
 
 
 def test_windows_have_odd_sides():

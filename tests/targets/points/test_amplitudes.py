@@ -8,9 +8,9 @@ import pytest
 from acutance.numerics.marginal_likelihood import Prior, regress
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.points.amplitudes import averaged_posterior
-from acutance.targets.points.psf_prior import LOG_AMPLITUDE, LOG_AMPLITUDE_STD
+from acutance.targets.points.tuned import LOG_AMPLITUDE, LOG_AMPLITUDE_STD
 
-HALO, TAIL, FOOT = 2, 3, 5
+HALO, TAIL, WINGS = 2, 3, 5
 OTHERS = [0, 1, 4, 5, 6]
 
 
@@ -44,5 +44,5 @@ def test_what_is_not_seen_may_be_as_large_as_the_grid_and_the_prior_allow():
     std = np.linalg.norm(found.factor, axis=1)
     assert found.beta[HALO] == pytest.approx(0, abs=1e-12)
     assert np.exp(LOG_AMPLITUDE[HALO]) < std[HALO] < np.exp(-1.0)
-    assert found.beta[FOOT] == pytest.approx(0.02, abs=2e-3)
-    assert std[FOOT] == pytest.approx(1e-3, rel=0.2)
+    assert found.beta[WINGS] == pytest.approx(0.02, abs=2e-3)
+    assert std[WINGS] == pytest.approx(1e-3, rel=0.2)

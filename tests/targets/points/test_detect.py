@@ -7,7 +7,7 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 from acutance import optics, simulate
-from acutance.targets.points.detect import find_spots, sort_spots
+from acutance.targets.points.detect import find_spots, match_spots, sort_spots
 
 SENSOR = optics.Sensor([optics.Gaussian(0.45), optics.Detector()])
 PLACES = np.array(
@@ -24,12 +24,12 @@ def scene():
 
 
 def sorted_by_reason(image, saturation=None):
-    spots, missing, residual, noise = find_spots(image)
+    spots, residual, noise = find_spots(image)
     kept, rejected = sort_spots(
         image, residual, spots,
         saturation=saturation, noise=noise, min_snr=10.0, min_distance_px=4.0,
     )  # fmt: skip
-    return kept, {(round(one.row), round(one.col)): one.reason for one in (*missing, *rejected)}
+    return kept, {(round(one.row), round(one.col)): one.reason for one in rejected}
 
 
 def test_all_sources_are_found_where_they_are(scene):
@@ -77,13 +77,13 @@ def test_no_source_is_rejected_for_its_phase_or_its_noise(sigma_px):
 
 
 def test_two_places_of_one_source_are_one_source(scene):
-    spots, missing, _, _ = find_spots(scene, np.array([[20.0, 20.0], [20.9, 20.4]]))
+    spots, missing = match_spots(find_spots(scene)[0], np.array([[20.0, 20.0], [20.9, 20.4]]))
     assert len(spots) == 1
     assert [one.reason for one in missing] == ["no source"]
 
 
 def test_a_place_without_light_is_said_to_be_empty(scene):
-    spots, missing, _, _ = find_spots(scene, np.array([[20.0, 20.0], [50.0, 40.0]]))
+    spots, missing = match_spots(find_spots(scene)[0], np.array([[20.0, 20.0], [50.0, 40.0]]))
     assert len(spots) == 1
     assert [one.reason for one in missing] == ["no source"]
 

@@ -1,23 +1,30 @@
 """Point sources: arrays of convex mirrors, lamps, stars of the sky.
 
-In the order data take: `detect` (bright spots; `moments` tells what they are), `stamps` (the
-pixels around each), `first_fit` (one Gaussian through a pixel for all), `fit` (the joint fit, with
-`per_source`, `noise`, `background`, `psf`, `psf_prior`, `airy`, `amplitudes`), `points` (the public
-function), `sources` (every source as evidence), `survey` (against surveyed places), `checks`,
-`published` (the Gaussian of the report of 2003).
+In the order data take: `detect` (bright spots; `moments` gives their shapes), `selection` (which
+of them are measured), `stamps` (the pixels around each), `first_fit` (one Gaussian through a pixel
+for all), `fit` (the joint fit, with `per_source`, `noise`, `background`, `psf`, `psf_prior`,
+`airy`, `amplitudes`), `sources` (the numbers of each), `survey` (against surveyed places),
+`checks`, `points_measurement` (the result), `points` (the public function); `published` (the
+Gaussian of the report of 2003), `options`, and `tuned` (every tuned number, and what set it).
 """
 
-from acutance.targets.points.options import PointsLimits, PointsOptions
-from acutance.targets.points.points import POINTS_METHODS, PointsMeasurement, measure_points
-from acutance.targets.points.sources import PointSource
+from acutance.targets.points.checks import POINTS_CHECKS
+from acutance.targets.points.options import PointsOptions
+from acutance.targets.points.points import POINTS_METHODS, measure_points
+from acutance.targets.points.points_measurement import PointsDetails, PointsMeasurement
+from acutance.targets.points.published import AlignedFit
+from acutance.targets.points.sources import PointSource, SourceStamp
 from acutance.targets.points.survey import SurveyErrors, survey_errors
 
 __all__ = [
+    "POINTS_CHECKS",
     "POINTS_METHODS",
+    "AlignedFit",
     "PointSource",
-    "PointsLimits",
+    "PointsDetails",
     "PointsMeasurement",
     "PointsOptions",
+    "SourceStamp",
     "SurveyErrors",
     "measure_points",
     "survey_errors",

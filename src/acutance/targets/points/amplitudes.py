@@ -1,8 +1,9 @@
-"""Which prior amplitudes of the PSF the data favour, and what follows where they do not say.
+"""Which prior amplitudes of the PSF the data favour, and what follows where they are open.
 
-The evidence can have several modes: the same pixels may show the wings of an aperture, or none and
-a more crooked core. While the sources still move, the likeliest mode is followed; at the end the
-amplitudes of the wings are integrated over, so that what is not seen enters the uncertainty.
+The marginal likelihood can have several modes: the same pixels may show the wings of an aperture,
+or none and a more crooked core. While the sources still move, the likeliest mode is followed; at
+the end the amplitudes of the wings are integrated over, so that what is not seen enters the
+uncertainty.
 """
 
 from __future__ import annotations
@@ -17,20 +18,19 @@ from scipy.linalg import solve_triangular
 from acutance.curves.grid import Floats
 from acutance.numerics.marginal_likelihood import Posterior, Prior, evidence_of, regress, whiten
 from acutance.numerics.normal_equations import Normal
+from acutance.targets.points import tuned
 from acutance.targets.points.per_source import Blocks
 
-__all__ = ["averaged_posterior", "likelier_growth", "likelier_posterior"]
+__all__ = [
+    "averaged_posterior",
+    "determined_directions",
+    "likelier_posterior",
+    "likeliest_growth",
+]
 
-# SHAPE, DETAIL, HALO, TAIL, APERTURE, FOOT, AIRY as in `psf_prior`: where the search begins.
-_LIGHT_FAR_OUT: Final[Floats] = np.array([-3.5, -4.0, -6.0, -4.5, -3.0, -2.0, -0.3])
+# Places in SHAPE, DETAIL, HALO, TAIL, APERTURE, WINGS, AIRY.
 _HALO, _TAIL = 2, 3
-_GRID: Final = (-6.0, -5.2, -4.4, -3.6, -2.8, -2.0, -1.2)
-_SMALL: Final = -4.5
-_LEAST_WEIGHT: Final = 0.003
-_BRIGHTEST_OVER_DARK: Final = (0.5, 1.5, 4.5, 13.5, 40.5, 121.5, 364.5)
-"""Variances of the noise a brightest pixel may have beyond that of a dark one, over the latter."""
-_CLEARLY: Final = 2.0
-_FELT: Final = 0.02
+_MIN_WEIGHT: Final = 0.003
 
 
 def likelier_posterior(
@@ -40,7 +40,7 @@ def likelier_posterior(
 
     The parameters are those of `acutance.numerics.marginal_likelihood.regress`.
     """
-    starts = [_from(prior, variance, _LIGHT_FAR_OUT), earlier]
+    starts = [_from(prior, variance, tuned.LIGHT_FAR_OUT), earlier]
     found = [regress(normal, prior, variance, inflation, start) for start in starts]
     return max(found, key=lambda one: _evidence_of(normal, prior, one, inflation))
 
@@ -51,7 +51,7 @@ def averaged_posterior(
     """The posterior with the amplitudes of HALO and TAIL integrated over.
 
     At the likeliest amplitudes alone, wings that the data neither show nor exclude would be taken
-    for absent. Either amplitude runs over a grid, each point weighted by its evidence; what the
+    for absent. Either amplitude runs over a grid, each point weighted by its likelihood; what the
     other amplitudes leave open enters to first order, those two held: the grid has their share.
 
     Parameters
@@ -63,11 +63,11 @@ def averaged_posterior(
     """
     noise = likeliest.variance * inflation
     mode = likeliest.log_amplitude
-    points = [mode, *(_at(mode, _HALO, _TAIL, a) for a in _GRID)]
-    points += [_at(mode, _TAIL, _HALO, a) for a in _GRID]
-    evidence = np.array([_log_evidence(normal, prior, point, noise) for point in points])
-    weights = np.exp(evidence - evidence.max())
-    weights[weights < _LEAST_WEIGHT * weights.sum()] = 0.0
+    points = [mode, *(_at(mode, _HALO, _TAIL, a) for a in tuned.AMPLITUDE_GRID)]
+    points += [_at(mode, _TAIL, _HALO, a) for a in tuned.AMPLITUDE_GRID]
+    likelihood = np.array([_log_evidence(normal, prior, point, noise) for point in points])
+    weights = np.exp(likelihood - likelihood.max())
+    weights[weights < _MIN_WEIGHT * weights.sum()] = 0.0
     weights /= weights.sum()
     kept = [
         (weight, whiten(normal, prior, point, noise))
@@ -97,8 +97,10 @@ def _share_of_others(normal: Normal, prior: Prior, mode: Floats, noise: float) -
     return np.asarray(white.sigma[:, None] * (found.moves[:, others] @ spread))
 
 
-def felt_directions(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Floats:
-    """Combinations of coefficients, of unit prior variance, that the data say something of.
+def determined_directions(
+    normal: Normal, prior: Prior, log_amplitude: Floats, noise: float
+) -> Floats:
+    """Combinations of coefficients, of unit prior variance, that the data determine in part.
 
     Returns
     -------
@@ -107,13 +109,13 @@ def felt_directions(normal: Normal, prior: Prior, log_amplitude: Floats, noise: 
     """
     sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
     power, axes = np.linalg.eigh(sigma[:, None] * normal.gram * (sigma / noise))
-    return np.asarray(sigma[:, None] * axes[:, power > _FELT])
+    return np.asarray(sigma[:, None] * axes[:, power > tuned.DETERMINED_POWER])
 
 
-def likelier_growth(
+def likeliest_growth(
     solved: Callable[[float], tuple[Blocks, float]], noise: float, brightest: float
 ) -> float:
-    """How much the noise grows with the light, by the evidence.
+    """How much the noise grows with the light, by the marginal likelihood.
 
     Parameters
     ----------
@@ -129,10 +131,10 @@ def likelier_growth(
     Returns
     -------
     float
-        0 where the evidence does not speak for growth clearly.
+        0 where growth is not clearly likelier than none.
     """
 
-    def evidence(growth: float) -> float:
+    def log_evidence(growth: float) -> float:
         blocks, weights = solved(growth)
         normal = blocks.normal
         precision = normal.gram / noise
@@ -143,10 +145,10 @@ def likelier_growth(
         volume = float(np.log(np.diagonal(lower)).sum())
         return 0.5 * (weights - misfit) - volume + blocks.log_volume
 
-    ratios = np.array(_BRIGHTEST_OVER_DARK)
-    values = np.array([evidence(ratio / brightest) for ratio in ratios.tolist()])
+    ratios = np.array(tuned.BRIGHTEST_OVER_DARK)
+    values = np.array([log_evidence(ratio / brightest) for ratio in ratios.tolist()])
     best = int(np.argmax(values))
-    if values[best] < evidence(0.0) + _CLEARLY:
+    if values[best] < log_evidence(0.0) + tuned.GROWTH_LOG_EVIDENCE:
         return 0.0
     place = float(np.clip(best, 1, ratios.size - 2))
     below, middle, above = values[int(place) - 1 : int(place) + 2].tolist()
@@ -160,12 +162,12 @@ def _at(mode: Floats, varied: int, other: int, log_amplitude: float) -> Floats:
     """The mode with one amplitude of the wings set, and the other one small."""
     point = mode.copy()
     point[varied] = log_amplitude
-    point[other] = min(float(mode[other]), _SMALL)
+    point[other] = min(float(mode[other]), tuned.SMALL_LOG_AMPLITUDE)
     return point
 
 
 def _from(prior: Prior, variance: float, log_amplitude: Floats) -> Posterior:
-    """A posterior that says nothing but where to begin."""
+    """A posterior that holds nothing but where to begin."""
     nothing = np.zeros(prior.block.size)
     return Posterior(nothing, nothing[:, None], log_amplitude, variance, 0.0)
 

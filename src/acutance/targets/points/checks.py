@@ -1,12 +1,7 @@
-"""Are these point sources good enough to tell?
-
-Sources: Helder et al., the QuickBird report of 2003, 5.7.2 and 6; Li et al., "On-orbit MTF
-estimation methods", 2.2.
-"""
+"""Are these point sources good enough for a measurement?"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,159 +9,135 @@ from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
 from acutance.numerics.noise import Correlation
-from acutance.targets.measurement import Check
-from acutance.targets.points.options import PointsLimits
+from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.points.sources import PointSource
 from acutance.targets.points.survey import SurveyErrors
-from acutance.targets.straight.check_data import MUCH, at_least, at_most
 
-__all__ = ["check_points", "check_survey", "phase_gap_px"]
+__all__ = ["POINTS_CHECKS", "check_points", "check_survey", "phase_gap_px"]
+
+POINTS_CHECKS = (
+    "sources",
+    "peak_snr",
+    "spacing_px",
+    "phase_gap_px",
+    "background_uniformity",
+    "source_misfit",
+    "full_scale",
+    "correlated_noise",
+    "outliers",
+    "survey_px",
+)
+"""Names of all checks of point sources; `acutance.targets.QUESTIONS` says what they ask."""
 
 _PHASES = 21
+_MIN_ABOUT_PLANE = 5
 
 
 def check_points(
     sources: Sequence[PointSource],
-    limits: PointsLimits,
+    limits: Limits,
     *,
-    saturation: float | None,
+    full_scale: float | None = None,
     correlation: Correlation | None = None,
-    outlier_share: float | None = None,
+    outliers: float | None = None,
 ) -> tuple[Check, ...]:
     """All checks of an array of point sources.
 
     Parameters
     ----------
     sources : sequence of PointSource
-    limits : PointsLimits
-    saturation : float or None
-        The detector's limit.
+    limits : mapping of str to float
+        Limits the caller changed.
+    full_scale : float, optional
+        The brightest pixel of a source over the detector's limit, where that is known.
     correlation : Correlation, optional
         Of the noise, where the method knows it.
-    outlier_share : float, optional
+    outliers : float, optional
         Share of outlying pixels, where the method knows it.
     """
     checks = [
-        _count(sources, limits),
-        _snr(sources, limits),
+        answer("sources", len(sources), f"{len(sources)} sources were measured", limits),
+        _peak_snr(sources, limits),
         _spacing(sources, limits),
-        _phases(sources, limits),
-        _ground(sources, limits),
-        _misfit(sources, limits),
+        _phase_gap(sources, limits),
+        _background_uniformity(sources, limits),
+        _source_misfit(sources, limits),
     ]
-    if saturation is not None:
-        checks.append(_full_scale(sources, limits, saturation))
+    if full_scale is not None:
+        found = f"the brightest pixel is at {100 * full_scale:.0f} % of the detector's range"
+        checks.append(answer("full_scale", full_scale, found, limits))
     if correlation is not None:
-        checks.append(
-            at_most(
-                "correlated_noise",
-                abs(correlation.strongest),
-                limits.correlated_noise,
-                f"the noise of neighbouring pixels is correlated by {correlation.strongest:+.2f}: "
-                "the image was resampled, or the fit leaves structure; the intervals allow for it",
-            )
-        )
-    if outlier_share is not None:
-        checks.append(
-            at_most(
-                "outliers",
-                outlier_share,
-                limits.outliers,
-                f"{100 * outlier_share:.1f} % of the pixels lie far from the fit and lost weight",
-            )
-        )
+        found = f"the noise of neighbouring pixels is correlated by {correlation.strongest:+.2f}"
+        checks.append(answer("correlated_noise", correlation.significant, found, limits))
+    if outliers is not None:
+        found = f"{100 * outliers:.1f} % of the pixels lie far from the fit"
+        checks.append(answer("outliers", outliers, found, limits))
     return tuple(checks)
 
 
-def check_survey(survey: SurveyErrors, limits: PointsLimits) -> Check:
+def check_survey(survey: SurveyErrors, limits: Limits) -> Check:
     """Whether the measured places agree with the surveyed ones."""
     across, along = survey.rmse_px
-    worst = max(across, along)
-    centimetres = survey.rmse_cm
-    words = "" if centimetres is None else f", {centimetres[0]:.2f} and {centimetres[1]:.2f} cm"
-    return at_most(
-        "survey_px", worst, limits.survey_px,
+    found = (
         f"surveyed and measured places differ by {across:.3f} px across and {along:.3f} px along "
-        f"rms{words} (0.017 to 0.047 px in the field: QuickBird report, 5.7.3)",
-    )  # fmt: skip
+        "rms"
+    )
+    if survey.rmse_cm is not None:
+        found += f", {survey.rmse_cm[0]:.2f} and {survey.rmse_cm[1]:.2f} cm"
+    return answer("survey_px", max(across, along), found, limits)
 
 
 def phase_gap_px(phases: Floats) -> float:
-    """Largest distance of any sub-pixel phase from the nearest of some phases (n, 2)."""
+    """Largest distance of any sub-pixel phase from the nearest of some phases, (n, 2)."""
     steps = (np.arange(_PHASES) + 0.5) / _PHASES
     rows, cols = np.meshgrid(steps, steps)
     tree = cKDTree(np.mod(phases, 1.0), boxsize=1.0)
     return float(tree.query(np.stack([rows.ravel(), cols.ravel()], axis=1))[0].max())
 
 
-def _count(sources: Sequence[PointSource], limits: PointsLimits) -> Check:
-    return at_least(
-        "sources", float(len(sources)), limits.sources,
-        f"{len(sources)} sources were measured; 15 to 20 give a reasonable result "
-        "(Li et al. 2.2)",
-    )  # fmt: skip
+def _peak_snr(sources: Sequence[PointSource], limits: Limits) -> Check:
+    snr = min(float(np.median([one.snr for one in sources])), MAX_RATIO)
+    found = f"the median source's peak is {snr:.0f} times the background's noise"
+    return answer("peak_snr", snr, found, limits)
 
 
-def _snr(sources: Sequence[PointSource], limits: PointsLimits) -> Check:
-    snr = min(float(np.median([one.snr for one in sources])), MUCH)
-    return at_least(
-        "peak_snr", snr, limits.peak_snr,
-        f"the median source's peak is {snr:.0f} times the background's noise "
-        "(QuickBird report, 3.6)",
-    )  # fmt: skip
+def _spacing(sources: Sequence[PointSource], limits: Limits) -> Check:
+    if len(sources) == 1:
+        return answer("spacing_px", MAX_RATIO, "there is one source alone", limits)
+    nearest = min(float(cKDTree(_places(sources)).query(_places(sources), 2)[0].max(1).min()),
+                  MAX_RATIO)  # fmt: skip
+    found = f"the two nearest sources are {nearest:.1f} px apart"
+    return answer("spacing_px", nearest, found, limits)
 
 
-def _spacing(sources: Sequence[PointSource], limits: PointsLimits) -> Check:
-    places = np.array([(one.row.value, one.col.value) for one in sources])
-    away = cKDTree(places).query(places, 2)[0][:, 1] if len(sources) > 1 else np.array([math.inf])
-    nearest = min(float(away.min()), MUCH)
-    return at_least(
-        "spacing_px", nearest, limits.spacing_px,
-        f"the two nearest sources are {nearest:.1f} px apart "
-        "(QuickBird report, 5.7.2; Li et al. 2.2: at least 5)",
-    )  # fmt: skip
-
-
-def _phases(sources: Sequence[PointSource], limits: PointsLimits) -> Check:
+def _phase_gap(sources: Sequence[PointSource], limits: Limits) -> Check:
     gap = phase_gap_px(np.array([one.phase for one in sources]))
-    return at_most(
-        "phase_gap_px", gap, limits.phase_gap_px,
-        f"the sub-pixel phases leave a gap of {gap:.2f} px; steps of 0.2 by 0.25 px leave 0.16 "
-        "(QuickBird report, 5.7.2)",
-    )  # fmt: skip
+    found = f"the sub-pixel phases leave a gap of {gap:.2f} px"
+    return answer("phase_gap_px", gap, found, limits)
 
 
-def _ground(sources: Sequence[PointSource], limits: PointsLimits) -> Check:
-    """Spread of the backgrounds about a plane."""
+def _background_uniformity(sources: Sequence[PointSource], limits: Limits) -> Check:
+    """Scatter of the backgrounds about a plane, or about their mean if they are few."""
     levels = np.array([one.background.value for one in sources])
-    places = np.array([(1.0, one.row.value, one.col.value) for one in sources])
-    if len(sources) > 4:
-        levels = levels - places @ np.linalg.lstsq(places, levels, rcond=None)[0]
-    else:
-        levels = levels - levels.mean()
+    columns = np.ones((len(sources), 1))
+    if len(sources) >= _MIN_ABOUT_PLANE:
+        columns = np.hstack([columns, _places(sources)])
+    levels = levels - columns @ np.linalg.lstsq(columns, levels, rcond=None)[0]
     peak = float(np.median([one.peak for one in sources]))
-    value = float(np.sqrt(np.mean(levels**2))) / peak
-    return at_most(
-        "ground", value, limits.ground,
-        f"the backgrounds of the sources differ by {100 * value:.1f} % of the median peak "
-        "(QuickBird report, 4.4: a uniform grassy area)",
-    )  # fmt: skip
+    scatter = float(np.sqrt(np.mean(levels**2))) / peak
+    found = f"the backgrounds of the sources differ by {100 * scatter:.1f} % of the median peak"
+    return answer("background_uniformity", scatter, found, limits)
 
 
-def _misfit(sources: Sequence[PointSource], limits: PointsLimits) -> Check:
+def _source_misfit(sources: Sequence[PointSource], limits: Limits) -> Check:
     worst = max(sources, key=lambda one: one.misfit)
-    value = min(worst.misfit, MUCH)
-    return at_most(
-        "source_misfit", value, limits.source_misfit,
+    misfit = min(worst.misfit, MAX_RATIO)
+    found = (
         f"the residuals of the source at row {worst.row.value:.1f}, column {worst.col.value:.1f} "
-        f"are {value:.1f} times the noise: it is no point, or the PSF differs over the region",
-    )  # fmt: skip
+        f"are {misfit:.1f} times the noise"
+    )
+    return answer("source_misfit", misfit, found, limits)
 
 
-def _full_scale(sources: Sequence[PointSource], limits: PointsLimits, saturation: float) -> Check:
-    value = max(float(np.nanmax(one.pixels)) for one in sources) / saturation
-    return at_most(
-        "full_scale", value, limits.full_scale,
-        f"the brightest pixel is at {100 * value:.0f} % of the detector's range; about 75 % is "
-        "best (Li et al. 2.2)",
-    )  # fmt: skip
+def _places(sources: Sequence[PointSource]) -> Floats:
+    return np.array([(one.row.value, one.col.value) for one in sources])

@@ -1,7 +1,7 @@
 """Where the point sources of an image are, and which of its bright spots are none.
 
 A spot is a local maximum of the image, smoothed a little, that stands out of the noise. Whether
-it serves is asked one question after the other; what does not serve is kept with its reason:
+it is usable is asked one question after the other; what is not is kept with its reason:
 
 - ``edge``: pixels around it are missing;
 - ``saturated``: a pixel reached the detector's limit;
@@ -25,29 +25,21 @@ from scipy.ndimage import gaussian_filter, map_coordinates, maximum_filter
 from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
+from acutance.numerics.clipping import piled_up_share
 from acutance.numerics.noise import robust_scale
+from acutance.targets.points import tuned
 from acutance.targets.points.moments import SpotShape, spot_shape
 
-__all__ = ["RejectedSpot", "Spot", "find_spots", "sort_spots"]
+__all__ = ["RejectedSpot", "Spot", "find_spots", "match_spots", "sort_spots"]
 
 CLEAR_PX: Final = 3
 """Pixels that have to be there on all sides of a source."""
 _SMOOTHING_PX: Final = 0.7
 _BLOCK_PX: Final = 24
-_STANDS_OUT: Final = 6.0
-_MOST_SPOTS: Final = 2000
-_LEAST_NEIGHBOURS: Final = 0.12
-"""Light of the eight neighbours, or what is missing there, over that of the pixel: a Gaussian of
-0.3 px seen through the pixel right in its middle gives 0.22."""
-_LEAST_COMPARED: Final = 4
-_NARROW, _WIDE = 0.75, 1.9
-_LEAST_LACK_PX2: Final = 0.06
-"""So much less than the others a cosmic ray's variance is in any case: where optics leave next to
-none, ratios say nothing."""
-_LESSER_BLEND: Final = 0.05
-_LOBE_PX: Final = 6.0
+_MAX_SPOTS: Final = 2000
+_MAX_AWAY_PX: Final = 1.5
 _RING_PX: Final = 4
-_LEAST_RING: Final = 16
+_MIN_RING: Final = 16
 
 
 @dataclass(frozen=True)
@@ -56,6 +48,8 @@ class Spot:
 
     Parameters
     ----------
+    top : (int, int)
+        Row and column of the local maximum.
     shape : SpotShape
         Where it is, and how wide.
     peak : float
@@ -64,6 +58,7 @@ class Spot:
         The same over the noise.
     """
 
+    top: tuple[int, int]
     shape: SpotShape
     peak: float
     snr: float
@@ -81,7 +76,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class RejectedSpot:
-    """A bright spot, or a place that was given, that does not serve.
+    """A bright spot, or a place that was stated, that is not usable.
 
     Parameters
     ----------
@@ -99,26 +94,20 @@ class RejectedSpot:
     message: str
 
 
-def find_spots(
-    image: Floats, places: Floats | None = None
-) -> tuple[tuple[Spot, ...], tuple[RejectedSpot, ...], Floats, float]:
-    """All bright spots, or those near given places.
+def find_spots(image: Floats) -> tuple[tuple[Spot, ...], Floats, float]:
+    """All bright spots.
 
     Parameters
     ----------
     image : (rows, cols) array
         NaN where there is no data.
-    places : (n, 2) array, optional
-        Approximate (row, col), to 1.5 px; all spots of the image without them.
 
     Returns
     -------
     spots : tuple of Spot
-        Brightest first, or in the order of `places`.
-    rejected : tuple of RejectedSpot
-        Places at which there is no spot.
+        Brightest first.
     residual : (rows, cols) array
-        The image less its background.
+        The image minus its background.
     noise : float
         Standard deviation of the background's noise.
     """
@@ -128,38 +117,42 @@ def find_spots(
     smooth = gaussian_filter(residual, _SMOOTHING_PX)
     tops = (smooth == maximum_filter(smooth, 3)) & known
     # Smoothing leaves this share of white noise.
-    level = _STANDS_OUT * noise / (2 * np.sqrt(np.pi) * _SMOOTHING_PX)
+    level = tuned.STANDS_OUT * noise / (2 * np.sqrt(np.pi) * _SMOOTHING_PX)
     rows, cols = np.nonzero(tops & (smooth > level))
-    order = np.argsort(-smooth[rows, cols])[:_MOST_SPOTS]
-    middles = np.stack([rows[order], cols[order]], axis=1)
-    middles = middles[~_lobes(middles, smooth[rows[order], cols[order]])]
-    if places is None:
-        found = [_spot(residual, middle, noise) for middle in middles]
-        return tuple(found), (), residual, noise
-    spots, missing, taken = [], [], set()
+    order = np.argsort(-smooth[rows, cols])[:_MAX_SPOTS]
+    found = np.stack([rows[order], cols[order]], axis=1)
+    found = found[~_lobes(found, smooth[rows[order], cols[order]])]
+    spots = tuple(_spot(residual, (row, col), noise) for row, col in found.tolist())
+    return spots, residual, noise
+
+
+def match_spots(
+    spots: Sequence[Spot], places: Floats
+) -> tuple[tuple[Spot, ...], tuple[RejectedSpot, ...]]:
+    """The spots nearest to some places, (n, 2), to 1.5 px, and the places that have none."""
+    tops = np.array([one.top for one in spots], float).reshape(-1, 2)
+    matched, missing = [], []
     for row, col in places.tolist():
-        near = np.hypot(middles[:, 0] - row, middles[:, 1] - col)
-        nearest = int(near.argmin()) if near.size else -1
-        if not near.size or near[nearest] > 1.5:
+        away = np.hypot(tops[:, 0] - row, tops[:, 1] - col)
+        nearest = spots[int(away.argmin())] if away.size else None
+        if nearest is None or float(away.min()) > _MAX_AWAY_PX:
             fault = "no light stands out of the noise there"
-        elif nearest in taken:
+        elif nearest in matched:
             fault = "the source there was named by an earlier place"
         else:
-            spots.append(_spot(residual, middles[nearest], noise))
-            taken.add(nearest)
+            matched.append(nearest)
             continue
         missing.append(RejectedSpot(row, col, "no source", fault))
-    return tuple(spots), tuple(missing), residual, noise
+    return tuple(matched), tuple(missing)
 
 
-def _lobes(middles: NDArray[np.intp], light: Floats) -> NDArray[np.bool_]:
+def _lobes(tops: NDArray[np.intp], light: Floats) -> NDArray[np.bool_]:
     """Which spots are far fainter than one nearby: rings and lobes of its image."""
     if not light.size:
         return np.zeros(0, bool)
-    tree = cKDTree(middles)
-    near = tree.query_ball_point(middles, _LOBE_PX)
+    near = cKDTree(tops).query_ball_point(tops, tuned.LOBE_PX)
     brightest = np.array([light[one].max() for one in near])
-    return np.asarray(light < _LESSER_BLEND * brightest)
+    return np.asarray(light < tuned.LOBE_SHARE * brightest)
 
 
 def _background(image: Floats) -> Floats:
@@ -190,26 +183,26 @@ def _in_blocks(length: int, borders: NDArray[np.intp]) -> Floats:
     return np.interp(np.arange(length), centres, np.arange(centres.size))
 
 
-def _spot(residual: Floats, middle: NDArray[np.intp], noise: float) -> Spot:
+def _spot(residual: Floats, top: tuple[int, int], noise: float) -> Spot:
     """Peak and shape of what is around the brightest pixel nearby."""
-    row, col = (int(number) for number in middle)
+    row, col = top
     window = residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2]
     up, left = np.unravel_index(int(np.argmax(window)), window.shape)
     row, col = max(row - 1, 0) + int(up), max(col - 1, 0) + int(left)
     peak = float(residual[row, col])
-    ground, rough = _ground_around(residual, row, col)
-    shape = spot_shape(residual - ground, (row, col), max(noise, rough))
-    return Spot(shape, peak, peak / noise)
+    background, rough = _ring_around(residual, row, col)
+    shape = spot_shape(residual, (row, col), max(noise, rough), background)
+    return Spot(top, shape, peak, peak / noise)
 
 
-def _ground_around(residual: Floats, row: int, col: int) -> tuple[float, float]:
+def _ring_around(residual: Floats, row: int, col: int) -> tuple[float, float]:
     """Level and roughness of the ring of pixels around a spot: grass is not the block's median."""
     top, side = max(row - _RING_PX, 0), max(col - _RING_PX, 0)
     part = residual[top : row + _RING_PX + 1, side : col + _RING_PX + 1]
     down, right = np.arange(top, top + part.shape[0]), np.arange(side, side + part.shape[1])
     away = np.maximum(np.abs(down - row)[:, None], np.abs(right - col))
     ring = part[away >= CLEAR_PX]
-    if ring.size < _LEAST_RING:
+    if ring.size < _MIN_RING:
         return 0.0, 0.0
     level = float(np.median(ring))
     # Two standard deviations of a scale from so few pixels are chance.
@@ -227,7 +220,7 @@ def sort_spots(
     min_distance_px: float,
     rivals: Sequence[Spot] | None = None,
 ) -> tuple[tuple[Spot, ...], tuple[RejectedSpot, ...]]:
-    """The spots that serve, and the others with their reasons.
+    """The usable spots, and the others with their reasons.
 
     Parameters
     ----------
@@ -235,12 +228,12 @@ def sort_spots(
         As `find_spots` takes and gives them.
     spots : sequence of Spot
     saturation : float or None
-        The detector's limit; without it, the largest value where several pixels share it.
+        The detector's limit; without it, the largest value where pixels pile up at it.
     noise : float
     min_snr : float
-        Least peak over the noise.
+        Minimum peak over the noise.
     min_distance_px : float
-        Least distance to another source that is not much fainter.
+        Minimum distance to another source that is not much fainter.
     rivals : sequence of Spot, optional
         All spots of the image, if `spots` are only some of them.
     """
@@ -256,7 +249,7 @@ def sort_spots(
         reason = fault
         if reason is None and one.snr < min_snr:
             reason = "faint", f"its peak is {one.snr:.1f} times the noise, {min_snr:g} are asked"
-        if reason is None and len(usual) >= _LEAST_COMPARED:
+        if reason is None and len(usual) >= tuned.MIN_COMPARED:
             reason = _compared(one, *np.median(shapes, axis=0).tolist())
         if reason is None:
             reason = _crowded(one, others, min_distance_px)
@@ -268,10 +261,9 @@ def sort_spots(
 
 
 def _limit(image: Floats) -> float:
-    """The largest value, where three pixels have it: a detector's limit."""
+    """The largest value, where pixels pile up at it: a detector's limit."""
     known = image[np.isfinite(image)]
-    top = float(known.max())
-    return top if np.count_nonzero(known == top) >= 3 else np.inf
+    return float(known.max()) if piled_up_share(known) > 0 else math.inf
 
 
 def _own_fault(
@@ -291,7 +283,7 @@ def _own_fault(
     around = np.abs(residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2])
     # Eight moduli of noise have this mean, and two of their standard deviations are taken off.
     neighbours = float(around.sum()) - abs(peak) - (8 * 0.80 - 2 * np.sqrt(8.0) * 0.60) * noise
-    if whole and neighbours < _LEAST_NEIGHBOURS * peak:
+    if whole and neighbours < tuned.MIN_NEIGHBOUR_SHARE * peak:
         share = 100 * max(neighbours / peak, 0.0)
         return "hot pixel", f"its neighbours together hold {share:.0f} % of the brightest pixel"
     if np.any(clear[1:-1, 1:-1] >= limit):
@@ -302,10 +294,10 @@ def _own_fault(
 
 
 def _compared(one: Spot, narrow: float, wide: float) -> tuple[str, str] | None:
-    """What is wrong with a spot beside the others."""
+    """What is wrong with a spot, compared to the others."""
     shape = one.shape
     thin = max(shape.narrow_px2, 0.0)
-    if shape.narrow_at_most_px2 < min(_NARROW * narrow, narrow - _LEAST_LACK_PX2):
+    if shape.narrow_at_most_px2 < min(tuned.NARROW_RATIO * narrow, narrow - tuned.MIN_LACK_PX2):
         if shape.wide_px2 < narrow:
             return (
                 "hot pixel",
@@ -317,7 +309,7 @@ def _compared(one: Spot, narrow: float, wide: float) -> tuple[str, str] | None:
             "cosmic ray",
             f"its minor axis has a variance of {thin:.2f} px², the others {narrow:.2f}",
         )
-    if shape.wide_at_least_px2 > _WIDE * wide:
+    if shape.wide_at_least_px2 > tuned.WIDE_RATIO * wide:
         return (
             "blended",
             f"its major axis has a variance of {shape.wide_px2:.2f} px², the others {wide:.2f}",
@@ -328,6 +320,6 @@ def _compared(one: Spot, narrow: float, wide: float) -> tuple[str, str] | None:
 def _crowded(one: Spot, others: Sequence[Spot], distance_px: float) -> tuple[str, str] | None:
     for other in others:
         away = float(np.hypot(one.row - other.row, one.col - other.col))
-        if 0.5 < away < distance_px and other.peak > _LESSER_BLEND * one.peak:
+        if 0.5 < away < distance_px and other.peak > tuned.LOBE_SHARE * one.peak:
             return "blended", f"another source is {away:.1f} px away, {distance_px:g} px are asked"
     return None

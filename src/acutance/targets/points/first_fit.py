@@ -1,4 +1,4 @@
-"""The start of every fit of points: one elliptical Gaussian through a pixel for all sources."""
+"""The first fit of points: one elliptical Gaussian through a pixel for all sources."""
 
 from __future__ import annotations
 
@@ -10,60 +10,55 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel_2d import FOOT_WIDTHS, BlurSlopes, PlaneBlur
 from acutance.numerics.noise import robust_scale
-from acutance.targets.points.per_source import eliminate
+from acutance.targets.points import tuned
+from acutance.targets.points.per_source import SourceProblem
 from acutance.targets.points.stamps import Stamps
 
-__all__ = ["BlurredPoints", "fit_blurred_points", "own_columns", "unlike_sources"]
+__all__ = ["FirstFit", "fit_first_gaussian", "own_columns", "unlike_sources"]
 
 _MAX_STEPS = 25
 _SETTLED = 3e-4
-_LONGEST_STEP_PX = 0.4
-_FOOT = (-0.6, 1.5)
+_MAX_STEP_PX = 0.4
+_WINGS_BOUNDS = (-0.6, 1.5)
 _SIGMAS_PX = (0.4, 0.7, 1.2, 2.0)
 _CORE_PX = 3.0
-_UNLIKE = 0.05
-_TIMES_USUAL = 3.0
 
 
 @dataclass(frozen=True, eq=False)
-class BlurredPoints:
-    """Sources seen through one plain blur with a foot.
+class FirstFit:
+    """Sources seen through one Gaussian, pixel and wings.
 
     Parameters
     ----------
     blur : PlaneBlur
-    foot : float
-        Share of a broader blur that is added: light around the core, or missing there.
+    wings : float
+        Share of a Gaussian twice as wide that is added: light around the core, or missing there.
     places : (k, 2) array
         Sources as (row, col).
     fluxes : (k,) array
         Light of each, summed over pixels.
-    grounds : (k, 3) array
+    backgrounds : (k, 3) array
         Background under each source, and its slopes down and to the right.
     residual : (n,) array
         What is left of every pixel.
     """
 
     blur: PlaneBlur
-    foot: float
+    wings: float
     places: Floats
     fluxes: Floats
-    grounds: Floats
+    backgrounds: Floats
     residual: Floats
 
-    def slopes(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
-        """The PSF, not normalised, and its slopes by x and y at places (x, y), (n,)."""
-        return self.both(self.blur.slopes(x, y), self.blur.widened(FOOT_WIDTHS).slopes(x, y))
-
-    def both(self, core: BlurSlopes, foot: BlurSlopes) -> tuple[Floats, Floats, Floats]:
-        """PSF and slopes, from those of core and foot."""
-        psf, by_x, by_y = (core[i] + self.foot * foot[i] for i in range(3))
+    def both(self, core: BlurSlopes, wings: BlurSlopes) -> tuple[Floats, Floats, Floats]:
+        """PSF and slopes, from those of core and wings."""
+        psf, by_x, by_y = (core[i] + self.wings * wings[i] for i in range(3))
         return psf, by_x, by_y
 
     def psf(self, x: Floats, y: Floats) -> Floats:
         """The PSF, not normalised, at places (x, y), (n,)."""
         core = self.blur.psf(x, y)
-        return core + self.foot * self.blur.widened(FOOT_WIDTHS).psf(x, y) if self.foot else core
+        return core + self.wings * self.blur.widened(FOOT_WIDTHS).psf(x, y) if self.wings else core
 
 
 def own_columns(
@@ -79,7 +74,7 @@ def own_columns(
     return np.stack([psf[0], -flux * psf[1], -flux * psf[2], np.ones(x.size), y, x], axis=1)
 
 
-def fit_blurred_points(stamps: Stamps, places: Floats) -> BlurredPoints:
+def fit_first_gaussian(stamps: Stamps, places: Floats) -> FirstFit:
     """Fit flux, place and background of every source, and one blur for all.
 
     Parameters
@@ -101,12 +96,12 @@ def fit_blurred_points(stamps: Stamps, places: Floats) -> BlurredPoints:
     return best
 
 
-def unlike_sources(stamps: Stamps, found: BlurredPoints) -> tuple[Floats, NDArray[np.bool_]]:
-    """How much each source departs from the common blur, and which ones do so unlike the others.
+def unlike_sources(stamps: Stamps, found: FirstFit) -> tuple[Floats, NDArray[np.bool_]]:
+    """What the common blur leaves of each source, and of which ones far more than of the others.
 
     Returns
     -------
-    departure : (k,) array
+    share : (k,) array
         Root mean square residual within three pixels, less what noise explains, over the peak.
     unlike : (k,) bool array
         Where that is significant, large, and several times what is usual.
@@ -116,70 +111,71 @@ def unlike_sources(stamps: Stamps, found: BlurredPoints) -> tuple[Floats, NDArra
     core = np.hypot(x, y) <= _CORE_PX
     count = np.maximum(np.bincount(stamps.owner[core], minlength=found.fluxes.size), 1)
     power = np.bincount(stamps.owner[core], found.residual[core] ** 2, found.fluxes.size) / count
-    peak = found.fluxes * found.blur.peak * (1 + found.foot / FOOT_WIDTHS**2)
-    departure = np.sqrt(np.maximum(power - noise**2, 0.0)) / peak
+    peak = found.fluxes * found.blur.peak * (1 + found.wings / FOOT_WIDTHS**2)
+    share = np.sqrt(np.maximum(power - noise**2, 0.0)) / peak
     surely = np.sqrt(np.maximum(power - noise**2 * (1 + 3 * np.sqrt(2 / count)), 0.0)) / peak
-    return departure, surely > max(_UNLIKE, _TIMES_USUAL * float(np.median(surely)))
+    usual = float(np.median(surely))
+    return share, surely > max(tuned.UNLIKE_SHARE, tuned.TIMES_USUAL * usual)
 
 
-def _cost(found: BlurredPoints) -> float:
+def _cost(found: FirstFit) -> float:
     return float(found.residual @ found.residual)
 
 
-def _levels(stamps: Stamps, places: Floats, sigma_px: float) -> BlurredPoints:
+def _levels(stamps: Stamps, places: Floats, sigma_px: float) -> FirstFit:
     """Fluxes and backgrounds for a round blur at given places."""
     blur = PlaneBlur(sigma_px**2, 0.0, sigma_px**2)
-    psf = blur.psf(*stamps.offsets(places))
+    values = blur.psf(*stamps.all_offsets(places))
+    psf = values[: stamps.value.size]
     ones = np.ones(places.shape[0])
     columns = own_columns(stamps, places, ones, (psf, psf, psf))[:, [0, 3, 4, 5]]
     empty = np.empty((stamps.value.size, 0))
     flat = np.ones(stamps.value.size)
-    own = eliminate(columns, empty, stamps.value, flat, stamps.starts).own(np.empty(0))
+    own = SourceProblem(columns, empty, stamps.value, stamps.starts).eliminated(flat).own(empty[0])
     fluxes = np.maximum(own[:, 0], 1e-9 * float(np.abs(own[:, 0]).max()))
-    return _seen(stamps, BlurredPoints(blur, 0.0, places, fluxes, own[:, 1:], flat))
+    found = FirstFit(blur, 0.0, places, fluxes, own[:, 1:], flat)
+    return replace(found, residual=_residual(stamps, found, values))
 
 
-def _seen(stamps: Stamps, found: BlurredPoints) -> BlurredPoints:
-    """The same with its residuals."""
-    light = stamps.seen(found.places, found.fluxes, found.psf)
-    columns = own_columns(stamps, found.places, found.fluxes, (light, light, light))[:, 3:]
-    ground = np.einsum("ij,ij->i", columns, found.grounds[stamps.owner])
-    return replace(found, residual=stamps.value - light - ground)
+def _residual(stamps: Stamps, found: FirstFit, values: Floats) -> Floats:
+    """What is left of every pixel, from the PSF at `Stamps.all_offsets`."""
+    light = stamps.summed(found.fluxes, values)
+    return stamps.value - light - stamps.levels(found.places, found.backgrounds)
 
 
-def _step(stamps: Stamps, found: BlurredPoints) -> tuple[Floats, Floats]:
-    """One Gauss-Newton step: of Sigma and foot, (4,), and of every source's unknowns, (k, 6)."""
+def _step(stamps: Stamps, found: FirstFit) -> tuple[Floats, Floats]:
+    """One Gauss-Newton step: of Sigma and wings, (4,), and of every source's unknowns, (k, 6)."""
     x, y = stamps.offsets(found.places)
-    core, foot = found.blur.slopes(x, y), found.blur.widened(FOOT_WIDTHS).slopes(x, y)
-    own = own_columns(stamps, found.places, found.fluxes, found.both(core, foot))
+    core, wings = found.blur.slopes(x, y), found.blur.widened(FOOT_WIDTHS).slopes(x, y)
+    own = own_columns(stamps, found.places, found.fluxes, found.both(core, wings))
     flux = found.fluxes[stamps.owner]
-    columns = [*core[3:6], foot.psf]
+    columns = [*core[3:6], wings.psf]
     shared = np.stack(columns, axis=1) * flux[:, None]
-    blocks = eliminate(own, shared, found.residual, np.ones(flux.size), stamps.starts)
+    problem = SourceProblem(own, shared, found.residual, stamps.starts)
+    blocks = problem.eliminated(np.ones(flux.size))
     normal = blocks.normal
     ridge = 1e-6 * normal.gram.diagonal() + 1e-300
     step = np.asarray(np.linalg.solve(normal.gram + np.diag(ridge), normal.projection), float)
     return step, blocks.own(step)
 
 
-def _bounded(
-    stamps: Stamps, found: BlurredPoints, shape: Floats, own: Floats
-) -> BlurredPoints | None:
+def _bounded(stamps: Stamps, found: FirstFit, shape: Floats, own: Floats) -> FirstFit | None:
     """The step, or the part of it that makes the residuals smaller; None if there is none."""
     moves = own[:, [2, 1]]
     longest = np.hypot(moves[:, 0], moves[:, 1])
-    moves = moves * np.minimum(1.0, _LONGEST_STEP_PX / np.maximum(longest, 1e-12))[:, None]
+    moves = moves * np.minimum(1.0, _MAX_STEP_PX / np.maximum(longest, 1e-12))[:, None]
     for share in (1.0, 0.4, 0.1, 0.02):
         fluxes = found.fluxes + share * own[:, 0]
-        tried = BlurredPoints(
+        tried = FirstFit(
             found.blur.moved(*(share * shape[:3]).tolist()),
-            float(np.clip(found.foot + share * shape[3], *_FOOT)),
+            float(np.clip(found.wings + share * shape[3], *_WINGS_BOUNDS)),
             found.places + share * moves,
             np.maximum(fluxes, 0.1 * found.fluxes),
-            found.grounds + share * own[:, 3:],
+            found.backgrounds + share * own[:, 3:],
             found.residual,
         )
-        tried = _seen(stamps, tried)
+        values = tried.psf(*stamps.all_offsets(tried.places))
+        tried = replace(tried, residual=_residual(stamps, tried, values))
         if _cost(tried) <= _cost(found):
             return tried
     return None

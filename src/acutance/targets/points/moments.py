@@ -14,15 +14,13 @@ import numpy as np
 from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
+from acutance.targets.points import tuned
 
 __all__ = ["SpotShape", "spot_shape"]
 
 _WINDOW_PX: Final = 1.2
 _HALF: Final = 2
 _CENTRINGS: Final = 6
-_DOUBT: Final = 3.0
-_LENIENCE_PX2: Final = 0.03
-"""What optics that are not Gaussian may add to a moment, or take away."""
 _PIXEL_PX2: Final = 1 / 12
 _PHASES: Final[Floats] = np.linspace(-0.5, 0.5, 21)
 _SIGMAS_PX: Final[Floats] = np.geomspace(0.05, 4.0, 60)
@@ -51,7 +49,9 @@ class SpotShape:
     wide_at_least_px2: float
 
 
-def spot_shape(residual: Floats, middle: tuple[int, int], noise: float) -> SpotShape:
+def spot_shape(
+    residual: Floats, middle: tuple[int, int], noise: float, background: float = 0.0
+) -> SpotShape:
     """Centroid and variances of what lies within two pixels of a spot's brightest pixel.
 
     Parameters
@@ -62,10 +62,12 @@ def spot_shape(residual: Floats, middle: tuple[int, int], noise: float) -> SpotS
         The brightest pixel.
     noise : float
         Standard deviation of the noise of a pixel.
+    background : float, optional
+        Level of `residual` around the spot.
     """
     row, col = middle
     top, side = max(row - _HALF, 0), max(col - _HALF, 0)
-    light = residual[top : row + _HALF + 1, side : col + _HALF + 1]
+    light = residual[top : row + _HALF + 1, side : col + _HALF + 1] - background
     rows = np.arange(top, top + light.shape[0]) - float(row)
     cols = np.arange(side, side + light.shape[1]) - float(col)
     y = x = 0.0
@@ -85,8 +87,8 @@ def spot_shape(residual: Floats, middle: tuple[int, int], noise: float) -> SpotS
     lean = float(dy @ seen @ dx) / total
     doubts = [
         np.hypot(
-            _LENIENCE_PX2,
-            _DOUBT * noise * np.sqrt(np.sum((window * (power - moment)) ** 2)) / total,
+            tuned.MOMENT_LENIENCE_PX2,
+            tuned.MOMENT_SIGMAS * noise * np.sqrt(np.sum((window * (power - moment)) ** 2)) / total,
         )
         for power, moment in ((dy[:, None] ** 2, down), (dx[None, :] ** 2, across))
     ]

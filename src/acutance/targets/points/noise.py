@@ -1,4 +1,4 @@
-"""The noise of pixels around point sources, as the residuals of a fit show it.
+"""The noise of pixels around point sources, from the residuals of a fit.
 
 A source's flux and place take up much of the noise of its few bright pixels: what is left there
 is held against the share that the fit leaves (one less the leverage).
@@ -14,21 +14,13 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
+from acutance.targets.points import tuned
 from acutance.targets.points.stamps import Stamps
 
-__all__ = ["NOISE_FLOOR", "PointNoise", "grows", "noise_around"]
+__all__ = ["PointNoise", "noise_around", "noise_grows"]
 
-NOISE_FLOOR: Final = 4e-5
-"""The least noise the arithmetic allows for, as a share of the brightest source's peak."""
 _WHITE: Final = Correlation(1.0, 0.0, 0.0)
-_SHAPE_ERROR: Final = 0.004
-_MODEL_ERROR: Final = 0.02
-"""Share of a source's light in a pixel that may be left before noise, and before an outlier, is
-seen in it."""
-_BRIGHT: Final = 0.03
-_MOST_TAKEN: Final = 0.9
-_FEWEST: Final = 20
-_SIGNIFICANT: Final = 2.0
+_MIN_PIXELS: Final = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +60,7 @@ class PointNoise:
 def noise_around(
     stamps: Stamps, residual: Floats, light: Floats, growth: float, *, robust: bool
 ) -> PointNoise:
-    """What the residuals say of the noise.
+    """Outliers and correlation of the noise, from the residuals.
 
     Parameters
     ----------
@@ -80,21 +72,20 @@ def noise_around(
     robust : bool
         Bound the weight of outlying pixels.
     """
-    least = NOISE_FLOOR * float(light.max())
+    floor = tuned.NOISE_FLOOR * float(light.max())
     standard = residual / np.sqrt(1 + growth * np.maximum(light, 0.0))
-    scale = math.hypot(robust_scale(standard), least)
-    standard = standard / np.hypot(scale, _MODEL_ERROR * light)
+    scale = math.hypot(robust_scale(standard), floor)
+    standard = standard / np.hypot(scale, tuned.MODEL_ERROR * light)
     outlier = outlier_weights(standard) if robust else np.ones(standard.size)
-    if float(np.sqrt(np.mean(residual**2))) < 3 * least:
+    if float(np.sqrt(np.mean(residual**2))) < 3 * floor:
         return PointNoise(outlier, growth, _WHITE)
     bounded = np.clip(standard, -3, 3)
     rows, cols = stamps.row.astype(np.intp), stamps.col.astype(np.intp)
     rows, cols = rows - rows.min(), cols - cols.min()
-    found = [correlation(bounded, rows, cols, normal) for normal in ((1.0, 0.0), (0.0, 1.0))]
-    return PointNoise(outlier, growth, max(found, key=lambda one: one.inflation))
+    return PointNoise(outlier, growth, correlation(bounded, rows, cols))
 
 
-def grows(residual: Floats, light: Floats, leverage: Floats) -> bool:
+def noise_grows(residual: Floats, light: Floats, leverage: Floats) -> bool:
     """Whether bright pixels scatter significantly more than the background.
 
     Parameters
@@ -104,12 +95,12 @@ def grows(residual: Floats, light: Floats, leverage: Floats) -> bool:
     leverage : (n,) array
         How much of a pixel's own noise the fit took up, 0 to 1.
     """
-    bright = light > _BRIGHT * float(light.max())
-    dark, bright = ~bright, bright & (leverage < _MOST_TAKEN)
-    if bright.sum() < _FEWEST or dark.sum() < _FEWEST:
+    bright = light > tuned.BRIGHT_SHARE * float(light.max())
+    dark, bright = ~bright, bright & (leverage < tuned.MAX_LEVERAGE)
+    if bright.sum() < _MIN_PIXELS or dark.sum() < _MIN_PIXELS:
         return False
-    base = math.hypot(robust_scale(residual[dark]), NOISE_FLOOR * float(light.max()))
+    base = math.hypot(robust_scale(residual[dark]), tuned.NOISE_FLOOR * float(light.max()))
     free = 1 - leverage[bright]
-    power = np.maximum(residual[bright] ** 2 - (_SHAPE_ERROR * light[bright]) ** 2, 0.0)
+    power = np.maximum(residual[bright] ** 2 - (tuned.SHAPE_ERROR * light[bright]) ** 2, 0.0)
     excess = float(power.sum()) / base**2 - float(free.sum())
-    return excess > _SIGNIFICANT * math.sqrt(2 * float(free @ free))
+    return excess > tuned.SIGNIFICANT_GROWTH * math.sqrt(2 * float(free @ free))

@@ -1,4 +1,4 @@
-"""What a caller may change of a measurement of points, and the limits its checks hold it to."""
+"""What a caller may change of a measurement of points."""
 
 from __future__ import annotations
 
@@ -6,53 +6,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.errors import OptionError
+from acutance.targets.check import Limits, require_limits
 from acutance.targets.options import require_types
+from acutance.targets.points.checks import POINTS_CHECKS
 from acutance.targets.points.published import SdsuMirrorsOptions
 
-__all__ = ["PointsLimits", "PointsOptions"]
-
-
-@dataclass(frozen=True)
-class PointsLimits:
-    """Limits of the checks of point sources.
-
-    Parameters
-    ----------
-    sources : float
-        Least number of sources.
-    peak_snr : float
-        Least median peak over the background's noise.
-    spacing_px : float
-        Least distance of two sources.
-    phase_gap_px : float
-        Largest distance of any sub-pixel phase from the nearest one of a source.
-    full_scale : float
-        Largest pixel of a source, as a share of the detector's range.
-    source_misfit : float
-        Largest ratio of a source's residuals to the noise.
-    ground : float
-        Largest spread of the backgrounds about a plane, as a share of the median peak.
-    correlated_noise : float
-        Largest correlation of the noise between neighbouring pixels.
-    outliers : float
-        Largest share of outlying pixels.
-    survey_px : float
-        Largest root mean square distance from surveyed positions.
-    """
-
-    sources: float = 15.0
-    peak_snr: float = 50.0
-    spacing_px: float = 5.0
-    phase_gap_px: float = 0.25
-    full_scale: float = 0.9
-    source_misfit: float = 1.5
-    ground: float = 0.05
-    correlated_noise: float = 0.1
-    outliers: float = 0.02
-    survey_px: float = 0.1
-
-    def __post_init__(self) -> None:
-        require_types(self)
+__all__ = ["PointsOptions"]
 
 
 @dataclass(frozen=True)
@@ -62,24 +21,24 @@ class PointsOptions:
     Parameters
     ----------
     min_snr : float
-        Least peak over the noise of a source that is used.
+        Minimum peak over the noise of a source that is used.
     min_distance_px : float
-        Least distance to another source that is not much fainter.
+        Minimum distance to another source that is not much fainter.
     max_sources : int
         The brightest so many are used.
     radius_px : float
         Pixels up to this distance from a source are used.
     robust : bool
         Bound the weight of outlying pixels (method "psf-fit").
-    limits : PointsLimits
-        Limits of the checks.
+    limits : mapping of str to float
+        Limits of checks other than those of the table, by name.
     method_options : SdsuMirrorsOptions, optional
         Options of the published method.
 
     Raises
     ------
     OptionError
-        If a number makes no sense.
+        If a number makes no sense, or no check has the name of a limit.
     """
 
     min_snr: float = 10.0
@@ -87,11 +46,12 @@ class PointsOptions:
     max_sources: int = 150
     radius_px: float = 13.0
     robust: bool = True
-    limits: PointsLimits = field(default_factory=PointsLimits)
+    limits: Limits = field(default_factory=dict)
     method_options: SdsuMirrorsOptions | None = None
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_limits(self.limits, POINTS_CHECKS, "PointsOptions")
         bounds = {
             "min_snr": (self.min_snr, 1.0, 1e6),
             "min_distance_px": (self.min_distance_px, 0.0, 100.0),
@@ -111,6 +71,6 @@ class PointsOptions:
             "max_sources": self.max_sources,
             "radius_px": self.radius_px,
             "robust": self.robust,
-            "limits": dict(vars(self.limits)),
+            "limits": dict(self.limits),
             "method_options": None if chosen is None else dict(vars(chosen)),
         }

@@ -16,7 +16,7 @@ from scipy.linalg import solve_triangular
 from acutance.curves.grid import Floats
 from acutance.numerics.normal_equations import Normal
 
-__all__ = ["Blocks", "eliminate"]
+__all__ = ["Blocks", "SourceProblem"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,29 +81,43 @@ class Blocks:
         return std * self.inverse, -self.own_shared @ latent
 
 
-def eliminate(
-    own: Floats,
-    shared: Floats,
-    data: Floats,
-    weight: Floats,
-    starts: NDArray[np.intp],
-    tie: Floats | None = None,
-) -> Blocks:
-    """Take the own unknowns out of a weighted least squares problem.
+@dataclass(frozen=True, eq=False)
+class SourceProblem:
+    """A least squares problem: what own and shared unknowns do to the pixels.
 
     Parameters
     ----------
     own : (n, q) array
         Columns of the own unknowns, one source's rows after the other's.
     shared : (n, m) array
-    data, weight : (n,) arrays
-        Values, and their inverse variances.
+        Columns of the shared unknowns.
+    data : (n,) array
     starts : (k + 1,) int array
         Where each source's rows start, and the end.
     tie : (q,) array, optional
         Noise for unit weight over the prior standard deviation of an own unknown about zero; 0
         for one that is free.
     """
+
+    own: Floats
+    shared: Floats
+    data: Floats
+    starts: NDArray[np.intp]
+    tie: Floats | None = None
+
+    def eliminated(self, weight: Floats) -> Blocks:
+        """The problem without its own unknowns, at inverse variances `weight` of the data, (n,)."""
+        return _eliminated(self.own, self.shared, self.data, weight, self.starts, self.tie)
+
+
+def _eliminated(
+    own: Floats,
+    shared: Floats,
+    data: Floats,
+    weight: Floats,
+    starts: NDArray[np.intp],
+    tie: Floats | None,
+) -> Blocks:
     root = np.sqrt(weight)
     count, q = starts.size - 1, own.shape[1]
     # What ties a source's unknowns to zero are q more rows for it, after all pixels.

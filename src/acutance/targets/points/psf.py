@@ -1,24 +1,29 @@
-"""The fitted point spread function: a plain blur and its departures, with their covariance."""
+"""The fitted point spread function: a Gaussian through a pixel, corrected, with its covariance."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
 from acutance.numerics.gaussian_pixel_2d import PlaneBlur
 from acutance.targets.points.psf_prior import PsfDirections
 
 __all__ = ["PsfModel"]
 
 Complexes = NDArray[np.complex128]
+_CONDENSED = 40
+_FREQ_CPP: Floats = np.linspace(0.0, 1.0, 21)
+_ANGLES_RAD: Floats = np.radians(np.arange(0.0, 180.0, 15.0))
 
 
 @dataclass(frozen=True, eq=False)
-class PsfModel:
+class PsfModel(ShortRepr):
     """A PSF that fills the plane, and its transfer function: an `acutance.curves.OtfModel`.
 
     Parameters
@@ -33,11 +38,26 @@ class PsfModel:
 
     directions: PsfDirections
     weights: Floats
-    latent: Floats
+    latent: NDArray[np.floating[Any]]
+
+    def condensed(self) -> PsfModel:
+        """The same PSF with the most important directions of its covariance, at half precision.
+
+        They are the principal axes of the OTF's errors up to 1 cycle per pixel.
+        """
+        freq, angle = np.meshgrid(_FREQ_CPP, _ANGLES_RAD)
+        factor = self.factor((freq * np.cos(angle)).ravel(), (freq * np.sin(angle)).ravel())
+        axes = np.linalg.svd(np.concatenate([factor.real, factor.imag]), full_matrices=False)[2]
+        latent = np.asarray(self.latent @ axes[:_CONDENSED].T)
+        return replace(self, latent=latent.astype(np.float16))
+
+    @cached_property
+    def _latent(self) -> Floats:
+        return np.asarray(self.latent, float)
 
     @property
     def blur(self) -> PlaneBlur:
-        """The plain blur the PSF departs from."""
+        """The Gaussian through a pixel that is corrected."""
         return self.directions.blur
 
     @cached_property
@@ -54,7 +74,7 @@ class PsfModel:
     @cached_property
     def volume_gradient(self) -> Floats:
         """Factor of the covariance of `volume`, (k,)."""
-        return np.asarray(self._volumes @ self.latent)
+        return np.asarray(self._volumes @ self._latent)
 
     @property
     def band_cpp(self) -> float:
@@ -64,11 +84,6 @@ class PsfModel:
     def psf(self, x: Floats, y: Floats) -> Floats:
         """Light per square pixel at places (x, y) from the source, pixel area included, (n,)."""
         return self.directions.sum(x, y, self.weights) / self.volume
-
-    def with_slopes(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
-        """The PSF of a mean blur of unit flux, and its derivatives by x and y."""
-        psf, by_x, by_y = self.directions.sum_with_slopes(x, y, self.weights)
-        return psf, by_x, by_y
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF about the fit's origin, exactly 1 at zero frequency, (n,)."""
@@ -84,10 +99,10 @@ class PsfModel:
         design /= self.volume
         nought = (u_cpp == 0) & (v_cpp == 0)
         design[nought] = 0.0
-        return np.asarray(design.real @ self.latent + 1j * (design.imag @ self.latent))
+        return np.asarray(design.real @ self._latent + 1j * (design.imag @ self._latent))
 
     def _normalised(self, u_cpp: Floats, v_cpp: Floats, design: Complexes) -> Complexes:
-        departure = design.real @ self.weights + 1j * (design.imag @ self.weights)
-        otf = (self.blur.otf(u_cpp, v_cpp) + departure) / self.volume
+        correction = design.real @ self.weights + 1j * (design.imag @ self.weights)
+        otf = (self.blur.otf(u_cpp, v_cpp) + correction) / self.volume
         otf[(u_cpp == 0) & (v_cpp == 0)] = 1.0
         return np.asarray(otf)

@@ -1,18 +1,18 @@
 """What is known of a point spread function before the pixels are seen.
 
-The PSF is the mean blur (`fit.psf_blur`) with a free ellipse, plus what follows, each with an
-amplitude that the data decide (`fit.posterior`):
+The PSF is the mean blur, a Gaussian through a pixel with a free ellipse, plus what follows, each
+with an amplitude that the data decide (`amplitudes`):
 
 - APERTURE: another width of the detector's aperture across and along;
-- FOOT: the blur twice and four times as wide (scatter; less light there, if negative);
+- WINGS: the blur twice and four times as wide (scatter; less light there, if negative);
 - AIRY: the image behind an aperture as narrow as the blur, with its rings and wings: clear, and
   with a third of its diameter obscured;
-- SHAPE: smooth departures near the peak (sharpening, asymmetry, smear);
+- SHAPE: smooth differences near the peak (sharpening, asymmetry, smear);
 - DETAIL: fine structure of the peak (a hard aperture, little optical blur);
-- HALO: broad departures out to many widths (stray light, halo, charge trails);
+- HALO: broad differences out to many widths (stray light, halo, charge trails);
 - TAIL: light falling like 1 / r^3 without end, as behind an aperture that diffracts.
 
-SHAPE, DETAIL and HALO are Gaussian processes as the prior of the LSF (`fit.prior`) has them. A
+SHAPE, DETAIL and HALO are Gaussian processes as the prior of an LSF has them. A
 process has covariance ``exp(-(u^2 + u'^2) / 2 L^2) exp(-(u - u')^2 / 2 l^2)`` in either
 direction, in units of the blur's width. By Mehler's formula its eigenfunctions are Hermite
 functions, with variances that fall by a constant factor from order to order: every direction has
@@ -31,15 +31,10 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel_2d import FOOT_WIDTHS, BlurSlopes, Broad, PlaneBlur
+from acutance.targets.points import tuned
 from acutance.targets.points.airy import Airy
 
-__all__ = [
-    "LOG_AMPLITUDE",
-    "LOG_AMPLITUDE_STD",
-    "PsfDirections",
-    "tail_otf",
-    "tail_psf",
-]
+__all__ = ["PsfDirections", "tail_otf", "tail_psf"]
 
 Complexes = NDArray[np.complex128]
 
@@ -84,16 +79,9 @@ class _Process:
         return np.asarray(np.sqrt(middle / lsf_variance))
 
 
-_PROCESSES: Final = (_Process(1.2, 0.6, 12), _Process(0.7, 0.2, 13), _Process(3.0, 1.2, 11))
+_PROCESSES: Final = tuple(_Process(*one) for one in tuned.PROCESSES)
 _BLURRED: Final = 5
-_BROAD_WIDTHS: Final = 4.0
 _EXPLICIT: Final = 9
-_OBSCURATIONS: Final = (0.0, 0.33)
-LOG_AMPLITUDE: Final[Floats] = np.array([-5.0, -4.0, -4.6, -4.5, -3.0, -3.5, -2.5])
-LOG_AMPLITUDE_STD: Final = 2.5
-"""Amplitudes of SHAPE, DETAIL, HALO, TAIL, APERTURE, FOOT and AIRY relative to the source's
-flux (of APERTURE, relative to the pixel), within a factor 12 either way: wings of some per cent
-must not be more surprising than none (benchmarks/points.py)."""
 _GAUGE_STEP: Final = 0.3
 _GAUGE_REACH: Final = 4.5
 
@@ -131,31 +119,23 @@ def tail_otf(freq: Floats, half_width: float) -> Floats:
 class PsfDirections:
     """The directions in which the PSF may differ from a mean `blur`.
 
-    First the three elements of Sigma, the two apertures, the feet and the Airy patterns, then the
+    First the three elements of Sigma, the two apertures, the wings and the Airy patterns, then the
     modes of the processes, then the tail. From each the share is taken out that a change of flux
     or of place would explain: every source has its own flux and place.
     """
 
     blur: PlaneBlur
 
-    @cached_property
-    def _foot(self) -> PlaneBlur:
-        return self.blur.widened(FOOT_WIDTHS)
-
-    @cached_property
-    def _feet(self) -> tuple[PlaneBlur, Broad]:
-        return (self._foot, self.blur.broadened(_BROAD_WIDTHS))
-
-    @cached_property
-    def _airy(self) -> tuple[Airy, ...]:
-        sigma_px = (self.blur.xx * self.blur.yy) ** 0.25
-        a = self.blur.aperture_px
-        return tuple(Airy.as_narrow_as(sigma_px, hole, a) for hole in _OBSCURATIONS)
+    def __reduce__(self) -> tuple[type[PsfDirections], tuple[PlaneBlur]]:
+        # The tables all follow from the blur.
+        return PsfDirections, (self.blur,)
 
     @cached_property
     def _patterns(self) -> tuple[PlaneBlur | Broad | Airy, ...]:
-        """What has a form of its own and one weight: feet, and apertures that diffract."""
-        return (*self._feet, *self._airy)
+        """What has a form of its own and one weight: wings, and apertures that diffract."""
+        blur, sigma_px = self.blur, (self.blur.xx * self.blur.yy) ** 0.25
+        airy = (Airy.as_narrow_as(sigma_px, hole, blur.aperture_px) for hole in tuned.OBSCURATIONS)
+        return (blur.widened(FOOT_WIDTHS), blur.broadened(tuned.BROAD_WIDTHS), *airy)
 
     def _explicit(self, x: Floats, y: Floats, slopes: BlurSlopes) -> tuple[Floats, ...]:
         """The directions that are no process and no tail, before the gauge."""
@@ -168,8 +148,15 @@ class PsfDirections:
 
     @cached_property
     def block(self) -> NDArray[np.intp]:
-        """Which amplitude rules each direction; -1 for those with a scale of their own."""
-        counts = [3, 2, len(self._feet), 2, *(process.sizes.size for process in _PROCESSES), 1]
+        """Which amplitude determines each direction; -1 for those with a scale of their own."""
+        counts = [
+            3,
+            2,
+            2,
+            len(tuned.OBSCURATIONS),
+            *(process.sizes.size for process in _PROCESSES),
+            1,
+        ]
         return np.repeat([-1, 4, 5, 6, 0, 1, 2, 3], counts)
 
     @cached_property
@@ -192,9 +179,9 @@ class PsfDirections:
     def with_mean(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
         """Every direction at places (x, y), (n, size), and the mean blur there, (n,)."""
         slopes = self.blur.slopes(x, y)
-        found = self._raw(x, y, self._explicit(x, y, slopes))
-        found -= np.stack(slopes[:3], axis=1) @ self._gauge
-        return found, slopes.psf
+        columns = self._raw(x, y, self._explicit(x, y, slopes)).T
+        columns -= self._gauge.T @ np.stack(slopes[:3])
+        return columns.T, slopes.psf
 
     def sum(self, x: Floats, y: Floats, weights: Floats) -> Floats:
         """Mean blur plus ``evaluate(x, y) @ weights``, (n,)."""
@@ -250,7 +237,7 @@ class PsfDirections:
             return slopes[:3]
         gauge = self._gauge @ weights
         step = 1e-4
-        beside = [self.blur.slopes(x + step, y), self.blur.slopes(x, y + step)]
+        shifted = [self.blur.slopes(x + step, y), self.blur.slopes(x, y + step)]
         free = weights[:_BLURRED]
 
         def explicit(at: tuple[Floats, ...]) -> Floats:
@@ -260,7 +247,7 @@ class PsfDirections:
             return np.asarray(whole)
 
         psf = explicit(slopes)
-        by_x, by_y = ((explicit(one) - psf) / step for one in beside)
+        by_x, by_y = ((explicit(one) - psf) / step for one in shifted)
         for weight, other in zip(
             weights[_BLURRED:_EXPLICIT].tolist(),
             (one.slopes(x, y)[:3] for one in self._patterns),
@@ -303,8 +290,8 @@ class PsfDirections:
         return np.asarray(np.linalg.solve(own.T @ own, own.T @ raw))
 
     @property
-    def foot_share(self) -> float:
-        """How much of the blur least squares finds in the foot."""
+    def wings_share(self) -> float:
+        """How much of the blur least squares finds in the nearer wings."""
         return float(self._gauge[0, _BLURRED])
 
     def transform(self, u: Floats, v: Floats) -> Complexes:

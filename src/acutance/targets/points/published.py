@@ -22,7 +22,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import least_squares
 
 from acutance.curves.grid import Floats
@@ -30,6 +30,7 @@ from acutance.errors import OptionError, SupportError
 from acutance.targets.options import require_types
 
 __all__ = [
+    "AlignedFit",
     "GaussianPsf",
     "MirrorFit",
     "PublishedMirrors",
@@ -109,6 +110,44 @@ class MirrorFit:
     sigma_y_px: float
     bias: float
 
+    def at(self, x: ArrayLike, y: ArrayLike) -> Floats:
+        """The Gaussian with its bias at columns x and rows y."""
+        p = np.array([self.peak, self.col, self.row, self.sigma_x_px, self.sigma_y_px])
+        return self.bias + _gaussian(p, np.asarray(x, float), np.asarray(y, float))
+
+
+@dataclass(frozen=True)
+class AlignedFit:
+    """What the report tells of the Gaussian through all aligned samples.
+
+    Parameters
+    ----------
+    sigma_x_px, sigma_y_px : float
+        Its standard deviations along the rows and down the columns of the image.
+    rmse : float
+        Root mean square residual, in image units at the mean peak.
+    background_mean, background_std : float
+        Level and standard deviation of the background around the sources.
+    mean_peak : float
+        Of the sources' own Gaussians.
+    """
+
+    sigma_x_px: float
+    sigma_y_px: float
+    rmse: float
+    background_mean: float
+    background_std: float
+    mean_peak: float
+
+    @property
+    def peak_over_background(self) -> float:
+        """What the report calls SNR in its Figure 5.17: mean peak over the mean background."""
+        return self.mean_peak / self.background_mean if self.background_mean > 0 else math.inf
+
+    def to_dict(self) -> dict[str, float]:
+        """All numbers by name, for JSON."""
+        return {**vars(self), "peak_over_background": self.peak_over_background}
+
 
 @dataclass(frozen=True, eq=False)
 class PublishedMirrors:
@@ -120,10 +159,7 @@ class PublishedMirrors:
     psf : GaussianPsf
     x, y, value, residual : (n,) arrays
         The aligned samples, as shares of their peaks, and what the pooled Gaussian leaves.
-    noise_mean, noise_std : float
-        Level and standard deviation of the background around the sources.
-    rmse : float
-        Root mean square of `residual`, in image units at the mean peak.
+    aligned : AlignedFit
     """
 
     mirrors: tuple[MirrorFit, ...]
@@ -132,15 +168,7 @@ class PublishedMirrors:
     y: Floats
     value: Floats
     residual: Floats
-    noise_mean: float
-    noise_std: float
-    rmse: float
-
-    @property
-    def peak_over_background(self) -> float:
-        """What the report calls SNR in its Figure 5.17: mean peak over the mean background."""
-        peak = float(np.mean([one.peak for one in self.mirrors]))
-        return peak / self.noise_mean if self.noise_mean > 0 else math.inf
+    aligned: AlignedFit
 
 
 def sdsu_2003_mirrors(
@@ -162,10 +190,10 @@ def sdsu_2003_mirrors(
         If no source has all pixels of its window.
     """
     chosen = options or SdsuMirrorsOptions()
-    grounds = [_surroundings(image, place) for place in places]
+    backgrounds = [_surroundings(image, place) for place in places]
     mirrors = []
     samples = []
-    for place, around in zip(places, grounds, strict=True):
+    for place, around in zip(places, backgrounds, strict=True):
         found = _fit_mirror(image, place, around, chosen)
         if found is None:
             continue
@@ -183,12 +211,13 @@ def sdsu_2003_mirrors(
         )
     x, y, value = (np.concatenate(part) for part in zip(*samples, strict=True))
     psf, residual = _pool(x, y, value)
-    ground = np.concatenate([around[np.isfinite(around)] for around in grounds])
+    around = np.concatenate([one[np.isfinite(one)] for one in backgrounds])
     peak = float(np.mean([one.peak for one in mirrors]))
-    rmse = peak * float(np.sqrt(np.mean(residual**2)))
-    return PublishedMirrors(
-        tuple(mirrors), psf, x, y, value, residual, float(ground.mean()), float(ground.std()), rmse
-    )
+    aligned = AlignedFit(
+        psf.sigma_x_px, psf.sigma_y_px, peak * float(np.sqrt(np.mean(residual**2))),
+        float(around.mean()), float(around.std()), peak,
+    )  # fmt: skip
+    return PublishedMirrors(tuple(mirrors), psf, x, y, value, residual, aligned)
 
 
 def _window(image: Floats, place: tuple[float, float], side: int) -> tuple[Floats, Floats, Floats]:

@@ -1,4 +1,4 @@
-"""The evidence of a measurement of points: every source, and what the fit leaves of it."""
+"""The sources of a measurement: numbers of each, and the pixels around it."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.targets.points.fit import PointsFit
 from acutance.targets.points.published import MirrorFit, PublishedMirrors
 
-__all__ = ["PointSource", "sources_of_fit", "sources_of_mirrors"]
+__all__ = ["PointSource", "SourceStamp", "sources_of_fit", "sources_of_mirrors"]
 
 _SHOWN_PX = 7
+_CORE_PX = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,17 +33,13 @@ class PointSource(ShortRepr):
     peak : float
         What it would add to a pixel right under it.
     background : Estimate
-        Level of the ground at its place.
+        Level of the background at its place.
     slope : (float, float)
-        How the ground rises from row to row and from column to column.
+        How the background rises from row to row and from column to column.
     snr : float
         Peak over the background's noise.
     misfit : float
         Root mean square residual within three pixels, over the noise.
-    origin : (int, int)
-        Row and column, in the whole image, of the first pixel of the arrays.
-    pixels, residual : (rows, cols) arrays
-        The pixels around it, and what the fit leaves of those it used; NaN elsewhere.
     """
 
     row: Estimate
@@ -53,9 +50,6 @@ class PointSource(ShortRepr):
     slope: tuple[float, float]
     snr: float
     misfit: float
-    origin: tuple[int, int]
-    pixels: Floats
-    residual: Floats
 
     @property
     def phase(self) -> tuple[float, float]:
@@ -77,77 +71,104 @@ class PointSource(ShortRepr):
         }
 
 
+@dataclass(frozen=True, eq=False)
+class SourceStamp(ShortRepr):
+    """The pixels around a source.
+
+    Parameters
+    ----------
+    origin : (int, int)
+        Row and column, in the whole image, of the first pixel.
+    pixels : (rows, cols) array
+    residual : (rows, cols) array
+        What the fit leaves of the pixels it used; NaN elsewhere.
+    """
+
+    origin: tuple[int, int]
+    pixels: Floats
+    residual: Floats
+
+
 def sources_of_fit(
     fit: PointsFit, image: Floats, origin: tuple[int, int]
-) -> tuple[PointSource, ...]:
-    """The sources of the joint fit; `origin` is the place of the cut in the whole image."""
-    stamps = fit.stamps
-    left = np.full(image.shape, np.nan)
-    left[stamps.row.astype(np.intp), stamps.col.astype(np.intp)] = fit.residual
+) -> tuple[tuple[PointSource, ...], tuple[SourceStamp, ...]]:
+    """The sources of the joint fit.
+
+    Parameters
+    ----------
+    fit : PointsFit
+    image : (rows, cols) array
+        The region.
+    origin : (int, int)
+        Row and column of its first pixel in the whole image.
+    """
+    stamps, count = fit.stamps, fit.fluxes.size
+    residual = np.full(image.shape, np.nan)
+    residual[stamps.row.astype(np.intp), stamps.col.astype(np.intp)] = fit.residual
     x, y = stamps.offsets(fit.places)
-    core = np.hypot(x, y) <= 3.0
+    core = np.hypot(x, y) <= _CORE_PX
     standard = fit.residual[core] / np.maximum(fit.pixel_noise[core], 1e-300)
-    power = np.bincount(stamps.owner[core], standard**2, fit.fluxes.size)
-    count = np.bincount(stamps.owner[core], minlength=fit.fluxes.size)
-    misfit = np.sqrt(power / np.maximum(count, 1))
+    power = np.bincount(stamps.owner[core], standard**2, count)
+    misfit = np.sqrt(power / np.maximum(np.bincount(stamps.owner[core], minlength=count), 1))
     peaks = fit.peaks
-    found = []
-    for k, place in enumerate(fit.places):
-        at, pixels, residual = _stamp(place, image, left)
-        found.append(
-            PointSource(
-                Estimate(float(place[0]) + origin[0], float(fit.places_std[k, 0])),
-                Estimate(float(place[1]) + origin[1], float(fit.places_std[k, 1])),
-                Estimate(float(fit.fluxes[k]), float(fit.fluxes_std[k])),
-                float(peaks[k]),
-                Estimate(float(fit.grounds[k, 0]), float(fit.grounds_std[k])),
-                (float(fit.grounds[k, 1]), float(fit.grounds[k, 2])),
-                float(peaks[k]) / fit.noise if fit.noise > 0 else math.inf,
-                float(misfit[k]),
-                (at[0] + origin[0], at[1] + origin[1]),
-                pixels,
-                residual,
-            )
+    sources = tuple(
+        PointSource(
+            Estimate(float(place[0]) + origin[0], float(fit.places_std[k, 0])),
+            Estimate(float(place[1]) + origin[1], float(fit.places_std[k, 1])),
+            Estimate(float(fit.fluxes[k]), float(fit.fluxes_std[k])),
+            float(peaks[k]),
+            Estimate(float(fit.backgrounds[k, 0]), float(fit.backgrounds_std[k])),
+            (float(fit.backgrounds[k, 1]), float(fit.backgrounds[k, 2])),
+            float(peaks[k]) / fit.noise if fit.noise > 0 else math.inf,
+            float(misfit[k]),
         )
-    return tuple(found)
+        for k, place in enumerate(fit.places)
+    )
+    return sources, tuple(
+        _stamp((row, col), image, residual, origin) for row, col in fit.places.tolist()
+    )
 
 
 def sources_of_mirrors(
     found: PublishedMirrors, image: Floats, origin: tuple[int, int], window_px: int
-) -> tuple[PointSource, ...]:
+) -> tuple[tuple[PointSource, ...], tuple[SourceStamp, ...]]:
     """The sources of the published method, with the residuals of their own Gaussians."""
-    noise = max(found.noise_std, 1e-300)
-    return tuple(_source_of(one, image, origin, window_px, noise) for one in found.mirrors)
-
-
-def _source_of(
-    one: MirrorFit, image: Floats, origin: tuple[int, int], window_px: int, noise: float
-) -> PointSource:
-    rows, cols = np.indices(image.shape)
-    power = ((cols - one.col) / one.sigma_x_px) ** 2 + ((rows - one.row) / one.sigma_y_px) ** 2
-    fitted = one.bias + one.peak * np.exp(-0.5 * power)
-    inside = np.maximum(np.abs(rows - round(one.row)), np.abs(cols - round(one.col)))
-    left = np.where(inside <= window_px // 2, image - fitted, np.nan)
-    at, pixels, residual = _stamp(np.array([one.row, one.col]), image, left)
-    volume = 2 * math.pi * one.sigma_x_px * one.sigma_y_px
-    misfit = float(np.sqrt(np.nanmean(residual**2))) / noise
-    return PointSource(
-        Estimate(one.row + origin[0], one.row_std),
-        Estimate(one.col + origin[1], one.col_std),
-        Estimate(volume * one.peak, math.nan),
-        one.peak,
-        Estimate(one.bias, noise),
-        (0.0, 0.0),
-        one.peak / noise,
-        misfit,
-        (at[0] + origin[0], at[1] + origin[1]),
-        pixels,
-        residual,
+    noise = max(found.aligned.background_std, 1e-300)
+    stamps = tuple(_stamp_of_mirror(one, image, origin, window_px) for one in found.mirrors)
+    sources = tuple(
+        PointSource(
+            Estimate(one.row + origin[0], one.row_std),
+            Estimate(one.col + origin[1], one.col_std),
+            Estimate(2 * math.pi * one.sigma_x_px * one.sigma_y_px * one.peak, math.nan),
+            one.peak,
+            Estimate(one.bias, noise),
+            (0.0, 0.0),
+            one.peak / noise,
+            float(np.sqrt(np.nanmean(stamp.residual**2))) / noise,
+        )
+        for one, stamp in zip(found.mirrors, stamps, strict=True)
     )
+    return sources, stamps
 
 
-def _stamp(place: Floats, image: Floats, left: Floats) -> tuple[tuple[int, int], Floats, Floats]:
-    row, col = (round(number) for number in place.tolist())
-    top, side = max(row - _SHOWN_PX, 0), max(col - _SHOWN_PX, 0)
-    rows, cols = slice(top, row + _SHOWN_PX + 1), slice(side, col + _SHOWN_PX + 1)
-    return (top, side), image[rows, cols].copy(), left[rows, cols].copy()
+def _stamp_of_mirror(
+    one: MirrorFit, image: Floats, origin: tuple[int, int], window_px: int
+) -> SourceStamp:
+    rows, cols = np.ogrid[: image.shape[0], : image.shape[1]]
+    reach = window_px // 2
+    window = (np.abs(rows - round(one.row)) <= reach) & (np.abs(cols - round(one.col)) <= reach)
+    at_row, at_col = np.nonzero(window)
+    residual = np.full(image.shape, np.nan)
+    residual[window] = image[window] - one.at(at_col, at_row)
+    return _stamp((one.row, one.col), image, residual, origin)
+
+
+def _stamp(
+    place: tuple[float, float], image: Floats, residual: Floats, origin: tuple[int, int]
+) -> SourceStamp:
+    row, col = (round(number) for number in place)
+    top, left = max(row - _SHOWN_PX, 0), max(col - _SHOWN_PX, 0)
+    part = (slice(top, row + _SHOWN_PX + 1), slice(left, col + _SHOWN_PX + 1))
+    return SourceStamp(
+        (top + origin[0], left + origin[1]), image[part].copy(), residual[part].copy()
+    )

@@ -1,8 +1,7 @@
-"""The pixels around point sources, each given to its nearest source, with who shines into them."""
+"""The pixels around point sources, each with its nearest source and the others that light it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,12 +11,11 @@ from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
+from acutance.targets.points import tuned
 
 __all__ = ["Stamps", "cut_stamps"]
 
 _Indices = NDArray[np.intp]
-LIT_PX = 12.0
-"""A source's light is followed into other sources' pixels up to this distance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,14 +56,11 @@ class Stamps:
         """Distances x, y of every pixel from its own source at `places` (row, col), (n,)."""
         return self.col - places[self.owner, 1], self.row - places[self.owner, 0]
 
-    def seen(
-        self, places: Floats, fluxes: Floats, function: Callable[[Floats, Floats], Floats]
-    ) -> Floats:
-        """What all sources together add to every pixel: ``sum flux * function(x, y)``.
-
-        `function` gives (n,) or (n, m) for places x, y (n,).
-        """
-        return self.summed(fluxes, function(*self.all_offsets(places)))
+    def levels(self, places: Floats, backgrounds: Floats) -> Floats:
+        """The background of every pixel, (n,), by its own source's level and slopes, (k, 3)."""
+        x, y = self.offsets(np.rint(places))
+        level, down, right = backgrounds[self.owner].T
+        return np.asarray(level + down * y + right * x)
 
     def all_offsets(self, places: Floats) -> tuple[Floats, Floats]:
         """Distances x, y of every pixel from its own source, then those of all pairs, (n + p,)."""
@@ -112,7 +107,7 @@ def cut_stamps(image: Floats, places: Floats, radius_px: float) -> Stamps:
     tree = cKDTree(places)
     kept = (tree.query(pixels)[1] == source) & np.isfinite(image[pixels[:, 0], pixels[:, 1]])
     pixels, source = pixels[kept], source[kept]
-    lit = tree.query_ball_point(pixels, LIT_PX)
+    lit = tree.query_ball_point(pixels, tuned.LIT_PX)
     counts = np.array([len(one) for one in lit], dtype=np.intp)
     pair_pixel = np.repeat(np.arange(counts.size), counts)
     pair_source = np.concatenate([np.asarray(one, np.intp) for one in lit])

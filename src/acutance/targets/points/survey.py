@@ -12,12 +12,13 @@ from scipy.spatial import cKDTree
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
+from acutance.raster.image import AlongTrack
 
-__all__ = ["SurveyErrors", "survey_errors"]
+__all__ = ["SurveyErrors", "SurveyReference", "survey_errors"]
 
 SurveyReference = Literal["mean", "first"]
 _NEAREST_PX = 2.0
-_LEAST = 2
+_MIN_POINTS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +34,8 @@ class SurveyErrors(ShortRepr):
     point : (n,) int array
         Which surveyed point, counted from 0.
     across_px, along_px : (n,) arrays
-        Measured less surveyed.
-    pixel_m : (float, float) or None
+        Measured minus surveyed.
+    gsd_m : (float, float) or None
         GSD across and along in metres.
     """
 
@@ -43,7 +44,7 @@ class SurveyErrors(ShortRepr):
     point: NDArray[np.intp]
     across_px: Floats
     along_px: Floats
-    pixel_m: tuple[float, float] | None
+    gsd_m: tuple[float, float] | None
 
     @property
     def rmse_px(self) -> tuple[float, float]:
@@ -53,9 +54,9 @@ class SurveyErrors(ShortRepr):
     @property
     def errors_cm(self) -> tuple[Floats, Floats] | None:
         """Errors across and along in centimetres; ``None`` without a GSD."""
-        if self.pixel_m is None:
+        if self.gsd_m is None:
             return None
-        across_m, along_m = self.pixel_m
+        across_m, along_m = self.gsd_m
         return 100 * across_m * self.across_px, 100 * along_m * self.along_px
 
     @property
@@ -90,6 +91,7 @@ def survey_errors(
     *,
     pixel_m: tuple[float, float] | None = None,
     reference: SurveyReference = "mean",
+    along_track: AlongTrack = "y",
 ) -> SurveyErrors:
     """Compare positions, each surveyed point with the measured source nearest to it.
 
@@ -100,8 +102,10 @@ def survey_errors(
     places, surveyed : (n, 2) and (m, 2) arrays
         Positions as (row, col) in pixels.
     pixel_m : (float, float), optional
-        GSD across and along in metres.
+        GSD from row to row and from column to column in metres.
     reference : {"mean", "first"}, optional
+    along_track : {"y", "x"}, optional
+        The image axis the satellite flew along.
 
     Raises
     ------
@@ -117,11 +121,14 @@ def survey_errors(
             shift = np.median(places[source[near]] - surveyed[near], axis=0)
     away, source = tree.query(surveyed + shift)
     kept = np.flatnonzero(away <= _NEAREST_PX)
-    if kept.size < _LEAST:
+    if kept.size < _MIN_POINTS:
         raise OptionError(
             f"{kept.size} of {surveyed.shape[0]} surveyed positions lie within {_NEAREST_PX:g} px "
-            f"of a measured source, at least {_LEAST} are needed: check their units and the region"
+            f"of a measured source, at least {_MIN_POINTS} are needed: check their units and the "
+            "region"
         )
     error = places[source[kept]] - surveyed[kept]
     error = error - (error[0] if reference == "first" else error.mean(axis=0))
-    return SurveyErrors(reference, source[kept], kept, error[:, 1], error[:, 0], pixel_m)
+    across, along = (1, 0) if along_track == "y" else (0, 1)
+    gsd_m = None if pixel_m is None else (pixel_m[across], pixel_m[along])
+    return SurveyErrors(reference, source[kept], kept, error[:, across], error[:, along], gsd_m)

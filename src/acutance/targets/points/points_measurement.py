@@ -1,0 +1,110 @@
+"""What point sources give: numbers and curves of all directions, the sources, the survey."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Self
+
+import numpy as np
+
+from acutance.curves import Otf2d
+from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
+from acutance.targets.measurement import Measurement
+from acutance.targets.points.detect import RejectedSpot
+from acutance.targets.points.fit import PointsFit
+from acutance.targets.points.psf import PsfModel
+from acutance.targets.points.published import AlignedFit, PublishedMirrors
+from acutance.targets.points.sources import PointSource, SourceStamp
+from acutance.targets.points.survey import SurveyErrors
+
+__all__ = ["PointsDetails", "PointsMeasurement"]
+
+
+@dataclass(frozen=True, eq=False)
+class PointsDetails(ShortRepr):
+    """The pixels of a measurement, and what was fitted to them.
+
+    Parameters
+    ----------
+    pixels : (rows, cols) array
+        Of the region; unusable pixels are NaN.
+    stamps : tuple of SourceStamp
+        The pixels around each source, in the order of `PointsMeasurement.sources`.
+    fit : PointsFit, optional
+        The joint fit (method "psf-fit"), in pixels of the region.
+    published : PublishedMirrors, optional
+        The aligned samples and their Gaussian (method "gaussian-2003"), in pixels of the region.
+    """
+
+    pixels: Floats
+    stamps: Sequence[SourceStamp]
+    fit: PointsFit | None = None
+    published: PublishedMirrors | None = None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PointsMeasurement(Measurement):
+    """A measurement of point sources.
+
+    Parameters
+    ----------
+    sources : tuple of PointSource
+        What was fitted.
+    rejected : tuple of RejectedSpot
+        Bright spots and stated places that are not usable, with the reason, in pixels of the whole
+        image.
+    noise_std : float
+        Standard deviation of the background's noise.
+    noise_gain : float, optional
+        Variance of the noise per unit of light (method "psf-fit").
+    aligned : AlignedFit, optional
+        The Gaussian of the aligned samples (method "gaussian-2003").
+    survey : SurveyErrors, optional
+        Measured against surveyed places.
+
+    Notes
+    -----
+    Of `without_details` the record, and so the document, is that of the whole measurement. Its
+    curves are kept with the 40 most important directions of their covariance at half precision:
+    the standard deviations of their numbers are those of the record within 6 %.
+    """
+
+    sources: tuple[PointSource, ...]
+    rejected: tuple[RejectedSpot, ...]
+    noise_std: float
+    noise_gain: float | None = None
+    aligned: AlignedFit | None = None
+    survey: SurveyErrors | None = None
+
+    @property
+    def positions(self) -> Floats:
+        """Places of the sources as (row, col) in the whole image, (n, 2)."""
+        return np.array([(one.row.value, one.col.value) for one in self.sources])
+
+    def target_document(self) -> dict[str, Any]:
+        """Sources, what was rejected, the survey, the noise or the aligned samples."""
+        document: dict[str, Any] = {
+            "sources": [one.to_dict() for one in self.sources],
+            "rejected": [dict(vars(one)) for one in self.rejected],
+            "survey": None if self.survey is None else self.survey.to_dict(),
+        }
+        if self.noise_gain is not None:
+            document["noise"] = {"std": self.noise_std, "gain": self.noise_gain}
+        if self.aligned is not None:
+            document["aligned"] = self.aligned.to_dict()
+        return document
+
+    def without_details(self) -> Self:
+        """The same measurement without pixels and fits: light enough to be sent and kept."""
+        light = super().without_details()
+        if isinstance(self.otf.model, PsfModel):
+            light = replace(light, transfer=Otf2d(self.otf.model.condensed(), self.otf.gsd_m))
+        vars(light)["record"] = self.record
+        return light
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A light measurement has the record of the whole one.
+        light = {} if self.details is not None else {"record": self.record}
+        return {**super().__getstate__(), **light}

@@ -1,0 +1,152 @@
+"""Tuned numbers of the points room: what each is, what set it, what it gave.
+
+"Benchmark" is ``benchmarks/points.py`` (eleven systems, 20 mirrors at 80 times the noise). "At
+twice" and "at half" say how far MTF and RER move, in standard deviations, and by how much these
+change, at most in five scenes of ten mirrors (a Gaussian, a halo, diffraction, a charge trail with
+shot noise, grass).
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+
+__all__ = [
+    "AMPLITUDE_GRID",
+    "BEND",
+    "BRIGHTEST_OVER_DARK",
+    "BRIGHT_SHARE",
+    "BROAD_WIDTHS",
+    "COVERED_ELSE_PX",
+    "COVERED_PX",
+    "DETERMINED_POWER",
+    "GROWTH_LOG_EVIDENCE",
+    "LIGHT_FAR_OUT",
+    "LIT_PX",
+    "LOBE_PX",
+    "LOBE_SHARE",
+    "LOG_AMPLITUDE",
+    "LOG_AMPLITUDE_STD",
+    "MAX_LEVERAGE",
+    "MIN_COMPARED",
+    "MIN_LACK_PX2",
+    "MIN_NEIGHBOUR_SHARE",
+    "MIN_TIED_SOURCES",
+    "MODEL_ERROR",
+    "MOMENT_LENIENCE_PX2",
+    "MOMENT_SIGMAS",
+    "NARROW_RATIO",
+    "NEGLIGIBLE_BEND",
+    "NOISE_FLOOR",
+    "OBSCURATIONS",
+    "PROCESSES",
+    "SHAPE_ERROR",
+    "SIGNIFICANT_GROWTH",
+    "SMALL_LOG_AMPLITUDE",
+    "STANDS_OUT",
+    "TIMES_USUAL",
+    "UNLIKE_SHARE",
+    "WIDE_RATIO",
+]
+
+# Spots -------------------------------------------------------------------------------------------
+STANDS_OUT: Final = 6.0
+"""Smoothed light over its noise of a candidate: noise alone gives one in 10^9 pixels."""
+LOBE_PX: Final = 6.0
+LOBE_SHARE: Final = 0.05
+"""A spot within so many pixels of one brighter than this ratio is a ring or a lobe of it, and
+disturbs it no more: the first ring of an aperture obscured by a third holds less."""
+MIN_NEIGHBOUR_SHARE: Final = 0.12
+"""Light of a pixel's eight neighbours over its own below which it is a hot pixel: a Gaussian of
+0.3 px in the middle of a pixel gives 0.22."""
+MIN_COMPARED: Final = 4
+"""Spots from which on their median shape judges each of them."""
+NARROW_RATIO: Final = 0.75
+WIDE_RATIO: Final = 1.9
+"""Variances over the median along the minor axis (less: cosmic ray) and the major one (more:
+blended); of simulated single mirrors 0.3 to 0.8 px wide none was rejected in 300."""
+MIN_LACK_PX2: Final = 0.06
+"""So much less than the median a cosmic ray's variance is in any case: where optics leave next to
+none, ratios mean nothing."""
+MOMENT_SIGMAS: Final = 3.0
+MOMENT_LENIENCE_PX2: Final = 0.03
+"""Doubt about a moment: so many standard deviations of its noise, and what optics that are not
+Gaussian add to it or take away."""
+UNLIKE_SHARE: Final = 0.05
+TIMES_USUAL: Final = 3.0
+"""A source is unlike the others where the common blur leaves so large a share of its peak, and so
+many times what is usual: diffraction leaves up to 0.03 of every source."""
+COVERED_PX: Final = {"saturated": 9.0, "blended": 4.0, "hot pixel": 1.0, "cosmic ray": 3.0}
+COVERED_ELSE_PX: Final = 2.5
+"""Radius around a rejected spot whose pixels are left out, by the reason."""
+
+# Noise -------------------------------------------------------------------------------------------
+LIT_PX: Final = 12.0
+"""Light of a source is followed into other sources' pixels up to this distance. At twice 0.1
+deviations; at half 0.4, and deviations 12 % too small."""
+NOISE_FLOOR: Final = 4e-5
+"""Minimum noise over the brightest source's peak: what arithmetic and tables of the fit leave of a
+Gaussian without noise, whose MTF is then right within 0.0001 (benchmark). At twice and half
+nothing, with noise."""
+MODEL_ERROR: Final = 0.02
+"""Share of a source's light in a pixel that may be left before the pixel counts as an outlier, for
+fields over which the PSF differs; elsewhere nothing at twice and half."""
+SHAPE_ERROR: Final = 0.004
+"""Share of it that may be left before noise that grows with the light is looked for."""
+BRIGHT_SHARE: Final = 0.03
+MAX_LEVERAGE: Final = 0.9
+SIGNIFICANT_GROWTH: Final = 2.0
+"""Pixels brighter than this share of the brightest, of whose noise the fit took up less than that,
+have to scatter so many standard deviations more than the others before growth is looked for: it
+saves the search where there is none, and at twice and half nothing changes."""
+BRIGHTEST_OVER_DARK: Final = (0.5, 1.5, 4.5, 13.5, 40.5, 121.5, 364.5)
+"""Variances of the brightest pixel's noise beyond that of a dark one, over the latter, tried; the
+grid shifted by a factor 2 gives 0.2 deviations with shot noise."""
+GROWTH_LOG_EVIDENCE: Final = 2.0
+"""Gain of log evidence from which on noise is taken to grow with the light. At half 0.2
+deviations, at twice none."""
+DETERMINED_POWER: Final = 0.02
+"""Information over that of the prior, from which on a combination of coefficients takes part in
+the search for that growth. At twice 0.2 deviations, at half none."""
+MIN_TIED_SOURCES: Final = 6
+"""Sources from which on their backgrounds are tied to a common plane, of which three determine it.
+At twice, where none of the ten is tied, 1.2 deviations with a halo, and errors half as large
+again."""
+
+# Prior of the point spread function --------------------------------------------------------------
+PROCESSES: Final = ((1.2, 0.6, 12), (0.7, 0.2, 13), (3.0, 1.2, 11))
+"""Extent and smoothness in widths of the blur, and the largest order of the modes, of SHAPE,
+DETAIL and HALO; extent and smoothness are those of an LSF's processes."""
+BROAD_WIDTHS: Final = 4.0
+"""Width of the second, broader wings, over that of the blur: with the first alone (twice as wide) a
+halo was taken for a tail without end. At twice 3 deviations with a halo, at half 0.8."""
+OBSCURATIONS: Final = (0.0, 0.33)
+"""Diameters of the central obscurations of the Airy patterns, over the aperture's."""
+LOG_AMPLITUDE: Final[Floats] = np.array([-5.0, -4.0, -4.6, -4.5, -3.0, -3.5, -2.5])
+LOG_AMPLITUDE_STD: Final = 2.5
+"""Amplitudes of SHAPE, DETAIL, HALO, TAIL, APERTURE, WINGS and AIRY relative to the source's flux
+(of APERTURE, relative to the pixel), within a factor 12 either way: wings of some per cent must
+not be more surprising than none. Benchmark: intervals hold 96 % over eleven systems. Amplitudes
+three times as large widen the FWHM's deviation of six mirrors by a quarter, and it is too wide
+already; their deviation at twice 0.8 deviations, at half 0.7."""
+LIGHT_FAR_OUT: Final[Floats] = np.array([-3.5, -4.0, -6.0, -4.5, -3.0, -2.0, -0.3])
+"""Log amplitudes of the second place from which the likeliest ones are sought: wings and rings. At
+half 0.5 deviations and 18 % more with a halo."""
+AMPLITUDE_GRID: Final = (-6.0, -5.2, -4.4, -3.6, -2.8, -2.0, -1.2)
+"""Log amplitudes of HALO and of TAIL that are integrated over. At twice 0.2 deviations, which grow
+by 11 %; at half they shrink by 18 %."""
+SMALL_LOG_AMPLITUDE: Final = -4.5
+"""Upper limit of the one amplitude while the other one runs over the grid. At twice and half
+none."""
+
+# Iteration ---------------------------------------------------------------------------------------
+BEND: Final = 3.0
+"""Half of a peak's curvature, in peaks per square pixel, of a rather sharp system: error of second
+order of a source that moved by one pixel. At twice 1.7 deviations with a charge trail, at half
+none."""
+NEGLIGIBLE_BEND: Final = 0.15
+"""Share of the noise that errors of second order may have when the fit ends; at twice and half
+nothing."""
