@@ -163,7 +163,7 @@ def _places(gaussian: GaussianFit, local: LocalFit, limits: Limits) -> Iterator[
 
 
 def _residuals(fit: KernelFit, model: KernelOtf, limits: Limits) -> Iterator[Check]:
-    correlation = fit.whitening.correlation.told
+    correlation = fit.whitening.correlation.significant
     found = f"neighbouring residuals correlate by {correlation:.2f}"
     yield answer("residual_correlation", correlation, found, limits)
     found = (

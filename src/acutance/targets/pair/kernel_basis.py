@@ -19,14 +19,15 @@ interpolation of a product onto the grid of a map: its transfer falls from near 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
 from acutance.targets.pair import tuned
 from acutance.targets.pair.axis_gaussian import AxisGaussian
 from acutance.targets.pair.tile import (
@@ -52,7 +53,7 @@ _NEGLIGIBLE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class KernelBasis:
+class KernelBasis(ShortRepr):
     """The parametric kernel and the directions in which the kernel may differ from it.
 
     Parameters
@@ -68,10 +69,6 @@ class KernelBasis:
     down: AxisGaussian
     across: AxisGaussian
     processes: int = 3
-
-    def __getstate__(self) -> dict[str, Any]:
-        # What is computed from the fields, sixty kB, is not stored.
-        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
     def _axes(self) -> tuple[Floats, Floats, list[tuple[int, NDArray[np.intp], NDArray[np.intp]]]]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
 from acutance.targets.pair.tile import Complexes
 
 __all__ = ["KernelCovariance"]
@@ -20,7 +21,7 @@ _FACTORS = ("posterior", "scatter", "white")
 
 
 @dataclass(frozen=True, eq=False)
-class KernelCovariance:
+class KernelCovariance(ShortRepr):
     """Factors of covariances of the coefficients, (k, ...) each.
 
     Parameters

@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
 from acutance.targets.pair import tuned
 from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.kernel_covariance import KernelCovariance
@@ -40,7 +41,7 @@ class ReferenceOtf(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class KernelOtf:
+class KernelOtf(ShortRepr):
     """An OTF over the plane: the kernel's, times the reference's if that is known.
 
     Beyond the reference's Nyquist frequency nothing is known, and the OTF is 0 there.

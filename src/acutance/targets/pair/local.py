@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
 from acutance.raster import Box
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.kernel_fit import KernelFit
@@ -19,7 +20,7 @@ _MAX_SIDE = 384
 
 
 @dataclass(frozen=True, eq=False)
-class LocalFit:
+class LocalFit(ShortRepr):
     """How regions differ from the common kernel, each (rows, columns) of the map.
 
     NaN where a region has too few pixels.

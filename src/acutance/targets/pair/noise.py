@@ -96,7 +96,7 @@ def whitening_of(residuals: Iterable[Floats]) -> Whitening:
     if count < _MIN_PAIRS or not np.trace(gram) > 0:
         return WHITE
     found = _correlation(cores)
-    if found.told == 0:
+    if found.significant == 0:
         return Whitening(np.zeros(size), found)
     ridge = _RIDGE * np.trace(gram) / size * np.eye(size)
     return Whitening(np.linalg.solve(gram + ridge, projection), found)

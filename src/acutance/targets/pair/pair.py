@@ -73,7 +73,7 @@ def measure_biresolution(
         of the shapes.
     roi : Region, Box, (row, col, height, width) or None
         Where to look, in pixels of the low image.
-    reference_mtf : Sensor, Measurement, TargetResult, Record, MeasuredCurves, Mtf or float, optional
+    reference_mtf : Sensor, Measurement, TargetResult, Record, MeasuredCurves, Mtf or float
         The high image's own MTF, in its own pixels; a number is its value at Nyquist. Without it
         the result is MTF_low / MTF_high, and a check fails for it.
     method : {"kernel-fit", "spectral-ratio"}, optional

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any, Literal, Self
 
 import numpy as np
 
 from acutance.curves import Estimate, Otf2d
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Orientation
 from acutance.targets.measurement import Measurement
 from acutance.targets.pair.gaussian_fit import GaussianFit, GaussianStep
@@ -17,13 +19,13 @@ from acutance.targets.pair.kernel_fit import KernelFit
 from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit, ResidualMap
 from acutance.targets.pair.spectral_ratio import PairSpectra
-from acutance.targets.record import ImageInfo, rounded
+from acutance.targets.record import ImageInfo, Record, rounded
 
 __all__ = ["BiresolutionMeasurement", "Coherence", "PairDetails"]
 
 
 @dataclass(frozen=True, eq=False)
-class Coherence:
+class Coherence(ShortRepr):
     """Squared coherence of both images along the axes of the pixels.
 
     Parameters
@@ -101,6 +103,8 @@ class BiresolutionMeasurement(Measurement):
         How the regions of the map differ from the common kernel.
     reference_known : bool
         Whether the reference's own MTF was divided out. If not, the curves are MTF_low / MTF_high.
+    full_record : Record or None
+        That of the measurement with details, where this one is without.
     details : PairDetails or None
     """
 
@@ -118,6 +122,7 @@ class BiresolutionMeasurement(Measurement):
     coherence: Coherence | None
     local: LocalFit
     reference_known: bool
+    full_record: Record | None = None
     details: PairDetails | None = None
 
     @property
@@ -136,13 +141,15 @@ class BiresolutionMeasurement(Measurement):
         Its record is the same. The covariance between frequencies is rounded: where standard
         deviations are read from the OTF again, they differ by some ten-thousandths.
         """
-        light = super().without_details()
         model = self.otf.model
-        if isinstance(model, KernelOtf):
-            light = replace(light, transfer=Otf2d(model.packed(), self.otf.gsd_m))
-        # In place of the record that the rounded covariance would give.
-        vars(light)["record"] = self.record
-        return light
+        assert isinstance(model, KernelOtf)
+        packed = Otf2d(model.packed(), self.otf.gsd_m)
+        return replace(super().without_details(), transfer=packed, full_record=self.record)
+
+    @cached_property
+    def record(self) -> Record:
+        """The light half: what is written, archived and combined."""
+        return Record(self._document()) if self.full_record is None else self.full_record
 
     def local_mtf_nyquist(self, direction: Orientation) -> tuple[Floats, Floats]:
         """MTF at Nyquist of every region of the map, and its standard deviation.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from acutance.curves import Mtf, Response
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.raster import Gsd
@@ -36,7 +37,7 @@ _MIN_FREQUENCIES = 4
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredCurves:
+class MeasuredCurves(ShortRepr):
     """The MTF of a sensor along the two axes of its pixels, as it was measured.
 
     Parameters
@@ -98,7 +99,15 @@ def _in_metres(pixel_gsd_m: tuple[float, float]) -> str:
 
 
 ReferenceLike = (
-    Sensor | Measurement | TargetResult | Record | MeasuredCurves | Response | Mtf | float | None
+    Sensor
+    | Measurement
+    | TargetResult[Any]
+    | Record
+    | MeasuredCurves
+    | Response
+    | Mtf
+    | float
+    | None
 )
 """A sensor; a measurement of it (one direction, taken for both, or two); or its MTF at Nyquist."""
 
@@ -201,7 +210,7 @@ def _of_measurement(reference: Measurement) -> MeasuredCurves:
     return MeasuredCurves(across, along, gsd_m)
 
 
-def _of_edges(reference: TargetResult) -> MeasuredCurves:
+def _of_edges(reference: TargetResult[Any]) -> MeasuredCurves:
     """The strongest edge of either direction, or of the one there is."""
     if not reference.measurements:
         raise OptionError("the reference is a target of which no edge was measured: give another")

@@ -88,7 +88,7 @@ MIN_REGIONS: Final = 6
 """Regions from which their scatter is read: of fewer, the scatter of the scatter is over 60 %."""
 
 OWN_SHARE: Final = 0.5
-"""Share of the inflation at a frequency that is its own; the rest is the mean over the band. 1 makes
+"""Share of the inflation at a frequency that is its own, the rest the mean over the band. 1 makes
 deviations noisy, 0 leaves those of other colours, which look like a halo, too small."""
 
 MAX_INFLATION: Final = 20.0
