@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-import zlib
-from dataclasses import dataclass
+import lzma
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
@@ -14,10 +17,10 @@ from acutance.targets.pair.tile import Complexes
 
 __all__ = ["KernelCovariance"]
 
-_STEP = 1e-6
-"""What entries of packed factors are rounded to, as errors of the OTF. Some hundred of them make a
-deviation of 0.001 to 0.01: it is kept to one or two ten-thousandths."""
 _FACTORS = ("posterior", "scatter", "white")
+_STEPS = {"posterior": 3e-4, "scatter": 1e-3, "white": 1e-3}
+"""What entries of packed factors are rounded to, relative to a typical deviation of the OTF. There
+are a hundred or two of them to a deviation, which they change by some ten-thousandths."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,15 +37,18 @@ class KernelCovariance(ShortRepr):
         What the residuals of every region would move the coefficients by, about the mean of all.
     white : (k, k) array
         Of the covariance that white residuals would give.
-    step : (k,) array, optional
-        What the entries are multiples of, row by row, where they were rounded.
+    size : (k,) array, optional
+        Where the factors were rounded, how much the OTF changes with every coefficient.
+    steps : mapping of str to float, optional
+        What the entries of every factor, times `size`, are multiples of.
     """
 
     posterior: Floats
     reference_noise: Floats
     scatter: Floats
     white: Floats
-    step: Floats | None = None
+    size: Floats | None = None
+    steps: Mapping[str, float] | None = None
 
     @property
     def regions(self) -> int:
@@ -61,31 +67,54 @@ class KernelCovariance(ShortRepr):
         expected = _power(slopes @ self.white)
         return np.where(expected > 0, found / np.where(expected > 0, expected, 1.0), 1.0)
 
-    def packed(self, size: Floats) -> KernelCovariance:
-        """The same covariance rounded, so that it is stored in 30 kB instead of 700.
+    def packed(self, slopes: Complexes) -> KernelCovariance:
+        """The same covariance rounded, so that it is stored in 30 kB instead of a thousand.
 
         Parameters
         ----------
-        size : (k,) array
-            How much the OTF changes with every coefficient.
+        slopes : (n, k) array
+            Derivatives by the coefficients of the OTF all over its plane.
         """
-        step = _STEP / np.where(size > 0, size, 1.0)
-        posterior, scatter, white = (
-            np.rint(_triangular(one) / step[:, None]) * step[:, None]
-            for one in (self.posterior, self.scatter, self.white)
-        )
-        return KernelCovariance(posterior, self.reference_noise, scatter, white, step)
+        size = np.sqrt(np.mean(np.abs(slopes) ** 2, axis=0))
+        size = np.where(size > 0, size, 1.0)
+        factors = {name: _triangular(getattr(self, name)) for name in _FACTORS}
+        steps = {
+            name: _STEPS[name] * (math.sqrt(float(np.mean(_power(slopes @ factor)))) or 1.0)
+            for name, factor in factors.items()
+        }
+        rounded = {
+            name: _factor(_multiples(factor, steps[name], size), steps[name], size)
+            for name, factor in factors.items()
+        }
+        return replace(self, **rounded, size=size, steps=steps)
 
     def __getstate__(self) -> dict[str, Any]:
-        state = {name: getattr(self, name) for name in (*_FACTORS, "reference_noise", "step")}
-        if self.step is None:
+        state = super().__getstate__()
+        if self.size is None or self.steps is None:
             return state
-        return {**state, **{name: _stored(state[name], self.step) for name in _FACTORS}}
+        for name, step in self.steps.items():
+            multiples = _multiples(state[name], step, self.size)
+            # Byte by byte: those of one weight follow each other.
+            planes = np.ascontiguousarray(multiples.reshape(-1, 1).view(np.uint8).T)
+            state[name] = multiples.shape, lzma.compress(planes.tobytes())
+        return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        if state["step"] is not None:
-            state |= {name: _restored(state[name], state["step"]) for name in _FACTORS}
+        for name, step in (state["steps"] or {}).items():
+            shape, stored = state[name]
+            planes = np.frombuffer(lzma.decompress(stored), np.uint8).reshape(4, -1)
+            multiples = np.ascontiguousarray(planes.T).view("<i4").reshape(shape)
+            state[name] = _factor(multiples, step, state["size"])
         vars(self).update(state)
+
+
+def _multiples(factor: Floats, step: float, size: Floats) -> NDArray[np.int32]:
+    """A factor, times the size of the coefficients, in whole steps."""
+    return np.ascontiguousarray(np.rint(factor * (size / step)[:, None]), "<i4")
+
+
+def _factor(multiples: NDArray[np.int32], step: float, size: Floats) -> Floats:
+    return np.asarray(multiples * (step / size)[:, None])
 
 
 def _power(factor: Complexes) -> Floats:
@@ -96,17 +125,3 @@ def _triangular(factor: Floats) -> Floats:
     """The lower triangular factor of the same covariance, if that is narrower: zeros are cheap."""
     k, m = factor.shape
     return factor if m < k else np.linalg.qr(factor.T)[1].T
-
-
-def _stored(factor: Floats, step: Floats) -> tuple[tuple[int, ...], bytes]:
-    """Shape, and the multiples of the step byte by byte: those of one weight follow each other."""
-    multiples = np.rint(factor / step[:, None]).astype("<i4")
-    planes = np.ascontiguousarray(multiples.reshape(-1, 1).view(np.uint8).T)
-    return factor.shape, zlib.compress(planes.tobytes(), 9)
-
-
-def _restored(stored: tuple[tuple[int, ...], bytes], step: Floats) -> Floats:
-    shape, multiples_by_byte = stored
-    planes = np.frombuffer(zlib.decompress(multiples_by_byte), np.uint8).reshape(4, -1)
-    multiples = np.ascontiguousarray(planes.T).view("<i4").reshape(shape)
-    return np.asarray(multiples * step[:, None])

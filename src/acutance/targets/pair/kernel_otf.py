@@ -105,8 +105,7 @@ class KernelOtf(ShortRepr):
         nodes = np.linspace(-1.0, 1.0, _PLANE_NODES)
         u, v = np.meshgrid(nodes[nodes >= 0] * self.band_across_cpp, nodes * self.band_along_cpp)
         slopes = self._quotient(u.ravel(), v.ravel())[1]
-        size = np.sqrt(np.mean(np.abs(slopes) ** 2, axis=0))
-        return replace(self, covariance=self.covariance.packed(size))
+        return replace(self, covariance=self.covariance.packed(slopes))
 
     def _quotient(self, u_cpp: Floats, v_cpp: Floats) -> tuple[Complexes, Complexes]:
         """OTF of the kernel, and its derivatives by the coefficients, (n, k)."""
