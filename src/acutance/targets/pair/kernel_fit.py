@@ -31,7 +31,7 @@ from acutance.targets.pair.kernel_covariance import KernelCovariance
 from acutance.targets.pair.noise import WHITE, Whitening, noise_gram, whitening_of
 from acutance.targets.pair.tile import PairTile, TapGrid, Tiles, blurred, blurred_far, core
 
-__all__ = ["Kernel", "KernelFit", "fit_kernel", "kernel_prior", "square_root"]
+__all__ = ["Kernel", "KernelFit", "fit_kernel", "kernel_prior", "square_root", "without_noise"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -278,7 +278,7 @@ def square_root(gram: Floats) -> Floats:
     return np.asarray(axes * np.sqrt(np.maximum(power, 0.0)))
 
 
-def _without_noise(normal: Normal, products: Floats, beta: Floats) -> Normal:
+def without_noise(normal: Normal, products: Floats, beta: Floats) -> Normal:
     """Normal equations less what the reference's noise is expected to add.
 
     The effective noise it makes in the low pixels stays in the residual's power. Where noise
@@ -320,7 +320,7 @@ def _regressed(
     normal = _sum(list(regions))
     if noise_high > 0:
         products = noise_high**2 * noise_gram(basis.taps(), basis.grid, whitening)
-        normal = _without_noise(normal, products, prior.mean if earlier is None else earlier.beta)
+        normal = without_noise(normal, products, prior.mean if earlier is None else earlier.beta)
     floor = 1e-5 * float(np.sqrt(normal.data / max(normal.count, 1.0)))
     return regress(normal, replace(prior, noise_floor=floor), noise**2, 1.0, earlier)
 

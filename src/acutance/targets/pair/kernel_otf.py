@@ -103,7 +103,10 @@ class KernelOtf(ShortRepr):
     def packed(self) -> KernelOtf:
         """The same OTF with its covariance kept in few bytes: see `KernelCovariance.packed`."""
         nodes = np.linspace(-1.0, 1.0, _PLANE_NODES)
-        u, v = np.meshgrid(nodes[nodes >= 0] * self.band_across_cpp, nodes * self.band_along_cpp)
+        u, v = np.meshgrid(
+            nodes[nodes >= 0] * min(self.band_across_cpp, 1.0),
+            nodes * min(self.band_along_cpp, 1.0),
+        )
         slopes = self._quotient(u.ravel(), v.ravel())[1]
         return replace(self, covariance=self.covariance.packed(slopes))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, Literal, Self
@@ -24,7 +25,7 @@ from acutance.targets.record import ImageInfo, Record, rounded
 __all__ = ["BiresolutionMeasurement", "Coherence", "PairDetails"]
 
 _DECIMALS = 4
-_DIGITS = 4
+_DIGITS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +143,8 @@ class BiresolutionMeasurement(Measurement):
         """The same measurement without fits and residuals: light enough to be sent and kept.
 
         Its record is the same. The covariance between frequencies is rounded: where standard
-        deviations are read from the OTF again, they differ by some ten-thousandths.
+        deviations are read from the OTF again, they differ by some thousandths, below 0.1 cycles per
+        pixel by some hundredths.
         """
         model = self.otf.model
         assert isinstance(model, KernelOtf)
@@ -207,7 +209,8 @@ class BiresolutionMeasurement(Measurement):
             },
             "iterations": [
                 {
-                    "residual": step.residual, "change": step.change,
+                    "residual": step.residual,
+                    "change": step.change if math.isfinite(step.change) else None,
                     "shift_px": rounded(step.shift_px), "variance_px2": rounded(step.variance_px2),
                 }
                 for step in self.steps
