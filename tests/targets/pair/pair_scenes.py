@@ -18,6 +18,7 @@ SYSTEMS = {
     ),
 }
 REFERENCE = SYSTEMS["gaussian"]
+SMALL = (64, 64)
 NYQUIST = 0.01
 """What the MTF at Nyquist may be wrong by at SNR 100."""
 
@@ -46,9 +47,13 @@ def rendered(
 
 @cache
 def measured(
-    system: str = "smeared", ratio: float = 2.0, seed: int = 1, method: str = "kernel-fit"
+    system: str = "smeared",
+    ratio: float = 2.0,
+    seed: int = 1,
+    method: str = "kernel-fit",
+    shape: tuple[int, int] = (96, 104),
 ) -> ac.BiresolutionMeasurement:
-    low, high, _ = rendered(system, ratio, seed)
+    low, high, _ = rendered(system, ratio, seed, shape)
     return ac.measure_biresolution(low, high, reference_mtf=REFERENCE, method=method)
 
 

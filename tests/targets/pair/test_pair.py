@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pair_scenes import NYQUIST, REFERENCE, both, measured, rendered
+from pair_scenes import NYQUIST, REFERENCE, SMALL, both, measured, rendered
 
 import acutance as ac
 from acutance.curves.grid import Floats
@@ -52,7 +52,7 @@ class TestTruth:
         assert m.trusted, m.failed_checks
 
     def test_without_reference_it_is_the_quotient(self) -> None:
-        low, high, truth = rendered()
+        low, high, truth = rendered(shape=SMALL)
         m = ac.measure_biresolution(low, high)
         half, nothing = np.array([0.5]), np.zeros(1)
         true = float(np.abs(truth.ratio_otf(half, nothing))[0])
@@ -86,7 +86,7 @@ class TestTruth:
 
     @pytest.mark.parametrize("shift", [(2.0, 2.0), (-5.4, 3.7)])
     def test_large_errors_of_registration(self, shift: tuple[float, float]) -> None:
-        low, high, truth = rendered("gaussian", 2.0, 3, (80, 80), shift)
+        low, high, truth = rendered("gaussian", 2.0, 3, SMALL, shift)
         m = ac.measure_biresolution(low, high, reference_mtf=REFERENCE)
         assert [one.value for one in m.shift_px] == pytest.approx(shift, abs=0.03)
         assert m.along.mtf_nyquist.value == pytest.approx(
@@ -171,23 +171,18 @@ class TestDeviations:
 
 class TestInvariances:
     def test_gain_and_offset(self) -> None:
-        low, high, _ = rendered()
+        low, high, _ = rendered(shape=SMALL)
         m = ac.measure_biresolution(0.01 * low - 5, 3 * high + 1000, reference_mtf=REFERENCE)
         assert m.across.mtf_nyquist.value == pytest.approx(
-            measured().across.mtf_nyquist.value, abs=1e-5
+            measured(shape=SMALL).across.mtf_nyquist.value, abs=1e-5
         )
 
     def test_flip(self) -> None:
-        low, high, _ = rendered()
+        low, high, _ = rendered(shape=SMALL)
         m = ac.measure_biresolution(low[:, ::-1], high[:, ::-1], reference_mtf=REFERENCE)
-        expected = measured()
+        expected = measured(shape=SMALL)
         assert m.shift_px[1].value == pytest.approx(-expected.shift_px[1].value, abs=2e-3)
         assert both(m)[0] == pytest.approx(both(expected)[0], abs=2.5e-3)
-
-    def test_transposition(self) -> None:
-        low, high, _ = rendered()
-        m = ac.measure_biresolution(low.T, high.T, reference_mtf=REFERENCE)
-        assert both(m)[0][::-1] == pytest.approx(both(measured())[0], abs=2.5e-3)
 
 
 class TestRealTrouble:
@@ -220,7 +215,7 @@ class TestRealTrouble:
         assert {"left_out", "residual_correlation"} & {check.name for check in m.failed_checks}
 
     def test_clipped_below_the_end_of_the_scale(self) -> None:
-        low, high, _ = rendered()
+        low, high, _ = rendered(shape=SMALL)
         m = ac.measure_biresolution(np.minimum(low, 900.0), high, reference_mtf=REFERENCE)
         assert "saturation" in {check.name for check in m.failed_checks}
 
@@ -337,8 +332,8 @@ class TestRefusals:
             ac.measure_biresolution(low, high, **options)
 
     def test_different_ground(self) -> None:
-        low, _, _ = rendered()
-        _, high, _ = rendered("smeared", 2.0, 78)
+        low, _, _ = rendered(shape=SMALL)
+        _, high, _ = rendered("smeared", 2.0, 78, SMALL)
         try:
             m = ac.measure_biresolution(low, high)
         except ac.TargetError:
@@ -346,7 +341,7 @@ class TestRefusals:
         assert "correlation" in {check.name for check in m.failed_checks}
 
     def test_negative(self) -> None:
-        low, high, _ = rendered()
+        low, high, _ = rendered(shape=SMALL)
         with pytest.raises(ac.TargetError, match=r"brighter where that is darker|in common"):
             ac.measure_biresolution(-low, high)
 
@@ -361,9 +356,9 @@ class TestRefusals:
 
 
 def test_stopping_threshold() -> None:
-    low, high, _ = rendered()
+    low, high, _ = rendered(shape=SMALL)
     loose = ac.measure_biresolution(low, high, options=ac.BiresolutionOptions(stop_change=0.2))
-    assert len(loose.steps) < len(measured().steps)
+    assert len(loose.steps) < len(measured(shape=SMALL).steps)
     assert loose.steps[-1].change < 0.2
     few = ac.BiresolutionOptions(max_steps=2)
     m = ac.measure_biresolution(low, high, options=few)

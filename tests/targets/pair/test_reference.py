@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from pair_scenes import REFERENCE, measured, rendered
+from pair_scenes import REFERENCE, SMALL, measured, rendered
 
 import acutance as ac
 from acutance.geometry.line import Orientation
@@ -18,8 +18,10 @@ from acutance.targets.pair.reference import known_curves
 
 
 def test_document_as_a_reference() -> None:
-    curves = measured_reference(measured().to_dict(), "file")
-    assert curves.across(0.5).value == pytest.approx(measured().across.mtf_nyquist.value, rel=1e-6)
+    curves = measured_reference(measured(shape=SMALL).to_dict(), "file")
+    assert curves.across(0.5).value == pytest.approx(
+        measured(shape=SMALL).across.mtf_nyquist.value, rel=1e-6
+    )
 
 
 @cache
@@ -33,19 +35,19 @@ def edge_of_the_reference(
 
 
 def test_a_reference_in_one_direction_fails_a_check() -> None:
-    low, high, _ = rendered()
+    low, high, _ = rendered(shape=SMALL)
     image = ac.Image.from_array(high, gsd_m=10.0)
     edge = edge_of_the_reference(10.0)
     for reference in (edge, measured_reference(edge.to_dict(), "edge.json")):
         m = ac.measure_biresolution(low, image, reference_mtf=reference)
         (check,) = (one for one in m.failed_checks if one.name == "reference_directions")
         assert f"{edge.line.normal_deg:.1f} degrees from the column axis" in check.message
-    names = {check.name for check in measured().checks}
+    names = {check.name for check in measured(shape=SMALL).checks}
     assert "reference_directions" not in names
 
 
 def test_a_reference_of_other_pixels_is_refused() -> None:
-    low, high, _ = rendered()
+    low, high, _ = rendered(shape=SMALL)
     wrong = edge_of_the_reference(0.7)
     message = r"pixels of 0.7 m, those of the high image have 10 m"
     for pair in ((low, ac.Image.from_array(high, 10.0)), (ac.Image.from_array(low, 20.0), high)):
@@ -59,7 +61,7 @@ def test_a_reference_of_other_pixels_is_refused() -> None:
 
 
 def test_a_ratio_is_no_reference() -> None:
-    low, high, _ = rendered()
+    low, high, _ = rendered(shape=SMALL)
     ratio = ac.measure_biresolution(low, high)
     with pytest.raises(ac.OptionError, match="no sensor's own MTF"):
         measured_reference(ratio.to_dict(), "file")
@@ -72,7 +74,7 @@ def test_documents_that_are_no_measurement() -> None:
 
 
 def test_reference_uncertainty_enters() -> None:
-    low, high, _ = rendered()
+    low, high, _ = rendered(shape=SMALL)
     freq = np.linspace(0, 1, 101)
     curve = ac.Mtf(
         freq,
@@ -80,7 +82,7 @@ def test_reference_uncertainty_enters() -> None:
         np.full((101, 1), 0.03 + 0j) * (freq > 0)[:, None],
     )
     m = ac.measure_biresolution(low, high, reference_mtf=MeasuredCurves(curve, curve))
-    expected = measured().across.mtf_nyquist
+    expected = measured(shape=SMALL).across.mtf_nyquist
     assert m.across.mtf_nyquist.value == pytest.approx(expected.value, rel=0.01)
     assert m.across.mtf_nyquist.std > expected.std
     number = ac.measure_biresolution(low, high, reference_mtf=0.2891)
@@ -111,7 +113,7 @@ def test_no_edge_is_no_reference() -> None:
 
 def test_axes_of_the_pixels_and_not_of_the_track() -> None:
     """A reference flown along its rows: across track is down the columns."""
-    m = measured("trail")
+    m = measured("trail", shape=SMALL)
     flown = replace(m, image=replace(m.image, along_track="x"))
     for reference in (flown, flown.record, Record.from_dict(flown.to_dict())):
         curves = known_curves(reference)
@@ -121,8 +123,8 @@ def test_axes_of_the_pixels_and_not_of_the_track() -> None:
 
 
 def test_swapped_gsds_are_other_pixels() -> None:
-    low, high, _ = rendered("trail")
-    m = measured("trail")
+    low, high, _ = rendered("trail", shape=SMALL)
+    m = measured("trail", shape=SMALL)
     known = replace(m, image=replace(m.image, pixel_gsd_m=(15.0, 10.0)))
     image = ac.Image.from_array(high, Gsd(15.0, 10.0))
     assert ac.measure_biresolution(low, image, reference_mtf=known).reference_known

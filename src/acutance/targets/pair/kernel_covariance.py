@@ -20,8 +20,8 @@ __all__ = ["KernelCovariance"]
 _FACTORS = ("posterior", "scatter", "white")
 _STEPS = {"posterior": 4e-4, "scatter": 8e-4, "white": 8e-4}
 """What entries of packed factors are rounded to, relative to a typical deviation of the OTF. There
-are a hundred or two of them to a deviation, which they change by some thousandths, and at the lowest
-frequencies by some hundredths."""
+are a hundred or two of them to a deviation, which they change by some thousandths, below 0.1 cycles
+per pixel by some hundredths."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -143,8 +143,8 @@ class BiresolutionMeasurement(Measurement):
         """The same measurement without fits and residuals: light enough to be sent and kept.
 
         Its record is the same. The covariance between frequencies is rounded: where standard
-        deviations are read from the OTF again, they differ by some thousandths, below 0.1 cycles per
-        pixel by some hundredths.
+        deviations are read from the OTF again, they differ by some thousandths, below 0.1 cycles
+        per pixel by some hundredths.
         """
         model = self.otf.model
         assert isinstance(model, KernelOtf)
