@@ -25,7 +25,7 @@ from acutance.targets.record import ImageInfo, Record, rounded
 __all__ = ["BiresolutionMeasurement", "Coherence", "PairDetails"]
 
 _DECIMALS = 4
-_DIGITS = 3
+_DIGITS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,4 +233,5 @@ class BiresolutionMeasurement(Measurement):
         for direction in ("across", "along"):
             mtf, std = self.local_mtf_nyquist(direction)
             maps |= {f"mtf_nyquist_{direction}": mtf, f"mtf_nyquist_{direction}_std": std}
-        return {name: rounded(values, _DIGITS) for name, values in maps.items()}
+        counts = {"pixels": maps.pop("pixels").tolist()}
+        return {name: rounded(values, _DIGITS) for name, values in maps.items()} | counts
