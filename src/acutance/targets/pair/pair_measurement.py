@@ -209,8 +209,8 @@ class BiresolutionMeasurement(Measurement):
             },
             "iterations": [
                 {
-                    "residual": step.residual,
-                    "change": step.change if math.isfinite(step.change) else None,
+                    "residual": float(f"{step.residual:.6g}"),
+                    "change": float(f"{step.change:.3g}") if math.isfinite(step.change) else None,
                     "shift_px": rounded(step.shift_px), "variance_px2": rounded(step.variance_px2),
                 }
                 for step in self.steps
@@ -225,7 +225,7 @@ class BiresolutionMeasurement(Measurement):
         found: dict[str, Any] = {"windows": self.coherence.windows}
         for direction in ("across", "along"):
             freq, value = getattr(self.coherence, self._axis(direction))
-            found[direction] = {"freq_cpp": rounded(freq), "value": rounded(value, _DIGITS)}
+            found[direction] = {"freq_cpp": rounded(freq), "value": rounded(value, _DIGITS - 1)}
         return found
 
     def _map_document(self) -> dict[str, Any]:
@@ -234,4 +234,6 @@ class BiresolutionMeasurement(Measurement):
             mtf, std = self.local_mtf_nyquist(direction)
             maps |= {f"mtf_nyquist_{direction}": mtf, f"mtf_nyquist_{direction}_std": std}
         counts = {"pixels": maps.pop("pixels").tolist()}
-        return {name: rounded(values, _DIGITS) for name, values in maps.items()} | counts
+        return {
+            name: rounded(values, _DIGITS - ("_std" in name)) for name, values in maps.items()
+        } | counts
