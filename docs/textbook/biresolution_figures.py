@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import inspect
 from functools import cache
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpydoc.docscrape import ClassDoc
 
 import acutance as ac
 from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, VERMILION, new_page
 from acutance.simulate import NativeGrid
-from acutance.targets.pair import BiresolutionLimits
+from acutance.targets import QUESTIONS
+from acutance.targets.pair import PAIR_CHECKS
 from textbook.rst import list_table
 
 __all__ = ["FIGURES", "TEXTS", "checks", "measured_pair", "products", "what_limits"]
@@ -141,10 +140,15 @@ def products() -> Figure:
 
 def checks() -> str:
     """The limits of the checks, with what they ask."""
-    described = {one.name: " ".join(one.desc) for one in ClassDoc(BiresolutionLimits)["Parameters"]}
-    defaults = inspect.signature(BiresolutionLimits).parameters
-    rows = [[f"``{name}``", f"{p.default:g}", described[name]] for name, p in defaults.items()]
-    return list_table(["limit", "default", "what it asks"], rows, (25, 12, 63))
+    rows = [
+        [
+            f"``{name}``",
+            f"{QUESTIONS[name].sense} {QUESTIONS[name].limit:g}",
+            QUESTIONS[name].question,
+        ]
+        for name in PAIR_CHECKS
+    ]
+    return list_table(["check", "limit", "what it asks"], rows, (25, 12, 63))
 
 
 FIGURES = {

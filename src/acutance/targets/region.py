@@ -14,7 +14,7 @@ from acutance.errors import RegionError
 from acutance.raster import Box, Gsd, Image, Region
 from acutance.targets.record import ImageInfo
 
-__all__ = ["RegionPixels", "RoiLike", "read_region"]
+__all__ = ["RegionPixels", "RoiLike", "chosen_region", "image_info", "read_region"]
 
 _MAX_PIXELS = 9_000_000
 _MIN_SIDE_PX = 8
@@ -47,11 +47,15 @@ class RegionPixels:
     @property
     def info(self) -> ImageInfo:
         """What a measurement records of its image: the same for every kind of target."""
-        image, box = self.image, self.box
-        return ImageInfo(
-            image.path, image.band, box.as_tuple(), image.crs, image.along_track,
-            None if self.gsd is None else (self.gsd.row_m, self.gsd.col_m),
-        )  # fmt: skip
+        return image_info(self.image, self.box, self.gsd)
+
+
+def image_info(image: Image, box: Box, gsd: Gsd | None) -> ImageInfo:
+    """What a measurement records of a part of an image."""
+    return ImageInfo(
+        image.path, image.band, box.as_tuple(), image.crs, image.along_track,
+        None if gsd is None else (gsd.row_m, gsd.col_m),
+    )  # fmt: skip
 
 
 def read_region(
@@ -76,7 +80,7 @@ def read_region(
         larger than any target.
     """
     source = image if isinstance(image, Image) else Image.from_array(image)
-    where = Box.whole(source.shape) if roi is None else _chosen_region(roi)
+    where = Box.whole(source.shape) if roi is None else chosen_region(roi)
     if isinstance(where, Region):
         box, region = where.box(source.shape), where
     else:
@@ -108,7 +112,7 @@ def read_region(
     return RegionPixels(pixels, box, source.saturation_level, gsd, source)
 
 
-def _chosen_region(roi: Any) -> Region | Box:
+def chosen_region(roi: Any) -> Region | Box:
     """A region, a box, or the box of four numbers.
 
     Raises

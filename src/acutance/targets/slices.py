@@ -75,15 +75,25 @@ class PlaneSlices(ShortRepr):
         """Frequencies across and along, (m * n,) each."""
         return _places(self.normal_deg, self.freq_cpp)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Directions, frequencies, OTF and factor as lists."""
+    def to_dict(self, decimals: int | None = None) -> dict[str, Any]:
+        """Directions, frequencies, OTF and factor as lists.
+
+        Parameters
+        ----------
+        decimals : int, optional
+            Decimals of the factor; without it, a thousandth of its largest number and less.
+        """
+        decimals = self._decimals if decimals is None else decimals
+        # Columns whose numbers are mostly rounded to 0 are left out.
+        size = np.sqrt(0.5 * np.mean(np.abs(self.factor) ** 2, axis=0))
+        factor = self.factor[:, size > 0.5 * 10.0**-decimals]
         return {
             "normal_deg": self.normal_deg.tolist(),
             "freq_cpp": np.round(self.freq_cpp, 6).tolist(),
             "otf_real": np.round(self.otf.real, 6).tolist(),
             "otf_imag": np.round(self.otf.imag, 6).tolist(),
-            "factor_real": np.round(self.factor.real, self._decimals).tolist(),
-            "factor_imag": np.round(self.factor.imag, self._decimals).tolist(),
+            "factor_real": np.round(factor.real, decimals).tolist(),
+            "factor_imag": np.round(factor.imag, decimals).tolist(),
         }
 
     @property

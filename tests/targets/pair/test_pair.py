@@ -3,65 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
+from pair_scenes import NYQUIST, REFERENCE, SMALL, both, measured, rendered
 
 import acutance as ac
 from acutance.curves.grid import Floats
 from acutance.raster.geolocation import Geolocation
-from acutance.simulate import Landscape, NativeGrid, PairTruth
-from acutance.targets.pair import BiresolutionLimits, MeasuredCurves, measured_reference
-
-SYSTEMS = ac.simulate.reference_systems()
-REFERENCE = SYSTEMS["gaussian"]
-NYQUIST = 0.01
-"""What the MTF at Nyquist may be wrong by at SNR 100."""
-
-
-@cache
-def rendered(
-    system: str = "smeared",
-    ratio: float = 2.0,
-    seed: int = 1,
-    shape: tuple[int, int] = (96, 104),
-    shift: tuple[float, float] = (1.3, -0.6),
-    snr: float | None = 100.0,
-) -> tuple[Floats, Floats, PairTruth]:
-    return ac.simulate.pair(
-        SYSTEMS[system],
-        REFERENCE,
-        ratio=ratio,
-        shape=shape,
-        shift_px=shift,
-        gain=1.2,
-        offset=30.0,
-        snr=snr,
-        rng=np.random.default_rng(seed),
-    )
-
-
-@cache
-def measured(
-    system: str = "smeared", ratio: float = 2.0, seed: int = 1, method: str = "kernel-fit"
-) -> ac.BiresolutionMeasurement:
-    low, high, _ = rendered(system, ratio, seed)
-    return ac.measure_biresolution(low, high, reference_mtf=REFERENCE, method=method)
-
-
-def both(measurement: ac.BiresolutionMeasurement) -> tuple[Floats, Floats]:
-    """MTF at Nyquist across and along: values and standard deviations."""
-    found = [one.mtf_nyquist for one in (measurement.across, measurement.along)]
-    return np.array([one.value for one in found]), np.array([one.std for one in found])
+from acutance.simulate import Landscape, NativeGrid
 
 
 class TestTruth:
     @pytest.mark.parametrize(
         ("system", "ratio"),
-        [("gaussian", 2.0), ("smeared", 2.0), ("halo", 3.0), ("asymmetric", 2.5),
-         ("sharpened", 3.0), ("diffraction", 4.0)],
+        [("smeared", 2.0), ("halo", 3.0), ("asymmetric", 2.5), ("sharpened", 3.0),
+         ("diffraction", 3.0)],
     )  # fmt: skip
     def test_mtf_at_nyquist(self, system: str, ratio: float) -> None:
         m = measured(system, ratio)
@@ -94,7 +52,7 @@ class TestTruth:
         assert m.trusted, m.failed_checks
 
     def test_without_reference_it_is_the_quotient(self) -> None:
-        low, high, truth = rendered()
+        low, high, truth = rendered(shape=SMALL)
         m = ac.measure_biresolution(low, high)
         half, nothing = np.array([0.5]), np.zeros(1)
         true = float(np.abs(truth.ratio_otf(half, nothing))[0])
@@ -103,17 +61,32 @@ class TestTruth:
         assert "reference_mtf" in {check.name for check in m.failed_checks}
         assert m.to_dict()["quantity"] == "mtf_low_over_mtf_high"
 
-    def test_asymmetry_shows_in_the_phase(self) -> None:
-        m = measured("asymmetric", 2.5)
-        _, _, truth = rendered("asymmetric", 2.5)
-        true = truth.response("across").mtf
-        at = np.searchsorted(true.freq_cpp, 0.4)
-        assert abs(true.phase_rad[at]) > 0.1
-        assert m.across.mtf.phase_rad[at] == pytest.approx(true.phase_rad[at], abs=0.06)
+    def test_trail_shows_in_the_phase(self) -> None:
+        """With the sign of the truth: in the curve, in the slices, and in the LSF."""
+        m, true = measured("trail"), rendered("trail")[2].response("along")
+        at = int(np.searchsorted(true.mtf.freq_cpp, 0.4))
+        phase = true.mtf.phase_rad[at]
+        assert abs(phase) > 0.2
+        assert m.along.mtf.phase_rad[at] == pytest.approx(phase, abs=0.06)
+        assert abs(m.across.mtf.phase_rad[at]) < 0.06
+        slices = m.slices.otf.reshape(m.slices.normal_deg.size, -1)
+        assert np.sign(slices[2, 7].imag) == np.sign(phase)
+        leaning = [
+            one.half_extent_bright_px.value - one.half_extent_dark_px.value
+            for one in (m.along, true)
+        ]
+        assert leaning[0] == pytest.approx(leaning[1], abs=0.1)
+        assert abs(leaning[1]) > 0.2
+
+    def test_axes_have_their_own_curves(self) -> None:
+        truth = rendered("trail")[2]
+        true = [truth.response(axis).mtf_nyquist.value for axis in ("across", "along")]
+        assert true[0] - true[1] > 5 * NYQUIST
+        assert both(measured("trail"))[0] == pytest.approx(true, abs=1.5 * NYQUIST)
 
     @pytest.mark.parametrize("shift", [(2.0, 2.0), (-5.4, 3.7)])
     def test_large_errors_of_registration(self, shift: tuple[float, float]) -> None:
-        low, high, truth = rendered("gaussian", 2.0, 3, (80, 80), shift)
+        low, high, truth = rendered("gaussian", 2.0, 3, SMALL, shift)
         m = ac.measure_biresolution(low, high, reference_mtf=REFERENCE)
         assert [one.value for one in m.shift_px] == pytest.approx(shift, abs=0.03)
         assert m.along.mtf_nyquist.value == pytest.approx(
@@ -134,13 +107,13 @@ class TestTruth:
         value, std = both(m)
         assert np.all(np.abs(value - truth.response().mtf_nyquist.value) < 3.5 * std)
         fitted = both(measured())
-        assert np.all(std > fitted[1] * 0.8), "the pixels say more than the spectra"
+        assert np.all(std > fitted[1] * 0.8), "the pixels determine more than the spectra"
 
     def test_spectral_ratio_is_not_high(self) -> None:
         """The mean over systems: frequencies chosen by their own coherence made it 0.02 high."""
         errors = []
-        for seed, system in enumerate(("gaussian", "smeared", "sharpened", "wide") * 2):
-            low, high, truth = rendered(system, 2.0, seed + 400, (96, 96))
+        for seed, system in enumerate(("gaussian", "smeared", "sharpened", "wide")):
+            low, high, truth = rendered(system, 2.0, seed + 400, (80, 80))
             m = ac.measure_biresolution(low, high, reference_mtf=REFERENCE, method="spectral-ratio")
             true = [truth.response(axis).mtf_nyquist.value for axis in ("across", "along")]
             errors.append(both(m)[0] - true)
@@ -150,7 +123,7 @@ class TestTruth:
         """A low sensor sharp enough to alias strongly: the spectrum of its image is no help."""
         sharp = ac.Sensor([ac.optics.Gaussian(0.15), ac.optics.Detector(0.8)])
         low, high, truth = ac.simulate.pair(
-            sharp, REFERENCE, ratio=4, shape=(80, 80), snr=200, rng=np.random.default_rng(8)
+            sharp, REFERENCE, ratio=4, shape=(64, 64), snr=200, rng=np.random.default_rng(8)
         )
         m = ac.measure_biresolution(low, high, reference_mtf=REFERENCE)
         assert truth.response().mtf_nyquist.value > 0.6
@@ -163,9 +136,8 @@ class TestTruth:
 class TestProducts:
     """Both images interpolated onto a map from native grids turned by 18 degrees."""
 
-    @pytest.mark.parametrize("sigma_px", [0.25, 0.4])
-    def test_mean_transfer_of_the_product(self, sigma_px: float) -> None:
-        sensor = ac.Sensor([ac.optics.Gaussian(sigma_px), ac.optics.Detector(1.0)])
+    def test_mean_transfer_of_the_product(self) -> None:
+        sensor = ac.Sensor([ac.optics.Gaussian(0.25), ac.optics.Detector(1.0)])
         low, high, truth = ac.simulate.pair(
             sensor, REFERENCE, shape=(140, 140), shift_px=(0.6, -0.3), gain=1.2, snr=100,
             native=NativeGrid(), rng=np.random.default_rng(50),
@@ -177,42 +149,40 @@ class TestProducts:
         assert np.abs(both(m)[0] - true).max() < 0.008
 
 
-class TestCoverage:
-    def test_intervals_hold_the_truth(self) -> None:
-        """Three systems and ratios: 95 % intervals miss seldom, and are not far too wide."""
+class TestDeviations:
+    def test_they_are_those_of_the_errors(self) -> None:
+        """Fixed scenes, whose errors are .98 of the stated deviations.
+
+        Deviations 0.8 or 1.25 times as large leave the bounds.
+        """
         z = []
-        for system, ratio, seeds in (("gaussian", 2.0, 6), ("smeared", 2.0, 6), ("halo", 3.0, 4)):
-            for seed in range(10, 10 + seeds):
-                low, high, truth = rendered(system, ratio, seed, (72, 72), (0.4, -1.7))
+        for system in ("gaussian", "smeared", "trail"):
+            for seed in range(10, 15):
+                low, high, truth = rendered(system, 2.0, seed, (52, 52), (0.4, -1.7))
                 m = ac.measure_biresolution(low, high, reference_mtf=REFERENCE)
                 for axis in ("across", "along"):
                     found, true = getattr(m, axis), truth.response(axis)
-                    for freq in (0.25, 0.5):
+                    for freq in (0.25, 0.35, 0.5):
                         one = found.mtf(freq)
                         z.append((one.value - true.mtf(freq).value) / one.std)
-        assert np.mean(np.abs(z) < 1.96) >= 0.88
-        assert 0.6 < np.sqrt(np.mean(np.square(z))) < 1.3
+        assert np.mean(np.abs(z) < 1.96) >= 0.9
+        assert 0.86 < np.sqrt(np.mean(np.square(z))) < 1.13
 
 
 class TestInvariances:
     def test_gain_and_offset(self) -> None:
-        low, high, _ = rendered()
+        low, high, _ = rendered(shape=SMALL)
         m = ac.measure_biresolution(0.01 * low - 5, 3 * high + 1000, reference_mtf=REFERENCE)
         assert m.across.mtf_nyquist.value == pytest.approx(
-            measured().across.mtf_nyquist.value, abs=1e-5
+            measured(shape=SMALL).across.mtf_nyquist.value, abs=1e-5
         )
 
     def test_flip(self) -> None:
-        low, high, _ = rendered()
+        low, high, _ = rendered(shape=SMALL)
         m = ac.measure_biresolution(low[:, ::-1], high[:, ::-1], reference_mtf=REFERENCE)
-        expected = measured()
+        expected = measured(shape=SMALL)
         assert m.shift_px[1].value == pytest.approx(-expected.shift_px[1].value, abs=2e-3)
         assert both(m)[0] == pytest.approx(both(expected)[0], abs=2.5e-3)
-
-    def test_transposition(self) -> None:
-        low, high, _ = rendered()
-        m = ac.measure_biresolution(low.T, high.T, reference_mtf=REFERENCE)
-        assert both(m)[0][::-1] == pytest.approx(both(measured())[0], abs=2.5e-3)
 
 
 class TestRealTrouble:
@@ -222,29 +192,30 @@ class TestRealTrouble:
         cloudy = np.where(np.hypot(rows - 30, cols - 70) < 12, 2500.0, low)
         m = ac.measure_biresolution(cloudy, high, reference_mtf=REFERENCE)
         value, std = both(m)
-        assert m.pixel_fit.left_out > 350
+        assert m.left_out > 350
         assert np.all(
             np.abs(value - truth.response().mtf_nyquist.value) < np.maximum(3.5 * std, 0.01)
         )
-        shown = m.residual[30 - m.image.roi[0], 70 - m.image.roi[1]]
-        assert np.isnan(shown)
+        assert m.details is not None
+        residuals = m.details.residuals
+        assert np.isnan(residuals.values[30 - m.image.roi[0], 70 - m.image.roi[1]])
 
     @pytest.mark.parametrize("texture", [0.0, 1.0])
     def test_cloud_over_half_the_scene(self, texture: float) -> None:
         """As much of the scene as there is ground: no median can tell which is which."""
-        low, high, truth = rendered("smeared", 2.0, 4, (128, 128))
-        other, _, _ = rendered("smeared", 2.0, 79, (128, 128))
+        low, high, truth = rendered("smeared", 2.0, 4, (112, 112))
+        other, _, _ = rendered("smeared", 2.0, 79, (112, 112))
         noisy = 3000 + 10 * noise(low.shape) + texture * other
-        cloudy = np.where(np.arange(128) < 64, noisy, low)
+        cloudy = np.where(np.arange(112) < 56, noisy, low)
         m = ac.measure_biresolution(cloudy, high, reference_mtf=REFERENCE)
         value, std = both(m)
-        assert m.pixel_fit.left_out > (0.35 if texture else 0.15) * low.size
+        assert m.left_out > (0.35 if texture else 0.15) * low.size
         assert np.all(np.abs(value - truth.response().mtf_nyquist.value) < 2.5 * std)
         assert np.all(std < 0.03)
         assert {"left_out", "residual_correlation"} & {check.name for check in m.failed_checks}
 
     def test_clipped_below_the_end_of_the_scale(self) -> None:
-        low, high, _ = rendered()
+        low, high, _ = rendered(shape=SMALL)
         m = ac.measure_biresolution(np.minimum(low, 900.0), high, reference_mtf=REFERENCE)
         assert "saturation" in {check.name for check in m.failed_checks}
 
@@ -256,7 +227,7 @@ class TestRealTrouble:
         high[:, 200] = np.nan
         m = ac.measure_biresolution(low, high, reference_mtf=REFERENCE)
         value, std = both(m)
-        assert m.pixel_fit.used < 0.95 * measured().pixel_fit.used
+        assert m.used < 0.95 * measured().used
         assert np.all(
             np.abs(value - truth.response().mtf_nyquist.value) < np.maximum(3.5 * std, 0.01)
         )
@@ -284,27 +255,12 @@ class TestRealTrouble:
         )
 
     def test_scene_too_large_to_be_read_whole(self) -> None:
-        low, high, _ = rendered("smeared", 2.0, 5, (220, 200))
-        options = ac.BiresolutionOptions(max_pixels=3 * 4096)
+        low, high, _ = rendered("smeared", 2.0, 5, (100, 190))
+        options = ac.BiresolutionOptions(max_pixels=9216)
         m = ac.measure_biresolution(low, high, reference_mtf=REFERENCE, options=options)
-        assert m.share_read < 0.5
-        assert m.pixel_fit.used <= 3 * 4096
+        assert m.share_read == pytest.approx(0.5, abs=0.01)
+        assert m.used <= 9216
         assert np.isnan(m.local.residual).any()
-
-    def test_reference_uncertainty_enters(self) -> None:
-        low, high, _ = rendered()
-        freq = np.linspace(0, 1, 101)
-        curve = ac.Mtf(
-            freq,
-            np.abs(REFERENCE.otf(freq, 0.0)).astype(complex),
-            np.full((101, 1), 0.03 + 0j) * (freq > 0)[:, None],
-        )
-        m = ac.measure_biresolution(low, high, reference_mtf=MeasuredCurves(curve, curve))
-        expected = measured().across.mtf_nyquist
-        assert m.across.mtf_nyquist.value == pytest.approx(expected.value, rel=0.01)
-        assert m.across.mtf_nyquist.std > expected.std
-        number = ac.measure_biresolution(low, high, reference_mtf=0.2891)
-        assert number.across.mtf_nyquist.value == pytest.approx(expected.value, rel=1e-3)
 
 
 class TestGeometry:
@@ -324,7 +280,7 @@ class TestGeometry:
         assert m.ratio == pytest.approx((2.0, 2.0))
         assert m.grid.source == "geotransform"
         assert [one.value for one in m.shift_px] == pytest.approx((1.3, -0.6), abs=0.02)
-        assert m.otf.gsd_m == pytest.approx((20.0, 20.0))
+        assert m.image.pixel_gsd_m == pytest.approx((20.0, 20.0))
 
     def test_fraction_of_a_pixel_in_the_geotransform(self) -> None:
         m = ac.measure_biresolution(*self.georeferenced(7.0), reference_mtf=REFERENCE)
@@ -332,7 +288,7 @@ class TestGeometry:
         assert both(m)[0] == pytest.approx(both(measured())[0], abs=0.01)
 
     def test_ratio_in_contradiction(self) -> None:
-        with pytest.raises(ac.AcutanceError, match="geotransforms say 2"):
+        with pytest.raises(ac.AcutanceError, match="geotransforms have 2"):
             ac.measure_biresolution(*self.georeferenced(), ratio=3)
 
     def test_no_overlap(self) -> None:
@@ -352,8 +308,8 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("low", "high", "options", "message"),
         [
-            (noise((80, 80)), noise((150, 190)), {}, "tell no ratio"),
-            (noise((80, 80)), noise((160, 160)), {"ratio": 3}, "cut them alike"),
+            (noise((80, 80)), noise((150, 190)), {}, "have no common ratio"),
+            (noise((80, 80)), noise((160, 160)), {"ratio": 3}, "cut both to the same ground"),
             (noise((80, 80)), noise((160, 160)), {"ratio": 0.5}, "ratio of 0.5"),
             (noise((80, 80)), noise((160, 160)), {"ratio": np.nan}, "ratio of nan"),
             (noise((160, 160)), noise((80, 80)), {}, "LOW one"),
@@ -376,8 +332,8 @@ class TestRefusals:
             ac.measure_biresolution(low, high, **options)
 
     def test_different_ground(self) -> None:
-        low, _, _ = rendered()
-        _, high, _ = rendered("smeared", 2.0, 78)
+        low, _, _ = rendered(shape=SMALL)
+        _, high, _ = rendered("smeared", 2.0, 78, SMALL)
         try:
             m = ac.measure_biresolution(low, high)
         except ac.TargetError:
@@ -385,7 +341,7 @@ class TestRefusals:
         assert "correlation" in {check.name for check in m.failed_checks}
 
     def test_negative(self) -> None:
-        low, high, _ = rendered()
+        low, high, _ = rendered(shape=SMALL)
         with pytest.raises(ac.TargetError, match=r"brighter where that is darker|in common"):
             ac.measure_biresolution(-low, high)
 
@@ -398,61 +354,13 @@ class TestRefusals:
         with pytest.raises(ac.OptionError):
             ac.BiresolutionOptions(**options)
 
-    def test_documents_that_are_no_measurement(self) -> None:
-        for document in ([], {}, {"schema": "acutance/measurement/1"}):
-            with pytest.raises(ac.OptionError):
-                measured_reference(document, "file")
-
-
-def test_document_as_a_reference() -> None:
-    curves = measured_reference(measured().to_dict(), "file")
-    assert curves.across(0.5).value == pytest.approx(measured().across.mtf_nyquist.value, rel=1e-6)
-
-
-def _edge_of_the_reference(gsd_m: float) -> ac.Measurement:
-    image, _ = ac.simulate.edge(REFERENCE, angle_deg=6, snr=100, rng=np.random.default_rng(3))
-    return ac.measure_edge(image, gsd_m=gsd_m)
-
-
-def test_a_reference_in_one_direction_is_said_to_be_one() -> None:
-    low, high, _ = rendered()
-    image = ac.Image.from_array(high, gsd_m=10.0)
-    edge = _edge_of_the_reference(10.0)
-    for reference in (edge, measured_reference(edge.to_dict(), "edge.json")):
-        m = ac.measure_biresolution(low, image, reference_mtf=reference)
-        (check,) = (one for one in m.failed_checks if one.name == "reference_directions")
-        assert f"{edge.line.normal_deg:.1f} degrees from the column axis" in check.message
-    names = {check.name for check in measured().checks}
-    assert "reference_directions" not in names
-
-
-def test_a_reference_of_other_pixels_is_refused() -> None:
-    low, high, _ = rendered()
-    wrong = _edge_of_the_reference(0.7)
-    message = r"pixels of 0.7 m, those of the high image have 10 m"
-    for pair in ((low, ac.Image.from_array(high, 10.0)), (ac.Image.from_array(low, 20.0), high)):
-        with pytest.raises(ac.OptionError, match=message):
-            ac.measure_biresolution(*pair, reference_mtf=wrong)
-    with pytest.raises(ac.OptionError, match=message):
-        ac.measure_biresolution(
-            low, ac.Image.from_array(high, 10.0),
-            reference_mtf=measured_reference(wrong.to_dict(), "edge.json"),
-        )  # fmt: skip
-
-
-def test_a_ratio_is_no_reference() -> None:
-    low, high, _ = rendered()
-    ratio = ac.measure_biresolution(low, high)
-    with pytest.raises(ac.OptionError, match="no sensor's own MTF"):
-        measured_reference(ratio.to_dict(), "file")
-
 
 def test_stopping_threshold() -> None:
-    low, high, _ = rendered()
+    low, high, _ = rendered(shape=SMALL)
     loose = ac.measure_biresolution(low, high, options=ac.BiresolutionOptions(stop_change=0.2))
-    assert len(loose.steps) < len(measured().steps)
+    assert len(loose.steps) < len(measured(shape=SMALL).steps)
     assert loose.steps[-1].change < 0.2
-    few = ac.BiresolutionOptions(max_steps=2, limits=BiresolutionLimits())
+    few = ac.BiresolutionOptions(max_steps=2)
     m = ac.measure_biresolution(low, high, options=few)
     assert "iteration_change" in {check.name for check in m.failed_checks}
 

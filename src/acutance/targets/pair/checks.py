@@ -1,180 +1,181 @@
-"""What is asked of an image pair, and where the questions come from.
+"""What is asked of an image pair.
 
-- ratio, reference_mtf: the high image stands for the ground where its own MTF is near one (Li et
-  al., "On-orbit MTF estimation methods", 5.1 and 5.2: "the resolution difference should be as much
-  as possible"); the rest is divided out with a known reference.
-- coherence, pixels: both images need high spatial frequencies: roads, shorelines, buildings (5.2).
-- correlation, residual_correlation, inflation: the same or a similar spectral band (5.1); what one
-  band sees and the other does not is no noise, and limits real pairs.
-- shift_px, registration_px, left_out: the same ground at the same time.
+The high image stands for the ground where its own MTF is near one (Li et al., "On-orbit MTF
+estimation methods", 5.1 and 5.2); the rest is divided out with a known reference. What one band
+sees and the other does not is no noise, and limits real pairs.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.targets.measurement import Check
-from acutance.targets.pair.first_fit import BlurFit
+from acutance.targets.check import Check, Limits, answer
+from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.grid import PairGrid
 from acutance.targets.pair.kernel_fit import KernelFit
 from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit
-from acutance.targets.pair.options import BiresolutionLimits
 from acutance.targets.pair.spectral_ratio import PairSpectra
-from acutance.targets.straight.check_data import at_least, at_most
 
-__all__ = ["PairEvidence", "check_pair"]
+__all__ = ["PAIR_CHECKS", "check_pair"]
+
+PAIR_CHECKS = (
+    "ratio",
+    "reference_mtf",
+    "reference_directions",
+    "correlation",
+    "coherence",
+    "pixels",
+    "left_out",
+    "registration_px",
+    "shift_px",
+    "residual_correlation",
+    "inflation",
+    "saturation",
+    "iteration_change",
+)
+"""The checks of a pair; "reference_directions" only where the reference was measured in one."""
 
 
-@dataclass(frozen=True, eq=False)
-class PairEvidence:
-    """What the checks read.
+def check_pair(
+    grid: PairGrid,
+    gaussian: GaussianFit,
+    fit: KernelFit,
+    model: KernelOtf,
+    spectra: PairSpectra | None,
+    local: LocalFit,
+    limits: Limits,
+    *,
+    stop_change: float,
+    clipped: float,
+    inverted: bool,
+) -> tuple[Check, ...]:
+    """All checks of a pair.
 
     Parameters
     ----------
     grid : PairGrid
-    blur : BlurFit
+    gaussian : GaussianFit
     fit : KernelFit
+        To the pixels.
     model : KernelOtf
     spectra : PairSpectra or None
     local : LocalFit
-    saturated : float
-        Share of an image's pixels at the end of the scale, of the worse one.
-    inverted : bool
-        Whether the images match better with opposite sign.
+    limits : mapping of str to float
+        Limits that the caller changed.
     stop_change : float
         Threshold of the parametric fit.
-    only_direction : str or None
-        The direction of the reference's measurement, where it is a single one.
+    clipped : float
+        Share of clipped pixels, of the worse image.
+    inverted : bool
+        Whether the images match better with opposite sign.
     """
-
-    grid: PairGrid
-    blur: BlurFit
-    fit: KernelFit
-    model: KernelOtf
-    spectra: PairSpectra | None
-    local: LocalFit
-    saturated: float
-    inverted: bool
-    stop_change: float
-    only_direction: str | None = None
-
-
-def check_pair(seen: PairEvidence, limits: BiresolutionLimits) -> tuple[Check, ...]:
-    """All checks of a pair."""
-    return tuple(_checks(seen, limits))
+    return (
+        _ratio(grid, limits),
+        *_reference(model, limits),
+        _correlation(gaussian, inverted, limits),
+        _coherence(spectra, limits),
+        *_pixels(fit, limits),
+        *_places(gaussian, local, limits),
+        *_residuals(fit, model, limits),
+        answer(
+            "saturation", clipped, f"{100 * clipped:.2f} % of an image's pixels are clipped", limits
+        ),
+        _iteration(gaussian, stop_change, limits),
+    )
 
 
-def _checks(seen: PairEvidence, limits: BiresolutionLimits) -> Iterator[Check]:
-    ratio = min(seen.grid.down.ratio, seen.grid.across.ratio)
-    yield at_least(
-        "ratio", round(ratio, 6), limits.ratio,
-        f"the high image's pixels are {ratio:.4g} times finer: it says nothing beyond "
-        f"{ratio / 2:.3g} cycles per low pixel, and its own blur and aliasing count the less the "
-        "finer it is (Li et al. 5.2)",
-    )  # fmt: skip
-    yield _reference(seen, limits)
-    if seen.only_direction is not None:
-        yield at_least(
-            "reference_directions", 1.0, limits.reference_directions,
-            f"the reference's MTF was measured in {seen.only_direction}, and is taken for all: "
-            "smear or asymmetry of its sensor is then in the result; combine measurements in two "
-            "directions, or use points or a star",
+def _ratio(grid: PairGrid, limits: Limits) -> Check:
+    ratio = min(grid.down.ratio, grid.across.ratio)
+    found = (
+        f"the high image's pixels are {ratio:.4g} times finer, and nothing is measured beyond "
+        f"{ratio / 2:.3g} cycles per low pixel"
+    )
+    return answer("ratio", round(ratio, 6), found, limits)
+
+
+def _reference(model: KernelOtf, limits: Limits) -> Iterator[Check]:
+    reference = model.reference
+    if reference is None:
+        yield answer(
+            "reference_mtf", 0.0, "the high image's own MTF was not given", limits,
+            advice="the result is the MTF of the low sensor OVER that of the high one, too large "
+            "by the reciprocal of the latter; state it with reference_mtf (--reference)",
         )  # fmt: skip
-    sign = "; it matches better with opposite sign: not the same band" if seen.inverted else ""
-    yield at_least(
-        "correlation", seen.blur.correlation, limits.correlation,
-        f"the low image and the blurred high one correlate by {seen.blur.correlation:.3f} without "
-        f"their local means: other bands, dates or views show other things{sign}",
-    )  # fmt: skip
-    yield _coherence(seen, limits)
-    yield at_least(
-        "pixels", float(seen.fit.used), limits.pixels,
-        f"{seen.fit.used} low pixels were used: the standard deviations fall with their root",
-    )  # fmt: skip
-    lost = seen.fit.left_out / max(seen.fit.left_out + seen.fit.used, 1)
-    yield at_most(
-        "left_out", lost, limits.left_out,
-        f"{100 * lost:.1f} % of the low pixels do not fit the rest and were left out: clouds, "
-        "shadows, changes between the two dates, defects; mask them, or choose another region",
-    )  # fmt: skip
-    spread = seen.local.shift_spread_px
-    yield at_most(
-        "registration_px", spread, limits.registration_px,
-        f"the images shift against each other by {spread:.3f} low pixels (standard deviation over "
-        "the map) from place to place: that blurs the kernel; choose a smaller region",
-    )  # fmt: skip
-    shift = float(np.hypot(seen.blur.down.shift_px, seen.blur.across.shift_px))
-    yield at_most(
-        "shift_px", shift, limits.shift_px,
-        f"the low image lies {shift:.2f} low pixels off its geometry: measured and allowed for, "
-        "but a sign of a wrong pair or ratio",
-    )  # fmt: skip
-    correlation = abs(seen.fit.whitening.strongest)
-    yield at_most(
-        "residual_correlation", correlation, limits.residual_correlation,
-        f"neighbouring residuals correlate by {correlation:.2f}: the two bands see different "
-        "colours, or the scene changed; the fit whitens them and the intervals allow for it, but "
-        "a difference that looks like blur stays in the MTF",
-    )  # fmt: skip
-    inflation = seen.model.inflation
-    yield at_most(
-        "inflation", inflation, limits.inflation,
-        f"regions of the map scatter {inflation:.2f} times as much as white residuals explain: the "
-        "standard deviations were raised by that",
-    )  # fmt: skip
-    yield at_most(
-        "saturation", seen.saturated, limits.saturation,
-        f"{100 * seen.saturated:.2f} % of an image's pixels are clipped at the end of the scale",
-    )  # fmt: skip
-    change = seen.blur.steps[-1].change / seen.stop_change
-    yield at_most(
-        "iteration_change", change, limits.iteration_change,
-        f"the parametric fit ended after {len(seen.blur.steps)} steps with a relative change of "
-        f"the residual of {seen.blur.steps[-1].change:.1e} (threshold {seen.stop_change:.1e}, Li "
-        "et al. 5.3)",
-    )  # fmt: skip
-
-
-def _reference(seen: PairEvidence, limits: BiresolutionLimits) -> Check:
-    if seen.model.reference is None:
-        return at_least(
-            "reference_mtf", 0.0, limits.reference_mtf,
-            "the high image's own MTF was not given: the result is the MTF of the low sensor OVER "
-            "that of the high one, too large by the reciprocal of the latter; state it with "
-            "reference_mtf (--reference)",
-        )  # fmt: skip
+        return
     nyquist, nothing = np.array([NYQUIST_CPP]), np.zeros(1)
-    both = (
-        seen.model.reference.otf(nyquist, nothing),
-        seen.model.reference.otf(nothing, nyquist),
-    )  # fmt: skip
+    both = reference.otf(nyquist, nothing), reference.otf(nothing, nyquist)
     value = min(float(np.abs(one[0])) for one in both)
-    return at_least(
-        "reference_mtf", value, limits.reference_mtf,
-        f"the high image's own MTF is {value:.3f} at the low one's Nyquist frequency: it is "
-        "divided out, and every per cent it is wrong by is in the result",
-    )  # fmt: skip
+    found = f"the high image's own MTF is {value:.3f} at the low one's Nyquist frequency"
+    yield answer("reference_mtf", value, found, limits)
+    if reference.only_direction is not None:
+        found = f"the reference's MTF was measured in {reference.only_direction}"
+        yield answer("reference_directions", 1.0, found, limits)
 
 
-def _coherence(seen: PairEvidence, limits: BiresolutionLimits) -> Check:
-    if seen.spectra is None:
-        return at_least(
-            "coherence", 0.0, limits.coherence,
-            "too few whole windows for spectra: choose a larger region with less nodata",
+def _correlation(gaussian: GaussianFit, inverted: bool, limits: Limits) -> Check:
+    value = gaussian.correlation
+    found = (
+        f"the low image and the blurred high one correlate by {value:.3f} without their local means"
+    )
+    if inverted:
+        found += "; they match better with opposite sign, so the bands differ"
+    return answer("correlation", value, found, limits)
+
+
+def _coherence(spectra: PairSpectra | None, limits: Limits) -> Check:
+    if spectra is None:
+        return answer(
+            "coherence", 0.0, "the region has too few whole windows for spectra", limits,
+            advice="choose a larger region with less nodata",
         )  # fmt: skip
-    found = []
-    for axis in ("across", "along"):
-        freq, coherence = seen.spectra.along_axis(axis)
-        found.append(float(np.interp(NYQUIST_CPP, freq, coherence)))
-    value = min(found)
-    return at_least(
-        "coherence", value, limits.coherence,
-        f"squared coherence at Nyquist {found[0]:.2f} across, {found[1]:.2f} along: the share of "
-        "the low image's detail there that the high image explains; the rest is noise, aliasing "
-        "and what the two see differently",
-    )  # fmt: skip
+    columns, rows = (
+        float(np.interp(NYQUIST_CPP, *spectra.along_axis(axis))) for axis in ("across", "along")
+    )
+    found = (
+        f"squared coherence at Nyquist is {columns:.2f} from column to column, {rows:.2f} from row "
+        "to row"
+    )
+    return answer("coherence", min(columns, rows), found, limits)
+
+
+def _pixels(fit: KernelFit, limits: Limits) -> Iterator[Check]:
+    yield answer("pixels", float(fit.used), f"{fit.used} low pixels were used", limits)
+    share = fit.left_out / max(fit.left_out + fit.used, 1)
+    found = f"{100 * share:.1f} % of the low pixels do not fit the rest and were left out"
+    yield answer("left_out", share, found, limits)
+
+
+def _places(gaussian: GaussianFit, local: LocalFit, limits: Limits) -> Iterator[Check]:
+    scatter = local.shift_scatter_px
+    found = (
+        f"the images shift against each other by {scatter:.3f} low pixels from place to place "
+        "(standard deviation over the map)"
+    )
+    yield answer("registration_px", scatter, found, limits)
+    shift = float(np.hypot(gaussian.down.shift_px, gaussian.across.shift_px))
+    yield answer(
+        "shift_px", shift, f"the low image lies {shift:.2f} low pixels off its geometry", limits
+    )
+
+
+def _residuals(fit: KernelFit, model: KernelOtf, limits: Limits) -> Iterator[Check]:
+    correlation = fit.whitening.correlation.significant
+    found = f"neighbouring residuals correlate by {correlation:.2f}"
+    yield answer("residual_correlation", correlation, found, limits)
+    found = (
+        f"regions of the map scatter {model.inflation:.2f} times as much as white residuals explain"
+    )
+    yield answer("inflation", model.inflation, found, limits)
+
+
+def _iteration(gaussian: GaussianFit, stop_change: float, limits: Limits) -> Check:
+    change = gaussian.steps[-1].change
+    found = (
+        f"the parametric fit ended after {len(gaussian.steps)} steps with a relative change of the "
+        f"residual of {change:.1e} (threshold {stop_change:.1e})"
+    )
+    return answer("iteration_change", change / stop_change, found, limits)

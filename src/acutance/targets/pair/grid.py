@@ -17,13 +17,13 @@ from acutance.targets.pair.tile import TapAxis
 
 __all__ = ["PairAxis", "PairGrid", "pair_grid"]
 
-_MOST_SAMPLES: Final = 4
-_DRIFT_PX: Final = 0.02
-"""Departure from a whole ratio over the image, in high pixels, below which it is one."""
-_LEAST_RATIO: Final = 1.2
-_MOST_RATIO: Final = 64.0
-_CONTRADICTION: Final = 0.005
-_TURN_PX: Final = 0.1
+_MAX_SAMPLES: Final = 4
+_MAX_DRIFT_PX: Final = 0.02
+"""Difference from a whole ratio over the image, in high pixels, below which it is one."""
+_MIN_RATIO: Final = 1.2
+_MAX_RATIO: Final = 64.0
+_MAX_CONTRADICTION: Final = 0.005
+_MAX_ROTATION_PX: Final = 0.1
 _SINC_LOBES: Final = 10
 
 
@@ -52,17 +52,17 @@ class PairAxis:
 
     @cached_property
     def is_native(self) -> bool:
-        """Whether the high image's own samples serve: they lie alike in every low pixel."""
+        """Whether the high image's own samples are used, equally placed in every low pixel."""
         nearest = round(self.ratio)
         drift = abs(self.ratio - nearest) * self.low_size
-        return nearest <= _MOST_SAMPLES and nearest >= 2 and drift < _DRIFT_PX
+        return nearest <= _MAX_SAMPLES and nearest >= 2 and drift < _MAX_DRIFT_PX
 
     @cached_property
     def per_px(self) -> int:
         """Samples in a low pixel that the kernel acts on."""
         if self.is_native:
             return round(self.ratio)
-        return max(2, min(_MOST_SAMPLES, math.ceil(self.ratio)))
+        return max(2, min(_MAX_SAMPLES, math.ceil(self.ratio)))
 
     @cached_property
     def base(self) -> int:
@@ -126,7 +126,7 @@ class PairAxis:
 
     @property
     def band_cpp(self) -> float:
-        """The highest frequency at which the pair says anything, in cycles per low pixel."""
+        """The highest frequency at which the pair is measured, in cycles per low pixel."""
         return min(self.per_px, self.ratio) / 2
 
 
@@ -159,7 +159,7 @@ class PairGrid:
 def pair_grid(low: Image, high: Image, ratio: float | None) -> PairGrid:
     """Find how two images lie on each other.
 
-    With geotransforms they tell; a given ratio has to agree with them. Without, the images' first
+    Geotransforms decide; a given ratio has to agree with them. Without them, the images' first
     corners coincide, and the ratio is the given one or that of their shapes.
 
     Raises
@@ -169,10 +169,10 @@ def pair_grid(low: Image, high: Image, ratio: float | None) -> PairGrid:
     RegionError
         If the images do not overlap, or are turned against each other.
     """
-    if ratio is not None and not (math.isfinite(ratio) and _LEAST_RATIO <= ratio <= _MOST_RATIO):
+    if ratio is not None and not (math.isfinite(ratio) and _MIN_RATIO <= ratio <= _MAX_RATIO):
         raise OptionError(
-            f"a ratio of {ratio:g} was asked: the low image's GSD has to be {_LEAST_RATIO:g} to "
-            f"{_MOST_RATIO:g} times that of the high one"
+            f"a ratio of {ratio:g} was asked: the low image's GSD has to be {_MIN_RATIO:g} to "
+            f"{_MAX_RATIO:g} times that of the high one"
         )
     if low.geolocation is not None and high.geolocation is not None:
         return _by_geotransforms(low, high, ratio)
@@ -186,7 +186,7 @@ def pair_grid(low: Image, high: Image, ratio: float | None) -> PairGrid:
 
 
 def _require_size(low: Image, high: Image, ratio: float) -> None:
-    """A plain pair whose shapes tell another ratio is not cut alike."""
+    """Refuse a plain pair whose shapes have another ratio: it shows different ground."""
     shares = [high.shape[i] / low.shape[i] for i in (0, 1)]
     whole = [max(1.0, 0.02 * high.shape[i]) for i in (0, 1)]
     away = [abs(high.shape[i] - ratio * low.shape[i]) for i in (0, 1)]
@@ -194,8 +194,8 @@ def _require_size(low: Image, high: Image, ratio: float) -> None:
         raise OptionError(
             f"a ratio of {ratio:g} was given, but images of {high.shape[0]} x {high.shape[1]} and "
             f"{low.shape[0]} x {low.shape[1]} pixels, which show the same ground unless they are "
-            f"georeferenced, have {shares[0]:.3g} and {shares[1]:.3g}: cut them alike, or give "
-            "files with geotransforms"
+            f"georeferenced, have {shares[0]:.3g} and {shares[1]:.3g}: cut both to the "
+            "same ground, or give files with geotransforms"
         )
 
 
@@ -206,12 +206,12 @@ def _by_shapes(low: Image, high: Image) -> float:
     longest = max(low.shape)
     if abs(rows - nearest) * longest <= 1 and abs(cols - nearest) * longest <= 1 and nearest >= 2:
         return float(nearest)
-    if abs(rows - cols) * longest <= 1 and found >= _LEAST_RATIO:
+    if abs(rows - cols) * longest <= 1 and found >= _MIN_RATIO:
         return found
     raise OptionError(
         f"images of {high.shape[0]} x {high.shape[1]} and {low.shape[0]} x {low.shape[1]} pixels "
-        f"without geotransforms tell no ratio ({rows:.3g} and {cols:.3g}): the first has to be the "
-        "LOW one, both have to show the same ground; or give the ratio"
+        f"without geotransforms have no common ratio ({rows:.3g} and {cols:.3g}): the "
+        "first has to be the LOW one, both have to show the same ground; or give the ratio"
     )
 
 
@@ -227,26 +227,26 @@ def _by_geotransforms(low: Image, high: Image, ratio: float | None) -> PairGrid:
             "the low image's corners have no place in the high image's CRS: the two show "
             "different ground"
         )
-    turn = max(abs(down[1] - down[0]), abs(across[2] - across[0]), abs(down[3] - down[2]),
+    rotation_px = max(abs(down[1] - down[0]), abs(across[2] - across[0]), abs(down[3] - down[2]),
                abs(across[3] - across[1]))  # fmt: skip
-    if turn > _TURN_PX:
+    if rotation_px > _MAX_ROTATION_PX:
         raise RegionError(
-            f"the images are turned or sheared against each other by {turn:.2g} high pixels over "
-            "the low image: resample the high one onto a grid parallel to the low one's first"
+            f"the images are turned or sheared against each other by {rotation_px:.2g} high pixels "
+            "over the low image: resample the high one onto a grid parallel to the low one's first"
         )
     ratios = (
         (down[2] - down[0]) / max(rows, 1.0),
         (across[1] - across[0]) / max(cols, 1.0),
     )  # fmt: skip
-    if min(ratios) < _LEAST_RATIO or max(ratios) > _MOST_RATIO:
+    if min(ratios) < _MIN_RATIO or max(ratios) > _MAX_RATIO:
         raise OptionError(
             f"by the geotransforms the first image's pixels are {ratios[0]:.3g} by {ratios[1]:.3g} "
-            f"times as large as the second's: {_LEAST_RATIO:g} to {_MOST_RATIO:g} is needed, and "
+            f"times as large as the second's: {_MIN_RATIO:g} to {_MAX_RATIO:g} is needed, and "
             "the low image comes first"
         )
-    if ratio is not None and any(abs(ratio / own - 1) > _CONTRADICTION for own in ratios):
+    if ratio is not None and any(abs(ratio / own - 1) > _MAX_CONTRADICTION for own in ratios):
         raise OptionError(
-            f"a ratio of {ratio:g} was given, but the geotransforms say {ratios[0]:.6g} by "
+            f"a ratio of {ratio:g} was given, but the geotransforms have {ratios[0]:.6g} by "
             f"{ratios[1]:.6g}: leave the ratio out, or correct the files"
         )
     axes = [

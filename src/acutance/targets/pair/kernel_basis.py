@@ -1,8 +1,8 @@
 """What a kernel may be besides its parametric form: Gaussian processes over the plane.
 
 A process has the covariance ``exp(-(x^2 + x'^2) / 2 L^2) exp(-(x - x')^2 / 2 l^2)`` along either
-axis, and the product of both over the plane: its departures live within L pixels of the kernel's
-centre and vary over l pixels. Three of them, each with an amplitude that the data decide:
+axis, and the product of both over the plane: what it adds lives within L pixels of the kernel's
+centre and varies over l pixels. Three of them, each with an amplitude that the data decide:
 
 - CORE: sharpening, asymmetry, the shape of the detector, down to the reference's own resolution;
 - FLANK: shoulders and rings, smear of some pixels;
@@ -27,7 +27,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.targets.pair.axis_blur import AxisBlur
+from acutance.curves.short_repr import ShortRepr
+from acutance.targets.pair import tuned
+from acutance.targets.pair.axis_gaussian import AxisGaussian
 from acutance.targets.pair.tile import (
     Complexes,
     PairTile,
@@ -40,44 +42,32 @@ from acutance.targets.pair.tile import (
     filtered_down,
 )
 
-__all__ = ["LOG_AMPLITUDE", "LOG_AMPLITUDE_STD", "SCALES_PX", "KernelBasis"]
+__all__ = ["KernelBasis"]
 
-SCALES_PX: Final = ((0.8, 0.3), (1.6, 0.7), (4.0, 1.8))
-"""Extent L and smoothness l of CORE, FLANK and HALO in low pixels."""
-TAIL_PX: Final = 0.5
-"""Radius within which TAIL is flat."""
-LOG_AMPLITUDE: Final[Floats] = np.log([0.1, 0.01, 0.001, 0.1])
-LOG_AMPLITUDE_STD: Final = 0.7
-"""Amplitudes relative to a kernel of volume 1, within a factor of 2: of the processes per square
-pixel, of TAIL its own volume."""
-PARAMETER_STD: Final[Floats] = np.array([10.0, 1.0, 1.0, 1.0, 1.0, 0.3, 0.3, 1.0, 1.0, 1.0])
-"""Volume, shifts (px), variances (px^2), widths of the detector (px); and how far the low image is
-interpolated along rows, columns and both: 0 as it was sampled, 1 a product. All but the widths are
-as good as free."""
 _PARAMETERS: Final = (
     np.array([0, 1, 0, 2, 0, 3, 0, 4, 0, 4]),
     np.array([0, 0, 1, 0, 2, 0, 3, 0, 4, 4]),
 )
-"""Which columns of `AxisBlur.taps` along rows and columns make the parameters' functions."""
+"""Which columns of `AxisGaussian.taps` along rows and columns make the parameters' functions."""
 _NEGLIGIBLE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class KernelBasis:
+class KernelBasis(ShortRepr):
     """The parametric kernel and the directions in which the kernel may differ from it.
 
     Parameters
     ----------
     grid : TapGrid
-    down, across : AxisBlur
+    down, across : AxisGaussian
         The parametric kernel, volume 1.
     processes : int
         How many of the three processes: 2 leaves the halo out.
     """
 
     grid: TapGrid
-    down: AxisBlur
-    across: AxisBlur
+    down: AxisGaussian
+    across: AxisGaussian
     processes: int = 3
 
     @cached_property
@@ -90,7 +80,7 @@ class KernelBasis:
         across = [self.across.taps(self.grid.across)]
         pairs = [(-1, *_PARAMETERS)]
         first = [down[0].shape[1], across[0].shape[1]]
-        for block, (extent, smooth) in enumerate(SCALES_PX[: self.processes]):
+        for block, (extent, smooth) in enumerate(tuned.SCALES_PX[: self.processes]):
             own_down, power_down = _process(self.grid.down, self.down.shift_px, extent, smooth)
             own_across, power_across = _process(
                 self.grid.across, self.across.shift_px, extent, smooth
@@ -107,7 +97,7 @@ class KernelBasis:
     def scale(self) -> Floats:
         """Prior standard deviations, (k,), of the parameters' moves; 1 within the processes."""
         scale = np.ones(self.size)
-        scale[: PARAMETER_STD.size] = PARAMETER_STD
+        scale[: tuned.PARAMETER_STD.size] = tuned.PARAMETER_STD
         return scale
 
     @cached_property
@@ -119,7 +109,7 @@ class KernelBasis:
     @property
     def log_amplitude(self) -> Floats:
         """Prior mean of the logarithm of every block's amplitude."""
-        return np.append(LOG_AMPLITUDE[: self.processes], LOG_AMPLITUDE[-1])
+        return np.append(tuned.LOG_AMPLITUDE[: self.processes], tuned.LOG_AMPLITUDE[-1])
 
     @property
     def size(self) -> int:
@@ -160,7 +150,7 @@ class KernelBasis:
     def _tail_at(self, down_px: Floats, across_px: Floats) -> Floats:
         """TAIL as weights of taps: ``a / (2 pi (r^2 + a^2)^(3/2))``, transform of its transfer."""
         x, y = across_px + self.across.shift_px, down_px + self.down.shift_px
-        density = TAIL_PX / (2 * math.pi) / (x**2 + y[:, None] ** 2 + TAIL_PX**2) ** 1.5
+        density = tuned.TAIL_PX / (2 * math.pi) / (x**2 + y[:, None] ** 2 + tuned.TAIL_PX**2) ** 1.5
         return np.asarray(density / (self.grid.down.per_px * self.grid.across.per_px))
 
     def transfer(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
@@ -168,10 +158,15 @@ class KernelBasis:
         down, across, pairs = self._axes
         along = self.grid.down.waves(v_cpp) @ down
         over = self.grid.across.waves(u_cpp) @ across
-        turn = np.exp(-2j * math.pi * (u_cpp * self.across.shift_px + v_cpp * self.down.shift_px))
-        tail = np.exp(-2 * math.pi * TAIL_PX * np.hypot(u_cpp, v_cpp)) * turn
+        tail = np.exp(-2 * math.pi * tuned.TAIL_PX * np.hypot(u_cpp, v_cpp))
+        tail = tail * np.conj(self.centring(u_cpp, v_cpp))
         parts = [along[:, a] * over[:, b] for _, a, b in pairs]
         return np.concatenate([*parts, tail[:, None]], axis=1)
+
+    def centring(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Factor, (n,), that moves the parametric kernel's centre to the origin."""
+        shift = u_cpp * self.across.shift_px + v_cpp * self.down.shift_px
+        return np.asarray(np.exp(2j * math.pi * shift))
 
 
 def _process(
@@ -186,5 +181,7 @@ def _process(
     apart = (place[:, None] - place) / smoothness
     power, shape = np.linalg.eigh(np.exp(-0.5 * apart**2) * envelope[:, None] * envelope)
     kept = power > _NEGLIGIBLE * power[-1]
+    # Eigenvectors come with any sign: a stored fit needs the same ones wherever it is read.
+    shape = shape * np.where((envelope * (1 + place / extent)) @ shape < 0, -1.0, 1.0)
     kernels = shape[:, kept] * np.sqrt(power[kept]) / axis.per_px
     return np.asarray(kernels), np.asarray(power[kept])

@@ -1,42 +1,37 @@
 """The free fit of a pair: the kernel as the parametric one and Gaussian processes about it.
 
-The low pixels are linear in the kernel, so all that they say of it is in one small matrix; the
-processes' amplitudes are those of the largest marginal likelihood (`fit.posterior`), and the
-covariance is in closed form. Three things keep it honest:
+The low pixels are linear in the kernel, so all that they hold of it is in one small matrix; the
+processes' amplitudes are those of the largest marginal likelihood, and the covariance is in closed
+form (`acutance.numerics.marginal_likelihood`). Three things keep it true:
 
 - the mean of every tile is left out, and residuals are whitened by an autoregression;
 - the reference's noise makes the kernel too small (errors in the variables): its expected part of
   the normal equations is taken off, and what is uncertain of it goes into the covariance;
-- what the residuals of separate regions say together must agree with the stated covariance;
-  where they disagree by more, the covariance is inflated (`SandwichRatio`).
+- the residuals of separate regions must scatter as the covariance states: where they scatter more,
+  it is inflated (`kernel_otf`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final
 
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.errors import TargetError
 from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
 from acutance.numerics.noise import outlier_weights
 from acutance.numerics.normal_equations import Normal
-from acutance.targets.pair.first_fit import BlurFit
-from acutance.targets.pair.kernel_basis import LOG_AMPLITUDE_STD, KernelBasis
+from acutance.targets.pair import tuned
+from acutance.targets.pair.gaussian_fit import GaussianFit
+from acutance.targets.pair.kernel_basis import KernelBasis
+from acutance.targets.pair.kernel_covariance import KernelCovariance
 from acutance.targets.pair.noise import WHITE, Whitening, noise_gram, whitening_of
 from acutance.targets.pair.tile import PairTile, TapGrid, Tiles, blurred, blurred_far, core
 
-__all__ = ["Kernel", "KernelFit", "fit_kernel"]
-
-_MOST_NOISE: Final = 0.5
-"""Share of a direction's power in the reference that may be taken for noise."""
-_NOISE_STD: Final = 0.3
-"""Relative standard deviation of the reference's noise power, as it is estimated."""
-_LOST = 0.05
-"""Weight below which a pixel is left out altogether: clouds, changes."""
+__all__ = ["Kernel", "KernelFit", "fit_kernel", "kernel_prior", "square_root", "without_noise"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +54,7 @@ class Kernel:
         """The kernel of coefficients (k,)."""
         return cls(np.tensordot(beta, basis.taps(), 1), beta[-1] * basis.far_tail)
 
-    def seen(self, tile: PairTile, grid: TapGrid) -> Floats:
+    def low_pixels(self, tile: PairTile, grid: TapGrid) -> Floats:
         """The low pixels it makes of the reference, (h, w)."""
         near = blurred(tile, grid, self.taps)
         return near + blurred_far(tile, self.far) if self.far.any() else near
@@ -67,7 +62,7 @@ class Kernel:
 
 @dataclass(frozen=True, eq=False)
 class KernelFit:
-    """What the pair says of the kernel.
+    """The kernel of a pair, with its covariance.
 
     Parameters
     ----------
@@ -75,15 +70,13 @@ class KernelFit:
     basis : KernelBasis
     posterior : Posterior
         Of the coefficients of the basis; the first is the gain.
-    noise_factor : (k,) array
-        Change of the coefficients for one standard deviation of the reference's noise power.
-    scores : (k, regions) array
-        What the residuals of every region would move the coefficients by.
-    white_factor : (k, k) array
-        Factor of the covariance that white residuals give the coefficients.
+    covariance : KernelCovariance
+        The posterior's, and what the reference's noise and the scatter of regions add.
     whitening : Whitening
     noise : float
         Robust standard deviation of the residuals, before whitening.
+    noise_high : float
+        Standard deviation of the reference's noise that was allowed for.
     used : int
         Low pixels with more than a twentieth of their weight.
     left_out : int
@@ -95,11 +88,10 @@ class KernelFit:
     grid: TapGrid
     basis: KernelBasis
     posterior: Posterior
-    noise_factor: Floats
-    scores: Floats
-    white_factor: Floats
+    covariance: KernelCovariance
     whitening: Whitening
     noise: float
+    noise_high: float
     used: int
     left_out: int
     robust: bool
@@ -116,13 +108,13 @@ class KernelFit:
 
     def residuals(self, tiles: Tiles) -> Iterator[Floats]:
         """Residuals of every tile about its own mean, pads included; NaN where left out."""
-        return _Pass(tiles, self.grid, self.kernel, WHITE, self.noise, self.robust).residuals()
+        return _Residuals(tiles, self.grid, self.kernel, WHITE, self.noise, self.robust).fields()
 
 
 def fit_kernel(
     tiles: Tiles,
     grid: TapGrid,
-    blur: BlurFit,
+    gaussian: GaussianFit,
     *,
     processes: int = 3,
     noise_high: float = 0.0,
@@ -134,7 +126,7 @@ def fit_kernel(
     ----------
     tiles : Tiles
     grid : TapGrid
-    blur : BlurFit
+    gaussian : GaussianFit
         The parametric fit.
     processes : int, optional
         How many of the basis' processes.
@@ -142,26 +134,54 @@ def fit_kernel(
         Standard deviation of the reference's noise in a sample.
     robust : bool, optional
         Leave out what fits badly.
+
+    Raises
+    ------
+    TargetError
+        If the noise of the high image cannot be taken off.
     """
-    basis = KernelBasis(grid, blur.down, blur.across, processes)
-    start = np.zeros(basis.size)
-    start[0] = blur.gain
-    first = _Pass(tiles, grid, Kernel.of(basis, start), WHITE, blur.noise, robust)
-    rough = _regressed(basis, first.normals(basis), blur, noise_high, WHITE, None)
+    basis = KernelBasis(grid, gaussian.down, gaussian.across, processes)
+    prior = kernel_prior(basis, gaussian.gain)
+    first = _Residuals(tiles, grid, Kernel.of(basis, prior.mean), WHITE, gaussian.noise, robust)
+    normals = first.normals(basis).values()
+    rough = _regressed(basis, prior, normals, gaussian.noise, noise_high, WHITE, None)
     kernel = Kernel.of(basis, rough.beta)
-    noise = _Pass(tiles, grid, kernel, WHITE, 0.0, robust).scale()
-    seen = _Pass(tiles, grid, kernel, WHITE, noise, robust)
-    whitening = whitening_of(seen.residuals())
-    white_noise = replace(seen, whitening=whitening).scale()
-    last = replace(seen, whitening=whitening, white_noise=white_noise)
-    normals = last.normals(basis)
-    posterior = _regressed(basis, normals, blur, noise_high, whitening, rough)
-    return _finish(grid, basis, posterior, normals, noise_high, whitening, noise, last)
+    noise = _Residuals(tiles, grid, kernel, WHITE, 0.0, robust).scale()
+    coloured = _Residuals(tiles, grid, kernel, WHITE, noise, robust)
+    whitening = whitening_of(coloured.fields())
+    white_noise = replace(coloured, whitening=whitening).scale()
+    white = replace(coloured, whitening=whitening, white_noise=white_noise)
+    regions = white.normals(basis)
+    posterior = _regressed(
+        basis, prior, regions.values(), gaussian.noise, noise_high, whitening, rough
+    )
+    used, left_out = white.counts()
+    return KernelFit(
+        grid=grid, basis=basis, posterior=posterior,
+        covariance=_covariance(basis, posterior, list(regions.values()), noise_high, whitening),
+        whitening=whitening, noise=noise, noise_high=noise_high, used=used, left_out=left_out,
+        robust=robust,
+    )  # fmt: skip
+
+
+def kernel_prior(basis: KernelBasis, gain: float) -> Prior:
+    """Prior of the coefficients about the parametric kernel of a gain."""
+    mean = np.zeros(basis.size)
+    mean[0] = gain
+    return Prior(
+        block=np.asarray(basis.blocks, float),
+        scale=basis.scale,
+        mean=mean,
+        log_amplitude=basis.log_amplitude,
+        log_amplitude_std=tuned.LOG_AMPLITUDE_STD,
+        height=abs(gain),
+        noise_floor=1e-3,
+    )
 
 
 @dataclass(frozen=True, eq=False)
-class _Pass:
-    """One way through all tiles, with what was known of the kernel before."""
+class _Residuals:
+    """Residuals of a kernel, tile by tile, and the normal equations about it."""
 
     tiles: Tiles
     grid: TapGrid
@@ -171,10 +191,10 @@ class _Pass:
     robust: bool
     white_noise: float = 0.0
 
-    def residuals(self) -> Iterator[Floats]:
+    def fields(self) -> Iterator[Floats]:
         """Residuals of every tile about its own mean, pads included; NaN where left out."""
         for tile in self.tiles():
-            yield self._residual(tile.low - self.kernel.seen(tile, self.grid))
+            yield self._residual(tile.low - self.kernel.low_pixels(tile, self.grid))
 
     def _residual(self, rest: Floats) -> Floats:
         usable = np.isfinite(rest)
@@ -183,14 +203,14 @@ class _Pass:
         rest = rest - np.median(rest[usable])
         if self.robust and self.noise > 0:
             weight = outlier_weights(np.where(usable, rest, 0.0) / self.noise)
-            rest = np.where(weight >= _LOST, rest, np.nan)
+            rest = np.where(weight >= tuned.LOST_WEIGHT, rest, np.nan)
             if np.isfinite(rest).any():
                 rest = rest - np.nanmean(rest)
         return rest
 
     def scale(self) -> float:
         """Robust standard deviation of the whitened residuals."""
-        sizes = [np.abs(_finite(self.whitening(rest))) for rest in self.residuals()]
+        sizes = [np.abs(_finite(self.whitening(rest))) for rest in self.fields()]
         every = np.concatenate(sizes) if sizes else np.zeros(0)
         return 1.4826 * float(np.median(every)) if every.size else 0.0
 
@@ -198,7 +218,7 @@ class _Pass:
         """Normal equations of every region, tile means left out."""
         found: dict[int, Normal] = {}
         for tile in self.tiles():
-            rest = self._residual(tile.low - self.kernel.seen(tile, self.grid))
+            rest = self._residual(tile.low - self.kernel.low_pixels(tile, self.grid))
             left = self.whitening(rest)
             usable = np.isfinite(left)
             if usable.sum() < 8:
@@ -222,7 +242,9 @@ class _Pass:
         used = lost = 0
         for tile in self.tiles():
             usable = np.isfinite(core(tile.low))
-            kept = np.isfinite(core(self._residual(tile.low - self.kernel.seen(tile, self.grid))))
+            kept = np.isfinite(
+                core(self._residual(tile.low - self.kernel.low_pixels(tile, self.grid)))
+            )
             used += int(kept.sum())
             lost += int((usable & ~kept).sum())
         return used, lost
@@ -241,7 +263,7 @@ def _finite(field: Floats) -> Floats:
     return field[np.isfinite(field)]
 
 
-def _sum(normals: list[Normal]) -> Normal:
+def _sum(normals: Sequence[Normal]) -> Normal:
     return Normal(
         sum((one.gram for one in normals[1:]), normals[0].gram),
         sum((one.projection for one in normals[1:]), normals[0].projection),
@@ -250,17 +272,34 @@ def _sum(normals: list[Normal]) -> Normal:
     )
 
 
-def _without_noise(normal: Normal, products: Floats, beta: Floats) -> Normal:
+def square_root(gram: Floats) -> Floats:
+    """A factor of products (k, k), which rounding may have left with powers below zero."""
+    power, axes = np.linalg.eigh(gram)
+    return np.asarray(axes * np.sqrt(np.maximum(power, 0.0)))
+
+
+def without_noise(normal: Normal, products: Floats, beta: Floats) -> Normal:
     """Normal equations less what the reference's noise is expected to add.
 
     The effective noise it makes in the low pixels stays in the residual's power. Where noise
     seems to be most of a direction's power, only half of that is taken off.
+
+    Raises
+    ------
+    TargetError
+        If the noise is no finite number, or so small that its products are not positive.
     """
     expected = normal.count * products
-    root = np.linalg.cholesky(expected + 1e-9 * np.trace(expected) * np.eye(beta.size))
-    inner = np.linalg.solve(root, np.linalg.solve(root, normal.gram).T)
-    power, axes = np.linalg.eigh(0.5 * (inner + inner.T))
-    taken = np.minimum(1.0, _MOST_NOISE * np.maximum(power, 0.0))
+    try:
+        root = np.linalg.cholesky(expected + 1e-9 * np.trace(expected) * np.eye(beta.size))
+        inner = np.linalg.solve(root, np.linalg.solve(root, normal.gram).T)
+        power, axes = np.linalg.eigh(0.5 * (inner + inner.T))
+    except np.linalg.LinAlgError as error:
+        raise TargetError(
+            f"the noise of the high image cannot be taken off ({error}): state its standard "
+            "deviation (noise_high, --high-noise), 0 for none"
+        ) from error
+    taken = np.minimum(1.0, tuned.MAX_NOISE_SHARE * np.maximum(power, 0.0))
     shape = root @ axes
     removed = (shape * taken) @ shape.T
     return replace(
@@ -270,61 +309,40 @@ def _without_noise(normal: Normal, products: Floats, beta: Floats) -> Normal:
 
 def _regressed(
     basis: KernelBasis,
-    normals: Mapping[int, Normal],
-    blur: BlurFit,
+    prior: Prior,
+    regions: Iterable[Normal],
+    noise: float,
     noise_high: float,
     whitening: Whitening,
     earlier: Posterior | None,
 ) -> Posterior:
-    normal = _sum(list(normals.values()))
-    start = np.zeros(basis.size)
-    start[0] = blur.gain
+    """The posterior that all regions give together, the reference's noise taken off."""
+    normal = _sum(list(regions))
     if noise_high > 0:
         products = noise_high**2 * noise_gram(basis.taps(), basis.grid, whitening)
-        known = start if earlier is None else earlier.beta
-        normal = _without_noise(normal, products, known)
-    prior = Prior(
-        block=np.asarray(basis.blocks, float),
-        scale=basis.scale,
-        mean=start,
-        log_amplitude=basis.log_amplitude,
-        log_amplitude_std=LOG_AMPLITUDE_STD,
-        height=abs(blur.gain),
-        noise_floor=1e-5 * float(np.sqrt(normal.data / max(normal.count, 1.0))),
-    )
-    return regress(normal, prior, blur.noise**2, 1.0, earlier)
+        normal = without_noise(normal, products, prior.mean if earlier is None else earlier.beta)
+    floor = 1e-5 * float(np.sqrt(normal.data / max(normal.count, 1.0)))
+    return regress(normal, replace(prior, noise_floor=floor), noise**2, 1.0, earlier)
 
 
-def _finish(
-    grid: TapGrid,
+def _covariance(
     basis: KernelBasis,
     posterior: Posterior,
-    normals: Mapping[int, Normal],
+    regions: Sequence[Normal],
     noise_high: float,
     whitening: Whitening,
-    noise: float,
-    last: _Pass,
-) -> KernelFit:
-    """Put the fit together with the moves that noise and single regions make."""
+) -> KernelCovariance:
+    """How noise, and single regions, move the coefficients."""
     beta, k = posterior.beta, basis.size
     # Conditional covariance: what the amplitudes add is no answer to the residuals.
     response = posterior.factor[:, :k] @ posterior.factor[:, :k].T / posterior.variance
-    products = noise_high**2 * noise_gram(basis.taps(), grid, whitening)
-    scores = [one.projection - (one.gram - one.count * products) @ beta for one in normals.values()]
-    total = _sum(list(normals.values()))
-    power, axes = np.linalg.eigh(total.gram)
-    root = axes * np.sqrt(np.maximum(power, 0.0))
-    used, lost = last.counts()
-    return KernelFit(
-        grid=grid,
-        basis=basis,
-        posterior=posterior,
-        noise_factor=_NOISE_STD * response @ (total.count * products @ beta),
-        scores=response @ np.stack(scores, axis=1),
-        white_factor=np.sqrt(posterior.variance) * response @ root,
-        whitening=whitening,
-        noise=noise,
-        used=used,
-        left_out=lost,
-        robust=last.robust,
+    products = noise_high**2 * noise_gram(basis.taps(), basis.grid, whitening)
+    scores = [one.projection - (one.gram - one.count * products) @ beta for one in regions]
+    total = _sum(regions)
+    moves = response @ np.stack(scores, axis=1)
+    return KernelCovariance(
+        posterior=posterior.factor,
+        reference_noise=tuned.NOISE_POWER_STD * response @ (total.count * products @ beta),
+        scatter=moves - moves.mean(axis=1, keepdims=True),
+        white=np.sqrt(posterior.variance) * response @ square_root(total.gram),
     )

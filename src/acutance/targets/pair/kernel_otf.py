@@ -3,26 +3,33 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
+from acutance.targets.pair import tuned
+from acutance.targets.pair.kernel_basis import KernelBasis
+from acutance.targets.pair.kernel_covariance import KernelCovariance
 from acutance.targets.pair.kernel_fit import KernelFit
 from acutance.targets.pair.tile import Complexes
 
 __all__ = ["KernelOtf", "ReferenceOtf"]
 
-_LEAST_REGIONS = 6
-_OWN_SHARE = 0.5
 _FREQ_CPP: Floats = np.asarray(np.arange(1, 20) / 20)
-_MOST_INFLATION = 20.0
+_PLANE_NODES = 33
 
 
 class ReferenceOtf(Protocol):
     """The reference's own OTF, at frequencies in cycles per pixel of the LOW image."""
+
+    @property
+    def only_direction(self) -> str | None:
+        """The single direction it was measured in, in words; ``None`` where it is known in all."""
+        ...
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF, (n,), 1 at zero frequency."""
@@ -34,23 +41,37 @@ class ReferenceOtf(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class KernelOtf:
+class KernelOtf(ShortRepr):
     """An OTF over the plane: the kernel's, times the reference's if that is known.
 
     Beyond the reference's Nyquist frequency nothing is known, and the OTF is 0 there.
 
     Parameters
     ----------
-    fit : KernelFit
+    basis : KernelBasis
+    beta : (k,) array
+        Coefficients of the basis.
+    covariance : KernelCovariance
+        Theirs.
     band_across_cpp, band_along_cpp : float
-        The reference's Nyquist frequencies, in cycles per low pixel.
+        The reference's Nyquist frequencies along the rows and down the columns of pixels, in cycles
+        per low pixel.
     reference : ReferenceOtf, optional
     """
 
-    fit: KernelFit
+    basis: KernelBasis
+    beta: Floats
+    covariance: KernelCovariance
     band_across_cpp: float
     band_along_cpp: float
     reference: ReferenceOtf | None = None
+
+    @classmethod
+    def of_fit(
+        cls, fit: KernelFit, band_cpp: tuple[float, float], reference: ReferenceOtf | None
+    ) -> KernelOtf:
+        """The OTF of a fit within the reference's band (u, v)."""
+        return cls(fit.basis, fit.beta, fit.covariance, *band_cpp, reference)
 
     @property
     def band_cpp(self) -> float:
@@ -65,11 +86,10 @@ class KernelOtf:
         return np.asarray(quotient * self.reference.otf(u_cpp, v_cpp))
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Factor of its covariance, (n, k)."""
-        quotient, moves = self._quotient(u_cpp, v_cpp)
-        fit = self.fit
-        posterior = self._inflation(quotient, moves)[:, None] * (moves @ fit.posterior.factor)
-        factor = np.column_stack([posterior, moves @ fit.noise_factor])
+        """Factor of its covariance, (n, m)."""
+        quotient, slopes = self._quotient(u_cpp, v_cpp)
+        posterior = self._inflation(slopes)[:, None] * (slopes @ self.covariance.posterior)
+        factor = np.column_stack([posterior, slopes @ self.covariance.reference_noise])
         if self.reference is None:
             return factor
         own = quotient[:, None] * self.reference.factor(u_cpp, v_cpp)
@@ -80,57 +100,49 @@ class KernelOtf:
         """Mean ratio of the scatter between regions to the stated covariance (deviations)."""
         return math.sqrt(self._mean_excess)
 
+    def packed(self) -> KernelOtf:
+        """The same OTF with its covariance kept in few bytes: see `KernelCovariance.packed`."""
+        nodes = np.linspace(-1.0, 1.0, _PLANE_NODES)
+        u, v = np.meshgrid(
+            nodes[nodes >= 0] * min(self.band_across_cpp, 1.0),
+            nodes * min(self.band_along_cpp, 1.0),
+        )
+        slopes = self._quotient(u.ravel(), v.ravel())[1]
+        return replace(self, covariance=self.covariance.packed(slopes))
+
     def _quotient(self, u_cpp: Floats, v_cpp: Floats) -> tuple[Complexes, Complexes]:
         """OTF of the kernel, and its derivatives by the coefficients, (n, k)."""
-        basis, beta = self.fit.basis, self.fit.beta
-        transfer = basis.transfer(u_cpp, v_cpp)
-        total = self._at_zero @ beta
-        turn = np.exp(2j * math.pi * (u_cpp * basis.across.shift_px + v_cpp * basis.down.shift_px))
+        transfer = self.basis.transfer(u_cpp, v_cpp)
+        total = self._at_zero @ self.beta
         known = np.abs(u_cpp) <= self.band_across_cpp + 1e-9
         known &= np.abs(v_cpp) <= self.band_along_cpp + 1e-9
-        turn = np.where(known, turn, 0.0)
-        quotient = transfer @ beta / total
-        moves = (transfer - quotient[:, None] * self._at_zero) / total
-        return quotient * turn, moves * turn[:, None]
+        centring = np.where(known, self.basis.centring(u_cpp, v_cpp), 0.0)
+        quotient = transfer @ self.beta / total
+        slopes = (transfer - quotient[:, None] * self._at_zero) / total
+        return quotient * centring, slopes * centring[:, None]
 
     @cached_property
     def _at_zero(self) -> Floats:
         nothing = np.zeros(1)
-        return np.asarray(self.fit.basis.transfer(nothing, nothing)[0].real)
+        return np.asarray(self.basis.transfer(nothing, nothing)[0].real)
 
-    def _inflation(self, quotient: Complexes, moves: Complexes) -> Floats:
+    def _inflation(self, slopes: Complexes) -> Floats:
         """Factor on the standard deviations, (n,), at least 1.
 
         The scatter of the regions is known to a few degrees of freedom at a single frequency, so
         half of it is taken from its mean over the band.
         """
-        if self.fit.scores.shape[1] < _LEAST_REGIONS:
-            return np.ones(quotient.size)
-        local = self._excess(quotient, moves)
-        mean = self._mean_excess
-        excess = _OWN_SHARE * local + (1 - _OWN_SHARE) * mean
-        return np.sqrt(np.clip(excess, 1.0, _MOST_INFLATION**2))
+        if self.covariance.regions < tuned.MIN_REGIONS:
+            return np.ones(slopes.shape[0])
+        own = self.covariance.excess(slopes)
+        excess = tuned.OWN_SHARE * own + (1 - tuned.OWN_SHARE) * self._mean_excess
+        return np.sqrt(np.clip(excess, 1.0, tuned.MAX_INFLATION**2))
 
     @cached_property
     def _mean_excess(self) -> float:
-        if self.fit.scores.shape[1] < _LEAST_REGIONS:
+        if self.covariance.regions < tuned.MIN_REGIONS:
             return 1.0
         freq = _FREQ_CPP * min(self.band_across_cpp, self.band_along_cpp, 1.0)
         nothing = np.zeros(freq.size)
         u, v = np.concatenate([freq, nothing]), np.concatenate([nothing, freq])
-        return float(np.mean(self._excess(*self._quotient(u, v))))
-
-    def _excess(self, quotient: Complexes, moves: Complexes) -> Floats:
-        """Variance by the scatter of regions over that of white residuals, (n,)."""
-        scores = self.fit.scores
-        regions = scores.shape[1]
-        scatter = scores - scores.mean(axis=1, keepdims=True)
-        modulus = np.abs(quotient)
-        direction = np.where(modulus > 0, np.conj(quotient), 1.0) / np.where(
-            modulus > 0, modulus, 1.0
-        )
-        found = np.abs(direction[:, None] * (moves @ scatter)) ** 2
-        white = np.abs(moves @ self.fit.white_factor) ** 2
-        expected = white.sum(axis=1)
-        seen = found.sum(axis=1) * regions / (regions - 1)
-        return np.where(expected > 0, seen / np.where(expected > 0, expected, 1.0), 1.0)
+        return float(np.mean(self.covariance.excess(self._quotient(u, v)[1])))

@@ -1,25 +1,27 @@
-"""What single regions of a pair say: their own shift, blur, gain and residual."""
+"""Regions of a pair: their own shift, blur, gain and residual, and the map of the residuals."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.targets.pair.first_fit import BlurFit
+from acutance.curves.short_repr import ShortRepr
+from acutance.raster import Box
+from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.kernel_fit import KernelFit
 from acutance.targets.pair.tile import TapGrid, Tiles, core, filtered
 
-__all__ = ["LocalFit", "fit_regions"]
+__all__ = ["LocalFit", "ResidualMap", "fit_regions"]
 
-_LEAST_PIXELS = 60
+_MIN_PIXELS = 60
+_MAX_SIDE = 384
 
 
 @dataclass(frozen=True, eq=False)
-class LocalFit:
-    """Departures of the regions from the common kernel, each (rows, columns) of the map.
+class LocalFit(ShortRepr):
+    """How regions differ from the common kernel, each (rows, columns) of the map.
 
     NaN where a region has too few pixels.
 
@@ -50,7 +52,7 @@ class LocalFit:
     pixels: Floats
 
     @property
-    def shift_spread_px(self) -> float:
+    def shift_scatter_px(self) -> float:
         """Standard deviation of the regions' shifts beyond their own uncertainty."""
         usable = np.isfinite(self.shift_row_px) & (self.shift_std_px < 0.5)
         if usable.sum() < 3:
@@ -61,41 +63,78 @@ class LocalFit:
         return float(np.sqrt(max(found - own, 0.0)))
 
 
+@dataclass(frozen=True, eq=False)
+class ResidualMap:
+    """Residuals over the low image, thinned to at most 384 pixels a side.
+
+    Parameters
+    ----------
+    box : Box
+        The low pixels shown.
+    step : int
+        Low pixels from one value to the next.
+    values : (rows, cols) array
+        In units of the low image; NaN where left out.
+    """
+
+    box: Box
+    step: int
+    values: Floats
+
+    @classmethod
+    def empty(cls, box: Box) -> ResidualMap:
+        """A map of the low pixels of a box, nothing known yet."""
+        step = max(1, -(-max(box.shape) // _MAX_SIDE))
+        return cls(box, step, np.full([-(-size // step) for size in box.shape], np.nan))
+
+    def fill(self, place: tuple[int, int], residual: Floats) -> None:
+        """Put in a tile's residual, whose first pixel lies at a place of the low image."""
+        rows = np.arange(residual.shape[0]) + place[0] - self.box.row
+        cols = np.arange(residual.shape[1]) + place[1] - self.box.col
+        down = (rows >= 0) & (rows < self.box.height) & (rows % self.step == 0)
+        across = (cols >= 0) & (cols < self.box.width) & (cols % self.step == 0)
+        part = residual[np.ix_(down, across)]
+        places = np.ix_(rows[down] // self.step, cols[across] // self.step)
+        self.values[places] = np.where(np.isfinite(part), part, self.values[places])
+
+
 def fit_regions(
     tiles: Tiles,
     grid: TapGrid,
-    blur: BlurFit,
+    gaussian: GaussianFit,
     fit: KernelFit,
     shape: tuple[int, int],
-    keep: Callable[[tuple[int, int], Floats], None],
-) -> LocalFit:
-    """Fit every region's departures to the residuals of the common kernel.
+    box: Box,
+) -> tuple[LocalFit, ResidualMap]:
+    """Fit how every region differs to the residuals of the common kernel, and map these.
 
     Parameters
     ----------
     tiles : Tiles
     grid : TapGrid
-    blur : BlurFit
+    gaussian : GaussianFit
         Its slopes are those of the kernel.
     fit : KernelFit
     shape : (int, int)
         Rows and columns of the map.
-    keep : function of (place, residual)
-        Gets every tile's residual and the place of its first pixel.
+    box : Box
+        The low pixels that the map of residuals shows.
     """
     regions = shape[0] * shape[1]
     gram, projection = np.zeros((regions, 6, 6)), np.zeros((regions, 6))
     power, count = np.zeros(regions), np.zeros(regions)
+    shown = ResidualMap.empty(box)
     for tile, residual in zip(tiles(), fit.residuals(tiles), strict=True):
-        keep(tile.place, residual)
+        shown.fill(tile.place, residual)
         rest = core(residual)
         usable = np.isfinite(rest)
         if not usable.any():
             continue
-        slopes = blur.down.taps(grid.down)[:, :3], blur.across.taps(grid.across)[:, :3]
+        slopes = gaussian.down.taps(grid.down)[:, :3], gaussian.across.taps(grid.across)[:, :3]
         field = core(filtered(tile, grid, *slopes))
+        # Columns of `AxisGaussian.taps` along rows and columns: gain, shifts, variances.
         pairs = ((0, 0), (1, 0), (0, 1), (2, 0), (0, 2))
-        columns = np.stack([field[usable][:, i, j] for i, j in pairs], axis=1) * blur.gain
+        columns = np.stack([field[usable][:, i, j] for i, j in pairs], axis=1) * gaussian.gain
         columns = np.column_stack([columns, np.ones(columns.shape[0])])
         columns[:, 0] -= columns[:, 0].mean()
         rest, of = rest[usable], core(tile.regions)[usable]
@@ -106,32 +145,32 @@ def fit_regions(
             projection[region] += part.T @ rest[own]
             power[region] += float(rest[own] @ rest[own])
             count[region] += int(own.sum())
-    return _solved(gram, projection, power, count, shape)
+    return _solved(gram, projection, power, count, shape), shown
 
 
 def _solved(
     gram: Floats, projection: Floats, power: Floats, count: Floats, shape: tuple[int, int]
 ) -> LocalFit:
-    moves, stds = np.full((count.size, 6), np.nan), np.full((count.size, 6), np.nan)
+    updates, stds = np.full((count.size, 6), np.nan), np.full((count.size, 6), np.nan)
     noise = np.full(count.size, np.nan)
-    for region in np.flatnonzero(count >= _LEAST_PIXELS).tolist():
+    for region in np.flatnonzero(count >= _MIN_PIXELS).tolist():
         scale = np.sqrt(np.maximum(gram[region].diagonal(), 1e-300))
         scaled = gram[region] / np.outer(scale, scale)
         noise[region] = np.sqrt(power[region] / count[region])
         if np.linalg.cond(scaled) > 1e10:
             continue
         inverse = np.linalg.inv(scaled) / np.outer(scale, scale)
-        moves[region] = inverse @ projection[region]
+        updates[region] = inverse @ projection[region]
         stds[region] = noise[region] * np.sqrt(inverse.diagonal())
-    field = [column.reshape(shape) for column in moves.T]
-    spread = [column.reshape(shape) for column in stds.T]
+    field = [column.reshape(shape) for column in updates.T]
+    deviation = [column.reshape(shape) for column in stds.T]
     return LocalFit(
         shift_row_px=field[1],
         shift_col_px=field[2],
         variance_down_px2=field[3],
         variance_across_px2=field[4],
-        shift_std_px=np.maximum(spread[1], spread[2]),
-        variance_std_px2=np.maximum(spread[3], spread[4]),
+        shift_std_px=np.maximum(deviation[1], deviation[2]),
+        variance_std_px2=np.maximum(deviation[3], deviation[4]),
         gain=1 + field[0],
         residual=noise.reshape(shape),
         pixels=count.reshape(shape),

@@ -2,7 +2,7 @@
 
 Residuals of real pairs are not white: the two bands see other colours, so fields differ as a
 whole. A causal autoregression of the residuals (Whittle, Biometrika 41, 434, 1954) takes the
-correlation out: the fit is made on what a pixel says beyond its neighbours.
+correlation out: the fit is made on the part of a pixel that its neighbours do not predict.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ from typing import Final
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.noise import Correlation, correlation
+from acutance.targets.pair import tuned
 from acutance.targets.pair.tile import PAD_PX, TapGrid, core
 
 __all__ = ["Whitening", "fine_noise", "noise_gram", "whitening_of"]
@@ -26,28 +28,28 @@ LAGS: Final = tuple(
     if (down, right) > (0, 0)
 )
 """Neighbours above, and to the left in the same row: (rows up, columns to the left)."""
-_SIGNIFICANT = 4.0
-_LEAST_PAIRS = 400
+_MIN_PAIRS = 400
+_GAP_PX = 2
+NO_CORRELATION: Final = Correlation(1.0, 0.0, 0.0)
 _RIDGE = 1e-6
 _ORDER = 6
-_QUIET = 0.25
 _BLOCK = 24
 
 
 @dataclass(frozen=True, eq=False)
 class Whitening:
-    """A pixel less what its neighbours predict.
+    """A pixel minus what its neighbours predict.
 
     Parameters
     ----------
     weights : (12,) array
         Of the neighbours; all 0 for white residuals.
-    strongest : float
-        The strongest correlation between neighbouring residuals.
+    correlation : Correlation
+        Of the residuals before whitening.
     """
 
     weights: Floats
-    strongest: float = 0.0
+    correlation: Correlation = NO_CORRELATION
 
     @property
     def needed(self) -> bool:
@@ -74,7 +76,7 @@ def whitening_of(residuals: Iterable[Floats]) -> Whitening:
     """The autoregression of residual fields (with their pads; NaN where unusable)."""
     size = len(LAGS)
     gram, projection = np.zeros((size, size)), np.zeros(size)
-    power = pairs = 0.0
+    count, cores = 0, []
     for field in residuals:
         own = core(field)
         height, width = own.shape
@@ -89,24 +91,34 @@ def whitening_of(residuals: Iterable[Floats]) -> Whitening:
         x, y = near[usable], own[usable]
         gram += x.T @ x
         projection += x.T @ y
-        power += float(y @ y)
-        pairs += y.size
-    if pairs < _LEAST_PAIRS or power == 0:
+        count += y.size
+        cores.append(own)
+    if count < _MIN_PAIRS or not np.trace(gram) > 0:
         return WHITE
-    direct = [LAGS.index(lag) for lag in ((0, 1), (1, 0))]
-    correlation = projection[direct] / power
-    strongest = float(correlation[int(np.argmax(np.abs(correlation)))])
-    if abs(strongest) * math.sqrt(pairs) < _SIGNIFICANT:
-        return Whitening(np.zeros(size), strongest)
+    found = _correlation(cores)
+    if found.significant == 0:
+        return Whitening(np.zeros(size), found)
     ridge = _RIDGE * np.trace(gram) / size * np.eye(size)
-    return Whitening(np.linalg.solve(gram + ridge, projection), strongest)
+    return Whitening(np.linalg.solve(gram + ridge, projection), found)
+
+
+def _correlation(fields: list[Floats]) -> Correlation:
+    """Correlation within fields: one below the other, further apart than it is looked for."""
+    height = np.cumsum([0, *(field.shape[0] + _GAP_PX for field in fields)])
+    usable = [np.isfinite(field) for field in fields]
+    rows, cols = zip(*map(np.nonzero, usable), strict=True)
+    return correlation(
+        np.concatenate([field[known] for field, known in zip(fields, usable, strict=True)]),
+        np.concatenate([row + top for row, top in zip(rows, height[:-1], strict=True)]),
+        np.concatenate(cols),
+    )
 
 
 def fine_noise(fine: Floats) -> float:
     """Standard deviation of the reference's noise, from the quietest quarter of its blocks.
 
     Sixth differences along both axes see only what is next to Nyquist both ways, where a sensor
-    passes least of the ground; what texture they see all the same counts as noise.
+    passes least of the scene; what is left of its texture counts as noise.
     """
     both = np.diff(np.diff(fine, _ORDER, axis=0), _ORDER, axis=1)
     height, width = (size // _BLOCK for size in both.shape)
@@ -118,7 +130,7 @@ def fine_noise(fine: Floats) -> float:
     usable = powers[np.isfinite(powers)]
     if usable.size == 0:
         return 0.0
-    return math.sqrt(float(np.quantile(usable, _QUIET))) / math.comb(2 * _ORDER, _ORDER)
+    return math.sqrt(float(np.quantile(usable, tuned.QUIET_SHARE))) / math.comb(2 * _ORDER, _ORDER)
 
 
 def noise_gram(taps: Floats, grid: TapGrid, whitening: Whitening) -> Floats:

@@ -1,4 +1,4 @@
-"""What a caller may change of a bi-resolution measurement, and the limits of its checks."""
+"""What a caller may change of a bi-resolution measurement."""
 
 from __future__ import annotations
 
@@ -7,63 +7,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from acutance.errors import OptionError
+from acutance.targets.check import Limits, require_limits
 from acutance.targets.options import require_types
+from acutance.targets.pair.checks import PAIR_CHECKS
 
-__all__ = ["BiresolutionLimits", "BiresolutionOptions"]
-
-
-@dataclass(frozen=True)
-class BiresolutionLimits:
-    """Limits of the checks. `acutance.targets.pair.checks` says where each comes from.
-
-    Parameters
-    ----------
-    ratio : float
-        Least ratio of the GSDs.
-    reference_mtf : float
-        Least MTF of the reference at the low image's Nyquist frequency; a reference that was not
-        given has none.
-    reference_directions : float
-        Least number of directions in which a reference was measured.
-    correlation : float
-        Least correlation of the low image with the blurred high one, local means left out.
-    coherence : float
-        Least squared coherence at the low image's Nyquist frequency, across and along.
-    pixels : float
-        Least number of low pixels used.
-    left_out : float
-        Largest share of low pixels left out as clouds, changes or defects.
-    registration_px : float
-        Largest standard deviation of the local shifts, in low pixels.
-    shift_px : float
-        Largest displacement of the low image as a whole, in low pixels.
-    residual_correlation : float
-        Largest correlation between neighbouring residuals.
-    inflation : float
-        Largest factor by which regions scatter more than white residuals explain.
-    saturation : float
-        Largest share of low pixels at the end of the scale.
-    iteration_change : float
-        Largest relative change of the residual in the parametric fit's last step, in units of the
-        threshold asked for.
-    """
-
-    ratio: float = 2.0
-    reference_mtf: float = 0.5
-    reference_directions: float = 2.0
-    correlation: float = 0.9
-    coherence: float = 0.1
-    pixels: float = 2000.0
-    left_out: float = 0.2
-    registration_px: float = 0.1
-    shift_px: float = 3.0
-    residual_correlation: float = 0.2
-    inflation: float = 2.0
-    saturation: float = 0.001
-    iteration_change: float = 1.0
-
-    def __post_init__(self) -> None:
-        require_types(self)
+__all__ = ["BiresolutionOptions"]
 
 
 @dataclass(frozen=True)
@@ -82,13 +30,13 @@ class BiresolutionOptions:
     reach_px : float or None
         How far the free kernel goes, in low pixels; None leaves it to the size of the region.
     max_pixels : int
-        Low pixels used at most: of a larger scene, tiles spread evenly over it.
+        Low pixels used at most: of a larger scene, tiles distributed evenly over it.
     robust : bool
         Leave out what fits badly: clouds, changes, defects.
     noise_high : float or None
         Standard deviation of the high image's noise, in its units; None estimates it.
-    limits : BiresolutionLimits
-        Limits of the checks.
+    limits : mapping of str to float
+        Limits of checks (`PAIR_CHECKS`), by name, instead of those of the table.
     """
 
     stop_change: float = 1e-4
@@ -98,10 +46,11 @@ class BiresolutionOptions:
     max_pixels: int = 500_000
     robust: bool = True
     noise_high: float | None = None
-    limits: BiresolutionLimits = field(default_factory=BiresolutionLimits)
+    limits: Limits = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_limits(self.limits, PAIR_CHECKS, "BiresolutionOptions")
         reach = 4.0 if self.reach_px is None else self.reach_px
         noise = 0.0 if self.noise_high is None else self.noise_high
         asked = (
@@ -118,4 +67,4 @@ class BiresolutionOptions:
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""
-        return {**vars(self), "limits": dict(vars(self.limits))}
+        return {**vars(self), "limits": dict(self.limits)}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,12 +11,14 @@ from numpy.typing import NDArray
 
 from acutance.curves import Mtf, Response
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.raster import Gsd
-from acutance.targets.measurement import SCHEMA, Measurement
-from acutance.targets.measurement2d import Measurement2d
+from acutance.targets.measurement import Measurement
 from acutance.targets.pair.kernel_otf import ReferenceOtf
+from acutance.targets.record import Record, RecordedDirection
+from acutance.targets.target_result import TargetResult
 
 __all__ = [
     "MeasuredCurves",
@@ -25,32 +26,34 @@ __all__ = [
     "known_curves",
     "measured_reference",
     "reference_otf",
-    "require_pixels",
     "sensor_of_nyquist",
 ]
 
 Complexes = NDArray[np.complex128]
 
-_GSD_SHARE = 0.05
+_MAX_GSD_DIFFERENCE = 0.05
+_RATIO = "mtf_low_over_mtf_high"
+_MIN_FREQUENCIES = 4
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredCurves:
-    """The MTF of a sensor in both directions, as a measurement of it tells.
+class MeasuredCurves(ShortRepr):
+    """The MTF of a sensor along the two axes of its pixels, as it was measured.
 
     Parameters
     ----------
     across, along : Mtf
-        One and the same where only one direction was measured.
-    gsd_m : float, optional
-        Of its pixels in metres: along the normal of a single direction, else along the rows.
+        Along the rows of pixels (0 degrees) and down the columns (90); one and the same where only
+        one direction was measured.
+    pixel_gsd_m : (float, float), optional
+        GSD from row to row and from column to column.
     normal_deg : float, optional
         The single direction, from the column axis (0) towards the row axis (90).
     """
 
     across: Mtf
     along: Mtf
-    gsd_m: float | None = None
+    pixel_gsd_m: tuple[float, float] | None = None
     normal_deg: float | None = None
 
     @property
@@ -63,9 +66,48 @@ class MeasuredCurves:
         angle = (self.normal_deg + 90.0) % 180.0 - 90.0
         return f"one direction, {angle:.1f} degrees from the column axis"
 
+    def require_pixels(self, gsd: Gsd | None) -> None:
+        """Refuse curves of other pixels than the high image's.
+
+        Their frequencies are in cycles per pixel of their own image: in another product of the same
+        sensor, or another sensor, they mean something else.
+
+        Raises
+        ------
+        OptionError
+            If both GSDs are known and differ by more than 5 %, along rows or columns.
+        """
+        if self.pixel_gsd_m is None or gsd is None:
+            return
+        of_image = gsd.row_m, gsd.col_m
+        pairs = zip(self.pixel_gsd_m, of_image, strict=True)
+        if max(abs(math.log(one / other)) for one, other in pairs) > math.log1p(
+            _MAX_GSD_DIFFERENCE
+        ):
+            raise OptionError(
+                f"the reference was measured in pixels of {_in_metres(self.pixel_gsd_m)}, those of "
+                f"the high image have {_in_metres(of_image)}: its frequencies in cycles per pixel "
+                "mean something else there. Measure the reference in the high image's own product, "
+                "or state its MTF at Nyquist or its sensor"
+            )
+
+
+def _in_metres(pixel_gsd_m: tuple[float, float]) -> str:
+    row_m, col_m = pixel_gsd_m
+    square = math.isclose(row_m, col_m, rel_tol=1e-3)
+    return f"{col_m:.4g} m" if square else f"{row_m:.4g} by {col_m:.4g} m (rows, columns)"
+
 
 ReferenceLike = (
-    Sensor | Measurement | Measurement2d | MeasuredCurves | Response | Mtf | float | None
+    Sensor
+    | Measurement
+    | TargetResult[Any]
+    | Record
+    | MeasuredCurves
+    | Response
+    | Mtf
+    | float
+    | None
 )
 """A sensor; a measurement of it (one direction, taken for both, or two); or its MTF at Nyquist."""
 
@@ -78,6 +120,10 @@ class _OfSensor:
     ratio_across: float
     ratio_along: float
 
+    @property
+    def only_direction(self) -> str | None:
+        return None
+
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         return np.asarray(
             self.sensor.otf(u_cpp / self.ratio_across, v_cpp / self.ratio_along), complex
@@ -89,16 +135,19 @@ class _OfSensor:
 
 @dataclass(frozen=True, eq=False)
 class _OfCurves:
-    """Measured curves across and along; their product over the plane.
+    """Measured curves along both axes; their product over the plane.
 
     Each curve is taken to be wrong by one number, its standard deviation at all frequencies
     together: the least favourable case, and the only one that a curve without covariance allows.
     """
 
-    across: Mtf
-    along: Mtf
+    curves: MeasuredCurves
     ratio_across: float
     ratio_along: float
+
+    @property
+    def only_direction(self) -> str | None:
+        return self.curves.only_direction
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         over, down = self._values(u_cpp, v_cpp)
@@ -106,7 +155,7 @@ class _OfCurves:
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         over, down = self._values(u_cpp, v_cpp)
-        if self.along is self.across:
+        if self.curves.only_direction is not None:
             return np.asarray(over[1] * down[0] + over[0] * down[1], complex)[:, None]
         return np.stack([over[1] * down[0], over[0] * down[1]], axis=1).astype(complex)
 
@@ -114,72 +163,125 @@ class _OfCurves:
         self, u_cpp: Floats, v_cpp: Floats
     ) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
         return (
-            _read(self.across, np.abs(u_cpp) / self.ratio_across),
-            _read(self.along, np.abs(v_cpp) / self.ratio_along),
+            _interpolated(self.curves.across, np.abs(u_cpp) / self.ratio_across),
+            _interpolated(self.curves.along, np.abs(v_cpp) / self.ratio_along),
         )
 
 
-def _read(mtf: Mtf, freq_cpp: Floats) -> tuple[Floats, Floats]:
+def _interpolated(mtf: Mtf, freq_cpp: Floats) -> tuple[Floats, Floats]:
     """Value and standard deviation of a curve at frequencies in its own pixels."""
     value = np.interp(freq_cpp, mtf.freq_cpp, mtf.value)
     return np.asarray(value), np.asarray(np.interp(freq_cpp, mtf.freq_cpp, mtf.std))
 
 
 def known_curves(reference: ReferenceLike) -> MeasuredCurves | None:
-    """The curves of a measured reference; ``None`` for one that is described or not given."""
-    if isinstance(reference, MeasuredCurves):
-        return reference
-    if isinstance(reference, Measurement2d):
-        across, along = reference.across.mtf, reference.along.mtf
-        return MeasuredCurves(across, along, reference.image.gsd_m)
-    if isinstance(reference, Measurement):
-        only, gsd_m = reference.mtf, reference.response.gsd_m
-        return MeasuredCurves(only, only, gsd_m, reference.line.normal_deg)
-    if isinstance(reference, Response):
-        return MeasuredCurves(reference.mtf, reference.mtf, reference.gsd_m)
-    return MeasuredCurves(reference, reference) if isinstance(reference, Mtf) else None
-
-
-def require_pixels(curves: MeasuredCurves | None, gsd: Gsd | None) -> None:
-    """Refuse a measured reference of other pixels than the high image's.
-
-    Its frequencies are in cycles per pixel of its own image: in another product of the same
-    sensor, or another sensor, they mean something else.
+    """The curves of a measured reference; ``None`` for one that is described or not given.
 
     Raises
     ------
     OptionError
-        If both GSDs are known and differ by more than 5 %.
+        If it is the ratio of two sensors' MTFs, or has no curve.
     """
-    if curves is None or curves.gsd_m is None or gsd is None:
-        return
-    own = gsd.along_normal(curves.normal_deg or 0.0)
-    if abs(math.log(curves.gsd_m / own)) > math.log(1 + _GSD_SHARE):
-        raise OptionError(
-            f"the reference was measured in pixels of {curves.gsd_m:.4g} m, those of the high "
-            f"image have {own:.4g} m: its frequencies in cycles per pixel mean something else "
-            "there. Measure the reference in the high image's own product, or state its MTF at "
-            "Nyquist or its sensor"
-        )
+    if isinstance(reference, MeasuredCurves):
+        return reference
+    if isinstance(reference, Measurement):
+        return _of_measurement(reference)
+    if isinstance(reference, Record):
+        return _of_record(reference)
+    if isinstance(reference, TargetResult):
+        return _of_edges(reference)
+    if isinstance(reference, Response):
+        only, gsd_m = _plain(reference.mtf), reference.gsd_m
+        return MeasuredCurves(only, only, None if gsd_m is None else (gsd_m, gsd_m))
+    if isinstance(reference, Mtf):
+        only = _plain(reference)
+        return MeasuredCurves(only, only)
+    return None
+
+
+def _of_measurement(reference: Measurement) -> MeasuredCurves:
+    if reference.is_ratio:
+        raise OptionError(_no_ratio("the reference"))
+    gsd_m, normal_deg = reference.image.pixel_gsd_m, reference.normal_deg
+    if normal_deg is not None:
+        only = _plain(reference.response.mtf)
+        return MeasuredCurves(only, only, gsd_m, normal_deg)
+    across, along = (_plain(reference.mtf_at(angle)) for angle in (0.0, 90.0))
+    return MeasuredCurves(across, along, gsd_m)
+
+
+def _of_edges(reference: TargetResult[Any]) -> MeasuredCurves:
+    """The strongest edge of either direction, or of the one there is."""
+    if not reference.measurements:
+        raise OptionError("the reference is a target of which no edge was measured: give another")
+    strongest = [group.measurements[0] for group in reference.groups.values()]
+    if len(strongest) < 2:
+        return _of_measurement(reference.measurements[0])
+    by_normal = sorted(strongest, key=lambda edge: _from_columns(edge.normal_deg or 0.0))
+    across, along = (_plain(edge.response.mtf) for edge in by_normal)
+    return MeasuredCurves(across, along, by_normal[0].image.pixel_gsd_m)
+
+
+def _from_columns(normal_deg: float) -> float:
+    """How far a direction is from the column axis, 0 to 90 degrees."""
+    return abs((normal_deg + 90.0) % 180.0 - 90.0)
+
+
+def _of_record(reference: Record, origin: str = "the reference") -> MeasuredCurves:
+    if reference.document.get("quantity") == _RATIO:
+        raise OptionError(_no_ratio(origin))
+    found, gsd_m = reference.directions, reference.image.pixel_gsd_m
+    try:
+        curves = {name: _recorded(one) for name, one in found.items()}
+        if len(curves) == 1:
+            (only,) = curves.values()
+            normal = reference.document.get("line", {}).get("normal_deg")
+            return MeasuredCurves(only, only, gsd_m, None if normal is None else float(normal))
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise OptionError(f"{origin} holds no MTF that can be read ({error})") from error
+    # Across track is along the rows of pixels only where the columns are the track.
+    names = ("across", "along") if reference.image.along_track == "y" else ("along", "across")
+    return MeasuredCurves(curves[names[0]], curves[names[1]], gsd_m)
+
+
+def _no_ratio(origin: str) -> str:
+    return (
+        f"{origin} is the ratio MTF_low / MTF_high, no sensor's own MTF: measure it again with a "
+        "reference (reference_mtf, --reference)"
+    )
+
+
+def _recorded(direction: RecordedDirection) -> Mtf:
+    freq, value, std = direction.curve("mtf")
+    if freq.size < _MIN_FREQUENCIES or not (np.isfinite(value).all() and np.isfinite(std).all()):
+        raise ValueError("its curve has gaps")
+    return Mtf(freq, value.astype(complex), std[:, None].astype(complex))
+
+
+def _plain(mtf: Mtf) -> Mtf:
+    """Values and standard deviations of a curve alone: nothing else of it is read."""
+    return Mtf(mtf.freq_cpp, mtf.value.astype(complex), mtf.std[:, None].astype(complex))
 
 
 def reference_otf(
-    reference: ReferenceLike, ratio_across: float, ratio_along: float
+    reference: ReferenceLike, ratio_across: float, ratio_along: float, gsd: Gsd | None = None
 ) -> ReferenceOtf | None:
     """The reference's OTF at frequencies of the low image.
 
     Parameters
     ----------
-    reference : Sensor, Measurement, Measurement2d, MeasuredCurves, Response, Mtf, float or None
+    reference : ReferenceLike
         One measured direction is taken for both. A number is the MTF at the reference's own
         Nyquist frequency, of a Gaussian blur and a full detector.
     ratio_across, ratio_along : float
-        Ratio of the GSDs.
+        Ratio of the GSDs along the rows of pixels and down the columns.
+    gsd : Gsd, optional
+        Of the high image: curves of other pixels are refused.
 
     Raises
     ------
     OptionError
-        If it is none of these.
+        If it is none of these, the ratio of two sensors' MTFs, or of other pixels.
     """
     if reference is None:
         return None
@@ -193,7 +295,8 @@ def reference_otf(
             f"reference_mtf is a {type(reference).__name__}: give a Sensor, a measurement, an Mtf, "
             "or the MTF at the reference's own Nyquist frequency as a number"
         )
-    return _OfCurves(curves.across, curves.along, ratio_across, ratio_along)
+    curves.require_pixels(gsd)
+    return _OfCurves(curves, ratio_across, ratio_along)
 
 
 def sensor_of_nyquist(mtf_nyquist: float) -> Sensor:
@@ -229,28 +332,8 @@ def measured_reference(document: Any, origin: str) -> MeasuredCurves:
     OptionError
         If it is no such document, or one of a ratio of two sensors' MTFs.
     """
-    if not isinstance(document, Mapping) or document.get("schema") != SCHEMA:
-        raise OptionError(f"{origin} is no document {SCHEMA}: write one with --json")
-    if document.get("quantity") == "mtf_low_over_mtf_high":
-        raise OptionError(
-            f"{origin} is the ratio MTF_low / MTF_high, no sensor's own MTF: measure it again with "
-            "--reference"
-        )
     try:
-        gsd = document.get("image", {}).get("gsd_m")
-        gsd_m = None if gsd is None else float(gsd)
-        if "across" in document:
-            across, along = (_curve(document[name]["mtf"]) for name in ("across", "along"))
-            return MeasuredCurves(across, along, gsd_m)
-        only, line = _curve(document["mtf"]), document.get("line", {})
-        normal = line.get("normal_deg")
-        return MeasuredCurves(only, only, gsd_m, None if normal is None else float(normal))
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise OptionError(f"{origin} holds no MTF that can be read ({error})") from error
-
-
-def _curve(curve: Mapping[str, Any]) -> Mtf:
-    freq, value, std = (np.array(curve[name], float) for name in ("freq_cpp", "value", "std"))
-    if freq.size < 4 or not (np.isfinite(value).all() and np.isfinite(std).all()):
-        raise ValueError("its curve has gaps")
-    return Mtf(freq, value.astype(complex), std[:, None].astype(complex))
+        record = Record.from_dict(document)
+    except OptionError as error:
+        raise OptionError(f"{origin}: {error}") from error
+    return _of_record(record, origin)

@@ -1,21 +1,34 @@
-"""Where the low image's content lies against the high one's, to a fraction of a low pixel."""
+"""Where the low image's content lies against the high one's, to a fraction of a low pixel.
+
+The match is found on the means of the high image over low pixels; the tiles that are measured then
+follow it in whole pixels, and the fits the rest.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import fft
 from scipy.ndimage import uniform_filter
 
 from acutance.curves.grid import Floats
+from acutance.errors import TargetError
+from acutance.raster import Image, Region
+from acutance.targets.pair import tuned
+from acutance.targets.pair.grid import PairGrid
+from acutance.targets.pair.options import BiresolutionOptions
+from acutance.targets.pair.tile import FAR_PX, first_of_cell
+from acutance.targets.pair.tiles import PairTiles
 
-__all__ = ["Registration", "register"]
+__all__ = ["Registration", "register", "registered_tiles"]
 
 _LOCAL_PX = 9
 _BOUND_SIGMAS = 3.0
 _ROUNDING = 1e-9
+_MIN_PIXELS = 64
+_TILES = 9
 
 
 @dataclass(frozen=True)
@@ -41,7 +54,7 @@ class Registration:
 
 
 def register(low: Floats, high: Floats, max_shift_px: int) -> Registration:
-    """Match an image with another one of the same pixels, by the peak of their correlation.
+    """Match two images of the same pixels by the peak of their correlation.
 
     Parameters
     ----------
@@ -68,8 +81,84 @@ def register(low: Floats, high: Floats, max_shift_px: int) -> Registration:
     )  # fmt: skip
 
 
+def registered_tiles(
+    low: Image,
+    high: Image,
+    grid: PairGrid,
+    region: Region | None,
+    options: BiresolutionOptions,
+) -> tuple[PairTiles, Registration]:
+    """Tiles whose taps follow the displacement of the low content, found in steps of a pixel.
+
+    Parameters
+    ----------
+    low, high : Image
+    grid : PairGrid
+        As the geometry has it.
+    region : Region or None
+        Where to look in the low image.
+    options : BiresolutionOptions
+
+    Raises
+    ------
+    TargetError
+        If the images have nothing in common, or match best at the end of what was looked at.
+    RegionError
+        If too few low pixels have the high image around them.
+    """
+    first = PairTiles(low, high, grid, region, tuned.SHORT_REACH_PX, options.max_pixels)
+    found = _best_match(first, options.max_shift_px)
+    if found.correlation <= 0:
+        raise TargetError(
+            "the two images have no structure in common within "
+            f"{options.max_shift_px} low pixels: one is uniform, or they show different ground; "
+            "check the pair, the ratio and the geotransforms"
+        )
+    if found.at_limit:
+        raise TargetError(
+            f"the images match best with a shift of {found.shift_px[0]:.1f} rows and "
+            f"{found.shift_px[1]:.1f} columns, at the end of the {options.max_shift_px} low pixels "
+            "looked at: they may lie further apart, look further (max_shift_px, --max-shift); or "
+            "they show different ground"
+        )
+    placed = grid.shifted((round(found.shift_px[0]), round(found.shift_px[1])))
+    reach_px = options.reach_px
+    if reach_px is None:
+        reach_px = _reach_with_room(placed, first, region)
+    return PairTiles(low, high, placed, region, reach_px, options.max_pixels), found
+
+
+def _reach_with_room(grid: PairGrid, tiles: PairTiles, region: Region | None) -> float:
+    """The long reach where enough low pixels have the high image so far around them."""
+    wanted = tiles.box if region is None else region.box(tiles.low.shape)
+    room = []
+    for axis, first, size in zip(
+        (grid.down, grid.across), (wanted.row, wanted.col), wanted.shape, strict=True
+    ):
+        start, stop = axis.inner(tuned.LONG_REACH_PX)
+        room.append(min(stop, first + size) - max(start, first))
+    return tuned.LONG_REACH_PX if min(room) >= tuned.LONG_REACH_ROOM_PX else tuned.SHORT_REACH_PX
+
+
+def _best_match(tiles: PairTiles, max_shift_px: int) -> Registration:
+    """The best match over some tiles: that of the tile where it is the clearest."""
+    best = Registration((0.0, 0.0), 0.0, False)
+    for tile in tiles.some(_TILES):
+        height, width = tile.low.shape
+        means = tile.wide[FAR_PX : FAR_PX + height, FAR_PX : FAR_PX + width]
+        if np.isfinite(tile.low).sum() < _MIN_PIXELS:
+            continue
+        found = register(tile.low, means, max_shift_px)
+        if found.correlation > best.correlation:
+            best = found
+    # The means over the low pixels are not centred on these.
+    away = [axis.offset_px + (first_of_cell(axis) + 0.5 * (axis.per_px - 1)) / axis.per_px
+            for axis in (tiles.taps.down, tiles.taps.across)]  # fmt: skip
+    return replace(best, shift_px=(best.shift_px[0] - away[0], best.shift_px[1] - away[1]))
+
+
 def _detail(image: Floats) -> Floats:
-    """An image less its local mean, outliers bounded, 0 where unusable."""
+    """An image minus its local mean, outliers bounded, 0 where unusable."""
     usable = np.isfinite(image)
     filled = np.where(usable, image, 0.0)
     share = uniform_filter(usable.astype(float), _LOCAL_PX, mode="constant")

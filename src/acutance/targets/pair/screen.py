@@ -1,4 +1,4 @@
-"""Parts of a pair that do not show the same: clouds, their shadows, changes.
+"""Parts of a pair that do not show the same ground: clouds, their shadows, changes.
 
 Robust weights cope with what is the smaller part of a scene. A cloud over half of it has to go
 before: block by block, where the low image does not follow the high one at all.
@@ -14,17 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.targets.pair.axis_blur import AxisBlur
+from acutance.targets.pair import tuned
+from acutance.targets.pair.axis_gaussian import AxisGaussian
 from acutance.targets.pair.tile import PairTile, TapGrid, Tiles, core, filtered
 
 __all__ = ["ScreenedTiles", "screened"]
 
 _BLOCK_PX = 8
-_LEAST_PIXELS = 16
-_LIKE = 0.7
-_UNLIKE = 0.7
-_NOISES = 5.0
-_LEAST_SHARE = 0.2
+_MIN_PIXELS = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,20 +31,20 @@ class ScreenedTiles:
     Parameters
     ----------
     tiles : Tiles
-    unlike : mapping from place to (h, w) bool arrays
+    masks : mapping from place to (h, w) bool arrays
         The pixels that were taken out of the tile at that place.
     left_out : int
         How many pixels those are.
     """
 
     tiles: Tiles
-    unlike: Mapping[tuple[int, int], NDArray[np.bool_]]
+    masks: Mapping[tuple[int, int], NDArray[np.bool_]]
     left_out: int
 
     def __call__(self) -> Iterator[PairTile]:
         """The tiles, from the first."""
         for tile in self.tiles():
-            mask = self.unlike.get(tile.place)
+            mask = self.masks.get(tile.place)
             yield tile if mask is None else replace(tile, low=np.where(mask, np.nan, tile.low))
 
 
@@ -64,22 +61,24 @@ class _Block:
     count: int
 
     @property
-    def is_like(self) -> bool:
-        return self.product > _LIKE * math.sqrt(self.low * self.model) > 0
+    def follows(self) -> bool:
+        return self.product > tuned.BLOCK_FOLLOWS * math.sqrt(self.low * self.model) > 0
 
     def residual(self, gain: float) -> float:
         """Power that the model with this gain leaves."""
         return max(self.low - 2 * gain * self.product + gain**2 * self.model, 0.0)
 
 
-def screened(tiles: Tiles, grid: TapGrid, down: AxisBlur, across: AxisBlur) -> ScreenedTiles:
+def screened(
+    tiles: Tiles, grid: TapGrid, down: AxisGaussian, across: AxisGaussian
+) -> ScreenedTiles:
     """Take out the blocks in which the low image does not follow the blurred high one.
 
     Parameters
     ----------
     tiles : Tiles
     grid : TapGrid
-    down, across : AxisBlur
+    down, across : AxisGaussian
         A rough kernel; its shift has to be right to some tenths of a pixel.
 
     Returns
@@ -92,22 +91,24 @@ def screened(tiles: Tiles, grid: TapGrid, down: AxisBlur, across: AxisBlur) -> S
         shapes[tile.place] = tile.low.shape
         model = filtered(tile, grid, down.taps(grid.down)[:, :1], across.taps(grid.across)[:, :1])
         blocks += list(_blocks(tile.place, tile.low, model[:, :, 0, 0]))
-    like = [one for one in blocks if one.is_like]
-    if not like:
+    following = [one for one in blocks if one.follows]
+    if not following:
         return ScreenedTiles(tiles, {}, 0)
-    gain = float(np.median([one.product / one.model for one in like]))
-    noise = float(np.median([one.residual(gain) / one.count for one in like]))
-    told = [one for one in blocks if gain**2 * one.model > _NOISES**2 * noise * one.count]
-    unlike = [
+    gain = float(np.median([one.product / one.model for one in following]))
+    noise = float(np.median([one.residual(gain) / one.count for one in following]))
+    structured = [
+        one for one in blocks if gain**2 * one.model > tuned.BLOCK_NOISES**2 * noise * one.count
+    ]
+    off = [
         one
         for one in blocks
-        if one.residual(gain) > _NOISES**2 * noise * one.count
-        and one.residual(gain) > _UNLIKE**2 * gain**2 * one.model
+        if one.residual(gain) > tuned.BLOCK_NOISES**2 * noise * one.count
+        and one.residual(gain) > tuned.BLOCK_OFF**2 * gain**2 * one.model
     ]
-    if sum(one.is_like for one in told) < _LEAST_SHARE * len(told):
+    if sum(one.follows for one in structured) < tuned.FEW_BLOCKS_FOLLOW * len(structured):
         return ScreenedTiles(tiles, {}, 0)
     masks: dict[tuple[int, int], NDArray[np.bool_]] = {}
-    for one in unlike:
+    for one in off:
         masks.setdefault(one.tile, np.zeros(shapes[one.tile], bool))[one.rows, one.cols] = True
     lost = sum(
         int((core(mask) & np.isfinite(core(tile.low))).sum())
@@ -123,7 +124,7 @@ def _blocks(place: tuple[int, int], low: Floats, model: Floats) -> Iterator[_Blo
             rows, cols = slice(i, i + _BLOCK_PX), slice(j, j + _BLOCK_PX)
             y, m = low[rows, cols], model[rows, cols]
             usable = np.isfinite(y)
-            if usable.sum() < _LEAST_PIXELS:
+            if usable.sum() < _MIN_PIXELS:
                 continue
             y, m = y[usable] - y[usable].mean(), m[usable] - m[usable].mean()
             yield _Block(

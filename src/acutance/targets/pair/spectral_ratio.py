@@ -5,41 +5,36 @@ With L and R the spectra of the low and of the high image in windows of the same
 sensor alone, has no fixed phase against the reference and averages out. The coherence
 ``g^2 = |<L R*>|^2 / (<|L|^2> <|R|^2>)`` gives the variance ``(1 - g^2) / (g^2 K) |T|^2`` of N
 windows, half of it in phase (Bendat and Piersol, Random Data, chapter 9). The kernel is the one of
-`fit.kernel_basis`, fitted to T at all frequencies of the plane up to the reference's Nyquist.
+`kernel_basis`, fitted to T at all frequencies of the plane up to the reference's Nyquist.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import uniform_filter
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.numerics.marginal_likelihood import Prior, regress
+from acutance.numerics.marginal_likelihood import regress
 from acutance.numerics.normal_equations import Normal
-from acutance.targets.pair.first_fit import BlurFit
-from acutance.targets.pair.kernel_basis import LOG_AMPLITUDE_STD
-from acutance.targets.pair.kernel_fit import KernelFit
+from acutance.targets.pair import tuned
+from acutance.targets.pair.gaussian_fit import GaussianFit
+from acutance.targets.pair.kernel_covariance import KernelCovariance
+from acutance.targets.pair.kernel_fit import KernelFit, kernel_prior, square_root
 from acutance.targets.pair.noise import WHITE
 from acutance.targets.pair.tile import PAD_PX, Complexes, PairTile, TapAxis, TapGrid, first_of_cell
 
 __all__ = ["PairSpectra", "fit_spectra", "pair_spectra"]
 
-_LEAST_WINDOWS = 2
+_MIN_WINDOWS = 2
 _MISSING = 0.05
 _LOWEST_BINS = 1.5
-_LEAST_COHERENCE = 1e-4
-_MOST_NOISE = 0.5
+_MIN_COHERENCE = 1e-4
 _PARTS = 5
-_LEAKAGE = 0.003
-"""Relative error that the window's leakage leaves where both images agree perfectly."""
-_OVERLAP = 4.0
-"""Neighbouring frequencies and windows share their pixels: a tapered window holds a quarter as many
-independent numbers as frequencies, and half overlapping windows as many as there are pixels."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +83,7 @@ class PairSpectra:
         cross = _smooth(self.cross.real, around) + 1j * _smooth(self.cross.imag, around)
         power = _smooth(self.low, around) * _smooth(self.high, around)
         found = np.abs(cross) ** 2 / np.maximum(power, 1e-300)
-        bias = 1 / (math.prod(around) * self.windows / _OVERLAP + 1)
+        bias = 1 / (math.prod(around) * self.windows / tuned.OVERLAP + 1)
         return np.clip((found - bias) / (1 - bias), 0.0, 1.0)
 
     @property
@@ -98,7 +93,7 @@ class PairSpectra:
         Smooth over neighbouring frequencies: single ones would be weighted by their own chance.
         """
         share = uniform_filter(1 - self.coherence, 3, mode="nearest")
-        floor = (_LEAKAGE * np.abs(self.cross)) ** 2 / np.maximum(self.high, 1e-300)
+        floor = (tuned.LEAKAGE * np.abs(self.cross)) ** 2 / np.maximum(self.high, 1e-300)
         return np.asarray(share * _smooth(self.low) + _smooth(floor))
 
     def along_axis(self, axis: str) -> tuple[Floats, Floats]:
@@ -117,7 +112,7 @@ def pair_spectra(
     tiles: Iterable[PairTile],
     residuals: Iterable[Floats],
     grid: TapGrid,
-    blur: BlurFit,
+    gaussian: GaussianFit,
     size_px: int,
 ) -> PairSpectra | None:
     """Spectra of all windows with both images whole; None where there are too few of them.
@@ -128,12 +123,12 @@ def pair_spectra(
     residuals : iterable of (h, w) arrays
         Of the kernel fit, NaN where a pixel was left out.
     grid : TapGrid
-    blur : BlurFit
+    gaussian : GaussianFit
     size_px : int
         Side of a window in low pixels, even.
     """
-    down = _Window(grid.down, blur.down.shift_px, size_px)
-    across = _Window(grid.across, blur.across.shift_px, size_px)
+    down = _Window(grid.down, gaussian.down.shift_px, size_px)
+    across = _Window(grid.across, gaussian.across.shift_px, size_px)
     shape = down.order.size, across.order.size
     cross, high = np.zeros((_PARTS**2, *shape), complex), np.zeros((_PARTS**2, *shape))
     low, count = np.zeros(shape), 0
@@ -149,11 +144,11 @@ def pair_spectra(
             high[part] += np.abs(b) ** 2
             low += np.abs(a) ** 2
             count += 1
-    if count < _LEAST_WINDOWS:
+    if count < _MIN_WINDOWS:
         return None
-    turn = down.turn[:, None] * across.turn
-    seen = high.any(axis=(1, 2))
-    cross, high = cross[seen] * turn / count, high[seen] / count
+    filled = high.any(axis=(1, 2))
+    cross = cross[filled] * (down.rotation[:, None] * across.rotation) / count
+    high = high[filled] / count
     return PairSpectra(
         across.order / size_px, down.order / size_px, cross.sum(axis=0), low / count,
         high.sum(axis=0), count, size_px, cross, high,
@@ -171,7 +166,7 @@ class _Window:
         self.low_taper = _hann(np.arange(size, dtype=float), size)
         self.high_taper = _hann(places, size)
         # From the first sample's place to that of the low pixel, as the content is displaced.
-        self.turn = np.exp(2j * math.pi * self.order / size * places[0])
+        self.rotation = np.exp(2j * math.pi * self.order / size * places[0])
 
 
 def _hann(places_px: Floats, size: int) -> Floats:
@@ -214,15 +209,15 @@ def _starts(length: int, size: int) -> list[int]:
 
 
 def _flattened(field: Floats, down: int, across: int) -> Floats:
-    """A field less the mean of its neighbours a low pixel away, where it has all four.
+    """A field minus the mean of its neighbours a low pixel away, where it has all four.
 
     The same filter on the ground for both images: their ratio stays, but the spectrum of a
     landscape, steep as it is, becomes flat enough for windows to keep frequencies apart.
     """
     rows, cols = slice(down, -down), slice(across, -across)
-    beside = field[rows, : -2 * across] + field[rows, 2 * across :]
+    sides = field[rows, : -2 * across] + field[rows, 2 * across :]
     return np.asarray(
-        field[rows, cols] - 0.25 * (field[: -2 * down, cols] + field[2 * down :, cols] + beside)
+        field[rows, cols] - 0.25 * (field[: -2 * down, cols] + field[2 * down :, cols] + sides)
     )
 
 
@@ -245,25 +240,26 @@ def _spectrum(field: Floats, down: Floats, across: Floats) -> Complexes:
     return np.asarray(np.fft.fft2(taper * (field - mean)))
 
 
-def fit_spectra(
-    spectra: PairSpectra, fit: KernelFit, blur: BlurFit, *, noise_high: float
-) -> KernelFit:
+def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianFit) -> KernelFit:
     """The kernel that fits the ratio of spectra, weighted by coherence.
 
     Parameters
     ----------
-    spectra : PairSpectra
+    spectra : PairSpectra or None
     fit : KernelFit
-        The fit to the pixels: the basis is its own, and so are noise and counts.
-    blur : BlurFit
-    noise_high : float
-        Standard deviation of the reference's noise in a sample.
+        The fit to the pixels: basis, noise and counts are taken from it.
+    gaussian : GaussianFit
 
     Raises
     ------
     TargetError
-        If no frequency is coherent.
+        If there are no spectra, or no frequency is coherent.
     """
+    if spectra is None:
+        raise TargetError(
+            "the region has too few whole windows for spectra: choose a larger one, or method "
+            "kernel-fit"
+        )
     basis = fit.basis
     v, u = (grid.ravel() for grid in np.meshgrid(spectra.v_cpp, spectra.u_cpp, indexing="ij"))
     coherence = spectra.coherence.ravel()
@@ -273,7 +269,7 @@ def fit_spectra(
     chosen &= np.hypot(u - np.round(u), v - np.round(v)) * spectra.size_px > _LOWEST_BINS
     # Frequencies are not chosen by their own coherence: where there is none, those that are by
     # chance in phase would be kept, and the MTF at Nyquist come out 0.02 too high.
-    coherent = int(np.count_nonzero(coherence[chosen] > _LEAST_COHERENCE))
+    coherent = int(np.count_nonzero(coherence[chosen] > _MIN_COHERENCE))
     if coherent < 50:
         raise TargetError(
             f"only {coherent} frequencies are coherent between the two images, 50 are needed: they "
@@ -283,11 +279,10 @@ def fit_spectra(
     # Of a single frequency; half of the noise is in phase.
     precision = 2 * spectra.windows / spectra.noise.ravel()[chosen]
     clean = np.maximum(
-        high - _noise_power(spectra, noise_high, basis.grid) * _flattening(u, v) ** 2,
-        _MOST_NOISE * high,
+        high - _noise_power(spectra, fit.noise_high, basis.grid) * _flattening(u, v) ** 2,
+        tuned.MAX_NOISE_SHARE * high,
     )
-    turn = np.exp(2j * math.pi * (u * basis.across.shift_px + v * basis.down.shift_px))
-    design = basis.transfer(u, v) * turn[:, None]
+    design = basis.transfer(u, v) * basis.centring(u, v)[:, None]
     cross = spectra.cross.ravel()[chosen]
     weighted = np.conj(design) * precision[:, None]
     normal = Normal(
@@ -296,33 +291,24 @@ def fit_spectra(
         float(precision @ (np.abs(cross) ** 2 / clean)),
         2.0 * u.size,
     )
-    mean = np.zeros(basis.size)
-    mean[0] = blur.gain
-    prior = Prior(
-        block=np.asarray(basis.blocks, float),
-        scale=basis.scale,
-        mean=mean,
-        log_amplitude=basis.log_amplitude,
-        log_amplitude_std=LOG_AMPLITUDE_STD,
-        height=abs(blur.gain),
-        noise_floor=1e-3,
-    )
-    posterior = regress(normal, prior, 1.0, _OVERLAP)
+    posterior = regress(normal, kernel_prior(basis, gaussian.gain), 1.0, tuned.OVERLAP)
     k = basis.size
-    noise = _OVERLAP * posterior.variance
+    noise = tuned.OVERLAP * posterior.variance
     response = posterior.factor[:, :k] @ posterior.factor[:, :k].T / noise
-    seen = design @ posterior.beta * (clean / high)
+    fitted = design @ posterior.beta * (clean / high)
     rest = [
-        part.ravel()[chosen] - power.ravel()[chosen] * seen
+        part.ravel()[chosen] - power.ravel()[chosen] * fitted
         for part, power in zip(spectra.part_cross, spectra.part_high, strict=True)
     ]
-    power, axes = np.linalg.eigh(normal.gram)
-    root = axes * np.sqrt(np.maximum(power, 0.0))
-    return KernelFit(
-        grid=fit.grid, basis=basis, posterior=posterior, noise_factor=np.zeros(k),
-        scores=response @ (weighted.T @ np.stack(rest, axis=1)).real,
-        white_factor=np.sqrt(noise) * response @ root, whitening=WHITE,
-        noise=fit.noise, used=fit.used, left_out=fit.left_out, robust=fit.robust,
+    moves = response @ (weighted.T @ np.stack(rest, axis=1)).real
+    return replace(
+        fit, posterior=posterior, whitening=WHITE,
+        covariance=KernelCovariance(
+            posterior=posterior.factor,
+            reference_noise=np.zeros(k),
+            scatter=moves - moves.mean(axis=1, keepdims=True),
+            white=np.sqrt(noise) * response @ square_root(normal.gram),
+        ),
     )  # fmt: skip
 
 

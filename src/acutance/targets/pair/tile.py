@@ -43,7 +43,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 PAD_PX = 2
 """Low pixels a tile has above, on the left and on the right of those it stands for: its residuals
-are whitened with them (`fit.bi_noise`)."""
+are whitened with them (`noise`)."""
 
 FAR_PX = 24
 """Distance out to which tails of the kernel act."""
@@ -106,7 +106,7 @@ class PairTile:
     Parameters
     ----------
     low : (h, w) array
-        NaN where a pixel cannot serve. The first PAD_PX rows, and as many columns on either side,
+        NaN where a pixel cannot be used. The first PAD_PX rows, and as many columns on either side,
         belong to other tiles.
     fine : array
         Samples of the reference; those of low pixel (0, 0) begin at its corner. No NaN.

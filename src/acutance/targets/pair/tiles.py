@@ -22,11 +22,11 @@ __all__ = ["PairTiles"]
 
 _TILE_PX: Final = 96
 _REGION_PX: Final = 24
-_MOST_REGIONS: Final = 8
+_MAX_REGIONS: Final = 8
 _HOLE_PX: Final = 3.0
 """Distance within which a missing sample of the reference spoils a low pixel."""
 _KEPT_VALUES: Final = 40_000_000
-_LEAST_SIDE_PX: Final = 16
+_MIN_SIDE_PX: Final = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class PairTiles:
     reach_px : float
         How far the taps of a low pixel go, in low pixels.
     max_pixels : int
-        Low pixels read at most: of a larger scene, tiles spread evenly over it.
+        Low pixels read at most: of a larger scene, tiles distributed evenly over it.
     """
 
     low: Image
@@ -59,7 +59,7 @@ class PairTiles:
 
     @cached_property
     def box(self) -> Box:
-        """Low pixels that can serve: inside the region, with the reference all around them.
+        """Low pixels that can be used: inside the region, with the reference all around them.
 
         Raises
         ------
@@ -76,10 +76,10 @@ class PairTiles:
         if min(sides) > 0:
             inner = wanted.intersection(Box(rows[0], cols[0], *sides))
         found = (0, 0) if inner is None else inner.shape
-        if inner is None or min(found) < _LEAST_SIDE_PX:
+        if inner is None or min(found) < _MIN_SIDE_PX:
             raise RegionError(
                 f"{max(found[0], 0)} by {max(found[1], 0)} low pixels lie in the region with the "
-                f"high image {self.reach_px:g} low pixels around them, at least {_LEAST_SIDE_PX} "
+                f"high image {self.reach_px:g} low pixels around them, at least {_MIN_SIDE_PX} "
                 "both ways are needed: choose a larger region, or a larger high image"
             )
         return inner
@@ -87,7 +87,7 @@ class PairTiles:
     @cached_property
     def _counts(self) -> tuple[int, int]:
         """Regions of the map of local statistics, down and across."""
-        rows, cols = (int(np.clip(size // _REGION_PX, 1, _MOST_REGIONS)) for size in self.box.shape)
+        rows, cols = (int(np.clip(size // _REGION_PX, 1, _MAX_REGIONS)) for size in self.box.shape)
         return rows, cols
 
     @property
@@ -120,7 +120,7 @@ class PairTiles:
         most = max(1, self.max_pixels // _TILE_PX**2)
         if len(every) <= most:
             return every
-        # A stride that divides nothing spreads the tiles over rows and columns alike.
+        # A stride that divides neither count takes tiles from all rows and all columns.
         chosen = np.unique((np.arange(most) + 0.5) * len(every) / most).astype(int)
         return tuple(every[i] for i in chosen)
 
@@ -146,7 +146,7 @@ class PairTiles:
             yield self._read(box)
 
     def some(self, count: int) -> Iterator[PairTile]:
-        """Some tiles, spread evenly."""
+        """Some tiles, distributed evenly."""
         step = max(1, len(self.boxes) // count)
         yield from (self._read(box) for box in self.boxes[::step])
 

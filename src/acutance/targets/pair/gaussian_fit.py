@@ -1,4 +1,4 @@
-"""The parametric fit of a pair: shift, blur, gain and offset, by least squares on the pixels.
+"""The parametric fit of a pair: shift, gaussian, gain and offset, by least squares on the pixels.
 
 This is the procedure of Li et al., "On-orbit MTF estimation methods", 5.3: blur the high image
 with a first kernel, sample it at the low pixels, compare, change the kernel, and stop when the
@@ -8,24 +8,24 @@ residual's relative change falls below a threshold that the user sets.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.targets.pair.axis_blur import LEAST_VARIANCE, MOST_VARIANCE, AxisBlur
+from acutance.targets.pair.axis_gaussian import MAX_VARIANCE_PX2, MIN_VARIANCE_PX2, AxisGaussian
 from acutance.targets.pair.tile import TapGrid, Tiles, core, filtered
 
-__all__ = ["BlurFit", "BlurStep", "fit_blur"]
+__all__ = ["GaussianFit", "GaussianStep", "fit_gaussian"]
 
-_BOLDEST_SHIFT_PX = 0.6
-_BOLDEST_VARIANCE = 0.25
-_LEAST_PIXELS = 60
+_MAX_SHIFT_UPDATE_PX = 0.6
+_MAX_VARIANCE_UPDATE_PX2 = 0.25
+_MIN_PIXELS = 60
 
 
 @dataclass(frozen=True)
-class BlurStep:
+class GaussianStep:
     """One iteration of the parametric fit.
 
     Parameters
@@ -46,12 +46,12 @@ class BlurStep:
 
 
 @dataclass(frozen=True, eq=False)
-class BlurFit:
-    """What the parametric fit found.
+class GaussianFit:
+    """The parametric kernel, and how it was found.
 
     Parameters
     ----------
-    down, across : AxisBlur
+    down, across : AxisGaussian
     gain, offset : float
         Of the low image against the blurred high one.
     noise : float
@@ -60,20 +60,20 @@ class BlurFit:
         Standard deviation of the blurred high image about the means of tiles, times the gain.
     correlation : float
         Between the low image and the blurred high one, local means left out.
-    steps : sequence of BlurStep
+    steps : sequence of GaussianStep
         The iterations.
     converged : bool
         Whether the last change was below the threshold.
     """
 
-    down: AxisBlur
-    across: AxisBlur
+    down: AxisGaussian
+    across: AxisGaussian
     gain: float
     offset: float
     noise: float
     signal: float
     correlation: float
-    steps: Sequence[BlurStep]
+    steps: Sequence[GaussianStep]
     converged: bool
 
 
@@ -90,23 +90,23 @@ class _Sums:
     correlation: float
 
 
-def fit_blur(
+def fit_gaussian(
     tiles: Tiles,
     grid: TapGrid,
-    down: AxisBlur,
-    across: AxisBlur,
+    down: AxisGaussian,
+    across: AxisGaussian,
     *,
     stop_change: float = 1e-4,
     max_steps: int = 30,
     robust: bool = True,
-) -> BlurFit:
+) -> GaussianFit:
     """Fit shift and blur along both axes, gain and offset.
 
     Parameters
     ----------
     tiles : Tiles
     grid : TapGrid
-    down, across : AxisBlur
+    down, across : AxisGaussian
         Where to start: the shifts have to be right to a pixel.
     stop_change : float, optional
         Relative change of the residual at which the iteration ends.
@@ -120,56 +120,55 @@ def fit_blur(
         If the two images have nothing in common.
     """
     gain, offset, noise = _first_guess(tiles, grid, down, across)
-    steps: list[BlurStep] = []
+    steps: list[GaussianStep] = []
     before = np.inf
     while True:
         sums = _accumulate(tiles, grid, down, across, (gain, offset, noise), robust)
         change = abs(before - sums.residual) / sums.residual if sums.residual > 0 else 0.0
         shifts = (down.shift_px, across.shift_px)
         variances = (down.variance_px2, across.variance_px2)
-        steps.append(BlurStep(sums.residual, change, shifts, variances))
+        steps.append(GaussianStep(sums.residual, change, shifts, variances))
         before, noise, offset = sums.residual, sums.noise, sums.offset
         if change < stop_change or len(steps) > max_steps:
             break
-        moves = np.linalg.lstsq(sums.gram, sums.projection, rcond=1e-10)[0]
-        gain += float(moves[0])
+        update = np.linalg.lstsq(sums.gram, sums.projection, rcond=1e-10)[0]
+        gain += float(update[0])
         if gain == 0.0:
             break
-        down = _moved(down, *(moves[[1, 3]] / gain).tolist())
-        across = _moved(across, *(moves[[2, 4]] / gain).tolist())
-    return BlurFit(
+        down = _updated(down, *(update[[1, 3]] / gain).tolist())
+        across = _updated(across, *(update[[2, 4]] / gain).tolist())
+    return GaussianFit(
         down, across, gain, offset, noise, abs(gain) * sums.signal, sums.correlation,
         tuple(steps), change < stop_change,
     )  # fmt: skip
 
 
-def _moved(blur: AxisBlur, shift: float, variance: float) -> AxisBlur:
-    bold = float(np.clip(variance, -_BOLDEST_VARIANCE, _BOLDEST_VARIANCE))
-    return replace(
-        blur,
-        shift_px=blur.shift_px + float(np.clip(shift, -_BOLDEST_SHIFT_PX, _BOLDEST_SHIFT_PX)),
-        variance_px2=float(np.clip(blur.variance_px2 + bold, LEAST_VARIANCE, MOST_VARIANCE)),
-    )
+def _updated(axis: AxisGaussian, shift: float, variance: float) -> AxisGaussian:
+    """A Gaussian after a step of the iteration, which is bounded."""
+    by_shift = float(np.clip(shift, -_MAX_SHIFT_UPDATE_PX, _MAX_SHIFT_UPDATE_PX))
+    by_variance = float(np.clip(variance, -_MAX_VARIANCE_UPDATE_PX2, _MAX_VARIANCE_UPDATE_PX2))
+    bounded = np.clip(axis.variance_px2 + by_variance, MIN_VARIANCE_PX2, MAX_VARIANCE_PX2)
+    return AxisGaussian(axis.shift_px + by_shift, float(bounded))
 
 
 def _first_guess(
-    tiles: Tiles, grid: TapGrid, down: AxisBlur, across: AxisBlur
+    tiles: Tiles, grid: TapGrid, down: AxisGaussian, across: AxisGaussian
 ) -> tuple[float, float, float]:
     """Gain, offset and noise as the median tile has them: a cloud spoils few tiles."""
     gains, offsets, powers, count = [], [], [], 0
     for tile in tiles():
         model = filtered(tile, grid, down.taps(grid.down)[:, :1], across.taps(grid.across)[:, :1])
         for y, m in _blocks(core(tile.low), core(model[:, :, 0, 0])):
-            spread = float(m @ m)
-            if spread > 0:
-                gains.append(float(m @ y[0]) / spread)
-                powers.append(spread)
+            own = float(m @ m)
+            if own > 0:
+                gains.append(float(m @ y[0]) / own)
+                powers.append(own)
                 offsets.append(y[1] - gains[-1] * y[2])
         count += int(np.isfinite(core(tile.low)).sum())
-    if not gains or count < _LEAST_PIXELS:
+    if not gains or count < _MIN_PIXELS:
         raise TargetError(
             f"{count} low pixels have both images around them and structure to compare, at least "
-            f"{_LEAST_PIXELS} are needed: choose a larger region, or one with less nodata"
+            f"{_MIN_PIXELS} are needed: choose a larger region, or one with less nodata"
         )
     heavy = np.array(powers) >= np.median(powers)
     gain = float(np.median(np.array(gains)[heavy]))
@@ -192,14 +191,14 @@ def _blocks(low: Floats, model: Floats) -> list[tuple[tuple[Floats, float, float
 def _accumulate(
     tiles: Tiles,
     grid: TapGrid,
-    down: AxisBlur,
-    across: AxisBlur,
+    down: AxisGaussian,
+    across: AxisGaussian,
     level: tuple[float, float, float],
     robust: bool,
 ) -> _Sums:
     gain, offset, noise = level
     gram, projection = np.zeros((5, 5)), np.zeros(5)
-    power = weights = moved = tall = wide = both = 0.0
+    power = weights = level_error = low_power = model_power = product = 0.0
     sizes: list[Floats] = []
     for tile in tiles():
         field = filtered(tile, grid, down.taps(grid.down)[:, :3], across.taps(grid.across)[:, :3])
@@ -220,12 +219,12 @@ def _accumulate(
         gram += pulled.T @ centred
         projection += pulled.T @ rest_centred
         power += float(weight @ rest_centred**2)
-        moved += float(weight @ rest)
+        level_error += float(weight @ rest)
         weights += total
         y_centred = y - weight @ y / total
-        tall += float(weight @ y_centred**2)
-        wide += float(weight @ centred[:, 0] ** 2)
-        both += float(weight @ (y_centred * centred[:, 0]))
+        low_power += float(weight @ y_centred**2)
+        model_power += float(weight @ centred[:, 0] ** 2)
+        product += float(weight @ (y_centred * centred[:, 0]))
         sizes.append(np.abs(rest_centred))
     scale = 1.4826 * float(np.median(np.concatenate(sizes)))
     return _Sums(
@@ -233,9 +232,9 @@ def _accumulate(
         projection,
         float(np.sqrt(power / weights)),
         scale,
-        offset + moved / weights,
-        float(np.sqrt(wide / weights)),
-        both / float(np.sqrt(tall * wide)) if tall * wide > 0 else 0.0,
+        offset + level_error / weights,
+        float(np.sqrt(model_power / weights)),
+        product / float(np.sqrt(low_power * model_power)) if low_power * model_power > 0 else 0.0,
     )
 
 

@@ -12,17 +12,17 @@ from acutance.curves.grid import Floats
 from acutance.optics.processing import spline_transfer
 from acutance.targets.pair.tile import TapAxis
 
-__all__ = ["LEAST_VARIANCE", "MOST_VARIANCE", "AxisBlur"]
+__all__ = ["MAX_VARIANCE_PX2", "MIN_VARIANCE_PX2", "AxisGaussian"]
 
-LEAST_VARIANCE = -0.06
+MIN_VARIANCE_PX2 = -0.06
 """A reference that is softer than the low sensor's optics leaves a ratio sharper than a detector:
 the variance of the Gaussian may then fall below zero."""
-MOST_VARIANCE = 6.0
+MAX_VARIANCE_PX2 = 6.0
 _NODES = 96
 
 
 @dataclass(frozen=True)
-class AxisBlur:
+class AxisGaussian:
     """Blur along one axis: ``exp(-2 pi^2 variance f^2) sinc(f) exp(-2 pi i f shift)``.
 
     Motion adds the twelfth part of its length's square to the variance, and so does all that
