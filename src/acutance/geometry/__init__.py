@@ -2,6 +2,6 @@
 
 from acutance.geometry.bar_group import Bars
 from acutance.geometry.line import Line, Orientation
-from acutance.geometry.star_geometry import FoundStar
+from acutance.geometry.star_geometry import SiemensStar
 
-__all__ = ["Bars", "FoundStar", "Line", "Orientation"]
+__all__ = ["Bars", "Line", "Orientation", "SiemensStar"]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.geometry.angles import angle_between_deg
 from acutance.geometry.line import Line
 
 __all__ = ["Bars"]
@@ -77,10 +78,18 @@ class Bars:
         return across, -x * math.sin(angle) + y * math.cos(angle)
 
     def spectrum(self, freq_cpp: Floats) -> Floats:
-        """Fourier transform of the profile (1 on the bars, 0 beside them), which is real."""
+        """Fourier transform of the profile (1 on the bars, 0 next to them), which is real."""
         turns = np.cos(2 * math.pi * np.outer(freq_cpp, self.places_px)).sum(axis=1)
         half = 0.5 * self.period_px
         return np.asarray(turns * half * np.sinc(freq_cpp * half))
+
+    def angle_to(self, normal_deg: float) -> float:
+        """Angle between the group's normal and another one, 0 to 90 degrees."""
+        return angle_between_deg(self.normal_deg, normal_deg)
+
+    def shifted(self, rows: float, cols: float) -> Bars:
+        """The group so many pixels further down and to the right."""
+        return replace(self, row=self.row + rows, col=self.col + cols)
 
     def to_dict(self) -> dict[str, float]:
         """Place, direction, period, number and length, for JSON."""

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 
-__all__ = ["Flags", "FoundStar"]
+__all__ = ["Flags", "SiemensStar"]
 
 Flags = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, eq=False)
-class FoundStar:
-    """A star as it was found.
+@dataclass(frozen=True)
+class SiemensStar:
+    """A star: spokes about a centre, in a full turn or a part of it.
 
     Attributes
     ----------
@@ -53,6 +53,10 @@ class FoundStar:
         half = 0.5 * math.radians(self.sweep_deg)
         off = angle_rad - math.radians(self.first_deg) - half
         return np.asarray(np.abs((off + math.pi) % (2 * math.pi) - math.pi) < half - margin_rad)
+
+    def freq_cpp(self, radius_px: float) -> float:
+        """Frequency of the spokes at a radius."""
+        return self.cycles / (2 * math.pi * radius_px)
 
     def radius_at(self, freq_cpp: float) -> float:
         """Radius at which the spokes have a frequency."""

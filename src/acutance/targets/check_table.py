@@ -216,12 +216,13 @@ _PERIODIC = {
         "bright), add a group of wide bars, or use a star with fewer cycles or a larger radius",
     ),
     "coarsest_cpp": Question(
-        "Which is the lowest frequency of the target?", "<=", 0.2,
-        "below it the MTF is continued to 1 at zero frequency, not measured", severity="note",
+        "Which is the frequency of the widest bars?", "<=", 0.2,
+        "below it the MTF follows from the outline of the groups", severity="note",
     ),
     "finest_cpp": Question(
-        "Which is the highest frequency of the target?", ">=", 0.4,
-        "beyond it the MTF is continued, not measured", severity="note",
+        "Which is the frequency of the finest bars?", ">=", 0.4,
+        "beyond it the MTF follows from the bars' edges, which aliasing mixes up",
+        severity="note",
     ),
     "bars": Question(
         "How many bars has the smallest group?", ">=", 3.0,
@@ -235,6 +236,14 @@ _PERIODIC = {
     "misfit": Question(
         "How many times the noise are the residuals of the worst group?", "<=", 1.5,
         "it may be damaged, or have other bars than it was taken for",
+    ),
+    "rim_cpp": Question(
+        "Which is the frequency of the widest spokes?", "<=", 0.15,
+        "below it the MTF is continued to 1 at zero frequency, not measured", severity="note",
+    ),
+    "centre_cpp": Question(
+        "Which is the frequency of the finest spokes?", ">=", 0.5,
+        "beyond it the MTF is continued, not measured", severity="note",
     ),
     "sweep_deg": Question(
         "Which angle of directions does the star hold?", ">=", 90.0,

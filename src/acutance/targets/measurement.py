@@ -107,11 +107,18 @@ class Measurement(HasResponse):
         """The curves by direction: "across", "along", or both."""
         if isinstance(self.transfer, Response):
             return {self.orientation: self.transfer}
+        return {name: self.response_at(angle) for name, angle in self.axes_deg.items()}
+
+    @property
+    def axes_deg(self) -> dict[Orientation, float]:
+        """Where across and along track point, from the column axis (0) to the row axis (90)."""
         across_deg = 0.0 if self.image.along_track == "y" else 90.0
-        return {
-            "across": self.response_at(across_deg),
-            "along": self.response_at(90.0 - across_deg),
-        }
+        return {"across": across_deg, "along": 90.0 - across_deg}
+
+    @property
+    def measured_directions(self) -> tuple[Orientation, ...]:
+        """The directions that the target shows; others follow from what all sensors have."""
+        return tuple(self.directions)
 
     @property
     def across(self) -> Response:
@@ -205,6 +212,7 @@ class Measurement(HasResponse):
             "kind": self.kind,
             "method": self.method,
             **({"orientation": self.orientation} if one_direction else {}),
+            "measured_directions": list(self.measured_directions),
             "image": self.image.to_dict(),
             "snr": self.snr if math.isfinite(self.snr) else None,
             **self.target_document(),
@@ -225,8 +233,8 @@ class Measurement(HasResponse):
     __hash__ = None  # type: ignore[assignment]
 
     def summary(self) -> str:
-        """Target and method, the main numbers by direction, and how many checks failed."""
-        named = (f"{name}: {one.summary()}" for name, one in self.directions.items())
+        """Target and method, the main numbers by measured direction, how many checks failed."""
+        named = (f"{name}: {self.directions[name].summary()}" for name in self.measured_directions)
         snr = f", snr {self.snr:.3g}" if math.isfinite(self.snr) else ""
         failed = count_failed(self.checks)
         return f"{self.kind} by {self.method}, {', '.join(named)}{snr}, {failed}"

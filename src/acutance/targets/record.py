@@ -269,6 +269,11 @@ class Record(ShortRepr):
         return {name: RecordedDirection(self.document[name]) for name in ("across", "along")}
 
     @property
+    def measured_directions(self) -> tuple[str, ...]:
+        """The directions that the target showed; in older documents all of them."""
+        return tuple(self.document.get("measured_directions", self.directions))
+
+    @property
     def across(self) -> RecordedDirection:
         """Numbers and curves across track."""
         return self._direction("across")
@@ -320,7 +325,7 @@ class Record(ShortRepr):
 
     def summary(self) -> str:
         """Target and method, the main numbers, and how many checks failed."""
-        named = (f"{name}: {one.summary()}" for name, one in self.directions.items())
+        named = (f"{name}: {self.directions[name].summary()}" for name in self.measured_directions)
         return f"{self.kind} by {self.method}, {', '.join(named)}, {count_failed(self.checks)}"
 
 

@@ -1,31 +1,39 @@
 """Periodic targets: groups of bars, and Siemens stars.
 
-In the order data take: `bars_find`, `star_find` (with `star_extent`, `star_rings`), `bars_ends` and
-`bars_seen`, `star_waves` (what a pixel sees), `fit_bars` and `fit_star` (one fit of all pixels of a
-two-dimensional OTF: `otf_modes`, `otf_model`; `stated_contrast` holds levels known beforehand),
-`bars` and `star` (the public functions), `bars_readings` (plain readings), `bars_checks`,
-`star_checks`.
+In the order data take: `bars_find`, `star_find` (with `star_extent`, `star_rings`), `bars_pixels`
+and `bars_ends`, `star_waves` (what a pixel sees), `fit_bars` and `fit_star` (one fit of all pixels
+of a two-dimensional OTF: `otf_modes`, `otf_regression`, `otf_model`; `stated_contrast` holds levels
+known beforehand), `bars_readings` (plain readings), `bars_checks`, `star_checks`,
+`bars_measurement`, `star_measurement`, `bars` and `star` (the public functions). The numbers that
+were tuned stand in `tuned`.
 """
 
-from acutance.targets.periodic.bars import (
-    BARS_METHODS,
+from acutance.targets.periodic.bars import BARS_METHODS, measure_bars
+from acutance.targets.periodic.bars_checks import BARS_CHECKS
+from acutance.targets.periodic.bars_measurement import (
+    BarsDetails,
     BarsGroup,
     BarsMeasurement,
-    measure_bars,
+    GroupProfile,
 )
-from acutance.targets.periodic.bars_options import BarsLimits, BarsOptions
-from acutance.targets.periodic.star import STAR_METHODS, Rings, StarMeasurement, measure_star
-from acutance.targets.periodic.star_options import StarLimits, StarOptions
+from acutance.targets.periodic.bars_options import BarsOptions
+from acutance.targets.periodic.star import STAR_METHODS, measure_star
+from acutance.targets.periodic.star_checks import STAR_CHECKS
+from acutance.targets.periodic.star_measurement import Rings, StarDetails, StarMeasurement
+from acutance.targets.periodic.star_options import StarOptions
 
 __all__ = [
+    "BARS_CHECKS",
     "BARS_METHODS",
+    "STAR_CHECKS",
     "STAR_METHODS",
+    "BarsDetails",
     "BarsGroup",
-    "BarsLimits",
     "BarsMeasurement",
     "BarsOptions",
+    "GroupProfile",
     "Rings",
-    "StarLimits",
+    "StarDetails",
     "StarMeasurement",
     "StarOptions",
     "measure_bars",

@@ -3,151 +3,36 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from acutance.curves import Estimate, Mtf, Otf2d, Response
+from acutance.curves import Estimate, Mtf, Otf2d
 from acutance.curves.grid import Floats
-from acutance.curves.short_repr import ShortRepr
 from acutance.errors import NoBarsError, OptionError
+from acutance.geometry.angles import turn_deg
 from acutance.geometry.bar_group import Bars
-from acutance.numerics.noise import robust_scale
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
-from acutance.targets.measurement import ImageInfo
-from acutance.targets.measurement2d import Measurement2d
 from acutance.targets.options import chosen_options
 from acutance.targets.periodic.bars_checks import bars_checks
 from acutance.targets.periodic.bars_find import find_bars
+from acutance.targets.periodic.bars_measurement import (
+    BarsDetails,
+    BarsGroup,
+    BarsMeasurement,
+    GroupProfile,
+)
 from acutance.targets.periodic.bars_options import BarsOptions
+from acutance.targets.periodic.bars_pixels import GroupPixels
 from acutance.targets.periodic.bars_readings import GroupReading, central, coltman_mtf, read_group
-from acutance.targets.periodic.fit_bars import BarsSolution, GroupFit, solve_bars
+from acutance.targets.periodic.fit_bars import BarsSolution, solve_bars
 from acutance.targets.region import RegionPixels, RoiLike, read_region
-from acutance.targets.slices import PlaneSlices
 
-__all__ = ["BARS_METHODS", "BarsGroup", "BarsMeasurement", "measure_bars"]
+__all__ = ["BARS_METHODS", "measure_bars"]
 
 BARS_METHODS = ("joint",)
 _ONE_DIRECTION_DEG = 20.0
-
-
-@dataclass(frozen=True, eq=False)
-class BarsGroup(ShortRepr):
-    """What one group of bars says.
-
-    Attributes
-    ----------
-    bars : Bars
-        Where it is, in pixels of the whole image.
-    period_px : Estimate
-        Its period.
-    mtf : Estimate
-        MTF at its frequency along its normal, from the joint fit.
-    reading : GroupReading
-        The plain reading: a sinusoid, and the contrast of the square bars.
-    coltman : float
-        MTF from the contrasts of all groups of this direction by Coltman's series.
-    across_px, value, fitted : (n,) arrays
-        The pixels used, as distance along the normal, level and fitted level: 0 is the ground,
-        1 a wide bar.
-    """
-
-    bars: Bars
-    period_px: Estimate
-    mtf: Estimate
-    reading: GroupReading
-    coltman: float
-    across_px: Floats
-    value: Floats
-    fitted: Floats
-
-    @property
-    def freq_cpp(self) -> float:
-        """Frequency of the bars in cycles per pixel."""
-        return self.bars.freq_cpp
-
-    def to_dict(self) -> dict[str, Any]:
-        """Place, MTF and plain readings, for JSON."""
-        reading = self.reading
-        return {
-            **self.bars.to_dict(),
-            "period_px": self.period_px.to_dict(),
-            "freq_cpp": self.freq_cpp,
-            "mtf": self.mtf.to_dict(),
-            "modulation": Estimate(reading.modulation, reading.modulation_std).to_dict(),
-            "ctf": Estimate(reading.ctf, reading.ctf_std).to_dict(),
-            "coltman_mtf": self.coltman,
-        }
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class BarsMeasurement(Measurement2d):
-    """A measurement of groups of bars.
-
-    Parameters
-    ----------
-    groups : tuple of BarsGroup
-        In the order they were given or found.
-    directions_deg : tuple of float
-        Directions across the bars, from the column axis towards the row axis: what is measured;
-        other directions are told by what all sensors have in common.
-    contrast : Estimate
-        Bars less ground, before the sensor.
-    pixels, residual : (rows, cols) arrays
-        The cut, and what the fit leaves of the pixels used (NaN elsewhere), image units.
-    """
-
-    groups: tuple[BarsGroup, ...]
-    directions_deg: tuple[float, ...]
-    contrast: Estimate
-    pixels: Floats
-    residual: Floats
-
-    @cached_property
-    def response(self) -> Response:
-        """The curves along the normal of the first direction."""
-        return self.otf.response(self.directions_deg[0])
-
-    def is_first_direction(self, group: BarsGroup) -> bool:
-        """Whether a group's normal is near that of the first direction."""
-        return _turn_deg(group.bars.normal_deg, self.directions_deg[0]) < _ONE_DIRECTION_DEG
-
-    @property
-    def slices(self) -> PlaneSlices:
-        """Slices of the OTF in the directions across the bars, the only ones measured."""
-        return PlaneSlices.of_plane(self.otf, self.directions_deg)
-
-    @property
-    def noise(self) -> float:
-        """Standard deviation of what the fit leaves, outliers aside, image units."""
-        return robust_scale(self.residual[np.isfinite(self.residual)])
-
-    @property
-    def mtf(self) -> Mtf:
-        """The MTF along the normal of the first direction."""
-        return self.response.mtf
-
-    @property
-    def mtf_nyquist(self) -> Estimate:
-        """MTF at 0.5 cycles per pixel along the normal of the first direction."""
-        return self.response.mtf_nyquist
-
-    def evidence(self) -> dict[str, Any]:
-        """Groups and directions, for JSON."""
-        return {
-            "directions_deg": list(self.directions_deg),
-            "contrast": self.contrast.to_dict(),
-            "normal": {
-                "angle_deg": self.directions_deg[0],
-                **{name: one.to_dict() for name, one in self.response.metrics().items()},
-                "mtf": self.mtf.to_dict(),
-            },
-            "groups": [group.to_dict() for group in self.groups],
-        }
 
 
 @one_thread
@@ -165,7 +50,7 @@ def measure_bars(
     ----------
     image : Image or (rows, cols) array_like
     roi : Region, Box, (row, col, height, width) or None
-        A region that holds the groups and some ground around each; None is the whole image.
+        A region that holds the groups and some background around each; None is the whole image.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.
     method : {"joint"}, optional
@@ -187,142 +72,127 @@ def measure_bars(
     chosen = chosen_options(options, BarsOptions)
     if method not in BARS_METHODS:
         raise OptionError(f"there is no bars method {method!r}: {', '.join(BARS_METHODS)} is known")
-    pixels = read_region(image, roi, gsd_m)
-    if chosen.groups:
-        groups = tuple(_moved(one, -pixels.box.row, -pixels.box.col) for one in chosen.groups)
-        contrast = _contrast(pixels.pixels, groups)
-    else:
-        found = find_bars(pixels.pixels, chosen.count)
-        groups, contrast = found.groups, found.contrast
+    region = read_region(image, roi, gsd_m)
+    groups, contrast = _groups_of(region, chosen)
     solved = solve_bars(
-        pixels.pixels, groups, contrast=contrast, levels=chosen.levels, robust=chosen.robust
+        region.pixels, groups, contrast=contrast, levels=chosen.levels, robust=chosen.robust
     )
-    return _measurement(pixels, solved, method, chosen)
+    directions = common_normals(tuple(one.bars for one in solved.groups))
+    return BarsMeasurement(
+        kind="bars",
+        method=method,
+        transfer=Otf2d(solved.otf, region.info.pixel_gsd_m),
+        snr=solved.snr,
+        checks=bars_checks(solved, directions, region.saturation_level, chosen.limits),
+        image=region.info,
+        options=chosen.to_dict(),
+        details=_details(region, solved),
+        groups=_measured_groups(region, solved),
+        directions_deg=directions,
+        contrast=Estimate(solved.otf.level, solved.otf.level_std),
+    )
 
 
-def _moved(bars: Bars, rows: float, cols: float) -> Bars:
-    return replace(bars, row=bars.row + rows, col=bars.col + cols)
+def _groups_of(region: RegionPixels, options: BarsOptions) -> tuple[tuple[Bars, ...], float]:
+    """The groups of a region in its own pixels, stated or found, and their contrast."""
+    if not options.groups:
+        return find_bars(region.pixels, options.count)
+    box = region.box
+    groups = tuple(one.shifted(-box.row, -box.col) for one in options.groups)
+    return groups, _contrast(region.pixels, groups)
 
 
 def _contrast(image: Floats, groups: tuple[Bars, ...]) -> float:
-    """Bars less ground, from the mean of every stated group and of what is beside it."""
+    """Bars less background, from the mean of every stated group and of what is next to it."""
     rows, cols = np.nonzero(np.isfinite(image))
     value = image[rows, cols]
     found = []
     for number, bars in enumerate(groups, 1):
         across, along = bars.across_and_along(rows.astype(float), cols.astype(float))
-        beside = np.abs(across) - 0.5 * bars.width_px
-        central_rows = np.abs(along) < 0.4 * bars.length_px
-        inside, outside = central_rows & (beside < 0), central_rows & (beside > 2) & (beside < 8)
+        outside_px = np.abs(across) - 0.5 * bars.width_px
+        middle = np.abs(along) < 0.4 * bars.length_px
+        inside, outside = middle & (outside_px < 0), middle & (outside_px > 2) & (outside_px < 8)
         if not (inside.any() and outside.any()):
             raise NoBarsError(
-                f"group {number} at row {bars.row:.1f}, column {bars.col:.1f} and the ground "
-                "beside it lie outside the region: check its place"
+                f"group {number} at row {bars.row:.1f}, column {bars.col:.1f} and the background "
+                "next to it lie outside the region: check its place"
             )
         # Half of a group is bars, but for half a gap at its ends.
         share = 0.5 * bars.count / (bars.count - 0.5)
         found.append(float(np.mean(value[inside]) - np.mean(value[outside])) / share)
     contrast = float(np.median(found))
     if contrast == 0:
-        raise NoBarsError("the groups are as bright as the ground beside them: check their places")
+        raise NoBarsError(
+            "the groups are as bright as the background next to them: check their places"
+        )
     return contrast
 
 
-def _measurement(
-    pixels: RegionPixels, solved: BarsSolution, method: str, options: BarsOptions
-) -> BarsMeasurement:
-    """Put together what a measurement holds; the groups move into the whole image's pixels."""
-    model = solved.model
-    gsd = pixels.gsd
-    otf = Otf2d(model, None if gsd is None else (gsd.row_m, gsd.col_m))
-    directions = _directions(solved.groups)
-    residual = np.full(pixels.pixels.shape, np.nan)
-    for one in solved.groups:
-        residual[one.rows, one.cols] = one.residual
-    info = ImageInfo(
-        pixels.image.path,
-        pixels.image.band,
-        None if gsd is None else gsd.along_normal(directions[0]),
-        pixels.box.as_tuple(),
-        pixels.image.crs,
-    )
-    return BarsMeasurement(
-        kind="bars",
-        method=method,
-        otf=otf,
-        snr=abs(model.level) / solved.noise if solved.noise > 0 else math.inf,
-        checks=bars_checks(pixels, solved, directions, options.limits),
-        image=info,
-        options=options.to_dict(),
-        groups=_groups(pixels, solved, otf),
-        directions_deg=directions,
-        contrast=Estimate(model.level, model.level_std),
-        pixels=pixels.pixels,
-        residual=residual,
-    )
-
-
-def _directions(groups: tuple[GroupFit, ...]) -> tuple[float, ...]:
-    """Mean normals of groups with nearly the same one; that of most groups first."""
+def common_normals(groups: tuple[Bars, ...]) -> tuple[float, ...]:
+    """Mean normals of groups with nearly the same one, degrees; that of most groups first."""
     kinds: list[list[float]] = []
-    for one in groups:
-        angle = one.bars.normal_deg
+    for bars in groups:
         for kind in kinds:
-            if _turn_deg(kind[0], angle) < _ONE_DIRECTION_DEG:
-                kind.append(kind[0] + (angle - kind[0] + 90) % 180 - 90)
+            if bars.angle_to(kind[0]) < _ONE_DIRECTION_DEG:
+                kind.append(kind[0] + turn_deg(kind[0], bars.normal_deg))
                 break
         else:
-            kinds.append([angle])
+            kinds.append([bars.normal_deg])
     return tuple(sum(kind) / len(kind) for kind in sorted(kinds, key=len, reverse=True))
 
 
-def _turn_deg(one: float, other: float) -> float:
-    """Angle between two normals, which have no sign, 0 to 90."""
-    return abs((one - other + 90) % 180 - 90)
+def _details(region: RegionPixels, solved: BarsSolution) -> BarsDetails:
+    """Pixels, residuals and profiles, as a fit left them."""
+    left = np.full(region.pixels.shape, np.nan)
+    profiles = []
+    for one, residual, background in zip(
+        solved.groups, solved.residuals, solved.backgrounds, strict=True
+    ):
+        left[one.rows, one.cols] = residual
+        level = (one.value - background) / solved.otf.level
+        profiles.append(GroupProfile(one.across, level, level - residual / solved.otf.level))
+    return BarsDetails(region.pixels, left, tuple(profiles))
 
 
-def _groups(pixels: RegionPixels, solved: BarsSolution, otf: Otf2d) -> tuple[BarsGroup, ...]:
-    contrast = solved.model.level
-    readings = []
-    for one in solved.groups:
-        inside = central(one.bars, one.across_px)
-        readings.append(
-            read_group(one.bars, one.across_px[inside], one.value[inside], contrast, solved.noise)
-        )
-    by_series = _coltman(solved.groups, readings)
+def _measured_groups(region: RegionPixels, solved: BarsSolution) -> tuple[BarsGroup, ...]:
+    """All groups with their MTF and plain readings, in the whole image's pixels."""
+    readings = [_reading(one, solved) for one in solved.groups]
+    bars = [one.bars for one in solved.groups]
     return tuple(
         BarsGroup(
-            bars=_moved(one.bars, pixels.box.row, pixels.box.col),
-            period_px=Estimate(one.bars.period_px, one.period_std_px),
-            mtf=_mtf_at(otf, one.bars),
+            bars=one.shifted(region.box.row, region.box.col),
+            period_px=Estimate(one.period_px, std),
+            mtf=_mtf_at(solved, one),
             reading=reading,
-            coltman=series,
-            across_px=one.across_px,
-            value=(one.value - one.dark) / contrast,
-            fitted=(one.value - one.residual - one.dark) / contrast,
+            coltman=_coltman(one, bars, readings),
         )
-        for one, reading, series in zip(solved.groups, readings, by_series, strict=True)
+        for one, std, reading in zip(bars, solved.period_std_px, readings, strict=True)
     )
 
 
-def _mtf_at(otf: Otf2d, bars: Bars) -> Estimate:
+def _reading(one: GroupPixels, solved: BarsSolution) -> GroupReading:
+    inside = central(one.bars, one.across)
+    return read_group(
+        one.bars, one.across[inside], one.value[inside], solved.otf.level, solved.noise
+    )
+
+
+def _mtf_at(solved: BarsSolution, bars: Bars) -> Estimate:
     """MTF at the frequency of a group along its normal."""
     angle = math.radians(bars.normal_deg)
     freq: Floats = bars.freq_cpp * np.array([0.0, 0.5, 1.0, 1.5])
     u, v = freq * math.cos(angle), freq * math.sin(angle)
-    return Mtf(freq, otf.model.otf(u, v), otf.model.factor(u, v))(bars.freq_cpp)
+    return Mtf(freq, solved.otf.otf(u, v), solved.otf.factor(u, v))(bars.freq_cpp)
 
 
-def _coltman(groups: tuple[GroupFit, ...], readings: list[GroupReading]) -> list[float]:
-    """MTF of every group by Coltman's series over the groups of its direction."""
-    found = []
-    for one in groups:
-        mates = [
-            (other.bars.freq_cpp, reading.ctf)
+def _coltman(one: Bars, groups: list[Bars], readings: list[GroupReading]) -> float:
+    """MTF of a group by Coltman's series over the groups of its direction."""
+    table = np.array(
+        sorted(
+            (other.freq_cpp, reading.ctf)
             for other, reading in zip(groups, readings, strict=True)
-            if _turn_deg(other.bars.normal_deg, one.bars.normal_deg) < _ONE_DIRECTION_DEG
-        ]
-        table = np.array(sorted(mates))
-        series = coltman_mtf(table[:, 0], table[:, 1])
-        found.append(float(series[np.searchsorted(table[:, 0], one.bars.freq_cpp)]))
-    return found
+            if other.angle_to(one.normal_deg) < _ONE_DIRECTION_DEG
+        )
+    )
+    series = coltman_mtf(table[:, 0], table[:, 1])
+    return float(series[np.searchsorted(table[:, 0], one.freq_cpp)])

@@ -20,7 +20,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
 
-__all__ = ["FoundBars", "find_bars"]
+__all__ = ["find_bars"]
 
 _CLOSE_PX = (2.0, 3.5, 6.0)
 _STANDS_OUT = 0.2
@@ -36,23 +36,7 @@ _ABOUT_AS_WELL = 0.03
 _FULL = 0.8
 
 
-@dataclass(frozen=True, eq=False)
-class FoundBars:
-    """Groups of bars as they were found.
-
-    Attributes
-    ----------
-    groups : tuple of Bars
-        The widest period first.
-    contrast : float
-        Bars less ground, before the sensor.
-    """
-
-    groups: tuple[Bars, ...]
-    contrast: float
-
-
-def find_bars(image: Floats, count: int | None = None) -> FoundBars:
+def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...], float]:
     """Find the groups of bars of an image.
 
     Parameters
@@ -61,6 +45,13 @@ def find_bars(image: Floats, count: int | None = None) -> FoundBars:
         NaN where there is nothing to use.
     count : int, optional
         Number of bars in every group; counted unless given.
+
+    Returns
+    -------
+    groups : tuple of Bars
+        The widest period first.
+    contrast : float
+        Bars less background, before the sensor.
 
     Raises
     ------
@@ -89,7 +80,7 @@ def find_bars(image: Floats, count: int | None = None) -> FoundBars:
             break
     if best:
         counted = [_recounted(bright, one, _usual_count(best)) for one in best]
-        return FoundBars(_of_one_kind(counted), sign * height)
+        return _of_one_kind(counted), sign * height
     raise NoBarsError(
         "no whole group of parallel bars stands out of the ground: choose a region that holds "
         "the groups and some ground on all sides of them, or state where they are (groups)"

@@ -1,4 +1,4 @@
-"""What a caller may change of a measurement of bars, and the limits its checks hold it to."""
+"""What a caller may change of a measurement of bars."""
 
 from __future__ import annotations
 
@@ -7,55 +7,12 @@ from typing import Any
 
 from acutance.errors import OptionError
 from acutance.geometry.bar_group import Bars
+from acutance.targets.check import Limits, require_limits
 from acutance.targets.options import require_types
-from acutance.targets.periodic.clipped_and_outlying import known_levels
-from acutance.targets.periodic.stated_contrast import Levels
+from acutance.targets.periodic.bars_checks import BARS_CHECKS
+from acutance.targets.periodic.stated_contrast import Levels, stated_levels
 
-__all__ = ["BarsLimits", "BarsOptions"]
-
-
-@dataclass(frozen=True)
-class BarsLimits:
-    """Limits of the target checks of bars.
-
-    Parameters
-    ----------
-    contrast_snr : float
-        Least ratio of the bars' contrast to noise.
-    level : float
-        Largest relative standard deviation of the bars' contrast before the sensor: it scales
-        the whole MTF.
-    bars : float
-        Least number of bars in a group.
-    directions : float
-        Least number of directions across the bars (1, or 2 to ask for both).
-    coarsest_cpp : float
-        Largest frequency of the widest group.
-    finest_cpp : float
-        Least frequency of the finest group.
-    misfit : float
-        Largest residual of a group, rms, relative to the noise of all.
-    saturation : float
-        Largest share of pixels at the end of the scale.
-    correlated_noise : float
-        Largest correlation of the residuals between neighbouring pixels.
-    outliers : float
-        Largest share of outlying pixels.
-    """
-
-    contrast_snr: float = 50.0
-    level: float = 0.01
-    bars: float = 3.0
-    directions: float = 1.0
-    coarsest_cpp: float = 0.2
-    finest_cpp: float = 0.4
-    misfit: float = 1.5
-    saturation: float = 0.001
-    correlated_noise: float = 0.15
-    outliers: float = 0.02
-
-    def __post_init__(self) -> None:
-        require_types(self)
+__all__ = ["BarsOptions"]
 
 
 @dataclass(frozen=True)
@@ -70,14 +27,14 @@ class BarsOptions:
     count : int, optional
         Bars in a group, for the search; counted unless given.
     dark, bright : float, optional
-        Levels of ground and bars before the sensor, from wide patches of the same materials, in
+        Levels of background and bars before the sensor, from wide patches of the same materials, in
         image units. Without them the contrast is fitted.
     level_std : float
         Standard deviation of ``bright - dark``.
     robust : bool
         Bound the weight of outlying pixels.
-    limits : BarsLimits
-        Limits of the checks.
+    limits : mapping of str to float
+        Limits of the checks, where they differ from those of `acutance.targets.QUESTIONS`.
     """
 
     groups: tuple[Bars, ...] = ()
@@ -86,11 +43,12 @@ class BarsOptions:
     bright: float | None = None
     level_std: float = 0.0
     robust: bool = True
-    limits: BarsLimits = field(default_factory=BarsLimits)
+    limits: Limits = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         require_types(self)
-        known_levels(self.dark, self.bright, self.level_std)
+        require_limits(self.limits, BARS_CHECKS, "BarsOptions")
+        stated_levels(self.dark, self.bright, self.level_std)
         if self.count is not None and not 2 <= self.count <= 40:
             raise OptionError(
                 f"{self.count} bars in a group: 2 to 40 can be measured; a single bar is a pulse "
@@ -112,7 +70,7 @@ class BarsOptions:
     @property
     def levels(self) -> Levels | None:
         """Both levels, if they are known."""
-        return known_levels(self.dark, self.bright, self.level_std)
+        return stated_levels(self.dark, self.bright, self.level_std)
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""
@@ -123,5 +81,5 @@ class BarsOptions:
             "bright": self.bright,
             "level_std": self.level_std,
             "robust": self.robust,
-            "limits": dict(vars(self.limits)),
+            "limits": dict(self.limits),
         }

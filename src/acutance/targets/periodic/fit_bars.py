@@ -2,10 +2,10 @@
 
 Along its normal a group is a finite profile with a known spectrum P(f), so a pixel sees
 
-    ground + contrast * integral P(f) H(f n) exp(2 pi i f s) df
+    background + contrast * integral P(f) H(f n) exp(2 pi i f s) df
 
-which is linear in H: the modes of `fit.star_modes`, in the directions of the bars' normals. The
-widest bars and the group as a whole tell the contrast, the finest ones the highest frequencies;
+which is linear in H: the modes of `otf_modes`, in the directions of the bars' normals. The widest
+bars and the group as a whole determine the contrast, the finest ones the highest frequencies;
 nothing is taken for an endless wave. Place, period and direction of every group are fitted too.
 """
 
@@ -13,98 +13,101 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
-from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
-from acutance.numerics.normal_equations import Normal
+from acutance.numerics.noise import Correlation, correlation
 from acutance.targets.periodic.bars_ends import OtfTable, end_effect, light_of_neighbours
-from acutance.targets.periodic.bars_seen import SeenGroup, group_columns
-from acutance.targets.periodic.otf_model import PlaneModel
-from acutance.targets.periodic.otf_modes import (
-    LOG_AMPLITUDE,
-    LOG_AMPLITUDE_STD,
-    MEAN_MODES,
-    UNSEEN,
-    PlaneBlur,
-    ProcessModes,
+from acutance.targets.periodic.bars_pixels import GroupPixels, group_columns
+from acutance.targets.periodic.otf_model import FittedOtf, level_row
+from acutance.targets.periodic.otf_modes import MEAN_MODES, GaussianPixel, ProcessModes
+from acutance.targets.periodic.otf_regression import (
+    FREE_STD,
+    mean_variance,
+    otf_prior,
+    reweighted,
+    weighted_normal,
 )
 from acutance.targets.periodic.stated_contrast import Levels, with_level
+from acutance.targets.periodic.tuned import (
+    APERTURE_STD,
+    BARS_NOISE_FLOOR,
+    PLACE_STD_PERIODS,
+    ROUNDNESS_STD,
+    SCATTERED_STD,
+)
 
-__all__ = ["BarsSolution", "GroupFit", "solve_bars"]
+__all__ = ["BarsSolution", "solve_bars"]
 
 _SIGMA_PX: Final = 0.5
-_NOISE_FLOOR: Final = 1e-3
-_MAX_PASSES: Final = 16
-_PLAIN_PASSES: Final = 6
-_APERTURE_STD: Final = 0.18
+_MAX_PLACE_PASSES: Final = 7
+_MAX_PASSES: Final = 12
+_PLACED_PX: Final = 0.05
 _SETTLED_PX: Final = 0.005
-_PLAIN_PX: Final = 0.05
-_SETTLED_END: Final = 2e-4
-_KNOWN: Final = 0.3
-"""How well the caller knows where a group is, in periods."""
-_ROUND: Final = 0.4
-_AROUND: Final = 1.0
+_SETTLED_SCATTERED: Final = 2e-4
+_SETTLED_WEIGHT: Final = 0.05
+_FIXED: Final = 1e-6
+"""Prior deviation of what is not fitted."""
+_BACKGROUND_STD: Final = 1e3
 _OWN: Final = 5
 """Columns every group has for itself: level, slope, place, period, direction."""
 
 
 @dataclass(frozen=True, eq=False)
-class GroupFit:
-    """One group of a solved target.
-
-    Attributes
-    ----------
-    bars : Bars
-        Where it is, as it settled.
-    place_std_px, period_std_px : float
-        Standard deviations of its place along the normal, and of its period.
-    rows, cols : (n,) int arrays
-        The pixels used.
-    across_px, value, residual : (n,) arrays
-        Distance along the normal, value, and what the fit leaves of it.
-    dark : float
-        Level of the ground under the group.
-    """
-
-    bars: Bars
-    place_std_px: float
-    period_std_px: float
-    rows: NDArray[np.intp]
-    cols: NDArray[np.intp]
-    across_px: Floats
-    value: Floats
-    residual: Floats
-    dark: float
-
-
-@dataclass(frozen=True, eq=False)
 class BarsSolution:
-    """All groups, solved; the model's level is their common contrast.
+    """All groups, solved; the OTF's level is their common contrast.
 
     Attributes
     ----------
-    model : PlaneModel
-    groups : tuple of GroupFit
+    otf : FittedOtf
+    groups : tuple of GroupPixels
+        The pixels of every group where it settled.
+    residuals : tuple of (n,) arrays
+        What the fit leaves of them, image units.
+    backgrounds : tuple of float
+        Level under every group.
+    period_std_px : tuple of float
+        Standard deviations of their periods.
     noise : float
         Standard deviation of the noise, image units.
-    outlier : (n,) array
-        Weight of every pixel of all groups, in their order.
     correlation : Correlation
         Of the residuals of neighbouring pixels.
     """
 
-    model: PlaneModel
-    groups: tuple[GroupFit, ...]
+    otf: FittedOtf
+    groups: tuple[GroupPixels, ...]
+    residuals: tuple[Floats, ...]
+    backgrounds: tuple[float, ...]
+    period_std_px: tuple[float, ...]
     noise: float
-    outlier: Floats
     correlation: Correlation
+
+    @property
+    def snr(self) -> float:
+        """Contrast over noise."""
+        return abs(self.otf.level) / self.noise if self.noise > 0 else math.inf
+
+
+class _Regression(NamedTuple):
+    """One regression of all groups where they are taken to be."""
+
+    posterior: Posterior
+    otf: FittedOtf
+    residual: Floats
+
+    @property
+    def noise(self) -> float:
+        return math.sqrt(self.posterior.variance)
+
+    def own(self, number: int) -> tuple[Floats, Floats]:
+        """A group's own coefficients and their standard deviations, (5,) each."""
+        own = slice(_OWN * number, _OWN * (number + 1))
+        return self.posterior.beta[own], np.linalg.norm(self.posterior.factor[own], axis=1)
 
 
 def solve_bars(
@@ -115,7 +118,7 @@ def solve_bars(
     levels: Levels | None = None,
     robust: bool = True,
 ) -> BarsSolution:
-    """Solve for transfer function, contrast, ground and the place of every group.
+    """Solve for transfer function, contrast, background and the place of every group.
 
     Parameters
     ----------
@@ -124,229 +127,242 @@ def solve_bars(
     groups : tuple of Bars
         Where the groups are, to a quarter of their period.
     contrast : float
-        First guess of bright less dark; its sign tells which the bars are.
+        First guess of bright less dark; negative for dark bars.
     levels : Levels, optional
-        Levels of ground and bars, if something else in the image shows them.
+        Levels of background and bars, if something else in the image shows them.
     robust : bool, optional
         Bound the weight of outliers.
 
     Raises
     ------
     NoBarsError
-        If a group has too few pixels, or does not settle near where it was said to be.
+        If a group has too few pixels, or does not settle near its stated place.
     """
-    blur = PlaneBlur(_SIGMA_PX**2, 0.0, _SIGMA_PX**2)
     if levels is not None:
         contrast = math.copysign(levels.bright - levels.dark, contrast)
-    said, outlier = groups, np.ones(0)
-    ends: list[Floats] = []
-    whiteness = Correlation(1.0, 0.0, 0.0)
-    earlier: Posterior | None = None
-    # First a plain blur, until every group is in its place, then the transfer function itself.
-    plain = True
-    for number in range(_MAX_PASSES):
-        seen = [SeenGroup.of(image, bars, place) for place, bars in enumerate(groups, 1)]
-        count = sum(one.value.size for one in seen)
-        if outlier.size != count:
-            outlier, earlier = np.ones(count), None
-        if [one.size for one in ends] != [one.value.size for one in seen]:
-            ends = [np.zeros(one.value.size) for one in seen]
-        solved = _pass(
-            seen, said, blur, contrast, outlier, whiteness.inflation, earlier, ends,
-            None if plain else levels, plain=plain,
-        )  # fmt: skip
-        again = _reweighted(solved.residual / solved.noise) if robust and not plain else outlier
-        wider, changed = _moved_blur(blur, solved.model, seen) if plain else (blur, False)
-        moved = tuple(one.moved(step) for one, step in zip(seen, solved.steps, strict=True))
-        longest = max(
-            max(abs(step[0]), abs(step[1]) * one.bars.count, abs(step[2]) * one.bars.length_px)
-            for one, step in zip(seen, solved.steps, strict=True)
-        )
-        settled = longest < (_PLAIN_PX if plain else _SETTLED_PX) and not changed
-        if not plain:
-            whiteness = _whiteness(solved, seen)
-            found = _surroundings(solved.model, seen)
-            change = max(float(np.max(np.abs(a - b))) for a, b in zip(found, ends, strict=True))
-            settled = (
-                settled and change < _SETTLED_END and float(np.max(np.abs(again - outlier))) < 0.05
-            )
-            if settled:
-                break
-            ends = found
-        earlier = None if changed or plain else solved.posterior
-        plain = plain and not settled and number < _PLAIN_PASSES
-        groups, outlier, blur = moved, again, wider
-        contrast = math.copysign(max(abs(solved.model.level), 1e-3 * abs(contrast)), contrast)
-    _require_near(said, groups)
-    return BarsSolution(solved.model, _fits(seen, solved), solved.noise, outlier, whiteness)
+    mean, placed, contrast = _place_groups(image, groups, contrast)
+    solved = _fit_otf(image, groups, placed, mean, contrast, levels, robust=robust)
+    _require_near(groups, tuple(one.bars for one in solved.groups))
+    return solved
 
 
-def _whiteness(solved: _Pass, seen: list[SeenGroup]) -> Correlation:
-    rows, cols = (np.concatenate([getattr(one, name) for one in seen]) for name in ("rows", "cols"))
-    return correlation(np.clip(solved.residual / solved.noise, -4, 4), rows, cols, (0.8, 0.6))
+def _place_groups(
+    image: Floats, stated: tuple[Bars, ...], contrast: float
+) -> tuple[GaussianPixel, tuple[Bars, ...], float]:
+    """A Gaussian through a pixel, every group in its place, and the contrast."""
+    mean, groups = GaussianPixel(_SIGMA_PX**2, 0.0, _SIGMA_PX**2), stated
+    for _ in range(_MAX_PLACE_PASSES):
+        pixels = _pixels_of(image, groups)
+        nothing = [np.zeros(one.value.size) for one in pixels]
+        weight = np.ones(sum(one.value.size for one in pixels))
+        fitted = _regression(pixels, stated, mean, None, contrast, weight, nothing)
+        wider = _width_of_bars(mean, fitted.otf, pixels)
+        settled = wider == mean and _longest_update(fitted, pixels) < _PLACED_PX
+        groups = tuple(one.moved(fitted.own(k)[0][2:]) for k, one in enumerate(pixels))
+        mean, contrast = wider, _same_sign(fitted.otf.level, contrast)
+        if settled:
+            break
+    return mean, groups, contrast
 
 
-def _surroundings(model: PlaneModel, seen: list[SeenGroup]) -> list[Floats]:
-    """What the bars' ends take from every group's pixels, and other groups add, for contrast 1."""
-    table = OtfTable.of(model)
-    beside = light_of_neighbours(
-        table, [one.bars for one in seen], [(one.rows, one.cols) for one in seen]
-    )
-    return [
-        end_effect(table, one.bars, one.across, one.along) + other
-        for one, other in zip(seen, beside, strict=True)
-    ]
-
-
-@dataclass(frozen=True, eq=False)
-class _Pass:
-    posterior: Posterior
-    model: PlaneModel
-    residual: Floats
-    noise: float
-    steps: list[Floats]
-    steps_std: list[Floats]
-    dark: list[float]
-
-
-def _pass(
-    seen: list[SeenGroup],
-    said: tuple[Bars, ...],
-    blur: PlaneBlur,
+def _fit_otf(
+    image: Floats,
+    stated: tuple[Bars, ...],
+    groups: tuple[Bars, ...],
+    mean: GaussianPixel,
     contrast: float,
-    outlier: Floats,
-    inflation: float,
-    earlier: Posterior | None,
-    ends: list[Floats],
     levels: Levels | None,
     *,
-    plain: bool,
-) -> _Pass:
-    """One regression with all groups where they are; a `plain` one knows no processes."""
-    states = None if plain else ProcessModes(blur.width_px)
-    first = _OWN * len(seen) + 1
-    m = first + MEAN_MODES + (0 if states is None else states.blocks().size)
-    around = contrast * np.concatenate(ends)
-    value = np.concatenate([one.value for one in seen]) - around
-    design = np.zeros((value.size, m))
-    design[:, first - 1] = around
-    start = 0
-    for number, one in enumerate(seen):
-        here = slice(start, start + one.value.size)
-        start += one.value.size
-        own = slice(_OWN * number, _OWN * (number + 1))
-        design[here, first:], design[here, own] = group_columns(one, blur, states, contrast)
-    weighted = design * outlier[:, None]
-    gram, projection = weighted.T @ design, weighted.T @ value
-    data, total = float((outlier * value) @ value), float(np.sum(outlier))
-    variance = _first_variance(gram, projection, data, total, first + 4)
-    normal = Normal(gram, projection, data, total)
+    robust: bool,
+) -> BarsSolution:
+    """The transfer function itself, with what bars' ends and neighbours do to the pixels."""
+    states = ProcessModes(mean.width_px)
+    weight: Floats = np.ones(0)
+    scattered: list[Floats] = []
+    noise_found = Correlation(1.0, 0.0, 0.0)
+    earlier: Posterior | None = None
+    for _ in range(_MAX_PASSES):
+        pixels = _pixels_of(image, groups)
+        sizes = [one.value.size for one in pixels]
+        if weight.size != sum(sizes):
+            weight, earlier = np.ones(sum(sizes)), None
+        if [one.size for one in scattered] != sizes:
+            scattered = [np.zeros(size) for size in sizes]
+        fitted = _regression(
+            pixels, stated, mean, states, contrast, weight, scattered,
+            levels, noise_found.inflation, earlier,
+        )  # fmt: skip
+        standard = fitted.residual / fitted.noise
+        again = reweighted(standard) if robust else weight
+        noise_found = _correlation(standard, pixels)
+        found = _scattered(fitted.otf, pixels)
+        change = max(float(np.max(np.abs(a - b))) for a, b in zip(found, scattered, strict=True))
+        if (
+            _longest_update(fitted, pixels) < _SETTLED_PX
+            and change < _SETTLED_SCATTERED
+            and float(np.max(np.abs(again - weight))) < _SETTLED_WEIGHT
+        ):
+            break
+        groups = tuple(one.moved(fitted.own(k)[0][2:]) for k, one in enumerate(pixels))
+        weight, scattered, earlier = again, found, fitted.posterior
+        contrast = _same_sign(fitted.otf.level, contrast)
+    own = [fitted.own(number) for number in range(len(pixels))]
+    return BarsSolution(
+        otf=fitted.otf,
+        groups=pixels,
+        residuals=tuple(np.split(fitted.residual, np.cumsum(sizes)[:-1])),
+        backgrounds=tuple(float(value[0]) for value, _ in own),
+        period_std_px=tuple(float(std[3]) for _, std in own),
+        noise=fitted.noise,
+        correlation=noise_found,
+    )
+
+
+def _pixels_of(image: Floats, groups: tuple[Bars, ...]) -> tuple[GroupPixels, ...]:
+    return tuple(GroupPixels.of(image, bars, number) for number, bars in enumerate(groups, 1))
+
+
+def _same_sign(level: float, contrast: float) -> float:
+    """The fitted contrast with the sign, and at least a thousandth, of the one before."""
+    return math.copysign(max(abs(level), 1e-3 * abs(contrast)), contrast)
+
+
+def _regression(
+    pixels: tuple[GroupPixels, ...],
+    stated: tuple[Bars, ...],
+    mean: GaussianPixel,
+    states: ProcessModes | None,
+    contrast: float,
+    weight: Floats,
+    scattered: list[Floats],
+    levels: Levels | None = None,
+    inflation: float = 1.0,
+    earlier: Posterior | None = None,
+) -> _Regression:
+    """All groups where they are taken to be, in one linear model; without `states` the mean's."""
+    around = contrast * np.concatenate(scattered)
+    design = _design(pixels, mean, states, contrast, around)
+    value = np.concatenate([one.value for one in pixels]) - around
+    first = _OWN * len(pixels) + 1
+    normal = weighted_normal(design, value, weight)
+    variance = mean_variance(normal, first + 4)
     if levels is not None:
         variance = variance if earlier is None else earlier.variance
-        row = np.zeros(m)
-        row[first:] = PlaneModel(blur, np.zeros(m - first), np.zeros((m - first, 1))).at_zero
+        row = np.zeros(design.shape[1])
+        row[first:] = level_row(mean, row.size - first)
         level = math.copysign(levels.bright - levels.dark, contrast)
         normal = with_level(normal, row, level, levels.std, variance * inflation)
-    prior = _prior(blur, states, seen, said, first, contrast, unseen=levels is None)
+    prior = _prior(pixels, stated, mean, states, contrast, level_stated=levels is not None)
     posterior = regress(normal, prior, variance, inflation, earlier)
-    beta, factor = posterior.beta, posterior.factor
-    steps = [beta[_OWN * k + 2 : _OWN * k + 5] for k in range(len(seen))]
-    spread = [np.linalg.norm(factor[_OWN * k + 2 : _OWN * k + 5], axis=1) for k in range(len(seen))]
-    return _Pass(
-        posterior, PlaneModel(blur, beta[first:], factor[first:]), value - design @ beta,
-        math.sqrt(posterior.variance), steps, spread,
-        [float(beta[_OWN * k]) for k in range(len(seen))],
-    )  # fmt: skip
+    otf = FittedOtf(mean, posterior.beta[first:], posterior.factor[first:])
+    return _Regression(posterior, otf, value - design @ posterior.beta)
 
 
-def _first_variance(gram: Floats, projection: Floats, data: float, count: float, few: int) -> float:
-    """Noise variance about the mean blur alone, which is more than the noise."""
-    fit = np.linalg.lstsq(gram[:few, :few], projection[:few], rcond=1e-10)[0]
-    misfit = data - float(fit @ projection[:few])
-    return max(misfit / max(count - few, 1.0), 1e-12 * data / max(count, 1.0))
+def _design(
+    pixels: tuple[GroupPixels, ...],
+    mean: GaussianPixel,
+    states: ProcessModes | None,
+    contrast: float,
+    around: Floats,
+) -> Floats:
+    """Columns of all pixels, (n, m): every group's own, the light around them, the modes."""
+    first = _OWN * len(pixels) + 1
+    m = first + MEAN_MODES + (0 if states is None else states.blocks().size)
+    design = np.zeros((around.size, m))
+    design[:, first - 1] = around
+    start = 0
+    for number, one in enumerate(pixels):
+        here = slice(start, start + one.value.size)
+        own = slice(_OWN * number, _OWN * (number + 1))
+        design[here, first:], design[here, own] = group_columns(one, mean, states, contrast)
+        start += one.value.size
+    return design
 
 
 def _prior(
-    blur: PlaneBlur,
+    pixels: tuple[GroupPixels, ...],
+    stated: tuple[Bars, ...],
+    mean: GaussianPixel,
     states: ProcessModes | None,
-    seen: list[SeenGroup],
-    said: tuple[Bars, ...],
-    first: int,
     contrast: float,
     *,
-    unseen: bool,
+    level_stated: bool,
 ) -> Prior:
-    """Levels are free; places, periods and directions are as they were said, to a part of a period.
+    """Levels are free; places, periods and directions are those stated, to a part of a period.
 
-    Their columns say how far the groups still have to go from where they are.
+    Their coefficients are how far the groups still have to go from where they are.
     """
-    own = np.empty(0, np.intp) if states is None else states.blocks()
-    m = first + MEAN_MODES + own.size
     height = abs(contrast)
-    block = np.full(m, -1)
-    block[first + MEAN_MODES :] = own
-    scale, mean = np.full(m, 3.0), np.zeros(m)
-    for number, (one, there) in enumerate(zip(seen, said, strict=True)):
+    scales, means = [], []
+    for one, there in zip(pixels, stated, strict=True):
         bars = one.bars
         back, _ = bars.across_and_along(np.array([there.row]), np.array([there.col]))
-        place = slice(_OWN * number + 2, _OWN * number + 5)
-        scale[_OWN * number : _OWN * number + 2] = 1e3
         known = np.array([1.0, 0.5 / bars.count, 1.0 / bars.length_px])
-        scale[place] = _KNOWN * there.period_px * known / height
-        mean[place] = (
-            float(back[0]), there.period_px - bars.period_px,
-            math.radians(there.normal_deg - bars.normal_deg),
-        )  # fmt: skip
-    # What lies around is told by the last pass's model, as far as that is known.
-    scale[first - 1] = _AROUND / height
-    # A shift of the whole spread function is that of all groups.
-    scale[first + 4 : first + 6] = 1e-6
-    # Directions without bars are about as sharp as those with.
-    scale[first + 1 : first + 4] = _ROUND * (blur.xx + 1 / 12)
-    scale[first + 6 : first + 8] = 1e-6 if states is None else _APERTURE_STD
-    amplitude = LOG_AMPLITUDE + UNSEEN if unseen else LOG_AMPLITUDE
-    floor = _NOISE_FLOOR * height
-    return Prior(block, scale, mean, amplitude, LOG_AMPLITUDE_STD, height, floor)
+        place_std = PLACE_STD_PERIODS * there.period_px * known / height
+        scales.append([_BACKGROUND_STD, _BACKGROUND_STD, *place_std])
+        turn = math.radians(there.normal_deg - bars.normal_deg)
+        means.append([0.0, 0.0, float(back[0]), there.period_px - bars.period_px, turn])
+    # Directions without bars are about as sharp as those with; a shift of the spread function is
+    # that of all groups.
+    aperture = _FIXED if states is None else APERTURE_STD
+    mean_scale = np.repeat(
+        [FREE_STD, ROUNDNESS_STD * (mean.xx + 1 / 12), _FIXED, aperture], [1, 3, 2, 2]
+    )
+    own_scale = np.append(np.concatenate(scales), SCATTERED_STD / height)
+    return otf_prior(
+        own_scale, np.concatenate(means), mean_scale, states, height, BARS_NOISE_FLOOR,
+        level_stated=level_stated,
+    )  # fmt: skip
 
 
-def _moved_blur(
-    blur: PlaneBlur, model: PlaneModel, seen: list[SeenGroup]
-) -> tuple[PlaneBlur, bool]:
-    """The mean blur as wide as the bars see it, and round: few directions cannot tell more."""
-    angle = np.radians([one.bars.normal_deg for one in seen])
+def _longest_update(fitted: _Regression, pixels: tuple[GroupPixels, ...]) -> float:
+    """How far the regression moves the pixels of a group at most, px."""
+    return max(
+        float(np.max(np.abs(fitted.own(k)[0][2:] * [1.0, one.bars.count, one.bars.length_px])))
+        for k, one in enumerate(pixels)
+    )
+
+
+def _width_of_bars(
+    mean: GaussianPixel, fitted: FittedOtf, pixels: tuple[GroupPixels, ...]
+) -> GaussianPixel:
+    """The mean as wide as the bars show it, and round: few directions determine no more."""
+    angle = np.radians([one.bars.normal_deg for one in pixels])
     cos, sin = np.cos(angle), np.sin(angle)
-    xx, xy, yy = model.beta[1:4] / float(model.beta[0])
+    xx, xy, yy = fitted.beta[1:4] / float(fitted.beta[0])
     change = float(np.mean(xx * cos**2 + 2 * xy * cos * sin + yy * sin**2))
-    wanted = max(blur.xx + float(np.clip(change, -0.15, 0.15)), 0.02)
-    if abs(wanted - blur.xx) < 0.05 * (blur.xx + 1 / 12):
-        return blur, False
-    return PlaneBlur(wanted, 0.0, wanted), True
+    wanted = max(mean.xx + float(np.clip(change, -0.15, 0.15)), 0.02)
+    if abs(wanted - mean.xx) < 0.05 * (mean.xx + 1 / 12):
+        return mean
+    return GaussianPixel(wanted, 0.0, wanted)
 
 
-def _reweighted(standard: Floats) -> Floats:
-    return outlier_weights(standard / min(robust_scale(standard), 1.0))
+def _correlation(standard: Floats, pixels: tuple[GroupPixels, ...]) -> Correlation:
+    rows = np.concatenate([one.rows for one in pixels])
+    cols = np.concatenate([one.cols for one in pixels])
+    return correlation(np.clip(standard, -4, 4), rows, cols)
 
 
-def _require_near(said: tuple[Bars, ...], found: tuple[Bars, ...]) -> None:
-    """Refuse groups that went elsewhere than where they were said to be."""
-    for number, (one, other) in enumerate(zip(said, found, strict=True), 1):
+def _scattered(otf: FittedOtf, pixels: tuple[GroupPixels, ...]) -> list[Floats]:
+    """What the bars' ends take from every group's pixels, and other groups add, for contrast 1."""
+    table = OtfTable.of(otf)
+    others = light_of_neighbours(
+        table, [one.bars for one in pixels], [(one.rows, one.cols) for one in pixels]
+    )
+    return [
+        end_effect(table, one.bars, one.across, one.along) + other
+        for one, other in zip(pixels, others, strict=True)
+    ]
+
+
+def _require_near(stated: tuple[Bars, ...], found: tuple[Bars, ...]) -> None:
+    """Refuse groups that settled elsewhere than where they were stated to be."""
+    for number, (one, other) in enumerate(zip(stated, found, strict=True), 1):
         across, _ = one.across_and_along(np.array([other.row]), np.array([other.col]))
         moved, scale = float(across[0]), other.period_px / one.period_px
         if abs(moved) > 0.75 * one.period_px or abs(scale - 1) > 0.6 / one.count:
             raise NoBarsError(
-                f"group {number} was said to have a period of {one.period_px:.2f} px at row "
-                f"{one.row:.1f}, column {one.col:.1f}; the pixels would rather have "
-                f"{other.period_px:.2f} px, {moved:+.1f} px away: check its place, its number of "
-                "bars and its period"
+                f"group {number} was stated with a period of {one.period_px:.2f} px at row "
+                f"{one.row:.1f}, column {one.col:.1f}; the pixels fit {other.period_px:.2f} px, "
+                f"{moved:+.1f} px away: check its place, its number of bars and its period"
             )
-
-
-def _fits(seen: list[SeenGroup], solved: _Pass) -> tuple[GroupFit, ...]:
-    fits, start = [], 0
-    for one, std, dark in zip(seen, solved.steps_std, solved.dark, strict=True):
-        residual = solved.residual[start : start + one.value.size]
-        start += one.value.size
-        place_std, period_std = float(std[0]), float(std[1])
-        pixels = (one.rows, one.cols, one.across, one.value)
-        fits.append(GroupFit(one.bars, place_std, period_std, *pixels, residual, dark))
-    return tuple(fits)

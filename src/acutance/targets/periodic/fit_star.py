@@ -1,53 +1,60 @@
 """The reference estimator of a star: every pixel is linear in the transfer function.
 
-The image of a star with a known centre is a sum of the images of modes (`fit.star_waves`), so
-level, transfer, centre, phase and ground are one linear regression, repeated until the centre has
-settled. How much the transfer may depart from a plain blur is decided by the data
-(`fit.posterior`), and where they say nothing, below the frequency of the rim and beyond that of
-the centre, the intervals widen.
+The image of a star with a known centre is a sum of the images of modes (`star_waves`), so level,
+transfer, centre, phase and background are one linear regression, repeated until the centre has
+settled. How much the transfer may differ from a Gaussian through a pixel is decided by the data
+(`acutance.numerics.marginal_likelihood`), and where they determine nothing, below the frequency
+of the rim and beyond that of the centre, the intervals widen.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoStarError
-from acutance.geometry.star_geometry import FoundStar
+from acutance.geometry.star_geometry import SiemensStar
 from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
-from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
-from acutance.numerics.normal_equations import Normal
-from acutance.targets.periodic.otf_model import PlaneModel
-from acutance.targets.periodic.otf_modes import (
-    LOG_AMPLITUDE,
-    LOG_AMPLITUDE_STD,
-    MEAN_MODES,
-    UNSEEN,
-    PlaneBlur,
-    ProcessModes,
+from acutance.numerics.noise import Correlation, correlation
+from acutance.targets.periodic.otf_model import FittedOtf, level_row
+from acutance.targets.periodic.otf_modes import GaussianPixel, ProcessModes
+from acutance.targets.periodic.otf_regression import (
+    FREE_STD,
+    mean_variance,
+    otf_prior,
+    reweighted,
+    weighted_normal,
 )
 from acutance.targets.periodic.star_rings import ring_modulations
-from acutance.targets.periodic.star_waves import Wave, star_table
+from acutance.targets.periodic.star_waves import StarTable, Wave, star_table
 from acutance.targets.periodic.stated_contrast import Levels, with_level
+from acutance.targets.periodic.tuned import APERTURE_STD, STAR_FINEST_CPP, STAR_NOISE_FLOOR
 
-__all__ = ["SIDE_MARGIN_PX", "StarSolution", "solve_star"]
+__all__ = ["SIDE_MARGIN_PX", "StarSolution", "amplitude_of", "solve_star"]
 
 _RIM_MARGIN_PX: Final = 3.0
 """Pixels nearer to the star's rim are left out: what lies beyond is not known."""
 SIDE_MARGIN_PX: Final = 5.0
 """Pixels nearer to a straight side of a fan are left out."""
-_FINEST_CPP: Final = 1.3
-"""Pixels nearer to the centre see spokes finer than this: the printed centre may end there."""
-_APERTURE_STD: Final = 0.18
-_NOISE_FLOOR: Final = 2e-4
 _MAX_PASSES: Final = 8
-_LEAST_PIXELS: Final = 400
-_GROUND: Final = 6
+_MIN_PIXELS: Final = 400
+_SETTLED_PX: Final = 0.003
+_SETTLED_RAD: Final = 0.003
+_SETTLED_SHARE: Final = 0.05
+_SETTLED_NOISE: Final = 0.03
+_BACKGROUND: Final = 6
+"""Columns of a background that is a polynomial of second order."""
+_BACKGROUND_STD: Final = 1e3
+_PHASE_STD_RAD: Final = 10.0
+_FIRST: Final = _BACKGROUND + 1
+"""The first mode of the transfer function, after background and phase."""
+_PLACE: Final = slice(_FIRST + 4, _FIRST + 6)
+_VARIANCE_STEP_PX2: Final = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,61 +63,70 @@ class StarSolution:
 
     Attributes
     ----------
-    star : FoundStar
+    star : SiemensStar
         Where it is, as it settled.
     centre_std_px : (float, float)
         Standard deviation of its row and column.
-    model : PlaneModel
+    otf : FittedOtf
+        Its level is the amplitude of the fundamental before the sensor.
     rows, cols : (n,) int arrays
         The pixels used.
     value, residual : (n,) arrays
         Their values, and what the fit leaves of them, image units.
     noise : float
         Standard deviation of the noise, image units.
-    outlier : (n,) array
-        Weight of every pixel, 1 where it is no outlier.
     correlation : Correlation
+        Of the residuals of neighbouring pixels.
     inner_px, outer_px : float
         Radii between which pixels were used.
     """
 
-    star: FoundStar
+    star: SiemensStar
     centre_std_px: tuple[float, float]
-    model: PlaneModel
+    otf: FittedOtf
     rows: NDArray[np.intp]
     cols: NDArray[np.intp]
     value: Floats
     residual: Floats
     noise: float
-    outlier: Floats
     correlation: Correlation
     inner_px: float
     outer_px: float
 
+    @property
+    def reach_cpp(self) -> tuple[float, float]:
+        """Lowest and highest frequency of the spokes used."""
+        return self.star.freq_cpp(self.outer_px), self.star.freq_cpp(self.inner_px)
 
-@dataclass(frozen=True, eq=False)
-class _Pixels:
-    rows: NDArray[np.intp]
-    cols: NDArray[np.intp]
-    value: Floats
+
+class _Regression(NamedTuple):
+    """One regression about a centre."""
+
+    posterior: Posterior
+    otf: FittedOtf
+    residual: Floats
+
+    @property
+    def noise(self) -> float:
+        return math.sqrt(self.posterior.variance)
 
 
 def solve_star(
     image: Floats,
-    star: FoundStar,
+    star: SiemensStar,
     *,
     wave: Wave = "sine",
     levels: Levels | None = None,
     inner_px: float | None = None,
     robust: bool = True,
 ) -> StarSolution:
-    """Solve for centre, phase, level, ground and transfer function.
+    """Solve for centre, phase, level, background and transfer function.
 
     Parameters
     ----------
     image : (rows, cols) array
         NaN where a pixel is not to be used.
-    star : FoundStar
+    star : SiemensStar
         Where the star is, to a fraction of its spokes.
     wave : {"sine", "square"}, optional
     levels : Levels, optional
@@ -125,76 +141,87 @@ def solve_star(
     NoStarError
         If too few pixels are usable, or the fit does not settle.
     """
-    inner = max(star.radius_at(_FINEST_CPP), inner_px or 0.0, 1.5)
+    inner = max(star.radius_at(STAR_FINEST_CPP), inner_px or 0.0, 1.5)
     outer = star.rim_px - _RIM_MARGIN_PX
-    pixels = _select(image, star, inner, outer)
-    blur, level = _start(image, star, inner, outer, levels, wave)
-    outlier = np.ones(pixels.value.size)
-    whiteness = Correlation(1.0, 0.0, 0.0)
+    rows, cols = _usable_pixels(image, star, inner, outer)
+    value = image[rows, cols]
+    mean, level = _first_fit(image, star, inner, outer)
+    if levels is not None:
+        level = amplitude_of(levels.bright - levels.dark, wave)
+    weight = np.ones(value.size)
+    noise_found = Correlation(1.0, 0.0, 0.0)
     earlier: Posterior | None = None
-    noise = 0.0
+    noise: float | None = None
     for _ in range(_MAX_PASSES):
-        solved = _pass(
-            pixels, star, blur, level, wave, levels, outlier, whiteness.inflation, earlier,
-            (inner, outer), noise,
+        table = star_table(
+            mean, star.cycles, wave, math.floor(inner) - 1.0, math.ceil(outer) + 2.0,
+            round(star.rim_px * 4) / 4,
         )  # fmt: skip
-        standard = solved.residual / solved.noise
-        again = _reweighted(standard) if robust else outlier
-        found = correlation(np.clip(standard, -4, 4), pixels.rows, pixels.cols, (0.8, 0.6))
-        move, turn, model = solved.move_px, solved.turn_rad, solved.model
-        if not (np.all(np.isfinite(move)) and np.max(np.abs(move)) < 0.25 * star.rim_px):
-            raise NoStarError(
-                "the fit of the star did not settle: the pixels do not follow spokes about one "
-                "centre; check the number of cycles, the wave (sine or square) and the region"
-            )
-        wider, changed = _moved_blur(blur, model)
-        settled = (
-            float(np.max(np.abs(move))) < 0.003
-            and abs(turn) < 0.003
-            and not changed
-            and (levels is None or abs(solved.noise - noise) < 0.03 * noise)
-            and float(np.max(np.abs(again - outlier))) < 0.05
-            and abs(found.inflation / whiteness.inflation - 1) < 0.05
+        design = _design(star, rows, cols, table, level)
+        fitted = _regression(
+            design, value, weight, table, level, levels, noise_found.inflation, earlier, noise
         )
-        if settled:
+        standard = fitted.residual / fitted.noise
+        again = reweighted(standard) if robust else weight
+        found = correlation(np.clip(standard, -4, 4), rows, cols)
+        moved, step_px, step_rad = _moved(star, fitted.posterior, level)
+        wider = _width_of_star(mean, fitted.otf)
+        if (
+            step_px < _SETTLED_PX
+            and step_rad < _SETTLED_RAD
+            and wider == mean
+            and (levels is None or _has_settled(fitted.noise, noise, _SETTLED_NOISE))
+            and float(np.max(np.abs(again - weight))) < _SETTLED_SHARE
+            and _has_settled(found.inflation, noise_found.inflation, _SETTLED_SHARE)
+        ):
             break
-        star = replace(
-            star, row=star.row + float(move[1]), col=star.col + float(move[0]),
-            alpha_rad=math.remainder(star.alpha_rad + turn, 2 * math.pi),
-        )  # fmt: skip
-        earlier = None if changed else solved.posterior
-        blur, level = wider, max(model.level, 1e-3 * level)
-        outlier, whiteness, noise = again, found, solved.noise
-    std = solved.move_std_px
+        star, noise = moved, fitted.noise
+        earlier = fitted.posterior if wider == mean else None
+        mean, level = wider, max(fitted.otf.level, 1e-3 * level)
+        weight, noise_found = again, found
+    col_std, row_std = (np.linalg.norm(fitted.posterior.factor[_PLACE], axis=1) / level).tolist()
     return StarSolution(
-        star, (float(std[1]), float(std[0])), solved.model, pixels.rows, pixels.cols,
-        pixels.value, solved.residual, solved.noise, outlier, whiteness, inner, outer,
+        star, (row_std, col_std), fitted.otf, rows, cols, value, fitted.residual, fitted.noise,
+        noise_found, inner, outer,
     )  # fmt: skip
 
 
-def _select(image: Floats, star: FoundStar, inner: float, outer: float) -> _Pixels:
+def _has_settled(new: float, old: float | None, share: float) -> bool:
+    return old is not None and abs(new - old) < share * old
+
+
+def amplitude_of(contrast: float, wave: Wave) -> float:
+    """Amplitude of the fundamental of spokes of some contrast, dark to bright."""
+    return 0.5 * contrast * (4 / math.pi if wave == "square" else 1.0)
+
+
+def _usable_pixels(
+    image: Floats, star: SiemensStar, inner: float, outer: float
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of the pixels on the spokes.
+
+    Raises
+    ------
+    NoStarError
+        If there are too few.
+    """
     rows, cols = np.nonzero(np.isfinite(image))
     radius, angle = star.polar(rows.astype(float), cols.astype(float))
     margin = SIDE_MARGIN_PX / np.maximum(radius, 1.0)
     kept = (radius > inner + 0.5) & (radius < outer) & star.holds(angle, margin)
-    if np.count_nonzero(kept) < _LEAST_PIXELS:
+    if np.count_nonzero(kept) < _MIN_PIXELS:
         raise NoStarError(
             f"the star of {star.cycles} cycles and {star.rim_px:.1f} px about row {star.row:.1f}, "
             f"column {star.col:.1f} leaves {np.count_nonzero(kept)} pixels to measure, at least "
-            f"{_LEAST_PIXELS} are needed: use a larger star, or a region that holds more of it"
+            f"{_MIN_PIXELS} are needed: use a larger star, or a region that holds more of it"
         )
-    return _Pixels(rows[kept], cols[kept], image[rows[kept], cols[kept]])
+    return rows[kept], cols[kept]
 
 
-def _start(
-    image: Floats,
-    star: FoundStar,
-    inner: float,
-    outer: float,
-    levels: Levels | None,
-    wave: Wave,
-) -> tuple[PlaneBlur, float]:
-    """Blur and level to depart from, from the modulation of the rings."""
+def _first_fit(
+    image: Floats, star: SiemensStar, inner: float, outer: float
+) -> tuple[GaussianPixel, float]:
+    """A round Gaussian through a pixel and a level, from the modulation of the rings."""
     freq, modulation, std = ring_modulations(image, star, inner, outer)
     coarse = (freq < 0.6) & (modulation > 3 * std)
     if np.count_nonzero(coarse) < 3:
@@ -205,127 +232,100 @@ def _start(
     f, m = freq[coarse], modulation[coarse]
     weight = (m / std[coarse]) * np.sqrt(1 / (1 + (f / 0.4) ** 4))
     design = np.stack([np.ones(f.size), -2 * math.pi**2 * f**2], axis=1)
-    # The pixel's own fall is taken out, in its mean over the directions.
+    # The pixel's own blur is taken out, in its mean over the directions.
     own = np.log(m) + 2 * math.pi**2 * f**2 / 12
     fit, *_ = np.linalg.lstsq(design * weight[:, None], own * weight, rcond=None)
     variance = _rounded(float(np.clip(fit[1], 0.02, 4.0)))
-    level = math.exp(float(fit[0]))
-    if levels is not None:
-        level = _amplitude(levels, wave)
-    return PlaneBlur(variance, 0.0, variance), level
+    return GaussianPixel(variance, 0.0, variance), math.exp(float(fit[0]))
 
 
-def _rounded(value: float) -> float:
-    return round(value / 0.02) * 0.02
+def _rounded(variance: float) -> float:
+    """In coarse steps, so that tables are used again."""
+    return round(variance / _VARIANCE_STEP_PX2) * _VARIANCE_STEP_PX2
 
 
-def _moved_blur(blur: PlaneBlur, model: PlaneModel) -> tuple[PlaneBlur, bool]:
-    """The mean blur where the data want it, in coarse steps: the regression takes up the rest."""
-    level = float(model.beta[0])
-    # A wider aperture by w is a Gaussian wider by w / 6: the two share out what they explain.
-    change = model.beta[1:4] / level + np.array([model.beta[6], 0.0, model.beta[7]]) / (6 * level)
-    xx, xy, yy = np.array([blur.xx, blur.xy, blur.yy]) + np.clip(change, -0.15, 0.15)
-    xx, yy = max(float(xx), 0.02), max(float(yy), 0.02)
-    limit = 0.9 * math.sqrt(xx * yy)
-    moved = PlaneBlur(_rounded(xx), _rounded(float(np.clip(xy, -limit, limit))), _rounded(yy))
-    shift = max(abs(moved.xx - blur.xx), abs(moved.xy - blur.xy), abs(moved.yy - blur.yy))
-    return (moved, True) if shift > 0.15 * (blur.xx + blur.yy + 1 / 6) else (blur, False)
-
-
-def _amplitude(levels: Levels, wave: Wave) -> float:
-    """Amplitude of the fundamental."""
-    return 0.5 * (levels.bright - levels.dark) * (4 / math.pi if wave == "square" else 1.0)
-
-
-@dataclass(frozen=True, eq=False)
-class _Pass:
-    posterior: Posterior
-    model: PlaneModel
-    residual: Floats
-    noise: float
-    move_px: Floats
-    move_std_px: Floats
-    turn_rad: float
-
-
-def _pass(
-    pixels: _Pixels,
-    star: FoundStar,
-    blur: PlaneBlur,
+def _design(
+    star: SiemensStar,
+    rows: NDArray[np.intp],
+    cols: NDArray[np.intp],
+    table: StarTable,
     level: float,
-    wave: Wave,
-    levels: Levels | None,
-    outlier: Floats,
-    inflation: float,
-    earlier: Posterior | None,
-    reach: tuple[float, float],
-    noise: float,
-) -> _Pass:
-    """One regression about a centre; `noise` is that of the last one, 0 before the first."""
-    radius, angle = star.polar(pixels.rows.astype(float), pixels.cols.astype(float))
-    table = star_table(
-        blur, star.cycles, wave, math.floor(reach[0]) - 1.0, math.ceil(reach[1]) + 2.0,
-        round(star.rim_px * 4) / 4,
-    )  # fmt: skip
+) -> Floats:
+    """Columns of background, phase and modes, (n, m), with the star where it is taken to be."""
+    radius, angle = star.polar(rows.astype(float), cols.astype(float))
     phase = star.cycles * angle + star.alpha_rad
     modes, by_phase = table.columns(radius, phase, angle)
     x, y = radius * np.cos(angle) / star.rim_px, radius * np.sin(angle) / star.rim_px
-    ground = np.stack([np.ones(x.size), x, y, x * x, x * y, y * y])
-    columns = np.vstack([ground, level * by_phase, modes.T])
-    weighted = columns * outlier
-    gram = weighted @ columns.T
-    projection = weighted @ pixels.value
-    data = float((outlier * pixels.value) @ pixels.value)
-    count = float(np.sum(outlier))
-    states = ProcessModes(blur.width_px)
-    first = _GROUND + 1
-    prior = _prior(states, first, level, unseen=levels is None)
-    variance = _first_variance(pixels.value, gram, projection, data, count, first)
-    normal = Normal(gram, projection, data, count)
+    background = (np.ones(x.size), x, y, x * x, x * y, y * y)
+    return np.column_stack([*background, level * by_phase, modes])
+
+
+def _regression(
+    design: Floats,
+    value: Floats,
+    weight: Floats,
+    table: StarTable,
+    level: float,
+    levels: Levels | None,
+    inflation: float,
+    earlier: Posterior | None,
+    noise: float | None,
+) -> _Regression:
+    """One regression; `noise` is that of the one before."""
+    normal = weighted_normal(design, value, weight)
+    variance = mean_variance(normal, _FIRST + 6)
     if levels is not None:
-        variance = noise**2 if noise > 0 else variance
-        model = PlaneModel(blur, np.zeros(modes.shape[1]), np.zeros((modes.shape[1], 1)))
-        row = np.zeros(columns.shape[0])
-        row[first:] = model.at_zero
-        std = _amplitude(Levels(0.0, levels.std, 0.0), wave)
-        normal = with_level(normal, row, _amplitude(levels, wave), std, variance * inflation)
+        variance = variance if noise is None else noise**2
+        row = np.zeros(design.shape[1])
+        row[_FIRST:] = level_row(table.mean, row.size - _FIRST)
+        stated, std = (
+            amplitude_of(one, table.wave) for one in (levels.bright - levels.dark, levels.std)
+        )
+        normal = with_level(normal, row, stated, std, variance * inflation)
+    prior = _prior(table.mean, level, level_stated=levels is not None)
     posterior = regress(normal, prior, variance, inflation, earlier)
-    beta, factor = posterior.beta, posterior.factor
-    model = PlaneModel(blur, beta[first:], factor[first:])
-    # The modes of the place move the image; the centre moves with it.
-    place = slice(first + 4, first + 6)
-    return _Pass(
-        posterior, model, pixels.value - columns.T @ beta, math.sqrt(posterior.variance),
-        beta[place] / level, np.linalg.norm(factor[place], axis=1) / level,
-        float(beta[_GROUND]),
+    otf = FittedOtf(table.mean, posterior.beta[_FIRST:], posterior.factor[_FIRST:])
+    return _Regression(posterior, otf, value - design @ posterior.beta)
+
+
+def _prior(mean: GaussianPixel, level: float, *, level_stated: bool) -> Prior:
+    """Background, phase and the mean's own modes are free; the apertures are about one pixel."""
+    own_scale = np.append(np.full(_BACKGROUND, _BACKGROUND_STD), _PHASE_STD_RAD / level)
+    return otf_prior(
+        own_scale, np.zeros(_FIRST), np.repeat([FREE_STD, APERTURE_STD], [6, 2]),
+        ProcessModes(mean.width_px), level, STAR_NOISE_FLOOR, level_stated=level_stated,
     )  # fmt: skip
 
 
-def _first_variance(
-    value: Floats, gram: Floats, projection: Floats, data: float, count: float, first: int
-) -> float:
-    """Noise variance about the mean blur alone, which is more than the noise."""
-    few = first + 6
-    fit = np.linalg.lstsq(gram[:few, :few], projection[:few], rcond=1e-10)[0]
-    misfit = data - float(fit @ projection[:few])
-    return max(misfit / max(count - few, 1.0), 1e-12 * float(np.var(value)))
+def _moved(
+    star: SiemensStar, posterior: Posterior, level: float
+) -> tuple[SiemensStar, float, float]:
+    """The star where the regression wants it, and how far that is in px and in phase.
+
+    The modes of the place move the image; the centre moves with it.
+    """
+    move = posterior.beta[_PLACE] / level
+    turn = float(posterior.beta[_BACKGROUND])
+    if not (np.all(np.isfinite(move)) and np.max(np.abs(move)) < 0.25 * star.rim_px):
+        raise NoStarError(
+            "the fit of the star did not settle: the pixels do not follow spokes about one "
+            "centre; check the number of cycles, the wave (sine or square) and the region"
+        )
+    alpha = math.remainder(star.alpha_rad + turn, 2 * math.pi)
+    moved = replace(star, row=star.row + float(move[1]), col=star.col + float(move[0]),
+                    alpha_rad=alpha)  # fmt: skip
+    return moved, float(np.max(np.abs(move))), abs(turn)
 
 
-def _prior(states: ProcessModes, first: int, level: float, *, unseen: bool) -> Prior:
-    """Ground, phase and the mean's own modes are free; the apertures are about one pixel."""
-    own = states.blocks()
-    m = first + MEAN_MODES + own.size
-    block = np.full(m, -1)
-    block[first + MEAN_MODES :] = own
-    scale = np.full(m, 3.0)
-    scale[:_GROUND] = 1e3
-    scale[_GROUND] = 10.0 / level
-    scale[first + 6 : first + 8] = _APERTURE_STD
-    amplitude = LOG_AMPLITUDE + UNSEEN if unseen else LOG_AMPLITUDE
-    return Prior(
-        block, scale, np.zeros(m), amplitude, LOG_AMPLITUDE_STD, level, _NOISE_FLOOR * level
-    )
-
-
-def _reweighted(standard: Floats) -> Floats:
-    return outlier_weights(standard / min(robust_scale(standard), 1.0))
+def _width_of_star(mean: GaussianPixel, fitted: FittedOtf) -> GaussianPixel:
+    """The mean where the data want it, in coarse steps: the regression takes up the rest."""
+    level = float(fitted.beta[0])
+    # A wider aperture by w is a Gaussian wider by w / 6: the two share what they explain.
+    aperture = np.array([fitted.beta[6], 0.0, fitted.beta[7]]) / (6 * level)
+    change = np.clip(fitted.beta[1:4] / level + aperture, -0.15, 0.15)
+    xx, xy, yy = np.array([mean.xx, mean.xy, mean.yy]) + change
+    xx, yy = max(float(xx), 0.02), max(float(yy), 0.02)
+    limit = 0.9 * math.sqrt(xx * yy)
+    moved = GaussianPixel(_rounded(xx), _rounded(float(np.clip(xy, -limit, limit))), _rounded(yy))
+    step = max(abs(moved.xx - mean.xx), abs(moved.xy - mean.xy), abs(moved.yy - mean.yy))
+    return moved if step > 0.15 * (mean.xx + mean.yy + 1 / 6) else mean

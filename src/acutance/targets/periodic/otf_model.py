@@ -1,4 +1,4 @@
-"""The transfer function fitted to bars and stars: modes about a blur, with their covariance."""
+"""The OTF fitted to bars and stars: modes about a Gaussian through a pixel, with covariance."""
 
 from __future__ import annotations
 
@@ -8,30 +8,35 @@ from functools import cached_property
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.targets.periodic.otf_modes import MEAN_MODES, Complexes, PlaneBlur, ProcessModes
-from acutance.targets.periodic.star_waves import HIGHEST_CPP
+from acutance.targets.periodic.otf_modes import (
+    HIGHEST_CPP,
+    MEAN_MODES,
+    Complexes,
+    GaussianPixel,
+    ProcessModes,
+)
 
-__all__ = ["PlaneModel"]
+__all__ = ["FittedOtf", "level_row"]
 
 
 @dataclass(frozen=True, eq=False)
-class PlaneModel:
-    """An OTF over the plane, with its covariance (`acutance.curves.OtfModel`).
+class FittedOtf:
+    """A two-dimensional OTF with its covariance (`acutance.curves.OtfModel`).
 
     Attributes
     ----------
-    blur : PlaneBlur
+    mean : GaussianPixel
         Mean of the OTF.
     beta : (m,) array
-        Coefficients of the modes, or of the mean's alone; their sum at zero frequency is the
-        level.
-    spread : (m, k) array
+        Coefficients of its modes and of the processes' (or of its own alone); their sum at zero
+        frequency is the level.
+    beta_factor : (m, k) array
         Factor of the covariance of beta.
     """
 
-    blur: PlaneBlur
+    mean: GaussianPixel
     beta: Floats
-    spread: Floats
+    beta_factor: Floats
 
     @property
     def band_cpp(self) -> float:
@@ -46,25 +51,34 @@ class PlaneModel:
         """Factor of its covariance, (n, k)."""
         modes = self._modes(u_cpp, v_cpp)
         otf = modes @ self.beta / self.level
-        return np.asarray((modes - np.outer(otf, self.at_zero)) @ self.spread / self.level)
+        # The level is the OTF at zero frequency, where it is 1 without error.
+        return np.asarray((modes - np.outer(otf, self._at_zero)) @ self.beta_factor / self.level)
 
     @cached_property
     def level(self) -> float:
-        """Amplitude of the star before the sensor."""
-        return float(self.at_zero @ self.beta)
+        """Contrast of bars, or amplitude of a star, before the sensor, image units."""
+        return float(self._at_zero @ self.beta)
 
     @property
     def level_std(self) -> float:
         """Its standard deviation."""
-        return float(np.linalg.norm(self.at_zero @ self.spread))
+        return float(np.linalg.norm(self._at_zero @ self.beta_factor))
 
     @cached_property
-    def at_zero(self) -> Floats:
-        """What every coefficient adds to the level, (m,)."""
-        return np.asarray(self._modes(np.zeros(1), np.zeros(1))[0].real)
+    def _at_zero(self) -> Floats:
+        return level_row(self.mean, self.beta.size)
 
     def _modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        mean = self.blur.modes(u_cpp, v_cpp)
-        if self.beta.size == MEAN_MODES:
-            return mean
-        return np.hstack([mean, ProcessModes(self.blur.width_px).plane(u_cpp, v_cpp)])
+        return _all_modes(self.mean, self.beta.size, u_cpp, v_cpp)
+
+
+def level_row(mean: GaussianPixel, size: int) -> Floats:
+    """What each of `size` coefficients adds to the level: its mode at zero frequency."""
+    return np.asarray(_all_modes(mean, size, np.zeros(1), np.zeros(1))[0].real)
+
+
+def _all_modes(mean: GaussianPixel, size: int, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+    own = mean.modes(u_cpp, v_cpp)
+    if size == MEAN_MODES:
+        return own
+    return np.hstack([own, ProcessModes(mean.width_px).otf_modes(u_cpp, v_cpp)])

@@ -1,11 +1,11 @@
-"""A transfer function over the plane as a sum of known shapes.
+"""A two-dimensional transfer function as a sum of known shapes.
 
-Mean: a Gaussian, elliptical and turned, through a square pixel. Departures: Gaussian processes
-over the plane of the point spread function, with covariance
-``exp(-(|x|^2 + |x'|^2) / 2 L^2) exp(-|x - x'|^2 / 2 l^2)`` as along a straight edge
-(`fit.prior`). Their eigenfunctions are the states of the 2-D harmonic oscillator, whose Fourier
-transforms are states again (Mehler's formula; Refregier, MNRAS 338, 35, 2003), and which are a
-radial function times cos or sin of a whole multiple of the direction. A star needs just that.
+Mean: a Gaussian, elliptical and rotated, through a square pixel. Corrections: Gaussian processes
+of the point spread function, with covariance
+``exp(-(|x|^2 + |x'|^2) / 2 L^2) exp(-|x - x'|^2 / 2 l^2)`` as along a straight edge.
+Their eigenfunctions are the states of the 2-D harmonic oscillator, whose Fourier transforms are
+states again (Mehler's formula; Refregier, MNRAS 338, 35, 2003), and which are a radial function
+times cos or sin of a whole multiple of the direction. A star needs just that.
 
 Distances of the processes are in units of the blur's width, frequencies in cycles per pixel.
 """
@@ -25,18 +25,19 @@ from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 
 __all__ = [
-    "LOG_AMPLITUDE",
-    "LOG_AMPLITUDE_STD",
+    "HIGHEST_CPP",
     "MEAN_MODES",
     "PROCESSES",
-    "UNSEEN",
     "Complexes",
-    "PlaneBlur",
+    "GaussianPixel",
     "Process",
     "ProcessModes",
 ]
 
 Complexes = NDArray[np.complex128]
+
+HIGHEST_CPP: Final = 2.5
+"""Nothing a periodic target shows comes from beyond."""
 
 MEAN_MODES: Final = 8
 """Level, three widths, two places, two apertures: the mean's own directions."""
@@ -52,20 +53,11 @@ class Process:
 
 
 PROCESSES: Final = (Process(1.2, 0.6, 12), Process(0.7, 0.17, 10), Process(3.0, 1.2, 10))
-"""SHAPE, DETAIL and HALO of `fit.prior`."""
-
-LOG_AMPLITUDE: Final[Floats] = np.array([-4.6, -2.8, -4.3, -5.9, -4.0, -5.6, -4.0])
-LOG_AMPLITUDE_STD: Final = 1.2
-"""Amplitudes of the processes' round states, of the other ones, and of the tail, relative to the
-star's: as along an edge (`fit.prior`), shared out over the plane; blur is mostly round."""
-
-UNSEEN: Final[Floats] = np.array([0.0, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0])
-"""Added to them where no level is known: then nothing in the image shows how much light is
-scattered further than the widest spokes, and the prior alone says how much that may be."""
+"""Of the same extents as those along an edge: shape, detail, halo."""
 
 
 @dataclass(frozen=True)
-class PlaneBlur:
+class GaussianPixel:
     """Gaussian of covariance (xx, xy, yy) in px^2 through the area of a square pixel."""
 
     xx: float
@@ -132,10 +124,10 @@ class ProcessModes:
         return np.stack(parts, axis=-1) if parts else np.empty((freq_cpp.size, 0))
 
     def blocks(self) -> NDArray[np.intp]:
-        """Which amplitude rules each state, in the order of `plane`: see `_block`."""
+        """Which amplitude rules each state, in the order of `otf_modes`: see `_block`."""
         return _blocks()
 
-    def plane(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+    def otf_modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """All states at frequencies across and along, (n, r)."""
         freq, angle = np.hypot(u_cpp, v_cpp), np.arctan2(v_cpp, u_cpp)
         parts: list[Complexes] = []

@@ -1,4 +1,4 @@
-"""Is this star good enough to tell?"""
+"""What is asked of a star."""
 
 from __future__ import annotations
 
@@ -6,78 +6,99 @@ import math
 
 import numpy as np
 
-from acutance.targets.measurement import Check
-from acutance.targets.periodic.clipped_and_outlying import QUIET_SNR, clipped_share, outlier_share
+from acutance.numerics.clipping import clipped_share
+from acutance.numerics.noise import outlier_share
+from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.periodic.fit_star import StarSolution
-from acutance.targets.periodic.star_options import StarLimits
-from acutance.targets.region import RegionPixels
-from acutance.targets.straight.check_data import MUCH, at_least, at_most
+from acutance.targets.periodic.tuned import QUIET_SNR
 
-__all__ = ["star_checks", "third_harmonic"]
+__all__ = ["STAR_CHECKS", "star_checks", "third_harmonic"]
+
+STAR_CHECKS = (
+    "contrast_snr", "level", "rim_cpp", "centre_cpp", "sweep_deg", "wave", "saturation",
+    "correlated_noise", "outliers",
+)  # fmt: skip
+"""The names of the checks of a star."""
 
 
 def star_checks(
-    pixels: RegionPixels, solved: StarSolution, snr: float, limits: StarLimits
+    solved: StarSolution, snr: float, saturation_level: float | None, limits: Limits
 ) -> tuple[Check, ...]:
-    """All target checks of a star."""
-    star, level = solved.star, solved.model
-    relative = level.level_std / level.level
-    coarsest = star.cycles / (2 * math.pi * solved.outer_px)
-    finest = star.cycles / (2 * math.pi * solved.inner_px)
-    wave = third_harmonic(solved)
-    clipped = clipped_share(solved.value, pixels.saturation_level, snr)
-    # Of an image without noise, what is left is the arithmetic's.
-    strongest = 0.0 if snr > QUIET_SNR else abs(solved.correlation.strongest)
-    outliers = outlier_share(solved.residual, solved.outlier, level.level)
+    """All checks of a star.
+
+    Parameters
+    ----------
+    solved : StarSolution
+    snr : float
+        Contrast of the spokes over noise.
+    saturation_level : float or None
+        The largest value the detector can give.
+    limits : mapping of str to float
+        Limits the caller changed.
+    """
+    bounded = min(snr, MAX_RATIO)
     return (
-        at_least(
-            "contrast_snr", min(snr, MUCH), limits.contrast_snr,
-            f"the spokes' contrast is {snr:.0f} times the noise: with less than 50 the MTF near "
-            "Nyquist is read from few pixels that show little but noise",
+        answer(
+            "contrast_snr", bounded, f"the spokes' contrast is {bounded:.0f} times the noise",
+            limits,
         ),
-        at_most(
-            "level", relative, limits.level,
-            f"the contrast of the spokes before the sensor is known to {relative:.1%}, which "
-            "scales the whole MTF: state the levels of wide patches of the same materials (dark "
-            "and bright), or use a star with fewer cycles or a larger radius",
-        ),
-        at_most(
-            "coarsest_cpp", coarsest, limits.coarsest_cpp,
-            f"the widest spokes used have {coarsest:.3f} c/px: below that the MTF is continued "
-            "to 1 at zero frequency, not measured",
-        ),
-        at_least(
-            "finest_cpp", finest, limits.finest_cpp,
-            f"the finest spokes used have {finest:.2f} c/px: beyond that the MTF is continued, "
-            "not measured",
-        ),
-        at_least(
-            "sweep_deg", star.sweep_deg, limits.sweep_deg,
-            f"the star holds {star.sweep_deg:.0f} degrees of directions: the other ones are told "
-            "by what all sensors have in common, with wide intervals",
-        ),
-        at_most(
-            "wave", wave, limits.wave,
-            f"{wave:.1%} of the contrast is a third harmonic that the stated wave does not have: "
-            "the star may be a square wave instead of a sine, or the other way round, or bright "
-            "and dark spokes may not be equally wide",
-        ),
-        at_most(
-            "saturation", clipped, limits.saturation,
-            f"{clipped:.1%} of the star's pixels are clipped at an end of the scale: the spokes' "
-            "contrast is then not what the sensor saw",
-        ),
-        at_most(
-            "correlated_noise", strongest, limits.correlated_noise,
-            f"residuals of neighbouring pixels are correlated by {strongest:.2f}: the image was "
-            "resampled, or the target departs from a perfect star",
-        ),
-        at_most(
-            "outliers", outliers, limits.outliers,
-            f"{outliers:.1%} of the pixels do not fit the star: something lies on it, or it is "
-            "damaged",
-        ),
+        _level(solved, limits),
+        *_frequencies(solved, limits),
+        _sweep(solved, limits),
+        _wave(solved, limits),
+        _saturation(solved, snr, saturation_level, limits),
+        _correlated_noise(solved, snr, limits),
+        _outliers(solved, limits),
     )  # fmt: skip
+
+
+def _level(solved: StarSolution, limits: Limits) -> Check:
+    relative = solved.otf.level_std / solved.otf.level
+    found = f"the contrast of the spokes before the sensor is known to {relative:.1%}"
+    return answer("level", relative, found, limits)
+
+
+def _frequencies(solved: StarSolution, limits: Limits) -> tuple[Check, Check]:
+    rim, centre = solved.reach_cpp
+    return (
+        answer("rim_cpp", rim, f"the widest spokes used have {rim:.3f} c/px", limits),
+        answer("centre_cpp", centre, f"the finest spokes used have {centre:.2f} c/px", limits),
+    )
+
+
+def _sweep(solved: StarSolution, limits: Limits) -> Check:
+    sweep = solved.star.sweep_deg
+    return answer("sweep_deg", sweep, f"the star holds {sweep:.0f} degrees of directions", limits)
+
+
+def _wave(solved: StarSolution, limits: Limits) -> Check:
+    share = third_harmonic(solved)
+    found = f"{share:.1%} of the contrast is a third harmonic that the stated wave does not have"
+    return answer("wave", share, found, limits)
+
+
+def _saturation(
+    solved: StarSolution, snr: float, saturation_level: float | None, limits: Limits
+) -> Check:
+    clipped = clipped_share(solved.value, saturation_level, noisy=snr <= QUIET_SNR)
+    found = f"{clipped:.1%} of the star's pixels are clipped at an end of the scale"
+    return answer("saturation", clipped, found, limits)
+
+
+def _correlated_noise(solved: StarSolution, snr: float, limits: Limits) -> Check:
+    # Of an image without noise, the residuals are the arithmetic's.
+    strongest = 0.0 if snr > QUIET_SNR else solved.correlation.told
+    return answer(
+        "correlated_noise", strongest,
+        f"residuals of neighbouring pixels correlate by {strongest:.2f}", limits,
+        advice="the image was resampled, or the spokes are not those of a perfect star",
+    )  # fmt: skip
+
+
+def _outliers(solved: StarSolution, limits: Limits) -> Check:
+    noise = max(solved.noise, abs(solved.otf.level) / QUIET_SNR)
+    share = outlier_share(solved.residual, noise)
+    return answer("outliers", share, f"{share:.1%} of the pixels do not fit the star", limits)
 
 
 def third_harmonic(solved: StarSolution) -> float:
@@ -93,4 +114,4 @@ def third_harmonic(solved: StarSolution) -> float:
     fit, *_ = np.linalg.lstsq(design, solved.residual[outer], rcond=None)
     amplitude = float(np.hypot(*fit))
     chance = 1.7 * solved.noise * math.sqrt(2 / phase.size)
-    return math.sqrt(max(amplitude**2 - chance**2, 0.0)) / solved.model.level
+    return math.sqrt(max(amplitude**2 - chance**2, 0.0)) / solved.otf.level

@@ -9,7 +9,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoStarError
-from acutance.geometry.star_geometry import Flags, FoundStar
+from acutance.geometry.star_geometry import Flags, SiemensStar
 from acutance.targets.periodic.star_rings import members_of
 
 __all__ = ["extent_of"]
@@ -17,7 +17,7 @@ __all__ = ["extent_of"]
 _SECTOR_CYCLES = 2.0
 
 
-def extent_of(smooth: Floats, usable: Flags, star: FoundStar, inner: float) -> FoundStar:
+def extent_of(smooth: Floats, usable: Flags, star: SiemensStar, inner: float) -> SiemensStar:
     """The rim and the directions the star holds, where its own wave explains the pixels."""
     rows, cols = np.nonzero(usable)
     radius, angle = star.polar(rows.astype(float), cols.astype(float))

@@ -15,7 +15,7 @@ from scipy import ndimage
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoStarError
-from acutance.geometry.star_geometry import Flags, FoundStar
+from acutance.geometry.star_geometry import Flags, SiemensStar
 from acutance.targets.periodic.star_extent import extent_of
 from acutance.targets.periodic.star_rings import members_of, rings_of
 
@@ -32,7 +32,7 @@ _SECTOR_CYCLES = 2.0
 
 def find_star(
     image: Floats, cycles: int | None, centre: tuple[float, float] | None = None
-) -> FoundStar:
+) -> SiemensStar:
     """Find the one star of an image.
 
     Parameters
@@ -61,7 +61,7 @@ def find_star(
     local = _strengths(smooth, lively, (row, col), farthest, cycles, turns=1 / _SECTORS)
     _require_spokes(local, cycles, row, col, farthest)
     first = max(local, key=lambda n: local[n]) if cycles is None else cycles
-    found = _settled(smooth, lively, FoundStar(row, col, first, 0.0, farthest))
+    found = _settled(smooth, lively, SiemensStar(row, col, first, 0.0, farthest))
     whole = _strengths(
         smooth, lively, (found.row, found.col), farthest, first if cycles is None else cycles
     )
@@ -73,7 +73,7 @@ def find_star(
     return extent_of(smooth, usable, found, found.radius_at(_COARSE_CPP))
 
 
-def _settled(smooth: Floats, lively: Flags, star: FoundStar) -> FoundStar:
+def _settled(smooth: Floats, lively: Flags, star: SiemensStar) -> SiemensStar:
     """Centre and phase after some steps of `_agreed`."""
     for _ in range(8):
         moved = _agreed(smooth, lively, star)
@@ -162,7 +162,7 @@ def _require_spokes(
 
 
 def _require_count(
-    smooth: Floats, lively: Flags, star: FoundStar, strength: dict[int, float]
+    smooth: Floats, lively: Flags, star: SiemensStar, strength: dict[int, float]
 ) -> None:
     """Refuse a star whose rings are explained better by another number of cycles."""
     best = max(strength, key=lambda n: strength[n])
@@ -216,7 +216,7 @@ def _strength(
     return min(explained / max(power, 1e-300), 1.0)
 
 
-def _agreed(smooth: Floats, usable: Flags, star: FoundStar) -> FoundStar:
+def _agreed(smooth: Floats, usable: Flags, star: SiemensStar) -> SiemensStar:
     """Move centre and phase to where the spokes have one phase, in all rings and directions.
 
     In cells of two cycles by a ring, the phase of ``cos(k phi + alpha)`` about a centre that is

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.geometry.star_geometry import Flags, FoundStar
+from acutance.geometry.star_geometry import Flags, SiemensStar
 
 __all__ = ["members_of", "ring_modulations", "rings_of"]
 
@@ -41,7 +41,7 @@ def members_of(sector: NDArray[np.intp], among: Flags, count: int) -> list[NDArr
 
 
 def ring_modulations(
-    image: Floats, star: FoundStar, inner_px: float, outer_px: float
+    image: Floats, star: SiemensStar, inner_px: float, outer_px: float
 ) -> tuple[Floats, Floats, Floats]:
     """The plain reading: a + b cos + c sin of the spokes in every ring, by least squares.
 

@@ -24,14 +24,18 @@ from scipy.special import jv
 
 from acutance.curves.grid import Floats
 from acutance.numerics.lookup import CubicLookup
-from acutance.targets.periodic.otf_modes import MEAN_MODES, Complexes, PlaneBlur, ProcessModes
+from acutance.targets.periodic.otf_modes import (
+    HIGHEST_CPP,
+    MEAN_MODES,
+    Complexes,
+    GaussianPixel,
+    ProcessModes,
+)
 
-__all__ = ["HIGHEST_CPP", "StarTable", "Wave", "star_table"]
+__all__ = ["StarTable", "Wave", "star_table"]
 
 Wave = Literal["sine", "square"]
 
-HIGHEST_CPP: Final = 2.5
-"""Nothing a star shows comes from beyond."""
 _HARMONICS_CPP: Final = 1.3
 """Harmonics whose frequency is beyond this at the rim are not seen anywhere."""
 _STEP_PX: Final = 0.05
@@ -56,7 +60,7 @@ class StarTable:
 
     Parameters
     ----------
-    blur : PlaneBlur
+    mean : GaussianPixel
         Mean of the transfer.
     cycles : int
     wave : {"sine", "square"}
@@ -66,7 +70,7 @@ class StarTable:
         Radius of the star.
     """
 
-    blur: PlaneBlur
+    mean: GaussianPixel
     cycles: int
     wave: Wave
     inner_px: float
@@ -86,8 +90,8 @@ class StarTable:
 
     @cached_property
     def _harmonics(self) -> list[_Harmonic]:
-        states = ProcessModes(self.blur.width_px)
-        mean = _angular_parts(self.blur, self._freq)
+        states = ProcessModes(self.mean.width_px)
+        mean = _angular_parts(self.mean, self._freq)
         radial = [states.radial(m, self._freq) for m in range(states.orders + 1)]
         highest = 1
         if self.wave == "square":
@@ -138,7 +142,7 @@ class StarTable:
             Derivative of the first column (the mean itself) by the phase.
         """
         take = CubicLookup.of(radius_px, self._radii)
-        orders = ProcessModes(self.blur.width_px).orders
+        orders = ProcessModes(self.mean.width_px).orders
         mean = np.zeros((radius_px.size, MEAN_MODES))
         by_phase = np.zeros(radius_px.size)
         even = [np.zeros(0)] * (orders + 1)
@@ -178,7 +182,7 @@ def _pair(
     return (factor * (one + other)).real, (-1j * factor * (one - other)).real
 
 
-def _angular_parts(blur: PlaneBlur, freq: Floats) -> Complexes:
+def _angular_parts(blur: GaussianPixel, freq: Floats) -> Complexes:
     """Angular Fourier coefficients of the mean's modes, (n_f, MEAN_MODES, directions)."""
     angle = 2 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     u, v = np.outer(freq, np.cos(angle)), np.outer(freq, np.sin(angle))
@@ -208,7 +212,7 @@ def _bessel(order: int, reach: float) -> Floats:
 
 @lru_cache(maxsize=8)
 def star_table(
-    blur: PlaneBlur, cycles: int, wave: Wave, inner_px: float, outer_px: float, rim_px: float
+    mean: GaussianPixel, cycles: int, wave: Wave, inner_px: float, outer_px: float, rim_px: float
 ) -> StarTable:
     """The table of a star; that of the same star is kept."""
-    return StarTable(blur, cycles, wave, inner_px, outer_px, rim_px)
+    return StarTable(mean, cycles, wave, inner_px, outer_px, rim_px)

@@ -13,10 +13,14 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.lookup import CubicLookup
-from acutance.targets.periodic.otf_modes import Complexes, PlaneBlur, ProcessModes
-from acutance.targets.periodic.star_waves import HIGHEST_CPP
+from acutance.targets.periodic.otf_modes import (
+    HIGHEST_CPP,
+    Complexes,
+    GaussianPixel,
+    ProcessModes,
+)
 
-__all__ = ["SeenGroup", "group_columns"]
+__all__ = ["GroupPixels", "group_columns"]
 
 _BESIDE_PX: Final = 8.0
 _END_MARGIN_PX: Final = 5.0
@@ -24,7 +28,7 @@ _STEP_PX: Final = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class SeenGroup:
+class GroupPixels:
     """The pixels of a group.
 
     Attributes
@@ -46,7 +50,7 @@ class SeenGroup:
     along: Floats
 
     @classmethod
-    def of(cls, image: Floats, bars: Bars, number: int) -> SeenGroup:
+    def of(cls, image: Floats, bars: Bars, number: int) -> GroupPixels:
         """The usable pixels between the bars' ends and some way beside the group."""
         rows, cols = np.nonzero(np.isfinite(image))
         across, along = bars.across_and_along(rows.astype(float), cols.astype(float))
@@ -80,7 +84,7 @@ class SeenGroup:
 
 
 def group_columns(
-    seen: SeenGroup, blur: PlaneBlur, states: ProcessModes | None, contrast: float
+    seen: GroupPixels, blur: GaussianPixel, states: ProcessModes | None, contrast: float
 ) -> tuple[Floats, Floats]:
     """The images of all modes, and the group's own columns.
 
@@ -104,7 +108,7 @@ def group_columns(
 
 
 def _profiles(
-    bars: Bars, blur: PlaneBlur, states: ProcessModes | None, reach: float
+    bars: Bars, blur: GaussianPixel, states: ProcessModes | None, reach: float
 ) -> tuple[Floats, Floats]:
     """Images of all modes along the normal, then the mean's by place and by period.
 
@@ -121,7 +125,7 @@ def _profiles(
     u, v = freq * math.cos(angle), freq * math.sin(angle)
     transfer: Complexes = blur.modes(u, v)
     if states is not None:
-        transfer = np.hstack([transfer, states.plane(u, v)])
+        transfer = np.hstack([transfer, states.otf_modes(u, v)])
     spectrum = bars.spectrum(freq)
     turns = np.exp(2j * math.pi * np.outer(places, freq))
     weighted = (2 * step) * turns * spectrum

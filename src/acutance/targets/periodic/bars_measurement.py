@@ -1,0 +1,173 @@
+"""What was measured on groups of bars."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from acutance.curves import Estimate, Response
+from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
+from acutance.geometry.angles import angle_between_deg
+from acutance.geometry.bar_group import Bars
+from acutance.geometry.line import Orientation
+from acutance.numerics.noise import robust_scale
+from acutance.targets.measurement import Measurement
+from acutance.targets.periodic.bars_readings import GroupReading
+from acutance.targets.record import rounded
+from acutance.targets.slices import PlaneSlices
+
+__all__ = ["BarsDetails", "BarsGroup", "BarsMeasurement", "GroupProfile"]
+
+_MAX_OFF_NORMAL_DEG = 30.0
+"""An axis further from every normal than this was not measured."""
+
+
+@dataclass(frozen=True)
+class BarsGroup(ShortRepr):
+    """What one group of bars gives.
+
+    Attributes
+    ----------
+    bars : Bars
+        Where it is, in pixels of the whole image.
+    period_px : Estimate
+        Its period.
+    mtf : Estimate
+        MTF at its frequency along its normal, from the joint fit.
+    reading : GroupReading
+        The plain reading: a sinusoid, and the contrast of the square bars.
+    coltman : float
+        MTF from the contrasts of all groups of this direction by Coltman's series.
+    """
+
+    bars: Bars
+    period_px: Estimate
+    mtf: Estimate
+    reading: GroupReading
+    coltman: float
+
+    @property
+    def freq_cpp(self) -> float:
+        """Frequency of the bars in cycles per pixel."""
+        return self.bars.freq_cpp
+
+    def to_dict(self) -> dict[str, Any]:
+        """Place, MTF and plain readings, for JSON."""
+        reading = self.reading
+        return {
+            **self.bars.to_dict(),
+            "period_px": self.period_px.to_dict(),
+            "freq_cpp": self.freq_cpp,
+            "mtf": self.mtf.to_dict(),
+            "modulation": Estimate(reading.modulation, reading.modulation_std).to_dict(),
+            "ctf": Estimate(reading.ctf, reading.ctf_std).to_dict(),
+            "coltman_mtf": self.coltman,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class GroupProfile(ShortRepr):
+    """The pixels of one group along its normal.
+
+    Attributes
+    ----------
+    across_px : (n,) array
+        Distance along the normal from the centre of the group.
+    value, fitted : (n,) arrays
+        Level and fitted level: 0 is the background, 1 a wide bar.
+    """
+
+    across_px: Floats
+    value: Floats
+    fitted: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class BarsDetails(ShortRepr):
+    """The heavy half of a measurement of bars.
+
+    Attributes
+    ----------
+    pixels : (rows, cols) array
+        The region; NaN where there is nothing to use.
+    residual : (rows, cols) array
+        What the fit leaves of the pixels used (NaN elsewhere), image units.
+    profiles : tuple of GroupProfile
+        In the order of the groups.
+    """
+
+    pixels: Floats
+    residual: Floats
+    profiles: tuple[GroupProfile, ...]
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of what the fit leaves, outliers aside, image units."""
+        return robust_scale(self.residual[np.isfinite(self.residual)])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class BarsMeasurement(Measurement):
+    """A measurement of groups of bars.
+
+    Parameters
+    ----------
+    groups : tuple of BarsGroup
+        In the order they were stated or found.
+    directions_deg : tuple of float
+        Directions across the bars, from the column axis towards the row axis: what is measured.
+        Other directions follow from what all sensors have in common.
+    contrast : Estimate
+        Bars less background, before the sensor.
+    """
+
+    groups: tuple[BarsGroup, ...]
+    directions_deg: tuple[float, ...]
+    contrast: Estimate
+
+    @cached_property
+    def normal_response(self) -> Response:
+        """The curves and numbers along the normal of the first direction."""
+        return self.response_at(self.directions_deg[0])
+
+    @property
+    def measured_directions(self) -> tuple[Orientation, ...]:
+        """Those of "across" and "along" that lie within 30 degrees of a normal.
+
+        Bars of one direction that is far from both measure the nearer one best.
+        """
+        off = {
+            name: min(angle_between_deg(axis, normal) for normal in self.directions_deg)
+            for name, axis in self.axes_deg.items()
+        }
+        nearest = min(off.values())
+        return tuple(name for name in off if off[name] <= max(_MAX_OFF_NORMAL_DEG, nearest))
+
+    def is_first_direction(self, group: BarsGroup) -> bool:
+        """Whether a group's normal is nearer to the first direction than to any other."""
+        off = [angle_between_deg(group.bars.normal_deg, normal) for normal in self.directions_deg]
+        return off[0] == min(off)
+
+    @cached_property
+    def slices(self) -> PlaneSlices:
+        """Slices of the OTF in the directions across the bars, the only ones measured."""
+        return PlaneSlices.of_plane(self.otf, self.directions_deg)
+
+    def target_document(self) -> dict[str, Any]:
+        """Groups and directions, for JSON."""
+        along_normal = self.normal_response
+        curve = along_normal.mtf.to_dict()
+        return {
+            "directions_deg": list(self.directions_deg),
+            "contrast": self.contrast.to_dict(),
+            "normal": {
+                "angle_deg": self.directions_deg[0],
+                **{name: one.to_dict() for name, one in along_normal.metrics().items()},
+                "mtf": {name: rounded(values) for name, values in curve.items()},
+            },
+            "groups": [group.to_dict() for group in self.groups],
+        }
