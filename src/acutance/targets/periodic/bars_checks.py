@@ -93,7 +93,7 @@ def _saturation(solved: BarsSolution, saturation_level: float | None, limits: Li
 
 def _correlated_noise(solved: BarsSolution, limits: Limits) -> Check:
     # Of an image without noise, the residuals are the arithmetic's.
-    strongest = 0.0 if solved.snr > QUIET_SNR else solved.correlation.told
+    strongest = 0.0 if solved.snr > QUIET_SNR else solved.correlation.significant
     return answer(
         "correlated_noise", strongest,
         f"residuals of neighbouring pixels correlate by {strongest:.2f}", limits,

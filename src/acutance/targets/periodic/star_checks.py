@@ -87,7 +87,7 @@ def _saturation(
 
 def _correlated_noise(solved: StarSolution, snr: float, limits: Limits) -> Check:
     # Of an image without noise, the residuals are the arithmetic's.
-    strongest = 0.0 if snr > QUIET_SNR else solved.correlation.told
+    strongest = 0.0 if snr > QUIET_SNR else solved.correlation.significant
     return answer(
         "correlated_noise", strongest,
         f"residuals of neighbouring pixels correlate by {strongest:.2f}", limits,
