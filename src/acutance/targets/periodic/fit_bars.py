@@ -46,7 +46,7 @@ __all__ = ["BarsSolution", "solve_bars"]
 
 _SIGMA_PX: Final = 0.5
 _MAX_PLACE_PASSES: Final = 7
-_MAX_PASSES: Final = 12
+_MAX_PASSES: Final = 14
 _PLACED_PX: Final = 0.05
 _SETTLED_PX: Final = 0.005
 _SETTLED_SCATTERED: Final = 2e-4
@@ -177,17 +177,16 @@ def _fit_otf(
 ) -> BarsSolution:
     """The transfer function itself, with what bars' ends and neighbours do to the pixels."""
     states = ProcessModes(mean.width_px)
-    weight: Floats = np.ones(0)
-    scattered: list[Floats] = []
+    # By group and pixel: a group that moves takes in other pixels, and groups may share some.
+    weights = np.ones((len(groups), *image.shape))
+    all_scattered = np.zeros_like(weights)
     noise_found = Correlation(1.0, 0.0, 0.0)
     earlier: Posterior | None = None
     for _ in range(_MAX_PASSES):
         pixels = _pixels_of(image, groups)
-        sizes = [one.value.size for one in pixels]
-        if weight.size != sum(sizes):
-            weight, earlier = np.ones(sum(sizes)), None
-        if [one.size for one in scattered] != sizes:
-            scattered = [np.zeros(size) for size in sizes]
+        ends = np.cumsum([one.value.size for one in pixels])[:-1]
+        weight = np.concatenate(_at_pixels(weights, pixels))
+        scattered = _at_pixels(all_scattered, pixels)
         fitted = _regression(
             pixels, stated, mean, states, contrast, weight, scattered,
             levels, noise_found.inflation, earlier,
@@ -204,13 +203,15 @@ def _fit_otf(
         ):
             break
         groups = tuple(one.moved(fitted.own(k)[0][2:]) for k, one in enumerate(pixels))
-        weight, scattered, earlier = again, found, fitted.posterior
+        _store(weights, pixels, np.split(again, ends))
+        _store(all_scattered, pixels, found)
+        earlier = fitted.posterior
         contrast = _same_sign(fitted.otf.level, contrast)
     own = [fitted.own(number) for number in range(len(pixels))]
     return BarsSolution(
         otf=fitted.otf,
         groups=pixels,
-        residuals=tuple(np.split(fitted.residual, np.cumsum(sizes)[:-1])),
+        residuals=tuple(np.split(fitted.residual, ends)),
         backgrounds=tuple(float(value[0]) for value, _ in own),
         period_std_px=tuple(float(std[3]) for _, std in own),
         noise=fitted.noise,
@@ -220,6 +221,17 @@ def _fit_otf(
 
 def _pixels_of(image: Floats, groups: tuple[Bars, ...]) -> tuple[GroupPixels, ...]:
     return tuple(GroupPixels.of(image, bars, number) for number, bars in enumerate(groups, 1))
+
+
+def _at_pixels(stack: Floats, pixels: tuple[GroupPixels, ...]) -> list[Floats]:
+    """What a stack (groups, rows, cols) holds at the pixels of every group."""
+    return [layer[one.rows, one.cols] for layer, one in zip(stack, pixels, strict=True)]
+
+
+def _store(stack: Floats, pixels: tuple[GroupPixels, ...], values: list[Floats]) -> None:
+    """Write values at the pixels of every group into a stack (groups, rows, cols)."""
+    for layer, one, own in zip(stack, pixels, values, strict=True):
+        layer[one.rows, one.cols] = own
 
 
 def _same_sign(level: float, contrast: float) -> float:
