@@ -6,7 +6,7 @@ import pytest
 
 from acutance import OptionError
 from acutance.targets.periodic import BarsOptions, StarOptions
-from acutance.targets.periodic.clipped_and_outlying import known_levels
+from acutance.targets.periodic.stated_contrast import stated_levels
 
 
 @pytest.mark.parametrize("options", [BarsOptions, StarOptions])
@@ -30,8 +30,8 @@ def test_levels_that_mean_nothing_are_refused(options, stated, message):
 
 
 def test_levels_are_optional():
-    assert known_levels(None, None, 0.0) is None
-    assert known_levels(200.0, 1200.0, 1.0) is not None
+    assert stated_levels(None, None, 0.0) is None
+    assert stated_levels(200.0, 1200.0, 1.0) is not None
 
 
 @pytest.mark.parametrize(

@@ -6,17 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from acutance.curves import Estimate, Response
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.angles import angle_between_deg
 from acutance.geometry.bar_group import Bars
 from acutance.geometry.line import Orientation
-from acutance.numerics.noise import robust_scale
-from acutance.targets.measurement import Measurement
 from acutance.targets.periodic.bars_readings import GroupReading
+from acutance.targets.periodic.periodic_measurement import PeriodicDetails, PeriodicMeasurement
 from acutance.targets.record import rounded
 from acutance.targets.slices import PlaneSlices
 
@@ -87,31 +84,20 @@ class GroupProfile(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False)
-class BarsDetails(ShortRepr):
-    """The heavy half of a measurement of bars.
+class BarsDetails(PeriodicDetails):
+    """The heavy half of a measurement of bars: pixels and residuals, and the groups' profiles.
 
     Attributes
     ----------
-    pixels : (rows, cols) array
-        The region; NaN where there is nothing to use.
-    residual : (rows, cols) array
-        What the fit leaves of the pixels used (NaN elsewhere), image units.
     profiles : tuple of GroupProfile
         In the order of the groups.
     """
 
-    pixels: Floats
-    residual: Floats
     profiles: tuple[GroupProfile, ...]
-
-    @property
-    def noise(self) -> float:
-        """Standard deviation of what the fit leaves, outliers aside, image units."""
-        return robust_scale(self.residual[np.isfinite(self.residual)])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class BarsMeasurement(Measurement):
+class BarsMeasurement(PeriodicMeasurement):
     """A measurement of groups of bars.
 
     Parameters
@@ -128,6 +114,7 @@ class BarsMeasurement(Measurement):
     groups: tuple[BarsGroup, ...]
     directions_deg: tuple[float, ...]
     contrast: Estimate
+    details: BarsDetails | None = None
 
     @cached_property
     def normal_response(self) -> Response:

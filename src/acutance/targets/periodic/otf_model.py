@@ -16,7 +16,7 @@ from acutance.targets.periodic.otf_modes import (
     ProcessModes,
 )
 
-__all__ = ["FittedOtf", "level_row"]
+__all__ = ["FittedOtf", "all_modes", "level_row"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,15 +69,16 @@ class FittedOtf:
         return level_row(self.mean, self.beta.size)
 
     def _modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        return _all_modes(self.mean, self.beta.size, u_cpp, v_cpp)
+        return all_modes(self.mean, self.beta.size, u_cpp, v_cpp)
 
 
 def level_row(mean: GaussianPixel, size: int) -> Floats:
     """What each of `size` coefficients adds to the level: its mode at zero frequency."""
-    return np.asarray(_all_modes(mean, size, np.zeros(1), np.zeros(1))[0].real)
+    return np.asarray(all_modes(mean, size, np.zeros(1), np.zeros(1))[0].real)
 
 
-def _all_modes(mean: GaussianPixel, size: int, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+def all_modes(mean: GaussianPixel, size: int, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+    """The mean's modes and, of more coefficients than those, the processes', (n, size)."""
     own = mean.modes(u_cpp, v_cpp)
     if size == MEAN_MODES:
         return own

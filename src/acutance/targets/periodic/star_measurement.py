@@ -14,9 +14,8 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP, mtf_crossing
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.star_geometry import SiemensStar
-from acutance.numerics.noise import robust_scale
-from acutance.targets.measurement import Measurement
 from acutance.targets.periodic.fit_star import SIDE_MARGIN_PX
+from acutance.targets.periodic.periodic_measurement import PeriodicDetails, PeriodicMeasurement
 from acutance.targets.record import rounded
 
 __all__ = ["Rings", "StarDetails", "StarMeasurement", "mean_over_directions"]
@@ -53,29 +52,12 @@ class Rings(ShortRepr):
         }
 
 
-@dataclass(frozen=True, eq=False)
-class StarDetails(ShortRepr):
-    """The heavy half of a measurement of a star.
-
-    Attributes
-    ----------
-    pixels : (rows, cols) array
-        The region; NaN where there is nothing to use.
-    residual : (rows, cols) array
-        What the fit leaves of the pixels used (NaN elsewhere), image units.
-    """
-
-    pixels: Floats
-    residual: Floats
-
-    @property
-    def noise(self) -> float:
-        """Standard deviation of what the fit leaves, outliers aside, image units."""
-        return robust_scale(self.residual[np.isfinite(self.residual)])
+class StarDetails(PeriodicDetails):
+    """The heavy half of a measurement of a star: pixels and residuals."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class StarMeasurement(Measurement):
+class StarMeasurement(PeriodicMeasurement):
     """A measurement of one star.
 
     Parameters
@@ -97,6 +79,7 @@ class StarMeasurement(Measurement):
     level: Estimate
     reach_cpp: tuple[float, float]
     rings: Rings
+    details: StarDetails | None = None
 
     @cached_property
     def mean_mtf(self) -> Mtf:

@@ -1,0 +1,92 @@
+"""The fitted OTF in a twentieth of its size: its covariance rounded where it makes no difference.
+
+The coefficients of the modes are uncertain by far more than the OTF, whose errors they cancel
+between them. So the covariance is rounded in other coordinates, in which the values of the OTF at
+the frequencies it is used at are orthonormal: there a small error of an element is a small one of
+the OTF.
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Final
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.targets.periodic.otf_model import FittedOtf, all_modes
+from acutance.targets.periodic.otf_modes import HIGHEST_CPP, Complexes, GaussianPixel
+
+__all__ = ["PackedOtf"]
+
+_STEP: Final = 3e-7
+"""Elements of the OTF's factor are rounded to this: deviations change by 0.2 % at most."""
+_GRID_STEPS: Final = 40
+_RIDGE: Final = 1e-13
+
+
+@dataclass(frozen=True)
+class PackedOtf:
+    """An OTF with its covariance (`acutance.curves.OtfModel`), packed for pickling.
+
+    Attributes
+    ----------
+    mean : GaussianPixel
+        Mean of the OTF.
+    beta : tuple of float
+        Coefficients of its modes and of the processes'.
+    packed : bytes
+        Compressed triangular factor of the covariance, by the level, in steps of 3e-7.
+    """
+
+    mean: GaussianPixel
+    beta: tuple[float, ...]
+    packed: bytes
+
+    @classmethod
+    def of(cls, fitted: FittedOtf) -> PackedOtf:
+        """Pack a fitted OTF."""
+        root = _orthonormal_root(fitted.mean, fitted.beta.size)
+        factor = root @ fitted.beta_factor / fitted.level
+        upper = np.asarray(np.linalg.qr(factor.T, mode="r"))
+        steps = np.round(upper.T[np.tril_indices(len(upper))] / _STEP).astype("<i4")
+        return cls(fitted.mean, tuple(fitted.beta.tolist()), zlib.compress(steps.tobytes(), 9))
+
+    @property
+    def band_cpp(self) -> float:
+        """Frequency beyond which nothing is transferred."""
+        return HIGHEST_CPP
+
+    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """OTF, (n,)."""
+        return self._fitted.otf(u_cpp, v_cpp)
+
+    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Factor of its covariance, (n, k)."""
+        return self._fitted.factor(u_cpp, v_cpp)
+
+    @cached_property
+    def _fitted(self) -> FittedOtf:
+        beta = np.array(self.beta)
+        steps = np.frombuffer(zlib.decompress(self.packed), "<i4")
+        triangle = np.zeros((beta.size, beta.size))
+        triangle[np.tril_indices(beta.size)] = _STEP * steps
+        factor: Floats = np.linalg.solve(_orthonormal_root(self.mean, beta.size), triangle)
+        level = FittedOtf(self.mean, beta, factor).level
+        return FittedOtf(self.mean, beta, level * factor)
+
+    def __getstate__(self) -> dict[str, object]:
+        return {"mean": self.mean, "beta": self.beta, "packed": self.packed}
+
+
+@cache
+def _orthonormal_root(mean: GaussianPixel, size: int) -> Floats:
+    """Root of the modes' mean products over the plane of frequencies, (size, size), triangular."""
+    freq = np.linspace(-HIGHEST_CPP, HIGHEST_CPP, 2 * _GRID_STEPS + 1)
+    u, v = (grid.ravel() for grid in np.meshgrid(freq, freq[_GRID_STEPS:]))
+    modes = all_modes(mean, size, u, v)
+    products = (modes.real.T @ modes.real + modes.imag.T @ modes.imag) / u.size
+    ridge = _RIDGE * float(np.trace(products))
+    return np.asarray(np.linalg.cholesky(products + ridge * np.eye(size)).T)
