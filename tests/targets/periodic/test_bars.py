@@ -70,7 +70,9 @@ def test_bars_beyond_nyquist_are_measured():
 
 
 def test_aligned_bars_and_wide_bars():
-    image, truth = bars_scene(angle_deg=0.0, periods_px=(16, 8, 5, 2.6), count=3, orientation="along")
+    image, truth = bars_scene(
+        angle_deg=0.0, periods_px=(16, 8, 5, 2.6), count=3, orientation="along"
+    )
     found = measure_bars(image)
     error, std = _errors(found, truth)
     assert np.max(np.abs(error / std)) < 4.0

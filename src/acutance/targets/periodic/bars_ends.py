@@ -41,7 +41,7 @@ class OtfTable:
 
     @classmethod
     def of(cls, model: OtfModel) -> OtfTable:
-        """Tabulate a model: half of the plane, the rest is its conjugate."""
+        """Tabulate a model: half of all frequencies, the rest is its conjugate."""
         n = _TABLE_SIZE
         freq: Floats = np.asarray(_TABLE_CPP * np.arange(-n, n + 1))
         half = freq[n:]
@@ -116,9 +116,9 @@ def light_of_neighbours(
     for bars in groups:
         angle = math.radians(bars.normal_deg)
         f, g = u * math.cos(angle) + v * math.sin(angle), v * math.cos(angle) - u * math.sin(angle)
-        ground = bars.spectrum(f) * bars.length_px * np.sinc(bars.length_px * g)
+        outline = bars.spectrum(f) * bars.length_px * np.sinc(bars.length_px * g)
         place = np.exp(-2j * math.pi * (u * bars.col + v * bars.row))
-        spectrum = (transfer * ground * place).reshape(shape[0], -1)
+        spectrum = (transfer * outline * place).reshape(shape[0], -1)
         images.append(np.fft.irfft2(spectrum, shape))
     total = np.sum(images, axis=0)
     return [

@@ -1,6 +1,6 @@
 """Where the groups of bars of an image are, how many bars each has, and their period.
 
-A group stands out of the ground as a whole, also where its bars are too fine to be seen. Its
+A group stands out of the background as a whole, also where its bars are too fine to be seen. Its
 direction is that of its gradients; number and period come from comparing its profile with those
 of finite groups, blurred plainly.
 """
@@ -19,21 +19,24 @@ from scipy.special import ndtr
 from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
+from acutance.targets.periodic.tuned import (
+    ABOUT_AS_WELL,
+    FULL_HEIGHT,
+    MAX_GROUP_REST,
+    STANDS_OUT,
+    SURE_DIRECTION,
+)
 
 __all__ = ["find_bars"]
 
 _CLOSE_PX = (2.0, 3.5, 6.0)
-_STANDS_OUT = 0.2
-_LEAST_PX = 40
+_MIN_BLOB_PX = 40
 _COUNTS = range(2, 16)
 _BLUR_PX = 0.65
 _BLURS_PX = (0.5, 0.8)
 _CLOSER = 3
-_LEAST_PERIOD_PX = 1.4
+_MIN_PERIOD_PX = 1.4
 _COMMON_DEG = 12.0
-_SURE = 0.15
-_ABOUT_AS_WELL = 0.03
-_FULL = 0.8
 
 
 def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...], float]:
@@ -59,47 +62,47 @@ def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...]
         If nothing in the image is a group of bars.
     """
     known = np.isfinite(image)
-    ground = float(np.median(image[known]))
-    departure = np.where(known, image - ground, 0.0)
-    low, high = (float(x) for x in np.quantile(departure[known], [0.002, 0.998]))
+    background = float(np.median(image[known]))
+    difference = np.where(known, image - background, 0.0)
+    low, high = (float(x) for x in np.quantile(difference[known], [0.002, 0.998]))
     sign = 1.0 if high >= -low else -1.0
     height = max(high, -low)
     if not height > 0:
         raise NoBarsError("the region is uniform: there are no bars to be seen in it")
-    bright = sign * departure / height
+    bright = sign * difference / height
     best: list[_Candidate] = []
-    fewest = math.inf
+    min_alone: float = math.inf
     for close in _CLOSE_PX:
         seen = [_measured(bright, blob, count) for blob in _blobs(bright, close)]
         groups = [one for one in seen if one is not None and one.bars.count > 1]
         # Bars that are wider than the gaps closed stand alone, as a patch of the bars' level does.
         alone = len(seen) - len(groups)
-        if groups and alone < fewest:
-            best, fewest = groups, alone
-        if best and not fewest:
+        if groups and alone < min_alone:
+            best, min_alone = groups, alone
+        if best and not min_alone:
             break
     if best:
         counted = [_recounted(bright, one, _usual_count(best)) for one in best]
         return _of_one_kind(counted), sign * height
     raise NoBarsError(
-        "no whole group of parallel bars stands out of the ground: choose a region that holds "
-        "the groups and some ground on all sides of them, or state where they are (groups)"
+        "no whole group of parallel bars stands out of the background: choose a region that holds "
+        "the groups and some background on all sides of them, or state where they are (groups)"
     )
 
 
 def _blobs(bright: Floats, close_px: float) -> list[NDArray[np.bool_]]:
-    """Parts of the image that stand out of the ground once gaps are closed.
+    """Parts of the image that stand out of the background once gaps are closed.
 
-    One that reaches the border is no target: a group is known by its ground on all sides.
+    One that reaches the border is no target: a group is known by its background on all sides.
     """
-    whole = ndimage.gaussian_filter(bright, close_px) > _STANDS_OUT
+    whole = ndimage.gaussian_filter(bright, close_px) > STANDS_OUT
     labels, number = ndimage.label(whole)
     cut_off = set(np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]]).tolist())
     size = np.bincount(labels.ravel())
     return [
         labels == one
         for one in range(1, number + 1)
-        if size[one] > _LEAST_PX and one not in cut_off
+        if size[one] > _MIN_BLOB_PX and one not in cut_off
     ]
 
 
@@ -122,7 +125,7 @@ def _recounted(bright: Floats, one: _Candidate, count: int) -> _Candidate:
     if one.bars.count == count:
         return one
     other = _measured(bright, one.blob, count)
-    return other if other is not None and other.rest < 2 * one.rest + _ABOUT_AS_WELL else one
+    return other if other is not None and other.rest < 2 * one.rest + ABOUT_AS_WELL else one
 
 
 def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Candidate | None:
@@ -142,9 +145,9 @@ def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Ca
         found = _profile_fit(bright, blob, angle, count)
         if found is not None and (best is None or found[0] < best[0]):
             best = found
-        if best is not None and sureness > _SURE:
+        if best is not None and sureness > SURE_DIRECTION:
             break
-    if best is None or best[0] > 0.35:
+    if best is None or best[0] > MAX_GROUP_REST:
         return None
     return _Candidate(best[1], sureness, best[0], blob)
 
@@ -191,8 +194,8 @@ def _profile_fit(
                 if rest < best[0]:
                     best = (rest, offset + move, period, counts[index])
     rest, place, period, bars = best
-    # Fine bars nobody can resolve look like one wide bar, but of half the height.
-    if level > _FULL and alone < 2 * rest + _ABOUT_AS_WELL:
+    # Fine bars that are not resolved look like one wide bar, but of half the height.
+    if level > FULL_HEIGHT and alone < 2 * rest + ABOUT_AS_WELL:
         rest, place, period, bars = alone, offset, 2 * width, 1
     if not bars:
         return None
@@ -207,7 +210,7 @@ def _trials(width: float, count: int, periods: int, moves: int) -> list[tuple[fl
     return [
         (float(period), float(move))
         for period in np.linspace(0.9, 1.1, periods) * width / (count - 0.5)
-        if period >= _LEAST_PERIOD_PX
+        if period >= _MIN_PERIOD_PX
         for move in np.linspace(-0.4, 0.4, moves) * min(period, 6.0)
     ]
 
@@ -233,8 +236,8 @@ def _crossing(mean: Floats, inside: int, step: int, level: float) -> float:
     outside = inside + step
     if not 0 <= outside < mean.size:
         return float(inside)
-    fall = float(mean[inside] - mean[outside])
-    return inside + step * (float(mean[inside]) - level) / fall if fall > 0 else float(inside)
+    drop = float(mean[inside] - mean[outside])
+    return inside + step * (float(mean[inside]) - level) / drop if drop > 0 else float(inside)
 
 
 def _rest(

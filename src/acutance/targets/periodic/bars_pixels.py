@@ -22,7 +22,7 @@ from acutance.targets.periodic.otf_modes import (
 
 __all__ = ["GroupPixels", "group_columns"]
 
-_BESIDE_PX: Final = 8.0
+_SIDE_PX: Final = 8.0
 _END_MARGIN_PX: Final = 5.0
 _STEP_PX: Final = 0.05
 
@@ -51,12 +51,12 @@ class GroupPixels:
 
     @classmethod
     def of(cls, image: Floats, bars: Bars, number: int) -> GroupPixels:
-        """The usable pixels between the bars' ends and some way beside the group."""
+        """The usable pixels between the bars' ends and some way to its sides."""
         rows, cols = np.nonzero(np.isfinite(image))
         across, along = bars.across_and_along(rows.astype(float), cols.astype(float))
         margin = min(_END_MARGIN_PX, 0.25 * bars.length_px)
         kept = np.abs(along) < 0.5 * bars.length_px - margin
-        kept &= np.abs(across) < 0.5 * bars.width_px + _BESIDE_PX
+        kept &= np.abs(across) < 0.5 * bars.width_px + _SIDE_PX
         if np.count_nonzero(kept & (np.abs(across) < 0.5 * bars.width_px)) < 40:
             raise NoBarsError(
                 f"group {number} of {bars.count} bars with a period of {bars.period_px:.2f} px at "

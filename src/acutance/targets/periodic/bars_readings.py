@@ -14,7 +14,7 @@ from acutance.geometry.bar_group import Bars
 __all__ = ["GroupReading", "central", "coltman_mtf", "read_group"]
 
 _HIGHEST_CPP = 1.0
-_TOLD_APART = 30.0
+_MAX_CONDITION = 30.0
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class GroupReading:
 def read_group(
     bars: Bars, across_px: Floats, value: Floats, contrast: float, noise: float
 ) -> GroupReading:
-    """Fit the fundamental of a group, and the harmonics that sampling tells apart from it.
+    """Fit the fundamental of a group, and the harmonics that sampling separates from it.
 
     Parameters
     ----------
@@ -56,27 +56,27 @@ def read_group(
     design = _harmonics(bars, phase)
     inverse = np.linalg.pinv(design.T @ design, rcond=1e-8)
     fit = inverse @ (design.T @ value)
-    spread = noise**2 * inverse
+    covariance = noise**2 * inverse
     first = 2 / math.pi * contrast
-    modulation, modulation_std = fit[1] / first, math.sqrt(spread[1, 1]) / abs(first)
+    modulation, modulation_std = fit[1] / first, math.sqrt(covariance[1, 1]) / abs(first)
     # Midway on a bar and midway on a gap all odd harmonics count in full, with opposite signs.
     both = np.zeros(fit.size)
     both[1::2] = 2.0
-    ctf, ctf_std = float(both @ fit), math.sqrt(float(both @ spread @ both))
+    ctf, ctf_std = float(both @ fit), math.sqrt(float(both @ covariance @ both))
     return GroupReading(
         float(modulation), float(modulation_std), ctf / contrast, ctf_std / abs(contrast)
     )
 
 
 def _harmonics(bars: Bars, phase: Floats) -> Floats:
-    """Constant, fundamental, and the odd harmonics that sampling tells apart from those before."""
+    """Constant, fundamental, and the odd harmonics that sampling separates from those before."""
     design = np.stack([np.ones(phase.size), np.cos(phase), np.sin(phase)], axis=1)
     for number in (3, 5):
         if number * bars.freq_cpp > _HIGHEST_CPP:
             break
         turn = number * phase
         wider = np.column_stack([design, np.cos(turn), np.sin(turn)])
-        if np.linalg.cond(wider.T @ wider) < _TOLD_APART:
+        if np.linalg.cond(wider.T @ wider) < _MAX_CONDITION:
             design = wider
     return design
 
@@ -89,9 +89,9 @@ def coltman_mtf(freq_cpp: Floats, ctf: Floats) -> Floats:
     along the line of the last two, down to 0.
     """
     if freq_cpp.size > 1:
-        fall = (ctf[-2] - ctf[-1]) / (freq_cpp[-1] - freq_cpp[-2])
-        if fall > 0 and ctf[-1] > 0:
-            freq_cpp, ctf = np.append(freq_cpp, freq_cpp[-1] + ctf[-1] / fall), np.append(ctf, 0.0)
+        slope = (ctf[-2] - ctf[-1]) / (freq_cpp[-1] - freq_cpp[-2])
+        if slope > 0 and ctf[-1] > 0:
+            freq_cpp, ctf = np.append(freq_cpp, freq_cpp[-1] + ctf[-1] / slope), np.append(ctf, 0.0)
             return _series(freq_cpp, ctf)[:-1]
     return _series(freq_cpp, ctf)
 

@@ -80,12 +80,12 @@ class GaussianPixel:
         The place in px, x and y; the aperture in px, its width and its height.
         """
         otf = self.otf(u_cpp, v_cpp)
-        turn = -2j * math.pi * otf
-        fall = -2 * math.pi**2 * otf
+        shift = -2j * math.pi * otf
+        blur = -2 * math.pi**2 * otf
         return np.stack(
             [
-                otf, fall * u_cpp**2, 2 * fall * u_cpp * v_cpp, fall * v_cpp**2,
-                turn * u_cpp, turn * v_cpp,
+                otf, blur * u_cpp**2, 2 * blur * u_cpp * v_cpp, blur * v_cpp**2,
+                shift * u_cpp, shift * v_cpp,
                 otf * _by_aperture(u_cpp), otf * _by_aperture(v_cpp),
             ],
             axis=-1,

@@ -73,7 +73,9 @@ class PackedOtf:
         steps = np.frombuffer(zlib.decompress(self.packed), "<i4")
         triangle = np.zeros((beta.size, beta.size))
         triangle[np.tril_indices(beta.size)] = _STEP * steps
-        factor: Floats = np.linalg.solve(_orthonormal_root(self.mean, beta.size), triangle)
+        factor = np.asarray(
+            np.linalg.solve(_orthonormal_root(self.mean, beta.size), triangle), float
+        )
         level = FittedOtf(self.mean, beta, factor).level
         return FittedOtf(self.mean, beta, level * factor)
 
@@ -83,7 +85,7 @@ class PackedOtf:
 
 @cache
 def _orthonormal_root(mean: GaussianPixel, size: int) -> Floats:
-    """Root of the modes' mean products over the plane of frequencies, (size, size), triangular."""
+    """Root of the modes' mean products over frequencies, (size, size), triangular."""
     freq = np.linspace(-HIGHEST_CPP, HIGHEST_CPP, 2 * _GRID_STEPS + 1)
     u, v = (grid.ravel() for grid in np.meshgrid(freq, freq[_GRID_STEPS:]))
     modes = all_modes(mean, size, u, v)

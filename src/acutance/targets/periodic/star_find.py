@@ -18,6 +18,7 @@ from acutance.errors import NoStarError
 from acutance.geometry.star_geometry import Flags, SiemensStar
 from acutance.targets.periodic.star_extent import extent_of
 from acutance.targets.periodic.star_rings import members_of, rings_of
+from acutance.targets.periodic.tuned import MIN_STAR_STRENGTH
 
 __all__ = ["find_star"]
 
@@ -25,7 +26,6 @@ _SMOOTH_PX = 1.5
 _LOCAL_PX = 4.0
 _COARSE_CPP = 0.3
 """Spokes finer than this do not take part in finding the star: they are aliased or faint."""
-_LEAST_STRENGTH = 0.25
 _SECTORS = 10
 _SECTOR_CYCLES = 2.0
 
@@ -85,7 +85,7 @@ def _settled(smooth: Floats, lively: Flags, star: SiemensStar) -> SiemensStar:
 
 
 def _is_lively(smooth: Floats) -> Flags:
-    """Where there is structure: the spokes, not the ground beside a fan."""
+    """Where there is structure: the spokes, not what lies next to a fan."""
     wave = smooth - ndimage.gaussian_filter(smooth, _LOCAL_PX)
     power = ndimage.gaussian_filter(wave**2, _LOCAL_PX)
     return np.asarray(power > 0.15 * np.quantile(power, 0.97))
@@ -153,7 +153,7 @@ def _require_spokes(
             "is too small, or the region does not hold it"
         )
     best = max(strength, key=lambda n: strength[n])
-    if strength[best] < _LEAST_STRENGTH:
+    if strength[best] < MIN_STAR_STRENGTH:
         raise NoStarError(
             f"no star: about row {row:.1f}, column {col:.1f}, where the structure points to, "
             f"spokes explain {strength[best]:.0%} of the rings at best; choose a region around "
@@ -167,13 +167,13 @@ def _require_count(
     """Refuse a star whose rings are explained better by another number of cycles."""
     best = max(strength, key=lambda n: strength[n])
     own = strength.get(star.cycles, 0.0)
-    if own >= _LEAST_STRENGTH and strength[best] < 1.5 * own:
+    if own >= MIN_STAR_STRENGTH and strength[best] < 1.5 * own:
         return
     # The centre was settled with the wrong number: count again about the right one.
     other = _settled(smooth, lively, replace(star, cycles=best))
     again = _strengths(smooth, lively, (other.row, other.col), star.rim_px, best)
     best = max(again, key=lambda n: again[n])
-    seen = f"the rings show {best}" if again[best] > _LEAST_STRENGTH else "no number fits"
+    seen = f"the rings show {best}" if again[best] > MIN_STAR_STRENGTH else "no number fits"
     raise NoStarError(
         f"a star of {star.cycles} cycles was asked for, but about row {other.row:.1f}, column "
         f"{other.col:.1f} {seen}: check the number of cycles and the region"
@@ -211,8 +211,8 @@ def _strength(
             fit = np.linalg.solve(gram, design.T @ value[own])
             wave = design[:, 1:] @ fit[1:]
             rest = value[own] - design @ fit
-            spread = float(np.sum((wave - np.mean(wave)) ** 2))
-            explained += max(spread - float(np.sum(rest**2)) * 2 / own.size, 0.0) / angle.size
+            seen = float(np.sum((wave - np.mean(wave)) ** 2))
+            explained += max(seen - float(np.sum(rest**2)) * 2 / own.size, 0.0) / angle.size
     return min(explained / max(power, 1e-300), 1.0)
 
 
@@ -220,7 +220,7 @@ def _agreed(smooth: Floats, usable: Flags, star: SiemensStar) -> SiemensStar:
     """Move centre and phase to where the spokes have one phase, in all rings and directions.
 
     In cells of two cycles by a ring, the phase of ``cos(k phi + alpha)`` about a centre that is
-    off by (dx, dy) departs by ``k (dx sin phi - dy cos phi) / r``: linear least squares.
+    off by (dx, dy) differs by ``k (dx sin phi - dy cos phi) / r``: linear least squares.
     """
     k = star.cycles
     sectors = max(round(k / _SECTOR_CYCLES), 1)

@@ -64,8 +64,8 @@ def ring_modulations(
         fit, *_ = np.linalg.lstsq(design, value[here], rcond=None)
         rest = value[here] - design @ fit
         noise = float(rest @ rest) / max(phase.size - 3, 1)
-        spread = noise * float(np.linalg.pinv(design.T @ design)[1, 1])
+        variance = noise * float(np.linalg.pinv(design.T @ design)[1, 1])
         mean_radius = float(np.mean(radius[here]))
-        found.append((star.cycles / (2 * math.pi * mean_radius), fit[1], math.sqrt(spread)))
+        found.append((star.cycles / (2 * math.pi * mean_radius), fit[1], math.sqrt(variance)))
     table = np.array(found, float).reshape(-1, 3)
     return table[:, 0], table[:, 1], table[:, 2]

@@ -1,6 +1,6 @@
 """How a star looks through any transfer function, without approximation.
 
-The ground ``cos(k phi + alpha)`` for r < R has a spectrum of one angular order. Let the transfer be
+A scene ``cos(k phi + alpha)`` for r < R has a spectrum of one angular order. Let the transfer be
 ``sum_m h_m(f) exp(i m theta)``; then the image is the real part of
 
     sum_m i^m exp(i ((k + m) phi + alpha)) integral_0^inf h_m(f) Q(f) k / f J_(k+m)(2 pi f r) df
