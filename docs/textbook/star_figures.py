@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 from collections.abc import Callable
 from functools import cache, partial
@@ -11,9 +10,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpydoc.docscrape import ClassDoc
 
 import acutance as ac
+from acutance.geometry.bar_group import Bars
 from acutance.report.page import (
     BLUE,
     FAINT,
@@ -23,7 +22,8 @@ from acutance.report.page import (
     VERMILION,
     new_page,
 )
-from acutance.targets.periodic import BarsLimits, BarsOptions, StarLimits, StarOptions
+from acutance.targets import QUESTIONS
+from acutance.targets.periodic import BARS_CHECKS, STAR_CHECKS, BarsOptions, StarOptions
 from textbook.rst import list_table
 
 __all__ = ["FIGURES", "TEXTS", "finite_bars", "measured_bars", "measured_star", "what_levels_do"]
@@ -60,7 +60,7 @@ def measured_star() -> Figure:
     found, truth = _star("diffraction", 36, levels=True)
     figure = new_page(10.4, 4.3)
     left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.5))
-    left.imshow(found.pixels, cmap="gray", interpolation="nearest")
+    left.imshow(found.details.pixels, cmap="gray", interpolation="nearest")
     angle = np.linspace(0.0, 2 * math.pi, 721)
     aliased = found.star.radius_at(0.5) * np.maximum(np.abs(np.sin(angle)), np.abs(np.cos(angle)))
     left.plot(
@@ -74,7 +74,7 @@ def measured_star() -> Figure:
         radius, truth.mtf_mean(found.star.cycles / (2 * math.pi * radius)), color=INK, ls="--",
         label="truth",
     )  # fmt: skip
-    mtf = found.mtf
+    mtf = found.mean_mtf
     right.plot(found.star.radius_at(1.0) / mtf.freq_cpp[1:], mtf.value[1:], color=BLUE,
                label="joint fit")  # fmt: skip
     rings = found.rings
@@ -102,7 +102,7 @@ def what_levels_do() -> Figure:
             found, _ = _star("gaussian", cycles, levels=levels)
             words = "levels stated" if levels else "levels fitted"
             axes.plot(
-                found.mtf.freq_cpp, found.mtf.std, color=color, ls=style,
+                found.mean_mtf.freq_cpp, found.mean_mtf.std, color=color, ls=style,
                 label=f"{cycles} cycles, {words}",
             )  # fmt: skip
     axes.axvline(0.5, color=FAINT, lw=0.8)
@@ -122,19 +122,20 @@ def measured_bars() -> Figure:
     found, truth = _bars("sharpened")
     figure = new_page(10.4, 4.3)
     left, middle, right = figure.subplots(1, 3, width_ratios=(0.42, 1.0, 1.3))
-    left.imshow(found.pixels, cmap="gray", interpolation="nearest")
+    left.imshow(found.details.pixels, cmap="gray", interpolation="nearest")
     left.set_title("Groups")
     _bare(left)
-    group = found.groups[2]
-    order = np.argsort(group.across_px)
-    middle.plot(group.across_px, group.value, ".", ms=3, color=FAINT, label="pixels")
-    middle.plot(group.across_px[order], group.fitted[order], color=BLUE, label="fit")
+    group, profile = found.groups[2], found.details.profiles[2]
+    order = np.argsort(profile.across_px)
+    middle.plot(profile.across_px, profile.value, ".", ms=3, color=FAINT, label="pixels")
+    middle.plot(profile.across_px[order], profile.fitted[order], color=BLUE, label="fit")
     middle.set(xlabel="distance along the normal, px", ylim=(-0.3, 1.6),
                title=f"The group of {group.freq_cpp:.2f} c/px")  # fmt: skip
     middle.legend(loc="upper right", ncols=2)
     true = truth.response.mtf
     right.plot(true.freq_cpp, true.value, color=INK, ls="--", label="truth")
-    right.plot(found.mtf.freq_cpp, found.mtf.value, color=BLUE, label="joint fit")
+    curve = found.normal_response.mtf
+    right.plot(curve.freq_cpp, curve.value, color=BLUE, label="joint fit")
     freq = [one.freq_cpp for one in found.groups]
     right.plot(freq, [one.reading.ctf for one in found.groups], "s", ms=5, color=PURPLE,
                label="CTF")  # fmt: skip
@@ -154,7 +155,7 @@ def finite_bars() -> Figure:
     axes = figure.subplots()
     freq = np.linspace(0.001, 1.0, 2000)
     for count, color in ((3, BLUE), (15, ORANGE)):
-        bars = ac.measure.Bars(0.0, 0.0, 0.0, 5.0, count, 40.0)
+        bars = Bars(0.0, 0.0, 0.0, 5.0, count, 40.0)
         spectrum = np.abs(bars.spectrum(freq)) / (0.5 * count * bars.period_px)
         axes.plot(freq, spectrum, color=color, label=f"{count} bars", lw=1.4)
     axes.set(
@@ -165,14 +166,14 @@ def finite_bars() -> Figure:
     return figure
 
 
-def _checks(limits: type) -> str:
-    """The limits of a target's checks, and what they ask."""
-    asked = {p.name: " ".join(p.desc) for p in ClassDoc(limits)["Parameters"]}
+def _checks(names: tuple[str, ...]) -> str:
+    """The checks of a target: what they ask, and their limits."""
+    asked = [QUESTIONS[name] for name in names]
     rows = [
-        [f"``{name}``", f"{parameter.default:g}", asked[name]]
-        for name, parameter in inspect.signature(limits).parameters.items()
+        [f"``{name}``", f"{one.sense} {one.limit:g}", one.question]
+        for name, one in zip(names, asked, strict=True)
     ]
-    return list_table(["check", "limit", "what is limited"], rows, (24, 12, 64))
+    return list_table(["check", "limit", "what is asked"], rows, (24, 12, 64))
 
 
 FIGURES: dict[str, Callable[[], Figure]] = {
@@ -182,6 +183,6 @@ FIGURES: dict[str, Callable[[], Figure]] = {
     "bars-finite": finite_bars,
 }
 TEXTS: dict[str, Callable[[], str]] = {
-    "star-checks.inc": partial(_checks, StarLimits),
-    "bars-checks.inc": partial(_checks, BarsLimits),
+    "star-checks.inc": partial(_checks, STAR_CHECKS),
+    "bars-checks.inc": partial(_checks, BARS_CHECKS),
 }
