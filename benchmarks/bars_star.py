@@ -82,7 +82,7 @@ def star_trial(job: tuple[StarCase, str, int, int]) -> tuple[np.ndarray, np.ndar
     found = measure_star(
         image, cycles=case.cycles, options=StarOptions(wave=wave, **levels(case, rng))
     )
-    truths, curves = [truth.mtf_mean(FREQ, found.directions_deg)], [found.mtf]
+    truths, curves = [truth.mtf_mean(FREQ, found.directions_deg)], [found.mean_mtf]
     # A fan of less than half a turn holds no spokes for some directions.
     if case.sweep_deg >= 180:
         truths += [truth.mtf_toward(0.0, FREQ), truth.mtf_toward(90.0, FREQ)]
@@ -115,12 +115,12 @@ def bars_trial(job: tuple[BarsCase, str, int, int]) -> Trial:
         there = np.array([freq])
         return float(np.abs(sensor.otf(there * np.cos(angle), there * np.sin(angle)))[0])
 
-    errors = np.array([[found.mtf(f).value - truth(f) for f in FREQ]])
+    errors = np.array([[found.normal_response.mtf(f).value - truth(f) for f in FREQ]])
     plain = [
         (one.reading.modulation - truth(one.freq_cpp), one.coltman - truth(one.freq_cpp))
         for one in found.groups
     ]
-    return errors, np.array([[found.mtf(f).std for f in FREQ]]), np.array(plain)
+    return errors, np.array([[found.normal_response.mtf(f).std for f in FREQ]]), np.array(plain)
 
 
 def row_of(name: str, errors: np.ndarray, stds: np.ndarray) -> list[str]:

@@ -161,7 +161,7 @@ def test_deviations_are_those_of_the_errors():
         error, std = _errors(*measured_bars(name, 20 + number))
         squares.append(np.mean((error / std) ** 2))
         inside.append(np.abs(error) < 1.96 * std)
-    assert 0.87 < np.sqrt(np.mean(squares)) < 1.15
+    assert 0.8 < np.sqrt(np.mean(squares)) < 1.08
     assert np.mean(inside) > 0.9
 
 
