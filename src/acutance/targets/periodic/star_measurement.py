@@ -48,7 +48,7 @@ class Rings(ShortRepr):
         return {
             "freq_cpp": np.round(self.freq_cpp, 6).tolist(),
             "modulation": rounded(self.modulation),
-            "std": rounded(self.std),
+            "std": rounded(self.std, 4),
         }
 
 
