@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
 
-__all__ = ["Otf2d", "OtfModel"]
+__all__ = ["Otf2d", "OtfModel", "PackableOtf"]
 
 Complexes = NDArray[np.complex128]
 
@@ -46,6 +46,15 @@ class OtfModel(Protocol):
         ...
 
 
+@runtime_checkable
+class PackableOtf(OtfModel, Protocol):
+    """An OTF that has a lighter form, its covariance rounded."""
+
+    def packed(self) -> OtfModel:
+        """The same OTF in fewer bytes."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class Otf2d(ShortRepr):
     """A 2-D OTF, from which the curves of every direction follow.
@@ -60,6 +69,11 @@ class Otf2d(ShortRepr):
 
     model: OtfModel
     gsd_m: tuple[float, float] | None = None
+
+    def packed(self) -> Otf2d:
+        """The same OTF in fewer bytes, where its model has a lighter form."""
+        model = self.model.packed() if isinstance(self.model, PackableOtf) else self.model
+        return Otf2d(model, self.gsd_m)
 
     def response(self, normal_deg: float) -> Response:
         """ESF, LSF and MTF along a direction: an edge whose normal points there would show them.

@@ -25,6 +25,10 @@ PLANE_DIRECTIONS_DEG = (0.0, 45.0, 90.0, 135.0)
 _FREQ_CPP: Floats = np.asarray(np.arange(1, 17) * 0.05)
 _LEAST_STD = 1.5e-4
 """Errors smaller than this are left out: no method is that exact."""
+_FAINT = 0.02
+_REST = 0.005
+"""Of a document: share of the largest deviation below which a place counts as that one, and share
+of the variance whose covariance between places is left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,32 +79,17 @@ class PlaneSlices(ShortRepr):
         """Frequencies across and along, (m * n,) each."""
         return _places(self.normal_deg, self.freq_cpp)
 
-    def to_dict(self, decimals: int | None = None) -> dict[str, Any]:
-        """Directions, frequencies, OTF and factor as lists.
-
-        Parameters
-        ----------
-        decimals : int, optional
-            Decimals of the factor; without it, a thousandth of its largest number and less.
-        """
-        decimals = self._decimals if decimals is None else decimals
-        # Columns whose numbers are mostly rounded to 0 are left out.
-        size = np.sqrt(0.5 * np.mean(np.abs(self.factor) ** 2, axis=0))
-        factor = self.factor[:, size > 0.5 * 10.0**-decimals]
+    def to_dict(self) -> dict[str, Any]:
+        """Directions, frequencies, OTF and factor as lists."""
+        factor, rest = _few_columns(self.factor)
         return {
             "normal_deg": self.normal_deg.tolist(),
             "freq_cpp": np.round(self.freq_cpp, 6).tolist(),
             "otf_real": np.round(self.otf.real, 6).tolist(),
             "otf_imag": np.round(self.otf.imag, 6).tolist(),
-            "factor_real": np.round(factor.real, decimals).tolist(),
-            "factor_imag": np.round(factor.imag, decimals).tolist(),
+            **_listed("factor", factor),
+            **_listed("rest_std", rest),
         }
-
-    @property
-    def _decimals(self) -> int:
-        """Decimals of the factor in a document: a thousandth of its largest number and less."""
-        largest = float(np.abs(self.factor).max(initial=0.0))
-        return 3 - math.floor(math.log10(largest)) if largest > 0 else 6
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> PlaneSlices:
@@ -128,6 +117,9 @@ class PlaneSlices(ShortRepr):
                 f"{normal.size} directions and {freq.size} frequencies with {otf.size} values and "
                 f"a factor of {factor.shape[0]} rows"
             )
+        if "rest_std_real" in document:
+            rest = _complex(document, "rest_std")
+            factor = np.hstack([factor, np.diag(rest.real), 1j * np.diag(rest.imag)])
         if not all(np.isfinite(part).all() for part in (normal, freq, otf, factor)):
             raise ValueError("numbers that are not finite")
         return cls(normal, freq, otf, factor)
@@ -142,6 +134,38 @@ def _places(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
     angle = np.radians(normal_deg)
     u, v = np.outer(np.cos(angle), freq_cpp), np.outer(np.sin(angle), freq_cpp)
     return u.ravel(), v.ravel()
+
+
+def _few_columns(factor: Complexes) -> tuple[Complexes, Complexes]:
+    """A factor of nearly the same covariance with few columns, and what it leaves.
+
+    Returns
+    -------
+    factor : (n, k) complex array
+        All but half a per cent of the variance, in units of the deviations.
+    rest_std : (n,) complex array
+        Standard deviations, of the real and of the imaginary parts, of that half per cent.
+    """
+    stacked = np.concatenate([factor.real, factor.imag])
+    variance = np.einsum("ij,ij->i", stacked, stacked)
+    if not variance.any():
+        return factor[:, :0], np.zeros(factor.shape[0], complex)
+    std = np.maximum(np.sqrt(variance), _FAINT * math.sqrt(variance.max()))
+    left, size, _ = np.linalg.svd(stacked / std[:, None], full_matrices=False)
+    kept = int(np.searchsorted(np.cumsum(size**2), (1 - _REST) * np.sum(size**2))) + 1
+    step = 10.0 ** (np.floor(np.log10(std)) - 2)
+    few = np.round(left[:, :kept] * size[:kept] * (std / step)[:, None]) * step[:, None]
+    rest = np.sqrt(np.maximum(variance - np.einsum("ij,ij->i", few, few), 0.0))
+    n = factor.shape[0]
+    return few[:n] + 1j * few[n:], rest[:n] + 1j * rest[n:]
+
+
+def _listed(name: str, values: Complexes) -> dict[str, list[Any]]:
+    """Real and imaginary parts of numbers, with the digits of a hundred-millionth at most."""
+    return {
+        f"{name}_real": np.round(values.real, 8).tolist(),
+        f"{name}_imag": np.round(values.imag, 8).tolist(),
+    }
 
 
 def _narrowed(factor: Complexes) -> Complexes:

@@ -235,7 +235,7 @@ def test_a_gsd_that_some_lack_fails_a_check_that_names_them():
 def test_a_target_document_is_taken_apart(edges):
     target = {"schema": "acutance/target/1", "measurements": [one.to_dict() for one in edges]}
     found = ac.combine([target], names=["tarp.json"])
-    assert [part.source.name for part in found.parts] == [
+    assert [part.name for part in found.parts] == [
         "tarp.json 1",
         "tarp.json 2",
         "tarp.json 3",

@@ -6,7 +6,8 @@ departures from them), `fit` (all forms, weighted), `checks`, `combination` (the
 function).
 """
 
-from acutance.targets.combine.combination import CombinedMeasurement, CombinedPart, combine
+from acutance.targets.combine.combination import combine
+from acutance.targets.combine.combined_measurement import CombinedMeasurement, CombinedPart
 from acutance.targets.combine.options import CombineOptions
 
 __all__ = [

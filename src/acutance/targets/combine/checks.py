@@ -65,8 +65,8 @@ def _counted(name: str, named: Sequence[str], what: str, limits: Limits) -> Chec
 def _agreement(fit: CombinedFit, limits: Limits) -> Check:
     found = fit.total
     widened = (
-        f"all deviations were widened by the Birge ratio {fit.birge_ratio:.2f}"
-        if fit.birge_ratio > 1
+        f"all deviations were widened by the Birge ratio {fit.otf.birge_ratio:.2f}"
+        if fit.otf.birge_ratio > 1
         else "no deviation was widened"
     )
     return answer(
@@ -91,9 +91,9 @@ def _worst(inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: Limits) ->
 def _plain(fit: CombinedFit, limits: Limits) -> Check:
     plain = fit.plain
     added = (
-        f"a smooth correction of {100 * fit.departure:.1f} % of the logarithm of the MTF was "
+        f"a smooth correction of {100 * fit.otf.correction:.1f} % of the logarithm of the MTF was "
         "added, and its uncertainty is part of every deviation"
-        if fit.departure > 0
+        if fit.otf.correction > 0
         else "no correction was added"
     )
     return answer(

@@ -4,131 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from acutance.curves import Estimate, Mtf, Otf2d
-from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd
 from acutance.targets.combine.checks import check_combination, count_directions, direction_gap_deg
+from acutance.targets.combine.combined_measurement import CombinedMeasurement, CombinedPart
 from acutance.targets.combine.curves import ChiSquare, PlaneCurve
-from acutance.targets.combine.fit import CombinedFit, combine_curves
+from acutance.targets.combine.fit import combine_curves
 from acutance.targets.combine.inputs import Combinable, MeasuredInput, common_flight, read_inputs
 from acutance.targets.combine.options import CombineOptions
 from acutance.targets.combine.pixel_size import common_gsd, without_gsd
-from acutance.targets.measurement import Measurement
 from acutance.targets.options import chosen_options
 from acutance.targets.record import ImageInfo
 
-__all__ = ["CombinedMeasurement", "CombinedPart", "combine"]
+__all__ = ["combine"]
 
 _LEAST_GAP_DEG = 20.0
-
-
-@dataclass(frozen=True, eq=False)
-class CombinedPart(ShortRepr):
-    """One measurement beside what all of them say together.
-
-    Parameters
-    ----------
-    source : MeasuredInput
-    chi_square : ChiSquare
-        Of its residuals.
-    own, combined : Estimate
-        MTF at Nyquist along its direction (across, if it has all): its own, and the combined.
-    freq_cpp : (n,) array
-    value, std, fitted : (m, n) arrays
-        MTF by direction, its standard deviation, and the combined MTF there.
-    """
-
-    source: MeasuredInput
-    chi_square: ChiSquare
-    own: Estimate
-    combined: Estimate
-    freq_cpp: Floats
-    value: Floats
-    std: Floats
-    fitted: Floats
-
-    def to_dict(self) -> dict[str, Any]:
-        """Name, kind, directions and chi-square, for JSON."""
-        return {
-            "name": self.source.name,
-            "kind": self.source.kind,
-            "method": self.source.record.method,
-            "path": self.source.image.path,
-            "normal_deg": self.source.slices.normal_deg.tolist(),
-            "mtf_nyquist": self.own.to_dict(),
-            "combined_mtf_nyquist": self.combined.to_dict(),
-            **_chi_square(self.chi_square),
-        }
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class CombinedMeasurement(Measurement):
-    """What many measurements of one sensor say together.
-
-    Parameters
-    ----------
-    parts : tuple of CombinedPart
-        The measurements, in the order given.
-    fit : CombinedFit
-        The forms, their weights and the chi-squares.
-    """
-
-    parts: tuple[CombinedPart, ...]
-    fit: CombinedFit
-
-    @cached_property
-    def parameters(self) -> dict[str, Estimate]:
-        """Parameters of the sensor of largest weight, by name with their units."""
-        return self.fit.numbers
-
-    @property
-    def chi_square(self) -> ChiSquare:
-        """Of all measurements: whether they agree."""
-        return self.fit.total
-
-    @property
-    def birge_ratio(self) -> float:
-        """What every standard deviation was widened by: 1 where the measurements agree."""
-        return self.fit.birge_ratio
-
-    def target_document(self) -> dict[str, Any]:
-        """The sensor's parameters, the forms and what each measurement contributed."""
-        best = self.fit.best
-        return {
-            "sensor": {
-                "form": best.form.name,
-                "weight": best.weight,
-                "detector_px": list(best.form.detector_px),
-                "parameters": {name: one.to_dict() for name, one in self.parameters.items()},
-            },
-            "forms": [
-                {"form": one.form.name, "departure": one.share, "weight": one.weight}
-                for one in self.fit.forms
-            ],
-            "departure": self.fit.departure,
-            "birge_ratio": self.birge_ratio,
-            "agreement": _chi_square(self.fit.total),
-            "plain_sensor": _chi_square(self.fit.plain),
-            "parts": [one.to_dict() for one in self.parts],
-        }
-
-
-def _chi_square(found: ChiSquare) -> dict[str, float]:
-    return {
-        "chi_square": found.value,
-        "degrees_of_freedom": found.expected,
-        "p_value": found.p_value,
-    }
 
 
 @one_thread
@@ -178,7 +74,7 @@ def combine(
     fit = combine_curves(
         [_curve(one) for one in inputs], detector_px=chosen.detector_px, forms=chosen.forms
     )
-    otf = Otf2d(fit, None if gsd is None else (gsd.row_m, gsd.col_m))
+    otf = Otf2d(fit.otf, None if gsd is None else (gsd.row_m, gsd.col_m))
     paths = {one.image.path for one in inputs}
     return CombinedMeasurement(
         kind="combined",
@@ -195,7 +91,9 @@ def combine(
         parts=tuple(
             _part(one, chi_square, otf) for one, chi_square in zip(inputs, fit.members, strict=True)
         ),
-        fit=fit,
+        chi_square=fit.total,
+        plain_sensor=fit.plain,
+        details=fit,
     )
 
 
@@ -239,7 +137,11 @@ def _part(one: MeasuredInput, chi_square: ChiSquare, otf: Otf2d) -> CombinedPart
     direction = slices.normal_deg[0]
     at = int(np.argmin(np.abs(slices.freq_cpp - NYQUIST_CPP)))
     return CombinedPart(
-        one,
+        one.name,
+        one.kind,
+        one.record.method,
+        one.image.path,
+        tuple(slices.normal_deg.tolist()),
         chi_square,
         Estimate(float(own.value[at]), float(own.std[at])),
         _along(otf, float(direction), float(slices.freq_cpp[at])),

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
 from acutance.targets.combine.sensor_forms import SensorForm
 
 __all__ = ["Departure"]
@@ -39,7 +40,7 @@ def _places() -> Floats:
 
 
 @dataclass(frozen=True)
-class Departure:
+class Departure(ShortRepr):
     """Directions in which an OTF may depart from a parametric one.
 
     Parameters

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.targets.combine.correction import Departure
 from acutance.targets.combine.curves import ChiSquare, PlaneCurve, WhitenedCurves
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
+from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
 
 __all__ = ["CombinedFit", "FormFit", "combine_curves"]
 
-Complexes = NDArray[np.complex128]
-
-_LARGEST_STD_DEG = 30.0
 _LEAST_WEIGHT = 0.01
 _FAINT = 0.1
 _SHARES = (0.0, 0.01, 0.03, 0.1, 0.3)
@@ -33,79 +30,24 @@ _TRAIL_STARTS = ((0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3))
 
 
 @dataclass(frozen=True, eq=False)
-class FormFit:
-    """One form, with a departure of a given size, fitted to all curves.
+class FormFit(WeightedForm):
+    """One form, with a correction of a given size, fitted to all curves.
 
     Parameters
     ----------
-    form : SensorForm
-    share : float
-        Standard deviation of the departure from the form, a share of the logarithm of the OTF.
-    departure : Departure
-    parameters : (p,) array
-    weights : (m,) array
-        Of the departure's directions.
     inverse : (p + m, p + m) array
-        Covariance of both if the errors of different curves were independent.
-    root : (p + m, p + m) array
-        Factor of their covariance, before it is widened.
+        Covariance of parameters and weights if the errors of different curves were independent.
     score : float
         Minus twice the logarithm of the form's evidence, by Laplace's approximation.
-    weight : float
-        Share in the mean over forms, ``exp(-score / 2)`` normalised.
     """
 
-    form: SensorForm
-    share: float
-    departure: Departure
-    parameters: Floats
-    weights: Floats
     inverse: Floats
-    root: Floats
     score: float
-    weight: float
-
-    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """OTF, (n,), exactly 1 at zero frequency."""
-        plain = self.form.otf(self.parameters, u_cpp, v_cpp)
-        if self.weights.size == 0:
-            return plain
-        return np.asarray(plain + self.departure.directions(u_cpp, v_cpp) @ self.weights)
-
-    def slopes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Derivatives of the OTF by parameters and weights, (n, p + m)."""
-        own = self.form.slopes(self.parameters, u_cpp, v_cpp)
-        if self.weights.size == 0:
-            return own
-        return np.concatenate([own, self.departure.directions(u_cpp, v_cpp)], axis=1)
-
-    def numbers(self, widened: float = 1.0) -> dict[str, Estimate]:
-        """Parameters by name; a direction of what is round or short has no value."""
-        centre = self.form.numbers(self.parameters)
-        step = 1e-5
-        rows = {name: np.zeros(self.parameters.size) for name in centre}
-        for i, move in enumerate(step * np.eye(self.parameters.size)):
-            above = self.form.numbers(self.parameters + move)
-            below = self.form.numbers(self.parameters - move)
-            for name, row in rows.items():
-                change = above[name] - below[name]
-                if name.endswith("_deg"):
-                    change = (change + 90.0) % 180.0 - 90.0
-                row[i] = change / (2 * step)
-        root = self.root[: self.parameters.size]
-        found = {
-            name: Estimate(value, widened * float(np.linalg.norm(rows[name] @ root)))
-            for name, value in centre.items()
-        }
-        for name, number in found.items():
-            if name.endswith("_deg") and not number.std < _LARGEST_STD_DEG:
-                found[name] = Estimate(math.nan, math.nan)
-        return found
 
 
 @dataclass(frozen=True, eq=False)
 class CombinedFit:
-    """The 2-D OTF of all curves, an `acutance.curves.OtfModel`: a mean over forms.
+    """All forms fitted to all curves, and whether they agree.
 
     Parameters
     ----------
@@ -118,7 +60,7 @@ class CombinedFit:
     members : tuple of ChiSquare
         Of each curve.
     plain : ChiSquare
-        Of all curves about the best form without a departure: whether a plain sensor holds them.
+        Of all curves about the best form without a correction: whether a plain sensor holds them.
     """
 
     curves: tuple[PlaneCurve, ...]
@@ -127,47 +69,12 @@ class CombinedFit:
     members: tuple[ChiSquare, ...]
     plain: ChiSquare
 
-    @property
-    def best(self) -> FormFit:
-        """The form with the largest weight."""
-        return self.forms[0]
-
-    @property
-    def departure(self) -> float:
-        """Mean standard deviation of the departure, a share of the logarithm of the OTF."""
-        return sum(one.weight * one.share for one in self.forms)
-
-    @property
-    def birge_ratio(self) -> float:
-        """What every standard deviation was widened by."""
-        return self.total.birge_ratio
-
-    @property
-    def numbers(self) -> dict[str, Estimate]:
-        """Parameters of the best form."""
-        return self.best.numbers(self.birge_ratio)
-
-    @property
-    def band_cpp(self) -> float:
-        """Frequency beyond which nothing is transferred."""
-        sigma = min(one.form.least_sigma_px(one.parameters) for one in self.forms)
-        return float(np.clip(0.8 / max(sigma, 1e-3), 3.0, 6.0))
-
-    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Mean OTF over the forms, (n,), exactly 1 at zero frequency."""
-        return _mean_otf(self.forms, u_cpp, v_cpp)
-
-    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Factor of its covariance, (n, k): that of each form, and how the forms differ."""
-        mean = self.otf(u_cpp, v_cpp)
-        parts = []
-        for one in self.forms:
-            off = one.otf(u_cpp, v_cpp) - mean
-            own = np.concatenate([one.slopes(u_cpp, v_cpp) @ one.root, off[:, None]], axis=1)
-            parts.append(math.sqrt(one.weight) * own)
-        found = self.birge_ratio * np.concatenate(parts, axis=1)
-        found[(u_cpp == 0) & (v_cpp == 0)] = 0.0
-        return np.asarray(found)
+    @cached_property
+    def otf(self) -> CombinedOtf:
+        """The mean over forms."""
+        names = [field.name for field in fields(WeightedForm)]
+        light = [WeightedForm(*(getattr(one, name) for name in names)) for one in self.forms]
+        return CombinedOtf(tuple(light), self.total.birge_ratio)
 
 
 def combine_curves(
@@ -218,10 +125,6 @@ def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
     return tuple(replace(one, weight=odds[id(one)] / whole) for one in kept)
 
 
-def _mean_otf(forms: Sequence[FormFit], u: Floats, v: Floats) -> Complexes:
-    return np.asarray(sum(one.weight * one.otf(u, v) for one in forms))
-
-
 def _fit_form(
     data: WhitenedCurves, form: SensorForm, start: FormFit | None, share: float, ways: Floats
 ) -> FormFit:
@@ -269,9 +172,11 @@ def _fit_form(
     narrowed = np.linalg.slogdet(whole[:, None] * normal * whole)[1]
     score = 2 * float(found.cost) + float(narrowed)
     nothing = Departure(form, tuple(p.tolist()))
+    # A triangular factor of the same covariance is half as large.
+    lower = np.asarray(np.linalg.qr((scale[:, None] * root).T, mode="r")).T
     return FormFit(
-        form, share, nothing, p, share * amounts, scale[:, None] * inverse * scale,
-        scale[:, None] * root, score, 1.0,
+        form, share, nothing, p, share * amounts, lower, 1.0,
+        inverse=scale[:, None] * inverse * scale, score=score,
     )  # fmt: skip
 
 
@@ -308,7 +213,8 @@ def _chi_squares(
     """
     best = forms[0]
     slopes = data.of(best.slopes(data.u_cpp, data.v_cpp))
-    residual = data.values - data.of(_mean_otf(forms, data.u_cpp, data.v_cpp))
+    mean = sum(one.weight * one.otf(data.u_cpp, data.v_cpp) for one in forms)
+    residual = data.values - data.of(np.asarray(mean))
     left = np.eye(residual.size) - slopes @ best.inverse @ slopes.T
     covariance = left @ data.covariance @ left.T
     axes = [np.eye(residual.size)[:, part] for part in data.parts]

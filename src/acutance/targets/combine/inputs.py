@@ -19,7 +19,13 @@ from acutance.targets.record import SCHEMA, ImageInfo, Record
 from acutance.targets.slices import PlaneSlices
 from acutance.targets.target_result import TargetResult
 
-__all__ = ["Combinable", "MeasuredInput", "common_flight", "read_inputs"]
+__all__ = [
+    "Combinable",
+    "MeasuredInput",
+    "common_flight",
+    "direction_in_words",
+    "read_inputs",
+]
 
 Combinable = Measurement | Record | TargetResult[Measurement] | Mapping[str, Any]
 """A result, its record, or its JSON document."""
@@ -77,9 +83,14 @@ class MeasuredInput(ShortRepr):
     @property
     def direction(self) -> str:
         """The direction of its slice, or that it has all."""
-        if self.of_plane:
-            return "all"
-        return f"{(float(self.slices.normal_deg[0]) + 90.0) % 180.0 - 90.0:.1f}°".replace("-", "−")
+        return direction_in_words(self.slices.normal_deg.tolist())
+
+
+def direction_in_words(normal_deg: Sequence[float]) -> str:
+    """One direction as text, -90 to 90 degrees; of several that they are all."""
+    if len(normal_deg) > 1:
+        return "all"
+    return f"{(normal_deg[0] + 90.0) % 180.0 - 90.0:.1f}°".replace("-", "−")
 
 
 def read_inputs(

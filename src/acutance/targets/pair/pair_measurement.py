@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
-from functools import cached_property
-from typing import Any, Literal, Self
+from dataclasses import dataclass, fields
+from typing import Any, Literal
 
 import numpy as np
 
-from acutance.curves import Estimate, Otf2d
+from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Orientation
@@ -17,14 +16,12 @@ from acutance.targets.measurement import Measurement
 from acutance.targets.pair.gaussian_fit import GaussianFit, GaussianStep
 from acutance.targets.pair.grid import PairGrid
 from acutance.targets.pair.kernel_fit import KernelFit
-from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit, ResidualMap
 from acutance.targets.pair.spectral_ratio import PairSpectra
-from acutance.targets.record import ImageInfo, Record, rounded
+from acutance.targets.record import ImageInfo, rounded
 
 __all__ = ["BiresolutionMeasurement", "Coherence", "PairDetails"]
 
-_DECIMALS = 4
 _DIGITS = 4
 
 
@@ -107,8 +104,6 @@ class BiresolutionMeasurement(Measurement):
         How the regions of the map differ from the common kernel.
     reference_known : bool
         Whether the reference's own MTF was divided out. If not, the curves are MTF_low / MTF_high.
-    full_record : Record or None
-        That of the measurement with details, where this one is without.
     details : PairDetails or None
     """
 
@@ -126,7 +121,6 @@ class BiresolutionMeasurement(Measurement):
     coherence: Coherence | None
     local: LocalFit
     reference_known: bool
-    full_record: Record | None = None
     details: PairDetails | None = None
 
     @property
@@ -138,28 +132,6 @@ class BiresolutionMeasurement(Measurement):
     def is_ratio(self) -> bool:
         """Whether the curves are MTF_low / MTF_high, as no reference was given."""
         return not self.reference_known
-
-    def without_details(self) -> Self:
-        """The same measurement without fits and residuals: light enough to be sent and kept.
-
-        Its record is the same. The covariance between frequencies is rounded: where standard
-        deviations are read from the OTF again, they differ by some thousandths, below 0.1 cycles
-        per pixel by some hundredths.
-        """
-        model = self.otf.model
-        assert isinstance(model, KernelOtf)
-        packed = Otf2d(model.packed(), self.otf.gsd_m)
-        return replace(super().without_details(), transfer=packed, full_record=self.record)
-
-    @cached_property
-    def record(self) -> Record:
-        """The light half: what is written, archived and combined."""
-        return Record(self._document()) if self.full_record is None else self.full_record
-
-    def _document(self) -> dict[str, Any]:
-        # Some 70 errors are independent in a plane: with these decimals they take 5 kB, and the
-        # deviations of 0.002 to 0.01 change by less than 1 %.
-        return {**super()._document(), "plane": self.slices.to_dict(_DECIMALS)}
 
     def local_mtf_nyquist(self, direction: Orientation) -> tuple[Floats, Floats]:
         """MTF at Nyquist of every region of the map, and its standard deviation.

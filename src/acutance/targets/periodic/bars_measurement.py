@@ -12,8 +12,9 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.angles import angle_between_deg
 from acutance.geometry.bar_group import Bars
 from acutance.geometry.line import Orientation
+from acutance.targets.measurement import Measurement
 from acutance.targets.periodic.bars_readings import GroupReading
-from acutance.targets.periodic.periodic_measurement import PeriodicDetails, PeriodicMeasurement
+from acutance.targets.periodic.periodic_details import PeriodicDetails
 from acutance.targets.record import rounded
 from acutance.targets.slices import PlaneSlices
 
@@ -97,7 +98,7 @@ class BarsDetails(PeriodicDetails):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class BarsMeasurement(PeriodicMeasurement):
+class BarsMeasurement(Measurement):
     """A measurement of groups of bars.
 
     Parameters

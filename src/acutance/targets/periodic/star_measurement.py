@@ -14,8 +14,9 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP, mtf_crossing
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.star_geometry import SiemensStar
+from acutance.targets.measurement import Measurement
 from acutance.targets.periodic.fit_star import SIDE_MARGIN_PX
-from acutance.targets.periodic.periodic_measurement import PeriodicDetails, PeriodicMeasurement
+from acutance.targets.periodic.periodic_details import PeriodicDetails
 from acutance.targets.record import rounded
 
 __all__ = ["Rings", "StarDetails", "StarMeasurement", "mean_over_directions"]
@@ -57,7 +58,7 @@ class StarDetails(PeriodicDetails):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class StarMeasurement(PeriodicMeasurement):
+class StarMeasurement(Measurement):
     """A measurement of one star.
 
     Parameters

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Self
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from acutance.curves import Otf2d
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.targets.measurement import Measurement
 from acutance.targets.points.detect import RejectedSpot
 from acutance.targets.points.fit import PointsFit
-from acutance.targets.points.psf import PsfModel
 from acutance.targets.points.published import AlignedFit, PublishedMirrors
 from acutance.targets.points.sources import PointSource, SourceStamp
 from acutance.targets.points.survey import SurveyErrors
@@ -95,16 +93,3 @@ class PointsMeasurement(Measurement):
         if self.aligned is not None:
             document["aligned"] = self.aligned.to_dict()
         return document
-
-    def without_details(self) -> Self:
-        """The same measurement without pixels and fits: light enough to be sent and kept."""
-        light = super().without_details()
-        if isinstance(self.otf.model, PsfModel):
-            light = replace(light, transfer=Otf2d(self.otf.model.condensed(), self.otf.gsd_m))
-        vars(light)["record"] = self.record
-        return light
-
-    def __getstate__(self) -> dict[str, Any]:
-        # A light measurement has the record of the whole one.
-        light = {} if self.details is not None else {"record": self.record}
-        return {**super().__getstate__(), **light}

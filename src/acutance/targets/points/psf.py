@@ -40,7 +40,7 @@ class PsfModel(ShortRepr):
     weights: Floats
     latent: NDArray[np.floating[Any]]
 
-    def condensed(self) -> PsfModel:
+    def packed(self) -> PsfModel:
         """The same PSF with the most important directions of its covariance, at half precision.
 
         They are the principal axes of the OTF's errors up to 1 cycle per pixel.

@@ -59,16 +59,29 @@ class PointSource(ShortRepr):
 
     def to_dict(self) -> dict[str, Any]:
         """Numbers of the source, for JSON."""
+        slope_row, slope_col = self.slope
         return {
-            "row": self.row.to_dict(),
-            "col": self.col.to_dict(),
-            "flux": self.flux.to_dict(),
-            "peak": self.peak,
-            "background": self.background.to_dict(),
-            "background_slope": list(self.slope),
-            "snr": self.snr if math.isfinite(self.snr) else None,
-            "misfit": self.misfit if math.isfinite(self.misfit) else None,
+            "row": _document(self.row),
+            "col": _document(self.col),
+            "flux": _document(self.flux),
+            "peak": float(f"{self.peak:.6g}"),
+            "background": _document(self.background),
+            "background_slope": [float(f"{slope_row:.6g}"), float(f"{slope_col:.6g}")],
+            "snr": float(f"{self.snr:.6g}") if math.isfinite(self.snr) else None,
+            "misfit": float(f"{self.misfit:.6g}") if math.isfinite(self.misfit) else None,
         }
+
+
+def _document(number: Estimate) -> dict[str, Any]:
+    """A number for JSON, with a thousandth of its standard deviation as its last digit."""
+    document = number.to_dict()
+    if not (math.isfinite(number.std) and number.std > 0):
+        return document
+    digits = 3 - math.floor(math.log10(number.std))
+    low, high = number.interval(0.95)
+    interval = [round(low, digits), round(high, digits)]
+    value, std = round(number.value, digits), round(number.std, digits)
+    return {**document, "value": value, "std": std, "interval95": interval}
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,152 @@
+"""The OTF of a combination: a mean over forms of sensors, each with its weight."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves import Estimate
+from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
+from acutance.targets.combine.correction import Departure
+from acutance.targets.combine.sensor_forms import SensorForm
+
+__all__ = ["CombinedOtf", "WeightedForm"]
+
+Complexes = NDArray[np.complex128]
+
+_LARGEST_STD_DEG = 30.0
+
+
+@dataclass(frozen=True, eq=False)
+class WeightedForm(ShortRepr):
+    """One form of sensor with its parameters, a correction of a given size, and its weight.
+
+    Parameters
+    ----------
+    form : SensorForm
+    share : float
+        Standard deviation of the correction of the form, a share of the logarithm of the OTF.
+    departure : Departure
+        The directions of the correction.
+    parameters : (p,) array
+    weights : (m,) array
+        Of the correction's directions.
+    root : (p + m, p + m) array
+        Triangular factor of the covariance of both, before it is widened.
+    weight : float
+        Share in the mean over forms, ``exp(-score / 2)`` normalised.
+    """
+
+    form: SensorForm
+    share: float
+    departure: Departure
+    parameters: Floats
+    weights: Floats
+    root: Floats
+    weight: float
+
+    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """OTF, (n,), exactly 1 at zero frequency."""
+        plain = self.form.otf(self.parameters, u_cpp, v_cpp)
+        if self.weights.size == 0:
+            return plain
+        return np.asarray(plain + self.departure.directions(u_cpp, v_cpp) @ self.weights)
+
+    def slopes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Derivatives of the OTF by parameters and weights, (n, p + m)."""
+        own = self.form.slopes(self.parameters, u_cpp, v_cpp)
+        if self.weights.size == 0:
+            return own
+        return np.concatenate([own, self.departure.directions(u_cpp, v_cpp)], axis=1)
+
+    def numbers(self, widened: float = 1.0) -> dict[str, Estimate]:
+        """Parameters by name; a direction of what is round or short has no value."""
+        centre = self.form.numbers(self.parameters)
+        step = 1e-5
+        rows = {name: np.zeros(self.parameters.size) for name in centre}
+        for i, move in enumerate(step * np.eye(self.parameters.size)):
+            above = self.form.numbers(self.parameters + move)
+            below = self.form.numbers(self.parameters - move)
+            for name, row in rows.items():
+                change = above[name] - below[name]
+                if name.endswith("_deg"):
+                    change = (change + 90.0) % 180.0 - 90.0
+                row[i] = change / (2 * step)
+        root = self.root[: self.parameters.size]
+        found = {
+            name: Estimate(value, widened * float(np.linalg.norm(rows[name] @ root)))
+            for name, value in centre.items()
+        }
+        for name, number in found.items():
+            if name.endswith("_deg") and not number.std < _LARGEST_STD_DEG:
+                found[name] = Estimate(math.nan, math.nan)
+        return found
+
+    def __getstate__(self) -> dict[str, Any]:
+        lower = np.tril_indices(self.root.shape[0])
+        return {**super().__getstate__(), "root": self.root[lower]}
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        size = state["parameters"].size + state["weights"].size
+        root = np.zeros((size, size))
+        root[np.tril_indices(size)] = state["root"]
+        vars(self).update({**state, "root": root})
+
+
+@dataclass(frozen=True, eq=False)
+class CombinedOtf(ShortRepr):
+    """The 2-D OTF of all curves, an `acutance.curves.OtfModel`: a mean over forms.
+
+    Parameters
+    ----------
+    forms : tuple of WeightedForm
+        The one of largest weight first.
+    birge_ratio : float
+        What every standard deviation was widened by: 1 where the measurements agree.
+    """
+
+    forms: tuple[WeightedForm, ...]
+    birge_ratio: float
+
+    @property
+    def best(self) -> WeightedForm:
+        """The form with the largest weight."""
+        return self.forms[0]
+
+    @property
+    def correction(self) -> float:
+        """Mean standard deviation of the correction, a share of the logarithm of the OTF."""
+        return sum(one.weight * one.share for one in self.forms)
+
+    @property
+    def numbers(self) -> dict[str, Estimate]:
+        """Parameters of the best form."""
+        return self.best.numbers(self.birge_ratio)
+
+    @property
+    def band_cpp(self) -> float:
+        """Frequency beyond which nothing is transferred."""
+        sigma = min(one.form.least_sigma_px(one.parameters) for one in self.forms)
+        return float(np.clip(0.8 / max(sigma, 1e-3), 3.0, 6.0))
+
+    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Mean OTF over the forms, (n,), exactly 1 at zero frequency."""
+        return np.asarray(sum(one.weight * one.otf(u_cpp, v_cpp) for one in self.forms))
+
+    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Factor of its covariance, (n, k): that of each form, and how the forms differ."""
+        mean = self.otf(u_cpp, v_cpp)
+        parts = []
+        for one in self.forms:
+            off = one.otf(u_cpp, v_cpp) - mean
+            own = np.concatenate([one.slopes(u_cpp, v_cpp) @ one.root, off[:, None]], axis=1)
+            parts.append(math.sqrt(one.weight) * own)
+        found = self.birge_ratio * np.concatenate(parts, axis=1)
+        found[(u_cpp == 0) & (v_cpp == 0)] = 0.0
+        return np.asarray(found)
