@@ -28,7 +28,7 @@ image, truth = ac.simulate.edge(
 # %%
 # The measurement, as text. The GSD is only needed for what is reported in metres.
 measurement = ac.measure_edge(image, gsd_m=1.0)
-print(report.text_report(measurement))
+print(report.text(measurement))
 
 # %%
 # Every number beside what it should be.
@@ -38,5 +38,5 @@ for name, estimate in measurement.metrics().items():
 
 # %%
 # The same steps as a figure, and the curves as arrays.
-figure = report.edge_figure(measurement)
+figure = report.draw(measurement)
 print(measurement.mtf.freq_cpp[::25], measurement.mtf.value[::25].round(4))

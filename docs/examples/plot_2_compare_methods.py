@@ -20,12 +20,12 @@ image, truth = ac.simulate.edge(
     sensor, angle_deg=8, shape=(60, 60), snr=150, rng=np.random.default_rng(5)
 )
 measurements = [ac.measure_edge(image, method=method) for method in METHODS]
-print(report.comparison_text(measurements))
+print(report.text(measurements))
 
 # %%
 # Differences are taken to the truth here. Standard deviations of the published methods are scatter
 # only: their biases are not in it.
-figure = report.comparison_figure(measurements, truth=truth.response)
+figure = report.draw(report.compare(measurements, truth=truth.response))
 
 # %%
 # What a paper leaves open is an option of its method.

@@ -16,11 +16,11 @@ from acutance import report
 sensor = ac.Sensor([ac.optics.Gaussian(0.45), ac.optics.Detector(), ac.optics.Smear(0.5, "along")])
 scene = ac.simulate.site(sensor, np.random.default_rng(8))
 result = ac.measure_edges(scene.image)
-print(report.target_text(result))
+print(report.text(result))
 
 # %%
 # Where they are, and the mean of each direction.
-figure = report.target_figure(result, backdrop=scene.image)
+figure = report.draw(result, backdrop=scene.image)
 
 # %%
 # The motion blurs along the rows' axis only: the two directions differ, as they should.

@@ -53,4 +53,4 @@ for check in measurement.failed_checks:
 
 # %%
 # On the command line: ``acutance edge scene.tif --roi target.geojson --figure edge.png``.
-figure = report.edge_figure(measurement)
+figure = report.draw(measurement)

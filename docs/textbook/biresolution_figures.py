@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import acutance as ac
-from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, VERMILION, new_page
+from acutance.report.paper import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, VERMILION, new_page
 from acutance.simulate import NativeGrid
 from acutance.targets import QUESTIONS
 from acutance.targets.pair import PAIR_CHECKS

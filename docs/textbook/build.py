@@ -8,7 +8,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from acutance.report import save_figure
-from acutance.report.page import styled
+from acutance.report.paper import styled
 from textbook import (
     benchmarks,
     biresolution_figures,

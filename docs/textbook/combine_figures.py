@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import acutance as ac
-from acutance.report.page import BLUE, FAINT, INK, ORANGE, PALETTE, VERMILION, new_page
+from acutance.report.paper import BLUE, FAINT, INK, ORANGE, PALETTE, VERMILION, new_page
 from acutance.targets import Measurement
 from acutance.targets.combine import CombinedMeasurement, CombineOptions
 

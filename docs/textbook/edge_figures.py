@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 import acutance as ac
 from acutance.numerics.gaussian_pixel import Blur
-from acutance.report.page import BLUE, FAINT, INK, PALETTE, VERMILION, new_page
+from acutance.report.paper import BLUE, FAINT, INK, PALETTE, VERMILION, new_page
 from acutance.targets.straight import lsf_prior as prior
 from acutance.targets.straight.spline import combine, edge_and_line_weights
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import acutance as ac
-from acutance.report.page import INK, PALETTE, VERMILION, new_page
+from acutance.report.paper import INK, PALETTE, VERMILION, new_page
 from acutance.targets.straight import METHODS
 
 __all__ = ["errors_of_methods", "gains_of_steps", "local_polynomial_gain"]

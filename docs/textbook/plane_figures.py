@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc
 
 import acutance as ac
-from acutance.report.page import BLUE, FAINT, GREEN, INK, ORANGE, PALETTE, VERMILION, new_page
+from acutance.report.paper import BLUE, FAINT, GREEN, INK, ORANGE, PALETTE, VERMILION, new_page
 
 __all__ = ["metrics_on_curves", "pixel_grid", "reference_systems"]
 

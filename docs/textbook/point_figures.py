@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import acutance as ac
-from acutance.report.page import BLUE, FAINT, INK, VERMILION, new_page
+from acutance.report.paper import BLUE, FAINT, INK, VERMILION, new_page
 from acutance.studies import lay_out_mirrors
 
 __all__ = ["FIGURES"]

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 import acutance as ac
 from acutance.geometry.bar_group import Bars
-from acutance.report.page import (
+from acutance.report.paper import (
     BLUE,
     FAINT,
     INK,

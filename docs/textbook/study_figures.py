@@ -9,7 +9,7 @@ from textwrap import fill
 from matplotlib.figure import Figure
 
 from acutance.report import study_figure, study_text
-from acutance.report.study_figures import plan_text
+from acutance.report.studies.study import plan_text
 from acutance.studies import STUDIES, PlanOptions, StudyResult, plan_target, run_study
 
 __all__ = ["FIGURES", "TEXTS"]

@@ -52,6 +52,14 @@ EXCEPTIONS = {
 }
 
 
+# The same for imports of a higher floor.
+UPWARD_EXCEPTIONS = {
+    ("targets/measurement.py", "acutance.report"): (
+        "notebooks ask a result for HTML: _repr_html_ loads the reports only then"
+    ),
+}
+
+
 def floor_of(module: str) -> str:
     return module.split("/")[0].removesuffix(".py")
 
@@ -76,7 +84,11 @@ def test_every_module_stands_on_a_floor() -> None:
 def test_own_imports_point_down(module: str) -> None:
     own = [found for found in imports_of(module) if found.target.split(".")[0] == "acutance"]
     named = [found for found in own if found.target != "acutance.__version__"]
-    wrong = [str(found) for found in named if upward(found)]
+    wrong = [
+        str(found)
+        for found in named
+        if upward(found) and (found.importer, found.target) not in UPWARD_EXCEPTIONS
+    ]
     assert not wrong, wrong
 
 
@@ -127,7 +139,7 @@ def test_libraries_stay_on_their_floors(module: str) -> None:
 
 def test_the_exceptions_are_all_needed() -> None:
     seen = {(found.importer, found.target) for found in all_imports()}
-    assert set(EXCEPTIONS) <= seen
+    assert set(EXCEPTIONS) | set(UPWARD_EXCEPTIONS) <= seen
 
 
 def test_nobody_uses_pyplot() -> None:

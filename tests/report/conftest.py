@@ -3,36 +3,34 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
 import numpy as np
 import pytest
 from scipy.special import erf
 
-from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
+from acutance import optics
+from acutance.curves import Esf, Estimate, Lsf, Mtf, Otf2d, Response
 from acutance.geometry.line import Line
-from acutance.targets.measurement import Check, ImageInfo, Measurement, Samples
-from acutance.targets.straight import Rejected, TargetResult
+from acutance.targets import Check, ImageInfo, Measurement, Rejected, TargetResult
+from acutance.targets.check import answer
+from acutance.targets.straight import StraightMeasurement
 from acutance.targets.straight.many_edges import combine_edges
+from acutance.targets.straight.straight_measurement import StraightDetails
 
 DISTANCE_PX = np.linspace(-8.0, 8.0, 641)
 FREQ_CPP = np.linspace(0.0, 1.0, 101)
 
 CHECKS = (
-    Check("contrast_snr", 104.2, ">= 50", True, "Contrast over noise (KOMPSAT-3 draft, step 2)."),
-    Check("angle_deg", 6.02, "1 .. 30", True, "Inclination to the grid (KOMPSAT-3 draft, step 3)."),
-    Check("edge_rows", 40.0, ">= 20", True, "Rows the edge crosses (KOMPSAT-3 draft, step 4)."),
-    Check("phases", 9.0, ">= 4", True, "Different sub-pixel positions of the samples."),
-    Check(
-        "plateau_px",
-        2.0,
-        ">= 3",
-        False,
-        "The bright plateau is 2.0 px wide, at least 3 px are needed: use a wider region.",
-    ),
-    Check("straightness_px", 0.04, "<= 0.1", True, "Scatter of the row positions about the line."),
+    answer("contrast_snr", 104.2, "bright minus dark is 104 times the noise", {}),
+    answer("angle_deg", 6.02, "inclined by 6.02 degrees", {}),
+    answer("rows", 40.0, "40 rows", {}),
+    answer("sample_phases", 9.0, "9 different sub-pixel positions", {}),
+    answer("plateau_bright_px", 2.0, "the bright plateau is 2.0 px wide", {}),
+    answer("straightness_px", 0.04, "scatters by 0.04 px about the line", {}),
 )
+MEASURED_AT = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)
 
 
 def closed_form(sigma_px: float, columns: int = 4, scatter: float = 0.0, gsd_m=None) -> Response:
@@ -75,7 +73,7 @@ def edge_measurement(
     checks: tuple[Check, ...] = CHECKS,
     path: str | None = "scene.tif",
     roi: tuple[int, int, int, int] = (100, 260, 40, 36),
-) -> Measurement:
+) -> StraightMeasurement:
     """An edge as a measurement would return it, its pixels drawn from the same closed form."""
     rng = np.random.default_rng(11)
     top, left, height, width = roi
@@ -91,43 +89,72 @@ def edge_measurement(
     used = np.abs(distance) < 10.0
     image[0, 0] = np.nan
     used[0, 0] = False
-    return Measurement(
+    return StraightMeasurement(
         kind="edge",
         method=method,
-        line=line,
-        response=response,
-        samples=Samples(
-            image,
-            used,
-            distance[used],
-            (truth + residual)[used],
-            residual[used],
-            dark,
-            bright,
-        ),
+        transfer=response,
         snr=104.2,
         checks=checks,
-        image=ImageInfo(path, 1, gsd_m, roi, None),
+        image=ImageInfo(path, 1, roi, pixel_gsd_m=None if gsd_m is None else (gsd_m, gsd_m)),
         options={"rer_centre": "half", "robust": False, "limits": {"contrast_snr": 50.0}},
-        measured_at=datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC),
+        line=line,
+        dark=dark,
+        bright=bright,
+        details=StraightDetails(
+            image, used, distance[used], (truth + residual)[used], residual[used]
+        ),
+        measured_at=MEASURED_AT,
     )
 
 
 def pulse_measurement(
     width_px: float = 3.153, width_std: float = 0.005, method: str = "spline", checks: int = 18
-) -> Measurement:
-    """A pulse: the edge of `edge_measurement` less another one `width_px` behind it."""
+) -> StraightMeasurement:
+    """A pulse: the edge of `edge_measurement` minus another one `width_px` behind it."""
     edge = edge_measurement(method=method)
-    samples, esf = edge.samples, edge.esf
-    fitted = np.interp(samples.distance_px, DISTANCE_PX, esf.value) - np.interp(
-        samples.distance_px - width_px, DISTANCE_PX, esf.value
+    details, esf = edge.details, edge.esf
+    fitted = np.interp(details.distance_px, DISTANCE_PX, esf.value) - np.interp(
+        details.distance_px - width_px, DISTANCE_PX, esf.value
     )
     return replace(
         edge,
         kind="pulse",
-        samples=replace(samples, value=fitted + samples.residual),
-        checks=tuple(Check(f"check_{i:02d}", 1.0, ">= 1", True, "fine") for i in range(checks)),
+        details=replace(details, value=fitted + details.residual),
+        checks=tuple(Check(f"check_{i:02d}", 1.0, ">=", 1.0, True, "fine") for i in range(checks)),
         width_px=Estimate(width_px, width_std),
+    )
+
+
+SENSOR = optics.Sensor([optics.Gaussian(0.4, 0.5), optics.Detector(), optics.Smear(0.7, "along")])
+
+
+@dataclass(frozen=True)
+class Blurred:
+    """A sensor whose blur is uncertain by one latent variable."""
+
+    band_cpp: float = 4.0
+
+    def otf(self, u_cpp, v_cpp):
+        return np.asarray(SENSOR.otf(u_cpp, v_cpp), complex)
+
+    def factor(self, u_cpp, v_cpp):
+        return (-0.02 * (u_cpp**2 + v_cpp**2) * self.otf(u_cpp, v_cpp))[:, None]
+
+
+@pytest.fixture(scope="session")
+def both() -> Measurement:
+    """A measurement in two directions, of a kind that no table knows."""
+    return Measurement(
+        kind="lamps",
+        method="psf-fit",
+        transfer=Otf2d(Blurred(), (0.72, 0.7)),
+        snr=80.0,
+        checks=(
+            answer("sources", 20.0, "20 sources", {}),
+            answer("spacing_px", 3.2, "sources stand 3.2 px apart", {}),
+        ),
+        image=ImageInfo("lamps.tif", 2, (10, 20, 30, 40), pixel_gsd_m=(0.72, 0.7)),
+        measured_at=MEASURED_AT,
     )
 
 
@@ -138,7 +165,7 @@ def make_pulse():
 
 
 @pytest.fixture(scope="session")
-def pulse() -> Measurement:
+def pulse() -> StraightMeasurement:
     return pulse_measurement()
 
 
@@ -156,7 +183,7 @@ def target() -> TargetResult:
 
 
 @pytest.fixture(scope="session")
-def compared() -> list[Measurement]:
+def compared() -> list[StraightMeasurement]:
     return [
         edge_measurement(),
         edge_measurement(sigma_px=0.42, method="sdsu-2005"),
@@ -176,14 +203,14 @@ def make_edge():
 
 
 @pytest.fixture(scope="session")
-def measurement() -> Measurement:
+def measurement() -> StraightMeasurement:
     return edge_measurement()
 
 
 @pytest.fixture(scope="session")
-def vague_measurement() -> Measurement:
+def vague_measurement() -> StraightMeasurement:
     """So sharp that the MTF never falls to 0.3, without GSD, path or checks, plateaus unknown."""
     sharp = edge_measurement(gsd_m=None, path=None, checks=())
     freq = FREQ_CPP
     mtf = Mtf(freq, (0.6 + 0.4 * (1 - freq)).astype(complex), sharp.mtf.factor)
-    return replace(sharp, response=replace(sharp.response, mtf=mtf), snr=math.nan)
+    return replace(sharp, transfer=replace(sharp.response, mtf=mtf), snr=math.nan)

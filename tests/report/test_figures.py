@@ -1,6 +1,7 @@
 """Figures: what they show, and that nothing is written over anything else."""
 
 from dataclasses import replace
+from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -8,20 +9,26 @@ import pytest
 from matplotlib.axis import Axis, Tick
 from matplotlib.text import Text
 
-from acutance import Estimate, optics, simulate
-from acutance.report import (
-    comparison_figure,
-    edge_figure,
-    panel_figures,
-    save_figure,
-    target_figure,
-)
-from acutance.report.comparison_page import true_numbers
-from acutance.report.page import figure_bytes
-from acutance.targets import Check
-from acutance.targets.straight import TargetResult, measure_pulse
+from acutance import optics, simulate
+from acutance.report import compare, draw, figure_bytes, panels, save_figure
+from acutance.report.paper import new_page, styled
+from acutance.targets import Check, TargetResult
+from acutance.targets.straight import measure_pulse
+from acutance.targets.straight.many_edges import combine_edges
 
 
+def panel_figures(measurement):
+    """Every drawing of an edge or a pulse on a page of its own."""
+    names = ("mtf", "lsf", "target", "samples")
+    figures = {}
+    for name, panel in zip(names, panels(measurement), strict=True):
+        with styled():
+            figures[name] = new_page(6.0, panel.height_in)
+            panel.draw(figures[name])
+    return figures
+
+
+@cache
 def written(figure):
     """Every text that is drawn, with its box in pixels."""
     figure.canvas.draw()
@@ -67,8 +74,8 @@ def texts(figure):
     return "\n".join(text for text, _ in written(figure))
 
 
-def test_the_edge_page_shows_every_step(measurement):
-    figure = edge_figure(measurement)
+def test_the_figure_of_an_edge_shows_every_step(measurement):
+    figure = draw(measurement)
     shown = texts(figure)
     for title in (
         "Target",
@@ -76,9 +83,9 @@ def test_the_edge_page_shows_every_step(measurement):
         "Line spread function",
         "Modulation transfer function",
         "Numbers",
-        "Checks: not all passed",
+        "Checks: doubtful",
         "frequency [cycles/m]",
-        "FWHM 1.2084",
+        "across, FWHM\n1.2084",
         "Nyquist",
         "aliased",
         "✗",
@@ -87,11 +94,11 @@ def test_the_edge_page_shows_every_step(measurement):
         assert title in shown, title
 
 
-def test_the_pulse_page_shows_both_sides_the_width_and_the_zeros(pulse):
-    shown = texts(edge_figure(pulse))
+def test_the_figure_of_a_pulse_shows_both_sides_the_width_and_the_zeros(pulse):
+    shown = texts(draw(pulse))
     for title in (
-        "Pulse by spline",
-        "Pulse response, w = 3.1530 ± 0.0050 px",
+        "Pulse, method spline",
+        "Pulse, w = 3.1530 ± 0.0050 px",
         "into the pulse",
         "fitted PRF",
         "1/w",
@@ -101,11 +108,11 @@ def test_the_pulse_page_shows_both_sides_the_width_and_the_zeros(pulse):
     ):
         assert title in shown, title
     assert "dark → bright" not in shown
-    assert set(panel_figures(pulse)) == {"mtf", "target", "prf", "lsf"}
+    assert [one.is_target for one in panels(pulse)] == [False, False, True, False]
 
 
 def test_the_drawn_response_is_the_fitted_one(pulse):
-    axes = panel_figures(pulse)["prf"].axes[0]
+    axes = panel_figures(pulse)["samples"].axes[0]
     (line,) = [each for each in axes.lines if each.get_label() == "fitted PRF"]
     assert np.all(np.diff(line.get_xdata()) >= 0)
     middle = np.abs(line.get_xdata() - 0.5 * 3.153) < 0.2
@@ -117,7 +124,7 @@ def test_no_curve_passes_the_names_of_the_zeros():
     sensor = optics.Sensor([optics.Gaussian(0.4), optics.Detector()])
     image, _ = simulate.pulse(sensor, snr=70.0, rng=np.random.default_rng(1))
     both = [measure_pulse(image, width_px=3.0, method=name) for name in ("spline", "sdsu-2005")]
-    figure = comparison_figure(both)
+    figure = draw(both)
     figure.canvas.draw()
     axes, renderer = figure.axes[0], figure.canvas.get_renderer()
     named = [one for one in axes.texts if one.get_text().endswith("/w")]
@@ -139,17 +146,15 @@ def test_the_zeros_are_at_the_multiples_of_one_over_the_width(make_pulse):
 
 @pytest.mark.parametrize("width_px", [1.2, 2.0, 3.0, 6.0, 7.9, 20.0])
 def test_pulses_of_every_width_keep_their_labels_apart(make_pulse, width_px):
-    for figure in (
-        edge_figure(make_pulse(width_px)),
-        *panel_figures(make_pulse(width_px)).values(),
-    ):
+    figures = panel_figures(make_pulse(width_px))
+    for figure in (figures["mtf"], figures["samples"]):
         assert not overlaps(figure)
         assert not outside(figure)
 
 
 def test_pulses_are_compared_with_the_true_width(pulse, make_pulse, truth):
     held = make_pulse(3.1, 0.0, "sdsu-2005")
-    figure = comparison_figure([pulse, held], truth=truth, true_width_px=3.15)
+    figure = draw(compare([pulse, held], truth=truth, true_width_px=3.15))
     shown = texts(figure)
     for number in ("Width [px]", "3.1500", "3.1530 ± 0.0050", "3.1000"):
         assert number in shown, number
@@ -163,19 +168,19 @@ def test_spikes_at_the_zeros_do_not_flatten_the_curves(pulse, truth):
     ratio = replace(
         pulse,
         method="sdsu-2005",
-        response=replace(pulse.response, mtf=replace(pulse.mtf, otf=spiky)),
+        transfer=replace(pulse.response, mtf=replace(pulse.mtf, otf=spiky)),
     )
     assert panel_figures(ratio)["mtf"].axes[0].get_ylim()[1] < 1.5
-    mtfs, differences = comparison_figure([pulse, ratio], truth=truth).axes[:2]
+    mtfs, differences = draw(compare([pulse, ratio], truth=truth)).axes[:2]
     assert mtfs.get_ylim()[1] < 1.5
     assert max(np.abs(differences.get_ylim())) <= 0.2
 
 
 def test_nothing_overlaps_and_nothing_leaves_the_page(measurement, compared, truth, target):
     figures = {
-        "edge": edge_figure(measurement),
-        "comparison": comparison_figure(compared, truth=truth),
-        "target": target_figure(target),
+        "edge": draw(measurement),
+        "comparison": draw(compare(compared, truth=truth)),
+        "target": draw(target),
         **panel_figures(measurement),
     }
     for name, figure in figures.items():
@@ -187,21 +192,33 @@ def test_a_long_path_is_shortened_in_the_titles(make_edge, compared):
     path = "/".join(["W" * 29] * 5) + "/scene.tif"
     long = make_edge(path=path)
     others = [replace(one, image=long.image) for one in compared]
-    for figure in (edge_figure(long), comparison_figure(others)):
+    for figure in (draw(long), draw(others)):
         assert not outside(figure)
         assert "/scene.tif, band 1" in texts(figure)
         assert path not in texts(figure)
 
 
+def test_without_details_curves_and_numbers_are_drawn(measurement, pulse, compared, target):
+    for one in (measurement, pulse):
+        light = one.without_details()
+        assert len(panels(light)) == 2
+        assert "Target" not in texts(draw(light))
+        assert not overlaps(draw(light))
+    light = [one.without_details() for one in compared]
+    assert "Target" not in texts(draw(light))
+    edges = tuple(one.without_details() for one in target.measurements)
+    assert "4 edges measured" in texts(draw(TargetResult(edges, (), combine_edges(edges))))
+
+
 def test_the_check_for_overlaps_sees_one(measurement):
     figure = panel_figures(measurement)["lsf"]
     axes = figure.axes[0]
-    axes.text(0.5, 0.94, "on top of the FWHM", transform=axes.transAxes, ha="center", va="top")
+    axes.text(0.9, 0.94, "on top of the FWHM", transform=axes.transAxes, ha="right", va="top")
     assert overlaps(figure)
 
 
 def test_a_measurement_without_gsd_path_and_checks_is_drawn(vague_measurement):
-    figure = edge_figure(vague_measurement)
+    figure = draw(vague_measurement)
     shown = texts(figure)
     assert "cycles/m]" not in shown
     assert "No checks were made." in shown
@@ -222,15 +239,15 @@ def test_the_arrow_points_from_dark_to_bright(measurement, normal_deg):
 @pytest.mark.parametrize("roi", [(1000, 2000, 150, 30), (1000, 20000, 20, 90)])
 def test_long_and_flat_cuts_keep_their_labels_apart(make_edge, roi):
     normal_deg = 6.0 if roi[2] > roi[3] else -84.0
-    figure = edge_figure(make_edge(roi=roi, normal_deg=normal_deg, scatter=0.03))
+    figure = draw(make_edge(roi=roi, normal_deg=normal_deg, scatter=0.03))
     assert not overlaps(figure)
     assert not outside(figure)
 
 
 def test_only_the_surroundings_of_the_pixels_used_are_drawn(measurement):
-    used = np.zeros_like(measurement.samples.used)
+    used = np.zeros_like(measurement.details.used)
     used[10:30, 12:20] = True
-    small = replace(measurement, samples=replace(measurement.samples, used=used))
+    small = replace(measurement, details=replace(measurement.details, used=used))
     axes = panel_figures(small)["target"].axes[0]
     row, col = measurement.image.roi[:2]
     assert axes.get_ylim() == pytest.approx((row + 35.5, row + 3.5), abs=0.6)
@@ -239,23 +256,23 @@ def test_only_the_surroundings_of_the_pixels_used_are_drawn(measurement):
 
 def test_thirteen_checks_and_a_long_verdict_have_room(make_edge):
     checks = tuple(
-        Check(f"uniformity_of_{i:02d}", 12.25 * i, ">= 50", i % 2 == 0, "no") for i in range(13)
+        Check(f"uniformity_of_{i:02d}", 12.25 * i, ">=", 50.0, i % 2 == 0, "no") for i in range(13)
     )
-    figure = edge_figure(make_edge(checks=checks))
+    figure = draw(make_edge(checks=checks))
     assert not overlaps(figure)
     assert not outside(figure)
 
 
 def test_a_comparison_without_truth_takes_the_first_as_reference(compared, truth):
-    assert "MTF less spline" in texts(comparison_figure(compared))
-    assert "MTF less truth" in texts(comparison_figure(compared, truth=truth))
-    assert "1 spline" in texts(comparison_figure([compared[0], compared[0]]))
+    assert "MTF − spline" in texts(draw(compared))
+    assert "MTF − truth" in texts(draw(compare(compared, truth=truth)))
+    assert "1 spline" in texts(draw([compared[0], compared[0]]))
 
 
 def test_a_target_without_edges_along_says_so(target, measurement):
     across = target.groups["across"]
     alone = TargetResult(across.measurements, (), {"across": across})
-    figure = target_figure(alone, backdrop=measurement.samples.image, origin=(5, 7))
+    figure = draw(alone, backdrop=measurement.details.pixels, origin=(5, 7))
     assert "0 rejected; none along" in texts(figure)
     assert "2 edges measured, 0 rejected" in texts(figure)
 
@@ -276,15 +293,15 @@ def test_the_same_measurement_gives_the_same_bytes(measurement):
 
 def test_a_dollar_sign_in_a_path_is_a_dollar_sign(measurement):
     odd = replace(measurement, image=replace(measurement.image, path="a$\\frac{$.tif"))
-    assert "a$\\frac{$.tif" in texts(edge_figure(odd))
+    assert "a$\\frac{$.tif" in texts(draw(odd))
 
 
 def test_the_truth_of_a_pulse_knows_the_width_of_its_response():
     sensor = simulate.reference_systems()["halo"]
     rng = np.random.default_rng(0)
-    _, truth = simulate.pulse(sensor, width_px=3.1, angle_deg=6, snr=80, rng=rng)
-    known = true_numbers(truth.response, truth.width_px)
+    image, truth = simulate.pulse(sensor, width_px=3.1, angle_deg=6, snr=80, rng=rng)
+    pulse = measure_pulse(image, width_px=3.1)
+    known = compare([pulse], truth=truth.response, true_width_px=truth.width_px).true_numbers
     assert known["prf_fwhm_px"].value == pytest.approx(truth.prf_fwhm_px, abs=1e-3)
     assert known["prf_fwhm_px"].std == 0
     assert "prf_fwhm_m" not in known
-    assert true_numbers(None, 3.1) == {"width_px": Estimate(3.1)}

@@ -7,7 +7,7 @@ import pytest
 from test_figures import outside, overlaps, texts
 
 from acutance.report import plan_text, study_figure, study_text
-from acutance.report.study_figures import STUDY_FIGURES
+from acutance.report.studies.study import STUDY_FIGURES
 from acutance.studies import (
     STUDIES,
     AngleOptions,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from acutance import OptionError
-from acutance.report.study_figures import study_figure
+from acutance.report.studies.study import study_figure
 from acutance.studies import (
     Execution,
     GroundNoiseOptions,

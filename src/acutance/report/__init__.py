@@ -1,99 +1,67 @@
-"""Faces of a measurement on paper: text, figures, HTML, CSV and JSON."""
+"""Any result on paper: figures, tables, HTML pages, text, CSV and JSON.
 
-from acutance.report.bars_panels import bars_panels
-from acutance.report.bars_words import bars_blocks, bars_csv, bars_sections
-from acutance.report.biresolution_panels import biresolution_panels
-from acutance.report.biresolution_words import biresolution_blocks, biresolution_sections
+Six functions take any result: a measurement of any kind, all edges of a target, or a list of
+measurements of one target, which is compared (`compare` adds the truth):
+
+- `draw` makes a figure (`figure.py`, drawings by kind in ``figures/``)
+- `tables` gives tables (``tables/``, by kind)
+- `page` writes HTML (`page.py`, made of the sections of `html.py`), `notebook_html` a part of it
+- `text` writes for a terminal, `csv` the MTF, `document` JSON (with its schema)
+
+`labels.py` has what numbers, kinds and methods are called, `paper.py` colours, type and saving.
+Studies, plans and budgets have outputs of their own (``studies/``, `budget.py`).
+"""
+
 from acutance.report.budget import (
     budget_document,
     budget_figure,
     budget_text,
     sensor_document,
 )
-from acutance.report.combine_panels import combine_panels
-from acutance.report.combine_words import combine_blocks, combine_sections
-from acutance.report.comparison_page import comparison_figure
-from acutance.report.documents import (
-    comparison_document,
-    json_text,
-    measurement_document,
-    measurement_schema,
-    target_document,
-    truth_document,
-)
-from acutance.report.edge_page import edge_figure, panel_figures
-from acutance.report.mirrors_page import mirror_plan_figure, mirror_plan_text
-from acutance.report.page import save_figure
-from acutance.report.plane_page import plane_figure, plane_panels
-from acutance.report.plane_panels import PlanePanel
-from acutance.report.plane_report import plane_report, plane_sections
-from acutance.report.plane_text import plane_csv, plane_document, plane_text
-from acutance.report.points_panels import points_panels
-from acutance.report.points_tables import points_blocks, points_sections, sources_csv
-from acutance.report.reports import comparison_report, edge_report, target_report
-from acutance.report.scene_truth import scene_document, target_truth_document
-from acutance.report.star_panels import star_panels
-from acutance.report.star_words import star_blocks, star_csv, star_sections
-from acutance.report.study_figures import plan_text, study_figure, study_text
-from acutance.report.tables import mtf_csv, mtf_csv_of_many
-from acutance.report.target_page import target_figure
-from acutance.report.text import comparison_text, target_text, text_report
+from acutance.report.comparison import Comparison, compare
+from acutance.report.csv import csv
+from acutance.report.figure import draw, panels
+from acutance.report.figures.panel import Panel
+from acutance.report.html import Table
+from acutance.report.json import document, json_text, measurement_schema
+from acutance.report.notebook import notebook_html
+from acutance.report.page import page
+from acutance.report.paper import figure_bytes, save_figure
+from acutance.report.studies.mirrors import mirror_plan_figure, mirror_plan_text
+from acutance.report.studies.study import plan_text, study_figure, study_text
+from acutance.report.tables.points import sources_csv
+from acutance.report.tables.result import tables
+from acutance.report.text import text
+from acutance.report.truth import scene_document, target_truth_document, truth_document
 
 __all__ = [
-    "PlanePanel",
-    "bars_blocks",
-    "bars_csv",
-    "bars_panels",
-    "bars_sections",
-    "biresolution_blocks",
-    "biresolution_panels",
-    "biresolution_sections",
+    "Comparison",
+    "Panel",
+    "Table",
     "budget_document",
     "budget_figure",
     "budget_text",
-    "combine_blocks",
-    "combine_panels",
-    "combine_sections",
-    "comparison_document",
-    "comparison_figure",
-    "comparison_report",
-    "comparison_text",
-    "edge_figure",
-    "edge_report",
+    "compare",
+    "csv",
+    "document",
+    "draw",
+    "figure_bytes",
     "json_text",
-    "measurement_document",
     "measurement_schema",
     "mirror_plan_figure",
     "mirror_plan_text",
-    "mtf_csv",
-    "mtf_csv_of_many",
-    "panel_figures",
+    "notebook_html",
+    "page",
+    "panels",
     "plan_text",
-    "plane_csv",
-    "plane_document",
-    "plane_figure",
-    "plane_panels",
-    "plane_report",
-    "plane_sections",
-    "plane_text",
-    "points_blocks",
-    "points_panels",
-    "points_sections",
     "save_figure",
     "scene_document",
     "sensor_document",
     "sources_csv",
-    "star_blocks",
-    "star_csv",
-    "star_panels",
-    "star_sections",
     "study_figure",
     "study_text",
-    "target_document",
-    "target_figure",
-    "target_report",
-    "target_text",
+    "tables",
     "target_truth_document",
-    "text_report",
+    "text",
     "truth_document",
 ]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from acutance.report.page import INK, PALETTE, new_page, styled
+from acutance.report.paper import INK, PALETTE, new_page, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,21 +1,27 @@
-"""An HTML report: what its sections hold, and how they become one self-contained page.
-
-A method adds to the report by returning `Section` objects; the template knows nothing of methods.
-"""
+"""An HTML page: what its sections hold, and how they become one self-contained document."""
 
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
 
-from acutance.report.page import figure_bytes
+from acutance.report.paper import figure_bytes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Headline", "Link", "Plate", "Section", "Table", "Verdict", "render_report"]
+__all__ = [
+    "Headline",
+    "Link",
+    "Plate",
+    "Section",
+    "Table",
+    "Verdict",
+    "render_fragment",
+    "render_page",
+]
 
 
 @dataclass(frozen=True)
@@ -39,10 +45,21 @@ class Headline:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the checks say, in a sentence."""
+    """What the checks come to.
 
-    passed: bool
+    Parameters
+    ----------
+    word : {"good", "usable", "doubtful", "invalid"}
+        Chooses the colour, too.
+    text : str
+        What matters most.
+    details : tuple of (str, str), optional
+        What failed: a name and a sentence each.
+    """
+
+    word: Literal["good", "usable", "doubtful", "invalid"]
     text: str
+    details: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -80,12 +97,18 @@ class Table:
     ----------
     columns : tuple of str
     rows : tuple of tuples of str
+        On a page the first line of a cell is its content, further lines are smaller.
     align : str
         One letter a column: ``"l"`` text, ``"r"`` number.
     parts : int, optional
         A long table is cut into this many side by side.
     alerts : frozenset of int, optional
         Rows to be marked as failed.
+    title : str, optional
+    notes : tuple of str, optional
+        Paragraphs that explain it.
+    page_only : bool, optional
+        Too long or too special for text on a terminal.
     """
 
     columns: tuple[str, ...]
@@ -93,10 +116,16 @@ class Table:
     align: str
     parts: int = 1
     alerts: frozenset[int] = frozenset()
+    title: str = ""
+    notes: tuple[str, ...] = ()
+    page_only: bool = False
 
-    def pieces(self) -> list[list[tuple[tuple[str, ...], bool]]]:
-        """The rows with their alert, in `parts` pieces of equal length."""
-        marked = [(row, i in self.alerts) for i, row in enumerate(self.rows)]
+    def pieces(self) -> list[list[tuple[tuple[list[str], ...], bool]]]:
+        """The rows, cells cut into lines, with their alert, in `parts` pieces of equal length."""
+        marked = [
+            (tuple(cell.split("\n") for cell in row), i in self.alerts)
+            for i, row in enumerate(self.rows)
+        ]
         length = max(1, -(-len(marked) // self.parts))
         return [marked[i : i + length] for i in range(0, len(marked), length)]
 
@@ -111,7 +140,18 @@ class Link:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of a report; whatever it does not have is left out of the page."""
+    """A part of a page; whatever it does not have is left out.
+
+    Parameters
+    ----------
+    title : str
+    paragraphs, headlines, verdicts, plates, tables, links : tuple, optional
+        In this order on the page.
+    command : str, optional
+        A command line.
+    side_by_side : bool, optional
+        The tables, in large type, left of the first plate; other plates below them.
+    """
 
     title: str
     paragraphs: tuple[str, ...] = ()
@@ -121,21 +161,44 @@ class Section:
     tables: tuple[Table, ...] = ()
     links: tuple[Link, ...] = ()
     command: str | None = None
+    side_by_side: bool = field(default=False, kw_only=True)
+
+    @classmethod
+    def of_table(cls, table: Table) -> Section:
+        """A section that holds one table, under its title and notes."""
+        return cls(table.title, paragraphs=table.notes, tables=(table,))
 
 
-def render_report(title: str, subtitle: str, sections: Sequence[Section]) -> str:
+def render_page(
+    title: str,
+    subtitle: str,
+    sections: Sequence[Section],
+    facts: Mapping[str, str] | None = None,
+) -> str:
     """One self-contained HTML page; every text is escaped.
 
     Parameters
     ----------
     title, subtitle : str
     sections : sequence of Section
+    facts : mapping of str to str, optional
+        What to know first, by name: the image, when it was measured.
 
     Returns
     -------
     str
         A whole document: style and drawings are inside, nothing is loaded from elsewhere.
     """
+    return _rendered("page.html", title=title, subtitle=subtitle, sections=sections,
+                     facts=facts or {})  # fmt: skip
+
+
+def render_fragment(sections: Sequence[Section]) -> str:
+    """The same sections as a piece of HTML with its own style, for a notebook."""
+    return _rendered("fragment.html", sections=sections)
+
+
+def _rendered(name: str, **content: object) -> str:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     from acutance import __version__
@@ -147,5 +210,4 @@ def render_report(title: str, subtitle: str, sections: Sequence[Section]) -> str
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    template = environment.get_template("report.html")
-    return template.render(title=title, subtitle=subtitle, sections=sections, version=__version__)
+    return environment.get_template(name).render(version=__version__, **content)

@@ -1,133 +1,244 @@
-"""The paper figures are drawn on: size, type, colours, and saving."""
+"""The HTML page of any result."""
 
 from __future__ import annotations
 
-import io
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from pathlib import Path
+import shlex
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure, FigureBase, SubFigure
-
-__all__ = [
-    "FIGURE_ENDINGS",
-    "INK",
-    "NAME_WITH_ROOM",
-    "PALETTE",
-    "figure_bytes",
-    "new_page",
-    "save_figure",
-    "split_page",
-    "styled",
-]
-
-# Okabe and Ito (2008): told apart with every kind of colour vision, and in print.
-BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY = (
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#E69F00",
-    "#CC79A7",
-    "#56B4E9",
+from acutance.report.comparison import Comparison, Result, as_result
+from acutance.report.figure import panels
+from acutance.report.figures.comparison import comparison_figure
+from acutance.report.figures.target import target_figure
+from acutance.report.html import Plate, Section, Table, Verdict, render_page
+from acutance.report.labels import (
+    count_edges,
+    count_failed_checks,
+    describe_target,
+    flatten_options,
+    format_number,
+    provenance,
+    title_of,
 )
-PALETTE = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
-INK, FAINT, SHADE = "#1b2530", "#66717d", "#eceff2"
+from acutance.report.paper import new_page, styled
+from acutance.report.tables.measurement import headline_table, numbers_of, options_table
+from acutance.report.tables.result import tables
+from acutance.report.tables.target import means_headline, target_tables
+from acutance.targets import TargetResult
 
-NAME_WITH_ROOM = 48
-"""Characters of a file's name that have room in the title of a page 13 inches wide."""
+if TYPE_CHECKING:
+    from acutance.curves.grid import Floats
+    from acutance.report.figures.panel import Panel
+    from acutance.targets.measurement import Measurement
+    from acutance.targets.record import Record
 
-FIGURE_ENDINGS = (".png", ".svg", ".pdf")
+__all__ = ["page", "panel_plate", "sections", "verdict_of"]
 
-_STYLE: dict[Any, Any] = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9.5,
-    "axes.titlesize": 11,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.labelsize": 9.5,
-    "axes.edgecolor": FAINT,
-    "axes.labelcolor": INK,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.linewidth": 0.8,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": "#dfe3e8",
-    "grid.linewidth": 0.6,
-    "text.color": INK,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "xtick.labelsize": 8.5,
-    "ytick.labelsize": 8.5,
-    "legend.fontsize": 8.5,
-    "legend.frameon": False,
-    "lines.linewidth": 1.8,
-    # A dollar sign in a file name is a dollar sign.
-    "text.parse_math": False,
-    "svg.hashsalt": "acutance",
-    "figure.facecolor": "white",
-}
+PLATE_IN, WIDE_IN = 6.0, 12.4
 
 
-@contextmanager
-def styled() -> Iterator[None]:
-    """Draw and save inside this, so that nobody's own matplotlib settings leak in or out."""
-    import matplotlib
-
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_STYLE)
-        yield
-
-
-def new_page(width_in: float, height_in: float, margin_in: float = 0.12) -> Figure:
-    """An empty figure with its own canvas: no windows, no global state."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-    from matplotlib.layout_engine import ConstrainedLayoutEngine
-
-    x, y = margin_in / width_in, margin_in / height_in
-    figure = Figure(
-        figsize=(width_in, height_in),
-        layout=ConstrainedLayoutEngine(rect=(x, y, 1 - 2 * x, 1 - 2 * y)),
-    )
-    FigureCanvasAgg(figure)
-    return figure
-
-
-def split_page(
-    page: FigureBase,
-    rows: int,
-    columns: int,
+def page(
+    result: Result,
     *,
-    widths: Sequence[float] | None = None,
-    heights: Sequence[float] | None = None,
-) -> list[SubFigure]:
-    """Cut a page into parts that are laid out on their own, row by row."""
-    parts = page.subfigures(
-        rows, columns, squeeze=False, width_ratios=widths, height_ratios=heights
-    )
-    return list(parts.flat)
+    command: str | None = None,
+    backdrop: Floats | None = None,
+    origin: tuple[int, int] = (0, 0),
+) -> str:
+    """Any result as one self-contained HTML page.
 
+    Parameters
+    ----------
+    result : Measurement, TargetResult, Comparison or sequence of Measurement
+        Several measurements of one target are compared.
+    command : str, optional
+        The command line that produced it; of edges and pulses of a file it is made up from the
+        measurement when not given.
+    backdrop, origin : optional
+        Of all edges of a target: see `acutance.report.draw`.
 
-def figure_bytes(figure: Figure, ending: str, dpi: int = 150) -> bytes:
-    """The figure as a file's content; `ending` is one of ``FIGURE_ENDINGS``.
-
-    The same figure gives the same bytes: no dates are written.
+    Returns
+    -------
+    str
+        A whole document: style and drawings are inside, nothing is loaded from elsewhere.
     """
-    dates: dict[str, dict[str, str | None]] = {
-        ".svg": {"Date": None},
-        ".pdf": {"CreationDate": None},
-    }
-    buffer = io.BytesIO()
+    found = as_result(result)
+    content = sections(found, command=command, backdrop=backdrop, origin=origin)
+    if isinstance(found, TargetResult):
+        count = count_edges(len(found.measurements))
+        first = found.measurements[0]
+        rejected = f"{len(found.rejected)} rejected" if found.rejected else ""
+        return render_page(f"{count} of one target", rejected, content, provenance(first))
+    if isinstance(found, Comparison):
+        first = found.measurements[0]
+        kind = title_of(first).split(",")[0]
+        named = f"{kind} by {', '.join(found.labels)}{', with the truth' if found.truth else ''}"
+        return render_page("Methods compared", named, content, provenance(first))
+    return render_page(title_of(found), describe_target(found), content, provenance(found))
+
+
+def sections(
+    result: Result,
+    *,
+    command: str | None = None,
+    backdrop: Floats | None = None,
+    origin: tuple[int, int] = (0, 0),
+) -> tuple[Section, ...]:
+    """What `page` shows, for a page that holds more than one result."""
+    found = as_result(result)
+    if isinstance(found, TargetResult):
+        return _target_sections(found, backdrop, origin, command)
+    if isinstance(found, Comparison):
+        return _comparison_sections(found, command)
+    return _measurement_sections(found, command)
+
+
+def verdict_of(result: Measurement | Record, label: str = "") -> Verdict:
+    """What the checks come to: the word and the sentence that matters, then what else failed."""
+    if not result.checks:
+        return Verdict("usable", f"{label}No checks were made.")
+    verdict = result.verdict
+    others = [one for one in result.failed_checks if one.message != verdict.sentence]
+    sentence = verdict.sentence.rstrip(".")
+    return Verdict(
+        verdict.word,
+        f"{label}{verdict.word.capitalize()}: {sentence}.",
+        tuple((one.name, one.message) for one in others),
+    )
+
+
+def panel_plate(panel: Panel) -> Plate:
+    """A drawing as a plate of a page."""
     with styled():
-        figure.savefig(buffer, format=ending[1:], dpi=dpi, metadata=dates.get(ending))
-    return buffer.getvalue()
+        figure = new_page(WIDE_IN if panel.wide else PLATE_IN, panel.height_in)
+        panel.draw(figure)
+    return Plate.of_figure(figure, panel.title, panel.caption, wide=panel.wide)
 
 
-def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> None:
-    """Write the figure as PNG, SVG or PDF, as the file's ending says."""
-    target = Path(path)
-    target.write_bytes(figure_bytes(figure, target.suffix.lower(), dpi))
+def _measurement_sections(measurement: Measurement, command: str | None) -> tuple[Section, ...]:
+    """Verdict, main numbers and MTF first; then drawings, tables, how it was measured."""
+    mtf, *others = panels(measurement)
+    target = [panel for panel in others if panel.is_target]
+    rest = [panel for panel in others if not panel.is_target]
+    *numbers, last = map(Section.of_table, tables(measurement))
+    return (
+        Section(
+            "Result",
+            verdicts=(verdict_of(measurement),),
+            tables=(headline_table(numbers_of(measurement), measurement),),
+            plates=tuple(map(panel_plate, (mtf, *target))),
+            side_by_side=True,
+        ),
+        Section("Curves and pixels", plates=tuple(map(panel_plate, rest))),
+        *numbers,
+        _with_command(last, command or _command(measurement)),
+    )
+
+
+def _with_command(section: Section, command: str | None) -> Section:
+    return Section(section.title, tables=section.tables, command=command)
+
+
+def _comparison_sections(comparison: Comparison, command: str | None) -> tuple[Section, ...]:
+    """Verdicts, the target and the curves, one table of numbers a direction."""
+    measurements = comparison.measurements
+    verdicts = tuple(
+        verdict_of(one, f"{label} – ")
+        for label, one in zip(comparison.labels, measurements, strict=True)
+    )
+    against = "the truth" if comparison.truth else "the first method"
+    curves = Plate.of_figure(
+        comparison_figure(comparison, on_page=True),
+        "MTFs, their differences and the differences of the ESFs",
+        f"Bands are 95 % intervals. Differences are taken to {against}.",
+        wide=True,
+    )
+    return (
+        Section("Verdict", verdicts=verdicts),
+        Section("Target and curves", plates=(*_target_plates(measurements[0]), curves)),
+        *map(Section.of_table, tables(comparison)),
+        _with_command(
+            Section.of_table(_shared_options(measurements)),
+            command or _command(measurements[0], [one.method for one in measurements[1:]]),
+        ),
+    )
+
+
+def _target_plates(measurement: Measurement) -> tuple[Plate, ...]:
+    """The picture of a target that the figure of the comparison does not have."""
+    if measurement.details is None or measurement.normal_deg is not None:
+        return ()
+    return tuple(panel_plate(panel) for panel in panels(measurement) if panel.is_target)
+
+
+def _shared_options(measurements: Sequence[Measurement]) -> Table:
+    """The methods, and the options they share."""
+    each = [dict(flatten_options(one.options)) for one in measurements]
+    shared = {
+        name: value
+        for name, value in each[0].items()
+        if all(options.get(name) == value for options in each)
+    }
+    first = options_table(measurements[0])
+    methods = dict.fromkeys(one.method for one in measurements)
+    rows = (("methods", ", ".join(methods)), *shared.items(), *first.rows[-2:])
+    return Table(first.columns, rows, first.align, title=first.title)
+
+
+def _target_sections(
+    result: TargetResult[Any],
+    backdrop: Floats | None,
+    origin: tuple[int, int],
+    command: str | None,
+) -> tuple[Section, ...]:
+    """The picture of all edges first, then means, every edge, what failed, what was rejected."""
+    measurements = result.measurements
+    picture = Plate.of_figure(
+        target_figure(result, backdrop=backdrop, origin=origin, on_page=True),
+        "The edges and their MTFs by direction",
+        "Numbered edges, the MTF of each with its 95 % band, the weighted mean at Nyquist.",
+        wide=True,
+    )
+    last = Section.of_table(options_table(measurements[0]))
+    return (
+        Section("The target", verdicts=_target_verdicts(result), plates=(picture,)),
+        Section("Weighted means", tables=(means_headline(result),), side_by_side=True),
+        *map(Section.of_table, target_tables(result)),
+        _with_command(last, command or _command(measurements[0])),
+    )
+
+
+def _target_verdicts(result: TargetResult[Any]) -> tuple[Verdict, ...]:
+    """One verdict of all edges, that of the worst, with what failed at each."""
+    order = ("good", "usable", "doubtful", "invalid")
+    measurements = result.measurements
+    worst = max(measurements, key=lambda one: order.index(one.verdict.word))
+    details = tuple(
+        (f"edge {number}, {check.name}", check.message)
+        for number, one in enumerate(measurements, start=1)
+        for check in one.failed_checks
+    )
+    counted = count_failed_checks(measurements)
+    word = worst.verdict.word
+    return (Verdict(word, f"{word.capitalize()}: {counted}", details),)
+
+
+def _command(measurement: Any, compared: Sequence[str] = ()) -> str | None:
+    """The command line that repeats an edge or a pulse of a file, measured from Python."""
+    image = measurement.image
+    if image.path is None or measurement.kind not in ("edge", "pulse"):
+        return None
+    words = ["acutance", measurement.kind, image.path, "--roi", ",".join(map(str, image.roi))]
+    if image.band != 1:
+        words += ["--band", str(image.band)]
+    if image.gsd_m is not None:
+        words += ["--gsd", format_number(image.gsd_m, 8)]
+    if image.along_track != "y":
+        words += ["--along-track", image.along_track]
+    if measurement.stated_width_px is not None and measurement.width_px is not None:
+        words += ["--width-px", format_number(measurement.stated_width_px, 8)]
+        words += [] if measurement.width_px.std > 0 else ["--hold-width"]
+    words += ["--method", measurement.method]
+    words += ["--compare", ",".join(dict.fromkeys(compared))] if compared else []
+    if measurement.response.rer_centre != "half":
+        words += ["--rer-centre", measurement.response.rer_centre]
+    return shlex.join(words)

@@ -1,29 +1,127 @@
-"""The report for a terminal: plain text, aligned columns."""
+"""A result for a terminal: plain text, aligned columns."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from acutance.report.comparison_page import edge_labels
-from acutance.report.target_page import group_rows
-from acutance.report.wording import (
+from acutance.report.comparison import Comparison, Result, as_result
+from acutance.report.html import Table
+from acutance.report.labels import (
     count_edges,
+    count_failed_checks,
     describe_image,
-    describe_line,
+    describe_measurement,
     format_number,
-    metric_words,
-    numbers_of,
-    verdict,
-    word_estimate,
-    word_place,
+    title_of,
 )
+from acutance.report.tables.measurement import numbers_table
+from acutance.report.tables.result import kind_tables, tables
+from acutance.targets import TargetResult
 
 if TYPE_CHECKING:
     from acutance.targets.measurement import Measurement
-    from acutance.targets.straight import TargetResult
 
-__all__ = ["align_columns", "comparison_text", "target_text", "text_report"]
+__all__ = ["align_columns", "text"]
+
+MAX_ROWS = 40
+
+
+def text(result: Result) -> str:
+    """Any result as text: what was measured, the verdict, the numbers, the checks.
+
+    Parameters
+    ----------
+    result : Measurement, TargetResult, Comparison or sequence of Measurement
+
+    Returns
+    -------
+    str
+        Several lines, without a newline at the end.
+    """
+    found = as_result(result)
+    if isinstance(found, TargetResult):
+        return _target_text(found)
+    if isinstance(found, Comparison):
+        return _comparison_text(found)
+    parts = [
+        f"{describe_measurement(found)}\n  {describe_image(found)}",
+        _table_text(numbers_table(found), drop_last=1),
+        *(_table_text(table) for table in kind_tables(found) if not table.page_only),
+    ]
+    if found.checks:
+        checks = [
+            ("ok" if one.passed else one.severity.upper(), one.name, format_number(one.value),
+             one.asked)
+            for one in found.checks
+        ]  # fmt: skip
+        parts.append(align_columns(checks, "llrl"))
+    parts.append("\n".join(_verdict_lines(found)))
+    return "\n\n".join(parts)
+
+
+def _verdict_lines(measurement: Measurement) -> list[str]:
+    """Verdict and how many checks failed, then what each of those found."""
+    counted = count_failed_checks([measurement])
+    first = f"{measurement.verdict.word}: {counted}" if measurement.checks else counted
+    return [
+        first,
+        *(f"  {one.name} ({one.severity}): {one.message}" for one in measurement.failed_checks),
+    ]
+
+
+def _comparison_text(comparison: Comparison) -> str:
+    """A column and the failed checks of each method."""
+    first = comparison.measurements[0]
+    title = title_of(first).split(",")[0]
+    verdicts = (
+        line if line.startswith(" ") else f"{label}: {line}"
+        for label, one in zip(comparison.labels, comparison.measurements, strict=True)
+        for line in _verdict_lines(one)
+    )
+    return "\n\n".join(
+        (
+            f"{title} by {len(comparison.labels)} methods, {' and '.join(comparison.directions)} "
+            f"track\n  {describe_image(first)}",
+            *map(_table_text, tables(comparison)),
+            "\n".join(verdicts),
+        )
+    )
+
+
+def _target_text(result: TargetResult[Any]) -> str:
+    """Every edge, the means by direction, what was rejected, and what failed checks found."""
+    measurements = result.measurements
+    head = f"{count_edges(len(measurements))} measured, {len(result.rejected)} rejected"
+    where = f"\n  {describe_image(measurements[0])}" if measurements else ""
+    failed = [
+        f"  edge {number}, {check.name} ({check.severity}): {check.message}"
+        for number, one in enumerate(measurements, start=1)
+        for check in one.failed_checks
+    ]
+    return "\n\n".join(
+        (
+            head + where,
+            *map(_table_text, tables(result)),
+            "\n".join((count_failed_checks(measurements), *failed)),
+        )
+    )
+
+
+def _table_text(table: Table, drop_last: int = 0) -> str:
+    """Title, header and rows; a long table is cut, a line of a cell is one line here."""
+    kept = len(table.columns) - drop_last
+    rows = [[cell.split("\n")[0] for cell in row[:kept]] for row in table.rows[:MAX_ROWS]]
+    header = [list(table.columns[:kept])] if any(table.columns) else []
+    lines = [table.title] if table.title else []
+    if rows:
+        lines.append(align_columns([*header, *rows], table.align[:kept]))
+    else:
+        lines += [f"  {note}" for note in table.notes]
+    more = len(table.rows) - len(rows)
+    if more > 0:
+        lines.append(f"  ... {more} more in the JSON document")
+    return "\n".join(lines)
 
 
 def align_columns(rows: Sequence[Sequence[str]], align: str, indent: str = "  ") -> str:
@@ -47,88 +145,3 @@ def align_columns(rows: Sequence[Sequence[str]], align: str, indent: str = "  ")
         ]
         lines.append((indent + "  ".join(cells)).rstrip())
     return "\n".join(lines)
-
-
-def text_report(measurement: Measurement) -> str:
-    """A measurement as text: where, what, the numbers and the checks.
-
-    Parameters
-    ----------
-    measurement : Measurement
-
-    Returns
-    -------
-    str
-        Several lines, without a newline at the end.
-    """
-    title = f"{measurement.kind} by {measurement.method}, {measurement.orientation}"
-    numbers = [("", "value", "std", "95 % interval", "")]
-    for name, estimate in numbers_of(measurement).items():
-        words, number = metric_words(name), word_estimate(estimate)
-        numbers.append((words.label, number.value, number.std, number.interval, words.unit))
-    blocks = [
-        f"{title}\n  {describe_image(measurement)}\n  {describe_line(measurement)}",
-        align_columns(numbers, "lrrrl"),
-    ]
-    if measurement.checks:
-        checks = [
-            ("ok" if one.passed else "FAILED", one.name, format_number(one.value), one.limit)
-            for one in measurement.checks
-        ]
-        blocks.append(align_columns(checks, "llrl"))
-    blocks.append("\n".join([verdict([measurement]), *_complaints(measurement)]))
-    return "\n\n".join(blocks)
-
-
-def comparison_text(measurements: Sequence[Measurement]) -> str:
-    """Several measurements of one target as text: a column and the failed checks of each."""
-    labels = edge_labels(measurements)
-    rows = [("", *labels)]
-    for name, first in numbers_of(measurements[0]).items():
-        cells = (numbers_of(one).get(name, first) for one in measurements)
-        words = (word_estimate(cell).value_and_std for cell in cells)
-        rows.append((metric_words(name).label_with_unit, *words))
-    verdicts = (
-        line
-        for label, one in zip(labels, measurements, strict=True)
-        for line in (f"{label}: {verdict([one])}", *_complaints(one))
-    )
-    return "\n\n".join(
-        (
-            f"{measurements[0].kind} by {len(labels)} methods, {measurements[0].orientation}\n"
-            f"  {describe_image(measurements[0])}",
-            align_columns(rows, "l" + "r" * len(labels)),
-            "\n".join(verdicts),
-        )
-    )
-
-
-def target_text(result: TargetResult) -> str:
-    """All edges of a target as text: every edge, the means by direction, what was rejected."""
-    edges: list[tuple[str, ...]] = [
-        ("edge", "direction", "angle [°]", "MTF at Nyquist", "RER", "FWHM [px]", "checks")
-    ]
-    for number, one in enumerate(result.measurements, start=1):
-        failed = ", ".join(check.name for check in one.failed_checks)
-        numbers = (one.angle_deg, one.mtf_nyquist, one.rer, one.fwhm_px)
-        words = (word_estimate(each).value_and_std for each in numbers)
-        edges.append((str(number), one.orientation, *words, failed or "all passed"))
-    blocks = [
-        f"{count_edges(len(result.measurements))} measured, {len(result.rejected)} rejected",
-        align_columns(edges, "llrrrrl"),
-        align_columns(
-            [("mean", "metric", "value", "chi² / dof", "p"), *group_rows(result)], "llrrr"
-        ),
-    ]
-    if result.rejected:
-        blocks.append(
-            "\n".join(
-                f"  at {word_place(one.values)}, {one.stage}: {one.reason}"
-                for one in result.rejected
-            )
-        )
-    return "\n\n".join(blocks)
-
-
-def _complaints(measurement: Measurement) -> list[str]:
-    return [f"  {check.name}: {check.message}" for check in measurement.failed_checks]

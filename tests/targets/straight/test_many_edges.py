@@ -5,11 +5,11 @@ import math
 
 import numpy as np
 import pytest
+from acutance.report.documents import json_text, target_document
+from acutance.report.target_page import group_rows
 
 import acutance as ac
 from acutance.curves import Estimate
-from acutance.report.documents import json_text, target_document
-from acutance.report.target_page import group_rows
 from acutance.simulate import site
 from acutance.targets.straight.many_edges import TargetResult, _weighted_mean, combine_edges
 

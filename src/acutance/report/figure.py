@@ -1,0 +1,199 @@
+"""The figure of any result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from acutance.report.comparison import Comparison, Result, as_result
+from acutance.report.figures.bars import bars_panels
+from acutance.report.figures.biresolution import biresolution_panels
+from acutance.report.figures.combined import combined_panels
+from acutance.report.figures.comparison import comparison_figure
+from acutance.report.figures.curves import curve_panels
+from acutance.report.figures.panel import Panel
+from acutance.report.figures.points import points_panels
+from acutance.report.figures.star import star_panels
+from acutance.report.figures.straight import straight_panels
+from acutance.report.figures.target import target_figure
+from acutance.report.figures.writing import FONT_SIZE, ROW_HEIGHT, write_below, write_grid
+from acutance.report.labels import (
+    count_failed_checks,
+    describe_image,
+    describe_measurement,
+    format_number,
+    measurement_metric_words,
+    spread_name,
+    word_estimate,
+)
+from acutance.report.paper import INK, NAME_WITH_ROOM, VERMILION, new_page, split_page, styled
+from acutance.report.tables.measurement import numbers_of
+from acutance.targets import TargetResult
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, FigureBase
+
+    from acutance.curves.grid import Floats
+    from acutance.targets.measurement import Measurement
+
+__all__ = ["KIND_PANELS", "draw", "measurement_figure", "panels"]
+
+KIND_PANELS: dict[str, Callable[[Any], tuple[Panel, ...]]] = {
+    "bars": bars_panels,
+    "biresolution": biresolution_panels,
+    "combined": combined_panels,
+    "points": points_panels,
+    "star": star_panels,
+}
+"""What each kind of target draws after its curves; edges and pulses draw all by themselves."""
+
+WIDTH_IN = 13.0
+ROW_IN = 4.3
+LINE_IN = FONT_SIZE * ROW_HEIGHT / 72
+LINES_WITH_ROOM = 16
+TITLE_IN = 0.4
+
+
+def draw(
+    result: Result,
+    *,
+    backdrop: Floats | None = None,
+    origin: tuple[int, int] = (0, 0),
+) -> Figure:
+    """The figure of any result.
+
+    Parameters
+    ----------
+    result : Measurement, TargetResult, Comparison or sequence of Measurement
+        Several measurements of one target are compared.
+    backdrop : (rows, cols) array, optional
+        Of all edges of a target: the pixels to draw them on; without it the measured regions are
+        put together.
+    origin : (int, int), optional
+        Row and column of the backdrop's first pixel in the whole image.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        With its own Agg canvas; save it with `save_figure` or ``figure.savefig``.
+    """
+    found = as_result(result)
+    if isinstance(found, TargetResult):
+        return target_figure(found, backdrop=backdrop, origin=origin)
+    if isinstance(found, Comparison):
+        return comparison_figure(found)
+    return measurement_figure(found)
+
+
+def panels(measurement: Measurement) -> tuple[Panel, ...]:
+    """Every drawing of a measurement, its MTF first.
+
+    After `without_details` those that need pixels are left out.
+
+    Parameters
+    ----------
+    measurement : Measurement
+    """
+    if measurement.kind in ("edge", "pulse"):
+        return straight_panels(measurement)  # type: ignore[arg-type]
+    kind = KIND_PANELS.get(measurement.kind)
+    return (*curve_panels(measurement), *(kind(measurement) if kind else ()))
+
+
+def measurement_figure(measurement: Measurement) -> Figure:
+    """One page, 13 inches wide, with every drawing of a measurement, its numbers and checks."""
+    numbers, checks = _number_rows(measurement), _check_rows(measurement)
+    rows, last = _arranged(panels(measurement))
+    heights = [max(panel.height_in for panel in row) for row in rows]
+    lines = max(len(numbers), len(checks) + 2)
+    last_in = ROW_IN + LINE_IN * max(0, lines - LINES_WITH_ROOM)
+    with styled():
+        figure = new_page(WIDTH_IN, sum(heights) + last_in + TITLE_IN)
+        parts = split_page(figure, len(rows) + 1, 1, heights=[*heights, last_in])
+        for part, row in zip(parts, rows, strict=False):
+            for place, panel in zip(split_page(part, 1, len(row)), row, strict=True):
+                panel.draw(place)
+        _draw_last(parts[-1], measurement, last, numbers, checks)
+        figure.suptitle(
+            f"{describe_measurement(measurement)}\n{describe_image(measurement, NAME_WITH_ROOM)}",
+            x=0.012, ha="left", fontsize=11,
+        )  # fmt: skip
+    return figure
+
+
+def _arranged(drawn: Sequence[Panel]) -> tuple[list[tuple[Panel, ...]], Panel | None]:
+    """Rows of three, of a rest of two one of two; wide panels have their own.
+
+    A rest of one is returned by itself: it stands with the numbers and checks.
+    """
+    narrow = [panel for panel in drawn if not panel.wide]
+    rest = len(narrow) % 3
+    rows = [tuple(narrow[i : i + 3]) for i in range(0, len(narrow) - rest, 3)]
+    if rest == 2:
+        rows.append(tuple(narrow[-2:]))
+    rows += [(panel,) for panel in drawn if panel.wide]
+    return rows, narrow[-1] if rest == 1 else None
+
+
+def _draw_last(
+    page: FigureBase,
+    measurement: Measurement,
+    panel: Panel | None,
+    numbers: Sequence[Sequence[str]],
+    checks: Sequence[Sequence[str]],
+) -> None:
+    """Numbers and checks, with one more drawing where there is a rest of one."""
+    if panel is None:
+        left, right = split_page(page, 1, 2, widths=(1.35, 0.9))
+    else:
+        drawing, left, right = split_page(page, 1, 3, widths=(0.95, 1.35, 0.9))
+        panel.draw(drawing)
+    _write_numbers(left.subplots(), measurement, numbers)
+    _write_checks(right.subplots(), measurement, checks)
+
+
+def _number_rows(measurement: Measurement) -> list[tuple[str, ...]]:
+    """Label, unit, and value ± std by measured direction; of one direction also the interval."""
+    found = numbers_of(measurement)
+    if len(found) == 1:
+        rows: list[tuple[str, ...]] = [("", "", "value ± std", "95 % interval")]
+    else:
+        rows = [("", "", *found)]
+    for name in next(iter(found.values())):
+        words = measurement_metric_words(measurement, name)
+        # The title says that all of them are of a ratio: there is no room for it in every line.
+        label = words.label.replace("MTF ratio low/high", "Ratio").replace(" of the ratio", "")
+        cells = [word_estimate(numbers[name]) for numbers in found.values()]
+        shown = [cell.value_and_std for cell in cells]
+        if len(cells) == 1:
+            shown.append(cells[0].short_interval)
+        rows.append((label, words.unit, *shown))
+    return rows
+
+
+def _check_rows(measurement: Measurement) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = [("", "", "found", "asked")]
+    for check in measurement.checks:
+        mark = "✓" if check.passed else "✗"
+        rows.append((mark, check.name, format_number(check.value, 3), check.asked))
+    return rows
+
+
+def _write_numbers(axes: Axes, measurement: Measurement, rows: Sequence[Sequence[str]]) -> None:
+    write_grid(axes, rows, places=(0.0, 0.35, 0.68, 1.0), align="llrr")
+    axes.set_title(spread_name(measurement, "Numbers"))
+
+
+def _write_checks(axes: Axes, measurement: Measurement, rows: Sequence[Sequence[str]]) -> None:
+    colors = [INK, *(INK if check.passed else VERMILION for check in measurement.checks)]
+    if measurement.checks:
+        write_grid(axes, rows, places=(0.0, 0.07, 0.76, 1.0), align="llrr", colors=colors)
+    else:
+        axes.axis("off")
+    axes.set_title(f"Checks: {measurement.verdict.word}" if measurement.checks else "Checks")
+    write_below(
+        axes, count_failed_checks([measurement]),
+        rows=len(rows) if measurement.checks else 0,
+        color=INK if measurement.trusted else VERMILION,
+    )  # fmt: skip

@@ -1,0 +1,145 @@
+"""Results as JSON documents, and the schema of a measurement."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.report.comparison import Comparison, Result, as_result
+from acutance.targets import TargetResult
+
+if TYPE_CHECKING:
+    from acutance.curves import Response
+    from acutance.curves.grid import Floats
+    from acutance.targets.measurement import Measurement
+
+__all__ = ["document", "json_text", "measurement_schema"]
+
+WRITTEN_TO = 1e-5
+"""Places of curves are written with so much rounding at most."""
+
+
+def measurement_schema() -> dict[str, Any]:
+    """The JSON Schema (draft 2020-12) of the document ``acutance/measurement/1``."""
+    source = files("acutance.report") / "schemas" / "measurement-1.json"
+    schema: dict[str, Any] = json.loads(source.read_text(encoding="utf-8"))
+    return schema
+
+
+def document(result: Result, covariance: bool = False) -> dict[str, Any]:
+    """Any result as a JSON document.
+
+    A measurement is ``acutance/measurement/1``; several of one target are
+    ``acutance/comparison/1``; all edges of a target are ``acutance/target/1``, where those of a
+    group are counted from 0 in the order of "measurements".
+
+    Parameters
+    ----------
+    result : Measurement, TargetResult, Comparison or sequence of Measurement
+    covariance : bool, optional
+        Add covariance factors to the curves: lists of n rows and k columns. The columns of
+        ``factor`` of the ESF and the LSF, and of ``factor_real`` and ``factor_imag`` of the MTF,
+        of both directions belong to the same k standard normal variables, so that any combination
+        of the curves has a standard deviation.
+    """
+    found = as_result(result)
+    if isinstance(found, TargetResult):
+        return _target_document(found, covariance)
+    if isinstance(found, Comparison):
+        each = [_measurement_document(one, covariance) for one in found.measurements]
+        return {"schema": "acutance/comparison/1", "measurements": each}
+    return _measurement_document(found, covariance)
+
+
+def _measurement_document(measurement: Measurement, covariance: bool) -> dict[str, Any]:
+    content = measurement.to_dict()
+    if not covariance:
+        return content
+    if "orientation" in content:
+        return _with_factors(content, measurement.response)
+    return content | {
+        name: _with_factors(content[name], response)
+        for name, response in measurement.directions.items()
+    }
+
+
+def _with_factors(content: Mapping[str, Any], response: Response) -> dict[str, Any]:
+    """A direction's part of a document with the covariance factors of its curves."""
+    mtf, lsf, esf = (content[name] for name in ("mtf", "lsf", "esf"))
+    transfer = response.mtf.otf_factor[_places(response.mtf.freq_cpp, mtf["freq_cpp"])]
+    rows = _places(response.lsf.distance_px, lsf["distance_px"])
+    return {
+        **content,
+        "mtf": mtf | {"factor_real": transfer.real.tolist(), "factor_imag": transfer.imag.tolist()},
+        "lsf": lsf | {"factor": response.lsf.covariance_factor[rows].tolist()},
+        "esf": esf | {"factor": response.esf.covariance_factor[rows].tolist()},
+    }
+
+
+def _places(grid: Floats, written: Sequence[float]) -> NDArray[np.intp]:
+    """Where a curve's grid has the places that a document holds, which may be fewer."""
+    return np.searchsorted(grid, np.asarray(written) - WRITTEN_TO)
+
+
+def _target_document(result: TargetResult[Any], covariance: bool) -> dict[str, Any]:
+    place = {id(one): i for i, one in enumerate(result.measurements)}
+    return {
+        "schema": "acutance/target/1",
+        "measurements": [_measurement_document(one, covariance) for one in result.measurements],
+        "groups": {
+            orientation: {
+                "edges": [place[id(one)] for one in group.measurements],
+                "metrics": {name: mean.to_dict() for name, mean in group.metrics.items()},
+                "chi_square": dict(group.chi_square),
+                "degrees_of_freedom": group.degrees_of_freedom,
+                "p_value": dict(group.p_value),
+            }
+            for orientation, group in result.groups.items()
+        },
+        "rejected": [
+            {"stage": one.stage, "reason": one.reason, "values": dict(one.values)}
+            for one in result.rejected
+        ],
+    }
+
+
+def json_text(document: Mapping[str, Any]) -> str:
+    """Strict JSON, indented by one: what is not a finite number becomes null.
+
+    Lists of numbers stay on one line each, so that a reader can scroll.
+    """
+    return _render(_finite(document), 0)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def _render(value: Any, depth: int) -> str:
+    nested = isinstance(value, list) and any(isinstance(item, dict | list) for item in value)
+    if not value or not (isinstance(value, dict) or nested):
+        return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    inner, outer = " " * (depth + 1), " " * depth
+    if isinstance(value, dict):
+        items = [
+            f"{json.dumps(key, ensure_ascii=False)}: {_render(item, depth + 1)}"
+            for key, item in value.items()
+        ]
+        opening, closing = "{", "}"
+    else:
+        items = [_render(item, depth + 1) for item in value]
+        opening, closing = "[", "]"
+    body = f",\n{inner}".join(items)
+    return f"{opening}\n{inner}{body}\n{outer}{closing}"

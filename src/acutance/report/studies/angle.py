@@ -1,0 +1,90 @@
+"""Figure of the study of angles: the published under-estimate taken apart."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from acutance.report.paper import (
+    BLUE,
+    FAINT,
+    GREEN,
+    INK,
+    ORANGE,
+    PURPLE,
+    VERMILION,
+    new_page,
+    styled,
+)
+from acutance.report.studies.snr import ESTIMATOR_WORDS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from acutance.studies import StudyResult, Table
+
+__all__ = ["angle_figure"]
+
+_TERMS = {
+    "window": ("1 px window, 2nd degree", ORANGE),
+    "width": ("width not divided by the cosine", PURPLE),
+    "row_distance": ("distance along the row", GREEN),
+    "rest": ("the rest", FAINT),
+}
+
+
+def angle_figure(result: StudyResult) -> Figure:
+    """Noise-free pulses over the angle, as Figure 3.12, and where the error comes from.
+
+    Parameters
+    ----------
+    result : StudyResult
+        Of the study "angle".
+    """
+    with styled():
+        figure = new_page(11.0, 4.9)
+        left, right = figure.subplots(1, 2)
+        _draw_values(left, result.table, result.tables["trials"])
+        _draw_terms(right, result.table)
+        return figure
+
+
+def _draw_values(axes: Axes, table: Table, trials: Table) -> None:
+    angle = table["angle_deg"]
+    axes.plot(
+        trials["angle_deg"], trials["published"], ".", color=VERMILION, markersize=2.2, alpha=0.35,
+        rasterized=True,
+    )  # fmt: skip
+    axes.plot(angle, table["truth"], color=INK, linewidth=3.4, alpha=0.35, label="truth")
+    axes.plot(angle, table["ours"], color=BLUE, linewidth=1.3, label=ESTIMATOR_WORDS["ours"])
+    axes.plot(angle, table["order_4_normal"], color=GREEN, linewidth=1.2, dashes=(1, 1.5),
+              label="published, causes removed")  # fmt: skip
+    axes.plot(angle, table["cosine_corrected"], color=PURPLE, linewidth=1.2, dashes=(5, 2),
+              label="published, width divided by the cosine")  # fmt: skip
+    axes.plot(angle, table["published"], color=VERMILION, label=ESTIMATOR_WORDS["published"])
+    low, high = float(np.min(table["published"])), float(np.max(table["truth"]))
+    axes.set(
+        xlabel="angle of the pulse [°]", ylabel="MTF at Nyquist",
+        title="MTF at Nyquist without noise", ylim=(low - 0.012, high + 0.008),
+    )  # fmt: skip
+    axes.legend(loc="lower left")
+
+
+def _draw_terms(axes: Axes, table: Table) -> None:
+    angle = table["angle_deg"]
+    for name, (words, color) in _TERMS.items():
+        axes.plot(angle, table[f"{name}_percent"], color=color, label=words)
+        predicted = f"{name}_predicted_percent"
+        if predicted in table.columns:
+            axes.plot(angle, table[predicted], color=INK, linewidth=1, dashes=(2, 2))
+    axes.plot([], [], color=INK, linewidth=1, dashes=(2, 2), label="closed form of each")
+    axes.plot(angle, table["published_percent"], color=VERMILION, label="all of it: published")
+    axes.plot(angle, table["ours_percent"], color=BLUE, linewidth=1.3, label="ours")
+    low = float(np.min(table["published_percent"]))
+    axes.set(
+        xlabel="angle of the pulse [°]", ylabel="error of the MTF at Nyquist [%]",
+        title="Where the under-estimate comes from", ylim=(1.12 * low, 1.0),
+    )  # fmt: skip
+    axes.legend(loc="lower left")

@@ -1,0 +1,87 @@
+"""A combination in tables: whether the measurements agree, the sensor and its forms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from acutance.report.html import Table
+from acutance.report.labels import format_number, word_estimate
+
+if TYPE_CHECKING:
+    from acutance.targets.combine import CombinedMeasurement
+
+__all__ = ["combined_tables"]
+
+PARAMETERS = {
+    "sigma_across_px": ("Gaussian, across", "px"),
+    "sigma_along_px": ("Gaussian, along", "px"),
+    "correlation": ("Gaussian, correlation", ""),
+    "sigma_major_px": ("Gaussian, longer axis", "px"),
+    "sigma_minor_px": ("Gaussian, shorter axis", "px"),
+    "major_axis_deg": ("direction of the longer axis", "deg"),
+    "smear_px": ("smear", "px"),
+    "smear_direction_deg": ("direction of the smear", "deg"),
+    "halo_share": ("light in the halo", ""),
+    "halo_sigma_px": ("Gaussian of the halo", "px"),
+    "trail_across_px": ("charge trail, across", "px"),
+    "trail_along_px": ("charge trail, along", "px"),
+    "cutoff_cpp": ("cutoff of the aperture", "c/px"),
+    "obscuration": ("obscuration of the aperture", ""),
+}
+PART_COLUMNS = ("measurement", "method", "normal", "MTF at Nyquist", "combined", "chi²", "of", "p")
+
+
+def combined_tables(measurement: CombinedMeasurement) -> tuple[Table, ...]:
+    """Agreement of the measurements, parameters of the sensor, weights of its forms."""
+    return _parts_table(measurement), _sensor_table(measurement), _forms_table(measurement)
+
+
+def _parts_table(measurement: CombinedMeasurement) -> Table:
+    found = measurement.chi_square
+    note = (
+        f"Chi-square {found.value:.1f}, expected {found.expected:.1f}: the chance of a larger one "
+        f"is {format_number(found.p_value, 2)}. Birge ratio {measurement.birge_ratio:.2f}."
+    )
+    rows = tuple(
+        (
+            part.source.name, f"{part.source.kind} {part.source.record.method}",
+            part.source.direction,
+            word_estimate(part.own).value_and_std, word_estimate(part.combined).value_and_std,
+            f"{part.chi_square.value:.1f}", f"{part.chi_square.expected:.1f}",
+            format_number(part.chi_square.p_value, 2),
+        )
+        for part in measurement.parts
+    )  # fmt: skip
+    return Table(PART_COLUMNS, rows, "lllrrrrr", title="Do the measurements agree?", notes=(note,))
+
+
+def _sensor_table(measurement: CombinedMeasurement) -> Table:
+    rows = tuple(
+        (PARAMETERS[name][0], word_estimate(one).value_and_std, PARAMETERS[name][1])
+        for name, one in measurement.parameters.items()
+    )
+    return Table(
+        ("Parameter", "Value", "Unit"), rows, "lrl", title="The sensor",
+        notes=(_describe_sensor(measurement),),
+    )  # fmt: skip
+
+
+def _describe_sensor(measurement: CombinedMeasurement) -> str:
+    fit = measurement.fit
+    words = f"Sensor of largest weight ({fit.best.weight:.2f}): {fit.best.form.name}."
+    if fit.departure > 0:
+        words += (
+            f" A smooth correction of {100 * fit.departure:.1f} % of the logarithm of the MTF "
+            "stands for what no such sensor holds."
+        )
+    return words
+
+
+def _forms_table(measurement: CombinedMeasurement) -> Table:
+    rows = tuple(
+        (one.form.name, f"{100 * one.share:g} %", f"{one.weight:.3f}")
+        for one in measurement.fit.forms
+    )
+    return Table(
+        ("Form", "Correction", "Weight"), rows, "lrr", title="Forms of the sensor", page_only=True
+    )

@@ -1,0 +1,102 @@
+"""All edges of a target in tables: means by direction, every edge, what was rejected."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from acutance.curves import METRICS
+from acutance.report.html import Table
+from acutance.report.labels import (
+    MISSING,
+    count_edges,
+    format_number,
+    metric_words,
+    word_estimate,
+    word_place,
+)
+from acutance.report.tables.measurement import headline_table
+
+if TYPE_CHECKING:
+    from acutance.targets import TargetResult
+
+__all__ = ["edges_table", "group_rows", "means_headline", "target_tables"]
+
+MAIN = ("mtf_nyquist", "rer", "fwhm_px")
+
+
+def target_tables(result: TargetResult[Any]) -> tuple[Table, ...]:
+    """Every edge, the means by direction, and what was rejected."""
+    tables = [edges_table(result), _means_table(result)]
+    if result.rejected:
+        rows = tuple((word_place(one.values), one.stage, one.reason) for one in result.rejected)
+        tables.append(Table(("Where", "Stage", "Why"), rows, "lll", title="Rejected"))
+    return tuple(tables)
+
+
+def means_headline(result: TargetResult[Any]) -> Table:
+    """The weighted means of the main numbers: a row a direction."""
+    numbers = {
+        f"{name}\nmean of {count_edges(len(group.measurements))}": dict(group.metrics)
+        for name, group in result.groups.items()
+    }
+    return headline_table(numbers)
+
+
+def edges_table(result: TargetResult[Any]) -> Table:
+    """Every edge: direction, angle, SNR, main numbers, failed checks."""
+    rows, alerts = [], set()
+    for i, one in enumerate(result.measurements):
+        failed = ", ".join(check.name for check in one.failed_checks)
+        numbers = (word_estimate(getattr(one, name)).value_and_std for name in MAIN)
+        rows.append(
+            (
+                str(i + 1), one.orientation, word_estimate(one.angle_deg).value_and_std,
+                format_number(one.snr, 3), *numbers, failed or "all passed",
+            )
+        )  # fmt: skip
+        if failed:
+            alerts.add(i)
+    labels = (metric_words(name).label_with_unit for name in MAIN)
+    columns = ("Edge", "Direction", "Angle [°]", "SNR", *labels, "Checks")
+    return Table(columns, tuple(rows), "rlrrrrrl", alerts=frozenset(alerts), title="Edges")
+
+
+def _means_table(result: TargetResult[Any]) -> Table:
+    note = (
+        "The means weigh every edge by its variance. A small p: the edges differ by more than "
+        "their standard deviations explain."
+    )
+    found = group_rows(result)
+    by_metric = dict.fromkeys(metric for _, metric, *_ in found)
+    rows = [
+        (metric, *(cell for _, name, *cells in found if name == metric for cell in cells))
+        for metric in by_metric
+    ]
+    columns = (part for name in result.groups for part in (f"{name} mean", "chi² / dof", "p"))
+    return Table(
+        ("Metric", *columns), tuple(rows), "l" + "rrr" * len(result.groups),
+        title="Means by direction", notes=(note,),
+    )  # fmt: skip
+
+
+def group_rows(
+    result: TargetResult[Any], names: Sequence[str] = METRICS
+) -> list[tuple[str, str, str, str, str]]:
+    """Direction, metric, weighted mean, chi-square over its degrees of freedom, p-value."""
+    rows = []
+    for orientation, group in result.groups.items():
+        for name in names:
+            if name not in group.metrics:
+                continue
+            found, freedom = group.chi_square[name], group.degrees_of_freedom
+            rows.append(
+                (
+                    orientation, metric_words(name).label_with_unit,
+                    word_estimate(group.metrics[name]).value_and_std,
+                    f"{found:.1f} / {freedom}" if freedom and math.isfinite(found) else MISSING,
+                    format_number(group.p_value[name], 2),
+                )
+            )  # fmt: skip
+    return rows

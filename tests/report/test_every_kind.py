@@ -1,0 +1,125 @@
+"""Every kind of target, measured on its simulation: all outputs, with details and without."""
+
+import html
+import json
+import re
+
+import numpy as np
+import pytest
+from jsonschema import Draft202012Validator
+from test_figures import outside, overlaps, texts
+
+import acutance as ac
+from acutance.report import (
+    csv,
+    document,
+    draw,
+    json_text,
+    measurement_schema,
+    notebook_html,
+    page,
+    panels,
+    tables,
+    text,
+)
+from acutance.report.figure import KIND_PANELS
+from acutance.report.tables.result import KIND_TABLES
+
+SENSOR = ac.Sensor([ac.optics.Gaussian(0.39), ac.optics.Detector()], gsd_m=0.7)
+
+
+def points():
+    image, truth = ac.simulate.points(SENSOR, snr=80.0, rng=np.random.default_rng(1))
+    return ac.measure_points(image, gsd_m=0.7, surveyed=truth.positions)
+
+
+def mirrors():
+    image, truth = ac.simulate.points(SENSOR, snr=80.0, rng=np.random.default_rng(2))
+    return ac.measure_points(image, positions=truth.positions, method="gaussian-2003")
+
+
+def bars():
+    periods = (8.0, 4.0, 2.5)
+    image, _ = ac.simulate.bars(SENSOR, periods_px=periods, snr=80.0, rng=np.random.default_rng(3))
+    return ac.measure_bars(image, gsd_m=0.7)
+
+
+def star():
+    image, _ = ac.simulate.star(
+        SENSOR, snr=80.0, shape=(96, 96), radius_px=40.0, rng=np.random.default_rng(4)
+    )
+    return ac.measure_star(image, gsd_m=0.7)
+
+
+def pair():
+    rng = np.random.default_rng(5)
+    low, high, *_ = ac.simulate.pair(SENSOR, SENSOR, ratio=4, snr=80.0, rng=rng)
+    return ac.measure_biresolution(low, high, ratio=4)
+
+
+def combined():
+    both = []
+    for seed, orientation in enumerate(("across", "along")):
+        image, _ = ac.simulate.edge(
+            SENSOR, angle_deg=6.0, orientation=orientation, snr=80.0,
+            rng=np.random.default_rng(seed),
+        )  # fmt: skip
+        both.append(ac.measure_edge(image, gsd_m=0.7))
+    return ac.combine(both, names=["tarp across", "tarp along"])
+
+
+MADE = {
+    "points": points, "mirrors": mirrors, "bars": bars, "star": star, "pair": pair,
+    "combined": combined,
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", params=MADE)
+def result(request):
+    return MADE[request.param]()
+
+
+def test_the_figure_keeps_its_labels_apart(result):
+    figure = draw(result)
+    crossed = [
+        pair for pair in overlaps(figure) if not all(re.fullmatch(r"[\d.]+", one) for one in pair)
+    ]  # levels of contours may touch
+    assert not crossed
+    assert not outside(figure)
+
+
+def test_text_and_page_show_the_tables_of_the_kind(result):
+    shown, whole = text(result), html.unescape(page(result))
+    assert "nan" not in shown
+    for table in tables(result):
+        assert table.title in whole
+        if not table.page_only:
+            assert table.title in shown or table.title == "Checks"
+    for check in result.checks:
+        assert check.name in shown
+        assert check.name in whole
+    assert " less " not in re.sub(r"data:image[^\"]*", "", whole)
+
+
+def test_the_document_keeps_to_the_schema(result):
+    content = json.loads(json_text(document(result, covariance=True)))
+    Draft202012Validator(measurement_schema()).validate(content)
+
+
+def test_all_outputs_are_made_without_details(result):
+    light = result.without_details()
+    assert len(panels(light)) < len(panels(result)) or result.kind == "combined"
+    numbers = text(result).split("\n\n")[1]
+    assert text(light).split("\n\n")[1].splitlines()[2][:30] == numbers.splitlines()[2][:30]
+    assert csv(light).splitlines()[0] == csv(result).splitlines()[0]
+    more = {"star": ["mean"], "bars": ["normal"]}.get(result.kind, [])
+    named = [line.split(",")[0] for line in csv(light).splitlines()[1:]]
+    assert list(dict.fromkeys(named)) == ["across", "along", *more]
+    assert "MTF" in texts(draw(light))
+    for output in (page(light), notebook_html(light), notebook_html(light.record)):
+        assert "data:image/svg+xml" in output
+
+
+def test_every_kind_but_the_straight_ones_has_panels_and_tables():
+    kinds = {"points", "biresolution", "bars", "star", "combined"}
+    assert set(KIND_PANELS) == set(KIND_TABLES) == kinds

@@ -1,0 +1,216 @@
+"""HTML pages: whole, safe, and holding what is asked of them."""
+
+import re
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import pytest
+
+from acutance.report import compare, notebook_html, page
+from acutance.report.html import Headline, Link, Section, Table, Verdict, render_page
+from acutance.targets import Check, TargetResult
+from acutance.targets.straight.many_edges import combine_edges
+
+PLATEAU = "the bright plateau is 2.0 px wide: what lies further of a halo is not seen"
+
+
+def parsed(html):
+    """The page as a tree; it is written so that an XML parser can read it too."""
+    return ElementTree.fromstring(html.removeprefix("<!DOCTYPE html>"))
+
+
+def words(html):
+    tree = parsed(html)
+    body = tree.find("body") if tree.tag == "html" else tree
+    return " ".join(" ".join(body.itertext()).split())
+
+
+def titles(html):
+    return [heading.text for heading in parsed(html).iter("h2")]
+
+
+def test_a_page_begins_with_the_verdict_and_the_main_numbers(measurement):
+    html = page(measurement)
+    text = words(html)
+    assert titles(html)[:2] == ["Result", "Curves and pixels"]
+    verdict, numbers = (
+        text.index(f"Doubtful: {PLATEAU}"),
+        text.index(f"{measurement.rer.value:.4f}"),
+    )
+    assert text.index("Result") < verdict < numbers < text.index("Curves and pixels")
+    first = parsed(html).find(".//div[@class='side']")
+    assert len(first.findall(".//table")) == 1
+    assert len(first.findall(".//img")) == 2
+
+
+def test_a_page_says_where_the_pixels_come_from_and_when_they_were_measured(measurement):
+    text = words(page(measurement))
+    facts = text[: text.index("Result")]
+    for fact in ("image scene.tif", "band 1", "rows 100–139, columns 260–295", "GSD 0.7 m"):
+        assert fact in facts
+    assert "measured 2026-01-02 03:04 UTC" in facts
+    assert "satellite" not in facts
+    told = replace(measurement, options={"sensor": "QB02", "acquired": "2003-04-05"})
+    assert "satellite QB02 acquired 2003-04-05 measured" in words(page(told))
+    assert "from 203 to 1208 DN" in facts
+
+
+def test_the_page_of_an_edge_holds_numbers_checks_and_how_to_repeat_it(measurement):
+    html = page(measurement)
+    text = words(html)
+    for number in measurement.metrics().values():
+        assert str(number).split(" ± ")[0] in text
+    for check in measurement.checks:
+        assert check.name in text
+        assert check.question in text
+    assert "KOMPSAT-3 draft 3c" in text
+    assert "acutance edge scene.tif --roi 100,260,40,36 --gsd 0.7 --method spline" in text
+    assert "limits.contrast_snr" in text
+    assert len(parsed(html).findall(".//img")) == 4
+    assert len(re.findall(r"<tr><td class=\"r\">\d\.\d\d</td>", html)) == 51
+
+
+def test_the_page_of_a_pulse_speaks_of_a_pulse(pulse, make_pulse):
+    text = words(page(pulse))
+    assert "Pulse, method spline" in text
+    assert "1208 DN on a background of 203 DN" in text
+    assert "Width on the ground" in text
+    # Nothing was stated: the command that repeats it states nothing.
+    assert "acutance pulse scene.tif --roi 100,260,40,36 --gsd 0.7 --method" in text
+    stated = replace(pulse, stated_width_px=3.1500000)
+    assert "--gsd 0.7 --width-px 3.15 --method" in words(page(stated))
+    held = replace(make_pulse(width_std=0.0), stated_width_px=3.153)
+    assert "--width-px 3.153 --hold-width --method" in words(page(held))
+
+
+def test_the_command_says_which_axis_is_along_track(measurement):
+    turned = replace(measurement, image=replace(measurement.image, along_track="x"))
+    assert "along track, 6.02" in words(page(turned))
+    assert "--along-track x --method" in words(page(turned))
+
+
+def test_nothing_is_loaded_from_elsewhere(measurement, compared, truth, target, both):
+    for result in (measurement, compare(compared, truth=truth), target, both):
+        html = page(result)
+        addresses = re.findall(r"(?:src|href)=\"([^\"]{1,40})", html)
+        assert addresses
+        assert all(address.startswith("data:image/svg+xml;base64,") for address in addresses)
+        assert "<script" not in html
+        assert "@import" not in html
+
+
+def test_every_image_has_words_for_those_who_cannot_see_it(measurement):
+    assert all(image.get("alt") for image in parsed(page(measurement)).findall(".//img"))
+
+
+def test_text_from_outside_is_escaped(measurement):
+    hostile = '<script>alert("&")</script>'
+    odd = replace(
+        measurement,
+        image=replace(measurement.image, path=hostile),
+        checks=(Check("snr", 1.0, "<=", 2.0, False, hostile),),
+        options={hostile: hostile},
+    )
+    for html in (page(odd, command=hostile), notebook_html(odd)):
+        assert "<script" not in html
+        assert words(html).count('alert("&")') >= 2
+
+
+def test_a_page_without_gsd_and_checks_leaves_their_parts_out(vague_measurement):
+    text = words(page(vague_measurement))
+    assert "c/m" not in text
+    assert "Source of the limit" not in text
+    assert "No checks were made." in text
+    assert "undefined" in text
+    assert "acutance edge" not in text
+
+
+def test_without_details_a_page_has_its_curves_alone(measurement):
+    html = page(measurement.without_details())
+    assert len(parsed(html).findall(".//img")) == 2
+    assert "Edge spread function" not in words(html)
+
+
+def test_a_comparison_shows_verdicts_the_target_and_one_table(compared, truth):
+    html = page(compare(compared, truth=truth))
+    text = words(html)
+    assert titles(html) == ["Verdict", "Target and curves", "Numbers", "How it was measured"]
+    for one in compared:
+        assert f"{one.method} – Doubtful: {PLATEAU}" in text
+        assert text.count(str(one.mtf_nyquist)) == 1
+    assert "truth spline sdsu-2005 iso12233" in text
+    assert "methods spline, sdsu-2005, iso12233" in text
+    assert "--method spline --compare sdsu-2005,iso12233" in text
+
+
+def test_the_comparison_shows_only_options_that_all_share(compared):
+    first, second = compared[:2]
+    other = replace(second, options={**second.options, "robust": True})
+    text = words(page([first, other]))
+    assert "methods spline, sdsu-2005 rer_centre half limits.contrast_snr 50" in text
+
+
+def test_the_page_of_all_edges_begins_with_their_picture(target):
+    html = page(target, command="acutance edge scene.tif --all")
+    text = words(html)
+    first = next(parsed(html).iter("section"))
+    assert first.find("h2").text == "The target"
+    assert len(first.findall(".//img")) == 1
+    assert first.find(".//table") is None
+    assert "Doubtful: 4 of 24 checks failed." in text
+    assert text.count(PLATEAU) == 4
+    mean = str(target.groups["along"].metrics["mtf_nyquist"])
+    assert f"along mean of 2 edges {mean}" in text
+    assert "<aligned> with the grid" in text
+    assert "acutance edge scene.tif --all" in text
+
+
+def test_all_edges_without_a_failed_check_are_good(target):
+    edges = tuple(replace(one, checks=one.checks[:3]) for one in target.measurements)
+    html = page(TargetResult(edges, (), combine_edges(edges)))
+    assert 'class="verdict good"' in html
+    assert "Good: All 12 checks passed." in words(html)
+
+
+def test_a_section_holds_whatever_it_is_given():
+    section = Section(
+        "Mirrors",
+        paragraphs=("Twenty of them.",),
+        headlines=(Headline("Width", "1.4", "px", ("± 0.1",)),),
+        verdicts=(Verdict("good", "All."), Verdict("invalid", "Not all.", (("snr", "low"),))),
+        tables=(Table(("a", "b"), (("1\nmore", "2"), ("3", "4"), ("5", "6")), "lr", 2,
+                      frozenset({1})),),
+        links=(Link("more", "more.html"),),
+        command="acutance points",
+    )  # fmt: skip
+    html = render_page("Points", "twenty", [section], {"image": "a.tif"})
+    assert len(parsed(html).findall(".//table")) == 2
+    assert html.count('class="alert"') == 1
+    assert html.count('class="verdict invalid"') == 1
+    for part in ("± 0.1", "snr : low", "image a.tif", "1 more 2"):
+        assert part in words(html)
+    assert 'href="more.html"' in html
+
+
+@pytest.mark.parametrize("details", [True, False])
+def test_a_notebook_shows_numbers_checks_and_a_figure(measurement, both, details):
+    for result in (measurement, both):
+        shown = result if details else result.without_details()
+        text = words(notebook_html(shown))
+        assert "Doubtful: " in text
+        for number in shown.directions[shown.measured_directions[0]].metrics().values():
+            if number.std > 0:
+                assert f"± {str(number).split(' ± ')[1]}" in text
+                break
+        assert len(parsed(notebook_html(shown)).findall(".//img")) == 1
+
+
+def test_a_record_shows_the_numbers_of_its_measurement(measurement, pulse, both):
+    for result in (measurement, pulse, both):
+        full, light = words(notebook_html(result)), words(notebook_html(result.record))
+        assert full == light
+        assert len(parsed(notebook_html(result.record)).findall(".//img")) == 1
+
+
+def test_a_measurement_shows_itself_in_notebooks(measurement):
+    assert words(measurement._repr_html_()) == words(notebook_html(measurement))
