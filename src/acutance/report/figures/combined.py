@@ -72,12 +72,12 @@ def _draw_directions(axes: Axes, measurement: CombinedMeasurement) -> None:
     axes.clabel(lines, fmt="%g", fontsize=7.5)
     for i, part in enumerate(measurement.parts):
         reach = float(part.freq_cpp[-1])
-        for turn in np.radians(part.source.slices.normal_deg):
+        for turn in np.radians(part.normal_deg):
             x, y = reach * math.cos(turn), reach * math.sin(turn)
             axes.plot(
                 [-x, x], [-y, y], color=color_of(i),
-                linestyle=":" if part.source.of_plane else "-",
-                linewidth=1.1 if part.source.of_plane else 1.8,
+                linestyle=":" if part.of_plane else "-",
+                linewidth=1.1 if part.of_plane else 1.8,
             )  # fmt: skip
     axes.plot([-0.5, 0.5, 0.5, -0.5, -0.5], [-0.5, -0.5, 0.5, 0.5, -0.5], color=INK, lw=0.9)
     axes.set(
@@ -106,7 +106,7 @@ def _draw_agreement(axes: Axes, measurement: CombinedMeasurement) -> None:
 
 
 def _label(part: CombinedPart) -> str:
-    name = part.source.name
+    name = part.name
     return name if len(name) <= 20 else f"{name[:19]}…"
 
 
@@ -143,7 +143,7 @@ def _draw_curves(page: FigureBase, measurement: CombinedMeasurement) -> None:
         axes.set(xlim=(0, REACH_CPP), ylim=(0, 1.02), xlabel="frequency [c/px]")
         axes.set_title(_label(part), fontsize=9.5)
         found = part.chi_square
-        where = "all directions" if part.source.of_plane else f"normal {part.source.direction}"
+        where = "all directions" if part.of_plane else f"normal {part.direction}"
         axes.text(
             0.97, 0.95,
             f"{where}\nchi² {found.value:.1f} of {found.expected:.1f}",

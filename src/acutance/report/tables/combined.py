@@ -44,8 +44,8 @@ def _parts_table(measurement: CombinedMeasurement) -> Table:
     )
     rows = tuple(
         (
-            part.source.name, f"{part.source.kind} {part.source.record.method}",
-            part.source.direction,
+            part.name, f"{part.kind} {part.method}",
+            part.direction,
             word_estimate(part.own).value_and_std, word_estimate(part.combined).value_and_std,
             f"{part.chi_square.value:.1f}", f"{part.chi_square.expected:.1f}",
             format_number(part.chi_square.p_value, 2),
@@ -67,11 +67,11 @@ def _sensor_table(measurement: CombinedMeasurement) -> Table:
 
 
 def _describe_sensor(measurement: CombinedMeasurement) -> str:
-    fit = measurement.fit
-    words = f"Sensor of largest weight ({fit.best.weight:.2f}): {fit.best.form.name}."
-    if fit.departure > 0:
+    sensor = measurement.sensor
+    words = f"Sensor of largest weight ({sensor.best.weight:.2f}): {sensor.best.form.name}."
+    if sensor.correction > 0:
         words += (
-            f" A smooth correction of {100 * fit.departure:.1f} % of the logarithm of the MTF "
+            f" A smooth correction of {100 * sensor.correction:.1f} % of the logarithm of the MTF "
             "stands for what no such sensor holds."
         )
     return words
@@ -80,7 +80,7 @@ def _describe_sensor(measurement: CombinedMeasurement) -> str:
 def _forms_table(measurement: CombinedMeasurement) -> Table:
     rows = tuple(
         (one.form.name, f"{100 * one.share:g} %", f"{one.weight:.3f}")
-        for one in measurement.fit.forms
+        for one in measurement.sensor.forms
     )
     return Table(
         ("Form", "Correction", "Weight"), rows, "lrr", title="Forms of the sensor", page_only=True
