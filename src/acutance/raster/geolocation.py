@@ -1,7 +1,7 @@
 """Where pixels lie on the Earth, and how large they are there.
 
 GDAL's geotransform counts from pixel corners, acutance from pixel centres: this module is the
-one place that knows both.
+one place with both.
 """
 
 from __future__ import annotations
@@ -112,14 +112,14 @@ class Geolocation:
 
         The lengths of the geotransform's two column vectors, so a rotated image has the GSD of
         its own rows and columns. Projected CRS: in metres whatever its unit, as the map has them,
-        so that a 30 m product says 30 m; where the map's scale is off by more than 1 % (Web
+        so that a 30 m product has 30 m; where the map's scale is off by more than 1 % (Web
         Mercator, the far side of a zone), as the ground has them. Geographic CRS: at the pixel's
         latitude.
 
         Returns
         -------
         Gsd or None
-            ``None`` if the CRS tells no length, or the place has none.
+            ``None`` if the CRS defines no length, or the place has none.
         """
         on_map = self._gsd_on_map()
         on_ground = self._gsd_on_ground(row, col)
