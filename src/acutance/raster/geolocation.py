@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
+from acutance.geometry.angles import wrap_direction
 from acutance.raster.gsd import Gsd
 
 __all__ = ["LONLAT_CRS", "Geolocation", "transform_points"]
@@ -155,8 +156,9 @@ class Geolocation:
         squashed = 1.0 - _WGS84_ECCENTRICITY2 * math.sin(latitude) ** 2
         to_north = _WGS84_RADIUS_M * (1.0 - _WGS84_ECCENTRICITY2) / squashed**1.5
         to_east = _WGS84_RADIUS_M / math.sqrt(squashed) * math.cos(latitude)
-        turn = (lon[1::2] - lon[::2] + 180.0) % 360.0 - 180.0
-        step_m = np.hypot(to_east * np.radians(turn), to_north * np.radians(lat[1::2] - lat[::2]))
+        turn_deg: Floats = wrap_direction(lon[1::2] - lon[::2])
+        step_deg = np.hypot(to_east * turn_deg, to_north * (lat[1::2] - lat[::2]))
+        step_m = np.radians(step_deg)
         return _gsd_or_none(float(step_m[0]), float(step_m[1]))
 
 

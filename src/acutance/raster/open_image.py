@@ -88,9 +88,7 @@ def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Im
     array: NDArray[Any] = source.map()
     require_image_array(array, path)
     if band != 1:
-        raise ImageError(
-            f"band {band} of {path} was requested, but a .npy file has one: use band 1"
-        )
+        raise ImageError(f"{path} has one band, band {band} was requested: use band 1")
     return Image(
         path=path,
         band=1,

@@ -11,6 +11,7 @@ import numpy as np
 from acutance.curves import HasResponse, Response
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
+from acutance.geometry.angles import wrap_direction
 from acutance.geometry.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.ground import GroundNoise
@@ -190,6 +191,6 @@ def line_through_centre(
     return Line(
         row=0.5 * (shape[0] - 1),
         col=0.5 * (shape[1] - 1),
-        normal_deg=180.0 - (180.0 - normal) % 360.0,
+        normal_deg=wrap_direction(normal),
         length_px=along / math.cos(math.radians(angle_deg)),
     )

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.geometry.line import Line
@@ -66,10 +67,10 @@ class Patch:
 
     def spectrum(self, u: ArrayLike, v: ArrayLike) -> Floats:
         """Fourier transform of the patch about its own centre (real), at cycles per pixel."""
-        angle = math.radians(self.turn_deg)
+        cos, sin = unit_vector(self.turn_deg)
         u, v = np.asarray(u, float), np.asarray(v, float)
-        p = math.cos(angle) * u + math.sin(angle) * v
-        q = math.cos(angle) * v - math.sin(angle) * u
+        p = cos * u + sin * v
+        q = cos * v - sin * u
         area = self.contrast * self.width_px * self.height_px
         return np.asarray(area * np.sinc(self.width_px * p) * np.sinc(self.height_px * q))
 

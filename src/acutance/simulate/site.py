@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -10,9 +9,11 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
+from acutance.geometry.angles import wrap_direction
 from acutance.geometry.line import Line
 from acutance.optics.sensor import Sensor
 from acutance.simulate.bars import BarsTruth
@@ -227,8 +228,7 @@ def _require_room(
         raise ModelError(f"the board is turned by {turn_deg:g} deg, it has to be -45 to 45")
     if not tile_px >= 16:
         raise ModelError(f"tiles of {tile_px:g} px leave no plateaus: at least 16 px are needed")
-    angle = math.radians(abs(turn_deg))
-    reach = tile_px * (math.cos(angle) + math.sin(angle))
+    reach = tile_px * sum(unit_vector(abs(turn_deg)))
     room = min(*centre, shape[0] - 1 - centre[0], shape[1] - 1 - centre[1])
     if reach > room:
         raise ModelError(
@@ -239,11 +239,8 @@ def _require_room(
 
 def _turned(x: float, y: float, turn_deg: float) -> tuple[float, float]:
     """(x, y) turned from the column axis towards the row axis."""
-    angle = math.radians(turn_deg)
-    return (
-        math.cos(angle) * x - math.sin(angle) * y,
-        math.sin(angle) * x + math.cos(angle) * y,
-    )
+    cos, sin = unit_vector(turn_deg)
+    return cos * x - sin * y, sin * x + cos * y
 
 
 def _tiles(
@@ -272,8 +269,7 @@ def _board_edge(
     towards = turn_deg + direction_deg
     # A quarter turn clockwise from the right-hand edge lies a bright tile, and so on round.
     clockwise_is_bright = direction_deg in (0.0, 180.0)
-    normal = towards + (90.0 if clockwise_is_bright else -90.0)
-    normal = 180.0 - (180.0 - normal) % 360.0
+    normal = wrap_direction(towards + (90.0 if clockwise_is_bright else -90.0))
     middle_x, middle_y = _turned(0.5 * tile_px, 0.0, towards)
     length = tile_px - 2 * GUARD_PX
     ground_line = Line(centre[0] + middle_y, centre[1] + middle_x, normal, length_px=length)
