@@ -19,7 +19,7 @@ from acutance.optics import Rescaled, Sensor
 from acutance.optics.block import Block, Transfer, require
 from acutance.simulate.ground import alias_bands
 from acutance.simulate.limits import require_finite, require_rng, require_shape
-from acutance.simulate.native import NativeGrid
+from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise, noise_of_snr
 
 __all__ = ["Landscape", "PairTruth", "landscape", "pair"]

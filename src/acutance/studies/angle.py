@@ -13,10 +13,10 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, PhaseError
 from acutance.optics import Sensor, preset
 from acutance.simulate import pulse
-from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import measure_published_pulse
+from acutance.studies.trials import Execution, Record, run_trials
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.published.local_polynomial import window_gain
 

@@ -23,7 +23,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
 from acutance.optics import Sensor
 from acutance.simulate import points
-from acutance.studies.execution import Execution, Record, run_trials
+from acutance.studies.trials import Execution, Record, run_trials
 from acutance.studies.mirror_layout import (
     LEAST_SPACING_PX,
     Arrangement,

@@ -14,9 +14,9 @@ from acutance.errors import OptionError, TargetError
 from acutance.optics import Sensor, preset
 from acutance.simulate import edge, pulse
 from acutance.studies.bound import Design, equivalent_blur, free_bound, shape_bound
-from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Cell, Table
+from acutance.studies.trials import Execution, Record, run_trials
 from acutance.targets.straight import measure_edge, measure_pulse
 
 __all__ = ["PLAN_METRICS", "PlanOptions", "plan_target"]

@@ -11,7 +11,6 @@ import numpy as np
 from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import Noise, edge, pulse
-from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.scatter import error_columns, find_minimum, find_refusal
 from acutance.studies.table import Cell, Table
@@ -22,6 +21,7 @@ from acutance.studies.targets import (
     measure_both_edges,
     measure_both_pulses,
 )
+from acutance.studies.trials import Execution, Record, run_trials
 
 __all__ = ["SnrOptions", "SnrTrial", "study_snr"]
 

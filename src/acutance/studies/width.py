@@ -11,10 +11,10 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import pulse
-from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
+from acutance.studies.trials import Execution, Record, run_trials
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.pulse_spectrum import width_error_gain
 

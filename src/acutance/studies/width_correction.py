@@ -12,10 +12,10 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, TargetError
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.simulate import pulse
-from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
+from acutance.studies.trials import Execution, Record, run_trials
 from acutance.studies.width import WIDTH_FREQ_CPP
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.pulse_spectrum import width_error_gain
