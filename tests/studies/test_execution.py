@@ -24,7 +24,7 @@ class Options:
 
 
 def draw(options, trial, rng):
-    """A random number; writes down that it was asked for, and dies at one trial."""
+    """A random number; leaves a line in the diary, and dies at one trial."""
     if options.diary:
         with open(options.diary, "a") as diary:
             diary.write(f"{trial}\n")

@@ -32,7 +32,7 @@ def normal_direction_deg(angle_deg: float, orientation: Axis) -> float:
     Parameters
     ----------
     angle_deg : float
-        Tilt of the edge against the nearer image axis; the sign tells which way it leans.
+        Tilt of the edge against the nearer image axis; its sign is the sense of the turn.
     orientation : {"across", "along"}
         The axis the normal is near to: "across" the column axis, "along" the row axis.
     """
@@ -143,7 +143,7 @@ class Sensor:
     def profile(self, normal_deg: float) -> Profile:
         """Edge and line spread functions at any distance, for a normal in any direction.
 
-        Profiles are kept, so asking again costs nothing. See `Profile` for the accuracy.
+        Profiles are cached. See `Profile` for the accuracy.
         """
         return _profile(self, float(normal_deg))
 
@@ -216,8 +216,8 @@ class Sensor:
         """
         if not (0 < step_px < 0.5 and step_px <= half_width_px < 32):
             raise ModelError(
-                f"a PSF of half width {half_width_px:g} px in steps of {step_px:g} px was asked "
-                "for: the step has to be below 0.5, the half width between one step and 32"
+                f"a PSF of half width {half_width_px:g} px in steps of {step_px:g} px was "
+                "requested: the step has to be below 0.5, the half width between one step and 32"
             )
         return spread_over_plane(self.otf, half_width_px, step_px, 32.0)
 

@@ -154,7 +154,7 @@ def bars(
     snr : float, optional
         Contrast over the standard deviation of added white noise.
     noise : Noise, optional
-        A description of the noise, instead of `snr` or, without `read`, beside it.
+        A description of the noise, instead of `snr` or, without `read`, together with it.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 

@@ -109,7 +109,7 @@ def render_site(
     Raises
     ------
     ModelError
-        If the image is too large, a target reaches beyond it, or randomness is asked for without
+        If the image is too large, a target reaches beyond it, or randomness is requested without
         `rng`.
     """
     require_shape(shape, MAX_SCENE_PIXELS)

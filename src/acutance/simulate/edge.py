@@ -120,7 +120,7 @@ def edge(
     snr : float, optional
         Contrast over the standard deviation of added white noise.
     noise : Noise, optional
-        A description of the noise, instead of `snr` or, without `read`, beside it.
+        A description of the noise, instead of `snr` or, without `read`, together with it.
     regrid : Regrid, optional
         Resample the noisy image, which correlates its noise. Line, shape and truth are those of
         the resampled image.

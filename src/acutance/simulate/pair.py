@@ -95,7 +95,7 @@ class PairTruth(ShortRepr):
         return Rescaled(self.reference, self.ratio)
 
     def ratio_otf(self, u: Floats, v: Floats) -> Transfer:
-        """OTF of the low sensor over that of the reference: what the pair alone can tell."""
+        """OTF of the low sensor over that of the reference: what the pair alone determines."""
         return np.asarray(self.sensor.otf(u, v) / self.reference_in_low_px.otf(u, v))
 
     def response(self, orientation: Orientation = "across") -> Response:

@@ -130,7 +130,7 @@ def checkerboard(
     snr : float, optional
         Contrast of the tiles over the standard deviation of added white noise.
     noise : Noise, optional
-        A description of the noise, instead of `snr` or, without `read`, beside it.
+        A description of the noise, instead of `snr` or, without `read`, together with it.
     rng : numpy.random.Generator, optional
         Needed for texture and noise.
 
@@ -142,7 +142,7 @@ def checkerboard(
     Raises
     ------
     ModelError
-        If the board is too small, leaves the image, or randomness is asked for without `rng`.
+        If the board is too small, leaves the image, or randomness is requested without `rng`.
     """
     require_shape(shape)
     if centre is None:
@@ -191,7 +191,7 @@ def require_texture(texture_std: float) -> None:
 def site(
     sensor: Sensor, rng: np.random.Generator, *, turn_deg: float = 7.0, noise: Noise | None = None
 ) -> Scene:
-    """A small calibration site: a checkerboard of 28 px tiles on grass beside a road.
+    """A small calibration site: a checkerboard of 28 px tiles on grass next to a road.
 
     Parameters
     ----------
@@ -275,8 +275,8 @@ def _board_edge(
     ground_line = Line(centre[0] + middle_y, centre[1] + middle_x, normal, length_px=length)
     line = ground_line.moved(sensor.profile(normal).half_px, 0.0)
     corners = [
-        _turned(0.5 * tile_px + along * 0.5 * length, beside * (tile_px - GUARD_PX), towards)
-        for along, beside in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        _turned(0.5 * tile_px + along * 0.5 * length, across * (tile_px - GUARD_PX), towards)
+        for along, across in ((-1, -1), (1, -1), (1, 1), (-1, 1))
     ]
     region = np.array([(centre[0] + y, centre[1] + x) for x, y in corners])
     truth = Truth(sensor.response_along(normal), line, dark, bright, noise)

@@ -249,7 +249,7 @@ def star(
     snr : float, optional
         Contrast over the standard deviation of added white noise.
     noise : Noise, optional
-        A description of the noise, instead of `snr` or, without `read`, beside it.
+        A description of the noise, instead of `snr` or, without `read`, together with it.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 
@@ -271,7 +271,7 @@ def star(
     room = min(*centre, shape[0] - 1 - centre[0], shape[1] - 1 - centre[1])
     if not dark < bright or radius_px > room:
         raise ModelError(
-            f"a star of {radius_px:g} px from {dark:g} to {bright:g} was asked for: dark has to be "
+            f"a star of {radius_px:g} px from {dark:g} to {bright:g} was requested: dark has to be "
             f"the lower one, and the image has room for {room:.1f} px"
         )
     middle = 0.5 * (dark + bright)

@@ -121,7 +121,7 @@ def free_bound(blur: Blur, design: Design, snr: float, window_px: float = 10.0) 
     Parameters
     ----------
     blur : Blur
-        The true LSF, which the estimator does not know.
+        The true LSF, not known to the estimator.
     design : Design
     snr : float
     window_px : float, optional

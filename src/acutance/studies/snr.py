@@ -167,7 +167,7 @@ def _findings(options: SnrOptions, table: Table, trials: Table) -> tuple[Finding
 def _answers(
     options: SnrOptions, target: Target, name: Estimator, rows: Table, trials: Table
 ) -> Iterator[Finding]:
-    """What one estimator needs on one target, or why there is nothing to say of it."""
+    """What one estimator needs on one target, or why there is no answer."""
     who, limit = f"{target}, {ESTIMATOR_WORDS[name]}", options.limit_percent
     for refused in find_refusal(name, who, rows, trials):
         yield replace(refused, name=f"refused_{target}_{name}")
