@@ -8,17 +8,13 @@ from acutance.studies.execution import run_tasks
 
 
 def square(task):
-    return task * task
+    return task * task, os.getpid()
 
 
 def fails_at_seven(task):
     if task == 7:
         raise ValueError("seven")
     return task
-
-
-def process(task):
-    return os.getpid()
 
 
 def collected(work, tasks, workers):
@@ -35,12 +31,12 @@ def collected(work, tasks, workers):
 @pytest.mark.parametrize("workers", [1, 2])
 def test_every_result_is_handed_over_once_with_the_place_of_its_task(workers):
     tasks = list(range(40, 0, -1))
-    assert collected(square, tasks, workers) == {k: task**2 for k, task in enumerate(tasks)}
-
-
-def test_one_worker_stays_in_this_process_and_several_are_others():
-    assert set(collected(process, [1, 2, 3], 1).values()) == {os.getpid()}
-    assert os.getpid() not in collected(process, [1, 2, 3], 2).values()
+    found = collected(square, tasks, workers)
+    assert {place: value for place, (value, _) in found.items()} == {
+        place: task**2 for place, task in enumerate(tasks)
+    }
+    in_this_process = {process == os.getpid() for _, process in found.values()}
+    assert in_this_process == {workers == 1}
 
 
 def test_no_tasks_start_nothing():
