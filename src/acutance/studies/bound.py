@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves import Esf, Lsf, Mtf, Response
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import FREQ_CPP, Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.gaussian_pixel import Blur
@@ -153,11 +154,11 @@ def _information(blur: Blur, design: Design) -> Floats:
 
 def _jacobian(blur: Blur, design: Design, rows: NDArray[np.int_]) -> Floats:
     """Derivatives of some rows by level, height, offset, turn, sigma, and width and fall."""
-    angle = math.radians(design.angle_deg)
+    x, y = unit_vector(design.angle_deg)
     row = rows[:, None] - 0.5 * (design.rows - 1)
     col = np.arange(design.cols)[None, :] - 0.5 * (design.cols - 1)
-    s = (math.cos(angle) * col + math.sin(angle) * row).ravel()
-    t = (math.cos(angle) * row - math.sin(angle) * col).ravel()
+    s = (x * col + y * row).ravel()
+    t = (x * row - y * col).ravel()
     if design.target == "edge":
         esf, lsf, by_sigma, _ = blur.esf_and_slopes(s)
         return np.array([np.ones(s.size), esf, -lsf, lsf * t, by_sigma])
