@@ -28,7 +28,9 @@ Angles = TypeVar("Angles", float, Floats)
 
 def wrap_direction(angle_deg: Angles) -> Angles:
     """The same direction in (-180, 180] degrees."""
-    return 180.0 - (180.0 - angle_deg) % 360.0
+    low_end = (angle_deg + 180.0) % 360.0 - 180.0
+    wrapped: Angles = low_end + 360.0 * (low_end == -180.0)
+    return wrapped
 
 
 def wrap_axis(angle_deg: Angles) -> Angles:
