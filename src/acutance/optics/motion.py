@@ -13,6 +13,7 @@ from acutance.optics.block import Axis, Transfer, along_axis, require, require_a
 __all__ = ["Jitter", "Smear", "Tdi"]
 
 _MAX_STAGES = 10_000
+"""More than any detector has: a product over the stages stays quick."""
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,11 @@ __all__ = ["GSD_TAGS", "DatasetPixels", "open_dataset", "open_quietly"]
 GSD_TAGS = ("ACUTANCE_GSD_ROW_M", "ACUTANCE_GSD_COL_M")
 
 _CACHE_BYTES = 32 * 2**20
+"""GDAL's block cache; its own default is a twentieth of the memory."""
+
 _PACKED_TRIED, _PACKED_NAMED = 20, 5
+"""Largest files of a packed file that are opened to find images, and images that are named."""
+
 _WARNING_FILTERS = threading.Lock()
 
 

@@ -23,6 +23,8 @@ __all__ = ["LONLAT_CRS", "Geolocation", "transform_points"]
 LONLAT_CRS = "OGC:CRS84"
 
 _MAP_DISTORTION = 0.01
+"""Share by which a map's lengths may differ from the ground's before the ground's are used."""
+
 _WGS84_RADIUS_M = 6378137.0
 _WGS84_ECCENTRICITY2 = 6.69437999014e-3
 

@@ -27,6 +27,7 @@ __all__ = [
 
 _NPY_MAGIC = b"\x93NUMPY"
 _MAPPED_BYTES = 32 * 2**20
+"""Of a file mapped at once: what a strip down all its rows may hold in memory."""
 
 
 class PixelSource(Protocol):

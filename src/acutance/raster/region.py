@@ -18,6 +18,7 @@ from acutance.errors import RegionError
 __all__ = ["Box", "Region"]
 
 _STRIP_PIXELS = 1_000_000
+"""Pixels tested at once, so that the outline of a whole scene fits into memory."""
 
 
 @dataclass(frozen=True)

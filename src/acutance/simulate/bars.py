@@ -25,7 +25,10 @@ from acutance.simulate.scene import Patch, add_patches
 __all__ = ["BarGroup", "BarsTruth", "bars"]
 
 GAP_PX = 10.0
+"""Background between two groups, and around them."""
+
 HARMONICS = 25
+"""Odd harmonics of square bars in the contrast: up to 49 times their frequency."""
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,7 @@ from acutance.simulate.tarps import (
 __all__ = ["Placed", "brookings", "render_site"]
 
 STRIPE_ROWS = 256
+"""Noise is drawn for so many rows at a time: a scene of 20,000 rows fits into memory."""
 
 
 @dataclass(frozen=True)

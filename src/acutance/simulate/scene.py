@@ -33,10 +33,11 @@ __all__ = [
 MARGIN_PX = 64
 """Empty ground around the image; light scattered further comes back on the other side."""
 
-
 _STEP_PX = 16
-_TILE_PX = 1024
-_KERNEL_PX = 64
+"""Sizes of a patch's window are multiples of it, so that spectra of several patches are shared."""
+
+_TILE_PX, _KERNEL_PX = 1024, 64
+"""A wide texture is filtered in tiles, which overlap by the length of its correlation."""
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,10 @@ __all__ = ["Star", "StarTruth", "Wave", "add_star", "star"]
 
 Wave = Literal["sine", "square"]
 SUBPIXELS = 10
+"""Squares a pixel side is drawn with; borders of spokes are drawn as shares of a square."""
+
 ROOM_PX = 12
+"""Background rendered around the star: light scattered further comes from the other side."""
 
 
 @dataclass(frozen=True)

@@ -23,9 +23,10 @@ from acutance.targets.straight.published.local_polynomial import window_gain
 __all__ = ["ANGLE_TERMS", "AngleOptions", "study_angle"]
 
 ANGLE_TERMS = ("window", "width", "row_distance", "rest")
-"""What the published value departs from the truth by, in the order it is taken apart."""
+"""Causes of the published error, in the order they are switched off."""
 
 _PUBLISHED_AT_6_DEG_PERCENT = -4.1
+"""Read from Figure 3.12 of the report."""
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,11 @@ from acutance.targets.straight.pulse_spectrum import width_sensitivity_per_px
 __all__ = ["Design", "MetricBound", "equivalent_blur", "free_bound", "shape_bound"]
 
 _STEP_PX = 1e-4
+"""Of central differences by the width of the blur."""
+
 _ZERO = 1e-9
+"""A pulse whose spectrum is below this at Nyquist has no finite bound."""
+
 _PIXELS_AT_ONCE = 100_000
 
 

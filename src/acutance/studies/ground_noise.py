@@ -27,6 +27,7 @@ LEVELS_DN = (
 
 _PUBLISHED_MINIMUM = 50.0
 _PUBLISHED_BIAS_PERCENT = -6.0
+"""SNR the report requires on such ground, and the bias it finds there (Figure 3.11)."""
 
 
 @dataclass(frozen=True)

@@ -22,11 +22,17 @@ from acutance.targets.straight import measure_edge, measure_pulse
 __all__ = ["PLAN_METRICS", "PlanOptions", "plan_target"]
 
 PLAN_METRICS = ("mtf_nyquist", "rer", "fwhm_px", "width_px")
+
 _ROWS_SHARES = (0.5, 1.0, 1.5, 2.0)
-_MIN_ROWS = 20
-_MAX_ROWS = 2000
+"""Numbers of rows compared with a single one that is planned."""
+
+_MIN_ROWS, _MAX_ROWS = 20, 2000
+
 _ROOM_PX = 10.0
+"""Plateau beyond the target on either side, or three times the FWHM if that is more."""
+
 _NEAR_THE_BEST = 0.1
+"""Designs whose error is within this share of the least are named as good ones."""
 
 
 @dataclass(frozen=True)
