@@ -12,6 +12,7 @@ from scipy.optimize import least_squares
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
+from acutance.geometry.angles import wrap_axis
 from acutance.targets.combine.correction import Departure
 from acutance.targets.combine.curves import ChiSquare, PlaneCurve, WhitenedCurves
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
@@ -90,7 +91,7 @@ class FormFit:
             for name, row in rows.items():
                 change = above[name] - below[name]
                 if name.endswith("_deg"):
-                    change = (change + 90.0) % 180.0 - 90.0
+                    change = wrap_axis(change)
                 row[i] = change / (2 * step)
         root = self.root[: self.parameters.size]
         found = {

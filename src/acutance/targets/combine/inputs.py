@@ -13,6 +13,7 @@ from acutance.curves import Mtf
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
+from acutance.geometry.angles import wrap_axis
 from acutance.raster.image import AlongTrack
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import SCHEMA, ImageInfo, Record
@@ -79,7 +80,7 @@ class MeasuredInput(ShortRepr):
         """The direction of its slice, or that it has all."""
         if self.of_plane:
             return "all"
-        return f"{(float(self.slices.normal_deg[0]) + 90.0) % 180.0 - 90.0:.1f}°".replace("-", "−")
+        return f"{wrap_axis(float(self.slices.normal_deg[0])):.1f}°".replace("-", "−")
 
 
 def read_inputs(
