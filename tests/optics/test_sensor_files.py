@@ -8,11 +8,11 @@ import pytest
 from acutance import optics
 from acutance.errors import ModelError
 from acutance.optics import BLOCKS, Sensor, preset, presets
-from acutance.optics.sheet import (
-    SensorSheet,
+from acutance.optics.sensor_file import (
+    SensorFile,
     read_sensor,
-    sheet_from_toml,
-    sheet_to_toml,
+    sensor_file_from_toml,
+    sensor_file_to_toml,
     write_sensor,
 )
 
@@ -38,7 +38,7 @@ EVERY_BLOCK = [
 
 
 def sensor_of(block, head="gsd_m = 0.5"):
-    return sheet_from_toml(f"{head}\n[[block]]\n{block}").sensor
+    return sensor_file_from_toml(f"{head}\n[[block]]\n{block}").sensor
 
 
 def test_every_block_goes_round():
@@ -47,11 +47,11 @@ def test_every_block_goes_round():
     # A sensor has one pupil: in focus, or out of it.
     for pupil in (optics.Diffraction, optics.Defocus):
         kept = [i for i, one in enumerate(EVERY_BLOCK) if type(one) is not pupil]
-        sheet = SensorSheet(
+        described = SensorFile(
             Sensor([EVERY_BLOCK[i] for i in kept], 0.7, 0.72), "all", "Größe\nin two lines",
             tuple(sources[i] for i in kept),
         )  # fmt: skip
-        assert sheet_from_toml(sheet_to_toml(sheet)) == sheet
+        assert sensor_file_from_toml(sensor_file_to_toml(described)) == described
 
 
 def test_a_file_goes_round(tmp_path):
@@ -125,7 +125,7 @@ def test_metres_use_the_pixel_of_their_own_axis(block, expected):
 )
 def test_what_is_no_sensor_is_refused(text, words):
     with pytest.raises(ModelError, match=words):
-        sheet_from_toml(text)
+        sensor_file_from_toml(text)
 
 
 def test_files_that_cannot_be_read_or_written(tmp_path):
@@ -140,11 +140,11 @@ def test_files_that_cannot_be_read_or_written(tmp_path):
 
 @pytest.mark.parametrize("name", ["generic-2005", "ikonos-like", "quickbird-like"])
 def test_presets_say_where_their_numbers_are_from(name):
-    sheet = presets()[name]
-    assert sheet.sensor == preset(name)
-    assert len(sheet.description) > 100
-    assert all(sheet.sources)
-    assert sheet_from_toml(sheet_to_toml(sheet)) == sheet
+    described = presets()[name]
+    assert described.sensor == preset(name)
+    assert len(described.description) > 100
+    assert all(described.sources)
+    assert sensor_file_from_toml(sensor_file_to_toml(described)) == described
 
 
 def test_an_unknown_preset_is_refused():

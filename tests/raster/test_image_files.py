@@ -107,6 +107,39 @@ def test_a_zipped_image(pixels, write_raster, tmp_path):
     assert np.array_equal(image.read(BOX), cut(pixels))
 
 
+@pytest.mark.parametrize(
+    ("kind", "prefix"), [("zip", "/vsizip/"), ("tar", "/vsitar/"), ("gztar", "/vsitar/")]
+)
+def test_a_packed_image_is_opened_by_the_name_its_error_gives(
+    pixels, write_raster, tmp_path, kind, prefix
+):
+    folder = tmp_path / "product"
+    (folder / "pan").mkdir(parents=True)
+    (folder / "read me.txt").write_text("not an image" * 1000)
+    os.replace(write_raster("a.tif", pixels), folder / "pan" / "a.tif")
+    packed = shutil.make_archive(str(folder), kind, folder)
+    with pytest.raises(ImageError, match="it is a packed file; open /vsi") as refused:
+        open_image(packed)
+    name = str(refused.value).rsplit(" ", 1)[1]
+    assert name.startswith(prefix)
+    assert np.array_equal(open_image(name).read(BOX), cut(pixels))
+
+
+def test_packed_files_of_several_images_and_of_none(pixels, write_raster, tmp_path):
+    folder = tmp_path / "two"
+    folder.mkdir()
+    for name in ("a.tif", "b.tif"):
+        os.replace(write_raster(name, pixels), folder / name)
+    packed = shutil.make_archive(str(folder), "zip", folder)
+    with pytest.raises(ImageError, match=r"open one of /vsizip/\S+, /vsizip/\S+$"):
+        open_image(packed)
+    for name in ("a.tif", "b.tif"):
+        (folder / name).write_text("words")
+    packed = shutil.make_archive(str(folder), "zip", folder)
+    with pytest.raises(ImageError, match="no image was found in the packed file; unpack it"):
+        open_image(packed)
+
+
 def test_bands_are_chosen_from_one(pixels, write_raster):
     bands = np.stack([pixels, pixels + 1, pixels + 2])
     path = write_raster("rgb.tif", bands, interleave="pixel")

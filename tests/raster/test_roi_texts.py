@@ -4,9 +4,10 @@ import json
 
 import numpy as np
 import pytest
+import rasterio
 
 from acutance.errors import RegionError
-from acutance.raster import Box, Image, open_image, parse_roi
+from acutance.raster import Box, Image, open_image, parse_roi, parse_rois
 
 SQUARE = [[9.5, 4.5], [29.5, 4.5], [29.5, 14.5], [9.5, 14.5], [9.5, 4.5]]
 SQUARE_BOX = Box(5, 10, 10, 20)
@@ -107,6 +108,7 @@ def test_a_box_of_longitudes(located):
         {"type": "MultiPolygon", "coordinates": [[SQUARE]]},
         {"type": "GeometryCollection", "geometries": [polygon()]},
         polygon(crs=PIXEL_CRS),
+        polygon(crs="pixel"),
         polygon(crs=None),
     ],
 )
@@ -137,8 +139,9 @@ def test_a_polygon_may_reach_beyond_the_image(plain, write_geojson):
 
 
 @pytest.mark.parametrize("name", ["EPSG:32631", "urn:ogc:def:crs:EPSG::32631"])
-def test_coordinates_in_the_crs_of_the_file(located, write_geojson, name):
-    crs = {"type": "name", "properties": {"name": name}}
+@pytest.mark.parametrize("as_text", [True, False])
+def test_coordinates_in_the_crs_of_the_file(located, write_geojson, name, as_text):
+    crs = name if as_text else {"type": "name", "properties": {"name": name}}
     for document in (
         polygon(in_utm(SQUARE), crs=crs),
         collection(feature(polygon(in_utm(SQUARE)))),
@@ -161,8 +164,44 @@ def test_pixels_in_an_image_with_a_crs(located, write_geojson):
     assert parse_roi(path, located).box(located.shape) == SQUARE_BOX
 
 
+@pytest.mark.parametrize(
+    ("ring", "as_degrees"),
+    [
+        (SQUARE, "is outside the image when read as longitude and latitude"),
+        ([[x + 15, 3 * y + 60] for x, y in SQUARE], "is no longitude and latitude"),
+    ],
+)
+def test_pixels_are_not_read_as_degrees_silently(
+    write_raster, utm, write_geojson, ring, as_degrees
+):
+    located = open_image(write_raster("tall.tif", np.ones((200, 60), np.uint8), **utm))
+    name = write_geojson(polygon(ring))
+    with pytest.raises(RegionError, match=as_degrees) as refused:
+        parse_roi(name, located)
+    assert "inside when read as pixels (column, row)" in str(refused.value)
+    assert 'add "crs": "pixel" to the file' in str(refused.value)
+    declared = parse_roi(write_geojson(polygon(ring, crs="pixel")), located)
+    np.testing.assert_array_equal(declared.vertices, np.array(ring)[:-1, ::-1])
+
+
+def test_degrees_and_pixels_both_inside_are_degrees(write_raster, write_geojson):
+    world = {"crs": "EPSG:4326", "transform": rasterio.Affine(1, 0, -180, 0, -1, 90)}
+    image = open_image(write_raster("world.tif", np.ones((180, 360), np.uint8), **world))
+    region = parse_roi(write_geojson(polygon()), image)
+    np.testing.assert_allclose(region.vertices[0], [85.0, 189.0])
+
+
+def test_coordinates_outside_however_they_are_read(located, write_geojson):
+    far = [[x + 100, y + 60] for x, y in SQUARE]
+    with pytest.raises(RegionError, match=r"outside the image|too far") as refused:
+        parse_roi(write_geojson(polygon(far)), located)
+    assert "pixel" not in str(refused.value).split(":")[0]
+    with pytest.raises(RegionError, match=r'no longitude and latitude: add the CRS .*"EPSG:32631"'):
+        parse_roi(write_geojson(polygon([[1000 * x, y] for x, y in SQUARE])), located)
+
+
 def test_coordinates_that_need_a_crs(plain, located, write_geojson):
-    with pytest.raises(RegionError, match='no longitude and latitude, and no "crs" member'):
+    with pytest.raises(RegionError, match=r'image\'s own CRS: add "crs": "EPSG:32631"'):
         parse_roi(write_geojson(polygon(in_utm(SQUARE))), located)
     crs = {"type": "name", "properties": {"name": "EPSG:32631"}}
     with pytest.raises(RegionError, match="the image has no CRS"):
@@ -194,7 +233,7 @@ def test_coordinates_that_need_a_crs(plain, located, write_geojson):
         (polygon([[100, 100], [120, 100], [120, 120]]), "outside the image"),
         (
             collection(feature(polygon(), name="tarp"), feature(polygon())),
-            r"2 polygons \(tarp, feature 2\).*keep one polygon",
+            r"2 polygons \(tarp, feature 2\).*keep one polygon .* parse_rois",
         ),
         ({"type": "MultiPolygon", "coordinates": [[SQUARE], [SQUARE]]}, "part 1, part 2"),
     ],
@@ -204,7 +243,42 @@ def test_files_that_hold_no_single_polygon(plain, write_geojson, document, messa
         parse_roi(write_geojson(document), plain)
 
 
-def test_longitudes_taken_for_pixels_are_told_so(plain, write_geojson):
+def test_every_polygon_of_a_file_by_its_name(plain, write_geojson):
+    lower = [[x, y + 20] for x, y in SQUARE]
+    document = collection(
+        feature(polygon(), name="white"),
+        feature(polygon(lower), name="white"),
+        {**feature(polygon(lower)), "id": 7},
+        feature(polygon(lower), id="tarp"),
+        feature({"type": "MultiPolygon", "coordinates": [[SQUARE], [lower]]}, name="bars"),
+        feature(polygon()),
+    )
+    regions = parse_rois(write_geojson(document), plain)
+    assert list(regions) == [
+        "white",
+        "white (2)",
+        "7",
+        "tarp",
+        "bars part 1",
+        "bars part 2",
+        "feature 6",
+    ]
+    assert regions["white"].box(plain.shape) == SQUARE_BOX
+    assert regions["bars part 2"].box(plain.shape) == Box(25, 10, 10, 20)
+
+
+def test_one_of_several_polygons_outside_the_image_is_named(plain, write_geojson):
+    away = [[x + 100, y] for x, y in SQUARE]
+    document = collection(feature(polygon(), name="near"), feature(polygon(away), name="away"))
+    with pytest.raises(RegionError, match=r"^away: the region lies outside the image"):
+        parse_rois(write_geojson(document), plain)
+
+
+def test_texts_name_their_only_region_themselves(located):
+    assert list(parse_rois(" 5,10,10,20", located)) == ["5,10,10,20"]
+
+
+def test_longitudes_taken_for_pixels_are_reported(plain, write_geojson):
     degrees = [[10.1, 51.9], [10.1001, 51.9], [10.1001, 51.9001], [10.1, 51.9001]]
     name = write_geojson(polygon(degrees))
     with pytest.raises(RegionError, match=r"rows 51.9 to 51.9.* were read as pixels .*has a CRS"):

@@ -26,7 +26,14 @@ def located(write_raster, site, gsd_m=0.5, size_px=400, crs="EPSG:3857"):
 
 def test_the_catalogue():
     names = [site.name for site in sites()]
-    assert names == ["salon-de-provence", "stennis", "penghu", "big-spring", "baotou"]
+    assert names == [
+        "salon-de-provence",
+        "stennis",
+        "penghu",
+        "big-spring",
+        "baotou",
+        "longmont",
+    ]
     for site in sites():
         assert site.source
         assert site.notes
@@ -40,6 +47,7 @@ def test_the_catalogue():
         ("stennis", 30 + 23 / 60 + 12 / 3600, -(89 + 37 / 60 + 43 / 3600)),
         ("penghu", 23 + 31 / 60 + 11 / 3600, 119 + 35 / 60),
         ("baotou", 40 + 51 / 60 + 6 / 3600, 109 + 37 / 60 + 44 / 3600),
+        ("longmont", (40.13590 + 40.13557) / 2, -(105.14453 + 105.14454) / 2),
     ],
 )
 def test_coordinates(name, lat, lon):
@@ -70,7 +78,7 @@ def test_names_that_are_no_site(name, message):
         find_site(name)
 
 
-@pytest.mark.parametrize("name", ["salon", "stennis", "penghu", "baotou"])
+@pytest.mark.parametrize("name", ["salon", "stennis", "penghu", "baotou", "longmont"])
 def test_the_square_around_a_site(write_raster, name):
     site = find_site(name)
     zone = int((site.longitude_deg + 180) // 6) + 1
@@ -88,6 +96,20 @@ def test_the_square_is_as_large_as_the_ground_on_a_web_map(write_raster):
     image = located(write_raster, site, gsd_m=1.0)
     box = site_region(site, image, margin_m=0.0).box(image.shape)
     assert box.height == pytest.approx(60 / np.cos(np.radians(site.latitude_deg)), rel=0.02)
+
+
+def test_both_squares_of_longmont_lie_in_its_region(write_raster):
+    site = find_site("Longmont, Colorado")
+    image = located(write_raster, site, crs="EPSG:32613")
+    row, col = image.geolocation.from_lonlat([-105.14453, -105.14454], [40.13590, 40.13557])
+    assert row[1] - row[0] == pytest.approx(73.3, abs=0.5)
+    box = site_region(site, image, margin_m=0.0).box(image.shape)
+    half_px = 0.5 * site.panel_size_m / 0.5
+    assert (row - half_px >= box.row - 1).all()
+    assert (row + half_px <= box.row + box.height).all()
+    assert (np.abs(col - 200) < 5).all()
+    assert "WorldView-2 of 2014-06-20" in site.source
+    assert "KOMPSAT" in find_site("baotou").source
 
 
 def test_a_scene_without_the_site(write_raster):

@@ -85,7 +85,8 @@ def test_grids_of_the_grains_begin_anywhere():
 
 @pytest.mark.parametrize("sensor", [GENERIC, SKEWED], ids=["generic", "asymmetric"])
 def test_noise_in_the_image_is_as_strong_as_stated(sensor):
-    noise, rng = GroundNoise(), np.random.default_rng(3)
+    # Grains up to a pixel, as the paper's, in coarser steps.
+    noise, rng = GroundNoise(grains=(1, 2, 3, 4, 5), subpixels=5), np.random.default_rng(3)
     images = np.array([noise.seen_by(sensor, (60, 60), rng) for _ in range(16)])
     assert np.sqrt(np.mean(images**2)) == pytest.approx(noise.std_seen_by(sensor), rel=0.01)
     neighbours = np.mean(images[:, :, 1:] * images[:, :, :-1]) / np.mean(images**2)

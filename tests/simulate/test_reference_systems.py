@@ -39,7 +39,7 @@ def test_only_the_asymmetric_system_has_phase(name):
 
 
 def test_feet_of_halo_and_aperture_reach_far():
-    foot = {name: 1 - system.profile(6.0).esf(5.0) for name, system in SYSTEMS.items()}
-    assert foot["gaussian"] < 1e-6
-    assert 5e-4 < foot["halo"] < 5e-3
-    assert foot["diffraction"] > 5e-3
+    wings = {name: 1 - system.profile(6.0).esf(5.0) for name, system in SYSTEMS.items()}
+    assert wings["gaussian"] < 1e-6
+    assert 5e-4 < wings["halo"] < 5e-3
+    assert wings["diffraction"] > 5e-3

@@ -173,7 +173,7 @@ def test_an_snr_goes_with_noise_that_leaves_the_strength_open():
     image, truth = edge(SENSOR, snr=100.0, noise=Noise(quantum=1.0), rng=np.random.default_rng(1))
     assert (truth.noise.read, truth.noise.quantum) == (10.0, 1.0)
     assert np.array_equal(image, np.round(image))
-    with pytest.raises(ModelError, match="both say how strong the white noise is"):
+    with pytest.raises(ModelError, match="both set the white noise"):
         edge(SENSOR, snr=100.0, noise=Noise(read=3.0), rng=np.random.default_rng(1))
     with pytest.raises(ModelError, match="saturation is nan"):
         Noise(saturation=NAN)

@@ -201,7 +201,7 @@ def test_large_images_are_fine():
         ({"polarity": "up"}, "'up'"),
         ({"dark": 5.0, "bright": 5.0}, "dark has to be lower"),
         ({"snr": 50.0}, "without rng"),
-        ({"snr": 50.0, "noise": Noise(read=1.0)}, "both say how strong"),
+        ({"snr": 50.0, "noise": Noise(read=1.0)}, "both set the white noise"),
         ({"snr": -1.0}, "snr is -1"),
     ],
 )

@@ -64,11 +64,11 @@ def test_what_was_refused_everywhere_has_no_answers_but_the_reason():
     steep = SnrOptions(noise_dn=(10.0,), draws=1, angle_deg=45.0)
     result = study_snr(steep, ALONE)
     for target in ("edge", "pulse"):
-        told = result.finding(f"refused_{target}_published")
-        assert told.value == 1
-        assert "refused 1 of 1 images" in told.text
+        found = result.finding(f"refused_{target}_published")
+        assert found.value == 1
+        assert "refused 1 of 1 images" in found.text
         trials = result.tables["trials"].where(target=target)
-        assert told.text.endswith(trials.columns["published_refusal"][0])
+        assert found.text.endswith(trials.columns["published_refusal"][0])
     assert not any("nan" in found.text for found in result.findings)
     assert {found.name.split("_")[0] for found in result.findings} == {"refused"}
     study_figure(result)

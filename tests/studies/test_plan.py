@@ -47,9 +47,9 @@ def test_of_several_widths_the_best_is_planned_and_named():
     plan = plan_target(options, ALONE)
     assert plan.table["target_width_px"][0] == 3.0
     assert sorted(plan.table.where(varied="width")["target_width_px"]) == [1.0, 1.5, 3.0]
-    told = plan.finding("planned_width_px")
-    assert told.value == 3.0
-    assert "of the widths 1, 3, 1.5 px, 3 px has the least bound" in told.text
+    found = plan.finding("planned_width_px")
+    assert found.value == 3.0
+    assert "of the widths 1, 3, 1.5 px, 3 px has the least bound" in found.text
     assert "3 px wide" in plan.finding("expected_mtf_nyquist").text
     single = plan_target(PlanOptions(target="pulse", widths_px=(1.5,), draws=0), ALONE)
     assert "planned_width_px" not in [found.name for found in single.findings]

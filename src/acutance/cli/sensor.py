@@ -73,7 +73,7 @@ def sensor_budget(
     """What every block of a sensor leaves of the contrast, across and along."""
     drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
     sheet = check_optional("--toml", toml, (".toml",), keep=(sensor,))
-    from acutance.optics import SensorSheet, budget, presets, sheet_to_toml
+    from acutance.optics import SensorFile, budget, presets, sensor_file_to_toml
     from acutance.report.budget import budget_document, budget_figure, budget_text
     from acutance.report.documents import json_text
     from acutance.report.page import figure_bytes
@@ -84,6 +84,6 @@ def sensor_budget(
         drawing.write(figure_bytes(budget_figure(table), drawing.ending))
         say(f"wrote {drawing.path}")
     if sheet is not None:
-        sheet.write(sheet_to_toml(presets().get(sensor, SensorSheet(system))))
+        sheet.write(sensor_file_to_toml(presets().get(sensor, SensorFile(system))))
         say(f"wrote {sheet.path}")
     typer.echo(json_text(budget_document(table)) if as_json else budget_text(table))

@@ -10,6 +10,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.curves.direction import gsd_along, unit_vector
 from acutance.curves.grid import DISTANCE_PX, FREQ_CPP, Floats, crossing
 from acutance.curves.response import Response
 from acutance.curves.short_repr import ShortRepr
@@ -97,7 +98,7 @@ class Otf2d(ShortRepr):
             Esf(DISTANCE_PX, esf, esf_factor),
             Lsf(DISTANCE_PX, lsf, lsf_factor),
             Mtf(FREQ_CPP, shown * turn, shown_factor * turn[:, None]),
-            gsd_m=self._gsd_along(normal_deg),
+            gsd_m=None if self.gsd_m is None else gsd_along(self.gsd_m, normal_deg),
         )
 
     def psf(self, half_width_px: float = 5.0, step_px: float = 0.1) -> tuple[Floats, Floats]:
@@ -136,17 +137,10 @@ class Otf2d(ShortRepr):
         phase = np.angle(self.model.otf(*_along(normal_deg, np.array([step]))))
         return -float(phase[0]) / (2 * math.pi * step)
 
-    def _gsd_along(self, normal_deg: float) -> float | None:
-        if self.gsd_m is None:
-            return None
-        row_m, col_m = self.gsd_m
-        angle = math.radians(normal_deg)
-        return 1.0 / math.hypot(math.cos(angle) / col_m, math.sin(angle) / row_m)
-
 
 def _along(normal_deg: float, freq_cpp: Floats) -> tuple[Floats, Floats]:
-    angle = math.radians(normal_deg)
-    return freq_cpp * math.cos(angle), freq_cpp * math.sin(angle)
+    x, y = unit_vector(normal_deg)
+    return freq_cpp * x, freq_cpp * y
 
 
 def _spread(

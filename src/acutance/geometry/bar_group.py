@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
-from acutance.geometry.angles import angle_between_deg
-from acutance.geometry.line import Line
+from acutance.geometry.angles import axis_difference
 
 __all__ = ["Bars"]
 
@@ -57,7 +57,7 @@ class Bars:
     @property
     def region(self) -> Floats:
         """Corners of the group, (4, 2) as (row, col)."""
-        x, y = Line(self.row, self.col, self.normal_deg).normal
+        x, y = unit_vector(self.normal_deg)
         corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
         across, along = 0.5 * self.width_px, 0.5 * self.length_px
         return np.array(
@@ -72,10 +72,9 @@ class Bars:
 
     def across_and_along(self, rows: Floats, cols: Floats) -> tuple[Floats, Floats]:
         """Distances from the centre along the normal and along the bars, in pixels."""
-        angle = math.radians(self.normal_deg)
+        cos, sin = unit_vector(self.normal_deg)
         x, y = cols - self.col, rows - self.row
-        across = x * math.cos(angle) + y * math.sin(angle)
-        return across, -x * math.sin(angle) + y * math.cos(angle)
+        return x * cos + y * sin, -x * sin + y * cos
 
     def spectrum(self, freq_cpp: Floats) -> Floats:
         """Fourier transform of the profile (1 on the bars, 0 next to them), which is real."""
@@ -85,7 +84,7 @@ class Bars:
 
     def angle_to(self, normal_deg: float) -> float:
         """Angle between the group's normal and another one, 0 to 90 degrees."""
-        return angle_between_deg(self.normal_deg, normal_deg)
+        return axis_difference(self.normal_deg, normal_deg)
 
     def shifted(self, rows: float, cols: float) -> Bars:
         """The group so many pixels further down and to the right."""

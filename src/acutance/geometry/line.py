@@ -9,7 +9,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
+from acutance.geometry.angles import angle_to_grid, is_nearer_columns, wrap_direction
 
 __all__ = ["Line", "Orientation"]
 
@@ -45,20 +47,17 @@ class Line:
     @property
     def normal(self) -> tuple[float, float]:
         """Unit normal as its (x, y) components, that is (column, row)."""
-        angle = math.radians(self.normal_deg)
-        return math.cos(angle), math.sin(angle)
+        return unit_vector(self.normal_deg)
 
     @property
     def orientation(self) -> Orientation:
         """ "across" when the normal is nearer the column axis, "along" when nearer the rows'."""
-        x, y = self.normal
-        return "across" if abs(x) >= abs(y) else "along"
+        return "across" if is_nearer_columns(self.normal_deg) else "along"
 
     @property
     def angle_deg(self) -> float:
         """Acute angle between the edge and the nearer image axis, 0 to 45 degrees."""
-        x, y = (abs(component) for component in self.normal)
-        return math.degrees(math.atan2(min(x, y), max(x, y)))
+        return angle_to_grid(self.normal_deg)
 
     def normal_distance(self, row: ArrayLike, col: ArrayLike) -> Floats:
         """Signed distance along the normal in pixels, positive on the bright side."""
@@ -73,11 +72,10 @@ class Line:
     def moved(self, offset_px: float, turn_deg: float) -> Line:
         """The line shifted along its normal, then turned about its point (small changes)."""
         x, y = self.normal
-        turned = (self.normal_deg + turn_deg + 180.0) % 360.0 - 180.0
         return Line(
             self.row + offset_px * y,
             self.col + offset_px * x,
-            turned,
+            wrap_direction(self.normal_deg + turn_deg),
             self.angle_std_deg,
             self.offset_std_px,
             self.length_px,

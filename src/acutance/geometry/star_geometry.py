@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.geometry.angles import direction_difference
 
 __all__ = ["Flags", "SiemensStar"]
 
@@ -50,9 +51,9 @@ class SiemensStar:
         """Whether directions lie within the sweep, `margin_rad` away from its ends."""
         if self.sweep_deg >= 360:
             return np.ones(np.shape(angle_rad), bool)
-        half = 0.5 * math.radians(self.sweep_deg)
-        off = angle_rad - math.radians(self.first_deg) - half
-        return np.asarray(np.abs((off + math.pi) % (2 * math.pi) - math.pi) < half - margin_rad)
+        half = 0.5 * self.sweep_deg
+        off = direction_difference(np.degrees(angle_rad), self.first_deg + half)
+        return np.asarray(np.radians(half - off) > margin_rad)
 
     def freq_cpp(self, radius_px: float) -> float:
         """Frequency of the spokes at a radius."""

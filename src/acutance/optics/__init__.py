@@ -14,11 +14,11 @@ from acutance.optics.processing import Resampling, Rescaled, Sharpening, Shift
 from acutance.optics.profile import Profile
 from acutance.optics.raster_psf import RasterPsf, numerical_psf
 from acutance.optics.sensor import Sensor
-from acutance.optics.sheet import (
-    SensorSheet,
+from acutance.optics.sensor_file import (
+    SensorFile,
     read_sensor,
-    sheet_from_toml,
-    sheet_to_toml,
+    sensor_file_from_toml,
+    sensor_file_to_toml,
     write_sensor,
 )
 
@@ -44,7 +44,7 @@ __all__ = [
     "Resampling",
     "Rescaled",
     "Sensor",
-    "SensorSheet",
+    "SensorFile",
     "Sharpening",
     "Shift",
     "Smear",
@@ -59,7 +59,7 @@ __all__ = [
     "presets",
     "psf_on_the_ground",
     "read_sensor",
-    "sheet_from_toml",
-    "sheet_to_toml",
+    "sensor_file_from_toml",
+    "sensor_file_to_toml",
     "write_sensor",
 ]

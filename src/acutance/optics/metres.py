@@ -112,7 +112,7 @@ def psf_on_the_ground(
     small, large = min(row_m, col_m), max(row_m, col_m)
     if not (0 < step_m < 0.5 * small and step_m <= half_width_m < 32 * small):
         raise ModelError(
-            f"a PSF of half width {half_width_m:g} m in steps of {step_m:g} m was asked for: the "
+            f"a PSF of half width {half_width_m:g} m in steps of {step_m:g} m was requested: the "
             f"step has to be below {0.5 * small:g}, the half width between one step and "
             f"{32 * small:g}"
         )

@@ -12,7 +12,8 @@ from acutance.optics.block import Axis, Transfer, along_axis, require, require_a
 
 __all__ = ["Jitter", "Smear", "Tdi"]
 
-_MOST_STAGES = 10_000
+_MAX_STAGES = 10_000
+"""More than any detector has: a product over the stages stays quick."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,7 @@ class Tdi:
     phases: int = 4
 
     def __post_init__(self) -> None:
-        require_count(self, _MOST_STAGES, stages=self.stages, phases=self.phases)
+        require_count(self, _MAX_STAGES, stages=self.stages, phases=self.phases)
         require(self, -1.0, 1.0, drift_px=self.drift_px, drift_across_px=self.drift_across_px)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:

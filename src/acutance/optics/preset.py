@@ -7,14 +7,14 @@ from importlib.resources import files
 
 from acutance.errors import ModelError
 from acutance.optics.sensor import Sensor
-from acutance.optics.sheet import SensorSheet, sheet_from_toml
+from acutance.optics.sensor_file import SensorFile, sensor_file_from_toml
 
 __all__ = ["preset", "presets"]
 
 
-def presets() -> dict[str, SensorSheet]:
+def presets() -> dict[str, SensorFile]:
     """All sensors that ship with the package, by name, each with its description and sources."""
-    return dict(_sheets())
+    return dict(_files())
 
 
 def preset(name: str) -> Sensor:
@@ -34,19 +34,19 @@ def preset(name: str) -> Sensor:
     ModelError
         If there is no such sensor.
     """
-    sheets = _sheets()
-    if name not in sheets:
-        raise ModelError(f"there is no preset {name!r}, only {', '.join(sheets)}")
-    return sheets[name].sensor
+    described = _files()
+    if name not in described:
+        raise ModelError(f"there is no preset {name!r}, only {', '.join(described)}")
+    return described[name].sensor
 
 
 @cache
-def _sheets() -> dict[str, SensorSheet]:
+def _files() -> dict[str, SensorFile]:
     folder = files("acutance.optics") / "presets"
     texts = {
         file.name: file.read_text(encoding="utf-8")
         for file in folder.iterdir()
         if file.name.endswith(".toml")
     }
-    sheets = [sheet_from_toml(texts[name], name) for name in sorted(texts)]
-    return {sheet.name: sheet for sheet in sheets}
+    described = [sensor_file_from_toml(texts[name], name) for name in sorted(texts)]
+    return {one.name: one for one in described}

@@ -21,8 +21,8 @@ PERIOD_PX = 1024
 BANDS_CPP = (64, 128, 256, 512)
 """Highest frequency of the table: the first one that the OTF does not reach."""
 
-TAIL_PX = 1.0
-CORE_PX = 0.3
+TAIL_PX, CORE_PX = 1.0, 0.3
+"""Scales of the reference's Lorentzian and logistic curve, which is subtracted and added again."""
 
 
 @dataclass(frozen=True, eq=False)

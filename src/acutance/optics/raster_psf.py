@@ -87,8 +87,8 @@ def numerical_psf(sensor: Sensor, *, subpixels: int = 20, trim_px: float = 5.0) 
     """
     if not (2 <= subpixels <= 100 and 1 <= trim_px <= 16):
         raise ModelError(
-            f"a numerical PSF of {subpixels} samples per pixel trimmed to {trim_px:g} px was asked "
-            "for: 2 to 100 samples and 1 to 16 px are possible"
+            f"a numerical PSF of {subpixels} samples per pixel trimmed to {trim_px:g} px was "
+            "requested: 2 to 100 samples and 1 to 16 px are possible"
         )
     step = 1 / subpixels
     size = PERIOD_PX * subpixels

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves import Esf, Lsf, Mtf, Response
+from acutance.curves.direction import gsd_along, unit_vector
 from acutance.curves.grid import FREQ_CPP, Floats
 from acutance.errors import ModelError
 from acutance.optics.aperture import Defocus, Diffraction
@@ -31,7 +32,7 @@ def normal_direction_deg(angle_deg: float, orientation: Axis) -> float:
     Parameters
     ----------
     angle_deg : float
-        Tilt of the edge against the nearer image axis; the sign tells which way it leans.
+        Tilt of the edge against the nearer image axis; its sign is the sense of the turn.
     orientation : {"across", "along"}
         The axis the normal is near to: "across" the column axis, "along" the row axis.
     """
@@ -125,18 +126,8 @@ class Sensor:
         return (self.gsd_along_m or self.gsd_m), self.gsd_m
 
     def gsd_along_normal_m(self, normal_deg: float) -> float | None:
-        """Metres per pixel of distance along an edge's normal; ``None`` without a GSD.
-
-        Lines of equal distance one pixel apart are ``1 / hypot(cos t / g_col, sin t / g_row)``
-        metres apart on the ground.
-        """
-        if self.pixel_m is None:
-            return None
-        row_m, col_m = self.pixel_m
-        if row_m == col_m:
-            return col_m
-        angle = math.radians(normal_deg)
-        return 1.0 / math.hypot(math.cos(angle) / col_m, math.sin(angle) / row_m)
+        """Metres per pixel of distance along an edge's normal; ``None`` without a GSD."""
+        return None if self.pixel_m is None else gsd_along(self.pixel_m, normal_deg)
 
     def otf(self, u: ArrayLike, v: ArrayLike) -> Transfer:
         """OTF at frequencies `u` (across) and `v` (along) in cycles per pixel, 1 at zero.
@@ -152,7 +143,7 @@ class Sensor:
     def profile(self, normal_deg: float) -> Profile:
         """Edge and line spread functions at any distance, for a normal in any direction.
 
-        Profiles are kept, so asking again costs nothing. See `Profile` for the accuracy.
+        Profiles are cached. See `Profile` for the accuracy.
         """
         return _profile(self, float(normal_deg))
 
@@ -225,8 +216,8 @@ class Sensor:
         """
         if not (0 < step_px < 0.5 and step_px <= half_width_px < 32):
             raise ModelError(
-                f"a PSF of half width {half_width_px:g} px in steps of {step_px:g} px was asked "
-                "for: the step has to be below 0.5, the half width between one step and 32"
+                f"a PSF of half width {half_width_px:g} px in steps of {step_px:g} px was "
+                "requested: the step has to be below 0.5, the half width between one step and 32"
             )
         return spread_over_plane(self.otf, half_width_px, step_px, 32.0)
 
@@ -262,8 +253,8 @@ def spread_over_plane(
 
 
 def _slice(sensor: Sensor, normal_deg: float, freq_cpp: Floats) -> Transfer:
-    angle = math.radians(normal_deg)
-    return sensor.otf(freq_cpp * math.cos(angle), freq_cpp * math.sin(angle))
+    x, y = unit_vector(normal_deg)
+    return sensor.otf(freq_cpp * x, freq_cpp * y)
 
 
 @lru_cache(maxsize=16)

@@ -2,10 +2,11 @@
 
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
-from acutance.raster.image import Image, open_image
+from acutance.raster.image import Image
+from acutance.raster.open_image import open_image
 from acutance.raster.positions import read_positions
 from acutance.raster.region import Box, Region
-from acutance.raster.roi import parse_roi
+from acutance.raster.roi import parse_roi, parse_rois
 from acutance.raster.site import Site, find_site, site_region, sites
 from acutance.raster.writing import write_geotiff
 
@@ -19,6 +20,7 @@ __all__ = [
     "find_site",
     "open_image",
     "parse_roi",
+    "parse_rois",
     "read_positions",
     "site_region",
     "sites",

@@ -26,6 +26,7 @@ from acutance.errors import ImageError, OptionError
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import Image
+from acutance.raster.packed_file import packed_names
 from acutance.raster.pixels import equals_nodata, usable_values
 from acutance.raster.region import Box
 
@@ -34,6 +35,11 @@ __all__ = ["GSD_TAGS", "DatasetPixels", "open_dataset", "open_quietly"]
 GSD_TAGS = ("ACUTANCE_GSD_ROW_M", "ACUTANCE_GSD_COL_M")
 
 _CACHE_BYTES = 32 * 2**20
+"""GDAL's block cache; its own default is a twentieth of the memory."""
+
+_PACKED_TRIED, _PACKED_NAMED = 20, 5
+"""Largest files of a packed file that are opened to find images, and images that are named."""
+
 _WARNING_FILTERS = threading.Lock()
 
 
@@ -49,7 +55,7 @@ class DatasetPixels:
     nodata : float or None
         The stored value of unusable pixels.
     has_mask : bool
-        The file carries a mask beside its bands.
+        The file carries a mask next to its bands.
     alpha_band : int or None
         The band that is 0 where a pixel is transparent.
     scale, offset : float
@@ -119,7 +125,7 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
 
 
 def open_quietly(path: str, mode: str = "r", **profile: Any) -> Any:
-    """``rasterio.open`` that says nothing of an image without a geotransform.
+    """``rasterio.open`` without its warning of an image that has no geotransform.
 
     rasterio warns of each; to us it is an ordinary image. The filters of `warnings` belong to the
     whole process, so only one thread at a time changes them.
@@ -143,7 +149,28 @@ def _opened(path: str) -> Iterator[Any]:
 def _advice(path: str) -> str:
     if Path(path).is_dir():
         return "it is a directory; give the image file inside it"
+    packed = packed_names(path) if Path(path).is_file() else None
+    if packed is not None:
+        return _packed_advice(packed)
     return "check that the file is whole and of a format that `rio env --formats` lists"
+
+
+def _packed_advice(names: tuple[str, ...]) -> str:
+    """How to open what a packed file holds; the largest files are the likely images."""
+    images = [name for name in names[:_PACKED_TRIED] if _is_image(name)]
+    if not images:
+        return "no image was found in the packed file; unpack it and give the image file"
+    if len(images) == 1:
+        return f"it is a packed file; open {images[0]}"
+    return f"it is a packed file; open one of {', '.join(images[:_PACKED_NAMED])}"
+
+
+def _is_image(name: str) -> bool:
+    try:
+        with open_quietly(name):
+            return True
+    except (RasterioError, CPLE_BaseError):
+        return False
 
 
 def _require_band(dataset: Any, path: str, band: int) -> None:
@@ -153,7 +180,7 @@ def _require_band(dataset: Any, path: str, band: int) -> None:
         raise ImageError(f"{path} holds no band of its own; {found}")
     if not 1 <= band <= dataset.count:
         raise ImageError(
-            f"band {band} of {path} was asked, but it has {dataset.count}: "
+            f"band {band} of {path} was requested, but it has {dataset.count}: "
             f"choose a band from 1 to {dataset.count}"
         )
     dtype = dataset.dtypes[band - 1]

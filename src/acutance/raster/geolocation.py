@@ -1,7 +1,7 @@
 """Where pixels lie on the Earth, and how large they are there.
 
 GDAL's geotransform counts from pixel corners, acutance from pixel centres: this module is the
-one place that knows both.
+one place with both.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
+from acutance.geometry.angles import wrap_direction
 from acutance.raster.gsd import Gsd
 
 __all__ = ["LONLAT_CRS", "Geolocation", "transform_points"]
@@ -22,6 +23,8 @@ __all__ = ["LONLAT_CRS", "Geolocation", "transform_points"]
 LONLAT_CRS = "OGC:CRS84"
 
 _MAP_DISTORTION = 0.01
+"""Share by which a map's lengths may differ from the ground's before the ground's are used."""
+
 _WGS84_RADIUS_M = 6378137.0
 _WGS84_ECCENTRICITY2 = 6.69437999014e-3
 
@@ -112,14 +115,14 @@ class Geolocation:
 
         The lengths of the geotransform's two column vectors, so a rotated image has the GSD of
         its own rows and columns. Projected CRS: in metres whatever its unit, as the map has them,
-        so that a 30 m product says 30 m; where the map's scale is off by more than 1 % (Web
+        so that a 30 m product has 30 m; where the map's scale is off by more than 1 % (Web
         Mercator, the far side of a zone), as the ground has them. Geographic CRS: at the pixel's
         latitude.
 
         Returns
         -------
         Gsd or None
-            ``None`` if the CRS tells no length, or the place has none.
+            ``None`` if the CRS defines no length, or the place has none.
         """
         on_map = self._gsd_on_map()
         on_ground = self._gsd_on_ground(row, col)
@@ -155,8 +158,9 @@ class Geolocation:
         squashed = 1.0 - _WGS84_ECCENTRICITY2 * math.sin(latitude) ** 2
         to_north = _WGS84_RADIUS_M * (1.0 - _WGS84_ECCENTRICITY2) / squashed**1.5
         to_east = _WGS84_RADIUS_M / math.sqrt(squashed) * math.cos(latitude)
-        turn = (lon[1::2] - lon[::2] + 180.0) % 360.0 - 180.0
-        step_m = np.hypot(to_east * np.radians(turn), to_north * np.radians(lat[1::2] - lat[::2]))
+        turn_deg: Floats = wrap_direction(lon[1::2] - lon[::2])
+        step_deg = np.hypot(to_east * turn_deg, to_north * (lat[1::2] - lat[::2]))
+        step_m = np.radians(step_deg)
         return _gsd_or_none(float(step_m[0]), float(step_m[1]))
 
 

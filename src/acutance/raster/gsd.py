@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from numbers import Real
 
+from acutance.curves.direction import gsd_along
 from acutance.errors import OptionError
 
 __all__ = ["Gsd"]
@@ -68,12 +69,7 @@ class Gsd:
         return cls.square(gsd_m)
 
     def along_normal(self, normal_deg: float) -> float:
-        """Metres per pixel for distances measured along an edge's normal.
-
-        An edge is normal to the direction ``n = (cos t, sin t)`` (x = column, y = row). On the
-        ground its own normal is another one when the GSD differs between rows and columns; two
-        parallel edges one pixel apart along `n` are ``1 / sqrt((n_x/col_m)^2 + (n_y/row_m)^2)``
-        metres apart.
+        """Metres per pixel for distances along an edge's normal; see `curves.gsd_along`.
 
         Parameters
         ----------
@@ -85,5 +81,4 @@ class Gsd:
         float
             Metres; `col_m` at 0 degrees, `row_m` at 90 degrees.
         """
-        angle = math.radians(normal_deg)
-        return 1.0 / math.hypot(math.cos(angle) / self.col_m, math.sin(angle) / self.row_m)
+        return gsd_along((self.row_m, self.col_m), normal_deg)

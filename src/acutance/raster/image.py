@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import os
-import re
-from dataclasses import dataclass, replace
-from functools import cache
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -17,17 +14,19 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, OptionError
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
-from acutance.raster.pixels import ArrayPixels, NpyPixels, PixelSource, require_image_array
+from acutance.raster.pixels import (
+    ArrayPixels,
+    PixelSource,
+    largest_count,
+    require_image_array,
+    type_name,
+)
 from acutance.raster.region import Box
 
-__all__ = ["AlongTrack", "Image", "open_image"]
+__all__ = ["AlongTrack", "Image"]
 
 AlongTrack = Literal["x", "y"]
 """The image axis the satellite flew along: x is that of the columns' numbers, y of the rows'."""
-
-# Names that GDAL understands and the file system does not: "/vsizip/a.zip/b.tif",
-# "https://host/a.tif", "HDF5:a.h5://band". One letter and a colon is a Windows drive.
-_GDAL_NAME = re.compile(r"^(/vsi\w+/|\w+://|[A-Za-z0-9_]{2,}:)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,9 +114,9 @@ class Image(ShortRepr):
             band=1,
             band_count=1,
             shape=(int(values.shape[0]), int(values.shape[1])),
-            dtype=_name(values.dtype),
+            dtype=type_name(values.dtype),
             source=ArrayPixels(values, nodata),
-            saturation_level=_largest(values.dtype),
+            saturation_level=largest_count(values.dtype),
             own_gsd=Gsd.given(gsd_m),
             along_track=along_track,
         )
@@ -163,62 +162,13 @@ class Image(ShortRepr):
         Returns
         -------
         Gsd or None
-            ``None`` when it was not given and the image does not tell.
+            ``None`` when it was not given and the image declares none.
         """
         if self.own_gsd is not None or self.geolocation is None:
             return self.own_gsd
         at_row = (self.shape[0] - 1) / 2 if row is None else row
         at_col = (self.shape[1] - 1) / 2 if col is None else col
         return self.geolocation.gsd(at_row, at_col)
-
-
-def open_image(
-    path: str | os.PathLike[str],
-    band: int = 1,
-    gsd_m: float | Gsd | None = None,
-    nodata: float | None = None,
-    along_track: AlongTrack = "y",
-) -> Image:
-    """Open one band of an image file.
-
-    Parameters
-    ----------
-    path : str or path
-        Any raster that GDAL reads in rasterio's wheel (GeoTIFF, COG, JPEG 2000, NITF, HDF5,
-        DIMAP, SAFE, TIFF, PNG, JPEG), a name of GDAL's own ("HDF5:file.h5://band",
-        "/vsizip/..."), or a 2-D array in a ``.npy`` file.
-    band : int
-        Which band, from 1.
-    gsd_m : float or Gsd, optional
-        Ground sampling distance in metres; it replaces the one of the geotransform.
-    nodata : float, optional
-        The stored value of unusable pixels; it replaces the one the file declares. Masks and
-        alpha bands keep their say.
-    along_track : {"y", "x"}, optional
-        The axis along track, after which results are called across and along: y, down the
-        columns, unless the image was turned.
-
-    Returns
-    -------
-    Image
-
-    Raises
-    ------
-    ImageError
-        If the file is missing, empty, damaged, a directory without an image, of a kind that
-        cannot be measured (complex, palette), or has no such band.
-    OptionError
-        If the GSD is not a positive number.
-    """
-    gsd = Gsd.given(gsd_m)
-    name = _as_name(path)
-    _require_file(name)
-    if name.lower().endswith(".npy"):
-        opened = _open_npy(name, band, gsd, nodata)
-        return replace(opened, along_track=along_track)
-    from acutance.raster.dataset import open_dataset
-
-    return replace(open_dataset(name, band, gsd, nodata), along_track=along_track)
 
 
 def _as_array(array: Any) -> NDArray[Any]:
@@ -241,61 +191,3 @@ def _as_array(array: Any) -> NDArray[Any]:
             f"the {type(array).__name__} given cannot be made an array ({error}): an image has "
             "rows of equal length"
         ) from error
-
-
-def _as_name(path: Any) -> str:
-    """The name of a file as text."""
-    try:
-        name = os.fspath(path)
-    except TypeError:
-        raise ImageError(
-            f"open_image was given a {type(path).__name__}: give the name of a file; an array is "
-            "measured as it is, or made an image by Image.from_array"
-        ) from None
-    return os.fsdecode(name)
-
-
-def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Image:
-    source = NpyPixels(path, nodata)
-    array: NDArray[Any] = source.map()
-    require_image_array(array, path)
-    if band != 1:
-        raise ImageError(f"band {band} of {path} was asked, but a .npy file has one: use band 1")
-    return Image(
-        path=path,
-        band=1,
-        band_count=1,
-        shape=(int(array.shape[0]), int(array.shape[1])),
-        dtype=_name(array.dtype),
-        source=source,
-        saturation_level=_largest(array.dtype),
-        own_gsd=gsd,
-    )
-
-
-def _require_file(name: str) -> None:
-    """Check what the file system can tell before a driver is asked."""
-    # To the file system no name at all is the folder one stands in.
-    if not name.strip():
-        raise ImageError("the name of the image is empty: give the path of a file")
-    path = Path(name)
-    try:
-        is_file, is_folder = path.is_file(), path.is_dir()
-        is_empty = is_file and path.stat().st_size == 0
-    except OSError as error:
-        raise ImageError(f"{name} cannot be reached ({error.strerror}): check the path") from error
-    if is_empty:
-        raise ImageError(f"{name} is empty (0 bytes): it was not written or not copied whole")
-    if not is_file and not is_folder and not _GDAL_NAME.match(name):
-        found = "its folder exists" if path.parent.is_dir() else "nor does its folder"
-        raise ImageError(f"{name} does not exist ({found}): check the path")
-
-
-@cache
-def _name(dtype: np.dtype[Any]) -> str:
-    """Name of a type; to compose it takes as long as to read a small region."""
-    return dtype.name
-
-
-def _largest(dtype: np.dtype[Any]) -> float | None:
-    return float(np.iinfo(dtype).max) if dtype.kind in "iu" else None

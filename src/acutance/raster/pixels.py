@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Protocol
 
 import numpy as np
@@ -18,12 +19,15 @@ __all__ = [
     "NpyPixels",
     "PixelSource",
     "equals_nodata",
+    "largest_count",
     "require_image_array",
+    "type_name",
     "usable_values",
 ]
 
 _NPY_MAGIC = b"\x93NUMPY"
 _MAPPED_BYTES = 32 * 2**20
+"""Of a file mapped at once: what a strip down all its rows may hold in memory."""
 
 
 class PixelSource(Protocol):
@@ -163,3 +167,14 @@ def usable_values(raw: NDArray[Any], masked: NDArray[np.bool_]) -> Floats:
     values = np.array(raw, dtype=np.float64, order="C")
     values[masked | ~np.isfinite(values)] = np.nan
     return values
+
+
+@cache
+def type_name(dtype: np.dtype[Any]) -> str:
+    """Name of a type; to compose it takes as long as to read a small region."""
+    return dtype.name
+
+
+def largest_count(dtype: np.dtype[Any]) -> float | None:
+    """The largest value of an integer type; ``None`` for floats."""
+    return float(np.iinfo(dtype).max) if dtype.kind in "iu" else None

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import csv
-import json
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
+from acutance.raster.coordinates import PIXELS, crs_without_declaration, to_pixels
+from acutance.raster.geojson import declared_crs, load_geojson, points
 from acutance.raster.geolocation import LONLAT_CRS
 from acutance.raster.image import Image
 
 __all__ = ["read_positions"]
 
-_PIXELS = "pixel"
 _COLUMNS = {
-    "pixel": (("row", "col"), ("row", "column"), ("y_px", "x_px")),
+    PIXELS: (("row", "col"), ("row", "column"), ("y_px", "x_px")),
     "map": (("y", "x"), ("northing", "easting"), ("north", "east")),
     "lonlat": (("lat", "lon"), ("latitude", "longitude")),
 }
@@ -38,8 +36,9 @@ def read_positions(path: str, image: Image) -> Floats:
           image's own map); a file without a header holds row and column. Other columns are
           ignored;
         - a GeoJSON file of Points (or MultiPoints). Its coordinates are in the CRS of its "crs"
-          member; the name "pixel" there means pixels (x the column, y the row). With no such
-          member they are longitude and latitude if the image has a CRS, and pixels if not.
+          member; "pixel" there means pixels (x the column, y the row). With no such member they
+          are longitude and latitude if the image has a CRS, and pixels if not; degrees that lie
+          outside the image and would lie inside as pixels are refused.
     image : Image
 
     Returns
@@ -59,7 +58,7 @@ def read_positions(path: str, image: Image) -> Floats:
     except (OSError, UnicodeDecodeError) as error:
         raise RegionError(f"{path} cannot be read as text: give a .csv or .geojson file") from error
     if text.lstrip().startswith("{"):
-        places = _of_geojson(path, text, image)
+        places = _of_geojson(path, image)
     else:
         places = _of_csv(path, text, image)
     if places.shape[0] == 0:
@@ -81,7 +80,7 @@ def _of_csv(path: str, text: str, image: Image) -> Floats:
                 f"{path} has the columns {', '.join(header)}: name two of them row,col (pixels), "
                 "lon,lat (degrees) or x,y (the image's map)"
             )
-        kind, places, body = "pixel", (0, 1), rows
+        kind, places, body = PIXELS, (0, 1), rows
     else:
         (kind, places), body = found, rows[1:]
     numbers = []
@@ -112,57 +111,25 @@ def _are_numbers(cells: list[str]) -> bool:
         return False
 
 
-def _of_geojson(path: str, text: str, image: Image) -> Floats:
-    try:
-        document: Any = json.loads(text)
-    except ValueError as error:
-        raise RegionError(f"{path} is not GeoJSON ({error})") from error
-    points = list(_points(document))
-    try:
-        pairs = np.array([(float(one[0]), float(one[1])) for one in points]).reshape(-1, 2)
-    except (TypeError, ValueError, IndexError) as error:
-        raise RegionError(f"{path} holds a Point without two numbers") from error
-    named = document.get("crs") or {}
-    crs = (named.get("properties") or {}).get("name") if isinstance(named, dict) else None
+def _of_geojson(path: str, image: Image) -> Floats:
+    document = load_geojson(path)
+    found = points(document, path)
+    if found.shape[0] == 0:
+        return found
+    crs = declared_crs(document, path)
     if crs is None:
-        kind = "lonlat" if image.crs is not None else "pixel"
-    elif str(crs).lower() == _PIXELS:
-        kind = "pixel"
-    else:
-        kind = str(crs)
-    return _in_pixels(path, kind, pairs[:, 0], pairs[:, 1], image)
-
-
-def _points(document: Any) -> Iterator[Any]:
-    """Coordinates of all Points of a GeoJSON document."""
-    if not isinstance(document, dict):
-        return
-    kind = document.get("type")
-    if kind == "FeatureCollection":
-        for feature in document.get("features") or []:
-            yield from _points(feature)
-    elif kind == "Feature":
-        yield from _points(document.get("geometry"))
-    elif kind == "GeometryCollection":
-        for geometry in document.get("geometries") or []:
-            yield from _points(geometry)
-    elif kind == "Point":
-        yield document.get("coordinates")
-    elif kind == "MultiPoint":
-        yield from document.get("coordinates") or []
+        crs = crs_without_declaration(list(found[:, np.newaxis]), image, path)
+    return to_pixels(found, crs, image)
 
 
 def _in_pixels(path: str, kind: str, right: Floats, down: Floats, image: Image) -> Floats:
-    if kind == "pixel":
-        return np.stack([down, right], axis=1)
-    place = image.geolocation
-    if place is None:
+    if kind == PIXELS:
+        return np.column_stack([down, right])
+    if image.geolocation is None:
         raise RegionError(
-            f"{path} holds coordinates on the ground, and the image has no georeference: give "
-            "row and column in pixels"
+            f"{path} holds coordinates on the ground, and the image has no CRS: give row and "
+            "column in pixels"
         )
     if kind == "map":
-        row, col = place.from_map(right, down)
-    else:
-        row, col = place.from_crs(right, down, LONLAT_CRS if kind == "lonlat" else kind)
-    return np.stack([np.asarray(row, float), np.asarray(col, float)], axis=1)
+        return np.column_stack(image.geolocation.from_map(right, down))
+    return to_pixels(np.column_stack([right, down]), LONLAT_CRS, image)

@@ -18,6 +18,7 @@ from acutance.errors import RegionError
 __all__ = ["Box", "Region"]
 
 _STRIP_PIXELS = 1_000_000
+"""Pixels tested at once, so that the outline of a whole scene fits into memory."""
 
 
 @dataclass(frozen=True)
@@ -98,19 +99,19 @@ class Box:
         Raises
         ------
         RegionError
-            If it does not; the message says what part of the box the image holds.
+            If it does not; the message has the part of the box that the image holds.
         """
         shared = self.intersection(Box.whole(shape))
         if shared == self:
             return
-        asked = f"the region row {self.row}, col {self.col}, {self.height} x {self.width} pixels"
+        region = f"the region row {self.row}, col {self.col}, {self.height} x {self.width} pixels"
         if shared is None:
             raise RegionError(
-                f"{asked} lies outside the image of {shape[0]} rows x {shape[1]} columns: "
+                f"{region} lies outside the image of {shape[0]} rows x {shape[1]} columns: "
                 "choose a region inside it"
             )
         raise RegionError(
-            f"{asked} reaches beyond the image of {shape[0]} rows x {shape[1]} columns: "
+            f"{region} reaches beyond the image of {shape[0]} rows x {shape[1]} columns: "
             f"the part inside is {','.join(map(str, shared.as_tuple()))} (row,col,height,width)"
         )
 
@@ -180,7 +181,7 @@ class Region(ShortRepr):
         return box
 
     def _holds_a_centre(self, box: Box) -> bool:
-        """Whether any pixel of a box is inside, asked in strips so that a scene fits."""
+        """Whether any pixel of a box is inside, in strips so that a scene fits."""
         strip_rows = max(1, _STRIP_PIXELS // box.width)
         return any(
             self.mask(

@@ -43,7 +43,7 @@ class Site:
     status : str or None
         As the source reports it.
     notes : str
-        What to know about these numbers.
+        How these numbers were found, and what is uncertain.
     source : str
         Where they come from.
     """
@@ -69,13 +69,16 @@ class Site:
 
 @functools.cache
 def sites() -> tuple[Site, ...]:
-    """The catalogue, in the order of its source."""
+    """The catalogue: the sites of its source in their order, then others with theirs."""
     text = resources.files("acutance.raster").joinpath("sites.json").read_text(encoding="utf-8")
     catalogue = json.loads(text)
     return tuple(
         Site(
-            **{**entry, "orientation_deg": tuple(entry["orientation_deg"] or ())},
-            source=catalogue["source"],
+            **{
+                "source": catalogue["source"],
+                **entry,
+                "orientation_deg": tuple(entry["orientation_deg"] or ()),
+            }
         )
         for entry in catalogue["sites"]
     )

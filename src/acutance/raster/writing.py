@@ -45,7 +45,7 @@ def write_geotiff(
         The value of unusable pixels.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, kept as metadata that `open_image` reads, for an
-        image that has no CRS to tell it.
+        image that has no CRS to derive it from.
 
     Raises
     ------

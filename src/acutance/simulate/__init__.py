@@ -4,7 +4,7 @@ from acutance.simulate.bars import BarGroup, BarsTruth, bars
 from acutance.simulate.campaign import Placed, brookings, render_site
 from acutance.simulate.edge import Truth, edge, render_edge
 from acutance.simulate.ground import GroundNoise, alias_bands, render_raster
-from acutance.simulate.native import NativeGrid
+from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise
 from acutance.simulate.pair import Landscape, PairTruth, landscape, pair
 from acutance.simulate.points import PointsTruth, mirror_columns, mirror_square, points

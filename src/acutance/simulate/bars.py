@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from acutance.curves import Response
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
@@ -24,7 +25,10 @@ from acutance.simulate.scene import Patch, add_patches
 __all__ = ["BarGroup", "BarsTruth", "bars"]
 
 GAP_PX = 10.0
+"""Background between two groups, and around them."""
+
 HARMONICS = 25
+"""Odd harmonics of square bars in the contrast: up to 49 times their frequency."""
 
 
 @dataclass(frozen=True)
@@ -90,9 +94,9 @@ class BarsTruth(ShortRepr):
         return np.asarray(4 / math.pi * self._otf(np.outer(self.freq_cpp, odd)).real @ signs)
 
     def _otf(self, freq_cpp: Floats) -> Transfer:
-        angle = math.radians(self.groups[0].normal_deg)
+        x, y = unit_vector(self.groups[0].normal_deg)
         centroid = self.sensor.profile(self.groups[0].normal_deg).centroid_px
-        otf = self.sensor.otf(freq_cpp * math.cos(angle), freq_cpp * math.sin(angle))
+        otf = self.sensor.otf(freq_cpp * x, freq_cpp * y)
         return np.asarray(otf * np.exp(2j * math.pi * freq_cpp * centroid))
 
     def to_dict(self) -> dict[str, Any]:
@@ -153,7 +157,7 @@ def bars(
     snr : float, optional
         Contrast over the standard deviation of added white noise.
     noise : Noise, optional
-        A description of the noise, instead of `snr` or, without `read`, beside it.
+        A description of the noise, instead of `snr` or, without `read`, together with it.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 

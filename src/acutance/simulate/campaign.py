@@ -33,6 +33,7 @@ from acutance.simulate.tarps import (
 __all__ = ["Placed", "brookings", "render_site"]
 
 STRIPE_ROWS = 256
+"""Noise is drawn for so many rows at a time: a scene of 20,000 rows fits into memory."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ def render_site(
     Raises
     ------
     ModelError
-        If the image is too large, a target reaches beyond it, or randomness is asked for without
+        If the image is too large, a target reaches beyond it, or randomness is requested without
         `rng`.
     """
     require_shape(shape, MAX_SCENE_PIXELS)

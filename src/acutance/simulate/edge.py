@@ -11,6 +11,7 @@ import numpy as np
 from acutance.curves import HasResponse, Response
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
+from acutance.geometry.angles import wrap_direction
 from acutance.geometry.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.ground import GroundNoise
@@ -119,7 +120,7 @@ def edge(
     snr : float, optional
         Contrast over the standard deviation of added white noise.
     noise : Noise, optional
-        A description of the noise, instead of `snr` or, without `read`, beside it.
+        A description of the noise, instead of `snr` or, without `read`, together with it.
     regrid : Regrid, optional
         Resample the noisy image, which correlates its noise. Line, shape and truth are those of
         the resampled image.
@@ -190,6 +191,6 @@ def line_through_centre(
     return Line(
         row=0.5 * (shape[0] - 1),
         col=0.5 * (shape[1] - 1),
-        normal_deg=180.0 - (180.0 - normal) % 360.0,
+        normal_deg=wrap_direction(normal),
         length_px=along / math.cos(math.radians(angle_deg)),
     )

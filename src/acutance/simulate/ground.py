@@ -54,8 +54,8 @@ def render_raster(
     subpixels : int
         At least 1.
     drawn : {"squares", "points", "means"}, optional
-        What a sample says of the ground: that it is uniform over the square, its level at the
-        square's centre, or its mean over the square. The last two suppose that the ground holds
+        What a sample is: the level of a uniform square, the level at the square's centre, or
+        the mean over the square. The last two suppose that the ground holds
         little beyond ``subpixels / 2`` cycles per pixel.
 
     Returns

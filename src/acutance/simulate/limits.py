@@ -44,7 +44,7 @@ def require_shape(shape: tuple[int, int], most: int = MAX_PIXELS) -> None:
         ) from None
     if min(rows, cols) < 1 or rows * cols > most:
         raise ModelError(
-            f"an image of {rows} by {cols} px was asked for: rows and columns have to be 1 or "
+            f"an image of {rows} by {cols} px was requested: rows and columns have to be 1 or "
             f"more, and {most / 1e6:.0f} million pixels are the most that can be rendered"
         )
 
@@ -79,7 +79,7 @@ def require_finite(**values: float) -> None:
 
 
 def require_rng(rng: np.random.Generator | None, wanted: str) -> np.random.Generator:
-    """The generator that was handed in, for what was asked for with it.
+    """The random generator of a caller, for what needs one.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def require_rng(rng: np.random.Generator | None, wanted: str) -> np.random.Gener
         If it is something else, such as a seed.
     """
     if rng is None:
-        raise ModelError(f"{wanted} was asked for without rng: pass numpy.random.default_rng()")
+        raise ModelError(f"{wanted} was requested without rng: pass numpy.random.default_rng()")
     if not isinstance(rng, np.random.Generator):
         seed = rng if isinstance(rng, int) else ""
         raise OptionError(f"rng is {rng!r:.80}: pass numpy.random.default_rng({seed})")

@@ -66,14 +66,14 @@ class Noise:
 
 
 def noise_of_snr(contrast: float, snr: float | None, noise: Noise | None) -> Noise | None:
-    """The noise a target was asked to have: of a given SNR, of a full description, or both.
+    """The noise of a target: of a given SNR, of a full description, or both.
 
     With both, the SNR is that of the white noise, and the rest is as described.
 
     Raises
     ------
     ModelError
-        If both say how strong the white noise is, or the SNR is not above 0.
+        If both set the strength of the white noise, or the SNR is not above 0.
     """
     if snr is None:
         return noise
@@ -84,6 +84,6 @@ def noise_of_snr(contrast: float, snr: float | None, noise: Noise | None) -> Noi
     if described.read > 0:
         raise ModelError(
             f"snr is {snr:g} (--snr) and the noise has a read of {described.read:g} "
-            "(--read-noise): both say how strong the white noise is, give one of them"
+            "(--read-noise): both set the white noise, give one of them"
         )
     return replace(described, read=abs(contrast) / snr)

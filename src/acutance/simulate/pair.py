@@ -19,7 +19,7 @@ from acutance.optics import Rescaled, Sensor
 from acutance.optics.block import Block, Transfer, require
 from acutance.simulate.ground import alias_bands
 from acutance.simulate.limits import require_finite, require_rng, require_shape
-from acutance.simulate.native import NativeGrid
+from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise, noise_of_snr
 
 __all__ = ["Landscape", "PairTruth", "landscape", "pair"]
@@ -95,7 +95,7 @@ class PairTruth(ShortRepr):
         return Rescaled(self.reference, self.ratio)
 
     def ratio_otf(self, u: Floats, v: Floats) -> Transfer:
-        """OTF of the low sensor over that of the reference: what the pair alone can tell."""
+        """OTF of the low sensor over that of the reference: what the pair alone determines."""
         return np.asarray(self.sensor.otf(u, v) / self.reference_in_low_px.otf(u, v))
 
     def response(self, orientation: Orientation = "across") -> Response:
@@ -195,6 +195,35 @@ def pair(
     require_shape(shape)
     drawn = require_rng(rng, "a landscape")
     require_finite(ratio=ratio, gain=gain, offset=offset, dark=dark, bright=bright)
+    _require_contrast_and_overlap(gain, dark, bright, shift_px, shape)
+    quarters = _quarters(ratio)
+    wide = _with_margin(shape, quarters, ratio)
+    fine = (wide[0] * quarters, wide[1] * quarters)
+    radiance = landscape(fine, quarters, ground or Landscape(), drawn)
+    spectrum = fft.fft2(dark + (bright - dark) * radiance)
+    added_low = noise_of_snr(gain * (bright - dark), snr, noise_low)
+    added_high = noise_of_snr(bright - dark, snr, noise_high)
+    high_shape = (math.floor(shape[0] * ratio + 1e-9), math.floor(shape[1] * ratio + 1e-9))
+    # Samples of the ground in a pixel: `quarters` in one of the low image, 4 of the high one.
+    low = _image(
+        spectrum, sensor, quarters, quarters, shape, native, added_low, drawn,
+        gain=gain, offset=offset, shift_px=shift_px,
+    )  # fmt: skip
+    high = _image(spectrum, reference, 4, quarters, high_shape, native, added_high, drawn)
+    truth = PairTruth(
+        _of_product(sensor, native), _of_product(reference, native), ratio, shift_px, gain,
+        offset, added_low, added_high,
+    )  # fmt: skip
+    return low, high, truth
+
+
+def _require_contrast_and_overlap(
+    gain: float,
+    dark: float,
+    bright: float,
+    shift_px: tuple[float, float],
+    shape: tuple[int, int],
+) -> None:
     if gain == 0 or dark == bright:
         raise ModelError(
             f"gain is {gain:g}, dark {dark:g} and bright {bright:g}: this leaves no contrast; the "
@@ -205,42 +234,50 @@ def pair(
             f"the images are shifted by {shift_px[0]:g} rows and {shift_px[1]:g} columns of "
             f"{shape[0]} by {shape[1]}: at most half of the image is possible"
         )
+
+
+def _quarters(ratio: float) -> int:
+    """The ratio in quarters: so many samples of the ground lie along a low pixel."""
     quarters = round(4 * ratio)
     if not (1 < ratio <= 16 and abs(4 * ratio - quarters) < 1e-9):
         raise ModelError(f"the ratio is {ratio:g}, it has to be 1.25 to 16 in steps of a quarter")
-    wide = tuple(_whole(size + 2 * MARGIN_PX, quarters) for size in shape)
-    if wide[0] * wide[1] * quarters**2 > MAX_SAMPLES:
+    return quarters
+
+
+def _with_margin(shape: tuple[int, int], quarters: int, ratio: float) -> tuple[int, int]:
+    """Low pixels of ground that is rendered: the image's and a margin on every side."""
+    rows, cols = (_whole(size + 2 * MARGIN_PX, quarters) for size in shape)
+    if rows * cols * quarters**2 > MAX_SAMPLES:
         raise ModelError(
             f"{shape[0]} by {shape[1]} pixels at ratio {ratio:g} need more than "
             f"{MAX_SAMPLES:,} samples of the ground: render a smaller pair"
         )
-    chosen = ground or Landscape()
-    radiance = landscape((wide[0] * quarters, wide[1] * quarters), quarters, chosen, drawn)
-    spectrum = fft.fft2(dark + (bright - dark) * radiance)
-    added_low = noise_of_snr(gain * (bright - dark), snr, noise_low)
-    added_high = noise_of_snr(bright - dark, snr, noise_high)
-    rows, cols = (math.floor(size * ratio + 1e-9) for size in shape)
+    return rows, cols
 
-    def image(
-        seen_by: Sensor, samples: int, size: tuple[int, int], level: tuple[float, float],
-        moved_px: tuple[float, float], noise: Noise | None,
-    ) -> Floats:  # fmt: skip
-        whole = tuple(n * quarters // samples for n in wide)
-        first = MARGIN_PX * quarters // samples
-        inner = slice(first, first + size[0]), slice(first, first + size[1])
-        if native is not None:
-            scene = level[0] * _blurred(spectrum, seen_by, samples, moved_px) + level[1]
-            return native.product(scene, samples, whole, noise, drawn)[inner]
-        field = level[0] * _seen(spectrum, seen_by, samples, whole, moved_px)[inner] + level[1]
-        return field if noise is None else noise.added_to(field, drawn)
 
-    low = image(sensor, quarters, shape, (gain, offset), shift_px, added_low)
-    high = image(reference, 4, (rows, cols), (1.0, 0.0), (0.0, 0.0), added_high)
-    truth = PairTruth(
-        _of_product(sensor, native), _of_product(reference, native), ratio, shift_px, gain,
-        offset, added_low, added_high,
-    )  # fmt: skip
-    return low, high, truth
+def _image(
+    spectrum: Complexes,
+    sensor: Sensor,
+    samples: int,
+    quarters: int,
+    shape: tuple[int, int],
+    native: NativeGrid | None,
+    noise: Noise | None,
+    rng: np.random.Generator,
+    *,
+    gain: float = 1.0,
+    offset: float = 0.0,
+    shift_px: tuple[float, float] = (0.0, 0.0),
+) -> Floats:
+    """What a sensor makes of the ground, `samples` of it in a pixel; its margin cut off."""
+    whole = tuple(size // samples for size in spectrum.shape)
+    first = MARGIN_PX * quarters // samples
+    inner = slice(first, first + shape[0]), slice(first, first + shape[1])
+    if native is not None:
+        scene = gain * _blurred(spectrum, sensor, samples, shift_px) + offset
+        return native.product(scene, samples, whole, noise, rng)[inner]
+    image = gain * _seen(spectrum, sensor, samples, whole, shift_px)[inner] + offset
+    return image if noise is None else noise.added_to(image, rng)
 
 
 def _of_product(sensor: Sensor, native: NativeGrid | None) -> Sensor:

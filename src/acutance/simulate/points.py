@@ -82,7 +82,7 @@ def mirror_columns(
     columns: int = 2,
     apart_px: float = 11.43,
 ) -> Floats:
-    """Places of mirrors in slanted columns, those of the QuickBird campaign unless told otherwise.
+    """Places of mirrors in slanted columns, those of the QuickBird campaign unless given.
 
     Steps of 10.2 px along and 1.25 px across spread the mirrors over phases of 0.2 by 0.25 px
     (Helder, Choi, Rangaswamy, SDSU, 2005, 5.7.2); the columns were 8 m, 11.43 px, apart (4.4).
@@ -160,7 +160,7 @@ def points(
     snr : float, optional
         Peak of the brightest source over the standard deviation of added white noise.
     noise : Noise, optional
-        A description of the noise, instead of `snr` or, without `read`, beside it.
+        A description of the noise, instead of `snr` or, without `read`, together with it.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 

@@ -34,18 +34,18 @@ class PulseTruth(HasResponse):
         What the image shows: the sensor, and the resampling if there was one.
     line : Line
         The middle of the pulse as the image shows it: half way between the places where the
-        sensor's ESF passes 50 % at either edge. Its normal points from the left ground to the
+        sensor's ESF passes 50 % at either edge. Its normal points from the left background to the
         right one, towards higher columns (rows).
     width_px : float
         True width along the normal, in pixels of the image.
     left, level, right : float
-        Levels of the ground before the pulse, of the pulse, and of the ground behind it.
+        Levels of the background before the pulse, of the pulse, and of the background behind it.
     noise : Noise, optional
         What was added to the image.
     regrid : Regrid, optional
         The resampling the image went through, after the noise.
     ground_noise : GroundNoise, optional
-        How uneven the ground was, before the sensor.
+        Clutter of the ground, before the sensor.
     """
 
     system: Sensor
@@ -75,7 +75,7 @@ class PulseTruth(HasResponse):
         return None if gsd_m is None else self.width_px * gsd_m
 
     def prf(self, distance_px: ArrayLike) -> Floats:
-        """Pulse response function: a pulse of height 1 on ground of 0, at any normal distance.
+        """Pulse response function: a pulse of height 1 on a background of 0.
 
         Parameters
         ----------
@@ -147,10 +147,10 @@ def render_pulse(
     width_px : float
         Width along the normal.
     left, level, right : float
-        Levels of the ground before the pulse, of the pulse, and of the ground behind it.
+        Levels of the background before the pulse, of the pulse, and of the background behind it.
     length_px : float, optional
         Length of the pulse, centred on the line's point; endless unless given. Beyond its ends
-        the two grounds meet in the middle of the pulse.
+        the two backgrounds meet in the middle of the pulse.
 
     Returns
     -------
@@ -220,7 +220,7 @@ def pulse(
         Height of the pulse over the mean ground, divided by the standard deviation of added
         white noise.
     noise : Noise, optional
-        A description of the noise, instead of `snr` or, without `read`, beside it.
+        A description of the noise, instead of `snr` or, without `read`, together with it.
     regrid : Regrid, optional
         Resample the noisy image; line, width, shape and truth are those of the new image.
     ground_noise : GroundNoise, optional
@@ -283,8 +283,8 @@ def _require_pulse(
         raise ModelError(f"length_px is {length_px:g}, it has to be above 0 (--length)")
     if not (level - left) * (level - right) > 0:
         raise ModelError(
-            f"the pulse has level {level:g} between grounds of {left:g} and {right:g}: it has to "
-            "be above both or below both"
+            f"the pulse has level {level:g} between backgrounds of {left:g} and {right:g}: it "
+            "has to be above both or below both"
         )
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.geometry.line import Line
@@ -32,10 +33,11 @@ __all__ = [
 MARGIN_PX = 64
 """Empty ground around the image; light scattered further comes back on the other side."""
 
-
 _STEP_PX = 16
-_TILE_PX = 1024
-_KERNEL_PX = 64
+"""Sizes of a patch's window are multiples of it, so that spectra of several patches are shared."""
+
+_TILE_PX, _KERNEL_PX = 1024, 64
+"""A wide texture is filtered in tiles, which overlap by the length of its correlation."""
 
 
 @dataclass(frozen=True)
@@ -66,10 +68,10 @@ class Patch:
 
     def spectrum(self, u: ArrayLike, v: ArrayLike) -> Floats:
         """Fourier transform of the patch about its own centre (real), at cycles per pixel."""
-        angle = math.radians(self.turn_deg)
+        cos, sin = unit_vector(self.turn_deg)
         u, v = np.asarray(u, float), np.asarray(v, float)
-        p = math.cos(angle) * u + math.sin(angle) * v
-        q = math.cos(angle) * v - math.sin(angle) * u
+        p = cos * u + sin * v
+        q = cos * v - sin * u
         area = self.contrast * self.width_px * self.height_px
         return np.asarray(area * np.sinc(self.width_px * p) * np.sinc(self.height_px * q))
 

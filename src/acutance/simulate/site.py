@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -10,9 +9,11 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
+from acutance.geometry.angles import wrap_direction
 from acutance.geometry.line import Line
 from acutance.optics.sensor import Sensor
 from acutance.simulate.bars import BarsTruth
@@ -129,7 +130,7 @@ def checkerboard(
     snr : float, optional
         Contrast of the tiles over the standard deviation of added white noise.
     noise : Noise, optional
-        A description of the noise, instead of `snr` or, without `read`, beside it.
+        A description of the noise, instead of `snr` or, without `read`, together with it.
     rng : numpy.random.Generator, optional
         Needed for texture and noise.
 
@@ -141,7 +142,7 @@ def checkerboard(
     Raises
     ------
     ModelError
-        If the board is too small, leaves the image, or randomness is asked for without `rng`.
+        If the board is too small, leaves the image, or randomness is requested without `rng`.
     """
     require_shape(shape)
     if centre is None:
@@ -190,7 +191,7 @@ def require_texture(texture_std: float) -> None:
 def site(
     sensor: Sensor, rng: np.random.Generator, *, turn_deg: float = 7.0, noise: Noise | None = None
 ) -> Scene:
-    """A small calibration site: a checkerboard of 28 px tiles on grass beside a road.
+    """A small calibration site: a checkerboard of 28 px tiles on grass next to a road.
 
     Parameters
     ----------
@@ -227,8 +228,7 @@ def _require_room(
         raise ModelError(f"the board is turned by {turn_deg:g} deg, it has to be -45 to 45")
     if not tile_px >= 16:
         raise ModelError(f"tiles of {tile_px:g} px leave no plateaus: at least 16 px are needed")
-    angle = math.radians(abs(turn_deg))
-    reach = tile_px * (math.cos(angle) + math.sin(angle))
+    reach = tile_px * sum(unit_vector(abs(turn_deg)))
     room = min(*centre, shape[0] - 1 - centre[0], shape[1] - 1 - centre[1])
     if reach > room:
         raise ModelError(
@@ -239,11 +239,8 @@ def _require_room(
 
 def _turned(x: float, y: float, turn_deg: float) -> tuple[float, float]:
     """(x, y) turned from the column axis towards the row axis."""
-    angle = math.radians(turn_deg)
-    return (
-        math.cos(angle) * x - math.sin(angle) * y,
-        math.sin(angle) * x + math.cos(angle) * y,
-    )
+    cos, sin = unit_vector(turn_deg)
+    return cos * x - sin * y, sin * x + cos * y
 
 
 def _tiles(
@@ -272,15 +269,14 @@ def _board_edge(
     towards = turn_deg + direction_deg
     # A quarter turn clockwise from the right-hand edge lies a bright tile, and so on round.
     clockwise_is_bright = direction_deg in (0.0, 180.0)
-    normal = towards + (90.0 if clockwise_is_bright else -90.0)
-    normal = 180.0 - (180.0 - normal) % 360.0
+    normal = wrap_direction(towards + (90.0 if clockwise_is_bright else -90.0))
     middle_x, middle_y = _turned(0.5 * tile_px, 0.0, towards)
     length = tile_px - 2 * GUARD_PX
     ground_line = Line(centre[0] + middle_y, centre[1] + middle_x, normal, length_px=length)
     line = ground_line.moved(sensor.profile(normal).half_px, 0.0)
     corners = [
-        _turned(0.5 * tile_px + along * 0.5 * length, beside * (tile_px - GUARD_PX), towards)
-        for along, beside in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        _turned(0.5 * tile_px + along * 0.5 * length, across * (tile_px - GUARD_PX), towards)
+        for along, across in ((-1, -1), (1, -1), (1, 1), (-1, 1))
     ]
     region = np.array([(centre[0] + y, centre[1] + x) for x, y in corners])
     truth = Truth(sensor.response_along(normal), line, dark, bright, noise)

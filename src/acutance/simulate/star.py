@@ -9,9 +9,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
+from acutance.geometry.angles import direction_difference
 from acutance.optics.block import require, require_count
 from acutance.optics.sensor import Sensor
 from acutance.simulate.ground import MAX_SUBPIXELS, render_raster
@@ -23,7 +25,10 @@ __all__ = ["Star", "StarTruth", "Wave", "add_star", "star"]
 
 Wave = Literal["sine", "square"]
 SUBPIXELS = 10
+"""Squares a pixel side is drawn with; borders of spokes are drawn as shares of a square."""
+
 ROOM_PX = 12
+"""Background rendered around the star: light scattered further comes from the other side."""
 
 
 @dataclass(frozen=True)
@@ -95,9 +100,9 @@ class Star:
         wave = wave * np.clip(0.5 + (radius - self.inner_px) / fine_px, 0.0, 1.0)
         cover = np.clip(0.5 + (self.radius_px - radius) / fine_px, 0.0, 1.0)
         if self.sweep_deg < 360:
-            half = 0.5 * math.radians(self.sweep_deg)
-            off = np.abs((turn - half + math.pi) % (2 * math.pi) - math.pi)
-            cover = cover * np.clip(0.5 + (half - off) * radius / fine_px, 0.0, 1.0)
+            half = 0.5 * self.sweep_deg
+            inside = np.radians(half - direction_difference(np.degrees(turn), half))
+            cover = cover * np.clip(0.5 + inside * radius / fine_px, 0.0, 1.0)
         return wave, cover
 
 
@@ -126,8 +131,8 @@ class StarTruth(ShortRepr):
 
     def mtf_toward(self, direction_deg: float, freq_cpp: ArrayLike) -> Floats:
         """MTF for spokes whose normal points in a direction, at frequencies in c/px."""
-        angle, freq = math.radians(direction_deg), np.asarray(freq_cpp, float)
-        return np.abs(self.sensor.otf(freq * math.cos(angle), freq * math.sin(angle)))
+        (x, y), freq = unit_vector(direction_deg), np.asarray(freq_cpp, float)
+        return np.abs(self.sensor.otf(freq * x, freq * y))
 
     def mtf_mean(self, freq_cpp: ArrayLike, directions_deg: ArrayLike | None = None) -> Floats:
         """Mean of the MTF over some directions, at frequencies in c/px.
@@ -142,8 +147,8 @@ class StarTruth(ShortRepr):
             middle = (np.arange(360) + 0.5) / 360 * self.star.sweep_deg
             # The normal of a spoke is a quarter turn from the spoke.
             directions_deg = self.star.start_deg + middle + 90.0
-        freq, angle = np.asarray(freq_cpp, float), np.radians(directions_deg)
-        u, v = np.multiply.outer(freq, np.cos(angle)), np.multiply.outer(freq, np.sin(angle))
+        freq, (x, y) = np.asarray(freq_cpp, float), unit_vector(np.asarray(directions_deg, float))
+        u, v = np.multiply.outer(freq, x), np.multiply.outer(freq, y)
         return np.asarray(np.mean(np.abs(self.sensor.otf(u, v)), axis=-1))
 
     def to_dict(self) -> dict[str, Any]:
@@ -247,7 +252,7 @@ def star(
     snr : float, optional
         Contrast over the standard deviation of added white noise.
     noise : Noise, optional
-        A description of the noise, instead of `snr` or, without `read`, beside it.
+        A description of the noise, instead of `snr` or, without `read`, together with it.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 
@@ -269,7 +274,7 @@ def star(
     room = min(*centre, shape[0] - 1 - centre[0], shape[1] - 1 - centre[1])
     if not dark < bright or radius_px > room:
         raise ModelError(
-            f"a star of {radius_px:g} px from {dark:g} to {bright:g} was asked for: dark has to be "
+            f"a star of {radius_px:g} px from {dark:g} to {bright:g} was requested: dark has to be "
             f"the lower one, and the image has room for {room:.1f} px"
         )
     middle = 0.5 * (dark + bright)

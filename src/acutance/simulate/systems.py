@@ -22,9 +22,9 @@ def reference_systems() -> dict[str, Sensor]:
 
     - "gaussian", "wide": a well sampled and a soft Gaussian-like system;
     - "diffraction": an obscured aperture cut off at 1.2 cycles per pixel, tails like 1/x^2;
-    - "halo": a tenth of the light scattered over some pixels, a long foot;
+    - "halo": a tenth of the light scattered over some pixels, wide wings;
     - "sharpened": compensated on the ground, overshoot of about 9 %;
-    - "asymmetric": a charge trail along both axes, phase and a one-sided foot;
+    - "asymmetric": a charge trail along both axes, phase and a one-sided wing;
     - "smeared": 1.2 px of motion along both axes, a zero near 0.83 cycles per pixel;
     - "defocused": 0.35 waves out of focus, a dent in the middle of the band.
     """

@@ -104,7 +104,7 @@ def tarp_rows(
     """
     if count < 1 or not abs(turn_deg) <= 45:
         raise ModelError(
-            f"{count} targets turned by {turn_deg:g} deg were asked for: there has to be 1 or "
+            f"{count} targets turned by {turn_deg:g} deg were requested: there has to be 1 or "
             "more, turned by -45 to 45"
         )
     cols = max(1, round(math.sqrt(count * shape[1] / shape[0])))

@@ -3,7 +3,6 @@
 from acutance.studies.angle import AngleOptions, study_angle
 from acutance.studies.bound import Design, MetricBound, equivalent_blur, free_bound, shape_bound
 from acutance.studies.catalogue import STUDIES, Study, run_study
-from acutance.studies.execution import Execution, run_trials
 from acutance.studies.ground_noise import GroundNoiseOptions, study_ground_noise
 from acutance.studies.mirror_layout import MirrorLayout, lay_out_mirrors
 from acutance.studies.mirrors import MirrorPlan, MirrorPlanOptions, plan_mirrors
@@ -12,6 +11,7 @@ from acutance.studies.result import Finding, StudyResult
 from acutance.studies.scatter import minimum_snr
 from acutance.studies.snr import SnrOptions, study_snr
 from acutance.studies.table import Table
+from acutance.studies.trials import Execution, run_trials
 from acutance.studies.width import WidthOptions, study_width
 from acutance.studies.width_correction import (
     TABLE_3_3,

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves import Esf, Lsf, Mtf, Response
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import FREQ_CPP, Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.gaussian_pixel import Blur
@@ -38,7 +39,11 @@ from acutance.targets.straight.pulse_spectrum import width_sensitivity_per_px
 __all__ = ["Design", "MetricBound", "equivalent_blur", "free_bound", "shape_bound"]
 
 _STEP_PX = 1e-4
+"""Of central differences by the width of the blur."""
+
 _ZERO = 1e-9
+"""A pulse whose spectrum is below this at Nyquist has no finite bound."""
+
 _PIXELS_AT_ONCE = 100_000
 
 
@@ -121,7 +126,7 @@ def free_bound(blur: Blur, design: Design, snr: float, window_px: float = 10.0) 
     Parameters
     ----------
     blur : Blur
-        The true LSF, which the estimator does not know.
+        The true LSF, not known to the estimator.
     design : Design
     snr : float
     window_px : float, optional
@@ -153,11 +158,11 @@ def _information(blur: Blur, design: Design) -> Floats:
 
 def _jacobian(blur: Blur, design: Design, rows: NDArray[np.int_]) -> Floats:
     """Derivatives of some rows by level, height, offset, turn, sigma, and width and fall."""
-    angle = math.radians(design.angle_deg)
+    x, y = unit_vector(design.angle_deg)
     row = rows[:, None] - 0.5 * (design.rows - 1)
     col = np.arange(design.cols)[None, :] - 0.5 * (design.cols - 1)
-    s = (math.cos(angle) * col + math.sin(angle) * row).ravel()
-    t = (math.cos(angle) * row - math.sin(angle) * col).ravel()
+    s = (x * col + y * row).ravel()
+    t = (x * row - y * col).ravel()
     if design.target == "edge":
         esf, lsf, by_sigma, _ = blur.esf_and_slopes(s)
         return np.array([np.ones(s.size), esf, -lsf, lsf * t, by_sigma])

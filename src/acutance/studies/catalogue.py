@@ -8,10 +8,10 @@ from typing import Any
 
 from acutance.errors import OptionError
 from acutance.studies.angle import AngleOptions, study_angle
-from acutance.studies.execution import Execution
 from acutance.studies.ground_noise import GroundNoiseOptions, study_ground_noise
 from acutance.studies.result import StudyResult
 from acutance.studies.snr import SnrOptions, study_snr
+from acutance.studies.trials import Execution
 from acutance.studies.width import WidthOptions, study_width
 from acutance.studies.width_correction import WidthCorrectionOptions, study_width_correction
 

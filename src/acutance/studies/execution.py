@@ -1,4 +1,4 @@
-"""Trials of a study over all cores: the only module that starts processes."""
+"""Independent tasks over all cores: the only module that starts processes."""
 
 from __future__ import annotations
 
@@ -8,152 +8,61 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
+from contextlib import contextmanager
 from multiprocessing import get_context, parent_process
 from multiprocessing.synchronize import Event
-from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
-import numpy as np
+__all__ = ["run_tasks"]
 
-from acutance.errors import OptionError
-from acutance.studies.journal import Journal, journal_key
-
-__all__ = ["Execution", "Measure", "Record", "run_trials", "trial_rng"]
-
-Options = TypeVar("Options")
-Trial = TypeVar("Trial")
-
-Record = dict[str, Any]
-Measure = Callable[[Options, Trial, np.random.Generator], Record]
-Chunk = list[tuple[int, Record]]
+Task = TypeVar("Task")
+Result = TypeVar("Result")
 
 _LIBRARIES = ("OPENBLAS", "OMP", "MKL")
 _CHUNKS_PER_WORKER = 8
-_MOST_IN_A_CHUNK = 16
+_MAX_CHUNK = 16
 
 
-@dataclass(frozen=True)
-class Execution:
-    """How a study is run; nothing here changes its results but the seed.
-
-    Parameters
-    ----------
-    seed : int, optional
-        Every trial draws from its own stream of this seed.
-    workers : int, optional
-        Processes; 1 stays in this process. All cores unless given. With more than one, a script
-        has to guard its own start by ``if __name__ == "__main__"``.
-    folder : Path, optional
-        Where finished trials are kept, so that an interrupted study goes on.
-    progress : function of (done, total), optional
-        Called whenever trials have finished.
-    """
-
-    seed: int = 2005
-    workers: int | None = None
-    folder: Path | None = None
-    progress: Callable[[int, int], None] | None = None
-
-    def __post_init__(self) -> None:
-        if self.seed < 0 or (self.workers is not None and self.workers < 1):
-            raise OptionError(
-                f"seed is {self.seed} and workers is {self.workers}: the seed has to be 0 or "
-                "more, and there has to be a worker"
-            )
-
-
-def trial_rng(seed: int, index: int) -> np.random.Generator:
-    """The stream of random numbers of one trial, whatever process it runs in."""
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index,)))
-
-
-def run_trials(
-    study: str,
-    options: Options,
-    trials: Sequence[Trial],
-    measure: Measure[Options, Trial],
-    execution: Execution,
-) -> list[Record]:
-    """Results of `measure` for all trials, in their order.
-
-    Parameters
-    ----------
-    study : str
-        Names the journal.
-    options : frozen dataclass
-        Handed to `measure`, and part of the journal's key.
-    trials : sequence
-        What differs between trials.
-    measure : function of (options, trial, rng)
-        At the top of a module, so that other processes find it; gives numbers by name.
-    execution : Execution
-
-    Notes
-    -----
-    After Ctrl-C the message of the KeyboardInterrupt says what is kept.
-    """
-    from acutance import __version__
-
-    journal: Any = nullcontext()
-    if execution.folder is not None:
-        key = journal_key(study, options, execution.seed, __version__)
-        journal = Journal(execution.folder, study, key)
-    with journal as kept:
-        earlier: dict[int, Record] = {} if kept is None else kept.done
-        done = {i: earlier[i] for i in range(len(trials)) if i in earlier}
-        todo = [i for i in range(len(trials)) if i not in done]
-        _tell(execution, len(trials) - len(todo), len(trials))
-
-        def keep(chunk: Chunk) -> None:
-            for index, record in chunk:
-                if index not in done:
-                    if kept is not None:
-                        kept.append(index, record)
-                    done[index] = record
-            _tell(execution, len(done), len(trials))
-
-        try:
-            _run(options, trials, measure, execution, todo, keep)
-        except KeyboardInterrupt:
-            path = None if kept is None else kept.path
-            raise KeyboardInterrupt(_interruption(len(done), len(trials), path)) from None
-    return [done[i] for i in range(len(trials))]
-
-
-def _tell(execution: Execution, done: int, total: int) -> None:
-    if execution.progress is not None:
-        execution.progress(done, total)
-
-
-def _interruption(done: int, total: int, path: Path | None) -> str:
-    if path is None:
-        return "interrupted"
-    return (
-        f"interrupted: {done} of {total} trials are kept in {path}; run the same command again to "
-        "go on"
-    )
-
-
-def _run(
-    options: Options,
-    trials: Sequence[Trial],
-    measure: Measure[Options, Trial],
-    execution: Execution,
-    todo: Sequence[int],
-    keep: Callable[[Chunk], None],
+def run_tasks(
+    work: Callable[[Task], Result],
+    tasks: Sequence[Task],
+    keep: Callable[[int, Result], None],
+    *,
+    workers: int | None = None,
 ) -> None:
-    """Hand finished trials to `keep`, chunk by chunk, as they come."""
-    workers = execution.workers or os.cpu_count() or 1
-    workers = min(workers, len(todo))
-    seed = execution.seed
-    if workers <= 1:
-        for i in todo:
-            keep(_work(options, measure, seed, [(i, trials[i])]))
+    """Hand the result of every task to `keep` as soon as it is there, in any order.
+
+    An exception of a task, or Ctrl-C, ends the run; results that were finished by then have been
+    handed to `keep`. The one at which `keep` itself was interrupted is handed to it again.
+
+    Parameters
+    ----------
+    work : function of a task
+        At the top of a module (or a ``functools.partial`` of one), so that other processes find
+        it.
+    tasks : sequence
+    keep : function of (place of the task, result)
+        Runs in this process.
+    workers : int, optional
+        Processes, each on one core; 1 stays in this process. All cores unless given. With more
+        than one, a script has to guard its own start by ``if __name__ == "__main__"``.
+    """
+    used = min(workers or os.cpu_count() or 1, len(tasks))
+    if used > 1:
+        _run_in_processes(work, tasks, keep, used)
         return
-    size = max(1, min(_MOST_IN_A_CHUNK, len(todo) // (_CHUNKS_PER_WORKER * workers)))
-    chunks = [todo[k : k + size] for k in range(0, len(todo), size)]
+    for place, task in enumerate(tasks):
+        keep(place, work(task))
+
+
+def _run_in_processes(
+    work: Callable[[Task], Result],
+    tasks: Sequence[Task],
+    keep: Callable[[int, Result], None],
+    workers: int,
+) -> None:
+    size = max(1, min(_MAX_CHUNK, len(tasks) // (_CHUNKS_PER_WORKER * workers)))
+    starts = range(0, len(tasks), size)
     # Fresh processes read the number of threads when they load the libraries.
     context = get_context("spawn")
     stop = context.Event()
@@ -163,50 +72,58 @@ def _run(
             workers, mp_context=context, initializer=_obey_parent, initargs=(stop,)
         ) as pool,
     ):
-        futures: list[Future[Chunk]] = []
+        started: dict[Future[list[Result]], int] = {}
+        kept: set[int] = set()
+
+        def keep_all(future: Future[list[Result]]) -> None:
+            first = started[future]
+            for place, result in enumerate(future.result(), start=first):
+                if place not in kept:
+                    keep(place, result)
+                    kept.add(place)
+
         try:
             with _interrupts_held_back():
-                futures += (
-                    pool.submit(_work, options, measure, seed, [(i, trials[i]) for i in chunk])
-                    for chunk in chunks
-                )
-            for future in as_completed(futures):
-                keep(future.result())
+                for first in starts:
+                    chunk = list(tasks[first : first + size])
+                    started[pool.submit(_work_through, work, chunk)] = first
+            for future in as_completed(started):
+                keep_all(future)
         except BaseException:
             stop.set()
             pool.shutdown(cancel_futures=True)
             # What the processes had finished when they were stopped is not to be done again.
-            for future in futures:
+            for future in started:
                 if not future.cancelled() and future.exception() is None:
-                    keep(future.result())
+                    keep_all(future)
             raise
 
 
 @contextmanager
 def _interrupts_held_back() -> Iterator[None]:
-    """Let Ctrl-C wait; processes started meanwhile never hear of it, not even while they load."""
+    """Let Ctrl-C wait; processes started meanwhile never receive it, not even while they load."""
     if sys.platform == "win32":
         yield
         return
     earlier = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     # Another thread may catch it for this one: then it is only noted here.
-    heard: list[int] = []
+    received: list[int] = []
     is_main = threading.current_thread() is threading.main_thread()
     handler = signal.getsignal(signal.SIGINT) if is_main else None
     if handler is not None:
-        signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
+        signal.signal(signal.SIGINT, lambda number, _: received.append(number))
     try:
         yield
     finally:
         if handler is not None:
             signal.signal(signal.SIGINT, handler)
         signal.pthread_sigmask(signal.SIG_SETMASK, earlier)
-    if heard:
+    if received:
         signal.raise_signal(signal.SIGINT)
 
 
 _stop: Event | None = None
-"""In a worker process: set when no further trial is wanted."""
+"""In a worker process: set when no further task is to be begun."""
 
 
 def _obey_parent(stop: Event) -> None:
@@ -224,18 +141,13 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _work(
-    options: Options,
-    measure: Measure[Options, Trial],
-    seed: int,
-    chunk: Sequence[tuple[int, Trial]],
-) -> Chunk:
-    """Finished trials of the chunk: all of them, unless the parent process wants no more."""
-    finished: Chunk = []
-    for i, trial in chunk:
+def _work_through(work: Callable[[Task], Result], chunk: Sequence[Task]) -> list[Result]:
+    """Results of a chunk's tasks, up to the one at which the parent process ended the run."""
+    finished: list[Result] = []
+    for task in chunk:
         if _stop is not None and _stop.is_set():
             break
-        finished.append((i, measure(options, trial, trial_rng(seed, i))))
+        finished.append(work(task))
     return finished
 
 

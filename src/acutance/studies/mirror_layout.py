@@ -18,11 +18,11 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.targets.points.checks import phase_gap_px
 
-__all__ = ["LEAST_SPACING_PX", "Arrangement", "MirrorLayout", "lay_out_mirrors"]
+__all__ = ["MIN_SPACING_PX", "Arrangement", "MirrorLayout", "lay_out_mirrors"]
 
 Arrangement = Literal["columns", "square"]
 
-LEAST_SPACING_PX = 5.0
+MIN_SPACING_PX = 5.0
 """Sources nearer to one another than that overlap."""
 
 
@@ -109,7 +109,7 @@ def lay_out_mirrors(
     place = np.arange(count) % rows_each
     column = np.arange(count) // rows_each
     shift = np.array([math.fmod(rows_each * one, 1.0) for one in step])
-    apart = max(math.ceil(spacing_px - 1e-9) + 1 + shift[1], LEAST_SPACING_PX)
+    apart = max(math.ceil(spacing_px - 1e-9) + 1 + shift[1], MIN_SPACING_PX)
     places = np.stack(
         [place * step[0] + column * shift[0], place * step[1] + column * apart], axis=1
     )
@@ -117,7 +117,7 @@ def lay_out_mirrors(
 
 
 def _coprime_phases(count: int) -> tuple[int, int]:
-    """Numbers of phases across and along: coprime, alike, their product enough for all."""
+    """Numbers of phases across and along: coprime, nearly equal, their product enough for all."""
     pairs = [
         (p, q)
         for q in range(1, count + 2)

@@ -23,19 +23,23 @@ from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
 from acutance.optics import Sensor
 from acutance.simulate import points
-from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.mirror_layout import (
-    LEAST_SPACING_PX,
+    MIN_SPACING_PX,
     Arrangement,
     MirrorLayout,
     lay_out_mirrors,
 )
+from acutance.studies.trials import Execution, Record, run_trials
 from acutance.targets.points import measure_points
 
 __all__ = ["MirrorPlan", "MirrorPlanOptions", "place_errors_px", "plan_mirrors"]
 
 _MARGIN_PX = 14.0
+"""Background around the mirrors of a simulated image."""
+
 _GSD_CHANGES = (-0.05, -0.02, 0.0, 0.02, 0.05)
+"""Shares by which the GSD of the day may differ from the planned one."""
+
 POSITION_BOUND = 0.80
 """Standard deviation of a place times the peak's SNR, in pixels: a well sampled Gaussian's."""
 
@@ -100,7 +104,7 @@ class MirrorPlanOptions:
         bounds = {
             "count": (self.count, 1, 400),
             "columns": (self.columns, 1, self.count),
-            "spacing_px": (self.least_spacing_px, LEAST_SPACING_PX, 100.0),
+            "spacing_px": (self.least_spacing_px, MIN_SPACING_PX, 100.0),
             "snr": (self.snr, 1.0, 1e6),
             "ground": (self.ground, 0.0, 0.95),
             "level": (self.level, self.ground + 0.01, 100.0),
@@ -115,10 +119,10 @@ class MirrorPlanOptions:
 
     @property
     def least_spacing_px(self) -> float:
-        """The spacing asked for, or 10 px in columns and 5 px in a square."""
+        """The spacing requested, or 10 px in columns and 5 px in a square."""
         if self.spacing_px is not None:
             return self.spacing_px
-        return 10.0 if self.arrangement == "columns" else LEAST_SPACING_PX
+        return 10.0 if self.arrangement == "columns" else MIN_SPACING_PX
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,7 +213,7 @@ class MirrorPlan:
 
 
 def plan_mirrors(options: MirrorPlanOptions, execution: Execution | None = None) -> MirrorPlan:
-    """Lay out mirrors and say what a measurement of them will be worth.
+    """Lay out mirrors and predict the accuracy of measuring them.
 
     Parameters
     ----------

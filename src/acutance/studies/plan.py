@@ -14,19 +14,25 @@ from acutance.errors import OptionError, TargetError
 from acutance.optics import Sensor, preset
 from acutance.simulate import edge, pulse
 from acutance.studies.bound import Design, equivalent_blur, free_bound, shape_bound
-from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Cell, Table
+from acutance.studies.trials import Execution, Record, run_trials
 from acutance.targets.straight import measure_edge, measure_pulse
 
 __all__ = ["PLAN_METRICS", "PlanOptions", "plan_target"]
 
 PLAN_METRICS = ("mtf_nyquist", "rer", "fwhm_px", "width_px")
+
 _ROWS_SHARES = (0.5, 1.0, 1.5, 2.0)
-_FEWEST_ROWS = 20
-_MOST_ROWS = 2000
+"""Numbers of rows compared with a single one that is planned."""
+
+_MIN_ROWS, _MAX_ROWS = 20, 2000
+
 _ROOM_PX = 10.0
-_OVER_THE_BEST = 0.1
+"""Plateau beyond the target on either side, or three times the FWHM if that is more."""
+
+_NEAR_THE_BEST = 0.1
+"""Designs whose error is within this share of the least are named as good ones."""
 
 
 @dataclass(frozen=True)
@@ -76,24 +82,24 @@ class PlanOptions:
             )
         if self.draws == 1:
             raise OptionError(
-                "draws (--draws) is 1: a single simulated image says nothing of the scatter; ask "
-                "for 2 or more, or for 0 to have the bounds alone"
+                "draws (--draws) is 1: a single simulated image has no scatter; give "
+                "2 or more, or 0 for the bounds alone"
             )
-        if not self.rows or min(self.rows) < _FEWEST_ROWS or max(self.rows) > _MOST_ROWS:
+        if not self.rows or min(self.rows) < _MIN_ROWS or max(self.rows) > _MAX_ROWS:
             raise OptionError(
-                f"rows (--rows) are {self.rows}: a target needs at least {_FEWEST_ROWS} to be "
-                f"measured, and {_MOST_ROWS} are the most that are planned; beyond, deviations "
+                f"rows (--rows) are {self.rows}: a target needs at least {_MIN_ROWS} to be "
+                f"measured, and {_MAX_ROWS} are the most that are planned; beyond, deviations "
                 "fall with the square root of the rows"
             )
         if not self.angles_deg or not all(0 < angle <= 30 for angle in self.angles_deg):
             raise OptionError(
                 f"angles_deg (--angle) are {self.angles_deg}: an edge without tilt has no "
-                "sub-pixel phases, and more than 30 degrees is not planned; 5 to 10 serve best"
+                "sub-pixel phases, and more than 30 degrees is not planned; 5 to 10 are best"
             )
         if not self.widths_px or not all(0.5 <= width <= 20 for width in self.widths_px):
             raise OptionError(
                 f"widths_px (--width-px, --width-m) are {self.widths_px}: a pulse is 0.5 to 20 px "
-                "wide, 3 serves best; check the width and the GSD"
+                "wide, 3 is best; check the width and the GSD"
             )
         if self.accuracy is not None and not self.accuracy > 0:
             raise OptionError(f"accuracy is {self.accuracy:g}: it has to be above 0")
@@ -139,7 +145,7 @@ def _designs(options: PlanOptions) -> Iterator[tuple[str, Design]]:
     plan = Design(options.target, rows, angle, width if is_pulse else math.nan)
     yield "plan", _wide_enough(plan, options.sensor)
     more_rows = options.rows[1:] or [
-        min(max(_FEWEST_ROWS, round(share * rows)), _MOST_ROWS) for share in _ROWS_SHARES
+        min(max(_MIN_ROWS, round(share * rows)), _MAX_ROWS) for share in _ROWS_SHARES
     ]
     more_angles = options.angles_deg[1:] or (2.0, 4.0, 6.0, 8.0, 11.0, 14.0)
     single = len(options.widths_px) == 1
@@ -265,8 +271,8 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
                 "(it falls with their square root)",
             )
         )
-    # So many draws know their own rms to one part in the root of twice their number.
-    slack = 1 + max(_OVER_THE_BEST, 2 / math.sqrt(options.draws) if simulated else 0.0)
+    # The rms of n draws is uncertain by one part in sqrt(2 n).
+    slack = 1 + max(_NEAR_THE_BEST, 2 / math.sqrt(options.draws) if simulated else 0.0)
     varied = {"angle": ("angle_deg", "deg"), "width": ("target_width_px", "px")}
     for name, (column, unit) in varied.items():
         own = table.where(varied=name)

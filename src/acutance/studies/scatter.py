@@ -112,7 +112,7 @@ def find_minimum(
 
 
 def find_refusal(name: str, who: str, levels: Table, trials: Table) -> tuple[Finding, ...]:
-    """That an estimator refused too many images to tell an error of any level, and why.
+    """That an estimator refused too many images for an error of any level, and why.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def find_refusal(name: str, who: str, levels: Table, trials: Table) -> tuple[Fin
         Finding(
             f"refused_{name}",
             len(refused),
-            f"{who} refused {len(refused)} of {len(trials)} images, so there is no error to "
-            f"tell: {max(set(refused), key=refused.count)}",
+            f"{who} refused {len(refused)} of {len(trials)} images, so there is no "
+            f"error: {max(set(refused), key=refused.count)}",
         ),
     )

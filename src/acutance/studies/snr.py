@@ -11,7 +11,6 @@ import numpy as np
 from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import Noise, edge, pulse
-from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.scatter import error_columns, find_minimum, find_refusal
 from acutance.studies.table import Cell, Table
@@ -22,13 +21,17 @@ from acutance.studies.targets import (
     measure_both_edges,
     measure_both_pulses,
 )
+from acutance.studies.trials import Execution, Record, run_trials
 
 __all__ = ["SnrOptions", "SnrTrial", "study_snr"]
 
 Target = Literal["edge", "pulse"]
 _TARGETS: tuple[Target, ...] = ("edge", "pulse")
 _PUBLISHED_MINIMUM = {"edge": 100.0, "pulse": 50.0}
+"""SNR the report requires (Figure 3.8)."""
+
 _HIGH_SNR = 200.0
+"""From here on the mean error counts as bias."""
 
 
 @dataclass(frozen=True)
@@ -167,7 +170,7 @@ def _findings(options: SnrOptions, table: Table, trials: Table) -> tuple[Finding
 def _answers(
     options: SnrOptions, target: Target, name: Estimator, rows: Table, trials: Table
 ) -> Iterator[Finding]:
-    """What one estimator needs on one target, or why there is nothing to say of it."""
+    """What one estimator needs on one target, or why there is no answer."""
     who, limit = f"{target}, {ESTIMATOR_WORDS[name]}", options.limit_percent
     for refused in find_refusal(name, who, rows, trials):
         yield replace(refused, name=f"refused_{target}_{name}")

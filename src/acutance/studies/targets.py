@@ -9,7 +9,7 @@ from typing import Literal
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.studies.execution import Record
+from acutance.studies.trials import Record
 from acutance.targets.straight import EdgeOptions, measure_edge, measure_pulse
 from acutance.targets.straight.find_pulse import find_pulse
 from acutance.targets.straight.published import (

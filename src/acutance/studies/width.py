@@ -7,23 +7,24 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.curves.grid import FREQ_CPP
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import pulse
-from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
+from acutance.studies.trials import Execution, Record, run_trials
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.pulse_spectrum import width_error_gain
 
 __all__ = ["WIDTH_FREQ_CPP", "WidthOptions", "WidthTrial", "study_width"]
 
-WIDTH_FREQ_CPP: tuple[float, ...] = tuple(round(0.01 * i, 2) for i in range(51))
+WIDTH_FREQ_CPP: tuple[float, ...] = tuple(FREQ_CPP[FREQ_CPP <= NYQUIST_CPP].tolist())
 """Frequencies of the curves, to Nyquist."""
 
-_TOLD_CPP = (0.3, 0.4, NYQUIST_CPP)
+_REPORTED_CPP = (0.3, 0.4, NYQUIST_CPP)
 """Where the paper looks: on either side of the spectrum's first zero, and at Nyquist."""
 
 
@@ -133,21 +134,21 @@ def measure_width_trial(
     ours = measure_pulse(image, width_px=stated_px)
     assert ours.width_px is not None
     return {
-        "published": [published.response.mtf(freq).value for freq in WIDTH_FREQ_CPP],
-        "ours": [ours.mtf(freq).value for freq in WIDTH_FREQ_CPP],
+        "published": published.response.mtf(WIDTH_FREQ_CPP).value.tolist(),
+        "ours": ours.mtf(WIDTH_FREQ_CPP).value.tolist(),
         "ours_width_px": ours.width_px.value,
         "ours_width_std_px": ours.width_px.std,
     }
 
 
 def _truth(options: WidthOptions) -> list[float]:
-    mtf = options.sensor.mtf(options.angle_deg)
-    return [mtf(freq).value for freq in WIDTH_FREQ_CPP]
+    truth: list[float] = options.sensor.mtf(options.angle_deg)(WIDTH_FREQ_CPP).value.tolist()
+    return truth
 
 
 def _row(options: WidthOptions, trial: WidthTrial, record: Record) -> dict[str, float | str]:
     true_px, stated_px = trial.widths_px(options.nominal_px)
-    gain = width_error_gain(true_px, stated_px, _TOLD_CPP)
+    gain = width_error_gain(true_px, stated_px, _REPORTED_CPP)
     row: dict[str, float | str] = {
         "error": trial.error,
         "true_px": true_px,
@@ -156,8 +157,8 @@ def _row(options: WidthOptions, trial: WidthTrial, record: Record) -> dict[str, 
         "ours_width_std_px": record["ours_width_std_px"],
     }
     truth = _truth(options)
-    for freq, one in zip(_TOLD_CPP, gain.tolist(), strict=True):
-        at = WIDTH_FREQ_CPP.index(freq)
+    for freq, one in zip(_REPORTED_CPP, gain.tolist(), strict=True):
+        at = round(freq / FREQ_CPP[1])
         row |= {
             f"truth_{freq:g}": truth[at],
             f"published_{freq:g}": record["published"][at],
@@ -172,7 +173,7 @@ def _findings(options: WidthOptions, table: Table) -> tuple[Finding, ...]:
     for error in ("measured", "true"):
         rows = table.where(error=error)
         nominal = int(np.argmin(np.abs(rows["true_px"] - rows["stated_px"])))
-        for freq in _TOLD_CPP:
+        for freq in _REPORTED_CPP:
             value = rows[f"published_{freq:g}"]
             change = 100 * (value / value[nominal] - 1)
             found.append(
@@ -185,7 +186,7 @@ def _findings(options: WidthOptions, table: Table) -> tuple[Finding, ...]:
             )
     off = float(np.max(np.abs(table["ours_width_px"] - table["true_px"])))
     worst = max(
-        float(np.max(np.abs(table[f"ours_{f:g}"] - table[f"truth_{f:g}"]))) for f in _TOLD_CPP
+        float(np.max(np.abs(table[f"ours_{f:g}"] - table[f"truth_{f:g}"]))) for f in _REPORTED_CPP
     )
     found += [
         Finding("ours_width_px", off, f"our joint fit finds the true width to {off:.4f} px"),

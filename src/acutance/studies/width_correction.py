@@ -12,10 +12,10 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, TargetError
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.simulate import pulse
-from acutance.studies.execution import Execution, Record, run_trials
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
+from acutance.studies.trials import Execution, Record, run_trials
 from acutance.studies.width import WIDTH_FREQ_CPP
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.pulse_spectrum import width_error_gain
@@ -95,8 +95,8 @@ def study_width_correction(
     Returns
     -------
     StudyResult
-        Table "width-correction" has a row for each case: what the closed form and the paper say
-        of the MTF at Nyquist, and mean and scatter of width and MTF by both estimators. "trials"
+        Table "width-correction" has a row for each case: the MTF at Nyquist of the closed form and
+        of the paper, and mean and scatter of width and MTF by both estimators. "trials"
         has every image; "curves" the MTF of an image of each case without noise, with the
         stated width and after both corrections.
     """
@@ -188,7 +188,7 @@ def measure_correction_trial(
             "smoothed": smoothed.response.mtf, "ours": ours.mtf,
         }  # fmt: skip
         for name, mtf in curves.items():
-            record[f"{name}_curve"] = [mtf(freq).value for freq in WIDTH_FREQ_CPP]
+            record[f"{name}_curve"] = mtf(WIDTH_FREQ_CPP).value.tolist()
     return record
 
 

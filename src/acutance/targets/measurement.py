@@ -13,6 +13,7 @@ import numpy as np
 
 from acutance.curves import Estimate, HasResponse, Mtf, Otf2d, Response
 from acutance.curves.grid import Floats
+from acutance.geometry.angles import is_nearer_columns
 from acutance.geometry.line import Orientation
 from acutance.targets.check import Check, Verdict, count_failed, verdict_of
 from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
@@ -80,7 +81,7 @@ class Measurement(HasResponse):
         """Which direction the numbers belong to, across or along track."""
         if self.normal_deg is None:
             raise AttributeError(f"{self.kind} shows two directions: use .across and .along")
-        nearer_columns = abs(math.cos(math.radians(self.normal_deg))) >= math.sqrt(0.5)
+        nearer_columns = is_nearer_columns(self.normal_deg)
         return "across" if nearer_columns == (self.image.along_track == "y") else "along"
 
     @property

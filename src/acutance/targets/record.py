@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves import METRICS, Estimate
+from acutance.curves.direction import gsd_along
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
@@ -72,9 +73,7 @@ class ImageInfo:
         """GSD along a direction, from the column axis (0) towards the row axis (90)."""
         if self.pixel_gsd_m is None:
             return None
-        row_m, col_m = self.pixel_gsd_m
-        angle = math.radians(normal_deg)
-        return 1.0 / math.hypot(math.cos(angle) / col_m, math.sin(angle) / row_m)
+        return gsd_along(self.pixel_gsd_m, normal_deg)
 
     def to_dict(self) -> dict[str, Any]:
         """All fields by name, for JSON."""

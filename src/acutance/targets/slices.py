@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves import Mtf, Otf2d
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
@@ -131,9 +132,8 @@ def _complex(document: Mapping[str, Any], name: str) -> Complexes:
 
 
 def _places(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
-    angle = np.radians(normal_deg)
-    u, v = np.outer(np.cos(angle), freq_cpp), np.outer(np.sin(angle), freq_cpp)
-    return u.ravel(), v.ravel()
+    x, y = unit_vector(normal_deg)
+    return np.outer(x, freq_cpp).ravel(), np.outer(y, freq_cpp).ravel()
 
 
 def _few_columns(factor: Complexes) -> tuple[Complexes, Complexes]:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.geometry.angles import axis_difference, direction_difference
 from acutance.targets.check import Check, Limits, answer
 from acutance.targets.combine.fit import CombinedFit
 from acutance.targets.combine.inputs import MeasuredInput
@@ -120,7 +121,7 @@ def _same_target(one: MeasuredInput, other: MeasuredInput) -> bool:
     if len(one.place) != len(other.place):
         return False
     if len(one.place) == 3:
-        turn = abs((one.place[2] - other.place[2] + 180) % 360 - 180)
+        turn = direction_difference(one.place[2], other.place[2])
         apart = np.hypot(one.place[0] - other.place[0], one.place[1] - other.place[1])
         return bool(turn < _SAME_LINE_DEG and apart < _SAME_LINE_PX)
     return one.place == other.place
@@ -136,7 +137,7 @@ def count_directions(inputs: Sequence[MeasuredInput]) -> int:
     turns = _directions(inputs)
     chosen = [turns[0]]
     for turn in turns[1:]:
-        if all(_apart(turn, other) > _DISTINCT_DEG for other in chosen):
+        if all(axis_difference(turn, other) > _DISTINCT_DEG for other in chosen):
             chosen.append(turn)
     return len(chosen)
 
@@ -144,9 +145,4 @@ def count_directions(inputs: Sequence[MeasuredInput]) -> int:
 def direction_gap_deg(inputs: Sequence[MeasuredInput]) -> float:
     """Largest angle between any two directions."""
     turns = _directions(inputs)
-    return max(_apart(one, other) for one in turns for other in turns)
-
-
-def _apart(one: float, other: float) -> float:
-    turn = abs(one - other) % 180.0
-    return float(min(turn, 180.0 - turn))
+    return float(max(axis_difference(one, other) for one in turns for other in turns))

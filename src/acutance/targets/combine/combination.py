@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from acutance.curves import Estimate, Mtf, Otf2d
+from acutance.curves.direction import unit_vector
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError
 from acutance.numerics.one_thread import one_thread
@@ -154,7 +155,7 @@ def _part(one: MeasuredInput, chi_square: ChiSquare, otf: Otf2d) -> CombinedPart
 
 def _along(otf: Otf2d, normal_deg: float, freq_cpp: float) -> Estimate:
     """The combined MTF at one place of the plane."""
-    angle = math.radians(normal_deg)
-    u, v = np.array([freq_cpp * math.cos(angle)]), np.array([freq_cpp * math.sin(angle)])
+    x, y = unit_vector(normal_deg)
+    u, v = np.array([freq_cpp * x]), np.array([freq_cpp * y])
     one = Mtf(u, otf.model.otf(u, v), otf.model.factor(u, v))
     return Estimate(float(one.value[0]), float(one.std[0]))

@@ -13,6 +13,7 @@ from acutance.curves import Mtf
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
+from acutance.geometry.angles import wrap_axis
 from acutance.raster.image import AlongTrack
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import SCHEMA, ImageInfo, Record
@@ -90,7 +91,7 @@ def direction_in_words(normal_deg: Sequence[float]) -> str:
     """One direction as text, -90 to 90 degrees; of several that they are all."""
     if len(normal_deg) > 1:
         return "all"
-    return f"{(normal_deg[0] + 90.0) % 180.0 - 90.0:.1f}°".replace("-", "−")
+    return f"{wrap_axis(normal_deg[0]):.1f}°".replace("-", "−")
 
 
 def read_inputs(

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
+from acutance.geometry.angles import wrap_axis
 from acutance.optics import Diffraction
 
 __all__ = ["FORMS", "TERMS", "SensorForm", "Term"]
@@ -78,7 +79,7 @@ def _smear_numbers(p: Floats) -> dict[str, float]:
     direction = math.degrees(math.atan2(p[1], p[0]))
     return {
         "smear_px": math.hypot(p[0], p[1]),
-        "smear_direction_deg": (direction + 90.0) % 180.0 - 90.0,
+        "smear_direction_deg": wrap_axis(direction),
     }
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.geometry.angles import wrap_axis
 from acutance.targets.combine.correction import Departure
 from acutance.targets.combine.sensor_forms import SensorForm
 
@@ -76,7 +77,7 @@ class WeightedForm(ShortRepr):
             for name, row in rows.items():
                 change = above[name] - below[name]
                 if name.endswith("_deg"):
-                    change = (change + 90.0) % 180.0 - 90.0
+                    change = wrap_axis(change)
                 row[i] = change / (2 * step)
         root = self.root[: self.parameters.size]
         found = {

@@ -13,6 +13,7 @@ from acutance.curves import Mtf, Response
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
+from acutance.geometry.angles import axis_difference, wrap_axis
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.raster import Gsd
 from acutance.targets.measurement import Measurement
@@ -63,8 +64,7 @@ class MeasuredCurves(ShortRepr):
             return None
         if self.normal_deg is None:
             return "one direction"
-        angle = (self.normal_deg + 90.0) % 180.0 - 90.0
-        return f"one direction, {angle:.1f} degrees from the column axis"
+        return f"one direction, {wrap_axis(self.normal_deg):.1f} degrees from the column axis"
 
     def require_pixels(self, gsd: Gsd | None) -> None:
         """Refuse curves of other pixels than the high image's.
@@ -217,14 +217,9 @@ def _of_edges(reference: TargetResult[Any]) -> MeasuredCurves:
     strongest = [group.measurements[0] for group in reference.groups.values()]
     if len(strongest) < 2:
         return _of_measurement(reference.measurements[0])
-    by_normal = sorted(strongest, key=lambda edge: _from_columns(edge.normal_deg or 0.0))
+    by_normal = sorted(strongest, key=lambda edge: axis_difference(edge.normal_deg or 0.0, 0.0))
     across, along = (_plain(edge.response.mtf) for edge in by_normal)
     return MeasuredCurves(across, along, by_normal[0].image.pixel_gsd_m)
-
-
-def _from_columns(normal_deg: float) -> float:
-    """How far a direction is from the column axis, 0 to 90 degrees."""
-    return abs((normal_deg + 90.0) % 180.0 - 90.0)
 
 
 def _of_record(reference: Record, origin: str = "the reference") -> MeasuredCurves:

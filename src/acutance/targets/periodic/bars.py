@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves import Estimate, Mtf, Otf2d
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError, OptionError
-from acutance.geometry.angles import turn_deg
+from acutance.geometry.angles import wrap_axis
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
@@ -134,7 +133,7 @@ def common_normals(groups: tuple[Bars, ...]) -> tuple[float, ...]:
     for bars in groups:
         for kind in kinds:
             if bars.angle_to(kind[0]) < _ONE_DIRECTION_DEG:
-                kind.append(kind[0] + turn_deg(kind[0], bars.normal_deg))
+                kind.append(kind[0] + wrap_axis(bars.normal_deg - kind[0]))
                 break
         else:
             kinds.append([bars.normal_deg])
@@ -179,10 +178,11 @@ def _reading(one: GroupPixels, solved: BarsSolution) -> GroupReading:
 
 def _mtf_at(solved: BarsSolution, bars: Bars) -> Estimate:
     """MTF at the frequency of a group along its normal."""
-    angle = math.radians(bars.normal_deg)
+    x, y = unit_vector(bars.normal_deg)
     freq: Floats = bars.freq_cpp * np.array([0.0, 0.5, 1.0, 1.5])
-    u, v = freq * math.cos(angle), freq * math.sin(angle)
-    return Mtf(freq, solved.otf.otf(u, v), solved.otf.factor(u, v))(bars.freq_cpp)
+    return Mtf(freq, solved.otf.otf(freq * x, freq * y), solved.otf.factor(freq * x, freq * y))(
+        bars.freq_cpp
+    )
 
 
 def _coltman(one: Bars, groups: list[Bars], readings: list[GroupReading]) -> float:

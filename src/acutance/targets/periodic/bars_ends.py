@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.otf2d import OtfModel
 from acutance.geometry.bar_group import Bars
@@ -71,12 +72,9 @@ def end_effect(otf: OtfTable, bars: Bars, across_px: Floats, along_px: Floats) -
     f: Floats = np.asarray(step_f * (np.arange(math.ceil(_ACROSS_CPP / step_f)) + 0.5))
     half = step_g * np.arange(1, math.ceil(_ALONG_CPP / step_g))
     g = np.concatenate([-half[::-1], half])
-    angle = math.radians(bars.normal_deg)
+    x, y = unit_vector(bars.normal_deg)
     across, along = f[:, None], np.append(g, 0.0)[None, :]
-    transfer = otf(
-        across * math.cos(angle) - along * math.sin(angle),
-        across * math.sin(angle) + along * math.cos(angle),
-    )
+    transfer = otf(across * x - along * y, across * y + along * x)
     fade = np.clip((np.abs(g) / _ALONG_CPP - 0.5) / 0.5, 0.0, 1.0)
     window = np.cos(0.5 * math.pi * fade) ** 2 * bars.length_px * np.sinc(bars.length_px * g)
     change = (transfer[:, :-1] - transfer[:, -1:]) * (window * step_g)
@@ -114,8 +112,8 @@ def light_of_neighbours(
     transfer = otf(u, v) * np.cos(0.5 * math.pi * fade) ** 2
     images = []
     for bars in groups:
-        angle = math.radians(bars.normal_deg)
-        f, g = u * math.cos(angle) + v * math.sin(angle), v * math.cos(angle) - u * math.sin(angle)
+        x, y = unit_vector(bars.normal_deg)
+        f, g = u * x + v * y, v * x - u * y
         outline = bars.spectrum(f) * bars.length_px * np.sinc(bars.length_px * g)
         place = np.exp(-2j * math.pi * (u * bars.col + v * bars.row))
         spectrum = (transfer * outline * place).reshape(shape[0], -1)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.special import ndtr
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
@@ -199,9 +200,9 @@ def _profile_fit(
         rest, place, period, bars = alone, offset, 2 * width, 1
     if not bars:
         return None
-    angle = math.radians(normal_deg)
-    row = centre.row + place * math.sin(angle) + middle * math.cos(angle)
-    col = centre.col + place * math.cos(angle) - middle * math.sin(angle)
+    x, y = unit_vector(normal_deg)
+    row = centre.row + place * y + middle * x
+    col = centre.col + place * x - middle * y
     return rest, Bars(row, col, normal_deg, period, bars, length)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from acutance.curves import Estimate, Response
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.geometry.angles import angle_between_deg
+from acutance.geometry.angles import axis_difference
 from acutance.geometry.bar_group import Bars
 from acutance.geometry.line import Orientation
 from acutance.targets.measurement import Measurement
@@ -129,7 +129,7 @@ class BarsMeasurement(Measurement):
         Bars of one direction that is far from both measure the nearer one best.
         """
         off = {
-            name: min(angle_between_deg(axis, normal) for normal in self.directions_deg)
+            name: min(axis_difference(axis, normal) for normal in self.directions_deg)
             for name, axis in self.axes_deg.items()
         }
         nearest = min(off.values())
@@ -137,7 +137,7 @@ class BarsMeasurement(Measurement):
 
     def is_first_direction(self, group: BarsGroup) -> bool:
         """Whether a group's normal is nearer to the first direction than to any other."""
-        off = [angle_between_deg(group.bars.normal_deg, normal) for normal in self.directions_deg]
+        off = [axis_difference(group.bars.normal_deg, normal) for normal in self.directions_deg]
         return off[0] == min(off)
 
     @cached_property

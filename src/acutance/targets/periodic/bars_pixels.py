@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
@@ -73,11 +74,11 @@ class GroupPixels:
         most = 0.2 * bars.period_px / bars.count
         period = bars.period_px + float(np.clip(step[1], -most, most))
         reach = 0.5 * bars.period_px / bars.length_px
-        angle = math.radians(bars.normal_deg)
+        x, y = unit_vector(bars.normal_deg)
         return replace(
             bars,
-            row=bars.row + place * math.sin(angle),
-            col=bars.col + place * math.cos(angle),
+            row=bars.row + place * y,
+            col=bars.col + place * x,
             period_px=period,
             normal_deg=bars.normal_deg + math.degrees(float(np.clip(step[2], -reach, reach))),
         )
@@ -121,8 +122,8 @@ def _profiles(
                                              math.ceil(reach / _STEP_PX) + 4))  # fmt: skip
     step = 1 / (2 * reach + bars.width_px + 30.0)
     freq: Floats = np.asarray(step * (np.arange(math.ceil(HIGHEST_CPP / step)) + 0.5))
-    angle = math.radians(bars.normal_deg)
-    u, v = freq * math.cos(angle), freq * math.sin(angle)
+    x, y = unit_vector(bars.normal_deg)
+    u, v = freq * x, freq * y
     transfer: Complexes = blur.modes(u, v)
     if states is not None:
         transfer = np.hstack([transfer, states.otf_modes(u, v)])

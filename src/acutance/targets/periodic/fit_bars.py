@@ -17,6 +17,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
@@ -339,8 +340,7 @@ def _width_of_bars(
     mean: GaussianPixel, fitted: FittedOtf, pixels: tuple[GroupPixels, ...]
 ) -> GaussianPixel:
     """The mean as wide as the bars show it, and round: few directions determine no more."""
-    angle = np.radians([one.bars.normal_deg for one in pixels])
-    cos, sin = np.cos(angle), np.sin(angle)
+    cos, sin = unit_vector(np.array([one.bars.normal_deg for one in pixels]))
     xx, xy, yy = fitted.beta[1:4] / float(fitted.beta[0])
     change = float(np.mean(xx * cos**2 + 2 * xy * cos * sin + yy * sin**2))
     wanted = max(mean.xx + float(np.clip(change, -0.15, 0.15)), 0.02)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from acutance.curves import Estimate, Mtf, Otf2d
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP, mtf_crossing
 from acutance.curves.short_repr import ShortRepr
@@ -109,8 +110,8 @@ class StarMeasurement(Measurement):
 
     def mtf_by_direction(self, freq_cpp: float, directions_deg: Floats) -> tuple[Floats, Floats]:
         """MTF at one frequency in some directions, and its standard deviation, (n,) each."""
-        angle = np.radians(directions_deg)
-        u, v = freq_cpp * np.cos(angle), freq_cpp * np.sin(angle)
+        x, y = unit_vector(directions_deg)
+        u, v = freq_cpp * x, freq_cpp * y
         # As a curve over directions: every one with its own variance.
         curve = Mtf(directions_deg, self.otf.model.otf(u, v), self.otf.model.factor(u, v))
         return curve.value, curve.std
@@ -163,8 +164,8 @@ class StarMeasurement(Measurement):
 def mean_over_directions(otf: Otf2d, directions_deg: Floats) -> Mtf:
     """Mean MTF over some directions, as a curve with its covariance."""
     value, factor = np.zeros(_FREQ_CPP.size), np.zeros((_FREQ_CPP.size, 1))
-    for angle in np.radians(directions_deg):
-        u, v = _FREQ_CPP * math.cos(angle), _FREQ_CPP * math.sin(angle)
+    for x, y in zip(*unit_vector(directions_deg), strict=True):
+        u, v = _FREQ_CPP * x, _FREQ_CPP * y
         one = Mtf(_FREQ_CPP, otf.model.otf(u, v), otf.model.factor(u, v))
         value = value + one.value
         factor = factor + one.covariance_factor

@@ -14,7 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
+from acutance.geometry.angles import direction_difference, wrap_direction
 from acutance.geometry.line import Line
 from acutance.numerics.noise import median
 
@@ -116,9 +118,9 @@ def _strongest(votes: _Votes) -> tuple[Segment, NDArray[np.bool_]] | None:
     """The strongest segment and the votes that are its own."""
     best: tuple[float, float, float] | None = None
     for direction in _favoured_directions(votes):
-        angle = math.radians(direction)
-        near = _turn(votes.direction_deg, direction) < _WINDOW_DEG
-        offset = math.cos(angle) * votes.col[near] + math.sin(angle) * votes.row[near]
+        x, y = unit_vector(direction)
+        near = direction_difference(votes.direction_deg, direction) < _WINDOW_DEG
+        offset = x * votes.col[near] + y * votes.row[near]
         first = float(offset.min())
         profile = np.bincount((offset - first).astype(np.intp), votes.magnitude[near])
         # Three bins together: the votes of a line lie within the blur's width.
@@ -144,11 +146,6 @@ def _favoured_directions(votes: _Votes, most: int = 4) -> list[float]:
     return [float((k + 0.5) * _BIN_DEG - 180.0) for k in order]
 
 
-def _turn(a: Floats, b: float) -> Floats:
-    """Absolute difference of directions, 0..180 degrees."""
-    return np.abs((a - b + 180.0) % 360.0 - 180.0)
-
-
 def _refined(
     votes: _Votes, direction: float, offset: float
 ) -> tuple[Segment, NDArray[np.bool_]] | None:
@@ -159,7 +156,7 @@ def _refined(
         x, y = math.cos(angle), math.sin(angle)
         distance = x * votes.col + y * votes.row - offset
         own = np.abs(distance) < reach
-        own &= _turn(votes.direction_deg, math.degrees(angle)) < window
+        own &= direction_difference(votes.direction_deg, math.degrees(angle)) < window
         if np.count_nonzero(own) < _MIN_LENGTH_PX:
             return None
         weight = votes.magnitude[own] ** 2
@@ -182,7 +179,7 @@ def _refined(
     start, stop = stretch
     centre = 0.5 * (start + stop) - middle
     x, y = math.cos(angle), math.sin(angle)
-    line = Line(row + x * centre, col - y * centre, _wrapped(math.degrees(angle)))
+    line = Line(row + x * centre, col - y * centre, wrap_direction(math.degrees(angle)))
     inside = (along >= start) & (along <= stop)
     strength = float(votes.magnitude[own][inside].sum())
     mine = own.copy()
@@ -202,7 +199,3 @@ def _longest_stretch(along: Floats, gap_px: float = 4.0) -> tuple[float, float] 
     if lengths[longest] <= 0:
         return None
     return float(ordered[starts[longest]]), float(ordered[stops[longest]])
-
-
-def _wrapped(angle_deg: float) -> float:
-    return (angle_deg + 180.0) % 360.0 - 180.0

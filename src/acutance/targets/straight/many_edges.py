@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
+from acutance.geometry.angles import direction_difference
 from acutance.geometry.line import Line
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
@@ -76,11 +77,11 @@ def _where(line: Line) -> dict[str, float]:
 
 def _same_edge(one: StraightMeasurement, other: StraightMeasurement) -> bool:
     """Whether two measurements took the same stretch of the same edge."""
-    turn = abs((one.line.normal_deg - other.line.normal_deg + 180) % 360 - 180)
+    turn_deg = direction_difference(one.line.normal_deg, other.line.normal_deg)
     beside = abs(float(other.line.normal_distance(one.line.row, one.line.col)))
     apart = abs(float(other.line.tangent_distance(one.line.row, one.line.col)))
     reach = 0.5 * min(one.line.length_px, other.line.length_px)
-    return turn < 5 and beside < 2 and apart < reach
+    return turn_deg < 5 and beside < 2 and apart < reach
 
 
 def _of_the_target(

@@ -32,7 +32,13 @@ from acutance.optics.block import Block
 from acutance.optics.catalogue import BLOCKS
 from acutance.optics.sensor import Sensor
 
-__all__ = ["SensorSheet", "read_sensor", "sheet_from_toml", "sheet_to_toml", "write_sensor"]
+__all__ = [
+    "SensorFile",
+    "read_sensor",
+    "sensor_file_from_toml",
+    "sensor_file_to_toml",
+    "write_sensor",
+]
 
 _KEYS = ("name", "description", "gsd_m", "gsd_along_m", "block")
 _METRIC = {"px": "m", "cpp": "cpm"}
@@ -46,7 +52,7 @@ _TWINS: dict[str, tuple[str, ...]] = {
 
 
 @dataclass(frozen=True)
-class SensorSheet:
+class SensorFile:
     """A sensor with what is known about it.
 
     Parameters
@@ -57,7 +63,7 @@ class SensorSheet:
     description : str
         What it is and where its numbers are from.
     sources : tuple of str
-        Where each block's numbers are from, in the sensor's order; empty where nobody says.
+        Where each block's numbers are from, in the sensor's order; empty where it is not known.
     """
 
     sensor: Sensor
@@ -88,15 +94,15 @@ def read_sensor(path: str | os.PathLike[str]) -> Sensor:
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise ModelError(f"the sensor file {path} cannot be read ({reason})") from error
-    return sheet_from_toml(text, os.fspath(path)).sensor
+    return sensor_file_from_toml(text, os.fspath(path)).sensor
 
 
-def write_sensor(sheet: Sensor | SensorSheet, path: str | os.PathLike[str]) -> None:
+def write_sensor(described: Sensor | SensorFile, path: str | os.PathLike[str]) -> None:
     """Write a sensor as a TOML file that `read_sensor` reads back as the same sensor.
 
     Parameters
     ----------
-    sheet : Sensor or SensorSheet
+    described : Sensor or SensorFile
     path : str or path
         An existing file is replaced.
 
@@ -105,14 +111,16 @@ def write_sensor(sheet: Sensor | SensorSheet, path: str | os.PathLike[str]) -> N
     ModelError
         If a block has no place in a file, or the file cannot be written.
     """
-    text = sheet_to_toml(sheet if isinstance(sheet, SensorSheet) else SensorSheet(sheet))
+    text = sensor_file_to_toml(
+        described if isinstance(described, SensorFile) else SensorFile(described)
+    )
     try:
         Path(path).write_text(text, encoding="utf-8")
     except OSError as error:
         raise ModelError(f"{path} cannot be written ({error.strerror})") from error
 
 
-def sheet_from_toml(text: str, origin: str = "the sensor") -> SensorSheet:
+def sensor_file_from_toml(text: str, origin: str = "the sensor") -> SensorFile:
     """Read a sensor's description.
 
     Parameters
@@ -149,21 +157,21 @@ def sheet_from_toml(text: str, origin: str = "the sensor") -> SensorSheet:
         raise error if named else ModelError(f"{origin}: {error}") from error
     sources = tuple(str(one.get("source", "")) for one in described)
     name, description = (str(table.get(key, "")).strip() for key in ("name", "description"))
-    return SensorSheet(sensor, name, description, sources)
+    return SensorFile(sensor, name, description, sources)
 
 
-def sheet_to_toml(sheet: SensorSheet) -> str:
-    """A sensor's description as TOML, lengths in pixels; reading it gives the same sheet.
+def sensor_file_to_toml(described: SensorFile) -> str:
+    """A sensor's description as TOML, lengths in pixels; reading it gives an equal one.
 
     Raises
     ------
     ModelError
         If a block is none of `acutance.optics.BLOCKS`, or holds another system.
     """
-    sensor = sheet.sensor
+    sensor = described.sensor
     lines = [
         f"{key} = {json.dumps(value, ensure_ascii=False)}"
-        for key, value in (("name", sheet.name), ("description", sheet.description))
+        for key, value in (("name", described.name), ("description", described.description))
         if value
     ]
     lines += [
@@ -171,7 +179,7 @@ def sheet_to_toml(sheet: SensorSheet) -> str:
         for key, size in (("gsd_m", sensor.gsd_m), ("gsd_along_m", sensor.gsd_along_m))
         if size is not None
     ]
-    sources = sheet.sources or ("",) * len(sensor.blocks)
+    sources = described.sources or ("",) * len(sensor.blocks)
     for block, source in zip(sensor.blocks, sources, strict=True):
         lines += ["", "[[block]]", f'kind = "{_kind_of(block)}"']
         values = ((one.name, getattr(block, one.name)) for one in fields(block))  # type: ignore[arg-type]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import map_coordinates
 
+from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.optics.block import Transfer, require
 from acutance.optics.processing import spline_transfer
@@ -79,7 +80,7 @@ class NativeGrid:
         i, j = np.indices([2 * size + 1 for size in half], float)
         y = (i - half[0] + _PHASE_PX[0]) * self.pitch_row_px
         x = (j - half[1] + _PHASE_PX[1]) * self.pitch_col_px
-        cos, sin = self._cos_sin
+        cos, sin = unit_vector(self.turn_deg)
         places = [cos * y - sin * x + middle[0], cos * x + sin * y + middle[1]]
         # Four samples a pixel or more hold the image without aliasing: a spline of order 5
         # between them is as good as exact.
@@ -90,12 +91,7 @@ class NativeGrid:
         back = [down + half[0] - _PHASE_PX[0], right + half[1] - _PHASE_PX[1]]
         return np.asarray(map_coordinates(native, back, order=3, mode="mirror"))
 
-    @property
-    def _cos_sin(self) -> tuple[float, float]:
-        turn = math.radians(self.turn_deg)
-        return math.cos(turn), math.sin(turn)
-
     def _native(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
         """Components along the native columns' and rows' directions."""
-        cos, sin = self._cos_sin
+        cos, sin = unit_vector(self.turn_deg)
         return np.asarray(cos * x - sin * y), np.asarray(sin * x + cos * y)

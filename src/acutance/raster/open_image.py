@@ -1,0 +1,119 @@
+"""Opening an image file: a NumPy file as it is, all others by GDAL's drivers."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
+
+from acutance.errors import ImageError
+from acutance.raster.gsd import Gsd
+from acutance.raster.image import AlongTrack, Image
+from acutance.raster.pixels import NpyPixels, largest_count, require_image_array, type_name
+
+__all__ = ["open_image"]
+
+# Names that GDAL understands and the file system does not: "/vsizip/a.zip/b.tif",
+# "https://host/a.tif", "HDF5:a.h5://band". One letter and a colon is a Windows drive.
+_GDAL_NAME = re.compile(r"^(/vsi\w+/|\w+://|[A-Za-z0-9_]{2,}:)")
+
+
+def open_image(
+    path: str | os.PathLike[str],
+    band: int = 1,
+    gsd_m: float | Gsd | None = None,
+    nodata: float | None = None,
+    along_track: AlongTrack = "y",
+) -> Image:
+    """Open one band of an image file.
+
+    Parameters
+    ----------
+    path : str or path
+        Any raster that GDAL reads in rasterio's wheel (GeoTIFF, COG, JPEG 2000, NITF, HDF5,
+        DIMAP, SAFE, TIFF, PNG, JPEG), a name of GDAL's own ("HDF5:file.h5://band",
+        "/vsizip/a.zip/b.tif"), or a 2-D array in a ``.npy`` file.
+    band : int
+        Which band, from 1.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres; it replaces the one of the geotransform.
+    nodata : float, optional
+        The stored value of unusable pixels; it replaces the one the file declares. Masks and
+        alpha bands still apply.
+    along_track : {"y", "x"}, optional
+        The axis along track, after which results are called across and along: y, down the
+        columns, unless the image was turned.
+
+    Returns
+    -------
+    Image
+
+    Raises
+    ------
+    ImageError
+        If the file is missing, empty, damaged, a directory without an image, of a kind that
+        cannot be measured (complex, palette), or has no such band.
+    OptionError
+        If the GSD is not a positive number.
+    """
+    gsd = Gsd.given(gsd_m)
+    name = _as_name(path)
+    _require_file(name)
+    if name.lower().endswith(".npy"):
+        opened = _open_npy(name, band, gsd, nodata)
+        return replace(opened, along_track=along_track)
+    from acutance.raster.dataset import open_dataset
+
+    return replace(open_dataset(name, band, gsd, nodata), along_track=along_track)
+
+
+def _as_name(path: Any) -> str:
+    """The name of a file as text."""
+    try:
+        name = os.fspath(path)
+    except TypeError:
+        raise ImageError(
+            f"open_image was given a {type(path).__name__}: give the name of a file; an array is "
+            "measured as it is, or made an image by Image.from_array"
+        ) from None
+    return os.fsdecode(name)
+
+
+def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Image:
+    source = NpyPixels(path, nodata)
+    array: NDArray[Any] = source.map()
+    require_image_array(array, path)
+    if band != 1:
+        raise ImageError(f"{path} has one band, band {band} was requested: use band 1")
+    return Image(
+        path=path,
+        band=1,
+        band_count=1,
+        shape=(int(array.shape[0]), int(array.shape[1])),
+        dtype=type_name(array.dtype),
+        source=source,
+        saturation_level=largest_count(array.dtype),
+        own_gsd=gsd,
+    )
+
+
+def _require_file(name: str) -> None:
+    """Check what the file system shows before a driver opens the file."""
+    # To the file system no name at all is the folder one stands in.
+    if not name.strip():
+        raise ImageError("the name of the image is empty: give the path of a file")
+    path = Path(name)
+    try:
+        is_file, is_folder = path.is_file(), path.is_dir()
+        is_empty = is_file and path.stat().st_size == 0
+    except OSError as error:
+        raise ImageError(f"{name} cannot be reached ({error.strerror}): check the path") from error
+    if is_empty:
+        raise ImageError(f"{name} is empty (0 bytes): it was not written or not copied whole")
+    if not is_file and not is_folder and not _GDAL_NAME.match(name):
+        found = "its folder exists" if path.parent.is_dir() else "nor does its folder"
+        raise ImageError(f"{name} does not exist ({found}): check the path")
