@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.noise import Quantum, ReadNoise, Saturation, ShotGain, Snr, described_noise
+from acutance.cli.noise import NoiseOptions
+from acutance.cli.option_groups import with_groups
 from acutance.cli.output import OutputFile, check_output
 from acutance.cli.sensor import SensorName, named_sensor
+from acutance.cli.star import WaveOption
 from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EXAMPLES",
+    "Angle",
     "Out",
     "Seed",
     "SimulatedFiles",
@@ -30,9 +33,9 @@ __all__ = [
 ]
 
 EXAMPLES = {
-    "pulse": "  acutance simulate pulse --sensor generic-2005 --width 3 --snr 70 --out pulse.tif",
+    "pulse": "  acutance simulate pulse --sensor ikonos-like --width-px 3 --snr 70 --out pulse.tif",
     "bars": "  acutance simulate bars --periods 8,4,3,2 --angle 6 --out bars.tif",
-    "star": "  acutance simulate star --square --sensor my-sensor.toml --out star.tif",
+    "star": "  acutance simulate star --wave square --sensor my-sensor.toml --out star.tif",
     "points": "  acutance simulate points --peak 1500 --snr 80 --out mirrors.tif",
 }
 
@@ -77,9 +80,9 @@ class SimulatedFiles:
         from acutance.report.documents import json_text
 
         gsd = None if sensor.pixel_m is None else Gsd(*sensor.pixel_m)
-        write_geotiff(self.image.path, pixels.astype(np.float32), gsd_m=gsd)
-        self.truth.write(json_text({**document, "seed": seed}))
-        say(f"wrote {self.image.path}\nwrote {self.truth.path}")
+        write_geotiff(self.image.place, pixels.astype(np.float32), gsd_m=gsd)
+        say(f"wrote {self.image.path}")
+        self.truth.deliver(json_text({**document, "seed": seed}))
 
 
 def parse_size(text: str) -> tuple[int, int]:
@@ -99,10 +102,12 @@ def parse_size(text: str) -> tuple[int, int]:
     return rows, cols
 
 
+@with_groups
 def pulse(
+    *,
     out: Out,
     sensor: SensorName = "generic-2005",
-    width: Annotated[
+    width_px: Annotated[
         float | None, typer.Option(metavar="PX", help="Width in pixels; 3 if not given.")
     ] = None,
     width_m: Annotated[
@@ -122,11 +127,7 @@ def pulse(
         typer.Option(metavar="DN", help="Level of the ground behind the pulse, if it differs."),
     ] = None,
     bright: Bright = 1200.0,
-    snr: Snr = None,
-    read_noise: ReadNoise = None,
-    shot_gain: ShotGain = None,
-    quantum: Quantum = None,
-    saturation: Saturation = None,
+    noise: NoiseOptions,
     ground_noise: Annotated[
         bool,
         typer.Option("--ground-noise", help="Uneven ground: 20 grains of variance 100 each."),
@@ -144,7 +145,7 @@ def pulse(
 
     pixels, truth = simulate.pulse(
         system,
-        width_px=_width_px(system, width, width_m, angle, along),
+        width_px=_width_px(system, width_px, width_m, angle, along),
         length_px=length,
         angle_deg=angle,
         orientation="along" if along else "across",
@@ -152,8 +153,8 @@ def pulse(
         dark=dark,
         right_dark=right_dark,
         bright=bright,
-        snr=snr,
-        noise=described_noise(read_noise, shot_gain, quantum, saturation),
+        snr=noise.snr,
+        noise=noise.described(),
         ground_noise=simulate.GroundNoise() if ground_noise else None,
         rng=np.random.default_rng(seed),
     )
@@ -165,22 +166,26 @@ def pulse(
 
 
 def _width_px(
-    system: Sensor, width: float | None, width_m: float | None, angle: float, along: bool
+    system: Sensor, width_px: float | None, width_m: float | None, angle: float, along: bool
 ) -> float:
     from acutance.optics.sensor import normal_direction_deg
 
     if width_m is None:
-        return 3.0 if width is None else width
-    if width is not None:
-        raise OptionError(f"--width {width:g} and --width-m {width_m:g} were both given: use one")
+        return 3.0 if width_px is None else width_px
+    if width_px is not None:
+        raise OptionError(
+            f"--width-px {width_px:g} and --width-m {width_m:g} were both given: use one"
+        )
     normal = normal_direction_deg(angle, "along" if along else "across")
     gsd_m = system.gsd_along_normal_m(normal)
     if gsd_m is None:
-        raise OptionError(f"--width-m {width_m:g} needs a sensor with a GSD: use --width in pixels")
+        raise OptionError(f"--width-m {width_m:g} needs a sensor with a GSD: use --width-px")
     return width_m / gsd_m
 
 
+@with_groups
 def bars(
+    *,
     out: Out,
     sensor: SensorName = "generic-2005",
     periods: Annotated[
@@ -192,11 +197,7 @@ def bars(
     along: Along = False,
     dark: Dark = 200.0,
     bright: Bright = 1200.0,
-    snr: Snr = None,
-    read_noise: ReadNoise = None,
-    shot_gain: ShotGain = None,
-    quantum: Quantum = None,
-    saturation: Saturation = None,
+    noise: NoiseOptions,
     seed: Seed = 0,
 ) -> None:
     """Render groups of bars below one another."""
@@ -220,8 +221,8 @@ def bars(
         orientation="along" if along else "across",
         dark=dark,
         bright=bright,
-        snr=snr,
-        noise=described_noise(read_noise, shot_gain, quantum, saturation),
+        snr=noise.snr,
+        noise=noise.described(),
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, system, target_truth_document(truth, system), seed)
@@ -229,14 +230,14 @@ def bars(
         typer.echo(f"true MTF at {freq:.4f} cycles per pixel {mtf:.4f}")
 
 
+@with_groups
 def star(
+    *,
     out: Out,
     sensor: SensorName = "generic-2005",
     cycles: Annotated[int, typer.Option(metavar="N", help="Periods in a full turn.")] = 36,
     radius: Annotated[float, typer.Option(metavar="PX", help="Outer radius.")] = 52.0,
-    square: Annotated[
-        bool, typer.Option("--square", help="Bright and dark spokes instead of a sine.")
-    ] = False,
+    wave: WaveOption = "sine",
     start: Annotated[float, typer.Option(metavar="DEG", help="Where a fan begins.")] = 0.0,
     sweep: Annotated[float, typer.Option(metavar="DEG", help="How far it goes.")] = 360.0,
     size: Annotated[
@@ -244,14 +245,12 @@ def star(
     ] = "128,128",
     dark: Annotated[float, typer.Option(metavar="DN", help="Lowest level of the spokes.")] = 200.0,
     bright: Annotated[float, typer.Option(metavar="DN", help="Highest level.")] = 1200.0,
-    snr: Snr = None,
-    read_noise: ReadNoise = None,
-    shot_gain: ShotGain = None,
-    quantum: Quantum = None,
-    saturation: Saturation = None,
+    noise: NoiseOptions,
     seed: Seed = 0,
 ) -> None:
     """Render a Siemens star."""
+    if wave not in ("sine", "square"):
+        raise OptionError(f"--wave {wave}: it has to be sine or square")
     files, shape, system = SimulatedFiles.of(out, sensor), parse_size(size), named_sensor(sensor)
 
     import numpy as np
@@ -264,20 +263,22 @@ def star(
         cycles=cycles,
         shape=shape,
         radius_px=radius,
-        wave="square" if square else "sine",
+        wave="square" if wave == "square" else "sine",
         start_deg=start,
         sweep_deg=sweep,
         dark=dark,
         bright=bright,
-        snr=snr,
-        noise=described_noise(read_noise, shot_gain, quantum, saturation),
+        snr=noise.snr,
+        noise=noise.described(),
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, system, target_truth_document(truth, system), seed)
     typer.echo(f"true mean MTF at Nyquist {float(truth.mtf_mean(0.5)):.4f}")
 
 
+@with_groups
 def points(
+    *,
     out: Out,
     sensor: SensorName = "generic-2005",
     layout: Annotated[
@@ -288,14 +289,7 @@ def points(
         float, typer.Option(metavar="DN", help="What a centred mirror adds to its pixel.")
     ] = 1000.0,
     background: Annotated[float, typer.Option(metavar="DN", help="Level of the ground.")] = 200.0,
-    snr: Annotated[
-        float | None,
-        typer.Option(metavar="RATIO", help="Peak over noise; no noise if nothing says it."),
-    ] = None,
-    read_noise: ReadNoise = None,
-    shot_gain: ShotGain = None,
-    quantum: Quantum = None,
-    saturation: Saturation = None,
+    noise: NoiseOptions,
     seed: Seed = 0,
 ) -> None:
     """Render an array of mirrors."""
@@ -318,8 +312,8 @@ def points(
         positions=layouts[layout],
         peak=peak,
         background=background,
-        snr=snr,
-        noise=described_noise(read_noise, shot_gain, quantum, saturation),
+        snr=noise.snr,
+        noise=noise.described(),
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, system, target_truth_document(truth, system), seed)

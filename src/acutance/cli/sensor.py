@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from acutance.cli.output import check_optional
-from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
     from acutance.optics import Sensor
 
-__all__ = ["BUDGET_EXAMPLE", "SensorName", "named_sensor", "sensor_budget"]
+__all__ = [
+    "BUDGET_EXAMPLE",
+    "SENSOR_OPTION",
+    "OptionalSensorName",
+    "SensorName",
+    "named_sensor",
+    "sensor_budget",
+]
 
 BUDGET_EXAMPLE = (
     "\b\nExamples:\n"
@@ -22,19 +29,25 @@ BUDGET_EXAMPLE = (
     "  acutance simulate sensor-budget my-sensor.toml --figure budget.svg --json"
 )
 
-SensorName = Annotated[
-    str,
-    typer.Option(
-        "--sensor",
-        metavar="FILE|NAME",
-        help="A sensor in a .toml file, or generic-2005, ikonos-like, quickbird-like, or one of "
-        "the ready systems of simulate edge --system.",
-    ),
-]
+SENSOR_OPTION = typer.Option(
+    "--sensor",
+    metavar="FILE|NAME",
+    help="A sensor in a .toml file; one like a real one: generic-2005, ikonos-like, "
+    "quickbird-like; or a kind of sensor: gaussian, wide, diffraction, halo, sharpened, "
+    "asymmetric, smeared, defocused.",
+)
+SensorName = Annotated[str, SENSOR_OPTION]
+OptionalSensorName = Annotated[str | None, SENSOR_OPTION]
 
 
-def named_sensor(name: str) -> Sensor:
+def named_sensor(name: str, gsd_m: float | None = None) -> Sensor:
     """The sensor of a TOML file, a preset, or a reference system.
+
+    Parameters
+    ----------
+    name : str
+    gsd_m : float, optional
+        Another ground sampling distance than the sensor's own: its blur stays the same in pixels.
 
     Raises
     ------
@@ -48,10 +61,12 @@ def named_sensor(name: str) -> Sensor:
 
     ready = {key: sheet.sensor for key, sheet in presets().items()} | reference_systems()
     if name in ready:
-        return ready[name]
-    if Path(name).suffix.lower() == ".toml":
-        return read_sensor(name)
-    raise OptionError(f"the sensor {name} is no .toml file and none of {', '.join(ready)}")
+        sensor = ready[name]
+    elif Path(name).suffix.lower() == ".toml":
+        sensor = read_sensor(name)
+    else:
+        raise OptionError(f"the sensor {name} is no .toml file and none of {', '.join(ready)}")
+    return sensor if gsd_m is None else replace(sensor, gsd_m=gsd_m, gsd_along_m=None)
 
 
 def sensor_budget(
@@ -81,9 +96,7 @@ def sensor_budget(
     system = named_sensor(sensor)
     table = budget(system, freq)
     if drawing is not None:
-        drawing.write(figure_bytes(budget_figure(table), drawing.ending))
-        say(f"wrote {drawing.path}")
+        drawing.deliver(figure_bytes(budget_figure(table), drawing.ending))
     if sheet is not None:
-        sheet.write(sheet_to_toml(presets().get(sensor, SensorSheet(system))))
-        say(f"wrote {sheet.path}")
+        sheet.deliver(sheet_to_toml(presets().get(sensor, SensorSheet(system))))
     typer.echo(json_text(budget_document(table)) if as_json else budget_text(table))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from acutance.cli.output import OutputFile, check_output, make_folder
-from acutance.cli.terminal import say, warnings_said
+from acutance.cli.terminal import warnings_said
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -174,6 +174,4 @@ def write_result(result: StudyResult, folder: Path) -> None:
     files[".json"] = json_text(result.to_dict())
     files[".png"] = figure_bytes(study_figure(result), ".png")
     for ending, content in files.items():
-        target = named(ending)
-        target.write(content)
-        say(f"wrote {target.path}")
+        named(ending).deliver(content)
