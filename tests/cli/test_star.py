@@ -16,7 +16,7 @@ def star_image(tmp_path_factory):
     from acutance.cli.app import app
 
     path = tmp_path_factory.mktemp("star") / "star.tif"
-    words = ["simulate", "star", "--sensor", "gaussian", "--square", "--radius", "40", "--size",
+    words = ["simulate", "star", "--sensor", "gaussian", "--wave", "square", "--radius", "40", "--size",
              "92,92", "--snr", "100", "--out", path]  # fmt: skip
     assert CliRunner().invoke(app, [str(word) for word in words]).exit_code == 0
     return path

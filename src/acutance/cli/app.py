@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
@@ -22,7 +25,15 @@ from acutance.cli import (
     star,
     study,
 )
-from acutance.cli.terminal import EXIT_CODES, NOTHING_MEASURED, fail, stop, stop_printing
+from acutance.cli.terminal import (
+    BAD_USAGE,
+    EXIT_CODES,
+    NOTHING_MEASURED,
+    fail,
+    say,
+    stop,
+    stop_printing,
+)
 from acutance.errors import AcutanceError, TargetError
 
 __all__ = ["app", "run"]
@@ -31,9 +42,15 @@ __all__ = ["app", "run"]
 class _Commands(TyperGroup):
     """Commands whose expected errors are one message on stderr and an exit code."""
 
+    def make_context(self, *words: Any, **settings: Any) -> Any:
+        # Help is printed while the words are read.
+        with _stdout_needed():
+            return super().make_context(*words, **settings)
+
     def invoke(self, ctx: Any) -> Any:
         try:
-            return super().invoke(ctx)
+            with _stdout_needed():
+                return super().invoke(ctx)
         except TargetError as error:
             fail(str(error), NOTHING_MEASURED)
         except AcutanceError as error:
@@ -42,11 +59,18 @@ class _Commands(TyperGroup):
             fail(f"there is not enough memory ({error}): choose a smaller image or region")
         except KeyboardInterrupt as error:
             stop(str(error))
-        except OSError as error:
-            # A file that fails is named by the error; a stream has no name.
-            if error.filename is not None:
-                raise
-            stop_printing(error)
+
+
+@contextmanager
+def _stdout_needed() -> Iterator[None]:
+    """End the program where stdout takes no more."""
+    try:
+        yield
+    except OSError as error:
+        # An error of a file names the file; one of a stream cannot.
+        if isinstance(error, AcutanceError) or error.filename is not None:
+            raise
+        stop_printing(error)
 
 
 app = typer.Typer(
@@ -96,4 +120,7 @@ app.add_typer(plan_mirrors.app, name="plan")
 
 def run() -> None:
     """Entry point of the command ``acutance``."""
+    if sys.stdout is None:
+        say("acutance: standard output is closed: send the result to a file")
+        sys.exit(BAD_USAGE)
     app(prog_name="acutance")

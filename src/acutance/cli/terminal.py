@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 import typer
 
 __all__ = [
+    "BAD_USAGE",
     "EXIT_CODES",
     "FAILED_CHECK",
     "NOTHING_MEASURED",
