@@ -32,16 +32,19 @@ class Shown:
         What `acutance.report` needs besides to draw it: the pixels of a target, and their place.
     """
 
-    result: Measurement | Sequence[Measurement] | TargetResult
+    result: Measurement | Sequence[Measurement] | TargetResult[Measurement]
     drawn_on: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def measurements(self) -> Sequence[Measurement]:
         """All measurements of the result."""
+        from acutance.targets import TargetResult
+
         if isinstance(self.result, Sequence):
             return self.result
-        of_target: Sequence[Measurement] | None = getattr(self.result, "measurements", None)
-        return [self.result] if of_target is None else of_target  # type: ignore[list-item]
+        if isinstance(self.result, TargetResult):
+            return self.result.measurements
+        return [self.result]
 
 
 @dataclass(frozen=True)
