@@ -89,9 +89,7 @@ def plan(
 
     An edge: how many rows, which angle. A pulse: which width of tarp, too.
     """
-    from acutance.report import json_text
-    from acutance.report.page import figure_bytes
-    from acutance.report.study_figures import plan_text, study_figure
+    from acutance.report import figure_bytes, json_text, plan_text, study_figure
     from acutance.studies import PlanOptions, plan_target
 
     target: Literal["edge", "pulse"] = "pulse" if context.info_name == "pulse" else "edge"

@@ -82,8 +82,7 @@ def plan_mirrors(
 
     Mirrors spread over the sub-pixel phases sample the PSF finer than the pixels do.
     """
-    from acutance.report import json_text, mirror_plan_figure, mirror_plan_text
-    from acutance.report.page import figure_bytes
+    from acutance.report import figure_bytes, json_text, mirror_plan_figure, mirror_plan_text
     from acutance.studies import MirrorPlanOptions
     from acutance.studies import plan_mirrors as lay_out
 

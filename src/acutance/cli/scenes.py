@@ -77,7 +77,7 @@ class SimulatedFiles:
         import numpy as np
 
         from acutance.raster import Gsd, write_geotiff
-        from acutance.report.documents import json_text
+        from acutance.report import json_text
 
         gsd = None if sensor.pixel_m is None else Gsd(*sensor.pixel_m)
         write_geotiff(self.image.place, pixels.astype(np.float32), gsd_m=gsd)
@@ -141,7 +141,7 @@ def pulse(
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import target_truth_document
+    from acutance.report import target_truth_document
 
     pixels, truth = simulate.pulse(
         system,
@@ -210,7 +210,7 @@ def bars(
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import target_truth_document
+    from acutance.report import target_truth_document
 
     pixels, truth = simulate.bars(
         system,
@@ -256,7 +256,7 @@ def star(
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import target_truth_document
+    from acutance.report import target_truth_document
 
     pixels, truth = simulate.star(
         system,
@@ -298,7 +298,7 @@ def points(
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import target_truth_document
+    from acutance.report import target_truth_document
 
     first = (12.0, 12.0)
     layouts = {

@@ -89,9 +89,7 @@ def sensor_budget(
     drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
     sheet = check_optional("--toml", toml, (".toml",), keep=(sensor,))
     from acutance.optics import SensorSheet, budget, presets, sheet_to_toml
-    from acutance.report.budget import budget_document, budget_figure, budget_text
-    from acutance.report.documents import json_text
-    from acutance.report.page import figure_bytes
+    from acutance.report import budget_document, budget_figure, budget_text, figure_bytes, json_text
 
     system = named_sensor(sensor)
     table = budget(system, freq)

@@ -69,8 +69,7 @@ def pair(
 
     from acutance import simulate
     from acutance.raster import write_geotiff
-    from acutance.report.budget import sensor_document
-    from acutance.report.documents import json_text
+    from acutance.report import json_text, sensor_document
 
     coarse, detailed, truth = simulate.pair(
         system,

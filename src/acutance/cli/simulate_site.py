@@ -60,7 +60,7 @@ def site(
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import scene_document
+    from acutance.report import scene_document
 
     rng = np.random.default_rng(seed)
     noise = described_noise(read_noise, shot_gain, quantum, saturation)
@@ -114,7 +114,7 @@ def checkerboard(
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import scene_document
+    from acutance.report import scene_document
 
     scene = simulate.checkerboard(
         system,

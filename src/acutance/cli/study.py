@@ -149,8 +149,7 @@ def _value(option: str, value: str, text: str) -> Any:
 
 
 def _deliver(result: StudyResult, folder: Path | None, as_json: bool) -> None:
-    from acutance.report import json_text
-    from acutance.report.study_figures import study_text
+    from acutance.report import json_text, study_text
 
     if folder is not None:
         write_result(result, folder)
@@ -159,9 +158,7 @@ def _deliver(result: StudyResult, folder: Path | None, as_json: bool) -> None:
 
 def write_result(result: StudyResult, folder: Path) -> None:
     """Tables as CSV, everything as JSON, and the figure."""
-    from acutance.report import json_text
-    from acutance.report.page import figure_bytes
-    from acutance.report.study_figures import study_figure
+    from acutance.report import figure_bytes, json_text, study_figure
 
     def named(ending: str) -> OutputFile:
         name = folder / f"{result.name}{ending}"
