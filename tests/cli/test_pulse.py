@@ -43,7 +43,7 @@ def validator():
 def test_the_text_report_has_the_width_and_goes_to_stdout(acutance, pulse_image):
     result = acutance("pulse", pulse_image, "--width-m", WIDTH_M)
     assert (result.exit_code, result.stderr) == (0, "")
-    assert result.stdout.startswith("pulse by spline, across")
+    assert result.stdout.startswith("Pulse, method spline: across track")
     assert "Width on the ground" in result.stdout
 
 
