@@ -53,7 +53,7 @@ def test_every_output_of_a_measurement(acutance, mirrors, shown, tmp_path):
 def test_the_published_method_in_words(acutance, mirrors):
     done = acutance("points", mirrors / "mirrors.tif", "--method", "gaussian-2003")
     assert done.exit_code == 0, done.stderr
-    assert "Points by gaussian-2003" in done.stdout
+    assert "Point sources, method gaussian-2003" in done.stdout
     assert "phase_gap_px" in done.stdout
 
 
@@ -81,9 +81,9 @@ def test_senseless_words_are_refused(acutance, mirrors, words, message):
         ("mirror,height\n1,2\n", "name two of them"),
         ("row,col\n3,four\n", "line 2"),
         ("", "holds no positions"),
-        ('{"type": "Point"', "not GeoJSON"),
+        ('{"type": "Point"', "cannot be read as GeoJSON"),
         ('{"type": "Polygon", "coordinates": []}', "holds no positions"),
-        ("lon,lat\n5,50\n", "no georeference"),
+        ("lon,lat\n5,50\n", "the image has no CRS"),
     ],
 )
 def test_files_without_places_are_refused(acutance, mirrors, tmp_path, content, message):
