@@ -24,7 +24,7 @@ SHOWN = {
     "bars": ("MTF along the bars' normal", "Bars, MTF along the normal"),
     "star": ("MTF against radius", "Star, MTF against radius"),
     "mirrors": ("PSF surface", "Mirrors, PSF"),
-    "combined": ("MTF by direction", "All combined, MTF by direction"),
+    "combined": ("Directions", "All combined, MTF by direction"),
 }
 """Which drawing of a target the site shows, and its title there."""
 CAUSES = {
