@@ -49,11 +49,8 @@ def test_the_index_shows_the_verdict_of_every_page_and_what_it_flags(folder):
     for name in (*TARGETS, "combined"):
         document = json.loads((folder / f"{file_of(name)}.json").read_text(encoding="utf-8"))
         words = "All methods combined" if name == "combined" else f"The {name}"
-        shown = re.search(
-            rf'<div class="verdict {document["verdict"]["word"]}"><p>{words}.*?</div>',
-            index,
-            re.DOTALL,
-        )
+        word = document["verdict"]["word"]
+        shown = re.search(rf'<div class="verdict {word}"><p>{words}.*?</div>', index, re.DOTALL)
         assert shown, name
         for check in document["checks"]:
             flagged = f"<b>{check['name']}</b>" in shown[0]

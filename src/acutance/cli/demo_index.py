@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from acutance.report.tables.campaign import CampaignEntry
     from acutance.simulate import Scene
     from acutance.targets import Measurement
+    from acutance.targets.combine import CombinedMeasurement
 
 __all__ = ["Page", "index_sections"]
 
@@ -86,18 +87,16 @@ def index_sections(
         Section(
             "All methods together",
             headlines=_headlines(entries),
-            verdicts=(_agreement(campaign),),
+            verdicts=(_agreement(campaign.combined),),
         ),
-        _site_section(campaign),
-        *_truth_sections(entries),
         Section(
             "Verdicts",
             paragraphs=("What the checks of each reference measurement come to.",),
             verdicts=tuple(_verdict(page) for page in pages),
-            links=tuple(
-                Link(f"{one.words}: curves, numbers and checks", one.file) for one in pages
-            ),
+            links=tuple(Link(f"{one.words}: numbers, curves, checks", one.file) for one in pages),
         ),
+        _site_section(campaign),
+        *_truth_sections(entries),
     )
 
 
@@ -131,18 +130,23 @@ def _headlines(entries: Sequence[CampaignEntry]) -> tuple[Headline, ...]:
     return tuple(cards)
 
 
-def _agreement(campaign: Campaign) -> Verdict:
+def _agreement(combined: CombinedMeasurement) -> Verdict:
     """Whether the methods agree: the chi-square of the combination."""
     from acutance.report.html import Verdict
 
-    combined = campaign.combined
     found = combined.chi_square
     numbers = f"chi-square {found.value:.0f}, {found.expected:.0f} expected"
-    if found.p_value >= MIN_P_VALUE:
-        chance = f"the chance of a larger one is {100 * found.p_value:.0f} %"
-        return Verdict("good", f"The methods agree: {numbers}; {chance}.")
-    widened = f"all deviations were widened by {combined.birge_ratio:.2f}"
-    return Verdict("doubtful", f"The methods disagree: {numbers}; {widened}.")
+    chance = f"the chance of a larger one is {100 * found.p_value:.0f} %"
+    if found.p_value < MIN_P_VALUE:
+        widened = f"all deviations were widened by {combined.birge_ratio:.2f}"
+        return Verdict("doubtful", f"The methods disagree: {numbers}; {widened}.")
+    if found.p_value > 1 - MIN_P_VALUE:
+        return Verdict(
+            "usable",
+            f"The methods agree better than their deviations say: {numbers}; {chance}. Some of the "
+            "deviations are too wide.",
+        )
+    return Verdict("good", f"The methods agree: {numbers}; {chance}.")
 
 
 def _site_section(campaign: Campaign) -> Section:
