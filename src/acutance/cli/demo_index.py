@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from acutance.cli.demo_folder import file_of
 from acutance.cli.demo_targets import COMBINED, Campaign
@@ -240,7 +240,7 @@ def _drawings(campaign: Campaign) -> list[Drawing]:
     from acutance import report
     from acutance.report.figures.campaign import draw_small_edge, draw_small_pulse, draw_titled
 
-    measured = {one.name: one.reference for one in campaign.targets}
+    measured: dict[str, Any] = {one.name: one.reference for one in campaign.targets}
     found: list[Drawing] = [
         partial(draw_small_edge, measured["vertical edge"]),
         partial(draw_small_pulse, measured["pulse tarp"]),

@@ -59,7 +59,7 @@ def named_sensor(name: str, gsd_m: float | None = None) -> Sensor:
     from acutance.optics import presets, read_sensor
     from acutance.simulate import reference_systems
 
-    ready = {key: sheet.sensor for key, sheet in presets().items()} | reference_systems()
+    ready = {key: one.sensor for key, one in presets().items()} | reference_systems()
     if name in ready:
         sensor = ready[name]
     elif Path(name).suffix.lower() == ".toml":
@@ -87,14 +87,14 @@ def sensor_budget(
 ) -> None:
     """What every block of a sensor leaves of the contrast, across and along."""
     drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
-    sheet = check_optional("--toml", toml, (".toml",), keep=(sensor,))
-    from acutance.optics import SensorSheet, budget, presets, sheet_to_toml
+    described = check_optional("--toml", toml, (".toml",), keep=(sensor,))
+    from acutance.optics import SensorFile, budget, presets, sensor_file_to_toml
     from acutance.report import budget_document, budget_figure, budget_text, figure_bytes, json_text
 
     system = named_sensor(sensor)
     table = budget(system, freq)
     if drawing is not None:
         drawing.deliver(figure_bytes(budget_figure(table), drawing.ending))
-    if sheet is not None:
-        sheet.deliver(sheet_to_toml(presets().get(sensor, SensorSheet(system))))
+    if described is not None:
+        described.deliver(sensor_file_to_toml(presets().get(sensor, SensorFile(system))))
     typer.echo(json_text(budget_document(table)) if as_json else budget_text(table))
