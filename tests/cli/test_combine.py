@@ -29,7 +29,7 @@ def files(tmp_path_factory):
 def test_text_names_every_file_and_the_sensor(acutance, files):
     result = acutance("combine", *files)
     assert result.exit_code == 0, result.stderr
-    for name in ("edge-0", "edge-1", "edge-2", "Sensor of largest weight", "agreement"):
+    for name in ("edge-0", "edge-1", "edge-2", "The sensor", "agreement"):
         assert name in result.stdout
 
 

@@ -79,7 +79,7 @@ def test_measurements_that_mean_nothing(refused, edge_image, words, message):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("edge", "--draws", 1), "2 or more, or for 0"),
+        (("edge", "--draws", 1), "give 2 or more, or 0"),
         (("edge", "--rows", "nan"), "write whole numbers"),
         (("edge", "--rows", "30.5"), "write whole numbers"),
     ],
