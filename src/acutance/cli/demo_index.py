@@ -143,8 +143,8 @@ def _agreement(combined: CombinedMeasurement) -> Verdict:
     if found.p_value > 1 - MIN_P_VALUE:
         return Verdict(
             "usable",
-            f"The methods agree better than their deviations say: {numbers}; {chance}. Some of the "
-            "deviations are too wide.",
+            f"The methods agree better than their deviations promise: {numbers}; {chance}. Some "
+            "deviations are too wide: below, The site has the reasons.",
         )
     return Verdict("good", f"The methods agree: {numbers}; {chance}.")
 
@@ -231,7 +231,9 @@ def _about(scene: Scene) -> tuple[str, ...]:
         "Because the image is simulated, the true curves are known (truth.json). Grass is no "
         "uniform background: what surrounds a target is structure and not noise, so mirrors, star "
         "and bars have wider intervals here than on a laboratory's target, and their checks say "
-        "that the noise is correlated.",
+        "that the noise is correlated. Intervals count the power of grass at its coarsest for all "
+        "frequencies, and those of a star without stated levels allow for scattered light, of "
+        "which this sensor has none: the targets agree better than their deviations promise.",
     )
 
 
