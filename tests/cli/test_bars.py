@@ -70,7 +70,10 @@ def test_text_and_strict(acutance, bars_image):
         (("--group", "20,20,6,8,1,24"), "a single bar is a pulse"),
         (("--count", "1"), "a single bar is a pulse"),
         (("--bright", "3"), "dark and bright, or neither"),
-        (("--limit", "colour=3"), "no check 'colour' to limit, only bar_directions"),
+        (
+            ("--limit", "colour=3"),
+            "no check 'colour' to limit (limits, --limit), only bar_directions",
+        ),
     ],
 )
 def test_refusals(refused, bars_image, words, message):

@@ -114,7 +114,7 @@ def test_strict_and_limits(acutance, pair):
         (("--reference", "0.8"), "between 0 and 0.637"),
         (("--method", "magic"), "kernel-fit, spectral-ratio"),
         (("--stop", 2), "between 0 and 1"),
-        (("--limit", "edges=3"), "no check 'edges' to limit, only "),
+        (("--limit", "edges=3"), "no check 'edges' to limit (limits, --limit), only "),
         (("--high-band", 2), "band 2"),
         (("--roi", "0,0,12,12"), "larger"),
         (("--covariance",), "add --json"),

@@ -167,7 +167,10 @@ def test_rer_can_be_centred_on_the_peak(acutance, edge_image):
         (("--method", "magic"), "magic"),
         (("--compare", "magic"), "magic"),
         (("--rer-centre", "middle"), "half or peak"),
-        (("--limit", "nonsense=1"), "no check 'nonsense' to limit, only angle_deg, "),
+        (
+            ("--limit", "nonsense=1"),
+            "no check 'nonsense' to limit (limits, --limit), only angle_deg, ",
+        ),
         (("--limit", "rows=much"), "write NAME=VALUE with a number, as in rows=10"),
     ],
 )

@@ -63,7 +63,7 @@ def test_the_published_method_in_words(acutance, mirrors):
         (("--method", "best"), "there is no method 'best'"),
         (("--positions", "nowhere.csv"), "there is no such file"),
         (("--limit", "sources"), "write NAME=VALUE with a number"),
-        (("--limit", "mirrors=3"), "no check 'mirrors' to limit, only "),
+        (("--limit", "mirrors=3"), "no check 'mirrors' to limit (limits, --limit), only "),
         (("--min-snr", "0"), "min_snr is 0"),
         (("--survey-reference", "last"), "mean or first"),
         (("--roi", "0,0,20,6"), "at least"),

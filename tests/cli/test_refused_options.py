@@ -52,7 +52,10 @@ def test_scenes_that_cannot_be_rendered(refused, folder, words, message):
         (("edge", "--limit", "rows=nan"), "--limit rows=nan: write NAME=VALUE with a number"),
         (("edge", "--limit", "rows=many"), "with a number, as in rows=10"),
         (("edge", "--limit", "rows"), "write NAME=VALUE"),
-        (("edge", "--limit", "plateau_px=30"), "no check 'plateau_px' to limit, only angle_deg"),
+        (
+            ("edge", "--limit", "plateau_px=30"),
+            "no check 'plateau_px' to limit (limits, --limit), only angle_deg",
+        ),
         (("pulse", "--limit", "uniformity=30"), "uniformity_behind"),
         (("points", "--limit", "rows=1"), "peak_snr"),
         (("bars", "--limit", "rows=1"), "bar_directions"),

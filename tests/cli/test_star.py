@@ -62,7 +62,7 @@ def test_text_and_strict(acutance, star_image):
         (("--centre", "5"), "write ROW,COL"),
         (("--wave", "saw"), "'sine' or 'square'"),
         (("--dark", "3"), "dark and bright, or neither"),
-        (("--limit", "colour=3"), "no check 'colour' to limit, only "),
+        (("--limit", "colour=3"), "no check 'colour' to limit (limits, --limit), only "),
     ],
 )
 def test_refusals(refused, star_image, words, message):
