@@ -48,7 +48,7 @@ class CampaignTarget:
         return self.comparison.measurements[0]
 
     def entries(self, direction: Orientation) -> Iterator[CampaignEntry]:
-        """Every method beside the truth, in a direction that the target shows."""
+        """Every method with the truth, in a direction that the target shows."""
         from acutance.report.tables.campaign import CampaignEntry
 
         for one in self.comparison.measurements:
@@ -76,7 +76,7 @@ class Campaign:
     combined: CombinedMeasurement
 
     def entries(self) -> list[CampaignEntry]:
-        """Every method and direction beside the truth, across first, the combination last."""
+        """Every method and direction with the truth, across first, the combination last."""
         from acutance import report
 
         truth = _truth_in_both(self.scene)

@@ -1,4 +1,4 @@
-"""``acutance simulate pulse | bars | star | points``: the image, and its truth beside it."""
+"""``acutance simulate pulse | bars | star | points``: the image, and its truth in a file next to it."""
 
 from __future__ import annotations
 
@@ -41,20 +41,20 @@ EXAMPLES = {
 
 Out = Annotated[
     str,
-    typer.Option(metavar="FILE", help="The image, .tif; the truth goes beside it as .truth.json."),
+    typer.Option(metavar="FILE", help="The image, .tif; the truth goes next to it as .truth.json."),
 ]
 Angle = Annotated[
     float, typer.Option(metavar="DEG", help="Tilt against the nearer image axis, -45 to 45.")
 ]
 Along = Annotated[bool, typer.Option("--along", help="Nearly horizontal: the MTF along track.")]
-Dark = Annotated[float, typer.Option(metavar="DN", help="Level of the ground.")]
+Dark = Annotated[float, typer.Option(metavar="DN", help="Level of the background.")]
 Bright = Annotated[float, typer.Option(metavar="DN", help="Level of the target.")]
 Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")]
 
 
 @dataclass(frozen=True)
 class SimulatedFiles:
-    """An image and the truth beside it, found writable before anything is rendered.
+    """An image and the file of its truth, found writable before anything is rendered.
 
     Parameters
     ----------
@@ -68,8 +68,8 @@ class SimulatedFiles:
     def of(cls, out: str, *inputs: str | None) -> SimulatedFiles:
         """The files for ``--out``, refused if they cannot be written or are among the inputs."""
         image = check_output("--out", out, (".tif", ".tiff"), keep=inputs)
-        beside = str(image.path.with_suffix(".truth.json"))
-        truth = check_output("--out", beside, (".json",), keep=inputs)
+        truth_name = str(image.path.with_suffix(".truth.json"))
+        truth = check_output("--out", truth_name, (".json",), keep=inputs)
         return cls(image, truth)
 
     def write(self, pixels: Floats, sensor: Sensor, document: dict[str, Any], seed: int) -> None:
@@ -124,7 +124,7 @@ def pulse(
     dark: Dark = 100.0,
     right_dark: Annotated[
         float | None,
-        typer.Option(metavar="DN", help="Level of the ground behind the pulse, if it differs."),
+        typer.Option(metavar="DN", help="Level of the background behind the pulse, if it differs."),
     ] = None,
     bright: Bright = 1200.0,
     noise: NoiseOptions,
@@ -134,7 +134,7 @@ def pulse(
     ] = False,
     seed: Seed = 0,
 ) -> None:
-    """Render a pulse target: a bright strip between two grounds."""
+    """Render a pulse: a bright strip between two backgrounds."""
     files, shape = SimulatedFiles.of(out, sensor), parse_size(size)
     system = named_sensor(sensor)
 
@@ -288,7 +288,9 @@ def points(
     peak: Annotated[
         float, typer.Option(metavar="DN", help="What a centred mirror adds to its pixel.")
     ] = 1000.0,
-    background: Annotated[float, typer.Option(metavar="DN", help="Level of the ground.")] = 200.0,
+    background: Annotated[
+        float, typer.Option(metavar="DN", help="Level of the background.")
+    ] = 200.0,
     noise: NoiseOptions,
     seed: Seed = 0,
 ) -> None:

@@ -1,4 +1,4 @@
-"""``acutance simulate``: images of targets, with their truth beside them."""
+"""``acutance simulate``: images of targets, each with its truth."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ EXAMPLE = (
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
-    help="Render a target, with its truth beside it.",
+    help="Render a target, with its truth.",
     epilog=EXAMPLE,
 )
 
 
 @app.callback()
 def _simulate() -> None:
-    """Render a target as a sensor sees it, with its truth beside it."""
+    """Render a target as a sensor sees it, with its truth."""
 
 
 @app.command("edge", epilog=EXAMPLE)
@@ -43,7 +43,7 @@ def edge(
     out: Annotated[
         str,
         typer.Option(
-            metavar="FILE", help="The image, .tif; the truth goes beside it as .truth.json."
+            metavar="FILE", help="The image, .tif; the truth goes next to it as .truth.json."
         ),
     ],
     sensor: OptionalSensorName = None,

@@ -24,7 +24,7 @@ def pair(
     out: Annotated[
         str,
         typer.Option(
-            metavar="FILE", help="The low image, .tif; the truth goes beside it as .truth.json."
+            metavar="FILE", help="The low image, .tif; the truth goes next to it as .truth.json."
         ),
     ],
     high: Annotated[str, typer.Option(metavar="FILE", help="The high image, .tif.")],

@@ -87,7 +87,7 @@ def execution_of(
 
 
 def progress_bar(title: str) -> AbstractContextManager[Callable[[int, int], None] | None]:
-    """A bar of finished trials on stderr; nothing where nobody is watching."""
+    """A bar of finished trials on stderr; nothing where stderr is no terminal."""
     from rich.console import Console
 
     console = Console(stderr=True)
