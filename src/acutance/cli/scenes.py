@@ -1,4 +1,4 @@
-"""``acutance simulate pulse | bars | star | points``: the image, and its truth in a file next to it."""
+"""``acutance simulate pulse | bars | star | points``: an image, and its truth next to it."""
 
 from __future__ import annotations
 
