@@ -7,9 +7,13 @@ import inspect
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from typer.main import get_command
 
 import acutance
+from acutance.cli.app import app
 from textbook.rst import heading, list_table
 
 __all__ = ["help_texts", "object_pages", "package_pages", "top_names"]
@@ -31,32 +35,6 @@ PACKAGES = (
     "studies",
     "report",
 )
-
-COMMANDS: dict[str, list[str]] = {
-    "acutance": [],
-    "edge": ["edge"],
-    "pulse": ["pulse"],
-    "points": ["points"],
-    "biresolution": ["biresolution"],
-    "combine": ["combine"],
-    "star": ["star"],
-    "bars": ["bars"],
-    "sites": ["sites"],
-    "simulate-edge": ["simulate", "edge"],
-    "simulate-pulse": ["simulate", "pulse"],
-    "simulate-bars": ["simulate", "bars"],
-    "simulate-star": ["simulate", "star"],
-    "simulate-points": ["simulate", "points"],
-    "simulate-checkerboard": ["simulate", "checkerboard"],
-    "simulate-site": ["simulate", "site"],
-    "simulate-pair": ["simulate", "pair"],
-    "simulate-sensor-budget": ["simulate", "sensor-budget"],
-    "study": ["study"],
-    "plan-edge": ["plan", "edge"],
-    "plan-pulse": ["plan", "pulse"],
-    "plan-mirrors": ["plan", "mirrors"],
-    "demo": ["demo"],
-}
 
 
 def top_names() -> str:
@@ -113,8 +91,18 @@ def object_pages() -> set[str]:
 
 
 def help_texts() -> dict[str, Callable[[], str]]:
-    """``help-NAME.inc`` for every command."""
-    return {f"help-{name}.inc": _help(arguments) for name, arguments in COMMANDS.items()}
+    """``help-NAME.inc`` for every command: "help-acutance.inc", "help-simulate-edge.inc"."""
+    return {
+        f"help-{'-'.join(words) or 'acutance'}.inc": _help(words)
+        for words in _commands(get_command(app), [])
+    }
+
+
+def _commands(command: Any, words: list[str]) -> Iterator[list[str]]:
+    """The words that call a command, and those of every command below it."""
+    yield words
+    for name, inner in getattr(command, "commands", {}).items():
+        yield from _commands(inner, [*words, name])
 
 
 def _help(arguments: list[str]) -> Callable[[], str]:

@@ -39,3 +39,39 @@ def acutance():
         return CliRunner().invoke(app, [str(word) for word in words])
 
     return run
+
+
+@pytest.fixture
+def shown(monkeypatch):
+    """What commands hand to `acutance.report` to be drawn: (name, result, how) each time.
+
+    Drawing takes longer than measuring. The tests of the report draw every kind of result, and
+    the demonstration writes a page of each.
+    """
+    calls = []
+
+    def keep(name, answer):
+        def function(result, **how):
+            calls.append((name, result, how))
+            return answer
+
+        monkeypatch.setattr(f"acutance.report.{name}", function)
+
+    keep("draw", None)
+    keep("page", "<!DOCTYPE html>")
+    monkeypatch.setattr("acutance.report.figure_bytes", lambda figure, ending: ending.encode())
+    return calls
+
+
+@pytest.fixture
+def refused(acutance):
+    """A command line ends with one message on stderr, and an exit code."""
+
+    def check(words, message, code=2):
+        result = acutance(*words)
+        assert result.exit_code == code, result.output
+        assert result.stdout == ""
+        assert message in " ".join(result.stderr.split())
+        assert "Traceback" not in result.stderr
+
+    return check

@@ -1,9 +1,12 @@
 """The command as a whole: help, version, errors, what it imports."""
 
+import os
+import shlex
 import subprocess
 import sys
 
 import pytest
+from typer.main import get_command
 
 from acutance import __version__
 from acutance.cli import app as app_module
@@ -12,20 +15,84 @@ from acutance.errors import ImageError
 HEAVY = ("numpy", "scipy", "matplotlib", "rasterio", "jinja2", "rich", "pydantic")
 
 
+def commands(command=None, words=()):
+    """Every command and group of commands, with the words that call it."""
+    command = get_command(app_module.app) if command is None else command
+    yield words, command
+    for name, inner in getattr(command, "commands", {}).items():
+        yield from commands(inner, (*words, name))
+
+
+def examples(command):
+    """Lines of a command's help below "Example:"."""
+    lines = [line.strip() for line in (command.epilog or "").splitlines()]
+    start = next(i for i, line in enumerate(lines) if line in ("Example:", "Examples:"))
+    return lines[start + 1 :]
+
+
 @pytest.mark.parametrize(
-    "words", [(), ("edge",), ("pulse",), ("sites",), ("simulate",), ("simulate", "edge"), ("demo",)]
+    ("words", "command"), [pytest.param(*one, id=" ".join(one[0])) for one in commands()]
 )
-def test_every_help_ends_with_an_example(acutance, words):
-    result = acutance(*words, "--help")
-    assert result.exit_code == 0
-    last = result.stdout.strip().splitlines()[-2:]
-    assert last[0].strip() == "Example:"
-    assert last[1].startswith("    acutance ")
+def test_every_help_ends_with_examples_that_can_be_typed(acutance, words, command):
+    shown = [line.strip() for line in acutance(*words, "--help").stdout.strip().splitlines()]
+    typed = examples(command)
+    assert shown[-len(typed) :] == typed
+    assert shown[-len(typed) - 1] in ("Example:", "Examples:")
+    assert any(" ".join(("acutance", *words)) in line for line in typed)
+    for line in typed:
+        program, *given = shlex.split(line.split(" > ")[0])
+        assert program == "acutance"
+        called = get_command(app_module.app)
+        while hasattr(called, "commands"):
+            called = called.commands[given.pop(0)]
+        # Parses the line, and refuses an option or an argument that the command does not have.
+        called.make_context(called.name, given)
 
 
 def test_the_version_is_printed_alone(acutance):
     result = acutance("--version")
     assert (result.exit_code, result.stdout) == (0, f"acutance {__version__}\n")
+
+
+def test_python_m_acutance_is_the_same_command():
+    done = subprocess.run(
+        [sys.executable, "-m", "acutance", "--version"], capture_output=True, text=True, check=True
+    )
+    assert done.stdout == f"acutance {__version__}\n"
+
+
+def printed_to(stdout, *words):
+    """Exit code and stderr of a command whose stdout is a file descriptor."""
+    done = subprocess.run(
+        [sys.executable, "-m", "acutance", *words], stdout=stdout, stderr=subprocess.PIPE, text=True
+    )
+    return done.returncode, done.stderr
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
+@pytest.mark.parametrize("words", [("sites", "--json"), ("--help",), ("edge", "--help")])
+def test_a_full_stdout_is_one_line_and_exit_2(words):
+    with open("/dev/full", "w") as full:
+        code, said = printed_to(full, *words)
+    assert code == 2
+    assert said.startswith("acutance: the result cannot be written to standard output (No space")
+    assert len(said.splitlines()) == 1
+
+
+@pytest.mark.parametrize("words", [("sites", "--json"), ("--help",)])
+def test_a_reader_that_has_left_ends_the_command_without_a_word(words):
+    reading, writing = os.pipe()
+    os.close(reading)
+    with os.fdopen(writing, "w") as closed:
+        assert printed_to(closed, *words) == (141, "")
+
+
+def test_without_any_stdout_nothing_is_measured():
+    done = subprocess.run(
+        ["sh", "-c", f"'{sys.executable}' -m acutance sites >&-"], capture_output=True, text=True
+    )
+    assert done.returncode == 2
+    assert done.stderr == "acutance: standard output is closed: send the result to a file\n"
 
 
 def test_nothing_heavy_is_imported_before_a_command_runs():

@@ -1,14 +1,14 @@
 """``acutance demo``: a campaign rendered, measured by every method, compared with its truth."""
 
+import html
 import json
 import re
 
 import pytest
 
-from acutance.cli.demo_folder import FILES, demo_folder
+from acutance.cli.demo_folder import FILES, demo_folder, file_of
 from acutance.errors import OptionError
-from acutance.targets.points import POINTS_METHODS
-from acutance.targets.straight import METHODS, PULSE_METHODS
+from acutance.targets.kinds import KINDS
 
 TARGETS = ("vertical edge", "horizontal edge", "pulse tarp", "bars", "star", "mirrors")
 
@@ -34,13 +34,27 @@ def test_one_image_holds_every_target_and_its_truth_lies_beside_it(folder):
 
 def test_the_report_names_every_method_and_its_pages_exist(folder):
     index = (folder / "index.html").read_text(encoding="utf-8")
-    for name in (*METHODS, *PULSE_METHODS, *POINTS_METHODS, *TARGETS, "all combined"):
+    methods = [name for kind in ("edge", "pulse", "points") for name in KINDS[kind].methods]
+    for name in (*methods, *TARGETS, "all combined"):
         assert name in index
     pages = re.findall(r'href="([^"]+)"', index)
     assert len(pages) == len(TARGETS) + 1
     for page in pages:
         assert "<svg" in (text := (folder / page).read_text(encoding="utf-8")) or "data:" in text
     assert "truth" in (folder / "pulse-tarp.html").read_text(encoding="utf-8")
+
+
+def test_the_index_shows_the_verdict_of_every_page_and_what_it_flags(folder):
+    index = html.unescape((folder / "index.html").read_text(encoding="utf-8"))
+    for name in (*TARGETS, "combined"):
+        document = json.loads((folder / f"{file_of(name)}.json").read_text(encoding="utf-8"))
+        words = "All methods combined" if name == "combined" else f"The {name}"
+        word = document["verdict"]["word"]
+        shown = re.search(rf'<div class="verdict {word}"><p>{words}.*?</div>', index, re.DOTALL)
+        assert shown, name
+        for check in document["checks"]:
+            flagged = f"<b>{check['name']}</b>" in shown[0]
+            assert flagged != check["passed"], (name, check["name"])
 
 
 def test_no_reference_method_is_far_from_the_truth(folder):

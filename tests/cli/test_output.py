@@ -6,6 +6,7 @@ import pytest
 
 from acutance.cli.output import check_output
 from acutance.errors import OptionError
+from acutance.raster import open_image
 
 
 def test_an_unknown_ending_is_refused_with_those_allowed(tmp_path):
@@ -57,3 +58,31 @@ def test_text_and_bytes_are_written(tmp_path):
     target.write("±")
     assert (tmp_path / "A.CSV").read_text(encoding="utf-8") == "±"
     assert [one.name for one in tmp_path.iterdir()] == ["A.CSV"]
+
+
+def test_a_link_stays_a_link_and_what_it_leads_to_is_written(tmp_path):
+    (tmp_path / "real").mkdir()
+    kept, link = tmp_path / "real" / "kept.csv", tmp_path / "a.csv"
+    link.symlink_to(kept)
+    for content in ("first", "second"):
+        check_output("--csv", str(link), (".csv",)).write(content)
+        assert link.is_symlink()
+        assert kept.read_text() == content
+    assert [one.name for one in (tmp_path / "real").iterdir()] == ["kept.csv"]
+
+
+def test_an_image_is_written_where_a_link_leads(acutance, tmp_path):
+    (tmp_path / "a.tif").symlink_to(tmp_path / "kept.tif")
+    done = acutance("simulate", "edge", "--size", "20,20", "--out", tmp_path / "a.tif")
+    assert done.exit_code == 0, done.stderr
+    assert (tmp_path / "a.tif").is_symlink()
+    assert open_image(str(tmp_path / "kept.tif")).shape == (20, 20)
+
+
+def test_a_link_that_leads_nowhere_is_found_out_first(tmp_path):
+    (tmp_path / "a.csv").symlink_to(tmp_path / "gone" / "a.csv")
+    with pytest.raises(OptionError, match=r"a link into the folder .*gone, which does not exist"):
+        check_output("--csv", str(tmp_path / "a.csv"), (".csv",))
+    (tmp_path / "b.csv").symlink_to(os.devnull)
+    with pytest.raises(OptionError, match="no ordinary file"):
+        check_output("--csv", str(tmp_path / "b.csv"), (".csv",))

@@ -9,7 +9,7 @@ from jsonschema import Draft202012Validator
 from acutance import optics, simulate
 from acutance.raster import write_geotiff
 from acutance.report import measurement_schema
-from acutance.targets.straight import PULSE_METHODS
+from acutance.targets.kinds import KINDS
 
 SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=2.8)
 WIDTH_M = 8.83
@@ -43,7 +43,7 @@ def validator():
 def test_the_text_report_has_the_width_and_goes_to_stdout(acutance, pulse_image):
     result = acutance("pulse", pulse_image, "--width-m", WIDTH_M)
     assert (result.exit_code, result.stderr) == (0, "")
-    assert result.stdout.startswith("pulse by spline, across")
+    assert result.stdout.startswith("Pulse, method spline: across track")
     assert "Width on the ground" in result.stdout
 
 
@@ -72,20 +72,28 @@ def test_a_held_width_has_no_deviation(acutance, pulse_image):
 def test_region_gsd_and_limits_reach_the_measurement(acutance, pulse_image):
     result = acutance(
         *("pulse", pulse_image, "--roi", "5,4,48,32", "--gsd", 2.4, "--width-px", 3.15, "--json"),
-        *("--limit", "plateau_px=3", "--limit", "ground_step=0.5", "--rer-centre", "peak"),
+        *(
+            "--limit",
+            "plateau_before_px=3",
+            "--limit",
+            "background_step=0.5",
+            "--rer-centre",
+            "peak",
+        ),
     )
     assert result.exit_code == 0, result.stderr
     document = json.loads(result.stdout)
     assert document["image"]["roi"][0] >= 5
     assert document["image"]["gsd_m"] == pytest.approx(2.4)
-    limits = document["options"]["limits"]
-    assert (limits["plateau_px"], limits["ground_step"]) == (3.0, 0.5)
+    assert document["options"]["limits"] == {"plateau_before_px": 3.0, "background_step": 0.5}
+    limits = {one["name"]: one["limit_value"] for one in document["checks"]}
+    assert (limits["plateau_before_px"], limits["background_step"]) == (3.0, 0.5)
     assert document["rer_centre"] == "peak"
 
 
-@pytest.mark.parametrize("method", PULSE_METHODS)
+@pytest.mark.parametrize("method", KINDS["pulse"].methods)
 def test_every_method_is_named_in_the_help_and_writes_its_files(
-    acutance, pulse_image, tmp_path, method
+    acutance, pulse_image, shown, tmp_path, method
 ):
     assert method in acutance("pulse", "--help").stdout
     result = acutance(
@@ -94,21 +102,21 @@ def test_every_method_is_named_in_the_help_and_writes_its_files(
         *("--csv", tmp_path / "p.csv"),
     )
     assert result.exit_code == 0, result.stderr
-    assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
-    page = (tmp_path / "p.html").read_text(encoding="utf-8")
-    assert "Pulse measurement, across" in page
-    assert "Pulse response" in page
+    assert [(name, found.method) for name, found, _ in shown] == [
+        ("draw", method),
+        ("page", method),
+    ]
     assert len((tmp_path / "p.csv").read_text().splitlines()) == 52
 
 
-def test_methods_are_compared(acutance, pulse_image, tmp_path):
-    others = ",".join(PULSE_METHODS)
+def test_methods_are_compared(acutance, pulse_image, shown, tmp_path):
+    others = ",".join(KINDS["pulse"].methods)
     words = ("pulse", pulse_image, "--width-m", WIDTH_M, "--compare", others)
     result = acutance(*words, "--json", "--report", tmp_path / "c.html")
     assert result.exit_code == 0, result.stderr
     document = json.loads(result.stdout)
     found = document.get("measurements", [document])
-    assert [one["method"] for one in found] == list(PULSE_METHODS)
+    assert [one["method"] for one in found] == list(KINDS["pulse"].methods)
 
 
 def test_strict_is_exit_3_after_the_result(acutance, pulse_image):
@@ -133,19 +141,18 @@ def test_strict_is_exit_3_after_the_result(acutance, pulse_image):
         (("--method", "magic"), "magic"),
         (("--compare", "magic"), "magic"),
         (("--limit", "nonsense=1"), "width_sigmas"),
-        (("--limit", "ground_step=much"), "write a number"),
+        (("--limit", "background_step=much"), "with a number"),
         (("--rer-centre", "middle"), "half or peak"),
         (("--figure", "pulse.doc"), "has to be .png or .svg or .pdf"),
-        (("--roi", "0,0,60,9"), "strip"),
     ],
 )
 def test_what_means_nothing_is_exit_2_with_a_message(
-    acutance, bare_image, tmp_path, monkeypatch, words, message
+    refused, bare_image, tmp_path, monkeypatch, words, message
 ):
     monkeypatch.chdir(tmp_path)
-    result = acutance("pulse", bare_image, *words)
-    assert result.exit_code == 2, result.stdout
-    assert result.stdout == ""
-    assert message in result.stderr
-    assert "Traceback" not in result.stderr
+    refused(("pulse", bare_image, *words), message)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_pixels_without_a_pulse_are_exit_4(refused, bare_image):
+    refused(("pulse", bare_image, "--roi", "0,0,60,9"), "strip", code=4)

@@ -52,7 +52,7 @@ def test_every_block_blurs_and_a_ready_system_can_be_named(acutance, tmp_path):
         ("--butterworth", 1.4),
         ("--diffraction", 1.2, "--obscuration", 0.3),
         ("--detector", 1.3),
-        ("--system", "wide"),
+        ("--sensor", "wide"),
     ):
         assert nyquist(*words) < sharp - 0.02, words
 
@@ -63,8 +63,8 @@ def test_every_block_blurs_and_a_ready_system_can_be_named(acutance, tmp_path):
         (("--out", "edge.png"), "has to be .tif"),
         (("--out", "edge.tif", "--size", "60"), "write rows and columns"),
         (("--out", "edge.tif", "--size", "0,40"), "1 or more"),
-        (("--out", "edge.tif", "--system", "gauss"), "the systems are gaussian, wide"),
-        (("--out", "edge.tif", "--system", "wide", "--smear", "1"), "leave out --smear"),
+        (("--out", "edge.tif", "--sensor", "gauss"), "none of generic-2005, ikonos-like"),
+        (("--out", "edge.tif", "--sensor", "wide", "--smear", "1"), "leave out --smear"),
         (("--out", "edge.tif", "--obscuration", "0.3"), "add --diffraction"),
         (("--out", "edge.tif", "--angle", "50"), "cannot exceed 45"),
         (("--out", "edge.tif", "--gaussian", "-1"), "sigma_px"),
@@ -76,3 +76,11 @@ def test_what_means_nothing_is_refused(acutance, tmp_path, monkeypatch, words, m
     assert result.exit_code == 2
     assert message in result.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_named_sensor_may_have_another_gsd(acutance, tmp_path):
+    for name, gsd in (("gaussian", 0.7), ("ikonos-like", 2.0)):
+        words = ("--sensor", name, "--gsd", gsd, "--out", tmp_path / "a.tif")
+        result = acutance("simulate", "edge", *words)
+        assert result.exit_code == 0, result.stderr
+        assert open_image(str(tmp_path / "a.tif")).gsd().row_m == pytest.approx(gsd)

@@ -25,7 +25,7 @@ def render(acutance, tmp_path):
 
 def test_a_pulse(render):
     image, truth, result = render(
-        "pulse", "--width", 3.2, "--snr", 70, "--right-dark", 150, "--seed", 4
+        "pulse", "--width-px", 3.2, "--snr", 70, "--right-dark", 150, "--seed", 4
     )
     assert image.shape == (60, 40)
     assert image.gsd().col_m == 1.0
@@ -65,7 +65,7 @@ def test_bars(render):
 
 
 def test_a_star(render):
-    image, truth, _ = render("star", "--square", "--radius", 40, "--size", "90,100")
+    image, truth, _ = render("star", "--wave", "square", "--radius", 40, "--size", "90,100")
     assert image.shape == (90, 100)
     assert (truth["wave"], truth["cycles"]) == ("square", 36)
     assert truth["mtf"]["value"][0] == pytest.approx(1.0)
@@ -93,7 +93,7 @@ def test_a_checkerboard(render, acutance):
         "checkerboard",
         "--tile",
         30,
-        "--turn",
+        "--angle",
         -5,
         "--size",
         "130,120",
@@ -136,7 +136,7 @@ def test_shot_noise_grows_with_the_signal(render):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("pulse", "--width", 200), "use a larger image (--size)"),
+        (("pulse", "--width-px", 200), "use a larger image (--size)"),
         (("pulse", "--size", "1,1"), "use a larger image (--size)"),
         (("edge", "--snr", 50, "--read-noise", 3), "give one of them"),
         (("edge", "--read-noise", -3), "read is -3"),
@@ -187,12 +187,13 @@ def test_the_budget_of_a_sensor(acutance, tmp_path):
         (("pulse", "--out", "a.png"), "has to be .tif"),
         (("pulse", "--out", "a.tif", "--sensor", "spot"), "is no .toml file and none of"),
         (("pulse", "--out", "a.tif", "--sensor", "no.toml"), "cannot be read"),
-        (("pulse", "--out", "a.tif", "--width", "3", "--width-m", "3"), "use one"),
+        (("pulse", "--out", "a.tif", "--width-px", "3", "--width-m", "3"), "use one"),
         (("pulse", "--out", "a.tif", "--sensor", "wide", "--width-m", "3"), "a sensor with a GSD"),
         (("bars", "--out", "a.tif", "--periods", "a"), "write numbers"),
         (("points", "--out", "a.tif", "--layout", "ring"), "columns, square"),
+        (("star", "--out", "a.tif", "--wave", "saw"), "it has to be sine or square"),
         (("site", "--out", "a.tif", "--targets", "500"), "90 are needed"),
-        (("site", "--out", "a.tif", "--turn", "40"), "2 to 14"),
+        (("site", "--out", "a.tif", "--angle", "40"), "2 to 14"),
         (("edge", "--out", "a.tif", "--sensor", "wide", "--smear", "1"), "stands alone"),
     ],
 )

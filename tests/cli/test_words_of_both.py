@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from acutance.errors import OptionError
+from acutance.errors import OptionError, TargetError
 from acutance.raster import open_image, write_geotiff
+from acutance.targets.kinds import KINDS
 
 NODATA = -9999.0
 
@@ -29,6 +30,45 @@ def test_nodata_can_be_named(acutance, edge_image, spoilt):
     assert found["value"] == pytest.approx(expected["value"], abs=2 * expected["std"])
     taken = acutance("edge", spoilt, "--json")
     assert taken.exit_code != 0 or json.loads(taken.stdout)["rer"] != found
+
+
+MEASURING = ("edge", "pulse", "points", "biresolution", "bars", "star")
+
+
+@pytest.mark.parametrize("command", MEASURING)
+def test_every_measuring_command_has_the_shared_options(acutance, command):
+    words = acutance(command, "--help").stdout.split()
+    for name in ("roi", "site", "band", "nodata", "gsd", "along-track", "figure", "report", "csv"):
+        assert f"--{name}" in words
+    for name in ("json", "covariance", "limit", "strict", "robust"):
+        assert f"--{name}" in words
+
+
+@pytest.mark.parametrize("kind", ["pulse", "points", "biresolution", "bars", "star"])
+def test_along_track_and_limits_reach_every_kind(acutance, edge_image, monkeypatch, kind):
+    seen = []
+
+    def measure(image, *, roi, options, **_):
+        seen.append((image.along_track, roi, dict(options.limits)))
+        raise TargetError("enough seen")
+
+    monkeypatch.setattr(f"{KINDS[kind].room}.{KINDS[kind].measure}", measure)
+    images = [edge_image] * (2 if kind == "biresolution" else 1)
+    limit = f"{LIMITED[kind]}=0.5"
+    done = acutance(kind, *images, "--along-track", "x", "--roi", "2,3,30,20", "--limit", limit)
+    assert (done.exit_code, done.stderr) == (4, "acutance: enough seen\n")
+    ((axis, region, limits),) = seen
+    assert (axis, limits) == ("x", {LIMITED[kind]: 0.5})
+    assert region.box((60, 44)).as_tuple() == (2, 3, 30, 20)
+
+
+LIMITED = {
+    "pulse": "background_step",
+    "points": "phase_gap_px",
+    "biresolution": "coherence",
+    "bars": "finest_cpp",
+    "star": "level",
+}
 
 
 @pytest.mark.parametrize("command", ["edge", "pulse", "bars", "star", "points"])

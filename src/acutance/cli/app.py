@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
@@ -22,24 +25,52 @@ from acutance.cli import (
     star,
     study,
 )
-from acutance.cli.terminal import fail, stop
-from acutance.errors import AcutanceError
+from acutance.cli.terminal import (
+    BAD_USAGE,
+    EXIT_CODES,
+    NOTHING_MEASURED,
+    fail,
+    say,
+    stop,
+    stop_printing,
+)
+from acutance.errors import AcutanceError, TargetError
 
 __all__ = ["app", "run"]
 
 
 class _Commands(TyperGroup):
-    """Commands whose expected errors are one message on stderr and exit code 2, and Ctrl-C 130."""
+    """Commands whose expected errors are one message on stderr and an exit code."""
+
+    def make_context(self, *words: Any, **settings: Any) -> Any:
+        # Help is printed while the words are read.
+        with _stdout_needed():
+            return super().make_context(*words, **settings)
 
     def invoke(self, ctx: Any) -> Any:
         try:
-            return super().invoke(ctx)
+            with _stdout_needed():
+                return super().invoke(ctx)
+        except TargetError as error:
+            fail(str(error), NOTHING_MEASURED)
         except AcutanceError as error:
             fail(str(error))
         except MemoryError as error:
             fail(f"there is not enough memory ({error}): choose a smaller image or region")
         except KeyboardInterrupt as error:
             stop(str(error))
+
+
+@contextmanager
+def _stdout_needed() -> Iterator[None]:
+    """End the program where stdout takes no more."""
+    try:
+        yield
+    except OSError as error:
+        # An error of a file names the file; one of a stream cannot.
+        if isinstance(error, AcutanceError) or error.filename is not None:
+            raise
+        stop_printing(error)
 
 
 app = typer.Typer(
@@ -58,7 +89,7 @@ def _print_version(asked: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
+@app.callback(help=f"Measure how sharp an Earth-observation satellite really sees.\n\n{EXIT_CODES}")
 def _main(
     version: Annotated[
         bool,
@@ -67,27 +98,29 @@ def _main(
         ),
     ] = False,
 ) -> None:
-    """Measure how sharp an Earth-observation satellite really sees.
-
-    Exit codes: 0 measured, 2 bad usage or input, 3 measured but a check failed under --strict,
-    130 interrupted.
-    """
+    pass
 
 
-app.command("bars", epilog=bars.EXAMPLE)(bars.bars)
-app.command("biresolution", epilog=biresolution.EXAMPLE)(biresolution.biresolution)
-app.command("combine", epilog=combine.EXAMPLE)(combine.combine)
-app.command("edge", epilog=edge.EXAMPLE)(edge.edge)
-app.command("pulse", epilog=pulse.EXAMPLE)(pulse.pulse)
-app.command("points", epilog=points.EXAMPLE)(points.points)
-app.command("sites", epilog=sites.EXAMPLE)(sites.sites)
-app.command("star", epilog=star.EXAMPLE)(star.star)
+for _name, _module, _words in (
+    ("edge", edge, "Measure a straight edge."),
+    ("pulse", pulse, "Measure a pulse: a tarp on grass, a bridge, a stripe."),
+    ("points", points, "Measure points: mirrors, lamps, stars of the sky."),
+    ("biresolution", biresolution, "Measure a sensor against a finer image."),
+    ("bars", bars, "Measure groups of bars."),
+    ("star", star, "Measure a Siemens star, full or a fan."),
+    ("combine", combine, "Combine measurements of one sensor."),
+    ("sites", sites, "List the edge targets that --site knows."),
+    ("study", study, "Run a study of targets and estimators."),
+    ("demo", demo, "Measure a simulated campaign by every method."),
+):
+    app.command(_name, epilog=_module.EXAMPLE, short_help=_words)(getattr(_module, _name))
 app.add_typer(simulate.app, name="simulate")
-app.command("study", epilog=study.EXAMPLE)(study.study)
 app.add_typer(plan_mirrors.app, name="plan")
-app.command("demo", epilog=demo.EXAMPLE)(demo.demo)
 
 
 def run() -> None:
     """Entry point of the command ``acutance``."""
+    if sys.stdout is None:
+        say("acutance: standard output is closed: send the result to a file")
+        sys.exit(BAD_USAGE)
     app(prog_name="acutance")

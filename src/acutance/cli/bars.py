@@ -2,34 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from acutance.cli.choices import change_limits
-from acutance.cli.faces import faces_of_plane
-from acutance.cli.result_options import (
-    CovarianceOption,
-    CsvOption,
-    FigureOption,
-    JsonOption,
-    LimitOption,
-    ReportOption,
-    ResultOptions,
-    StrictOption,
-)
-from acutance.cli.star import BrightOption, DarkOption, LevelStdOption
-from acutance.cli.target import (
-    BandOption,
-    GsdOption,
+from acutance.cli.measure import measure_target
+from acutance.cli.option_groups import with_groups
+from acutance.cli.options import (
+    BrightOption,
+    DarkOption,
     ImageArgument,
-    NodataOption,
-    RoiOption,
-    SiteOption,
-    open_target,
+    LevelStdOption,
+    PixelOptions,
+    ResultOptions,
+    RobustOption,
 )
 from acutance.errors import OptionError
+from acutance.targets.kinds import KINDS
 
 if TYPE_CHECKING:
     from acutance.geometry.bar_group import Bars
@@ -44,8 +33,11 @@ EXAMPLE = (
 _PARTS = 6
 
 
+@with_groups
 def bars(
+    *,
     image: ImageArgument,
+    pixels: PixelOptions,
     group: Annotated[
         list[str] | None,
         typer.Option(
@@ -62,59 +54,29 @@ def bars(
     dark: DarkOption = None,
     bright: BrightOption = None,
     level_std: LevelStdOption = 0.0,
-    roi: RoiOption = None,
-    site: SiteOption = None,
-    band: BandOption = 1,
-    nodata: NodataOption = None,
-    gsd: GsdOption = None,
-    robust: Annotated[bool, typer.Option(help="Bound the weight of outlying pixels.")] = True,
-    figure: FigureOption = None,
-    report: ReportOption = None,
-    csv: CsvOption = None,
-    as_json: JsonOption = False,
-    covariance: CovarianceOption = False,
-    limit: LimitOption = None,
-    strict: StrictOption = False,
+    robust: RobustOption = True,
+    wanted: ResultOptions,
 ) -> None:
     """Measure the MTF on groups of parallel bars, as wide as the gaps between them.
 
     All groups are fitted together as what they are: finite square waves of different periods.
-    The contrast of every group (CTF) and Coltman's series stand beside the result.
+    The contrast of every group (CTF) and Coltman's series are given for comparison.
     """
-    wanted = ResultOptions(
-        (image, roi),
-        figure=figure,
-        report=report,
-        csv=csv,
-        as_json=as_json,
-        covariance=covariance,
-        strict=strict,
-    )
-
-    from acutance.targets.periodic import BarsLimits, BarsOptions, measure_bars
-
     _require_bars("--count", count)
-    options = BarsOptions(
-        groups=tuple(parse_group(text) for text in group or []),
-        count=count,
-        dark=dark,
-        bright=bright,
-        level_std=level_std,
-        robust=robust,
-        limits=change_limits(BarsLimits(), limit or []),
+    measure_target(
+        KINDS["bars"],
+        image,
+        pixels,
+        wanted,
+        options={
+            "groups": tuple(parse_group(text) for text in group or []),
+            "count": count,
+            "dark": dark,
+            "bright": bright,
+            "level_std": level_std,
+            "robust": robust,
+        },
     )
-    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata)
-    measurement = measure_bars(source, region, options=options)
-
-    from acutance import report as faces
-
-    shown = faces_of_plane(
-        measurement,
-        panels=faces.bars_panels,
-        sections=faces.bars_sections,
-        blocks=faces.bars_blocks,
-    )
-    wanted.deliver([measurement], replace(shown, csv=lambda: faces.bars_csv(measurement)))
 
 
 def parse_group(text: str) -> Bars:

@@ -3,34 +3,21 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.choices import change_limits
-from acutance.cli.faces import faces_of_plane
-from acutance.cli.result_options import (
-    CovarianceOption,
-    CsvOption,
-    FigureOption,
-    JsonOption,
-    LimitOption,
-    ReportOption,
-    ResultOptions,
-    StrictOption,
-)
-from acutance.cli.target import (
-    BandOption,
-    GsdOption,
-    NodataOption,
-    RoiOption,
-    SiteOption,
-    open_target,
-)
+from acutance.cli.choices import choose_methods
+from acutance.cli.measure import measure_target
+from acutance.cli.option_groups import with_groups
+from acutance.cli.options import PixelOptions, ResultOptions, method_option
 from acutance.errors import OptionError
+from acutance.targets.kinds import KINDS
 
 if TYPE_CHECKING:
+    from acutance.raster import Image
     from acutance.targets.pair.reference import ReferenceLike
 
 __all__ = ["EXAMPLE", "biresolution", "parse_reference"]
@@ -40,13 +27,17 @@ EXAMPLE = (
     "  acutance biresolution b8a-20m.tif b8-10m.tif --reference 0.26 --report pair.html\n"
     "  acutance biresolution low.tif high.tif --ratio 4 --reference high-sensor.toml --json"
 )
+KIND = KINDS["biresolution"]
 
 
+@with_groups
 def biresolution(
+    *,
     low: Annotated[str, typer.Argument(metavar="LOW", help="The image whose sensor is measured.")],
     high: Annotated[
         str, typer.Argument(metavar="HIGH", help="A finer image of the same ground and band.")
     ],
+    pixels: PixelOptions,
     ratio: Annotated[
         float | None,
         typer.Option(
@@ -63,21 +54,14 @@ def biresolution(
             "the high image's Nyquist frequency. Without it the result is MTF_low / MTF_high.",
         ),
     ] = None,
-    roi: RoiOption = None,
-    site: SiteOption = None,
-    band: BandOption = 1,
     high_band: Annotated[
         int, typer.Option(metavar="N", help="Which band of the high image, from 1.")
     ] = 1,
-    nodata: NodataOption = None,
     high_nodata: Annotated[
         float | None,
         typer.Option(metavar="VALUE", help="The same of the high image."),
     ] = None,
-    gsd: GsdOption = None,
-    method: Annotated[
-        str, typer.Option(metavar="METHOD", help="kernel-fit (the reference) or spectral-ratio.")
-    ] = "kernel-fit",
+    method: Annotated[str, method_option("biresolution")] = KIND.methods[0],
     stop: Annotated[
         float,
         typer.Option(
@@ -94,60 +78,39 @@ def biresolution(
     robust: Annotated[
         bool, typer.Option(help="Leave out what fits badly: clouds, changes, defects.")
     ] = True,
-    figure: FigureOption = None,
-    report: ReportOption = None,
-    csv: CsvOption = None,
-    as_json: JsonOption = False,
-    covariance: CovarianceOption = False,
-    limit: LimitOption = None,
-    strict: StrictOption = False,
+    wanted: ResultOptions,
 ) -> None:
     """Measure the MTF of a sensor from two images of the same ground at two resolutions.
 
     No target is needed: roads, shores, buildings, fields. Frequencies are in cycles per pixel of
-    the LOW image. Shift, gain and offset between the two are fitted.
+    the LOW image. Shift, gain and offset between the two are fitted. The options of pixels
+    (--roi to --along-track) are those of the LOW image.
     """
-    wanted = ResultOptions(
-        (low, high, reference, roi),
-        figure=figure,
-        report=report,
-        csv=csv,
-        as_json=as_json,
-        covariance=covariance,
-        strict=strict,
-    )
 
-    from acutance.raster import open_image
-    from acutance.targets.pair import BiresolutionLimits, BiresolutionOptions, measure_biresolution
+    def finer_image(_: Image) -> Mapping[str, Any]:
+        from acutance.raster import open_image
 
-    options = BiresolutionOptions(
-        stop_change=stop,
-        max_shift_px=max_shift,
-        noise_high=high_noise,
-        robust=robust,
-        limits=change_limits(BiresolutionLimits(), limit or []),
-    )
-    known = parse_reference(reference)
-    source, region = open_target(low, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata)
-    measurement = measure_biresolution(
-        source,
-        open_image(high, high_band, nodata=high_nodata),
-        ratio=ratio,
-        roi=region,
-        reference_mtf=known,
-        method=method,
-        options=options,
-    )
+        return {
+            "high": open_image(high, high_band, nodata=high_nodata),
+            "ratio": ratio,
+            "reference_mtf": parse_reference(reference),
+        }
 
-    from acutance import report as faces
-
-    shown = faces_of_plane(
-        measurement,
-        panels=faces.biresolution_panels,
-        sections=faces.biresolution_sections,
-        blocks=faces.biresolution_blocks,
+    measure_target(
+        KIND,
+        low,
+        pixels,
+        wanted,
+        methods=choose_methods(method, None, KIND.methods),
+        options={
+            "stop_change": stop,
+            "max_shift_px": max_shift,
+            "noise_high": high_noise,
+            "robust": robust,
+        },
+        arguments=finer_image,
+        inputs=(high, reference),
     )
-    wanted.deliver([measurement], shown)
 
 
 def parse_reference(text: str | None) -> ReferenceLike:

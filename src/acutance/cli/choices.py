@@ -3,30 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
-from dataclasses import Field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
     from acutance.curves.metrics import RerCentre
 
-__all__ = ["change_limits", "choose_methods", "choose_rer_centre"]
+__all__ = ["choose_methods", "choose_rer_centre", "parse_limits"]
 
-
-class _Limits(Protocol):
-    """Limits of any target's checks: a dataclass of numbers."""
-
-    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
-
-
-LimitsT = TypeVar("LimitsT", bound=_Limits)
 RER_CENTRES: dict[str, RerCentre] = {"half": "half", "peak": "peak"}
-SIDES = ("_dark", "_bright", "_before", "_behind", "_strip")
 
 
-def choose_methods(first: str, compare: str | None, known: Collection[str]) -> list[str]:
+def choose_methods(first: str, compare: str | None, known: Sequence[str]) -> list[str]:
     """The methods of ``--method`` and ``--compare``, each once.
 
     Raises
@@ -39,7 +29,7 @@ def choose_methods(first: str, compare: str | None, known: Collection[str]) -> l
     if compare is not None and wanted == [first]:
         rest = ", ".join(name for name in known if name != first)
         raise OptionError(
-            f"--compare {compare!r} sets nothing beside {first}: name others, of {rest}"
+            f"--compare {compare!r} compares {first} with nothing: name others, of {rest}"
         )
     for name in wanted:
         if name not in known:
@@ -60,29 +50,24 @@ def choose_rer_centre(name: str | None) -> RerCentre | None:
     return None if name is None else RER_CENTRES[name]
 
 
-def change_limits(defaults: LimitsT, changes: Sequence[str]) -> LimitsT:
-    """Limits changed as every ``--limit NAME=VALUE`` asks.
+def parse_limits(texts: Sequence[str]) -> dict[str, float]:
+    """The numbers of every ``--limit NAME=VALUE``; which names there are the options know.
 
     Raises
     ------
     OptionError
-        If there is no limit of that name, or the value is not a number.
+        If a value is not a number.
     """
-    known = {field.name for field in fields(defaults)}
-    return replace(defaults, **dict(_parse_limit(text, known) for text in changes))
+    return dict(map(_parse_limit, texts))
 
 
-def _parse_limit(text: str, known: set[str]) -> tuple[str, float]:
+def _parse_limit(text: str) -> tuple[str, float]:
     name, _, number = text.partition("=")
-    if name not in known:
-        both = next((limit for side in SIDES if (limit := name.replace(side, "")) in known), None)
-        hint = f"; {both} holds for every side" if both else ""
-        raise OptionError(f"--limit {text}: the limits are {', '.join(sorted(known))}{hint}")
     try:
         value = float(number)
     except ValueError:
         value = math.nan
     # No value is above or below one that is not a number: the check would always fail.
     if math.isnan(value):
-        raise OptionError(f"--limit {text}: write a number, as in {name}=10")
+        raise OptionError(f"--limit {text}: write NAME=VALUE with a number, as in {name}=10")
     return name, value

@@ -8,19 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from acutance.cli.choices import change_limits
-from acutance.cli.faces import faces_of_plane
-from acutance.cli.result_options import (
-    CovarianceOption,
-    CsvOption,
-    FigureOption,
-    JsonOption,
-    LimitOption,
-    ReportOption,
-    ResultOptions,
-    StrictOption,
-)
-from acutance.cli.target import GsdOption, parse_gsd
+from acutance.cli.option_groups import with_groups
+from acutance.cli.options import GsdOption, ResultOptions, parse_gsd
+from acutance.cli.results import Outputs, Shown
 from acutance.errors import OptionError
 
 __all__ = ["EXAMPLE", "combine"]
@@ -34,7 +24,9 @@ EXAMPLE = (
 )
 
 
+@with_groups
 def combine(
+    *,
     files: Annotated[
         list[str],
         typer.Argument(
@@ -46,49 +38,24 @@ def combine(
         str,
         typer.Option(metavar="PX|ACROSS,ALONG", help="Width of the detector in pixels."),
     ] = "1",
-    figure: FigureOption = None,
-    report: ReportOption = None,
-    csv: CsvOption = None,
-    as_json: JsonOption = False,
-    covariance: CovarianceOption = False,
-    limit: LimitOption = None,
-    strict: StrictOption = False,
+    wanted: ResultOptions,
 ) -> None:
     """Combine measurements of one sensor into one 2-D OTF: across and along exactly.
 
     Edges and pulses of several directions, points, stars, bars and pairs of images are fitted
     together by a parametric sensor; a chi-square says whether they agree.
     """
-    wanted = ResultOptions(
-        files,
-        figure=figure,
-        report=report,
-        csv=csv,
-        as_json=as_json,
-        covariance=covariance,
-        strict=strict,
-    )
+    outputs = Outputs.checked(wanted, files)
     documents = [_read(name) for name in files]
 
-    from acutance.targets.combine import CombineLimits, CombineOptions
+    from acutance.targets.combine import CombineOptions
     from acutance.targets.combine import combine as combine_measurements
 
-    options = CombineOptions(
-        detector_px=_parse_detector(detector), limits=change_limits(CombineLimits(), limit or [])
-    )
+    options = CombineOptions(detector_px=_parse_detector(detector), limits=wanted.limits)
     measurement = combine_measurements(
         documents, names=files, gsd_m=parse_gsd(gsd), options=options
     )
-
-    from acutance import report as faces
-
-    shown = faces_of_plane(
-        measurement,
-        panels=faces.combine_panels,
-        sections=faces.combine_sections,
-        blocks=faces.combine_blocks,
-    )
-    wanted.deliver([measurement], shown)
+    outputs.deliver(Shown(measurement))
 
 
 def _read(name: str) -> Any:

@@ -1,4 +1,4 @@
-"""The folder a demonstration is written into: its own, and nobody else's files."""
+"""The folder a demonstration is written into: no file of others is overwritten."""
 
 from __future__ import annotations
 

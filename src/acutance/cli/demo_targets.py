@@ -2,73 +2,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from acutance.cli.terminal import say
 from acutance.errors import AcutanceError
+from acutance.targets.kinds import KINDS
 
 if TYPE_CHECKING:
     from acutance.curves import Response
-    from acutance.curves.grid import Floats
-    from acutance.raster import Image, Region
-    from acutance.report.campaign import CampaignEntry
-    from acutance.report.html import Section
-    from acutance.report.plane_panels import PlanePanel
+    from acutance.geometry.line import Orientation
+    from acutance.raster import Image
+    from acutance.report import Comparison
+    from acutance.report.tables.campaign import CampaignEntry
     from acutance.simulate import Scene
-    from acutance.targets import Measurement, Measurement2d
+    from acutance.targets import Measurement
     from acutance.targets.combine import CombinedMeasurement
 
-__all__ = ["Campaign", "PlaneTarget", "StraightTarget", "measure_campaign"]
+__all__ = ["COMBINED", "Campaign", "CampaignTarget", "measure_campaign"]
 
-ResultT = TypeVar("ResultT")
-ORIENTATIONS: tuple[Literal["across"], Literal["along"]] = ("across", "along")
+COMBINED = "all combined"
+DIRECTIONS: tuple[Orientation, Orientation] = ("across", "along")
 
 
 @dataclass(frozen=True, eq=False)
-class StraightTarget:
-    """An edge or a pulse, and what was measured of it.
+class CampaignTarget:
+    """A target, and what was measured of it.
 
     Parameters
     ----------
     name : str
         What it is called: "vertical edge".
-    truth : Response
-        Along its normal.
-    measurements : sequence of Measurement
-        One a method, the reference first.
-    true_width_px : float, optional
-        Of a pulse.
+    comparison : Comparison
+        One measurement a method, the reference first, and the truth.
     """
 
     name: str
-    truth: Response
-    measurements: Sequence[Measurement]
-    true_width_px: float | None = None
+    comparison: Comparison
 
+    @property
+    def reference(self) -> Measurement:
+        """The measurement by the reference method."""
+        return self.comparison.measurements[0]
 
-@dataclass(frozen=True, eq=False)
-class PlaneTarget:
-    """Mirrors, bars or a star, and what was measured of them.
+    def entries(self, direction: Orientation) -> Iterator[CampaignEntry]:
+        """Every method with the truth, in a direction that the target shows."""
+        from acutance.report.tables.campaign import CampaignEntry
 
-    Parameters
-    ----------
-    name : str
-    measurements : sequence of Measurement2d
-        One a method, the reference first.
-    panels, sections : functions of a measurement
-        What the method adds to the page of a 2-D measurement.
-    orientations : tuple of str
-        The directions it was measured in.
-    """
-
-    name: str
-    measurements: Sequence[Measurement2d]
-    panels: Callable[[Any], Sequence[PlanePanel]]
-    sections: Callable[[Any], Sequence[Section]]
-    orientations: tuple[Literal["across", "along"], ...] = ORIENTATIONS
+        for one in self.comparison.measurements:
+            if direction in one.measured_directions:
+                yield CampaignEntry(
+                    self.name, one.method, direction, one.directions[direction],
+                    self.comparison.truth[direction], one is self.reference,
+                )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,161 +66,93 @@ class Campaign:
     Parameters
     ----------
     scene : Scene
-    straight : tuple of StraightTarget
-    plane : tuple of PlaneTarget
+    targets : tuple of CampaignTarget
     combined : CombinedMeasurement
         Of the reference method of every target.
     """
 
     scene: Scene
-    straight: tuple[StraightTarget, ...]
-    plane: tuple[PlaneTarget, ...]
+    targets: tuple[CampaignTarget, ...]
     combined: CombinedMeasurement
 
     def entries(self) -> list[CampaignEntry]:
-        """Every method and direction beside the truth, across first, the combination last."""
-        found = []
-        for orientation in ORIENTATIONS:
-            for straight in self.straight:
-                found += _straight_entries(straight, orientation)
-            for plane in self.plane:
-                if orientation in plane.orientations:
-                    found += self._plane_entries(plane, orientation)
-            everything = PlaneTarget("all combined", [self.combined], _nothing, _nothing)
-            found += self._plane_entries(everything, orientation)
-        return found
+        """Every method and direction with the truth, across first, the combination last."""
+        from acutance import report
 
-    def _plane_entries(
-        self, target: PlaneTarget, orientation: Literal["across", "along"]
-    ) -> list[CampaignEntry]:
-        from acutance.report.campaign import CampaignEntry
-
-        truth = self.scene.sensor.response(0.0, orientation)
+        truth = _truth_in_both(self.scene)
+        together = CampaignTarget(COMBINED, report.compare([self.combined], truth=truth))
         return [
-            CampaignEntry(
-                target.name, one.method, orientation, getattr(one, orientation), truth, i == 0
-            )
-            for i, one in enumerate(target.measurements)
+            entry
+            for direction in DIRECTIONS
+            for target in (*self.targets, together)
+            for entry in target.entries(direction)
         ]
-
-
-def _nothing(_: Any) -> tuple[()]:
-    return ()
-
-
-def _straight_entries(target: StraightTarget, orientation: str) -> list[CampaignEntry]:
-    from acutance.report.campaign import CampaignEntry
-
-    return [
-        CampaignEntry(target.name, one.method, one.orientation, one.response, target.truth, i == 0)
-        for i, one in enumerate(target.measurements)
-        if one.orientation == orientation
-    ]
 
 
 def measure_campaign(scene: Scene, image: Image) -> Campaign:
     """Measure every target of a site by every method, and combine the reference ones."""
     from acutance.targets.combine import combine
 
-    straight = (*_edges(scene, image), *_pulses(scene, image))
-    plane = _plane_targets(scene, image)
-    targets: Sequence[StraightTarget | PlaneTarget] = (*straight, *plane)
+    targets = (*_edges(scene, image), *_other_targets(scene, image))
     say("combining")
-    combined = combine(
-        [one.measurements[0] for one in targets], names=[one.name for one in targets]
-    )
-    return Campaign(scene, straight, plane, combined)
+    combined = combine([one.reference for one in targets], names=[one.name for one in targets])
+    return Campaign(scene, targets, combined)
 
 
-def _edges(scene: Scene, image: Image) -> list[StraightTarget]:
-    from acutance.raster import Region
-    from acutance.targets.straight import METHODS
-
-    found = []
-    for edge in scene.edges:
-        say(f"measuring the {edge.name} edge by every method")
-        measurements = _by_all(METHODS, partial(_edge, image, Region(edge.region)))
-        found.append(StraightTarget(f"{edge.name} edge", edge.truth.response, measurements))
-    return found
+def _truth_in_both(scene: Scene) -> dict[str, Response]:
+    return {name: scene.sensor.response(0.0, name) for name in DIRECTIONS}
 
 
-def _edge(image: Image, region: Region, method: str) -> Measurement:
-    from acutance.targets.straight import measure_edge
-
-    return measure_edge(image, region, method=method)
-
-
-def _pulses(scene: Scene, image: Image) -> list[StraightTarget]:
-    from acutance.raster import Region
-    from acutance.simulate import PulseTruth
-    from acutance.targets.straight import PULSE_METHODS
-
-    found = []
-    for target in scene.targets:
-        truth = target.truth
-        if isinstance(truth, PulseTruth):
-            say("measuring the pulse tarp by every method")
-            measurements = _by_all(
-                PULSE_METHODS, partial(_pulse, image, Region(target.region), truth.width_px)
-            )
-            found.append(StraightTarget("pulse tarp", truth.response, measurements, truth.width_px))
-    return found
-
-
-def _pulse(image: Image, region: Region, width_px: float, method: str) -> Measurement:
-    from acutance.targets.straight import measure_pulse
-
-    return measure_pulse(image, region, width_px=width_px, method=method)
-
-
-def _plane_targets(scene: Scene, image: Image) -> tuple[PlaneTarget, ...]:
+def _edges(scene: Scene, image: Image) -> Iterator[CampaignTarget]:
     from acutance import report
     from acutance.raster import Region
-    from acutance.simulate import PointsTruth
-    from acutance.targets.periodic import measure_bars, measure_star
-    from acutance.targets.points import POINTS_METHODS
 
-    found = []
+    for edge in scene.edges:
+        found = _by_all_methods(f"{edge.name} edge", "edge", image, Region(edge.region))
+        compared = report.compare(found, truth=edge.truth.response)
+        yield CampaignTarget(f"{edge.name} edge", compared)
+
+
+def _other_targets(scene: Scene, image: Image) -> Iterator[CampaignTarget]:
+    """Pulse, mirrors, bars and star, in the order of the scene."""
+    from acutance import report
+    from acutance.raster import Region
+    from acutance.simulate import PointsTruth, PulseTruth
+
     for target in scene.targets:
-        region, truth = Region(target.region), target.truth
-        if target.kind != "pulse":
-            say(f"measuring the {target.name}")
-        if isinstance(truth, PointsTruth):
-            mirrors = _by_all(POINTS_METHODS, partial(_mirrors, image, region, truth.positions))
-            found.append(
-                PlaneTarget("mirrors", mirrors, report.points_panels, report.points_sections)
-            )
-        elif target.kind == "star":
-            star = [measure_star(image, region)]
-            found.append(PlaneTarget("star", star, report.star_panels, report.star_sections))
-        elif target.kind == "bars":
-            bars = [measure_bars(image, region)]
-            found.append(
-                PlaneTarget("bars", bars, report.bars_panels, report.bars_sections, ("across",))
-            )
-    return tuple(found)
+        truth = target.truth
+        name = "pulse tarp" if target.kind == "pulse" else target.name
+        measure = partial(_by_all_methods, name, target.kind, image, Region(target.region))
+        if isinstance(truth, PulseTruth):
+            found = measure(width_px=truth.width_px)
+            compared = report.compare(found, truth=truth.response, true_width_px=truth.width_px)
+        elif isinstance(truth, PointsTruth):
+            found = measure(positions=truth.positions, surveyed=truth.positions)
+            compared = report.compare(found, truth=_truth_in_both(scene))
+        else:
+            compared = report.compare(measure(), truth=_truth_in_both(scene))
+        yield CampaignTarget(name, compared)
 
 
-def _mirrors(image: Image, region: Region, places: Floats, method: str) -> Measurement2d:
-    from acutance.targets.points import measure_points
-
-    return measure_points(image, region, positions=places, surveyed=places, method=method)
-
-
-def _by_all(methods: Collection[str], measure: Callable[[str], ResultT]) -> list[ResultT]:
-    """By every method that can measure the target; the others are named on stderr.
+def _by_all_methods(
+    name: str, kind: str, image: Image, region: Any, **arguments: Any
+) -> list[Measurement]:
+    """By every method of the kind that can measure the target; the others are named on stderr.
 
     Raises
     ------
     AcutanceError
         If the first of the methods, the reference, cannot.
     """
-    found: list[ResultT] = []
-    for name in methods:
+    known = KINDS[kind]
+    measure = known.load(known.measure)
+    say(f"measuring the {name}{' by every method' if len(known.methods) > 1 else ''}")
+    found: list[Measurement] = []
+    for method in known.methods:
         try:
-            found.append(measure(name))
+            found.append(measure(image, region, method=method, **arguments))
         except AcutanceError as error:
             if not found:
                 raise
-            say(f"  {name}: {error}")
+            say(f"  {method}: {error}")
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -9,16 +10,8 @@ import typer
 if TYPE_CHECKING:
     from acutance.simulate import Noise
 
-__all__ = ["Quantum", "ReadNoise", "Saturation", "ShotGain", "Snr", "described_noise"]
+__all__ = ["NoiseOptions", "Quantum", "Saturation", "ShotGain", "described_noise"]
 
-Snr = Annotated[
-    float | None,
-    typer.Option(metavar="RATIO", help="Contrast over noise; no noise if nothing says it."),
-]
-ReadNoise = Annotated[
-    float | None,
-    typer.Option(metavar="DN", help="Standard deviation of white noise, instead of --snr."),
-]
 ShotGain = Annotated[
     float | None,
     typer.Option(
@@ -32,6 +25,30 @@ Quantum = Annotated[
 Saturation = Annotated[
     float | None, typer.Option(metavar="DN", help="Level that no pixel exceeds.")
 ]
+
+
+@dataclass(frozen=True)
+class NoiseOptions:
+    """What the detector adds."""
+
+    snr: Annotated[
+        float | None,
+        typer.Option(
+            metavar="RATIO",
+            help="Contrast, or peak of a point, over noise; no noise if nothing says it.",
+        ),
+    ] = None
+    read_noise: Annotated[
+        float | None,
+        typer.Option(metavar="DN", help="Standard deviation of white noise, instead of --snr."),
+    ] = None
+    shot_gain: ShotGain = None
+    quantum: Quantum = None
+    saturation: Saturation = None
+
+    def described(self) -> Noise | None:
+        """The noise the options describe beyond ``--snr``; ``None`` where none was given."""
+        return described_noise(self.read_noise, self.shot_gain, self.quantum, self.saturation)
 
 
 def described_noise(

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
 __all__ = ["OutputFile", "check_optional", "check_output", "make_folder"]
@@ -21,10 +22,16 @@ class OutputFile:
     option : str
         The option that named it, for messages.
     path : Path
+        As the user named it.
     """
 
     option: str
     path: Path
+
+    @property
+    def place(self) -> Path:
+        """Where the content goes: a symbolic link is followed, and stays a link."""
+        return _place(self.path)
 
     @property
     def ending(self) -> str:
@@ -43,10 +50,15 @@ class OutputFile:
         part = _part_path(self.path)
         try:
             part.write_bytes(data)
-            os.replace(part, self.path)
+            os.replace(part, self.place)
         except OSError as error:
             part.unlink(missing_ok=True)
             raise OptionError(_refusal(self.option, self.path, error)) from error
+
+    def deliver(self, content: str | bytes) -> None:
+        """Write the file, and name it on stderr."""
+        self.write(content)
+        say(f"wrote {self.path}")
 
 
 def check_output(
@@ -82,6 +94,14 @@ def check_output(
         )
     if path.is_dir():
         raise OptionError(f"{option} {name} is a folder: give the name of a file")
+    place = _place(path)
+    if path.exists() and not path.is_file():
+        raise OptionError(f"{option} {name} leads to {place}, no ordinary file: name another")
+    if not place.parent.is_dir():
+        raise OptionError(
+            f"{option} {name} is a link into the folder {place.parent}, which does not exist: make "
+            "it first, or remove the link"
+        )
     for known in keep:
         if known is not None and _is_same_file(name, known):
             raise OptionError(
@@ -125,8 +145,15 @@ def _is_same_file(name: str, other: str) -> bool:
     return os.path.exists(name) and os.path.exists(other) and os.path.samefile(name, other)
 
 
+def _place(path: Path) -> Path:
+    # Path.resolve raises where links form a loop; realpath leaves that to the writing.
+    return Path(os.path.realpath(path))
+
+
 def _part_path(path: Path) -> Path:
-    return path.with_name(f".{path.name}.{os.getpid()}.part")
+    """A name in the folder where the content goes, so that a rename puts it in place."""
+    place = _place(path)
+    return place.with_name(f".{place.name}.{os.getpid()}.part")
 
 
 def _refusal(option: str, path: Path, error: OSError) -> str:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from acutance.cli.output import OutputFile, check_optional
-from acutance.cli.result_options import JsonOption
+from acutance.cli.options import JsonOption
+from acutance.cli.output import check_optional
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.cli.study import WorkersOption, execution_of, progress_bar
-from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -91,9 +89,7 @@ def plan(
 
     An edge: how many rows, which angle. A pulse: which width of tarp, too.
     """
-    from acutance.report import json_text
-    from acutance.report.page import figure_bytes
-    from acutance.report.study_figures import plan_text, study_figure
+    from acutance.report import figure_bytes, json_text, plan_text, study_figure
     from acutance.studies import PlanOptions, plan_target
 
     target: Literal["edge", "pulse"] = "pulse" if context.info_name == "pulse" else "edge"
@@ -101,7 +97,7 @@ def plan(
         raise OptionError("--width-px and --width-m belong to a pulse: an edge has no width")
     table = check_optional("--csv", csv, (".csv",), keep=(sensor,))
     drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
-    system = _sensor(sensor, gsd)
+    system = named_sensor(sensor, gsd)
     options = PlanOptions(
         target=target, sensor=system, snr=_snr(snr, contrast, noise),
         rows=_whole_numbers("--rows", rows),
@@ -111,16 +107,10 @@ def plan(
     with progress_bar(f"plan {target}") as progress:
         result: Any = plan_target(options, execution_of(seed, workers, None, progress))
     if table is not None:
-        _write(table, result.table.to_csv())
+        table.deliver(result.table.to_csv())
     if drawing is not None:
-        _write(drawing, figure_bytes(study_figure(result), drawing.ending))
+        drawing.deliver(figure_bytes(study_figure(result), drawing.ending))
     typer.echo(json_text(result.to_dict()) if as_json else plan_text(result))
-
-
-def _sensor(name: str, gsd_m: float | None) -> Sensor:
-    """The sensor, with another GSD if one is given: its blur stays the same in pixels."""
-    sensor = named_sensor(name)
-    return sensor if gsd_m is None else replace(sensor, gsd_m=gsd_m, gsd_along_m=None)
 
 
 def _snr(snr: float | None, contrast: float | None, noise: float | None) -> float:
@@ -155,8 +145,3 @@ def _whole_numbers(option: str, text: str) -> tuple[int, ...]:
     if not all(number.is_integer() for number in numbers):
         raise OptionError(f"{option} {text}: write whole numbers with commas, as in 20,40")
     return tuple(int(number) for number in numbers)
-
-
-def _write(target: OutputFile, content: str | bytes) -> None:
-    target.write(content)
-    say(f"wrote {target.path}")

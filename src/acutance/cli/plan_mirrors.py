@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated
 
 import typer
 
+from acutance.cli.options import JsonOption
 from acutance.cli.output import check_optional
 from acutance.cli.plan import EXAMPLE as TARGETS_EXAMPLE
 from acutance.cli.plan import plan
-from acutance.cli.result_options import JsonOption
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.cli.study import WorkersOption, execution_of, progress_bar
-from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
 __all__ = ["EXAMPLE", "app", "plan_mirrors"]
@@ -84,8 +82,7 @@ def plan_mirrors(
 
     Mirrors spread over the sub-pixel phases sample the PSF finer than the pixels do.
     """
-    from acutance.report import json_text, mirror_plan_figure, mirror_plan_text
-    from acutance.report.page import figure_bytes
+    from acutance.report import figure_bytes, json_text, mirror_plan_figure, mirror_plan_text
     from acutance.studies import MirrorPlanOptions
     from acutance.studies import plan_mirrors as lay_out
 
@@ -93,11 +90,8 @@ def plan_mirrors(
         raise OptionError(f"--arrangement {arrangement}: it has to be columns or square")
     table = check_optional("--csv", csv, (".csv",), keep=(sensor,))
     drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
-    system = named_sensor(sensor)
-    if gsd is not None:
-        system = replace(system, gsd_m=gsd, gsd_along_m=None)
     options = MirrorPlanOptions(
-        sensor=system, count=count,
+        sensor=named_sensor(sensor, gsd), count=count,
         arrangement="square" if arrangement == "square" else "columns", columns=columns,
         spacing_px=spacing, snr=snr, level=level, ground=ground, mirror=mirror,
         sun_zenith_deg=sun_zenith, view_zenith_deg=view_zenith, draws=draws,
@@ -105,9 +99,7 @@ def plan_mirrors(
     with progress_bar("plan mirrors") as progress:
         result = lay_out(options, execution_of(seed, workers, None, progress))
     if table is not None:
-        table.write(result.to_csv())
-        say(f"wrote {table.path}")
+        table.deliver(result.to_csv())
     if drawing is not None:
-        drawing.write(figure_bytes(mirror_plan_figure(result), drawing.ending))
-        say(f"wrote {drawing.path}")
+        drawing.deliver(figure_bytes(mirror_plan_figure(result), drawing.ending))
     typer.echo(json_text(result.to_dict()) if as_json else mirror_plan_text(result))

@@ -2,32 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.choices import change_limits, choose_methods
-from acutance.cli.faces import faces_of_plane
-from acutance.cli.result_options import (
-    CovarianceOption,
-    CsvOption,
-    FigureOption,
-    JsonOption,
-    LimitOption,
-    ReportOption,
-    ResultOptions,
-    StrictOption,
-)
-from acutance.cli.target import (
-    BandOption,
-    GsdOption,
+from acutance.cli.choices import choose_methods
+from acutance.cli.measure import measure_target
+from acutance.cli.option_groups import with_groups
+from acutance.cli.options import (
     ImageArgument,
-    NodataOption,
-    RoiOption,
-    SiteOption,
-    open_target,
+    PixelOptions,
+    ResultOptions,
+    RobustOption,
+    method_option,
 )
 from acutance.errors import OptionError
+from acutance.targets.kinds import KINDS
+
+if TYPE_CHECKING:
+    from acutance.raster import Image
 
 __all__ = ["EXAMPLE", "points"]
 
@@ -36,10 +30,14 @@ EXAMPLE = (
     "  acutance points mirrors.tif --positions mirrors.csv --surveyed mirrors.csv --gsd 0.7 "
     "--report mirrors.html"
 )
+KIND = KINDS["points"]
 
 
+@with_groups
 def points(
+    *,
     image: ImageArgument,
+    pixels: PixelOptions,
     positions: Annotated[
         str | None,
         typer.Option(
@@ -61,82 +59,49 @@ def points(
             help="Take the mean difference out, or that of the first source (report of 2003).",
         ),
     ] = "mean",
-    roi: RoiOption = None,
-    site: SiteOption = None,
-    band: BandOption = 1,
-    nodata: NodataOption = None,
-    gsd: GsdOption = None,
-    method: Annotated[
-        str, typer.Option(metavar="METHOD", help="psf-fit (the reference) or gaussian-2003.")
-    ] = "psf-fit",
+    method: Annotated[str, method_option("points")] = KIND.methods[0],
     min_snr: Annotated[
-        float, typer.Option(metavar="RATIO", help="Least peak of a source over the noise.")
+        float, typer.Option(metavar="RATIO", help="Minimum peak of a source over the noise.")
     ] = 10.0,
     min_distance: Annotated[
-        float, typer.Option(metavar="PX", help="Least distance to another bright source.")
+        float, typer.Option(metavar="PX", help="Minimum distance to another bright source.")
     ] = 4.0,
     radius: Annotated[
         float, typer.Option(metavar="PX", help="Use the pixels up to this distance.")
     ] = 13.0,
-    robust: Annotated[
-        bool, typer.Option(help="Bound the weight of outlying pixels (method psf-fit).")
-    ] = True,
-    figure: FigureOption = None,
-    report: ReportOption = None,
-    csv: CsvOption = None,
-    as_json: JsonOption = False,
-    covariance: CovarianceOption = False,
-    limit: LimitOption = None,
-    strict: StrictOption = False,
+    robust: RobustOption = True,
+    wanted: ResultOptions,
 ) -> None:
     """Measure PSF, MTF, RER and FWHM across and along on points: mirrors, lamps, stars.
 
     One joint fit gives every source its place, light and background, and all of them one PSF;
-    every number comes with its standard deviation and 95 % interval. What does not serve
-    (saturated, blended, hot pixels, cosmic rays) is left out and named.
+    every number comes with its standard deviation and 95 % interval. Sources that cannot be used
+    (saturated, blended, hot pixels, cosmic rays) are left out and named.
     """
-    wanted = ResultOptions(
-        (image, positions, surveyed, roi),
-        figure=figure,
-        report=report,
-        csv=csv,
-        as_json=as_json,
-        covariance=covariance,
-        strict=strict,
-    )
     if survey_reference not in ("mean", "first"):
         raise OptionError(f"--survey-reference {survey_reference}: it has to be mean or first")
 
-    from acutance.raster import read_positions
-    from acutance.targets.points import POINTS_METHODS, PointsLimits, PointsOptions, measure_points
+    def places(image: Image) -> Mapping[str, Any]:
+        from acutance.raster import read_positions
 
-    choose_methods(method, None, POINTS_METHODS)
-    options = PointsOptions(
-        min_snr=min_snr,
-        min_distance_px=min_distance,
-        radius_px=radius,
-        robust=robust,
-        limits=change_limits(PointsLimits(), limit or []),
-    )
-    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata)
-    measurement = measure_points(
-        source,
-        region,
-        positions=None if positions is None else read_positions(positions, source),
-        surveyed=None if surveyed is None else read_positions(surveyed, source),
-        survey_reference="first" if survey_reference == "first" else "mean",
-        method=method,
-        options=options,
-    )
+        return {
+            "positions": None if positions is None else read_positions(positions, image),
+            "surveyed": None if surveyed is None else read_positions(surveyed, image),
+            "survey_reference": survey_reference,
+        }
 
-    from acutance import report as faces
-
-    wanted.deliver(
-        [measurement],
-        faces_of_plane(
-            measurement,
-            panels=faces.points_panels,
-            sections=faces.points_sections,
-            blocks=faces.points_blocks,
-        ),
+    measure_target(
+        KIND,
+        image,
+        pixels,
+        wanted,
+        methods=choose_methods(method, None, KIND.methods),
+        options={
+            "min_snr": min_snr,
+            "min_distance_px": min_distance,
+            "radius_px": radius,
+            "robust": robust,
+        },
+        arguments=places,
+        inputs=(positions, surveyed),
     )

@@ -1,37 +1,29 @@
-"""``acutance pulse``: measure a strip between two grounds."""
+"""``acutance pulse``: measure a strip between two backgrounds."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.choices import change_limits, choose_methods, choose_rer_centre
-from acutance.cli.faces import faces_by_method
-from acutance.cli.result_options import (
+from acutance.cli.choices import choose_methods, choose_rer_centre
+from acutance.cli.measure import measure_target
+from acutance.cli.option_groups import with_groups
+from acutance.cli.options import (
     CompareOption,
-    CovarianceOption,
-    CsvOption,
-    FigureOption,
-    JsonOption,
-    LimitOption,
-    ReportOption,
+    ImageArgument,
+    PixelOptions,
     RerCentreOption,
     ResultOptions,
     RobustOption,
-    StrictOption,
-)
-from acutance.cli.target import (
-    AlongTrackOption,
-    BandOption,
-    GsdOption,
-    ImageArgument,
-    NodataOption,
-    RoiOption,
-    SiteOption,
-    open_target,
+    method_option,
 )
 from acutance.errors import OptionError
+from acutance.targets.kinds import KINDS
+
+if TYPE_CHECKING:
+    from acutance.raster import Image
 
 __all__ = ["EXAMPLE", "pulse"]
 
@@ -39,11 +31,14 @@ EXAMPLE = (
     "\b\nExample:\n"
     "  acutance pulse scene.tif --roi 80,210,60,40 --width-m 8.83 --gsd 2.8 --report pulse.html"
 )
-METHODS_HELP = "spline (the reference) or sdsu-2005"
+KIND = KINDS["pulse"]
 
 
+@with_groups
 def pulse(
+    *,
     image: ImageArgument,
+    pixels: PixelOptions,
     width_m: Annotated[
         float | None,
         typer.Option(metavar="M", help="Width of the target along its normal, in metres."),
@@ -57,23 +52,11 @@ def pulse(
             "--hold-width", help="Take the stated width as it is; without it, it is fitted too."
         ),
     ] = False,
-    roi: RoiOption = None,
-    site: SiteOption = None,
-    band: BandOption = 1,
-    nodata: NodataOption = None,
-    gsd: GsdOption = None,
-    along_track: AlongTrackOption = "y",
-    method: Annotated[str, typer.Option(metavar="METHOD", help=f"{METHODS_HELP}.")] = "spline",
+    method: Annotated[str, method_option("pulse")] = KIND.methods[0],
     compare: CompareOption = None,
-    figure: FigureOption = None,
-    report: ReportOption = None,
-    csv: CsvOption = None,
-    as_json: JsonOption = False,
-    covariance: CovarianceOption = False,
-    limit: LimitOption = None,
     rer_centre: RerCentreOption = None,
     robust: RobustOption = True,
-    strict: StrictOption = False,
+    wanted: ResultOptions,
 ) -> None:
     """Measure MTF, RER and FWHM on a pulse: a tarp on grass, a bridge, a painted stripe.
 
@@ -84,39 +67,20 @@ def pulse(
         raise OptionError("--width-m and --width-px both state the width: give one of them")
     if hold_width and width_m is None and width_px is None:
         raise OptionError("--hold-width needs a width: add --width-m or --width-px")
-    wanted = ResultOptions(
-        (image, roi),
-        figure=figure,
-        report=report,
-        csv=csv,
-        as_json=as_json,
-        covariance=covariance,
-        strict=strict,
-    )
 
-    from acutance.targets.straight import PULSE_METHODS, PulseLimits, PulseOptions, measure_pulse
+    def stated_width(image: Image) -> Mapping[str, Any]:
+        if width_m is not None and image.gsd() is None:
+            raise OptionError(
+                "--width-m needs a GSD, and the image has none: add --gsd or --width-px"
+            )
+        return {"width_px": width_px, "width_m": width_m, "fit_width": not hold_width}
 
-    methods = choose_methods(method, compare, PULSE_METHODS)
-    options = PulseOptions(
-        rer_centre=choose_rer_centre(rer_centre),
-        robust=robust,
-        limits=change_limits(PulseLimits(), limit or []),
+    measure_target(
+        KIND,
+        image,
+        pixels,
+        wanted,
+        methods=choose_methods(method, compare, KIND.methods),
+        options={"rer_centre": choose_rer_centre(rer_centre), "robust": robust},
+        arguments=stated_width,
     )
-    source, region = open_target(
-        image, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata, along_track=along_track
-    )
-    if width_m is not None and source.gsd() is None:
-        raise OptionError("--width-m needs a GSD, and the image has none: add --gsd or --width-px")
-    measurements = [
-        measure_pulse(
-            source,
-            region,
-            width_px=width_px,
-            width_m=width_m,
-            fit_width=not hold_width,
-            method=name,
-            options=options,
-        )
-        for name in methods
-    ]
-    wanted.deliver(measurements, faces_by_method(measurements))

@@ -1,4 +1,4 @@
-"""``acutance simulate pulse | bars | star | points``: the image, and its truth beside it."""
+"""``acutance simulate pulse | bars | star | points``: an image, and its truth next to it."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.noise import Quantum, ReadNoise, Saturation, ShotGain, Snr, described_noise
+from acutance.cli.noise import NoiseOptions
+from acutance.cli.option_groups import with_groups
 from acutance.cli.output import OutputFile, check_output
 from acutance.cli.sensor import SensorName, named_sensor
+from acutance.cli.star import WaveOption
 from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EXAMPLES",
+    "Angle",
     "Out",
     "Seed",
     "SimulatedFiles",
@@ -30,28 +33,28 @@ __all__ = [
 ]
 
 EXAMPLES = {
-    "pulse": "  acutance simulate pulse --sensor generic-2005 --width 3 --snr 70 --out pulse.tif",
+    "pulse": "  acutance simulate pulse --sensor ikonos-like --width-px 3 --snr 70 --out pulse.tif",
     "bars": "  acutance simulate bars --periods 8,4,3,2 --angle 6 --out bars.tif",
-    "star": "  acutance simulate star --square --sensor my-sensor.toml --out star.tif",
+    "star": "  acutance simulate star --wave square --sensor my-sensor.toml --out star.tif",
     "points": "  acutance simulate points --peak 1500 --snr 80 --out mirrors.tif",
 }
 
 Out = Annotated[
     str,
-    typer.Option(metavar="FILE", help="The image, .tif; the truth goes beside it as .truth.json."),
+    typer.Option(metavar="FILE", help="The image, .tif; the truth goes next to it as .truth.json."),
 ]
 Angle = Annotated[
     float, typer.Option(metavar="DEG", help="Tilt against the nearer image axis, -45 to 45.")
 ]
 Along = Annotated[bool, typer.Option("--along", help="Nearly horizontal: the MTF along track.")]
-Dark = Annotated[float, typer.Option(metavar="DN", help="Level of the ground.")]
+Dark = Annotated[float, typer.Option(metavar="DN", help="Level of the background.")]
 Bright = Annotated[float, typer.Option(metavar="DN", help="Level of the target.")]
 Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")]
 
 
 @dataclass(frozen=True)
 class SimulatedFiles:
-    """An image and the truth beside it, found writable before anything is rendered.
+    """An image and the file of its truth, found writable before anything is rendered.
 
     Parameters
     ----------
@@ -65,8 +68,8 @@ class SimulatedFiles:
     def of(cls, out: str, *inputs: str | None) -> SimulatedFiles:
         """The files for ``--out``, refused if they cannot be written or are among the inputs."""
         image = check_output("--out", out, (".tif", ".tiff"), keep=inputs)
-        beside = str(image.path.with_suffix(".truth.json"))
-        truth = check_output("--out", beside, (".json",), keep=inputs)
+        truth_name = str(image.path.with_suffix(".truth.json"))
+        truth = check_output("--out", truth_name, (".json",), keep=inputs)
         return cls(image, truth)
 
     def write(self, pixels: Floats, sensor: Sensor, document: dict[str, Any], seed: int) -> None:
@@ -74,12 +77,12 @@ class SimulatedFiles:
         import numpy as np
 
         from acutance.raster import Gsd, write_geotiff
-        from acutance.report.documents import json_text
+        from acutance.report import json_text
 
         gsd = None if sensor.pixel_m is None else Gsd(*sensor.pixel_m)
-        write_geotiff(self.image.path, pixels.astype(np.float32), gsd_m=gsd)
-        self.truth.write(json_text({**document, "seed": seed}))
-        say(f"wrote {self.image.path}\nwrote {self.truth.path}")
+        write_geotiff(self.image.place, pixels.astype(np.float32), gsd_m=gsd)
+        say(f"wrote {self.image.path}")
+        self.truth.deliver(json_text({**document, "seed": seed}))
 
 
 def parse_size(text: str) -> tuple[int, int]:
@@ -99,10 +102,12 @@ def parse_size(text: str) -> tuple[int, int]:
     return rows, cols
 
 
+@with_groups
 def pulse(
+    *,
     out: Out,
     sensor: SensorName = "generic-2005",
-    width: Annotated[
+    width_px: Annotated[
         float | None, typer.Option(metavar="PX", help="Width in pixels; 3 if not given.")
     ] = None,
     width_m: Annotated[
@@ -119,32 +124,28 @@ def pulse(
     dark: Dark = 100.0,
     right_dark: Annotated[
         float | None,
-        typer.Option(metavar="DN", help="Level of the ground behind the pulse, if it differs."),
+        typer.Option(metavar="DN", help="Level of the background behind the pulse, if it differs."),
     ] = None,
     bright: Bright = 1200.0,
-    snr: Snr = None,
-    read_noise: ReadNoise = None,
-    shot_gain: ShotGain = None,
-    quantum: Quantum = None,
-    saturation: Saturation = None,
+    noise: NoiseOptions,
     ground_noise: Annotated[
         bool,
         typer.Option("--ground-noise", help="Uneven ground: 20 grains of variance 100 each."),
     ] = False,
     seed: Seed = 0,
 ) -> None:
-    """Render a pulse target: a bright strip between two grounds."""
+    """Render a pulse: a bright strip between two backgrounds."""
     files, shape = SimulatedFiles.of(out, sensor), parse_size(size)
     system = named_sensor(sensor)
 
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import target_truth_document
+    from acutance.report import target_truth_document
 
     pixels, truth = simulate.pulse(
         system,
-        width_px=_width_px(system, width, width_m, angle, along),
+        width_px=_width_px(system, width_px, width_m, angle, along),
         length_px=length,
         angle_deg=angle,
         orientation="along" if along else "across",
@@ -152,8 +153,8 @@ def pulse(
         dark=dark,
         right_dark=right_dark,
         bright=bright,
-        snr=snr,
-        noise=described_noise(read_noise, shot_gain, quantum, saturation),
+        snr=noise.snr,
+        noise=noise.described(),
         ground_noise=simulate.GroundNoise() if ground_noise else None,
         rng=np.random.default_rng(seed),
     )
@@ -165,22 +166,26 @@ def pulse(
 
 
 def _width_px(
-    system: Sensor, width: float | None, width_m: float | None, angle: float, along: bool
+    system: Sensor, width_px: float | None, width_m: float | None, angle: float, along: bool
 ) -> float:
     from acutance.optics.sensor import normal_direction_deg
 
     if width_m is None:
-        return 3.0 if width is None else width
-    if width is not None:
-        raise OptionError(f"--width {width:g} and --width-m {width_m:g} were both given: use one")
+        return 3.0 if width_px is None else width_px
+    if width_px is not None:
+        raise OptionError(
+            f"--width-px {width_px:g} and --width-m {width_m:g} were both given: use one"
+        )
     normal = normal_direction_deg(angle, "along" if along else "across")
     gsd_m = system.gsd_along_normal_m(normal)
     if gsd_m is None:
-        raise OptionError(f"--width-m {width_m:g} needs a sensor with a GSD: use --width in pixels")
+        raise OptionError(f"--width-m {width_m:g} needs a sensor with a GSD: use --width-px")
     return width_m / gsd_m
 
 
+@with_groups
 def bars(
+    *,
     out: Out,
     sensor: SensorName = "generic-2005",
     periods: Annotated[
@@ -192,11 +197,7 @@ def bars(
     along: Along = False,
     dark: Dark = 200.0,
     bright: Bright = 1200.0,
-    snr: Snr = None,
-    read_noise: ReadNoise = None,
-    shot_gain: ShotGain = None,
-    quantum: Quantum = None,
-    saturation: Saturation = None,
+    noise: NoiseOptions,
     seed: Seed = 0,
 ) -> None:
     """Render groups of bars below one another."""
@@ -209,7 +210,7 @@ def bars(
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import target_truth_document
+    from acutance.report import target_truth_document
 
     pixels, truth = simulate.bars(
         system,
@@ -220,8 +221,8 @@ def bars(
         orientation="along" if along else "across",
         dark=dark,
         bright=bright,
-        snr=snr,
-        noise=described_noise(read_noise, shot_gain, quantum, saturation),
+        snr=noise.snr,
+        noise=noise.described(),
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, system, target_truth_document(truth, system), seed)
@@ -229,14 +230,14 @@ def bars(
         typer.echo(f"true MTF at {freq:.4f} cycles per pixel {mtf:.4f}")
 
 
+@with_groups
 def star(
+    *,
     out: Out,
     sensor: SensorName = "generic-2005",
     cycles: Annotated[int, typer.Option(metavar="N", help="Periods in a full turn.")] = 36,
     radius: Annotated[float, typer.Option(metavar="PX", help="Outer radius.")] = 52.0,
-    square: Annotated[
-        bool, typer.Option("--square", help="Bright and dark spokes instead of a sine.")
-    ] = False,
+    wave: WaveOption = "sine",
     start: Annotated[float, typer.Option(metavar="DEG", help="Where a fan begins.")] = 0.0,
     sweep: Annotated[float, typer.Option(metavar="DEG", help="How far it goes.")] = 360.0,
     size: Annotated[
@@ -244,40 +245,40 @@ def star(
     ] = "128,128",
     dark: Annotated[float, typer.Option(metavar="DN", help="Lowest level of the spokes.")] = 200.0,
     bright: Annotated[float, typer.Option(metavar="DN", help="Highest level.")] = 1200.0,
-    snr: Snr = None,
-    read_noise: ReadNoise = None,
-    shot_gain: ShotGain = None,
-    quantum: Quantum = None,
-    saturation: Saturation = None,
+    noise: NoiseOptions,
     seed: Seed = 0,
 ) -> None:
     """Render a Siemens star."""
+    if wave not in ("sine", "square"):
+        raise OptionError(f"--wave {wave}: it has to be sine or square")
     files, shape, system = SimulatedFiles.of(out, sensor), parse_size(size), named_sensor(sensor)
 
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import target_truth_document
+    from acutance.report import target_truth_document
 
     pixels, truth = simulate.star(
         system,
         cycles=cycles,
         shape=shape,
         radius_px=radius,
-        wave="square" if square else "sine",
+        wave="square" if wave == "square" else "sine",
         start_deg=start,
         sweep_deg=sweep,
         dark=dark,
         bright=bright,
-        snr=snr,
-        noise=described_noise(read_noise, shot_gain, quantum, saturation),
+        snr=noise.snr,
+        noise=noise.described(),
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, system, target_truth_document(truth, system), seed)
     typer.echo(f"true mean MTF at Nyquist {float(truth.mtf_mean(0.5)):.4f}")
 
 
+@with_groups
 def points(
+    *,
     out: Out,
     sensor: SensorName = "generic-2005",
     layout: Annotated[
@@ -287,15 +288,10 @@ def points(
     peak: Annotated[
         float, typer.Option(metavar="DN", help="What a centred mirror adds to its pixel.")
     ] = 1000.0,
-    background: Annotated[float, typer.Option(metavar="DN", help="Level of the ground.")] = 200.0,
-    snr: Annotated[
-        float | None,
-        typer.Option(metavar="RATIO", help="Peak over noise; no noise if nothing says it."),
-    ] = None,
-    read_noise: ReadNoise = None,
-    shot_gain: ShotGain = None,
-    quantum: Quantum = None,
-    saturation: Saturation = None,
+    background: Annotated[
+        float, typer.Option(metavar="DN", help="Level of the background.")
+    ] = 200.0,
+    noise: NoiseOptions,
     seed: Seed = 0,
 ) -> None:
     """Render an array of mirrors."""
@@ -304,7 +300,7 @@ def points(
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import target_truth_document
+    from acutance.report import target_truth_document
 
     first = (12.0, 12.0)
     layouts = {
@@ -318,8 +314,8 @@ def points(
         positions=layouts[layout],
         peak=peak,
         background=background,
-        snr=snr,
-        noise=described_noise(read_noise, shot_gain, quantum, saturation),
+        snr=noise.snr,
+        noise=noise.described(),
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, system, target_truth_document(truth, system), seed)

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from acutance.cli.output import check_optional
-from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
     from acutance.optics import Sensor
 
-__all__ = ["BUDGET_EXAMPLE", "SensorName", "named_sensor", "sensor_budget"]
+__all__ = [
+    "BUDGET_EXAMPLE",
+    "SENSOR_OPTION",
+    "OptionalSensorName",
+    "SensorName",
+    "named_sensor",
+    "sensor_budget",
+]
 
 BUDGET_EXAMPLE = (
     "\b\nExamples:\n"
@@ -22,19 +29,25 @@ BUDGET_EXAMPLE = (
     "  acutance simulate sensor-budget my-sensor.toml --figure budget.svg --json"
 )
 
-SensorName = Annotated[
-    str,
-    typer.Option(
-        "--sensor",
-        metavar="FILE|NAME",
-        help="A sensor in a .toml file, or generic-2005, ikonos-like, quickbird-like, or one of "
-        "the ready systems of simulate edge --system.",
-    ),
-]
+SENSOR_OPTION = typer.Option(
+    "--sensor",
+    metavar="FILE|NAME",
+    help="A sensor in a .toml file; one like a real one: generic-2005, ikonos-like, "
+    "quickbird-like; or a kind of sensor: gaussian, wide, diffraction, halo, sharpened, "
+    "asymmetric, smeared, defocused.",
+)
+SensorName = Annotated[str, SENSOR_OPTION]
+OptionalSensorName = Annotated[str | None, SENSOR_OPTION]
 
 
-def named_sensor(name: str) -> Sensor:
+def named_sensor(name: str, gsd_m: float | None = None) -> Sensor:
     """The sensor of a TOML file, a preset, or a reference system.
+
+    Parameters
+    ----------
+    name : str
+    gsd_m : float, optional
+        Another ground sampling distance than the sensor's own: its blur stays the same in pixels.
 
     Raises
     ------
@@ -46,12 +59,14 @@ def named_sensor(name: str) -> Sensor:
     from acutance.optics import presets, read_sensor
     from acutance.simulate import reference_systems
 
-    ready = {key: sheet.sensor for key, sheet in presets().items()} | reference_systems()
+    ready = {key: one.sensor for key, one in presets().items()} | reference_systems()
     if name in ready:
-        return ready[name]
-    if Path(name).suffix.lower() == ".toml":
-        return read_sensor(name)
-    raise OptionError(f"the sensor {name} is no .toml file and none of {', '.join(ready)}")
+        sensor = ready[name]
+    elif Path(name).suffix.lower() == ".toml":
+        sensor = read_sensor(name)
+    else:
+        raise OptionError(f"the sensor {name} is no .toml file and none of {', '.join(ready)}")
+    return sensor if gsd_m is None else replace(sensor, gsd_m=gsd_m, gsd_along_m=None)
 
 
 def sensor_budget(
@@ -72,18 +87,14 @@ def sensor_budget(
 ) -> None:
     """What every block of a sensor leaves of the contrast, across and along."""
     drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
-    sheet = check_optional("--toml", toml, (".toml",), keep=(sensor,))
+    described = check_optional("--toml", toml, (".toml",), keep=(sensor,))
     from acutance.optics import SensorFile, budget, presets, sensor_file_to_toml
-    from acutance.report.budget import budget_document, budget_figure, budget_text
-    from acutance.report.documents import json_text
-    from acutance.report.page import figure_bytes
+    from acutance.report import budget_document, budget_figure, budget_text, figure_bytes, json_text
 
     system = named_sensor(sensor)
     table = budget(system, freq)
     if drawing is not None:
-        drawing.write(figure_bytes(budget_figure(table), drawing.ending))
-        say(f"wrote {drawing.path}")
-    if sheet is not None:
-        sheet.write(sensor_file_to_toml(presets().get(sensor, SensorFile(system))))
-        say(f"wrote {sheet.path}")
+        drawing.deliver(figure_bytes(budget_figure(table), drawing.ending))
+    if described is not None:
+        described.deliver(sensor_file_to_toml(presets().get(sensor, SensorFile(system))))
     typer.echo(json_text(budget_document(table)) if as_json else budget_text(table))

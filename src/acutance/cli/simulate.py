@@ -1,4 +1,4 @@
-"""``acutance simulate``: images of targets, with their truth beside them."""
+"""``acutance simulate``: images of targets, each with its truth."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from acutance.cli import scenes, simulate_pair, simulate_site
-from acutance.cli.noise import Quantum, ReadNoise, Saturation, ShotGain, Snr, described_noise
+from acutance.cli.noise import NoiseOptions
+from acutance.cli.option_groups import with_groups
 from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
-from acutance.cli.sensor import BUDGET_EXAMPLE, named_sensor, sensor_budget
+from acutance.cli.sensor import BUDGET_EXAMPLE, OptionalSensorName, named_sensor, sensor_budget
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -25,39 +26,27 @@ EXAMPLE = (
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
-    help="Render a target, with its truth beside it.",
+    help="Render a target, with its truth.",
     epilog=EXAMPLE,
 )
 
 
 @app.callback()
 def _simulate() -> None:
-    """Render a target as a sensor sees it, with its truth beside it."""
+    """Render a target as a sensor sees it, with its truth."""
 
 
 @app.command("edge", epilog=EXAMPLE)
+@with_groups
 def edge(
+    *,
     out: Annotated[
         str,
         typer.Option(
-            metavar="FILE", help="The image, .tif; the truth goes beside it as .truth.json."
+            metavar="FILE", help="The image, .tif; the truth goes next to it as .truth.json."
         ),
     ],
-    system: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME",
-            help="A ready system instead of the blocks below: gaussian, wide, diffraction, halo, "
-            "sharpened, asymmetric, smeared or defocused.",
-        ),
-    ] = None,
-    sensor: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FILE|NAME",
-            help="A sensor in a .toml file, or generic-2005, ikonos-like or quickbird-like.",
-        ),
-    ] = None,
+    sensor: OptionalSensorName = None,
     gaussian: Annotated[
         float | None, typer.Option(metavar="PX", help="Gaussian blur: its standard deviation.")
     ] = None,
@@ -98,11 +87,7 @@ def edge(
     ] = "60,40",
     dark: Annotated[float, typer.Option(metavar="DN", help="Level of the dark side.")] = 200.0,
     bright: Annotated[float, typer.Option(metavar="DN", help="Level of the bright side.")] = 1200.0,
-    snr: Snr = None,
-    read_noise: ReadNoise = None,
-    shot_gain: ShotGain = None,
-    quantum: Quantum = None,
-    saturation: Saturation = None,
+    noise: NoiseOptions,
     seed: Seed = 0,
 ) -> None:
     """Render a straight edge as a sensor sees it, and write what a perfect measurement finds."""
@@ -118,12 +103,10 @@ def edge(
         "obscuration": obscuration,
     }
     sizes = {name: size for name, size in blocks.items() if size is not None}
-    if sensor is None:
-        sensor_seen = _sensor(sizes, system, gsd)
-    elif sizes or system is not None or gsd is not None:
-        raise OptionError(f"--sensor {sensor} stands alone: leave out blocks, --system and --gsd")
-    else:
-        sensor_seen = named_sensor(sensor)
+    if sensor is not None and sizes:
+        given = ", ".join(f"--{name}" for name in sizes)
+        raise OptionError(f"--sensor {sensor} stands alone: leave out {given}")
+    seen = _sensor(sizes, gsd) if sensor is None else named_sensor(sensor, gsd)
 
     import numpy as np
 
@@ -131,36 +114,25 @@ def edge(
     from acutance.report import truth_document
 
     pixels, truth = simulate.edge(
-        sensor_seen,
+        seen,
         angle_deg=angle,
         orientation="along" if along else "across",
         polarity="falling" if falling else "rising",
         shape=shape,
         dark=dark,
         bright=bright,
-        snr=snr,
-        noise=described_noise(read_noise, shot_gain, quantum, saturation),
+        snr=noise.snr,
+        noise=noise.described(),
         rng=np.random.default_rng(seed),
     )
-    files.write(pixels, sensor_seen, truth_document(truth, sensor_seen), seed)
+    files.write(pixels, seen, truth_document(truth, seen), seed)
     typer.echo(f"true MTF at Nyquist {truth.mtf_nyquist}, RER {truth.rer}, FWHM {truth.fwhm_px} px")
 
 
-def _sensor(sizes: dict[str, float], system: str | None, gsd_m: float | None) -> Sensor:
+def _sensor(sizes: dict[str, float], gsd_m: float | None) -> Sensor:
     """The sensor the options describe, one block an option."""
-    from dataclasses import replace
-
     from acutance import optics
-    from acutance.simulate import reference_systems
 
-    if system is not None:
-        known = reference_systems()
-        if sizes:
-            given = ", ".join(f"--{name}" for name in sizes)
-            raise OptionError(f"--system {system} stands alone: leave out {given}")
-        if system not in known:
-            raise OptionError(f"--system {system}: the systems are {', '.join(known)}")
-        return replace(known[system], gsd_m=gsd_m)
     if "obscuration" in sizes and "diffraction" not in sizes:
         raise OptionError("--obscuration belongs to an aperture: add --diffraction CPP")
     blocks: list[Block] = [optics.Detector(sizes.get("detector", 1.0))]

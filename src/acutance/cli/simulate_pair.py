@@ -24,7 +24,7 @@ def pair(
     out: Annotated[
         str,
         typer.Option(
-            metavar="FILE", help="The low image, .tif; the truth goes beside it as .truth.json."
+            metavar="FILE", help="The low image, .tif; the truth goes next to it as .truth.json."
         ),
     ],
     high: Annotated[str, typer.Option(metavar="FILE", help="The high image, .tif.")],
@@ -58,7 +58,7 @@ def pair(
     inputs = (sensor, high_sensor)
     files, shape = SimulatedFiles.of(out, *inputs), parse_size(size)
     fine = check_output("--high", high, (".tif", ".tiff"), keep=inputs)
-    if fine.path.resolve() == files.image.path.resolve():
+    if fine.place == files.image.place:
         raise OptionError("--out and --high name the same file: give two")
     if not 0 < gsd < math.inf:
         raise OptionError(f"--gsd {gsd:g}: the GSD has to be above 0 m")
@@ -69,8 +69,7 @@ def pair(
 
     from acutance import simulate
     from acutance.raster import write_geotiff
-    from acutance.report.budget import sensor_document
-    from acutance.report.documents import json_text
+    from acutance.report import json_text, sensor_document
 
     coarse, detailed, truth = simulate.pair(
         system,
@@ -87,7 +86,7 @@ def pair(
     )
     for file, image, gsd_m in ((files.image, coarse, gsd), (fine, detailed, gsd / ratio)):
         transform = (gsd_m, 0.0, _ORIGIN_M[0], 0.0, -gsd_m, _ORIGIN_M[1])
-        write_geotiff(file.path, image.astype(np.float32), transform=transform, crs=_CRS)
+        write_geotiff(file.place, image.astype(np.float32), transform=transform, crs=_CRS)
         say(f"wrote {file.path}")
     document = {
         "schema": "acutance/truth/1",
@@ -97,8 +96,7 @@ def pair(
         "snr": snr,
         "seed": seed,
     }
-    files.truth.write(json_text(document))
-    say(f"wrote {files.truth.path}")
+    files.truth.deliver(json_text(document))
     across, along = (truth.response(axis).mtf_nyquist for axis in ("across", "along"))
     typer.echo(f"true MTF at Nyquist {across} across, {along} along")
 

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from acutance.cli.noise import Quantum, ReadNoise, Saturation, ShotGain, Snr, described_noise
+from acutance.cli.noise import NoiseOptions, Quantum, Saturation, ShotGain, described_noise
+from acutance.cli.option_groups import with_groups
 from acutance.cli.scenes import Out, Seed, SimulatedFiles, parse_size
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.errors import OptionError
@@ -33,9 +34,9 @@ def site(
         str | None,
         typer.Option(metavar="ROWS,COLS", help="Size of the image, with --targets; 1000,1000."),
     ] = None,
-    turn: Annotated[
+    angle: Annotated[
         float,
-        typer.Option(metavar="DEG", help="Turn of the targets: 2 to 14, with --targets -45 to 45."),
+        typer.Option(metavar="DEG", help="Tilt of the targets: 2 to 14, with --targets -45 to 45."),
     ] = 6.0,
     texture: Annotated[
         float, typer.Option(metavar="DN", help="Standard deviation of the grass.")
@@ -59,14 +60,14 @@ def site(
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import scene_document
+    from acutance.report import scene_document
 
     rng = np.random.default_rng(seed)
     noise = described_noise(read_noise, shot_gain, quantum, saturation)
     if targets is None:
-        scene = simulate.brookings(system, rng, turn_deg=turn, texture_std=texture, noise=noise)
+        scene = simulate.brookings(system, rng, turn_deg=angle, texture_std=texture, noise=noise)
     else:
-        tarps = simulate.tarp_rows(shape, targets, turn_deg=turn)
+        tarps = simulate.tarp_rows(shape, targets, turn_deg=angle)
         with typer.progressbar(length=targets, label="rendering", file=sys.stderr) as bar:
             scene = simulate.render_site(
                 system,
@@ -76,19 +77,23 @@ def site(
                 noise=noise,
                 rng=rng,
                 progress=lambda done, total: bar.update(1),
-                description=f"{targets} tarps on grass, turned by {turn:g} deg",
+                description=f"{targets} tarps on grass, turned by {angle:g} deg",
             )
     files.write(scene.image, system, scene_document(scene), seed)
     typer.echo(f"{scene.description}: {len(scene.edges)} edges, {len(scene.targets)} other targets")
 
 
+@with_groups
 def checkerboard(
+    *,
     out: Out,
     sensor: SensorName = "generic-2005",
     tile: Annotated[
         float, typer.Option(metavar="PX", help="Side of a tile, 16 px or more.")
     ] = 28.0,
-    turn: Annotated[float, typer.Option(metavar="DEG", help="Turn of the board, -45 to 45.")] = 7.0,
+    angle: Annotated[
+        float, typer.Option(metavar="DEG", help="Tilt of the board, -45 to 45.")
+    ] = 7.0,
     size: Annotated[
         str, typer.Option(metavar="ROWS,COLS", help="Size of the image in pixels.")
     ] = "120,120",
@@ -100,11 +105,7 @@ def checkerboard(
     texture: Annotated[
         float, typer.Option(metavar="DN", help="Standard deviation of the ground around it.")
     ] = 0.0,
-    snr: Snr = None,
-    read_noise: ReadNoise = None,
-    shot_gain: ShotGain = None,
-    quantum: Quantum = None,
-    saturation: Saturation = None,
+    noise: NoiseOptions,
     seed: Seed = 0,
 ) -> None:
     """Render a checkerboard of two by two tiles: four edges, two across and two along."""
@@ -113,19 +114,19 @@ def checkerboard(
     import numpy as np
 
     from acutance import simulate
-    from acutance.report.scene_truth import scene_document
+    from acutance.report import scene_document
 
     scene = simulate.checkerboard(
         system,
         shape=shape,
         tile_px=tile,
-        turn_deg=turn,
+        turn_deg=angle,
         dark=dark,
         bright=bright,
         ground=ground,
         texture_std=texture,
-        snr=snr,
-        noise=described_noise(read_noise, shot_gain, quantum, saturation),
+        snr=noise.snr,
+        noise=noise.described(),
         rng=np.random.default_rng(seed),
     )
     files.write(scene.image, system, scene_document(scene), seed)

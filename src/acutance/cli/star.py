@@ -2,35 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Annotated, Literal, cast
+from typing import Annotated
 
 import typer
 
-from acutance.cli.choices import change_limits
-from acutance.cli.faces import faces_of_plane
-from acutance.cli.result_options import (
-    CovarianceOption,
-    CsvOption,
-    FigureOption,
-    JsonOption,
-    LimitOption,
-    ReportOption,
-    ResultOptions,
-    StrictOption,
-)
-from acutance.cli.target import (
-    BandOption,
-    GsdOption,
+from acutance.cli.measure import measure_target
+from acutance.cli.option_groups import with_groups
+from acutance.cli.options import (
+    BrightOption,
+    DarkOption,
     ImageArgument,
-    NodataOption,
-    RoiOption,
-    SiteOption,
-    open_target,
+    LevelStdOption,
+    PixelOptions,
+    ResultOptions,
+    RobustOption,
 )
 from acutance.errors import OptionError
+from acutance.targets.kinds import KINDS
 
-__all__ = ["EXAMPLE", "BrightOption", "DarkOption", "LevelStdOption", "parse_place", "star"]
+__all__ = ["EXAMPLE", "WaveOption", "parse_place", "star"]
 
 EXAMPLE = (
     "\b\nExamples:\n"
@@ -39,31 +29,21 @@ EXAMPLE = (
     "  acutance star chart.png --cycles count --figure star.png --json"
 )
 
-DarkOption = Annotated[
-    float | None,
-    typer.Option(
-        metavar="DN",
-        help="Level of a wide patch of the dark material, before blur. The contrast is fitted "
-        "without --dark and --bright, which is less exact.",
-    ),
-]
-BrightOption = Annotated[
-    float | None, typer.Option(metavar="DN", help="Level of a wide patch of the bright material.")
-]
-LevelStdOption = Annotated[
-    float, typer.Option(metavar="DN", help="Standard deviation of --bright less --dark.")
-]
+WaveOption = Annotated[str, typer.Option(metavar="sine|square", help="Form of the spokes.")]
 
 
+@with_groups
 def star(
+    *,
     image: ImageArgument,
+    pixels: PixelOptions,
     cycles: Annotated[
         str,
         typer.Option(
-            metavar="K|count", help="Periods in a full turn, also of a fan; count: count them."
+            metavar="N|count", help="Periods in a full turn, also of a fan; count: count them."
         ),
     ] = "36",
-    wave: Annotated[str, typer.Option(metavar="sine|square", help="Form of the spokes.")] = "sine",
+    wave: WaveOption = "sine",
     dark: DarkOption = None,
     bright: BrightOption = None,
     level_std: LevelStdOption = 0.0,
@@ -76,60 +56,31 @@ def star(
     inner: Annotated[
         float | None, typer.Option(metavar="PX", help="Leave out pixels nearer to the centre.")
     ] = None,
-    roi: RoiOption = None,
-    site: SiteOption = None,
-    band: BandOption = 1,
-    nodata: NodataOption = None,
-    gsd: GsdOption = None,
-    robust: Annotated[bool, typer.Option(help="Bound the weight of outlying pixels.")] = True,
-    figure: FigureOption = None,
-    report: ReportOption = None,
-    csv: CsvOption = None,
-    as_json: JsonOption = False,
-    covariance: CovarianceOption = False,
-    limit: LimitOption = None,
-    strict: StrictOption = False,
+    robust: RobustOption = True,
+    wanted: ResultOptions,
 ) -> None:
     """Measure the MTF of every direction and frequency on a Siemens star, full or a fan.
 
     Sine or square spokes; the centre is fitted. Spokes finer than two pixels are aliased: the fit
-    knows it and uses them.
+    allows for it and uses them.
     """
-    wanted = ResultOptions(
-        (image, roi),
-        figure=figure,
-        report=report,
-        csv=csv,
-        as_json=as_json,
-        covariance=covariance,
-        strict=strict,
-    )
-
-    from acutance.targets.periodic import StarLimits, StarOptions, measure_star
-
-    options = StarOptions(
-        wave=cast("Literal['sine', 'square']", wave),
-        dark=dark,
-        bright=bright,
-        level_std=level_std,
-        centre=None if centre is None else parse_place("--centre", centre),
-        inner_px=inner,
-        robust=robust,
-        limits=change_limits(StarLimits(), limit or []),
-    )
     known = _parse_cycles(cycles)
-    source, region = open_target(image, band=band, gsd=gsd, roi=roi, site=site, nodata=nodata)
-    measurement = measure_star(source, region, cycles=known, options=options)
-
-    from acutance import report as faces
-
-    shown = faces_of_plane(
-        measurement,
-        panels=faces.star_panels,
-        sections=faces.star_sections,
-        blocks=faces.star_blocks,
+    measure_target(
+        KINDS["star"],
+        image,
+        pixels,
+        wanted,
+        options={
+            "wave": wave,
+            "dark": dark,
+            "bright": bright,
+            "level_std": level_std,
+            "centre": None if centre is None else parse_place("--centre", centre),
+            "inner_px": inner,
+            "robust": robust,
+        },
+        arguments=lambda _: {"cycles": known},
     )
-    wanted.deliver([measurement], replace(shown, csv=lambda: faces.star_csv(measurement)))
 
 
 def _parse_cycles(text: str) -> int | None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from acutance.cli.output import OutputFile, check_output, make_folder
-from acutance.cli.terminal import say, warnings_said
+from acutance.cli.terminal import warnings_said
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def execution_of(
 
 
 def progress_bar(title: str) -> AbstractContextManager[Callable[[int, int], None] | None]:
-    """A bar of finished trials on stderr; nothing where nobody is watching."""
+    """A bar of finished trials on stderr; nothing where stderr is no terminal."""
     from rich.console import Console
 
     console = Console(stderr=True)
@@ -149,8 +149,7 @@ def _value(option: str, value: str, text: str) -> Any:
 
 
 def _deliver(result: StudyResult, folder: Path | None, as_json: bool) -> None:
-    from acutance.report import json_text
-    from acutance.report.study_figures import study_text
+    from acutance.report import json_text, study_text
 
     if folder is not None:
         write_result(result, folder)
@@ -159,9 +158,7 @@ def _deliver(result: StudyResult, folder: Path | None, as_json: bool) -> None:
 
 def write_result(result: StudyResult, folder: Path) -> None:
     """Tables as CSV, everything as JSON, and the figure."""
-    from acutance.report import json_text
-    from acutance.report.page import figure_bytes
-    from acutance.report.study_figures import study_figure
+    from acutance.report import figure_bytes, json_text, study_figure
 
     def named(ending: str) -> OutputFile:
         name = folder / f"{result.name}{ending}"
@@ -174,6 +171,4 @@ def write_result(result: StudyResult, folder: Path) -> None:
     files[".json"] = json_text(result.to_dict())
     files[".png"] = figure_bytes(study_figure(result), ".png")
     for ending, content in files.items():
-        target = named(ending)
-        target.write(content)
-        say(f"wrote {target.path}")
+        named(ending).deliver(content)

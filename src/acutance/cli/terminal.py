@@ -2,20 +2,38 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import sys
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, NoReturn
 
 import typer
 
-__all__ = ["FAILED_CHECK", "command_line", "fail", "say", "stop", "warnings_said"]
+__all__ = [
+    "BAD_USAGE",
+    "EXIT_CODES",
+    "FAILED_CHECK",
+    "NOTHING_MEASURED",
+    "command_line",
+    "fail",
+    "say",
+    "stop",
+    "stop_printing",
+    "warnings_said",
+]
 
 BAD_USAGE = 2
 FAILED_CHECK = 3
+NOTHING_MEASURED = 4
 INTERRUPTED = 130
+CLOSED_PIPE = 141
+EXIT_CODES = (
+    "Exit codes: 0 measured, 2 bad usage or input, 3 measured but a check failed under --strict, "
+    "4 nothing there that can be measured, 130 interrupted."
+)
 
 
 def say(message: str) -> None:
@@ -23,16 +41,37 @@ def say(message: str) -> None:
     typer.echo(message, err=True)
 
 
-def fail(message: str) -> NoReturn:
-    """End with exit code 2 and one message."""
+def fail(message: str, code: int = BAD_USAGE) -> NoReturn:
+    """End with one message and an exit code."""
     say(f"acutance: {message}")
-    raise typer.Exit(BAD_USAGE)
+    raise typer.Exit(code)
 
 
 def stop(message: str) -> NoReturn:
     """End after Ctrl-C with one message and the exit code of shells for it."""
-    say(f"acutance: {message or 'interrupted'}")
-    raise typer.Exit(INTERRUPTED)
+    fail(message or "interrupted", INTERRUPTED)
+
+
+def stop_printing(error: OSError) -> NoReturn:
+    """End because stdout takes no more: without a word where its reader has left.
+
+    A reader that has seen enough (``| head``) ends other programs with the signal SIGPIPE, which
+    shells report as 141.
+    """
+    _discard_stdout()
+    if isinstance(error, BrokenPipeError):
+        raise typer.Exit(CLOSED_PIPE)
+    reason = error.strerror or str(error)
+    fail(f"the result cannot be written to standard output ({reason}): send it elsewhere")
+
+
+def _discard_stdout() -> None:
+    """Lose what is still buffered: the interpreter would try to write it again at its end."""
+    # Where stdout is no file (inside a test, in a notebook) nothing is written at the end.
+    with suppress(OSError, ValueError, AttributeError):
+        stdout, nowhere = sys.stdout.fileno(), os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stdout)
+        os.close(nowhere)
 
 
 @contextmanager

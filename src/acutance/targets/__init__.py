@@ -1,9 +1,10 @@
 """Targets: an image in, a `Measurement` out. One folder a kind of target.
 
-What the kinds share stands here: `region` (the pixels a measurement starts from), `options` (what
-callers choose), `check` and `check_table` (what is asked of a target), `slices` (an OTF along some
-directions, with covariance), `measurement` and its light half, `record`, and `target_result`
-(several measurements of one target). The kinds, which do not know one another:
+What the kinds share stands here: `kinds` (their names and methods), `region` (the pixels a
+measurement starts from), `options` (what callers choose), `check` and `check_table` (what is asked
+of a target), `slices` (an OTF along some directions, with covariance), `measurement` and its light
+half, `record`, and `target_result` (several measurements of one target). The kinds, which do not
+know one another:
 
 - `straight`: edges and pulses, along their normals
 - `points`: mirrors, lamps, stars of the sky
@@ -12,18 +13,28 @@ directions, with covariance), `measurement` and its light half, `record`, and `t
 - `combine`: several measurements of one sensor
 """
 
-from acutance.targets.check import Check, Verdict
-from acutance.targets.check_table import QUESTIONS, Question
-from acutance.targets.measurement import Measurement
-from acutance.targets.record import ImageInfo, Record
-from acutance.targets.slices import PlaneSlices
-from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from acutance.targets.kinds import KINDS, Kind
+
+if TYPE_CHECKING:
+    from acutance.targets.check import Check, Verdict
+    from acutance.targets.check_table import QUESTIONS, Question
+    from acutance.targets.measurement import Measurement
+    from acutance.targets.record import ImageInfo, Record
+    from acutance.targets.slices import PlaneSlices
+    from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
 
 __all__ = [
+    "KINDS",
     "QUESTIONS",
     "Check",
     "EdgeGroup",
     "ImageInfo",
+    "Kind",
     "Measurement",
     "PlaneSlices",
     "Question",
@@ -32,3 +43,24 @@ __all__ = [
     "TargetResult",
     "Verdict",
 ]
+
+# The modules are loaded when a name is first used: the names of the kinds cost no numpy.
+_HOMES = {
+    "QUESTIONS": "check_table",
+    "Check": "check",
+    "EdgeGroup": "target_result",
+    "ImageInfo": "record",
+    "Measurement": "measurement",
+    "PlaneSlices": "slices",
+    "Question": "check_table",
+    "Record": "record",
+    "Rejected": "target_result",
+    "TargetResult": "target_result",
+    "Verdict": "check",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        return getattr(importlib.import_module(f"acutance.targets.{_HOMES[name]}"), name)
+    raise AttributeError(f"module 'acutance.targets' has no attribute {name!r}")

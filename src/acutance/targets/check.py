@@ -223,7 +223,8 @@ def require_limits(limits: Any, known: Sequence[str], options: str) -> None:
     for name, limit in limits.items():
         if name not in known:
             raise OptionError(
-                f"{options}: there is no check {name!r} to limit, only {', '.join(sorted(known))}"
+                f"{options}: there is no check {name!r} to limit (limits, --limit), only "
+                f"{', '.join(sorted(known))}"
             )
         if not isinstance(limit, Real) or isinstance(limit, bool) or math.isnan(limit):
             raise OptionError(f"{options}: the limit of {name} has to be a number, found {limit!r}")

@@ -1,0 +1,144 @@
+"""From the options of a measuring command to its results: the same for every kind of target."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from acutance.cli.options import PixelOptions, ResultOptions
+from acutance.cli.results import Outputs, Shown
+from acutance.cli.terminal import say
+from acutance.errors import NoEdgeError, RegionError, TargetError
+from acutance.targets.kinds import Kind
+
+if TYPE_CHECKING:
+    from acutance.raster import Image, Region
+
+__all__ = ["measure_target"]
+
+
+def _no_arguments(image: Image) -> Mapping[str, Any]:
+    return {}
+
+
+def measure_target(
+    kind: Kind,
+    path: str,
+    pixels: PixelOptions,
+    wanted: ResultOptions,
+    *,
+    options: Mapping[str, Any],
+    arguments: Callable[[Image], Mapping[str, Any]] = _no_arguments,
+    methods: Sequence[str] = (),
+    measure_all: bool = False,
+    inputs: Iterable[str | None] = (),
+) -> None:
+    """Measure a target in each region, and deliver what was asked for.
+
+    Parameters
+    ----------
+    kind : Kind
+    path : str
+        Of the image.
+    pixels : PixelOptions
+    wanted : ResultOptions
+    options : mapping
+        Fields of the kind's options, without its limits.
+    arguments : function of an Image, optional
+        Gives the other arguments of the kind's function.
+    methods : sequence of str, optional
+        Several are compared; without them the reference measures.
+    measure_all : bool, optional
+        Measure every target of the region.
+    inputs : iterable of str or None, optional
+        Files the command reads besides.
+    """
+    kept = (path, pixels.roi, *inputs)
+    outputs = Outputs.checked(wanted, kept)
+    chosen = kind.load(kind.options)(**options, limits=wanted.limits)
+    image, regions = pixels.open(path)
+    given = {**arguments(image), "options": chosen}
+    names = methods or kind.methods[:1]
+
+    def measure(region: Region | None) -> Shown:
+        if measure_all:
+            return _every_target(kind, image, region, {**given, "method": names[0]})
+        function = kind.load(kind.measure)
+        found = [function(image, roi=region, method=name, **given) for name in names]
+        return Shown(found[0] if len(found) == 1 else found)
+
+    if len(regions) == 1:
+        (region,) = regions.values()
+        outputs.deliver(measure(region))
+    else:
+        _deliver_regions(outputs, regions, measure, kept)
+
+
+def _every_target(
+    kind: Kind, image: Image, region: Region | None, given: Mapping[str, Any]
+) -> Shown:
+    """All edges of a region, on the pixels they are drawn on."""
+    from acutance.raster import Box
+
+    result = kind.load(str(kind.measure_all))(image, region, **given)
+    if not result.measurements:
+        tried = len(result.rejected)
+        why = f"; of {tried} tried the first: {result.rejected[0].reason}" if tried else ""
+        raise NoEdgeError(
+            f"no {kind.name} of {image.path} could be measured{why}. Choose a region around one "
+            "target"
+        )
+    box = Box.whole(image.shape) if region is None else region.box(image.shape)
+    return Shown(result, {"backdrop": image.read(box), "origin": (box.row, box.col)})
+
+
+def _deliver_regions(
+    outputs: Outputs,
+    regions: Mapping[str, Region | None],
+    measure: Callable[[Region | None], Shown],
+    kept: tuple[str | None, ...],
+) -> None:
+    """Measure every region; one that holds no target is named, and the others go on."""
+    from acutance import report
+
+    found: dict[str, Shown] = {}
+    rejected: dict[str, str] = {}
+    for (name, region), own in zip(
+        regions.items(), outputs.of_regions(list(regions), kept), strict=True
+    ):
+        try:
+            found[name] = measure(region)
+        except (TargetError, RegionError) as error:
+            rejected[name] = str(error)
+            say(f"acutance: region {name}: {error}")
+            continue
+        own.write_files(found[name])
+    if not found:
+        raise TargetError(f"none of the {len(regions)} regions could be measured")
+    if outputs.as_json:
+        typer.echo(report.json_text(_regions_document(found, rejected, outputs.covariance)))
+    else:
+        texts = (f"region {name}: {report.text(shown.result)}" for name, shown in found.items())
+        typer.echo("\n\n".join(texts))
+    outputs.require_checks(found.values(), missing=len(rejected))
+
+
+def _regions_document(
+    found: Mapping[str, Shown], rejected: Mapping[str, str], covariance: bool
+) -> dict[str, Any]:
+    """The document ``acutance/regions/1``: one result a region, and the regions without one."""
+    from acutance import report
+
+    return {
+        "schema": "acutance/regions/1",
+        "results": [
+            {"region": name, **report.document(shown.result, covariance=covariance)}
+            for name, shown in found.items()
+        ],
+        "rejected": [
+            {"stage": "measurement", "reason": reason, "values": {"region": name}}
+            for name, reason in rejected.items()
+        ],
+    }

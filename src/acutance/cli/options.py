@@ -1,0 +1,197 @@
+"""The options of measuring commands, each declared once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from acutance.cli.choices import parse_limits
+from acutance.errors import OptionError
+from acutance.targets.kinds import KINDS, methods_text
+
+if TYPE_CHECKING:
+    from acutance.raster import Gsd, Image, Region
+    from acutance.raster.image import AlongTrack
+
+__all__ = [
+    "BrightOption",
+    "CompareOption",
+    "DarkOption",
+    "GsdOption",
+    "ImageArgument",
+    "JsonOption",
+    "LevelStdOption",
+    "PixelOptions",
+    "RerCentreOption",
+    "ResultOptions",
+    "RobustOption",
+    "method_option",
+    "parse_gsd",
+]
+
+_AXES: dict[str, AlongTrack] = {"x": "x", "y": "y"}
+
+ImageArgument = Annotated[
+    str, typer.Argument(metavar="IMAGE", help="Any raster GDAL reads, or a .npy array.")
+]
+GsdOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="M",
+        help="Ground sampling distance in metres, or ROW,COL distances where they differ. "
+        "That of the file without it.",
+    ),
+]
+CompareOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="METHOD,...", help="Measure by these methods too, and compare the results."
+    ),
+]
+RerCentreOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="half|peak",
+        help="Centre RER on the 50 % point or on the peak of the LSF; without it as the "
+        "method does.",
+    ),
+]
+RobustOption = Annotated[
+    bool, typer.Option(help="Bound the weight of outlying pixels (the reference method).")
+]
+DarkOption = Annotated[
+    float | None,
+    typer.Option(
+        metavar="DN",
+        help="Level of a wide patch of the dark material, before blur. The contrast is fitted "
+        "without --dark and --bright, which is less exact.",
+    ),
+]
+BrightOption = Annotated[
+    float | None, typer.Option(metavar="DN", help="Level of a wide patch of the bright material.")
+]
+LevelStdOption = Annotated[
+    float, typer.Option(metavar="DN", help="Standard deviation of --bright minus --dark.")
+]
+JsonOption = Annotated[
+    bool, typer.Option("--json", help="Print the JSON document, and nothing else, to stdout.")
+]
+
+
+def method_option(kind: str) -> Any:
+    """The option ``--method`` of a kind of target, with the names there are."""
+    return typer.Option(metavar="METHOD", help=f"{methods_text(KINDS[kind].methods)}.")
+
+
+@dataclass(frozen=True)
+class PixelOptions:
+    """Which pixels are meant, and where they lie."""
+
+    roi: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ROI",
+            help="Region: ROW,COL,HEIGHT,WIDTH in pixels, lonlat:WEST,SOUTH,EAST,NORTH in "
+            "degrees, or a GeoJSON file, each polygon of which is measured. The whole image "
+            "without it.",
+        ),
+    ] = None
+    site: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Region: a known site (see acutance sites).")
+    ] = None
+    band: Annotated[int, typer.Option(metavar="N", help="Which band, from 1.")] = 1
+    nodata: Annotated[
+        float | None,
+        typer.Option(
+            metavar="VALUE",
+            help="The stored value of unusable pixels; that of the file without it.",
+        ),
+    ] = None
+    gsd: GsdOption = None
+    along_track: Annotated[
+        str,
+        typer.Option(metavar="x|y", help="The image axis along track: y, down the columns, or x."),
+    ] = "y"
+
+    def open(self, path: str) -> tuple[Image, dict[str, Region | None]]:
+        """Open the image and find the regions the options ask for, by name.
+
+        Raises
+        ------
+        OptionError, ImageError, RegionError
+            If the options contradict each other, or the image or a region cannot be had.
+        """
+        if self.roi is not None and self.site is not None:
+            raise OptionError("--roi and --site both name a region: give one of them")
+        if self.along_track not in _AXES:
+            raise OptionError(f"--along-track {self.along_track}: it has to be x or y")
+        gsd_m = parse_gsd(self.gsd)
+        from acutance.raster import find_site, open_image, parse_rois, site_region
+
+        place = None if self.site is None else find_site(self.site)
+        image = open_image(path, self.band, gsd_m, self.nodata, along_track=_AXES[self.along_track])
+        if place is not None:
+            return image, {place.name: site_region(place, image)}
+        if self.roi is None:
+            return image, {"": None}
+        return image, dict(parse_rois(self.roi, image))
+
+
+@dataclass(frozen=True)
+class ResultOptions:
+    """What is asked of a result, and what becomes of it."""
+
+    figure: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw the steps: .png, .svg or .pdf.")
+    ] = None
+    report: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write a self-contained page: .html.")
+    ] = None
+    csv: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write the MTF in steps of 0.02 c/px: .csv.")
+    ] = None
+    as_json: JsonOption = False
+    covariance: Annotated[
+        bool, typer.Option("--covariance", help="With --json: add the covariance factors.")
+    ] = False
+    limit: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE", help="Ask more or less of a check; repeatable."),
+    ] = None
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Exit with code 3 when a check failed.")
+    ] = False
+
+    @property
+    def limits(self) -> Mapping[str, float]:
+        """The limits of ``--limit`` by the names of the checks."""
+        return parse_limits(self.limit or ())
+
+
+def parse_gsd(text: str | None) -> float | Gsd | None:
+    """The value of ``--gsd``: one number, or the spacing of rows and that of columns.
+
+    Raises
+    ------
+    OptionError
+        If it is neither.
+    """
+    if text is None:
+        return None
+    try:
+        numbers: Sequence[float] = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = ()
+    if len(numbers) not in (1, 2):
+        raise OptionError(
+            f"--gsd {text} is not a distance: write metres (0.7), or those between rows and "
+            "between columns (0.72,0.70)"
+        )
+    if len(numbers) == 1:
+        return numbers[0]
+    from acutance.raster import Gsd
+
+    return Gsd(*numbers)

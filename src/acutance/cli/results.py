@@ -1,0 +1,158 @@
+"""What becomes of results: files found writable before the work, then text or JSON on stdout."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from acutance.cli.options import ResultOptions
+from acutance.cli.output import OutputFile, check_optional
+from acutance.cli.terminal import FAILED_CHECK, command_line, say
+from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.targets import Measurement, TargetResult
+
+__all__ = ["Outputs", "Shown"]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A result to be shown.
+
+    Parameters
+    ----------
+    result : Measurement, sequence of Measurement, or TargetResult
+        Of one method, of several to be compared, or of all edges of a target.
+    drawn_on : mapping
+        What `acutance.report` needs besides to draw it: the pixels of a target, and their place.
+    """
+
+    result: Measurement | Sequence[Measurement] | TargetResult[Measurement]
+    drawn_on: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def measurements(self) -> Sequence[Measurement]:
+        """All measurements of the result."""
+        from acutance.targets import TargetResult
+
+        if isinstance(self.result, Sequence):
+            return self.result
+        if isinstance(self.result, TargetResult):
+            return self.result.measurements
+        return [self.result]
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Where results go.
+
+    Parameters
+    ----------
+    figure, report, csv : OutputFile or None
+    as_json, covariance, strict : bool
+    """
+
+    figure: OutputFile | None
+    report: OutputFile | None
+    csv: OutputFile | None
+    as_json: bool
+    covariance: bool
+    strict: bool
+
+    @classmethod
+    def checked(cls, options: ResultOptions, inputs: Iterable[str | None]) -> Outputs:
+        """The outputs of the options, found possible before any work is done for them.
+
+        Parameters
+        ----------
+        options : ResultOptions
+        inputs : iterable of str or None
+            What the command reads, files or not: no output may overwrite a file of them.
+
+        Raises
+        ------
+        OptionError
+            If a file cannot be written, or the options contradict each other.
+        """
+        if options.covariance and not options.as_json:
+            raise OptionError("--covariance belongs to the JSON document: add --json")
+        kept = tuple(inputs)
+        return cls(
+            check_optional("--figure", options.figure, (".png", ".svg", ".pdf"), keep=kept),
+            check_optional("--report", options.report, (".html",), keep=kept),
+            check_optional("--csv", options.csv, (".csv",), keep=kept),
+            options.as_json, options.covariance, options.strict,
+        )  # fmt: skip
+
+    def of_regions(self, names: Sequence[str], inputs: Iterable[str | None]) -> list[Outputs]:
+        """Outputs of several regions: files that carry the region's name, "edge-north.png".
+
+        Raises
+        ------
+        OptionError
+            If a file cannot be written.
+        """
+        kept, stems = tuple(inputs), _file_names(names)
+        return [
+            replace(
+                self,
+                figure=_named(self.figure, stem, kept),
+                report=_named(self.report, stem, kept),
+                csv=_named(self.csv, stem, kept),
+            )
+            for stem in stems
+        ]
+
+    def deliver(self, shown: Shown) -> None:
+        """Write and print one result; under ``--strict`` a failed check is exit code 3."""
+        from acutance import report
+
+        self.write_files(shown)
+        if self.as_json:
+            typer.echo(report.json_text(report.document(shown.result, covariance=self.covariance)))
+        else:
+            typer.echo(report.text(shown.result))
+        self.require_checks([shown])
+
+    def write_files(self, shown: Shown) -> None:
+        """Write the files that were asked for."""
+        from acutance import report
+
+        if self.figure is not None:
+            figure = report.draw(shown.result, **shown.drawn_on)
+            self.figure.deliver(report.figure_bytes(figure, self.figure.ending))
+        if self.report is not None:
+            page = report.page(shown.result, command=command_line(), **shown.drawn_on)
+            self.report.deliver(page)
+        if self.csv is not None:
+            self.csv.deliver(report.csv(shown.result))
+
+    def require_checks(self, results: Iterable[Shown], missing: int = 0) -> None:
+        """End with exit code 3 where ``--strict`` asks for more than there is."""
+        measurements = [one for shown in results for one in shown.measurements]
+        failed = sum(not one.trusted for one in measurements)
+        if self.strict and failed:
+            say(f"acutance: a check failed in {failed} of {len(measurements)} measurements")
+        if self.strict and (failed or missing):
+            raise typer.Exit(FAILED_CHECK)
+
+
+def _named(output: OutputFile | None, stem: str, kept: tuple[str | None, ...]) -> OutputFile | None:
+    if output is None:
+        return None
+    path = output.path
+    name = str(path.with_name(f"{path.stem}-{stem}{path.suffix}"))
+    return check_optional(output.option, name, (path.suffix.lower(),), keep=kept)
+
+
+def _file_names(names: Sequence[str]) -> list[str]:
+    """The names of regions as parts of file names, all different."""
+    stems = [re.sub(r"[^\w.-]+", "-", name).strip("-") for name in names]
+    if len(set(stems)) == len(stems):
+        return stems
+    return [f"{number}-{stem}" for number, stem in enumerate(stems, start=1)]
