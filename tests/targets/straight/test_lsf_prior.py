@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from acutance.numerics.gaussian_pixel import Blur
-from acutance.targets.straight.lsf_prior import TAIL_WIDTH, directions, tail_esf, tail_lsf, tail_otf
+from acutance.numerics.lorentz_tail import tail_esf, tail_lsf, tail_otf
+from acutance.targets.straight.lsf_prior import directions
 from acutance.targets.straight.spline import (
     CELLS,
     CENTRES,
@@ -12,6 +13,7 @@ from acutance.targets.straight.spline import (
     edge_and_line_weights,
     edge_weights,
 )
+from acutance.targets.straight.tuned import TAIL_WIDTH
 
 BLURS = [Blur(0.4), Blur(1.3, 0.6)]
 
@@ -49,18 +51,18 @@ def test_processes_have_the_covariance_they_promise():
 
 def test_tail_curves_belong_together():
     u = np.linspace(-9, 9, 181)
-    slope = (tail_esf(u + 1e-5) - tail_esf(u - 1e-5)) / 2e-5
-    assert np.max(np.abs(slope - tail_lsf(u))) < 1e-8
+    slope = (tail_esf(u + 1e-5, TAIL_WIDTH) - tail_esf(u - 1e-5, TAIL_WIDTH)) / 2e-5
+    assert np.max(np.abs(slope - tail_lsf(u, TAIL_WIDTH))) < 1e-8
     grid = (np.arange(400000) + 0.5) * 0.005 - 1000
     freq = np.array([0.0, 0.1, 0.3, 0.7])
-    numerical = np.cos(2 * np.pi * np.outer(freq, grid)) @ tail_lsf(grid) * 0.005
+    numerical = np.cos(2 * np.pi * np.outer(freq, grid)) @ tail_lsf(grid, TAIL_WIDTH) * 0.005
     # The grid's ends leave 2 * TAIL_WIDTH / (1000 pi) out.
-    assert np.max(np.abs(tail_otf(freq) - numerical)) < 1e-3
+    assert np.max(np.abs(tail_otf(freq, TAIL_WIDTH) - numerical)) < 1e-3
 
 
 def test_tail_direction_is_the_tail_within_the_support():
     found = directions(Blur(0.4))
     u = np.linspace(-7, 7, 141)
     spline = combine(*edge_weights(u), found.esf[:, -1])
-    assert np.max(np.abs(spline - tail_esf(u))) < 2e-3
+    assert np.max(np.abs(spline - tail_esf(u, TAIL_WIDTH))) < 2e-3
     assert TAIL_WIDTH > 0

@@ -28,6 +28,8 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.numerics.lorentz_tail import tail_otf, tail_psf
+from acutance.numerics.process_modes import covariance_modes
 from acutance.targets.pair import tuned
 from acutance.targets.pair.axis_gaussian import AxisGaussian
 from acutance.targets.pair.tile import (
@@ -150,7 +152,7 @@ class KernelBasis(ShortRepr):
     def _tail_at(self, down_px: Floats, across_px: Floats) -> Floats:
         """TAIL as weights of taps: ``a / (2 pi (r^2 + a^2)^(3/2))``, transform of its transfer."""
         x, y = across_px + self.across.shift_px, down_px + self.down.shift_px
-        density = tuned.TAIL_PX / (2 * math.pi) / (x**2 + y[:, None] ** 2 + tuned.TAIL_PX**2) ** 1.5
+        density = tail_psf(np.hypot(x, y[:, None]), tuned.TAIL_PX)
         return np.asarray(density / (self.grid.down.per_px * self.grid.across.per_px))
 
     def transfer(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
@@ -158,8 +160,9 @@ class KernelBasis(ShortRepr):
         down, across, pairs = self._axes
         along = self.grid.down.waves(v_cpp) @ down
         over = self.grid.across.waves(u_cpp) @ across
-        tail = np.exp(-2 * math.pi * tuned.TAIL_PX * np.hypot(u_cpp, v_cpp))
-        tail = tail * np.conj(self.centring(u_cpp, v_cpp))
+        tail = tail_otf(np.hypot(u_cpp, v_cpp), tuned.TAIL_PX) * np.conj(
+            self.centring(u_cpp, v_cpp)
+        )
         parts = [along[:, a] * over[:, b] for _, a, b in pairs]
         return np.concatenate([*parts, tail[:, None]], axis=1)
 
@@ -177,11 +180,8 @@ def _process(
     As weights of taps: a density per pixel takes 1 / per_px of it.
     """
     place = axis.places_px + shift_px
-    envelope = np.exp(-0.5 * (place / extent) ** 2)
-    apart = (place[:, None] - place) / smoothness
-    power, shape = np.linalg.eigh(np.exp(-0.5 * apart**2) * envelope[:, None] * envelope)
-    kept = power > _NEGLIGIBLE * power[-1]
+    variance, shape = covariance_modes(place, extent, smoothness, _NEGLIGIBLE)
     # Eigenvectors come with any sign: a stored fit needs the same ones wherever it is read.
-    shape = shape * np.where((envelope * (1 + place / extent)) @ shape < 0, -1.0, 1.0)
-    kernels = shape[:, kept] * np.sqrt(power[kept]) / axis.per_px
-    return np.asarray(kernels), np.asarray(power[kept])
+    lean = np.exp(-0.5 * (place / extent) ** 2) * (1 + place / extent)
+    shape = shape * np.where(lean @ shape < 0, -1.0, 1.0)
+    return np.asarray(shape * np.sqrt(variance) / axis.per_px), variance

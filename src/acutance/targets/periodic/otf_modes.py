@@ -23,6 +23,8 @@ from scipy.special import eval_genlaguerre, gammaln
 
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
+from acutance.numerics.lorentz_tail import tail_otf
+from acutance.numerics.process_modes import mehler
 
 __all__ = [
     "HIGHEST_CPP",
@@ -120,7 +122,7 @@ class ProcessModes:
         ]
         if order == 0:
             # A term falling like 1/u^2 without end, as diffraction's does, has this transfer.
-            parts.append(np.exp(-2 * math.pi * self.width_px * freq_cpp))
+            parts.append(tail_otf(freq_cpp, self.width_px))
         return np.stack(parts, axis=-1) if parts else np.empty((freq_cpp.size, 0))
 
     def blocks(self) -> NDArray[np.intp]:
@@ -139,15 +141,13 @@ class ProcessModes:
         return np.asarray(np.hstack(parts), complex)
 
 
-def _mehler(process: Process) -> tuple[float, float, float]:
-    """Scale of the states in widths, ratio q of the eigenvalues, and the first of them.
+def _states(process: Process) -> tuple[float, float, float]:
+    """Scale of the states in widths, ratio of the eigenvalues, and the first of them.
 
     Scaled so that the process, integrated over one axis, has unit variance at the origin.
     """
+    ratio, scale = mehler(process.extent, process.smoothness)
     long2, short2 = process.extent**2, process.smoothness**2
-    share = long2 / (long2 + short2)
-    ratio = (1 - math.sqrt(1 - share**2)) / share
-    scale = math.sqrt(2 * ratio * short2 / (1 - ratio**2))
     first = math.pi * long2 * (1 - ratio) ** 2
     projected = 2 * math.pi * long2 / math.sqrt(1 + 2 * long2 / short2)
     return scale, ratio, first / projected
@@ -155,7 +155,7 @@ def _mehler(process: Process) -> tuple[float, float, float]:
 
 def _state(process: Process, order: int, total: int, freq: Floats) -> Floats:
     """Fourier transform of one state's radial part, times its standard deviation, (n,)."""
-    scale, ratio, first = _mehler(process)
+    scale, ratio, first = _states(process)
     nodes = (total - order) // 2
     x = 2 * math.pi * scale * freq
     norm = math.exp(0.5 * (math.log(2) + gammaln(nodes + 1) - gammaln(nodes + order + 1)))

@@ -31,10 +31,12 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel_2d import FOOT_WIDTHS, BlurSlopes, Broad, PlaneBlur
+from acutance.numerics.lorentz_tail import tail_otf, tail_psf
+from acutance.numerics.process_modes import mehler
 from acutance.targets.points import tuned
 from acutance.targets.points.airy import Airy
 
-__all__ = ["PsfDirections", "tail_otf", "tail_psf"]
+__all__ = ["PsfDirections"]
 
 Complexes = NDArray[np.complex128]
 
@@ -51,16 +53,15 @@ class _Process:
     smoothness: float
     order: int
 
-    @cached_property
+    @property
     def ratio(self) -> float:
         """Factor of the variance from one order to the next."""
-        q = 1 + (self.smoothness / self.extent) ** 2
-        return q - math.sqrt(q * q - 1)
+        return mehler(self.extent, self.smoothness)[0]
 
-    @cached_property
+    @property
     def scale(self) -> float:
         """Scale of the Hermite functions, in widths."""
-        return self.smoothness * math.sqrt(2 * self.ratio / (1 - self.ratio**2))
+        return mehler(self.extent, self.smoothness)[1]
 
     @cached_property
     def orders(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -103,16 +104,6 @@ def _hermite_slopes(values: Floats) -> Floats:
     slopes = -np.sqrt((orders + 1) / 2) * values[1:]
     slopes[1:] += np.sqrt(orders[1:] / 2) * values[: slopes.shape[0] - 1]
     return slopes
-
-
-def tail_psf(radius: Floats, half_width: float) -> Floats:
-    """The PSF whose LSF is a Lorentz curve: it falls like 1 / r^3."""
-    return np.asarray(half_width / (2 * np.pi) * (radius**2 + half_width**2) ** -1.5)
-
-
-def tail_otf(freq: Floats, half_width: float) -> Floats:
-    """Transfer function of the tail at a frequency's modulus."""
-    return np.exp(-2 * np.pi * half_width * freq)
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,9 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
 from acutance.geometry.line import Line
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, Blur
-from acutance.targets.straight.lsf_prior import tail_esf, tail_lsf
+from acutance.numerics.lorentz_tail import tail_esf, tail_lsf
 from acutance.targets.straight.step_profile import EDGE, Profile, pulse_profile
-from acutance.targets.straight.tuned import APERTURE_PX
+from acutance.targets.straight.tuned import APERTURE_PX, TAIL_WIDTH
 
 __all__ = ["FirstFit", "fit_first"]
 
@@ -255,7 +255,7 @@ class _Trial:
             distance = np.concatenate([distance, distance - steps[0]])
         esf, *slopes = blur.esf_and_slopes(distance)
         u = distance / blur.width_px
-        beyond = tail_esf(u) - esf
+        beyond = tail_esf(u, TAIL_WIDTH) - esf
         step = esf + tail * beyond
         residual = value - (dark + height * _profiled(step, p))
         cost = float(residual @ residual) + float(penalty @ (p - _EXPECTED[: p.size]) ** 2)
@@ -266,7 +266,7 @@ class _Trial:
         _, height, _, _, sigma, aperture, tail, *steps = self.p.tolist()
         width = Blur(sigma, aperture).width_px
         lsf, by_sigma, by_aperture = self.slopes
-        within, far = height * (1 - tail), height * tail / width * tail_lsf(self.u)
+        within, far = height * (1 - tail), height * tail / width * tail_lsf(self.u, TAIL_WIDTH)
         # The tail scales with the width, whose square is that of sigma and aperture / sqrt(12)
         # added.
         stretch = far * self.u * (-(FWHM_OF_SIGMA**2) / width)

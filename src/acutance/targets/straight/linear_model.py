@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.lorentz_tail import tail_esf
 from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import side_variances
 from acutance.targets.straight import lsf_prior
@@ -27,6 +28,7 @@ from acutance.targets.straight.tuned import (
     APERTURE_PX,
     LOG_AMPLITUDE,
     LOG_AMPLITUDE_STD,
+    TAIL_WIDTH,
     TREND_LOG_AMPLITUDE,
 )
 
@@ -200,8 +202,8 @@ def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
     for distance, share in zip(profile.distances(s), profile.shares, strict=True):
         far = np.abs(distance) > HALF_SUPPORT * width
         u = distance[far] / width
-        end = lsf_prior.tail_esf(np.array([-HALF_SUPPORT, HALF_SUPPORT]))
-        total[far] += share * (lsf_prior.tail_esf(u) - np.where(u < 0, *end))
+        end = tail_esf(np.array([-HALF_SUPPORT, HALF_SUPPORT]), TAIL_WIDTH)
+        total[far] += share * (tail_esf(u, TAIL_WIDTH) - np.where(u < 0, *end))
     return total
 
 

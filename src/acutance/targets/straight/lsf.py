@@ -13,7 +13,7 @@ from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import FREQ_CPP, Floats, crossing, sample
 from acutance.curves.metrics import RerCentre
 from acutance.numerics.gaussian_pixel import Blur
-from acutance.targets.straight.lsf_prior import tail_esf, tail_lsf, tail_otf
+from acutance.numerics.lorentz_tail import tail_esf, tail_lsf, tail_otf
 from acutance.targets.straight.pulse_halo import with_halo_error
 from acutance.targets.straight.spline import (
     CENTRES,
@@ -26,7 +26,7 @@ from acutance.targets.straight.spline import (
     transform,
     waves,
 )
-from acutance.targets.straight.tuned import HALO_SHARE
+from acutance.targets.straight.tuned import HALO_SHARE, TAIL_WIDTH
 
 __all__ = ["LsfModel", "SplineResponse", "with_uncertain_halo"]
 
@@ -71,7 +71,7 @@ class LsfModel:
     def esf(self, s: Floats) -> Floats:
         """Normalised ESF at normal distances `s` in pixels, (n,)."""
         u = s / self.blur.width_px
-        return self._sum(self.blur.esf(s), *edge_weights(u), tail_esf(u)) / self.height
+        return self._sum(self.blur.esf(s), *edge_weights(u), tail_esf(u, TAIL_WIDTH)) / self.height
 
     def step(self, s: Floats, blurred: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
         """Response to the step and its derivative at normal distances `s`, in image units.
@@ -119,8 +119,8 @@ class LsfModel:
         esf, lsf = blurred
         cell, weights, slopes = edge_and_line_weights(u)
         return (
-            (esf, cell, weights, tail_esf(u)),
-            (lsf, cell, slopes / width, tail_lsf(u) / width),
+            (esf, cell, weights, tail_esf(u, TAIL_WIDTH)),
+            (lsf, cell, slopes / width, tail_lsf(u, TAIL_WIDTH) / width),
         )
 
     def _sum(
@@ -146,7 +146,7 @@ class LsfModel:
         freq, centroid = freq_cpp * self.blur.width_px, self._centroid()
         about = waves(freq, -centroid)[0] / self.height
         design = transform(freq, centroid, 1 / self.height, further=1)
-        design[:, -1] = tail_otf(freq) * about
+        design[:, -1] = tail_otf(freq, TAIL_WIDTH) * about
         # A real product: a complex one of this size would wake the threads of BLAS.
         coefficients = np.append(self.spline, self.tail)
         value = self.level * self.blur.otf(freq_cpp) * about

@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.lorentz_tail import tail_esf, tail_lsf
+from acutance.numerics.process_modes import covariance_modes
 from acutance.targets.straight.spline import (
     CENTRES,
     HALF_SUPPORT,
@@ -34,9 +36,6 @@ from acutance.targets.straight.tuned import DETAIL, HALO, SHAPE, TAIL_WIDTH
 __all__ = [
     "Directions",
     "directions",
-    "tail_esf",
-    "tail_lsf",
-    "tail_otf",
 ]
 
 
@@ -57,38 +56,19 @@ class Directions(NamedTuple):
 
 def _process(extent: float, smoothness: float) -> Floats:
     """Square root of a Gaussian process's covariance, (SIZE, r), to 1e-4 of its variance."""
-    u = CENTRES
-    envelope = np.exp(-0.5 * (u / extent) ** 2)
-    kernel = np.exp(-0.5 * ((u[:, None] - u) / smoothness) ** 2) * envelope[:, None] * envelope
-    power, shape = np.linalg.eigh(kernel)
-    kept = power > 1e-4 * power[-1]
-    return np.asarray(shape[:, kept] * np.sqrt(power[kept]))
-
-
-def tail_esf(u: Floats) -> Floats:
-    """ESF of the tail term: its LSF is the Lorentz curve of half width TAIL_WIDTH."""
-    return np.arctan(u / TAIL_WIDTH) / np.pi + 0.5
-
-
-def tail_lsf(u: Floats) -> Floats:
-    """LSF of the tail term, per width."""
-    return np.asarray(TAIL_WIDTH / np.pi / (u * u + TAIL_WIDTH**2))
-
-
-def tail_otf(freq: Floats) -> Floats:
-    """Transfer function of the tail term, at frequencies in cycles per width."""
-    return np.exp(-2 * np.pi * TAIL_WIDTH * freq)
+    variance, shape = covariance_modes(CENTRES, extent, smoothness, 1e-4)
+    return np.asarray(shape * np.sqrt(variance))
 
 
 @cache
 def _fixed() -> tuple[Floats, NDArray[np.intp]]:
     """All directions, with room for the four of the mean blur in front, and their blocks."""
     processes = [_process(*scales) for scales in (SHAPE, DETAIL, HALO)]
-    tail = quasi_interpolant(tail_lsf(CENTRES))
+    tail = quasi_interpolant(tail_lsf(CENTRES, TAIL_WIDTH))
     lsf = np.hstack([np.zeros((SIZE, 4)), *processes, tail[:, None]])
     block = np.repeat([0, 1, 2, 3, 4, 5], [3, 1, *(p.shape[1] for p in processes), 1])
     esf = esf_from_lsf(lsf)
-    esf[:, -1] += float(tail_esf(np.array(-HALF_SUPPORT)))
+    esf[:, -1] += float(tail_esf(np.array(-HALF_SUPPORT), TAIL_WIDTH))
     return esf, block
 
 
