@@ -117,10 +117,9 @@ def fit_points(stamps: Stamps, first: FirstFit, *, robust: bool = True) -> Point
     robust : bool, optional
         Bound the weight of outlying pixels.
 
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If no PSF explains the pixels.
+    Notes
+    -----
+    Where no PSF explains the pixels, numpy's ``LinAlgError`` of the normal equations is raised.
     """
     background = Background.of(stamps, first)
     state = _first_state(stamps, first)
