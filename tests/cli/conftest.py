@@ -1,7 +1,10 @@
 """A small simulated edge on disk, and the command line run inside the test."""
 
+from functools import cache
+
 import numpy as np
 import pytest
+from typer.main import get_command
 from typer.testing import CliRunner
 
 from acutance import optics, simulate
@@ -38,7 +41,10 @@ def acutance():
     def run(*words):
         return CliRunner().invoke(app, [str(word) for word in words])
 
-    return run
+    # The runner builds all commands anew for every line, which takes longer than most lines do.
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("typer.testing._get_command", cache(get_command), raising=False)
+        yield run
 
 
 @pytest.fixture
