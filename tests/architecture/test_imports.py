@@ -55,6 +55,7 @@ UPWARD_EXCEPTIONS = {
     ("targets/measurement.py", "acutance.report"): (
         "notebooks ask a result for HTML: _repr_html_ loads the reports only then"
     ),
+    ("targets/record.py", "acutance.report"): "as measurement.py",
 }
 
 

@@ -1,12 +1,17 @@
 """A small simulated edge on disk, and the command line run inside the test."""
 
+from functools import cache
+
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator
+from typer.main import get_command
 from typer.testing import CliRunner
 
 from acutance import optics, simulate
 from acutance.cli.app import app
 from acutance.raster import write_geotiff
+from acutance.report import measurement_schema
 
 SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=0.7)
 
@@ -38,7 +43,10 @@ def acutance():
     def run(*words):
         return CliRunner().invoke(app, [str(word) for word in words])
 
-    return run
+    # The runner builds all commands anew for every line, which takes longer than most lines do.
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("typer.testing._get_command", cache(get_command), raising=False)
+        yield run
 
 
 @pytest.fixture
@@ -73,5 +81,16 @@ def refused(acutance):
         assert result.stdout == ""
         assert message in " ".join(result.stderr.split())
         assert "Traceback" not in result.stderr
+
+    return check
+
+
+@pytest.fixture(scope="session")
+def keeps_to_schema():
+    """A measurement's document keeps to the schema; what does not is named in a line each."""
+    validator = Draft202012Validator(measurement_schema())
+
+    def check(document):
+        assert not [f"{e.json_path}: {e.message:.200}" for e in validator.iter_errors(document)]
 
     return check

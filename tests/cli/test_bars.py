@@ -6,9 +6,6 @@ import re
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator
-
-from acutance.report import measurement_schema
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +21,7 @@ def bars_image(tmp_path_factory):
     return path
 
 
-def test_every_output(acutance, bars_image, shown, tmp_path):
+def test_every_output(acutance, bars_image, shown, tmp_path, keeps_to_schema):
     files = [tmp_path / name for name in ("bars.png", "bars.html", "bars.csv")]
     result = acutance(
         "bars", bars_image, "--gsd", 0.5, "--json",
@@ -32,7 +29,7 @@ def test_every_output(acutance, bars_image, shown, tmp_path):
     )  # fmt: skip
     assert result.exit_code == 0, result.stderr
     document = json.loads(result.stdout)
-    Draft202012Validator(measurement_schema()).validate(document)
+    keeps_to_schema(document)
     assert document["normal"]["mtf_nyquist"]["value"] == pytest.approx(0.29, abs=0.01)
     assert [group["count"] for group in document["groups"]] == [5, 5, 5]
     assert [(name, found.kind) for name, found, _ in shown] == [("draw", "bars"), ("page", "bars")]

@@ -4,14 +4,6 @@ import json
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator
-
-from acutance.report import measurement_schema
-
-
-@pytest.fixture(scope="module")
-def validator():
-    return Draft202012Validator(measurement_schema())
 
 
 def test_the_text_report_goes_to_stdout(acutance, edge_image):
@@ -23,11 +15,13 @@ def test_the_text_report_goes_to_stdout(acutance, edge_image):
     assert result.stderr == ""
 
 
-def test_json_is_all_of_stdout_and_keeps_to_the_schema(acutance, edge_image, tmp_path, validator):
+def test_json_is_all_of_stdout_and_keeps_to_the_schema(
+    acutance, edge_image, tmp_path, keeps_to_schema
+):
     result = acutance("edge", edge_image, "--json", "--csv", tmp_path / "mtf.csv")
     assert result.exit_code == 0, result.stderr
     document = json.loads(result.stdout)
-    validator.validate(document)
+    keeps_to_schema(document)
     low, high = document["mtf_nyquist"]["interval95"]
     assert low - 0.02 < 0.289 < high + 0.02
     assert document["image"]["path"] == edge_image
@@ -35,9 +29,9 @@ def test_json_is_all_of_stdout_and_keeps_to_the_schema(acutance, edge_image, tmp
     assert "wrote" in result.stderr
 
 
-def test_the_covariance_is_added_when_asked(acutance, edge_image, validator):
+def test_the_covariance_is_added_when_asked(acutance, edge_image, keeps_to_schema):
     document = json.loads(acutance("edge", edge_image, "--json", "--covariance").stdout)
-    validator.validate(document)
+    keeps_to_schema(document)
     assert len(document["mtf"]["factor_real"]) == len(document["mtf"]["freq_cpp"])
     for name in ("esf", "lsf"):
         factor = np.array(document[name]["factor"])
@@ -60,11 +54,11 @@ def test_region_band_and_gsd_reach_the_measurement(acutance, edge_image):
     )
 
 
-def test_along_track_may_be_the_x_axis(acutance, edge_image, validator):
+def test_along_track_may_be_the_x_axis(acutance, edge_image, keeps_to_schema):
     result = acutance("edge", edge_image, "--along-track", "x", "--json")
     assert result.exit_code == 0, result.stderr
     document = json.loads(result.stdout)
-    validator.validate(document)
+    keeps_to_schema(document)
     assert (document["orientation"], document["image"]["along_track"]) == ("along", "x")
     refused = acutance("edge", edge_image, "--along-track", "up")
     assert refused.exit_code == 2
@@ -105,7 +99,7 @@ def test_methods_are_compared(acutance, edge_image, shown, tmp_path):
     assert [one["method"] for one in document["measurements"]] == ["spline", "fermi"]
 
 
-def test_all_edges_of_a_site_are_measured(acutance, site_image, shown, tmp_path, validator):
+def test_all_edges_of_a_site_are_measured(acutance, site_image, shown, tmp_path, keeps_to_schema):
     result = acutance(
         *("edge", site_image, "--all", "--json", "--figure", tmp_path / "all.svg"),
         *("--roi", "4,6,110,108", "--report", tmp_path / "all.html", "--csv", tmp_path / "all.csv"),
@@ -114,7 +108,7 @@ def test_all_edges_of_a_site_are_measured(acutance, site_image, shown, tmp_path,
     document = json.loads(result.stdout)
     assert document["schema"] == "acutance/target/1"
     for one in document["measurements"]:
-        validator.validate(one)
+        keeps_to_schema(one)
     assert set(document["groups"]) == {"across", "along"}
     assert {path.name for path in tmp_path.iterdir()} == {"all.svg", "all.html", "all.csv"}
     for _, found, how in shown:

@@ -4,11 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator
 
 from acutance import optics, simulate
 from acutance.raster import write_geotiff
-from acutance.report import measurement_schema
 from acutance.targets.kinds import KINDS
 
 SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=2.8)
@@ -35,11 +33,6 @@ def bare_image(tmp_path_factory):
     return str(path)
 
 
-@pytest.fixture(scope="module")
-def validator():
-    return Draft202012Validator(measurement_schema())
-
-
 def test_the_text_report_has_the_width_and_goes_to_stdout(acutance, pulse_image):
     result = acutance("pulse", pulse_image, "--width-m", WIDTH_M)
     assert (result.exit_code, result.stderr) == (0, "")
@@ -48,11 +41,13 @@ def test_the_text_report_has_the_width_and_goes_to_stdout(acutance, pulse_image)
 
 
 @pytest.mark.parametrize("width", [("--width-m", WIDTH_M), ("--width-px", 3.1), ()])
-def test_json_keeps_to_the_schema_and_holds_the_true_width(acutance, pulse_image, validator, width):
+def test_json_keeps_to_the_schema_and_holds_the_true_width(
+    acutance, pulse_image, keeps_to_schema, width
+):
     result = acutance("pulse", pulse_image, *width, "--json", "--covariance")
     assert result.exit_code == 0, result.stderr
     document = json.loads(result.stdout)
-    validator.validate(document)
+    keeps_to_schema(document)
     assert document["kind"] == "pulse"
     assert document["width_px"]["std"] > 0
     assert document["width_px"]["value"] == pytest.approx(WIDTH_M / 2.8, abs=0.03)

@@ -212,5 +212,6 @@ def test_a_record_shows_the_numbers_of_its_measurement(measurement, pulse, both)
         assert len(parsed(notebook_html(result.record)).findall(".//img")) == 1
 
 
-def test_a_measurement_shows_itself_in_notebooks(measurement):
-    assert words(measurement._repr_html_()) == words(notebook_html(measurement))
+def test_measurements_and_records_show_themselves_in_notebooks(measurement):
+    for one in (measurement, measurement.record):
+        assert words(one._repr_html_()) == words(notebook_html(one))

@@ -6,9 +6,9 @@ import json
 
 import numpy as np
 import pytest
-from acutance.report.documents import json_text
 
 from acutance import ModelError, optics
+from acutance.report import json_text
 from acutance.simulate import Landscape, NativeGrid, Noise, landscape, pair, reference_systems
 
 SENSORS = reference_systems()

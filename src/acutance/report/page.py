@@ -128,7 +128,10 @@ def _measurement_sections(measurement: Measurement, command: str | None) -> tupl
             plates=tuple(map(panel_plate, (mtf, *target))),
             side_by_side=True,
         ),
-        Section("Curves and pixels", plates=tuple(map(panel_plate, rest))),
+        Section(
+            "Curves" if measurement.details is None else "Curves and pixels",
+            plates=tuple(map(panel_plate, rest)),
+        ),
         *numbers,
         _with_command(last, command or _command(measurement)),
     )

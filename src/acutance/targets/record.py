@@ -327,6 +327,11 @@ class Record(ShortRepr):
         named = (f"{name}: {self.directions[name].summary()}" for name in self.measured_directions)
         return f"{self.kind} by {self.method}, {', '.join(named)}, {count_failed(self.checks)}"
 
+    def _repr_html_(self) -> str:
+        from acutance.report import notebook_html
+
+        return notebook_html(self)
+
 
 def rounded(values: ArrayLike, digits: int = 6) -> list[Any]:
     """Numbers of a curve as lists, with so many significant digits: a document has no more."""

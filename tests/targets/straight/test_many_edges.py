@@ -5,11 +5,12 @@ import math
 
 import numpy as np
 import pytest
-from acutance.report.documents import json_text, target_document
-from acutance.report.target_page import group_rows
 
 import acutance as ac
 from acutance.curves import Estimate
+from acutance.report import document as document_of
+from acutance.report import json_text
+from acutance.report.tables.target import group_rows
 from acutance.simulate import site
 from acutance.targets.straight.many_edges import TargetResult, _weighted_mean, combine_edges
 
@@ -108,7 +109,7 @@ def test_a_blur_without_nyquist_has_no_chi_square_in_any_face():
     result = TargetResult(tuple(edges), (), {group.orientation: group})
     (row,) = group_rows(result, ("mtf_nyquist",))
     assert row[3:] == ("–", "–")
-    document = json.loads(json_text(target_document(result)))
+    document = json.loads(json_text(document_of(result)))
     (written,) = document["groups"].values()
     assert written["chi_square"]["mtf_nyquist"] is None
     assert written["p_value"]["mtf_nyquist"] is None
