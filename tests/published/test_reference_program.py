@@ -25,13 +25,13 @@ pytestmark = [
 ]
 
 
-def chart(trimmed):
-    return ac.open_image(FOLDER / "03_sfrmat5_chart_edge1_rgb.tif", trimmed)
+def chart(band):
+    return ac.open_image(FOLDER / "03_sfrmat5_chart_edge1_rgb.tif", band)
 
 
-def reference_mtf50(trimmed):
+def reference_mtf50(band):
     table = np.genfromtxt(FOLDER / "03_sfrmat5_reference_sfr.csv", delimiter=",", names=True)
-    return crossing(table["freq_cy_per_px"], table[BANDS[trimmed]])
+    return crossing(table["freq_cy_per_px"], table[BANDS[band]])
 
 
 def crossing(freq, mtf):
@@ -41,16 +41,16 @@ def crossing(freq, mtf):
 
 
 @cache
-def by_iso(trimmed, order):
+def by_iso(band, order):
     options = Iso12233Options(edge_order=order, replicates=30)
     return ac.measure_edge(
-        chart(trimmed), method="iso12233", options=EdgeOptions(method_options=options)
+        chart(band), method="iso12233", options=EdgeOptions(method_options=options)
     ).response.mtf50_cpp
 
 
 @cache
-def ours(trimmed):
-    return ac.measure_edge(chart(trimmed))
+def ours(band):
+    return ac.measure_edge(chart(band))
 
 
 def binned(m, step_px=0.25, half_px=60.0):
@@ -81,18 +81,18 @@ def bend_px(m, pixels, half_px):
 
 
 @pytest.mark.parametrize("band", BANDS)
-def test_our_iso12233_with_the_same_polynomial_is_the_reference(trimmed):
-    assert by_iso(trimmed, 5).value == pytest.approx(reference_mtf50(trimmed), rel=0.006)
+def test_our_iso12233_with_the_same_polynomial_is_the_reference(band):
+    assert by_iso(band, 5).value == pytest.approx(reference_mtf50(band), rel=0.006)
 
 
 @pytest.mark.parametrize("band", BANDS)
-def test_the_polynomial_costs_two_to_four_per_cent(trimmed):
-    assert 1.015 < by_iso(trimmed, 1).value / by_iso(trimmed, 5).value < 1.04
+def test_the_polynomial_costs_two_to_four_per_cent(band):
+    assert 1.015 < by_iso(band, 1).value / by_iso(band, 5).value < 1.04
 
 
 @pytest.mark.parametrize("band", BANDS)
-def test_its_bend_is_that_of_the_window_and_not_of_the_edge(trimmed):
-    m, pixels = ours(trimmed), chart(trimmed).read()
+def test_its_bend_is_that_of_the_window_and_not_of_the_edge(band):
+    m, pixels = ours(band), chart(band).read()
     bends = [bend_px(m, pixels, half_px) for half_px in (6.0, 12.0, 25.0, 60.0)]
     assert bends[0] < 0.005
     assert all(wider > 2 * narrower for narrower, wider in pairwise(bends))
@@ -100,6 +100,6 @@ def test_its_bend_is_that_of_the_window_and_not_of_the_edge(trimmed):
 
 
 @pytest.mark.parametrize("band", BANDS)
-def test_ours_agrees_with_the_binned_curve_on_a_straight_line(trimmed):
-    found, straight = ours(trimmed).response.mtf50_cpp, by_iso(trimmed, 1)
-    assert abs(found.value - binned(ours(trimmed))) < 2.5 * np.hypot(found.std, straight.std)
+def test_ours_agrees_with_the_binned_curve_on_a_straight_line(band):
+    found, straight = ours(band).response.mtf50_cpp, by_iso(band, 1)
+    assert abs(found.value - binned(ours(band))) < 2.5 * np.hypot(found.std, straight.std)

@@ -90,7 +90,7 @@ def test_refused_by_name(measure, error, message):
 
 
 def test_a_single_measurement_is_no_list(edge):
-    with pytest.raises(ac.OptionError, match="a single Measurement was given: give a list"):
+    with pytest.raises(ac.OptionError, match="a single StraightMeasurement was given: give a list"):
         ac.combine(edge)
 
 

@@ -27,9 +27,11 @@ _FREQ_CPP: Floats = np.asarray(np.arange(1, 17) * 0.05)
 _LEAST_STD = 1.5e-4
 """Errors smaller than this are left out: no method is that exact."""
 _FAINT = 0.02
-_REST = 0.005
+_REST = 0.02
+_STEP = 0.05
 """Of a document: share of the largest deviation below which a place counts as that one, and share
-of the variance whose covariance between places is left out."""
+of the variance whose covariance between places is left out, and largest last digit in units of the
+deviation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,9 +144,9 @@ def _few_columns(factor: Complexes) -> tuple[Complexes, Complexes]:
     Returns
     -------
     factor : (n, k) complex array
-        All but half a per cent of the variance, in units of the deviations.
+        All but two per cent of the variance, in units of the deviations.
     rest_std : (n,) complex array
-        Standard deviations, of the real and of the imaginary parts, of that half per cent.
+        Standard deviations, of the real and of the imaginary parts, of those two per cent.
     """
     stacked = np.concatenate([factor.real, factor.imag])
     variance = np.einsum("ij,ij->i", stacked, stacked)
@@ -153,7 +155,7 @@ def _few_columns(factor: Complexes) -> tuple[Complexes, Complexes]:
     std = np.maximum(np.sqrt(variance), _FAINT * math.sqrt(variance.max()))
     left, size, _ = np.linalg.svd(stacked / std[:, None], full_matrices=False)
     kept = int(np.searchsorted(np.cumsum(size**2), (1 - _REST) * np.sum(size**2))) + 1
-    step = 10.0 ** (np.floor(np.log10(std)) - 2)
+    step = 10.0 ** np.floor(np.log10(_STEP * std))
     few = np.round(left[:, :kept] * size[:kept] * (std / step)[:, None]) * step[:, None]
     rest = np.sqrt(np.maximum(variance - np.einsum("ij,ij->i", few, few), 0.0))
     n = factor.shape[0]
