@@ -254,7 +254,7 @@ _PERIODIC = {
         "Which share of the contrast is a third harmonic that the stated wave does not have?",
         "<=", 0.01,
         "the star may be a square wave instead of a sine, or the other way round, or bright and "
-        "dark spokes may not be equally wide",
+        "dark spokes may not be equally wide", severity="fail",
     ),
 }  # fmt: skip
 

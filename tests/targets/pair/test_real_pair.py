@@ -18,7 +18,7 @@ from scipy.ndimage import gaussian_filter, uniform_filter
 import acutance as ac
 from acutance.raster import Box
 
-DATA = Path(__file__).parents[3] / "shared" / "data"
+DATA = Path(__file__).parents[4] / "shared" / "data"
 LOW = DATA / "08_s2a_T33UUB_20m_B5B6B7B8AB11B12.tif"
 HIGH = DATA / "08_s2a_T33UUB_10m_B4B3B2B8.tif"
 pytestmark = [

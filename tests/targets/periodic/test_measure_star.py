@@ -185,6 +185,14 @@ def test_clipped_star_fails_by_name():
     assert "saturation" in _names(found.failed_checks)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_sine_star_taken_for_a_square_one_is_refused(seed):
+    sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
+    image, _ = ac.simulate.star(sensor, snr=100, rng=np.random.default_rng(seed))
+    with pytest.raises(NoStarError, match=r"--wave sine|did not settle"):
+        measure_star(image, options=StarOptions(wave="square"))
+
+
 def test_wrong_wave_fails_by_name():
     image, _ = star_scene(wave="square")
     assert "wave" in _names(measure_star(image, cycles=CYCLES).failed_checks)

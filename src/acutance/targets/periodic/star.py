@@ -22,7 +22,7 @@ from acutance.targets.periodic.star_measurement import Rings, StarDetails, StarM
 from acutance.targets.periodic.star_options import StarOptions
 from acutance.targets.periodic.star_rings import ring_modulations
 from acutance.targets.periodic.star_waves import Wave
-from acutance.targets.periodic.tuned import MAX_RAISED
+from acutance.targets.periodic.tuned import MAX_RAISED, MIN_LEVEL_SIGMAS
 from acutance.targets.region import RegionPixels, RoiLike, read_region
 
 __all__ = ["STAR_METHODS", "measure_star"]
@@ -125,15 +125,16 @@ def _rings(region: RegionPixels, solved: StarSolution) -> Rings:
 
 
 def _require_spokes(solved: StarSolution, rings: Rings, wave: Wave) -> None:
-    """Refuse a fit whose spokes have far less contrast than the image of them."""
+    """Refuse a fit whose spokes have far less contrast than the image of them, or none for sure."""
     level = solved.otf.level
     largest = float(np.max(rings.modulation * level))
-    if largest > MAX_RAISED * abs(level):
+    undetermined = level < MIN_LEVEL_SIGMAS * solved.otf.level_std
+    if largest > MAX_RAISED * abs(level) or undetermined:
         other = "sine" if wave == "square" else "square"
         raise NoStarError(
             f"the image's spokes have an amplitude of {largest:.4g}, and those of the fitted "
-            f"{wave} star {Estimate(level, solved.otf.level_std)}: no sensor raises contrast so "
-            f"much. The spokes may be a {other} wave (--wave {other}), or have another number of "
+            f"{wave} star {Estimate(level, solved.otf.level_std)}: no sensor makes the one of "
+            f"the other. The spokes may be a {other} wave (--wave {other}), or have another number of "
             "cycles"
         )
 

@@ -23,6 +23,7 @@ __all__ = [
     "LOG_AMPLITUDE_STD",
     "MAX_GROUP_REST",
     "MAX_RAISED",
+    "MIN_LEVEL_SIGMAS",
     "MIN_STAR_STRENGTH",
     "PLACE_STD_PERIODS",
     "QUIET_SNR",
@@ -71,6 +72,10 @@ STAR_FINEST_CPP: Final = 1.3
 
 MAX_RAISED: Final = 3.0
 """No restoration raises the contrast of coarse spokes more: the fit of another wave does."""
+
+MIN_LEVEL_SIGMAS: Final = 3.0
+"""Deviations of the spokes' level above which it is one: a sine star fitted as a square wave ends
+at 0.1 to 0.6, a true one at 10 and more."""
 
 QUIET_SNR: Final = 500.0
 """Above this ratio of contrast to noise an image has no noise, and residuals are the model's."""
