@@ -134,8 +134,8 @@ def _require_spokes(solved: StarSolution, rings: Rings, wave: Wave) -> None:
         raise NoStarError(
             f"the image's spokes have an amplitude of {largest:.4g}, and those of the fitted "
             f"{wave} star {Estimate(level, solved.otf.level_std)}: no sensor makes the one of "
-            f"the other. The spokes may be a {other} wave (--wave {other}), or have another number of "
-            "cycles"
+            f"the other. The spokes may be a {other} wave (--wave {other}), or have another number "
+            "of cycles"
         )
 
 
