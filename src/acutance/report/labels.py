@@ -7,8 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from acutance.targets.check_table import QUESTIONS
+
 if TYPE_CHECKING:
     from acutance.curves import Estimate
+    from acutance.targets.check import Check
     from acutance.targets.measurement import Measurement
     from acutance.targets.record import ImageInfo, Record
 
@@ -23,6 +26,7 @@ __all__ = [
     "describe_image",
     "describe_measurement",
     "describe_target",
+    "failed_by_check",
     "flatten_options",
     "format_number",
     "measurement_metric_words",
@@ -334,6 +338,29 @@ def describe_image(result: Measurement | Record, most_name: int | None = None) -
     plain = ("image", "region")
     found = provenance(result, most_name)
     return ", ".join(value if name in plain else f"{name} {value}" for name, value in found.items())
+
+
+def failed_by_check(measurements: Sequence[Measurement]) -> tuple[tuple[str, str, str], ...]:
+    """Every check that failed: its name, the edges with what was found, what it means.
+
+    Parameters
+    ----------
+    measurements : sequence of Measurement
+        Counted from 1.
+    """
+    found: dict[str, list[tuple[int, Check]]] = {}
+    for number, one in enumerate(measurements, start=1):
+        for check in one.failed_checks:
+            found.setdefault(check.name, []).append((number, check))
+    return tuple(
+        (
+            name,
+            ", ".join(f"{number} ({format_number(check.value, 3)})" for number, check in failed)
+            + f"; asked {failed[0][1].asked}",
+            QUESTIONS[name].advice if name in QUESTIONS else failed[0][1].message,
+        )
+        for name, failed in found.items()
+    )
 
 
 def count_failed_checks(measurements: Sequence[Measurement | Record]) -> str:

@@ -15,6 +15,7 @@ from acutance.report.labels import (
     count_edges,
     count_failed_checks,
     describe_target,
+    failed_by_check,
     flatten_options,
     format_number,
     provenance,
@@ -205,24 +206,28 @@ def _target_sections(
     return (
         Section("The target", verdicts=_target_verdicts(result), plates=(picture,)),
         Section("Weighted means", tables=(means_headline(result),), side_by_side=True),
+        *_failed_section(result),
         *map(Section.of_table, target_tables(result)),
         _with_command(last, command or _command(measurements[0])),
     )
 
 
 def _target_verdicts(result: TargetResult[Any]) -> tuple[Verdict, ...]:
-    """One verdict of all edges, that of the worst, with what failed at each."""
+    """One verdict of all edges: that of the worst."""
     order = ("good", "usable", "doubtful", "invalid")
     measurements = result.measurements
     worst = max(measurements, key=lambda one: order.index(one.verdict.word))
-    details = tuple(
-        (f"edge {number}, {check.name}", check.message)
-        for number, one in enumerate(measurements, start=1)
-        for check in one.failed_checks
-    )
-    counted = count_failed_checks(measurements)
     word = worst.verdict.word
-    return (Verdict(word, f"{word.capitalize()}: {counted}", details),)
+    return (Verdict(word, f"{word.capitalize()}: {count_failed_checks(measurements)}"),)
+
+
+def _failed_section(result: TargetResult[Any]) -> tuple[Section, ...]:
+    """What failed, check by check with the edges it failed at; nothing where all passed."""
+    failed = failed_by_check(result.measurements)
+    if not failed:
+        return ()
+    table = Table(("Failed check", "Edges", "What it means and what to do"), failed, "lll")
+    return (Section("Failed checks", tables=(table,)),)
 
 
 def _command(measurement: Any, compared: Sequence[str] = ()) -> str | None:

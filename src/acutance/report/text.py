@@ -12,6 +12,7 @@ from acutance.report.labels import (
     count_failed_checks,
     describe_image,
     describe_measurement,
+    failed_by_check,
     format_number,
     title_of,
 )
@@ -94,11 +95,10 @@ def _target_text(result: TargetResult[Any]) -> str:
     measurements = result.measurements
     head = f"{count_edges(len(measurements))} measured, {len(result.rejected)} rejected"
     where = f"\n  {describe_image(measurements[0])}" if measurements else ""
-    failed = [
-        f"  edge {number}, {check.name} ({check.severity}): {check.message}"
-        for number, one in enumerate(measurements, start=1)
-        for check in one.failed_checks
-    ]
+    failed = (
+        f"  {name}, edges {edges}: {meaning}"
+        for name, edges, meaning in failed_by_check(measurements)
+    )
     return "\n\n".join(
         (
             head + where,

@@ -131,22 +131,23 @@ def _weighted_mean(numbers: Sequence[Estimate]) -> tuple[Estimate, float]:
     """Mean weighted by 1 / std^2, and chi-square about it; the Birge ratio widens the std."""
     value = np.array([number.value for number in numbers])
     std = np.array([number.std for number in numbers])
+    lowest = numbers[0].lowest
     if not (np.isfinite(value).all() and np.isfinite(std).all() and (std > 0).all()):
-        return Estimate(float(np.mean(value)), math.nan), math.nan
+        return Estimate(float(np.mean(value)), math.nan, lowest), math.nan
     if len(numbers) > 1 and (value < std).any():
-        return _plain_mean(value, std), math.nan
+        return Estimate(*_plain_mean(value, std), lowest), math.nan
     weight = 1 / std**2
     mean = float(weight @ value / weight.sum())
     scatter = float(weight @ (value - mean) ** 2)
     freedom = len(numbers) - 1
     widened = max(1.0, math.sqrt(scatter / freedom)) if freedom else 1.0
-    return Estimate(mean, widened / math.sqrt(weight.sum())), scatter
+    return Estimate(mean, widened / math.sqrt(weight.sum()), lowest), scatter
 
 
-def _plain_mean(value: Floats, std: Floats) -> Estimate:
-    """Mean of numbers of which some lie at their bound 0; see `EdgeGroup`."""
+def _plain_mean(value: Floats, std: Floats) -> tuple[float, float]:
+    """Mean, and its deviation, of numbers of which some lie at their bound 0; see `EdgeGroup`."""
     scatter = float(np.std(value, ddof=1)) / math.sqrt(value.size)
-    return Estimate(float(np.mean(value)), max(math.sqrt(float(np.mean(std**2))), scatter))
+    return float(np.mean(value)), max(math.sqrt(float(np.mean(std**2))), scatter)
 
 
 def _chance(chi_square: float, freedom: int) -> float:
