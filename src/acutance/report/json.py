@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.targets import TargetResult
+from acutance.targets.record import strict_json
 
 if TYPE_CHECKING:
     from acutance.curves import Response
@@ -114,17 +114,7 @@ def json_text(document: Mapping[str, Any]) -> str:
 
     Lists of numbers stay on one line each, so that a reader can scroll.
     """
-    return _render(_finite(document), 0)
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
+    return _render(strict_json(document), 0)
 
 
 def _render(value: Any, depth: int) -> str:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
-from typing import Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from acutance.errors import OptionError
 from acutance.targets.check_table import QUESTIONS, Sense, Severity
@@ -20,6 +20,7 @@ __all__ = [
     "MAX_RATIO",
     "Check",
     "Checks",
+    "HasChecks",
     "Limits",
     "Verdict",
     "VerdictWord",
@@ -197,6 +198,30 @@ def verdict_of(checks: Iterable[Check]) -> Verdict:
         return Verdict("good", "every check passed")
     gravest = max(failed, key=lambda check: list(_WORDS)[::-1].index(check.severity))
     return Verdict(_WORDS[gravest.severity], gravest.message)
+
+
+class HasChecks:
+    """What follows from the checks of whatever has some: a measurement, or its record."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def checks(self) -> Sequence[Check]: ...
+
+    @property
+    def failed_checks(self) -> tuple[Check, ...]:
+        """The checks that did not pass."""
+        return tuple(check for check in self.checks if not check.passed)
+
+    @property
+    def trusted(self) -> bool:
+        """Whether every check passed."""
+        return not self.failed_checks
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the checks come to, in a word and a sentence."""
+        return verdict_of(self.checks)
 
 
 def require_limits(limits: Any, known: Sequence[str], options: str) -> None:

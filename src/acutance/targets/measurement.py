@@ -15,7 +15,7 @@ from acutance.curves import Estimate, HasResponse, Mtf, Otf2d, Response
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import is_nearer_columns
 from acutance.geometry.line import Orientation
-from acutance.targets.check import Check, Verdict, count_failed, verdict_of
+from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
 from acutance.targets.slices import PlaneSlices
 
@@ -26,7 +26,7 @@ _STEPS = 2
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Measurement(HasResponse):
+class Measurement(HasResponse, HasChecks):
     """What was measured on a target of any kind.
 
     A straight target shows one direction: `m.mtf_nyquist`, `m.rer`, `m.mtf(0.25)` and all other
@@ -158,21 +158,6 @@ class Measurement(HasResponse):
         if self.normal_deg is not None:
             return PlaneSlices.of_curve(self.mtf, self.normal_deg)
         return PlaneSlices.of_plane(self.otf)
-
-    @property
-    def failed_checks(self) -> tuple[Check, ...]:
-        """The checks that did not pass."""
-        return tuple(check for check in self.checks if not check.passed)
-
-    @property
-    def trusted(self) -> bool:
-        """Whether every check passed."""
-        return not self.failed_checks
-
-    @property
-    def verdict(self) -> Verdict:
-        """What the checks come to, in a word and a sentence."""
-        return verdict_of(self.checks)
 
     def numbers(self) -> dict[str, dict[str, Estimate]]:
         """All numbers by direction ("across", "along") and name."""

@@ -24,10 +24,10 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.raster.image import AlongTrack
-from acutance.targets.check import Check, Verdict, count_failed, verdict_of
+from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.slices import PlaneSlices
 
-__all__ = ["SCHEMA", "ImageInfo", "Record", "RecordedDirection", "rounded"]
+__all__ = ["SCHEMA", "ImageInfo", "Record", "RecordedDirection", "rounded", "strict_json"]
 
 SCHEMA = "acutance/measurement/1"
 
@@ -158,7 +158,7 @@ class RecordedDirection(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False)
-class Record(ShortRepr):
+class Record(ShortRepr, HasChecks):
     """A measurement without its pixels: the document ``acutance/measurement/1``, read by name.
 
     Parameters
@@ -207,7 +207,7 @@ class Record(ShortRepr):
 
     def to_bytes(self) -> bytes:
         """The document as JSON, compressed by LZMA: what an archive stores."""
-        text = json.dumps(_finite(self.document), ensure_ascii=False, separators=(",", ":"))
+        text = json.dumps(strict_json(self.document), ensure_ascii=False, separators=(",", ":"))
         return lzma.compress(text.encode())
 
     @classmethod
@@ -221,9 +221,9 @@ class Record(ShortRepr):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Record):
             return NotImplemented
-        return bool(_finite(self.document) == _finite(other.document))
+        return bool(strict_json(self.document) == strict_json(other.document))
 
-    __hash__ = None
+    __hash__ = None  # type: ignore[assignment]
 
     @property
     def kind(self) -> str:
@@ -244,21 +244,6 @@ class Record(ShortRepr):
     def checks(self) -> tuple[Check, ...]:
         """What was asked of the target."""
         return tuple(map(Check.from_dict, self.document["checks"]))
-
-    @property
-    def failed_checks(self) -> tuple[Check, ...]:
-        """The checks that did not pass."""
-        return tuple(check for check in self.checks if not check.passed)
-
-    @property
-    def trusted(self) -> bool:
-        """Whether every check passed."""
-        return not self.failed_checks
-
-    @property
-    def verdict(self) -> Verdict:
-        """What the checks come to."""
-        return verdict_of(self.checks)
 
     @cached_property
     def directions(self) -> dict[str, RecordedDirection]:
@@ -342,12 +327,12 @@ def rounded(values: ArrayLike, digits: int = 6) -> list[Any]:
     return listed
 
 
-def _finite(value: Any) -> Any:
-    """Strict JSON: what is not a finite number becomes null."""
+def strict_json(value: Any) -> Any:
+    """A document as strict JSON types: what is not a finite number becomes null."""
     if isinstance(value, Mapping):
-        return {str(key): _finite(item) for key, item in value.items()}
+        return {str(key): strict_json(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
+        return [strict_json(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
