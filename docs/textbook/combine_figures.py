@@ -120,7 +120,7 @@ def departure() -> Figure:
     plain = forced.fit.plain
     left.plot(freq, true, color=INK, ls="--", label="truth")
     best = min(forced.fit.forms, key=lambda one: one.share)
-    gauss = np.abs(best.form.otf(np.array(best.departure.parameters), freq, none))
+    gauss = np.abs(best.form.otf(np.array(best.correction.parameters), freq, none))
     left.plot(
         freq, gauss, color=ORANGE, label=f"Gaussian, chi² {plain.value:.0f}/{plain.expected:.0f}"
     )

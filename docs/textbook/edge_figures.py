@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import acutance as ac
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.report.paper import BLUE, FAINT, INK, PALETTE, VERMILION, new_page
 from acutance.targets.straight import lsf_prior as prior
 from acutance.targets.straight.spline import combine, edge_and_line_weights
@@ -63,7 +63,7 @@ def _draw_band(axes, x, value, std, reach) -> None:
 
 def prior_directions() -> Figure:
     """Draws from the prior: in what ways, and how much, an LSF may leave the plain blur."""
-    blur = Blur(0.4)
+    blur = GaussianPixel(0.4)
     known = prior.directions(blur)
     u = np.linspace(-6, 6, 601)
     cell, _, slopes = edge_and_line_weights(u)

@@ -11,7 +11,7 @@ from numpydoc.docscrape import ClassDoc
 
 import acutance as ac
 from acutance import optics, simulate
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.targets.straight import METHODS, EdgeLimits
 from acutance.targets.straight.published import PUBLISHED
 from textbook.rst import list_table
@@ -68,7 +68,7 @@ def closed_forms() -> str:
     worst = 0.0
     for sigma in (0.2, 0.3, 0.4, 0.5, 0.6, 0.7):
         truth = ac.Sensor([optics.Gaussian(sigma), optics.Detector()]).response()
-        blur = Blur(sigma)
+        blur = GaussianPixel(sigma)
         ends = blur.esf(np.array([-0.5, 0.5]))
         worst = max(
             worst,

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, Blur
+from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, GaussianPixel
 
 S = np.linspace(-6, 6, 241)
-BLURS = [Blur(0.4), Blur(0.9, 0.3), Blur(0.35, 2.5)]
+BLURS = [GaussianPixel(0.4), GaussianPixel(0.9, 0.3), GaussianPixel(0.35, 2.5)]
 STEP = 1e-5
 
 
@@ -19,13 +19,13 @@ def test_esf_rises_from_zero_to_one_through_a_half(blur):
 
 
 def test_narrow_aperture_is_the_gaussian():
-    blur = Blur(0.7, 1e-3)
+    blur = GaussianPixel(0.7, 1e-3)
     expected = np.exp(-0.5 * (S / 0.7) ** 2) / (0.7 * math.sqrt(2 * math.pi))
     assert np.max(np.abs(blur.lsf(S) - expected)) < 1e-6
 
 
 def test_narrow_gaussian_is_the_box():
-    assert Blur(0.01, 2.0).lsf(np.array([-1.1, 0.0, 0.9])) == pytest.approx([0, 0.5, 0.5])
+    assert GaussianPixel(0.01, 2.0).lsf(np.array([-1.1, 0.0, 0.9])) == pytest.approx([0, 0.5, 0.5])
 
 
 @pytest.mark.parametrize("blur", BLURS)
@@ -44,8 +44,12 @@ def test_both_curves_at_once_are_the_curves(blur):
 def numerical_slopes(curve, blur):
     """Derivatives of a curve by sigma and by aperture."""
     sigma, aperture = blur.sigma_px, blur.aperture_px
-    by_sigma = curve(Blur(sigma + STEP, aperture)) - curve(Blur(sigma - STEP, aperture))
-    by_aperture = curve(Blur(sigma, aperture + STEP)) - curve(Blur(sigma, aperture - STEP))
+    by_sigma = curve(GaussianPixel(sigma + STEP, aperture)) - curve(
+        GaussianPixel(sigma - STEP, aperture)
+    )
+    by_aperture = curve(GaussianPixel(sigma, aperture + STEP)) - curve(
+        GaussianPixel(sigma, aperture - STEP)
+    )
     return by_sigma / (2 * STEP), by_aperture / (2 * STEP)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from acutance.numerics.marginal_likelihood import Prior, evidence_of, regress, whiten
+from acutance.numerics.marginal_likelihood import Prior, log_evidence_slopes, regress, whiten
 from acutance.numerics.normal_equations import Normal
 
 M, N = 14, 60
@@ -61,7 +61,7 @@ def test_mean_and_covariance_are_the_dense_formula(problem):
 
 def test_gradient_and_hessian_of_the_log_evidence(problem):
     design, y, prior, normal = problem
-    found = evidence_of(whiten(normal, prior, AMPLITUDE, NOISE), prior, AMPLITUDE)
+    found = log_evidence_slopes(whiten(normal, prior, AMPLITUDE, NOISE), prior, AMPLITUDE)
     h = 1e-3
     axes = h * np.eye(2)
 
@@ -89,7 +89,7 @@ def test_gradient_and_hessian_of_the_log_evidence(problem):
 def test_moves_are_the_derivative_of_the_mean(problem):
     _, _, prior, normal = problem
     found = whiten(normal, prior, AMPLITUDE, NOISE)
-    moves = found.sigma[:, None] * evidence_of(found, prior, AMPLITUDE).moves
+    moves = found.sigma[:, None] * log_evidence_slopes(found, prior, AMPLITUDE).by_amplitude
     for k, step in enumerate(1e-5 * np.eye(2)):
         high, low = (whiten(normal, prior, AMPLITUDE + sign * step, NOISE) for sign in (1, -1))
         slope = (high.sigma * high.mean - low.sigma * low.mean) / 2e-5
@@ -99,7 +99,7 @@ def test_moves_are_the_derivative_of_the_mean(problem):
 def test_amplitudes_settle_where_the_evidence_is_highest(problem):
     _, _, prior, normal = problem
     found = regress(normal, prior, NOISE)
-    slope = evidence_of(
+    slope = log_evidence_slopes(
         whiten(normal, prior, found.log_amplitude, found.variance), prior, found.log_amplitude
     )
     assert np.all(np.abs(slope.step()) < 0.06)

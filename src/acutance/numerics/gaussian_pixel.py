@@ -1,24 +1,26 @@
-"""The plainest model of a blurred edge: a Gaussian through a square detector.
+"""The simplest model of a blurred edge: a Gaussian seen through the width of a pixel.
 
-LSF = Gaussian(sigma) * box(aperture). It starts every fit, and is the mean of the prior of the
-LSF: what the free spline adds is the departure from it.
+Line spread function (LSF) = Gaussian(sigma) * box(aperture). It is the first fit of every straight
+target and the mean of the prior of its LSF: the free spline is a correction of it.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
 
-__all__ = ["Blur", "gaussian"]
+__all__ = ["FWHM_OF_SIGMA", "GaussianPixel", "gaussian"]
 
 _PEAK = 1 / math.sqrt(2 * math.pi)
 _ROOT_TWELVE = math.sqrt(12)
-FWHM_OF_SIGMA = 2.3548200450309493
+FWHM_OF_SIGMA: Final = 2.3548200450309493
+"""Full width at half maximum (FWHM) of a Gaussian of unit standard deviation."""
 
 
 def gaussian(z: Floats) -> Floats:
@@ -31,7 +33,7 @@ def gaussian(z: Floats) -> Floats:
 
 
 @dataclass(frozen=True)
-class Blur:
+class GaussianPixel:
     """Gaussian of standard deviation `sigma_px` through a box of `aperture_px` (both > 0)."""
 
     sigma_px: float
@@ -43,17 +45,17 @@ class Blur:
         return FWHM_OF_SIGMA * math.hypot(self.sigma_px, self.aperture_px / _ROOT_TWELVE)
 
     def lsf(self, s: Floats) -> Floats:
-        """Line spread function at normal distances `s`, 1/px."""
+        """LSF at normal distances `s`, 1/px."""
         return self.esf_and_lsf(s)[1]
 
     def esf(self, s: Floats) -> Floats:
-        """Edge spread function at normal distances `s`."""
+        """Edge spread function (ESF) at normal distances `s`."""
         return self.esf_and_lsf(s)[0]
 
     def esf_and_lsf(self, s: Floats) -> tuple[Floats, Floats]:
-        """Edge and line spread function at normal distances `s`."""
+        """ESF and LSF at normal distances `s`."""
         esf, lsf = np.asarray(s > 0, float), np.zeros(s.shape)
-        # Beyond nine deviations from the aperture's ends nothing is left but 0 and 1.
+        # Beyond nine standard deviations from the aperture's ends the ESF is 0 or 1.
         near = np.abs(s) < 0.5 * self.aperture_px + 9.0 * self.sigma_px
         ends = self._ends(s[near])
         cdf = ndtr(ends)
@@ -62,9 +64,9 @@ class Blur:
         return esf, lsf
 
     def otf(self, freq_cpp: Floats) -> Floats:
-        """Transfer function at frequencies in cycles per pixel (real: the blur is symmetric)."""
-        fall = np.exp(-2 * np.pi**2 * (self.sigma_px * freq_cpp) ** 2)
-        return np.asarray(fall * np.sinc(self.aperture_px * freq_cpp))
+        """Transfer function at frequencies in cycles per pixel (real: the LSF is symmetric)."""
+        gauss = np.exp(-2 * np.pi**2 * (self.sigma_px * freq_cpp) ** 2)
+        return np.asarray(gauss * np.sinc(self.aperture_px * freq_cpp))
 
     def esf_and_slopes(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """ESF with its derivatives by s (the LSF), by sigma and by aperture, each like `s`."""

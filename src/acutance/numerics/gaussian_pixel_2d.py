@@ -1,7 +1,8 @@
-"""The plainest model of a point's image: an elliptical, rotated Gaussian seen through a pixel.
+"""The simplest model of a point's image: an elliptical, rotated Gaussian seen through a pixel.
 
-PSF = Gaussian(Sigma) * square of side `aperture_px`, of unit volume, with x the column and y the
-row direction. It starts every fit of point sources and is the mean of the prior of the PSF.
+Point spread function (PSF) = Gaussian(Sigma) * square of side `aperture_px`, of unit volume, with x
+the column and y the row direction. It is the first fit of point sources and the mean of the prior
+of their PSF, and the mean of the transfer function of bars and stars.
 """
 
 from __future__ import annotations
@@ -18,18 +19,18 @@ from scipy.special import ndtr
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, gaussian
 
-__all__ = ["FOOT_WIDTHS", "LEAST_SIGMA_PX", "BlurSlopes", "Broad", "PlaneBlur"]
+__all__ = ["MIN_SIGMA_PX", "WIDE_WIDTHS", "Gaussian2d", "GaussianPixel2d", "PixelSlopes"]
 
 _REACH = 7.0
-"""So many standard deviations from its edge the aperture sees nothing."""
+"""Distance from the aperture's edge, in standard deviations, beyond which the PSF is 0."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
-FOOT_WIDTHS: Final = 2.0
-"""How many times as wide as the core a foot is."""
-LEAST_SIGMA_PX: Final = 0.36
-"""A Gaussian narrower than this cannot be told from a point through a pixel's area."""
+WIDE_WIDTHS: Final = 2.0
+"""Width of the wings over that of the core."""
+MIN_SIGMA_PX: Final = 0.36
+"""Through a pixel's area, a narrower Gaussian looks like a point."""
 
 
-class BlurSlopes(NamedTuple):
+class PixelSlopes(NamedTuple):
     """A PSF and its derivatives, (n,) each.
 
     Attributes
@@ -37,7 +38,7 @@ class BlurSlopes(NamedTuple):
     psf
         Light per square pixel.
     by_x, by_y
-        By the place seen.
+        By the position.
     by_xx, by_xy, by_yy
         By the elements of Sigma (`by_xy` moves both off-diagonal elements).
     by_width_x, by_width_y
@@ -55,8 +56,8 @@ class BlurSlopes(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Broad:
-    """A Gaussian of covariance ((xx, xy), (xy, yy)), broad beside a pixel."""
+class Gaussian2d:
+    """A Gaussian of covariance ((xx, xy), (xy, yy)), much wider than a pixel."""
 
     xx: float
     xy: float
@@ -80,7 +81,7 @@ class Broad:
 
 
 @dataclass(frozen=True)
-class PlaneBlur:
+class GaussianPixel2d:
     """Gaussian of covariance ((xx, xy), (xy, yy)) in square pixels, through a square aperture."""
 
     xx: float
@@ -98,40 +99,40 @@ class PlaneBlur:
         )
 
     @property
-    def least_sigma_px(self) -> float:
+    def min_sigma_px(self) -> float:
         """Standard deviation along the minor axis of the ellipse."""
-        half = 0.5 * (self.xx + self.yy)
-        spread = math.hypot(0.5 * (self.xx - self.yy), self.xy)
-        return math.sqrt(max(half - spread, 0.0))
+        mean = 0.5 * (self.xx + self.yy)
+        half_difference = math.hypot(0.5 * (self.xx - self.yy), self.xy)
+        return math.sqrt(max(mean - half_difference, 0.0))
 
     @property
     def peak(self) -> float:
-        """PSF at its centre: what a source of unit flux adds to a pixel right under it."""
+        """PSF at its centre: the value of a pixel with a source of unit flux in its middle."""
         return float(self.psf(np.zeros(1), np.zeros(1))[0])
 
-    def moved(self, xx: float, xy: float, yy: float) -> PlaneBlur:
-        """The blur with Sigma changed by a step, kept positive definite and not too narrow."""
+    def moved(self, xx: float, xy: float, yy: float) -> GaussianPixel2d:
+        """The PSF with Sigma changed by a step, kept positive definite and not too narrow."""
         sigma = np.array([[self.xx + xx, self.xy + xy], [self.xy + xy, self.yy + yy]])
         power, axes = np.linalg.eigh(sigma)
         old = max(self.xx, self.yy)
-        power = np.clip(power, max(LEAST_SIGMA_PX**2, 0.1 * self.least_sigma_px**2), 4 * old)
+        power = np.clip(power, max(MIN_SIGMA_PX**2, 0.1 * self.min_sigma_px**2), 4 * old)
         sigma = (axes * power) @ axes.T
-        return PlaneBlur(
+        return GaussianPixel2d(
             float(sigma[0, 0]), float(sigma[0, 1]), float(sigma[1, 1]), self.aperture_px
         )
 
-    def widened(self, widths: float) -> PlaneBlur:
-        """The blur so many times as wide, through the same aperture."""
+    def widened(self, widths: float) -> GaussianPixel2d:
+        """The PSF `widths` times as wide, through the same aperture."""
         more = widths**2
         box = (more - 1) * self.aperture_px**2 / 12
-        return PlaneBlur(
+        return GaussianPixel2d(
             more * self.xx + box, more * self.xy, more * self.yy + box, self.aperture_px
         )
 
-    def broadened(self, widths: float) -> Broad:
-        """A plain Gaussian so many times as wide, the aperture's variance included."""
+    def broadened(self, widths: float) -> Gaussian2d:
+        """A Gaussian without aperture `widths` times as wide, the aperture's variance included."""
         more, box = widths**2, self.aperture_px**2 / 12
-        return Broad(more * (self.xx + box), more * self.xy, more * (self.yy + box))
+        return Gaussian2d(more * (self.xx + box), more * self.xy, more * (self.yy + box))
 
     def psf(self, x: Floats, y: Floats) -> Floats:
         """The PSF at places (x, y), (n,)."""
@@ -143,20 +144,20 @@ class PlaneBlur:
         found[near] = (half / self.aperture_px**2) * _WEIGHTS @ (row * (ndtr(high) - ndtr(low)))
         return found
 
-    def slopes(self, x: Floats, y: Floats) -> BlurSlopes:
+    def slopes(self, x: Floats, y: Floats) -> PixelSlopes:
         """The PSF and all of its derivatives at places (x, y), (n,).
 
         Along y the Gaussian is integrated over the aperture by quadrature, along x in closed
         form, given y. The Gaussian solves the heat equation, so that its derivative by Sigma is
         half of a second derivative by place: a difference of integrands at the aperture's ends.
         """
-        found = np.zeros((len(BlurSlopes._fields), x.size))
+        found = np.zeros((len(PixelSlopes._fields), x.size))
         near = self._near(x, y)
         found[:, near] = self._slopes_near(x[near], y[near])
-        return BlurSlopes(*found)
+        return PixelSlopes(*found)
 
     def _near(self, x: Floats, y: Floats) -> NDArray[np.intp]:
-        """Which places see any light."""
+        """Indices of the places within reach of the PSF."""
         half = 0.5 * self.aperture_px
         near = np.abs(x) < half + _REACH * math.sqrt(self.xx)
         near &= np.abs(y) < half + _REACH * math.sqrt(self.yy)
@@ -210,19 +211,19 @@ class PlaneBlur:
         return row, (middle + half) / sigma_x, (middle - half) / sigma_x, sigma_x
 
     def otf(self, u: Floats, v: Floats) -> Floats:
-        """Transfer function at frequencies in cycles per pixel (real: the blur is symmetric)."""
+        """Transfer function at frequencies in cycles per pixel (real: the PSF is symmetric)."""
         power = self.xx * u * u + 2 * self.xy * u * v + self.yy * v * v
         box = np.sinc(self.aperture_px * u) * np.sinc(self.aperture_px * v)
         return np.asarray(np.exp(-2 * np.pi**2 * power) * box)
 
     def otf_slopes(self, u: Floats, v: Floats) -> Floats:
-        """Transforms of the last five of `BlurSlopes`: by Sigma and by the aperture, (n, 5)."""
+        """Transforms of the last five of `PixelSlopes`: by Sigma and by the aperture, (n, 5)."""
         whole = self.otf(u, v)
         power = self.xx * u * u + 2 * self.xy * u * v + self.yy * v * v
-        fall = np.exp(-2 * np.pi**2 * power)
+        gauss = np.exp(-2 * np.pi**2 * power)
         a = self.aperture_px
         by_a = [
-            fall * (np.cos(np.pi * a * own) - np.sinc(a * own)) / a * np.sinc(a * other)
+            gauss * (np.cos(np.pi * a * own) - np.sinc(a * own)) / a * np.sinc(a * other)
             for own, other in ((u, v), (v, u))
         ]
         return np.stack(

@@ -4,7 +4,8 @@ The model is ``y = A beta + noise`` with beta ~ N(mean, height^2 d), where d is 
 directions and exp(2 a_k) within block k of the prior. The log amplitudes a_k have normal
 hyperpriors; they are set to the mode of the marginal likelihood by Newton's method with the
 exact Hessian, and their own uncertainty (Laplace) enters the covariance of beta. One Cholesky
-factor a step serves all of it (MacKay 1992, doi:10.1162/neco.1992.4.3.415, gives the evidence).
+factor a step is enough for all of it (MacKay 1992, doi:10.1162/neco.1992.4.3.415, derives the
+marginal likelihood; its logarithm is called the log evidence here).
 """
 
 from __future__ import annotations
@@ -19,11 +20,19 @@ from acutance.curves.grid import Floats
 from acutance.errors import TargetError
 from acutance.numerics.normal_equations import Normal
 
-__all__ = ["Evidence", "Posterior", "Prior", "Whitened", "evidence_of", "regress", "whiten"]
+__all__ = [
+    "LogEvidence",
+    "Posterior",
+    "Prior",
+    "Whitened",
+    "log_evidence_slopes",
+    "regress",
+    "whiten",
+]
 
 _MAX_STEPS = 12
-_CURVATURE_FLOOR = 0.05
-_LONGEST_DOWN, _LONGEST_UP = 4.0, 1.5
+_MIN_CURVATURE = 0.05
+_MAX_STEP_DOWN, _MAX_STEP_UP = 4.0, 1.5
 _SETTLED_NOISE = 0.02
 _SETTLED_AMPLITUDE = 0.1
 """A last step this short is taken to first order."""
@@ -37,7 +46,7 @@ class Prior:
     Attributes
     ----------
     block : (m,) int array
-        Which amplitude rules each coefficient; -1 for one with a scale of its own.
+        Block of each coefficient, whose amplitude it has; -1 for one with a scale of its own.
     scale : (m,) array
         Standard deviation of a coefficient whose block is -1, relative to `height`.
     mean : (m,) array
@@ -78,14 +87,14 @@ class Prior:
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """What the data and the prior say of the coefficients.
+    """The coefficients, as determined by the data and the prior.
 
     Attributes
     ----------
     beta : (m,) array
         Posterior mean.
     factor : (m, m + k) array
-        Factor of the covariance of beta; the last k columns are the amplitudes' share.
+        Factor of the covariance of beta; the last k columns are the share of the amplitudes.
     log_amplitude : (k,) array
     variance : float
         Noise variance for unit weight.
@@ -126,20 +135,21 @@ def regress(
     log_amplitude = prior.log_amplitude if earlier is None else earlier.log_amplitude
     for _ in range(_MAX_STEPS):
         white = whiten(normal, prior, log_amplitude, variance * inflation)
-        evidence = evidence_of(white, prior, log_amplitude)
-        step = evidence.step()
+        slopes = log_evidence_slopes(white, prior, log_amplitude)
+        step = slopes.step()
         beta = white.sigma * white.mean
-        freedom = beta.size - white.spread
+        freedom = beta.size - white.undetermined
         misfit = normal.data + float(beta @ (normal.gram @ beta - 2 * normal.projection))
         updated = max(misfit / max(normal.count - freedom, 1.0), floor)
         settled = abs(updated / variance - 1) < _SETTLED_NOISE
         variance, log_amplitude = updated, log_amplitude + step
         if settled and float(np.abs(step).max()) < _SETTLED_AMPLITUDE:
             break
-    beta += white.sigma * (evidence.moves @ step)
+    beta += white.sigma * (slopes.by_amplitude @ step)
     m = beta.size
     factor = np.empty((m, m + step.size))
-    factor[:, :m], factor[:, m:] = white.root, evidence.moves @ evidence.spread()
+    factor[:, :m] = white.root
+    factor[:, m:] = slopes.by_amplitude @ slopes.covariance_factor()
     factor *= white.sigma[:, None]
     return Posterior(beta, factor, log_amplitude, variance, freedom)
 
@@ -169,8 +179,8 @@ class Whitened:
         return self.covariance.diagonal()
 
     @property
-    def spread(self) -> float:
-        """Sum of the variances: how many coefficients the data leave undetermined."""
+    def undetermined(self) -> float:
+        """Sum of the variances: number of coefficients that the data leave undetermined."""
         return float(np.add.reduce(self.variances))
 
 
@@ -180,7 +190,7 @@ def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) ->
     precision = sigma[:, None] * normal.gram
     precision *= sigma / noise
     precision.reshape(-1)[:: sigma.size + 1] += 1.0
-    # The transpose is laid out as Fortran wants it: nothing is copied.
+    # The transpose has Fortran's order: LAPACK copies nothing.
     lower, failed = _potrf(precision.T, lower=1, clean=1, overwrite_a=1)
     _require_solution(failed)
     inverse, failed = _trtri(lower, lower=1, overwrite_c=1)
@@ -192,7 +202,7 @@ def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) ->
 
 
 def _require_solution(failed: int) -> None:
-    """Refuse what LAPACK could not factor: pixels or starts that are not finite, mostly."""
+    """Refuse what LAPACK could not factor: mostly pixels or first fits that are not finite."""
     if failed:
         raise TargetError(
             f"the pixels do not determine the model: its equations have no solution (LAPACK code "
@@ -201,27 +211,27 @@ def _require_solution(failed: int) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
-    """How the logarithm of the evidence depends on the log amplitudes.
+class LogEvidence:
+    """Derivatives of the log evidence by the log amplitudes.
 
     Attributes
     ----------
     gradient : (k,) array
     hessian : (k, k) array
-    moves : (m, k) array
+    by_amplitude : (m, k) array
         Derivative of the whitened coefficients by the log amplitudes.
-    floor : float
-        The least curvature the uncertainty of the amplitudes is computed with.
+    min_curvature : float
+        Lower bound of the curvature from which the uncertainty of the amplitudes is computed.
     """
 
     gradient: Floats
     hessian: Floats
-    moves: Floats
-    floor: float
+    by_amplitude: Floats
+    min_curvature: float
 
     @cached_property
     def _axes(self) -> tuple[Floats, Floats]:
-        """Principal curvatures of the evidence, turned positive at a maximum, and their axes."""
+        """Principal curvatures, positive at a maximum of the log evidence, and their axes."""
         power, axes, failed = _syev(-self.hessian)
         _require_solution(failed)
         return power, axes
@@ -229,18 +239,18 @@ class Evidence:
     def step(self) -> Floats:
         """One bounded Newton step of the log amplitudes, uphill also where it is not concave."""
         power, axes = self._axes
-        power = np.maximum(np.abs(power), _CURVATURE_FLOOR)
+        power = np.maximum(np.abs(power), _MIN_CURVATURE)
         step = axes @ ((self.gradient @ axes) / power)
-        return np.asarray(np.minimum(np.maximum(step, -_LONGEST_DOWN), _LONGEST_UP))
+        return np.asarray(np.minimum(np.maximum(step, -_MAX_STEP_DOWN), _MAX_STEP_UP))
 
-    def spread(self) -> Floats:
+    def covariance_factor(self) -> Floats:
         """Factor of the covariance of the log amplitudes (Laplace), (k, k)."""
         power, axes = self._axes
-        return np.asarray(axes / np.sqrt(np.maximum(power, self.floor)))
+        return np.asarray(axes / np.sqrt(np.maximum(power, self.min_curvature)))
 
 
-def evidence_of(white: Whitened, prior: Prior, log_amplitude: Floats) -> Evidence:
-    """Slope and curvature of the log evidence, hyperprior included, at a whitened posterior.
+def log_evidence_slopes(white: Whitened, prior: Prior, log_amplitude: Floats) -> LogEvidence:
+    """Gradient and Hessian of the log evidence, hyperprior included, at a whitened posterior.
 
     With posterior covariance N and mean m in whitened coordinates, and E_j the projector on
     block j of r_j coefficients, for the log amplitudes a_j
@@ -257,4 +267,4 @@ def evidence_of(white: Whitened, prior: Prior, log_amplitude: Floats) -> Evidenc
     gradient = explained - prior.sizes - (log_amplitude - prior.log_amplitude) * precision
     hessian = 4 * (own.T @ shifts) + 2 * (members.T @ (white.covariance**2 @ members))
     hessian.reshape(-1)[:: gradient.size + 1] -= 2 * explained + precision
-    return Evidence(gradient, hessian, 2 * shifts, precision / 4)
+    return LogEvidence(gradient, hessian, 2 * shifts, precision / 4)

@@ -1,4 +1,4 @@
-"""Noise as the pixels show it: its level on either side, its outliers, its correlation."""
+"""Noise of pixels: its level on either side of an edge, its outliers, its correlation."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ __all__ = [
     "side_variances",
 ]
 
-_HARMLESS = 3.0
-_UNHEARD_OF = 4.5
+_MIN_DOWNWEIGHTED = 3.0
+_MAX_GAUSSIAN = 4.5
 _LAGS = 2
-# Lags as rows down and columns to the right; the opposite ones say the same.
+# Lags as rows down and columns to the right; the opposite ones have the same correlation.
 _NEAREST = ((0, 1), (1, 0))
 _FURTHER = ((1, 1), (1, -1), (0, 2), (2, 0))
 _MIN_PAIRS = 20
@@ -58,13 +58,13 @@ def side_variances(residual: Floats, esf: Floats) -> tuple[float, float]:
 
 
 def _variance(residual: Floats) -> float:
-    """Variance, without what lies beyond reach of Gaussian noise."""
+    """Variance, without values that Gaussian noise does not reach."""
     power = (residual - np.add.reduce(residual) / residual.size) ** 2
     variance = float(np.add.reduce(power)) / residual.size
     if float(power.max()) < 16 * variance:
         return variance
     centred = residual - median(residual)
-    usual = residual[np.abs(centred) <= _UNHEARD_OF * robust_scale(centred)]
+    usual = residual[np.abs(centred) <= _MAX_GAUSSIAN * robust_scale(centred)]
     return float(np.var(usual)) if usual.size else variance
 
 
@@ -74,7 +74,7 @@ def robust_scale(residual: Floats) -> float:
 
 
 def median(values: Floats) -> float:
-    """The middle one of some values, the upper of two: what `numpy.median` does, but quicker."""
+    """The middle one of some values, the upper of two: faster than `numpy.median`."""
     middle = values.size // 2
     return float(np.partition(values, middle)[middle])
 
@@ -82,15 +82,15 @@ def median(values: Floats) -> float:
 def outlier_weights(standard: Floats) -> Floats:
     """Weights that take outliers out: 1 within 3 standard deviations, then falling.
 
-    They fall with the fourth power, so that an outlier's share of the mean square vanishes with
-    its pull. At 3 standard deviations Gaussian noise loses next to nothing.
+    They fall with the fourth power, so that the weighted square of an outlier vanishes as the
+    outlier grows. Gaussian noise hardly ever exceeds 3 standard deviations and keeps its weight.
 
     Parameters
     ----------
     standard : (n,) array
         Residuals in units of their standard deviation.
     """
-    return np.asarray((_HARMLESS / np.maximum(np.abs(standard), _HARMLESS)) ** 4)
+    return np.asarray((_MIN_DOWNWEIGHTED / np.maximum(np.abs(standard), _MIN_DOWNWEIGHTED)) ** 4)
 
 
 def outlier_share(residual: Floats, noise: float, floor: float = 0.0) -> float:
@@ -121,7 +121,7 @@ class Correlation:
     strongest : float
         The strongest correlation found among the direct neighbours.
     significance : float
-        How many standard deviations that is from none.
+        That correlation in units of the standard deviation which white noise has.
     """
 
     inflation: float
@@ -130,7 +130,7 @@ class Correlation:
 
     @property
     def significant(self) -> float:
-        """Modulus of the strongest correlation, 0 where chance explains it: what checks judge."""
+        """Modulus of the strongest correlation, 0 where chance explains it: checks use it."""
         return abs(self.strongest) if self.significance >= _SIGNIFICANT else 0.0
 
 

@@ -31,7 +31,7 @@ from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import FREQ_CPP, Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.optics import Sensor
 from acutance.optics.sensor import TRUTH_DISTANCE_PX
 from acutance.targets.straight.pulse_spectrum import width_sensitivity_per_px
@@ -81,7 +81,7 @@ class MetricBound:
     width_px: float
 
 
-def equivalent_blur(sensor: Sensor, angle_deg: float) -> Blur:
+def equivalent_blur(sensor: Sensor, angle_deg: float) -> GaussianPixel:
     """The Gaussian through a pixel whose LSF has the FWHM of the sensor's.
 
     Parameters
@@ -93,17 +93,17 @@ def equivalent_blur(sensor: Sensor, angle_deg: float) -> Blur:
     low, high = 0.05, 8.0
     for _ in range(40):
         sigma = math.sqrt(low * high)
-        narrow = _response(Blur(sigma)).fwhm_px.value < wanted
+        narrow = _response(GaussianPixel(sigma)).fwhm_px.value < wanted
         low, high = (sigma, high) if narrow else (low, sigma)
-    return Blur(math.sqrt(low * high))
+    return GaussianPixel(math.sqrt(low * high))
 
 
-def shape_bound(blur: Blur, design: Design, snr: float) -> MetricBound:
+def shape_bound(blur: GaussianPixel, design: Design, snr: float) -> MetricBound:
     """Bound of a blur of known shape, by the information matrix of all unknowns.
 
     Parameters
     ----------
-    blur : Blur
+    blur : GaussianPixel
     design : Design
     snr : float
         Height of the target over the noise's standard deviation.
@@ -113,19 +113,20 @@ def shape_bound(blur: Blur, design: Design, snr: float) -> MetricBound:
     covariance = np.linalg.inv(information / np.outer(scale, scale))
     std = np.sqrt(np.diag(covariance)) / scale / snr
     by_sigma = (
-        _numbers(Blur(blur.sigma_px + _STEP_PX)) - _numbers(Blur(blur.sigma_px - _STEP_PX))
+        _numbers(GaussianPixel(blur.sigma_px + _STEP_PX))
+        - _numbers(GaussianPixel(blur.sigma_px - _STEP_PX))
     ) / (2 * _STEP_PX)
     mtf, rer, fwhm = (np.abs(by_sigma) * std[4]).tolist()
     width = float(std[5]) if design.target == "pulse" else math.nan
     return MetricBound(mtf, rer, fwhm, width)
 
 
-def free_bound(blur: Blur, design: Design, snr: float, window_px: float = 10.0) -> float:
+def free_bound(blur: GaussianPixel, design: Design, snr: float, window_px: float = 10.0) -> float:
     """Bound of the MTF at Nyquist with a free LSF, line and width.
 
     Parameters
     ----------
-    blur : Blur
+    blur : GaussianPixel
         The true LSF, not known to the estimator.
     design : Design
     snr : float
@@ -146,7 +147,7 @@ def free_bound(blur: Blur, design: Design, snr: float, window_px: float = 10.0) 
     return max(math.hypot(by_noise, by_width * shape.width_px), shape.mtf_nyquist)
 
 
-def _information(blur: Blur, design: Design) -> Floats:
+def _information(blur: GaussianPixel, design: Design) -> Floats:
     """Information matrix of all unknowns at an SNR of 1, some rows of the image at a time."""
     at_once = max(1, _PIXELS_AT_ONCE // design.cols)
     parts = (
@@ -156,7 +157,7 @@ def _information(blur: Blur, design: Design) -> Floats:
     return np.asarray(sum(part @ part.T for part in parts))
 
 
-def _jacobian(blur: Blur, design: Design, rows: NDArray[np.int_]) -> Floats:
+def _jacobian(blur: GaussianPixel, design: Design, rows: NDArray[np.int_]) -> Floats:
     """Derivatives of some rows by level, height, offset, turn, sigma, and width and fall."""
     x, y = unit_vector(design.angle_deg)
     row = rows[:, None] - 0.5 * (design.rows - 1)
@@ -178,12 +179,12 @@ def _jacobian(blur: Blur, design: Design, rows: NDArray[np.int_]) -> Floats:
     )  # fmt: skip
 
 
-def _numbers(blur: Blur) -> Floats:
+def _numbers(blur: GaussianPixel) -> Floats:
     response = _response(blur)
     return np.array([response.mtf_nyquist.value, response.rer.value, response.fwhm_px.value])
 
 
-def _response(blur: Blur) -> Response:
+def _response(blur: GaussianPixel) -> Response:
     """The curves of a plain blur."""
     nothing = np.zeros((TRUTH_DISTANCE_PX.size, 0))
     return Response(

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from acutance.targets.check_table import QUESTIONS, Question
     from acutance.targets.measurement import Measurement
     from acutance.targets.record import ImageInfo, Record
-    from acutance.targets.slices import PlaneSlices
+    from acutance.targets.slices import OtfSlices
     from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
 
 __all__ = [
@@ -36,7 +36,7 @@ __all__ = [
     "ImageInfo",
     "Kind",
     "Measurement",
-    "PlaneSlices",
+    "OtfSlices",
     "Question",
     "Record",
     "Rejected",
@@ -51,7 +51,7 @@ _HOMES = {
     "EdgeGroup": "target_result",
     "ImageInfo": "record",
     "Measurement": "measurement",
-    "PlaneSlices": "slices",
+    "OtfSlices": "slices",
     "Question": "check_table",
     "Record": "record",
     "Rejected": "target_result",

@@ -17,7 +17,7 @@ from acutance.geometry.angles import is_nearer_columns
 from acutance.geometry.line import Orientation
 from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
-from acutance.targets.slices import PlaneSlices
+from acutance.targets.slices import OtfSlices
 
 __all__ = ["Measurement"]
 
@@ -153,11 +153,11 @@ class Measurement(HasResponse, HasChecks):
         return self.otf.psf(half_width_px, step_px)
 
     @cached_property
-    def slices(self) -> PlaneSlices:
+    def slices(self) -> OtfSlices:
         """The OTF along the measured directions, with their common covariance."""
         if self.normal_deg is not None:
-            return PlaneSlices.of_curve(self.mtf, self.normal_deg)
-        return PlaneSlices.of_plane(self.otf)
+            return OtfSlices.of_curve(self.mtf, self.normal_deg)
+        return OtfSlices.of_otf2d(self.otf)
 
     def numbers(self) -> dict[str, dict[str, Estimate]]:
         """All numbers by direction ("across", "along") and name."""

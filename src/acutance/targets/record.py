@@ -25,7 +25,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.raster.image import AlongTrack
 from acutance.targets.check import Check, HasChecks, count_failed
-from acutance.targets.slices import PlaneSlices
+from acutance.targets.slices import OtfSlices
 
 __all__ = ["SCHEMA", "ImageInfo", "Record", "RecordedDirection", "rounded", "strict_json"]
 
@@ -276,7 +276,7 @@ class Record(ShortRepr, HasChecks):
         return found
 
     @cached_property
-    def slices(self) -> PlaneSlices:
+    def slices(self) -> OtfSlices:
         """The OTF along the measured directions, with its covariance.
 
         Raises
@@ -288,7 +288,7 @@ class Record(ShortRepr, HasChecks):
             raise OptionError(
                 "the document holds no slices of the OTF (plane): write it again with this version"
             )
-        return PlaneSlices.from_dict(self.document["plane"])
+        return OtfSlices.from_dict(self.document["plane"])
 
     @property
     def snr(self) -> float:

@@ -1,4 +1,4 @@
-"""A measurement's OTF along one or some directions, with enough covariance to combine it."""
+"""Slices of a measured optical transfer function (OTF), with the covariance to combine them."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 
-__all__ = ["PLANE_DIRECTIONS_DEG", "PlaneSlices"]
+__all__ = ["SLICE_DIRECTIONS_DEG", "OtfSlices"]
 
 Complexes = NDArray[np.complex128]
 
-PLANE_DIRECTIONS_DEG = (0.0, 45.0, 90.0, 135.0)
+SLICE_DIRECTIONS_DEG = (0.0, 45.0, 90.0, 135.0)
 """Directions in which a 2-D OTF is written, if the target has none of its own."""
 
 _FREQ_CPP: Floats = np.asarray(np.arange(1, 17) * 0.05)
-_LEAST_STD = 1.5e-4
-"""Errors smaller than this are left out: no method is that exact."""
-_FAINT = 0.02
+_MIN_STD = 1.5e-4
+"""Columns of a covariance factor below this are left out: no method is that exact."""
+_MIN_STD_SHARE = 0.02
+"""Of a document: share of the largest standard deviation to which smaller ones are raised."""
 _REST = 0.02
+"""Of a document: share of the variance whose covariance between places is left out."""
 _STEP = 0.05
-"""Of a document: share of the largest deviation below which a place counts as that one, and share
-of the variance whose covariance between places is left out, and largest last digit in units of the
-deviation."""
+"""Of a document: largest last digit, in units of the standard deviation."""
 
 
 @dataclass(frozen=True, eq=False)
-class PlaneSlices(ShortRepr):
+class OtfSlices(ShortRepr):
     """Slices of a 2-D OTF with their common covariance.
 
     Parameters
@@ -56,20 +56,20 @@ class PlaneSlices(ShortRepr):
     factor: Complexes
 
     @classmethod
-    def of_curve(cls, mtf: Mtf, normal_deg: float) -> PlaneSlices:
+    def of_curve(cls, mtf: Mtf, normal_deg: float) -> OtfSlices:
         """The slice along the normal of an edge or a pulse."""
-        # The grid of a curve has steps of 0.01 c/px: the places are on it.
+        # The grid of a curve has steps of 0.01 c/px and holds these frequencies.
         places = np.searchsorted(mtf.freq_cpp, _FREQ_CPP - 1e-9)
         factor = _narrowed(mtf.otf_factor[places])
         return cls(np.array([normal_deg]), _FREQ_CPP, mtf.otf[places], factor)
 
     @classmethod
-    def of_plane(
+    def of_otf2d(
         cls,
         otf: Otf2d,
-        directions_deg: Sequence[float] = PLANE_DIRECTIONS_DEG,
+        directions_deg: Sequence[float] = SLICE_DIRECTIONS_DEG,
         band_cpp: tuple[float, float] = (0.0, 1.0),
-    ) -> PlaneSlices:
+    ) -> OtfSlices:
         """Slices of a 2-D OTF at the frequencies it was measured at."""
         low, high = band_cpp
         freq = _FREQ_CPP[(low - 1e-9 <= _FREQ_CPP) & (high + 1e-9 >= _FREQ_CPP)]
@@ -95,7 +95,7 @@ class PlaneSlices(ShortRepr):
         }
 
     @classmethod
-    def from_dict(cls, document: Mapping[str, Any]) -> PlaneSlices:
+    def from_dict(cls, document: Mapping[str, Any]) -> OtfSlices:
         """The slices that `to_dict` wrote.
 
         Raises
@@ -106,10 +106,12 @@ class PlaneSlices(ShortRepr):
         try:
             return cls._read(document)
         except (KeyError, TypeError, ValueError) as error:
-            raise OptionError(f"the slices of the plane cannot be read ({error})") from error
+            raise OptionError(
+                f"cannot read the slices of the OTF ({error}): give a document that acutance wrote"
+            ) from error
 
     @classmethod
-    def _read(cls, document: Mapping[str, Any]) -> PlaneSlices:
+    def _read(cls, document: Mapping[str, Any]) -> OtfSlices:
         normal, freq = (np.array(document[name], float) for name in ("normal_deg", "freq_cpp"))
         otf = _complex(document, "otf")
         factor = _complex(document, "factor")
@@ -139,7 +141,7 @@ def _places(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
 
 
 def _few_columns(factor: Complexes) -> tuple[Complexes, Complexes]:
-    """A factor of nearly the same covariance with few columns, and what it leaves.
+    """A factor of nearly the same covariance with few columns, and the rest of the variance.
 
     Returns
     -------
@@ -152,7 +154,7 @@ def _few_columns(factor: Complexes) -> tuple[Complexes, Complexes]:
     variance = np.einsum("ij,ij->i", stacked, stacked)
     if not variance.any():
         return factor[:, :0], np.zeros(factor.shape[0], complex)
-    std = np.maximum(np.sqrt(variance), _FAINT * math.sqrt(variance.max()))
+    std = np.maximum(np.sqrt(variance), _MIN_STD_SHARE * math.sqrt(variance.max()))
     left, size, _ = np.linalg.svd(stacked / std[:, None], full_matrices=False)
     kept = int(np.searchsorted(np.cumsum(size**2), (1 - _REST) * np.sum(size**2))) + 1
     step = 10.0 ** np.floor(np.log10(_STEP * std))
@@ -163,7 +165,7 @@ def _few_columns(factor: Complexes) -> tuple[Complexes, Complexes]:
 
 
 def _listed(name: str, values: Complexes) -> dict[str, list[Any]]:
-    """Real and imaginary parts of numbers, with the digits of a hundred-millionth at most."""
+    """Real and imaginary parts of numbers, rounded to 8 decimals."""
     return {
         f"{name}_real": np.round(values.real, 8).tolist(),
         f"{name}_imag": np.round(values.imag, 8).tolist(),
@@ -177,6 +179,6 @@ def _narrowed(factor: Complexes) -> Complexes:
     if stacked.size == 0:
         return factor
     left, size, _ = np.linalg.svd(stacked, full_matrices=False)
-    kept = size > min(_LEAST_STD, float(size[0]))
+    kept = size > min(_MIN_STD, float(size[0]))
     narrow = left[:, kept] * size[kept]
     return np.asarray(narrow[:n] + 1j * narrow[n:])

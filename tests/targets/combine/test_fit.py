@@ -7,8 +7,8 @@ import pytest
 
 from acutance import optics
 from acutance.errors import ModelError
-from acutance.targets.combine.correction import Departure
-from acutance.targets.combine.curves import ChiSquare, PlaneCurve, WhitenedCurves
+from acutance.targets.combine.correction import Correction
+from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
 from acutance.targets.combine.fit import combine_curves
 from acutance.targets.combine.sensor_forms import FORMS, TERMS, SensorForm
 
@@ -31,14 +31,14 @@ def curve(otf, direction, std, rng=None, scale=1.0):
     factor = smooth_factor(std)
     noise = 0.0 if rng is None else factor @ rng.standard_normal(factor.shape[1])
     true = np.asarray(otf(u, v), complex)
-    return PlaneCurve(f"{direction:g} deg", u, v, scale * true + noise, factor)
+    return OtfSamples(f"{direction:g} deg", u, v, scale * true + noise, factor)
 
 
 @pytest.mark.parametrize("terms", FORMS, ids=" x ".join)
 def test_slopes_of_a_form_are_those_of_its_values(terms):
     form = SensorForm(terms)
     rng = np.random.default_rng(1)
-    p = form.mean + 0.3 * form.spread * rng.standard_normal(form.mean.size)
+    p = form.mean + 0.3 * form.std * rng.standard_normal(form.mean.size)
     u, v = rng.uniform(-0.7, 0.7, (2, 20))
     move = 1e-3 * rng.standard_normal(p.size)
     change = form.otf(p + move, u, v) - form.otf(p - move, u, v)
@@ -48,7 +48,7 @@ def test_slopes_of_a_form_are_those_of_its_values(terms):
 @pytest.mark.parametrize("name", TERMS)
 def test_every_term_is_one_at_zero_and_does_not_move_the_image(name):
     form = SensorForm(("gaussian", name))
-    p = form.mean + 0.4 * form.spread
+    p = form.mean + 0.4 * form.std
     step = np.array([1e-4, 0.0, 0.0])
     values = form.otf(p, step, np.array([0.0, 0.0, 1e-4]))
     assert values[1] == 1
@@ -60,10 +60,10 @@ def test_an_unknown_term_is_refused_by_name():
         SensorForm(("gaussian", "wobble"))
 
 
-def test_a_departure_is_nothing_at_zero_frequency_and_hermitian():
-    departure = Departure(SensorForm(("gaussian",)), (-0.9, -0.8, 0.1))
+def test_a_correction_is_nothing_at_zero_frequency_and_hermitian():
+    correction = Correction(SensorForm(("gaussian",)), (-0.9, -0.8, 0.1))
     u, v = np.array([0.0, 0.3, -0.3]), np.array([0.0, 0.2, -0.2])
-    ways = departure.directions(u, v)
+    ways = correction.directions(u, v)
     assert not ways[0].any()
     assert ways[1] == pytest.approx(np.conj(ways[2]))
 
@@ -119,7 +119,7 @@ def campaign(sensor, directions, share, rng):
 @pytest.mark.parametrize(
     ("share", "low", "high"),
     [
-        # What is stated is for this, and for departures from the form, which are not there.
+        # What is stated is for this, and for corrections of the form, which are not there.
         pytest.param(0.25, 0.78, 0.98, id="a quarter in common"),
         # Three curves a direction: the allowance for what they share makes deviations too wide.
         pytest.param(0.0, 0.62, 0.81, id="independent"),
@@ -164,13 +164,13 @@ def test_a_sharpened_product_is_held_by_a_form():
     )
 
 
-def test_a_system_no_form_holds_gets_a_departure():
+def test_a_system_no_form_holds_gets_a_correction():
     aperture = optics.Diffraction(1.2, obscuration=0.3)
     kernel = [[-0.15, 0.05, 1.2, 0.05, -0.15]]
     sensor = optics.Sensor([aperture, optics.Detector(), optics.Sharpening(kernel)])
     fit = combine_curves([curve(sensor.otf, one, 0.003) for one in DIRECTIONS])
     assert fit.plain.p_value < 1e-6
-    assert fit.otf.correction > 0.02
+    assert fit.otf.correction_share > 0.02
     u, v = FREQ * np.cos(0.1), FREQ * np.sin(0.1)
     assert fit.otf.otf(u, v) == pytest.approx(sensor.otf(u, v), abs=0.03)
 

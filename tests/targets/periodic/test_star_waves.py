@@ -7,7 +7,7 @@ import pytest
 
 from acutance.optics import Detector, Exponential, Gaussian, Sensor, Smear
 from acutance.simulate import star
-from acutance.targets.periodic.otf_modes import MEAN_MODES, GaussianPixel, ProcessModes
+from acutance.targets.periodic.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
 from acutance.targets.periodic.star_waves import StarTable
 
 CENTRE = (40.3, 39.6)
@@ -30,7 +30,7 @@ def test_mean_blur_is_rendered_as_exactly_as_the_simulation(wave, tolerance):
         centre=CENTRE,
     )  # fmt: skip
     kept, radius, angle = _polar(image)
-    table = StarTable(GaussianPixel(0.16, 0.0, 0.16), CYCLES, wave, 4.0, RIM, RIM)
+    table = StarTable(MeanOtf(0.16, 0.0, 0.16), CYCLES, wave, 4.0, RIM, RIM)
     phase = CYCLES * (angle - math.radians(TURN)) - math.pi / 2
     columns, _ = table.columns(radius, phase, angle)
     amplitude = 500 * (4 / math.pi if wave == "square" else 1)
@@ -52,7 +52,7 @@ def test_phase_of_an_asymmetric_system_and_a_turned_ellipse():
         sensor, cycles=CYCLES, radius_px=RIM, shape=(81, 81), start_deg=TURN, centre=CENTRE
     )
     kept, radius, angle = _polar(image)
-    blur = GaussianPixel(0.12, 0.02, 0.11)
+    blur = MeanOtf(0.12, 0.02, 0.11)
     phase = CYCLES * (angle - math.radians(TURN)) - math.pi / 2
     table = StarTable(blur, CYCLES, "sine", 4.0, RIM, RIM)
     columns, _ = table.columns(radius, phase, angle)
@@ -76,7 +76,7 @@ def test_phase_of_an_asymmetric_system_and_a_turned_ellipse():
 
 
 def test_derivative_by_phase():
-    blur = GaussianPixel(0.2, 0.05, 0.15)
+    blur = MeanOtf(0.2, 0.05, 0.15)
     table = StarTable(blur, CYCLES, "square", 4.0, RIM, RIM)
     radius, angle = np.linspace(6, 26, 40), np.linspace(0, 6, 40)
     at = [table.columns(radius, CYCLES * angle + 0.4 + d, angle) for d in (-1e-4, 0.0, 1e-4)]
@@ -86,7 +86,7 @@ def test_derivative_by_phase():
 
 def test_modes_are_those_of_real_spread_functions():
     """Every mode has the symmetry of a real PSF, and the mean's slopes are its derivatives."""
-    blur = GaussianPixel(0.2, 0.05, 0.15)
+    blur = MeanOtf(0.2, 0.05, 0.15)
     rng = np.random.default_rng(3)
     u, v = rng.uniform(-1, 1, (2, 30))
     states = ProcessModes(blur.width_px)
@@ -95,5 +95,5 @@ def test_modes_are_those_of_real_spread_functions():
     assert states.blocks().size == states.otf_modes(u, v).shape[1]
     assert blur.modes(u, v).shape[1] == MEAN_MODES
     step = 1e-5
-    by_xy = (GaussianPixel(0.2, 0.05 + step, 0.15).otf(u, v) - blur.otf(u, v)) / step
+    by_xy = (MeanOtf(0.2, 0.05 + step, 0.15).otf(u, v) - blur.otf(u, v)) / step
     assert np.allclose(blur.modes(u, v)[:, 2], by_xy, atol=1e-4)

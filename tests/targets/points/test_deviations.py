@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import acutance as ac
-from acutance.numerics.gaussian_pixel_2d import PlaneBlur
+from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
 from acutance.targets.points import PointsOptions, tuned
 from acutance.targets.points.psf_prior import PsfDirections
 
@@ -72,7 +72,7 @@ def test_intervals_hold(errors):
 
 def test_amplitudes_at_their_prior_mean_change_the_mtf_by_per_mille():
     """The MTF at 0.25 c/px by SHAPE, DETAIL, HALO, TAIL, APERTURE, WINGS and AIRY."""
-    directions = PsfDirections(PlaneBlur(0.2, 0.0, 0.2))
+    directions = PsfDirections(GaussianPixel2d(0.2, 0.0, 0.2))
     change = np.abs(directions.transform(np.array([0.25]), np.zeros(1))[0]) * directions.scale
     power = [np.sum(change[directions.block == block] ** 2) for block in range(7)]
     found = 1000 * np.exp(tuned.LOG_AMPLITUDE) * np.sqrt(power)

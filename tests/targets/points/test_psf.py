@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from acutance.numerics.gaussian_pixel_2d import PlaneBlur
+from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
 from acutance.targets.points.airy import Airy
 from acutance.targets.points.psf import PsfModel
 from acutance.targets.points.psf_prior import PsfDirections
 
-BLUR = PlaneBlur(0.16, 0.05, 0.25)
+BLUR = GaussianPixel2d(0.16, 0.05, 0.25)
 STEP = 1e-5
 
 
@@ -38,12 +38,12 @@ def test_the_blurs_slopes_are_its_changes(places):
 
 def test_a_round_blur_is_a_product_of_its_lines():
     """Without lean the PSF separates: across times along."""
-    from acutance.numerics.gaussian_pixel import Blur
+    from acutance.numerics.gaussian_pixel import GaussianPixel
 
     grid = np.linspace(-2, 2, 9)
     x, y = (part.ravel() for part in np.meshgrid(grid, grid))
-    found = PlaneBlur(0.16, 0.0, 0.36).psf(x, y)
-    assert found == pytest.approx(Blur(0.4).lsf(x) * Blur(0.6).lsf(y), abs=1e-7)
+    found = GaussianPixel2d(0.16, 0.0, 0.36).psf(x, y)
+    assert found == pytest.approx(GaussianPixel(0.4).lsf(x) * GaussianPixel(0.6).lsf(y), abs=1e-7)
 
 
 def test_every_direction_is_the_transform_it_says():

@@ -5,7 +5,7 @@ import pytest
 
 from acutance.errors import NoEdgeError
 from acutance.geometry.line import Line
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.targets.straight.first_fit import (
     _EXPECTED,
     _bounded_solution,
@@ -26,7 +26,9 @@ def edge(blur, line=LINE, dark=200.0, height=1000.0):
     return dark + height * blur.esf(line.normal_distance(ROWS, COLS))
 
 
-@pytest.mark.parametrize("blur", [Blur(0.4), Blur(0.8), Blur(1.5), Blur(0.5, 1.1)])
+@pytest.mark.parametrize(
+    "blur", [GaussianPixel(0.4), GaussianPixel(0.8), GaussianPixel(1.5), GaussianPixel(0.5, 1.1)]
+)
 def test_parameters_are_recovered(blur):
     found = fit(edge(blur), LINE.moved(0.3, -0.6), dark=150.0, bright=1100.0, noise=1.0)
     distance = found.line.normal_distance(np.array([5.0, 35.0]), np.array([10.0, 30.0]))
@@ -41,17 +43,17 @@ def test_parameters_are_recovered(blur):
 
 def test_noise_is_that_of_the_pixels():
     rng = np.random.default_rng(13)
-    found = fit(edge(Blur(0.5)) + 10 * rng.standard_normal(ROWS.size), LINE, noise=25.0)
+    found = fit(edge(GaussianPixel(0.5)) + 10 * rng.standard_normal(ROWS.size), LINE, noise=25.0)
     assert found.noise == pytest.approx(10.0, rel=0.1)
 
 
 def test_a_blur_far_wider_than_the_start_is_reached():
-    found = fit(edge(Blur(4.0)), LINE, sigma_px=0.5, noise=5.0)
-    assert found.blur.width_px == pytest.approx(Blur(4.0).width_px, rel=0.02)
+    found = fit(edge(GaussianPixel(4.0)), LINE, sigma_px=0.5, noise=5.0)
+    assert found.blur.width_px == pytest.approx(GaussianPixel(4.0).width_px, rel=0.02)
 
 
 def test_an_edge_sharper_than_a_pixel_ends_at_the_smallest_blur():
-    found = fit(edge(Blur(0.05, 0.2)), LINE, noise=1.0)
+    found = fit(edge(GaussianPixel(0.05, 0.2)), LINE, noise=1.0)
     assert found.blur.sigma_px == pytest.approx(0.35)
 
 
@@ -72,7 +74,7 @@ def test_pure_noise_holds_no_edge():
 
 def test_an_edge_the_wrong_way_round_is_refused():
     with pytest.raises(NoEdgeError):
-        fit(1400 - edge(Blur(0.5)), LINE)
+        fit(1400 - edge(GaussianPixel(0.5)), LINE)
 
 
 @pytest.mark.parametrize("steps", [[], [3.2, 0.9]])

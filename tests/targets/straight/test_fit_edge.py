@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import acutance.simulate as sim
 from acutance.errors import NoEdgeError
 from acutance.geometry.line import Line
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.simulate.noise import Noise
 from acutance.simulate.resample import Regrid
 from acutance.targets.straight.fit_edge import fit_edge
@@ -131,7 +131,7 @@ def test_the_blur_it_departs_from_changes_nothing_that_matters():
     variance = 0.4**2 + 1 / 12
     fits = []
     for aperture in (0.7, 1.0, 1.2):
-        blur = Blur(np.sqrt(variance - aperture**2 / 12), aperture)
+        blur = GaussianPixel(np.sqrt(variance - aperture**2 / 12), aperture)
         fits.append(fit_edge(EdgePixels(image, truth.line, 200, 1200, 0.4, 10, blur)))
     found = np.array([numbers(fit) for fit in fits])
     assert np.all(np.ptp(found[:, ::2], axis=0) < 0.3 * found[1, 1::2])

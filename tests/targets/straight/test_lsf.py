@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.spline import CELLS, CENTRES, esf_from_lsf
 
 RNG = np.random.default_rng(19)
 BUMPS = np.exp(-0.5 * (CENTRES / 1.5) ** 2)
 MODEL = LsfModel(
-    blur=Blur(0.5, 0.9),
+    blur=GaussianPixel(0.5, 0.9),
     level=1000.0,
     spline=esf_from_lsf(40 * BUMPS * np.sin(2 * CENTRES + 0.4)),
     tail=60.0,
@@ -72,6 +72,6 @@ def test_standard_deviation_of_the_half_point_is_that_of_its_moves():
 
 
 def test_curves_reach_the_support():
-    wide = replace(MODEL, blur=Blur(2.0)).response(0.0)
-    assert wide.esf.distance_px[-1] >= 8 * Blur(2.0).width_px
+    wide = replace(MODEL, blur=GaussianPixel(2.0)).response(0.0)
+    assert wide.esf.distance_px[-1] >= 8 * GaussianPixel(2.0).width_px
     assert wide.lsf.factor.shape == (wide.lsf.value.size, CELLS + 4)

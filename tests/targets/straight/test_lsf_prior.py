@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.lorentz_tail import tail_esf, tail_lsf, tail_otf
 from acutance.targets.straight.lsf_prior import directions
 from acutance.targets.straight.spline import (
@@ -15,7 +15,7 @@ from acutance.targets.straight.spline import (
 )
 from acutance.targets.straight.tuned import TAIL_WIDTH
 
-BLURS = [Blur(0.4), Blur(1.3, 0.6)]
+BLURS = [GaussianPixel(0.4), GaussianPixel(1.3, 0.6)]
 
 
 @pytest.mark.parametrize("blur", BLURS)
@@ -40,7 +40,7 @@ def test_mean_directions_are_the_blur_and_its_slopes(blur):
 
 
 def test_processes_have_the_covariance_they_promise():
-    found = directions(Blur(0.4))
+    found = directions(GaussianPixel(0.4))
     for block, extent, smoothness in ((2, 1.2, 0.6), (3, 0.7, 0.17), (4, 3.0, 1.2)):
         root = np.diff(found.esf[2:-2, found.block == block], axis=0) / (CENTRES[1] - CENTRES[0])
         u = CENTRES
@@ -61,7 +61,7 @@ def test_tail_curves_belong_together():
 
 
 def test_tail_direction_is_the_tail_within_the_support():
-    found = directions(Blur(0.4))
+    found = directions(GaussianPixel(0.4))
     u = np.linspace(-7, 7, 141)
     spline = combine(*edge_weights(u), found.esf[:, -1])
     assert np.max(np.abs(spline - tail_esf(u, TAIL_WIDTH))) < 2e-3

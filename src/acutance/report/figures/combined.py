@@ -76,8 +76,8 @@ def _draw_directions(axes: Axes, measurement: CombinedMeasurement) -> None:
             x, y = reach * math.cos(turn), reach * math.sin(turn)
             axes.plot(
                 [-x, x], [-y, y], color=color_of(i),
-                linestyle=":" if part.of_plane else "-",
-                linewidth=1.1 if part.of_plane else 1.8,
+                linestyle=":" if part.has_all_directions else "-",
+                linewidth=1.1 if part.has_all_directions else 1.8,
             )  # fmt: skip
     axes.plot([-0.5, 0.5, 0.5, -0.5, -0.5], [-0.5, -0.5, 0.5, 0.5, -0.5], color=INK, lw=0.9)
     axes.set(
@@ -143,7 +143,7 @@ def _draw_curves(page: FigureBase, measurement: CombinedMeasurement) -> None:
         axes.set(xlim=(0, REACH_CPP), ylim=(0, 1.02), xlabel="frequency [c/px]")
         axes.set_title(_label(part), fontsize=9.5)
         found = part.chi_square
-        where = "all directions" if part.of_plane else f"normal {part.direction}"
+        where = "all directions" if part.has_all_directions else f"normal {part.direction}"
         axes.text(
             0.97, 0.95,
             f"{where}\nchi² {found.value:.1f} of {found.expected:.1f}",

@@ -69,10 +69,10 @@ def _sensor_table(measurement: CombinedMeasurement) -> Table:
 def _describe_sensor(measurement: CombinedMeasurement) -> str:
     sensor = measurement.sensor
     words = f"Sensor of largest weight ({sensor.best.weight:.2f}): {sensor.best.form.name}."
-    if sensor.correction > 0:
+    if sensor.correction_share > 0:
         words += (
-            f" A smooth correction of {100 * sensor.correction:.1f} % of the logarithm of the MTF "
-            "stands for what no such sensor holds."
+            f" A smooth correction of {100 * sensor.correction_share:.1f} % of the logarithm of the "
+            "MTF was added to it."
         )
     return words
 

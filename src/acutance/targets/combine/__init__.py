@@ -1,8 +1,8 @@
 """Several measurements of one sensor as one two-dimensional OTF.
 
 In the order data take: `inputs` (records of measurements), `pixel_size` (do they have the same
-pixels), `curves` (what each says), `sensor_forms` (products of OTF blocks), `correction` (smooth
-departures from them), `fit` (all forms, weighted), `checks`, `combination` (the public
+pixels), `curves` (the OTF of each), `sensor_forms` (products of OTF blocks), `correction` (smooth
+corrections of them), `fit` (all forms, weighted), `checks`, `combination` (the public
 function).
 """
 

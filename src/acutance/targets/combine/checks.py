@@ -1,4 +1,4 @@
-"""Do the measurements agree, and do they tell enough?"""
+"""Do the measurements agree, and do they determine a 2-D OTF?"""
 
 from __future__ import annotations
 
@@ -92,9 +92,9 @@ def _worst(inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: Limits) ->
 def _plain(fit: CombinedFit, limits: Limits) -> Check:
     plain = fit.plain
     added = (
-        f"a smooth correction of {100 * fit.otf.correction:.1f} % of the logarithm of the MTF was "
-        "added, and its uncertainty is part of every deviation"
-        if fit.otf.correction > 0
+        f"a smooth correction of {100 * fit.otf.correction_share:.1f} % of the logarithm of the MTF "
+        "was added, and its uncertainty is part of every deviation"
+        if fit.otf.correction_share > 0
         else "no correction was added"
     )
     return answer(

@@ -15,7 +15,7 @@ from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd
 from acutance.targets.combine.checks import check_combination, count_directions, direction_gap_deg
 from acutance.targets.combine.combined_measurement import CombinedMeasurement, CombinedPart
-from acutance.targets.combine.curves import ChiSquare, PlaneCurve
+from acutance.targets.combine.curves import ChiSquare, OtfSamples
 from acutance.targets.combine.fit import combine_curves
 from acutance.targets.combine.inputs import Combinable, MeasuredInput, common_flight, read_inputs
 from acutance.targets.combine.options import CombineOptions
@@ -25,7 +25,7 @@ from acutance.targets.record import ImageInfo
 
 __all__ = ["combine"]
 
-_LEAST_GAP_DEG = 20.0
+_MIN_GAP_DEG = 20.0
 
 
 @one_thread
@@ -109,23 +109,23 @@ def _require_two(inputs: Sequence[MeasuredInput]) -> None:
                     f"{other.name} and {one.name} are the same measurement: leave one out"
                 )
     if len(inputs) == 1:
-        found = "one direction" if not inputs[0].of_plane else "already a 2-D result"
+        found = "one direction" if not inputs[0].has_all_directions else "already a 2-D result"
         raise OptionError(
             f"only {inputs[0].name} was given, {found}: combine it with measurements in other "
             "directions or by other methods"
         )
-    if direction_gap_deg(inputs) < _LEAST_GAP_DEG:
+    if direction_gap_deg(inputs) < _MIN_GAP_DEG:
         named = ", ".join(f"{one.name} {one.direction}" for one in inputs)
         raise OptionError(
             f"all measurements show one direction ({named}), {count_directions(inputs)} of at "
-            f"least two that differ by {_LEAST_GAP_DEG:g} degrees: add an edge or pulse in "
+            f"least two that differ by {_MIN_GAP_DEG:g} degrees: add an edge or pulse in "
             "another direction, or points, a star or a pair of images"
         )
 
 
-def _curve(one: MeasuredInput) -> PlaneCurve:
+def _curve(one: MeasuredInput) -> OtfSamples:
     u, v = one.slices.places
-    return PlaneCurve(one.name, u, v, one.slices.otf, one.slices.factor)
+    return OtfSamples(one.name, u, v, one.slices.otf, one.slices.factor)
 
 
 def _part(one: MeasuredInput, chi_square: ChiSquare, otf: Otf2d) -> CombinedPart:

@@ -1,4 +1,4 @@
-"""What a combination gives: one sensor, each measurement next to it, and whether they agree."""
+"""The result of a combination: one sensor, each measurement next to it, and their agreement."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["CombinedMeasurement", "CombinedPart"]
 
 @dataclass(frozen=True, eq=False)
 class CombinedPart(ShortRepr):
-    """One measurement beside what all of them say together.
+    """One measurement next to the combination of all.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class CombinedPart(ShortRepr):
     path : str or None
         The file it was measured in.
     normal_deg : tuple of float
-        Its direction, or several where it shows the plane.
+        Its direction, or several of a 2-D measurement.
     chi_square : ChiSquare
         Of its residuals.
     own, combined : Estimate
@@ -51,7 +51,7 @@ class CombinedPart(ShortRepr):
     fitted: Floats
 
     @property
-    def of_plane(self) -> bool:
+    def has_all_directions(self) -> bool:
         """Whether it shows all directions."""
         return len(self.normal_deg) > 1
 
@@ -76,7 +76,7 @@ class CombinedPart(ShortRepr):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CombinedMeasurement(Measurement):
-    """What many measurements of one sensor say together; `details` is the `CombinedFit`.
+    """The combination of measurements of one sensor; `details` is the `CombinedFit`.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class CombinedMeasurement(Measurement):
 
     @property
     def birge_ratio(self) -> float:
-        """What every standard deviation was widened by: 1 where the measurements agree."""
+        """Factor by which every standard deviation was widened: 1 where the measurements agree."""
         return self.sensor.birge_ratio
 
     def target_document(self) -> dict[str, Any]:
@@ -121,7 +121,7 @@ class CombinedMeasurement(Measurement):
                 {"form": one.form.name, "departure": one.share, "weight": one.weight}
                 for one in self.sensor.forms
             ],
-            "departure": self.sensor.correction,
+            "departure": self.sensor.correction_share,
             "birge_ratio": self.birge_ratio,
             "agreement": _chi_square(self.chi_square),
             "plain_sensor": _chi_square(self.plain_sensor),

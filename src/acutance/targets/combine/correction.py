@@ -1,10 +1,10 @@
-"""What no parametric sensor holds: a smooth relative departure of the logarithm of its OTF.
+"""A smooth correction of the logarithm of a parametric optical transfer function (OTF).
 
 The OTF is taken as ``H(u, v) - |H| ln min(|H|, |D|) e (a(u, v) + i b(u, v))``, to first order ``H``
-with its logarithm changed by the share ``a``. D is the detector's OTF, above which only sharpening
-lifts H; e makes the largest slope 1. The functions a (even) and b (odd) are Gaussian processes of
-one length, written in values at a few places of the plane, so that they are linear parameters with
-a normal prior.
+with its logarithm changed by the share ``a``. D is the detector's OTF, which H exceeds only
+after sharpening; e makes the largest slope 1. The functions a (even) and b (odd) are Gaussian
+processes of one length, written in values at a few frequencies of the plane, so that they are
+linear parameters with a normal prior.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.targets.combine.sensor_forms import SensorForm
 
-__all__ = ["Departure"]
+__all__ = ["Correction"]
 
 Complexes = NDArray[np.complex128]
 
@@ -40,8 +40,8 @@ def _places() -> Floats:
 
 
 @dataclass(frozen=True)
-class Departure(ShortRepr):
-    """Directions in which an OTF may depart from a parametric one.
+class Correction(ShortRepr):
+    """Directions in which the OTF of a sensor may differ from a parametric one.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Departure(ShortRepr):
     def directions(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Change of the OTF for a unit of every direction, (n, m): exactly 0 at zero frequency."""
         size = np.abs(self.form.otf(np.array(self.parameters), u_cpp, v_cpp))
-        # Of a sharpened product the blur is seen through a gain: its detector's at least.
+        # Sharpening multiplies the blur by a gain: the blur is the detector's at most.
         blurred = np.minimum(size, np.abs(self.form.detector_otf(u_cpp, v_cpp)))
         reach = -math.e * size * np.log(np.maximum(blurred, 1e-30))
         even = self._kernel(u_cpp, v_cpp, 1.0) @ self._roots[0]
@@ -72,7 +72,7 @@ class Departure(ShortRepr):
 
     @cached_property
     def _roots(self) -> tuple[Floats, Floats]:
-        """What gives unit weights the processes' covariance at the places, even and odd."""
+        """Factors that give unit weights the processes' covariance at the places, even and odd."""
         x, y = _places().T
         found = []
         for parity in (1.0, -1.0):

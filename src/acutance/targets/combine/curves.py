@@ -14,36 +14,37 @@ from scipy.special import gammaincc
 
 from acutance.curves.grid import Floats
 
-__all__ = ["ChiSquare", "PlaneCurve", "WhitenedCurves"]
+__all__ = ["ChiSquare", "OtfSamples", "WhitenedCurves"]
 
 Complexes = NDArray[np.complex128]
 
-_FLOOR = 5e-4
-"""What an estimator may be wrong by without noise; also what makes a covariance invertible."""
+_MIN_STD = 5e-4
+"""Error of an estimator without noise; it makes every covariance invertible."""
 
 _COMMON = 0.25
-"""Share of the variance of a measurement that is common to all of one sensor: what priors leave.
+"""Share of the variance of a measurement that is common to all of one sensor: the priors' error.
 
-Edges of a plain Gaussian, which is what priors expect, scatter by 0.86 to 0.9 of the deviations
-that are stated (benchmarks/coverage.py): the rest is allowed for other shapes of sensors, and a
-sensor has one shape. Over the twelve systems of benchmarks/combine.py, 95 % intervals of four edges
-and two pulses hold the truth in 93.6 % with it and in 89.3 % without; with 20 mirrors as well, in
-91.2 and 84.8 %. Where errors are independent indeed, deviations are too wide by up to a third.
+Edges of a plain Gaussian, which the priors expect, scatter by 0.86 to 0.9 of the stated
+standard deviations (benchmarks/coverage.py): the rest is an allowance for other shapes of sensors,
+and a sensor has one shape. Over the twelve systems of benchmarks/combine.py, 95 % intervals of four
+edges and two pulses hold the truth in 93.6 % with it and in 89.3 % without; with 20 mirrors as
+well, in 91.2 and 84.8 %. Where errors are independent, standard deviations are too wide by up to a
+third.
 """
 
 _LOW_CPP = 0.12
 _SHIFT_PX = 0.3
-"""The curves know their centroid only so well: a phase linear in frequency says nothing."""
+"""Standard deviation of the centroid of a curve: a phase linear in frequency has no meaning."""
 
 
 @dataclass(frozen=True, eq=False)
-class PlaneCurve:
+class OtfSamples:
     """The OTF of one measurement at places of the plane of frequencies, with its covariance.
 
     Parameters
     ----------
     name : str
-        What a reader calls the measurement.
+        Name of the measurement in tables and messages.
     u_cpp, v_cpp : (n,) array
         Frequencies across and along, cycles per pixel.
     otf : (n,) complex array
@@ -57,8 +58,8 @@ class PlaneCurve:
     otf: Complexes
     factor: Complexes
 
-    def centred(self) -> PlaneCurve:
-        """The same about the centroid, as the slope of the phase at low frequencies tells it."""
+    def centred(self) -> OtfSamples:
+        """The same about the centroid: the slope of the phase at low frequencies."""
         near = np.hypot(self.u_cpp, self.v_cpp) < _LOW_CPP
         places = 2 * math.pi * np.stack([self.u_cpp, self.v_cpp], axis=1)
         moved = np.linalg.lstsq(places[near], -np.angle(self.otf[near]), rcond=1e-6)[0]
@@ -71,14 +72,14 @@ class PlaneCurve:
         move = 2j * math.pi * _SHIFT_PX * self.otf[:, None]
         shifts = move * np.stack([self.u_cpp, self.v_cpp], axis=1)
         wide = _stacked(np.concatenate([self.factor, shifts], axis=1))
-        value, vector = np.linalg.eigh(wide @ wide.T + _FLOOR**2 * np.eye(wide.shape[0]))
+        value, vector = np.linalg.eigh(wide @ wide.T + _MIN_STD**2 * np.eye(wide.shape[0]))
         return np.asarray((vector / np.sqrt(value)) @ vector.T)
 
     @cached_property
-    def spread(self) -> Floats:
-        """Factor (2n, 2n) of what the whitened errors vary by: less than 1 where the floor rules.
+    def whitened_factor(self) -> Floats:
+        """Factor (2n, 2n) of the covariance of the whitened errors: below 1 at the smallest errors.
 
-        Of the errors' factors it is the symmetric one, whitened: every column belongs to a place.
+        It is the symmetric factor of the errors, whitened: every column belongs to a frequency.
         """
         stacked = _stacked(self.factor)
         value, vector = np.linalg.eigh(stacked @ stacked.T)
@@ -95,7 +96,7 @@ def _stacked(values: Complexes) -> Floats:
 
 @dataclass(frozen=True)
 class ChiSquare:
-    """How far residuals lie from zero, measured by their standard deviations.
+    """Sum of squares of residuals in units of their standard deviations, and what is expected.
 
     Parameters
     ----------
@@ -120,7 +121,7 @@ class ChiSquare:
 
     @property
     def birge_ratio(self) -> float:
-        """Root of chi-square over its mean, at least 1: what the deviations have to be widened by.
+        """Root of chi-square over its mean, at least 1: the factor by which deviations are widened.
 
         R. T. Birge, Phys. Rev. 40, 207 (1932).
         """
@@ -135,10 +136,10 @@ class WhitenedCurves:
 
     Parameters
     ----------
-    curves : sequence of PlaneCurve
+    curves : sequence of OtfSamples
     """
 
-    curves: Sequence[PlaneCurve]
+    curves: Sequence[OtfSamples]
 
     @cached_property
     def u_cpp(self) -> Floats:
@@ -161,31 +162,31 @@ class WhitenedCurves:
 
     @property
     def parts(self) -> list[slice]:
-        """Where each curve stands in what is whitened."""
+        """The rows of each curve in whitened values."""
         return [slice(2 * a, 2 * b) for a, b in pairwise(self._ends)]
 
     @cached_property
     def covariance(self) -> Floats:
-        """What the whitened errors vary by, (2n, 2n)."""
+        """Covariance of the whitened errors, (2n, 2n)."""
         total = self.shared.copy()
         for part, one in zip(self.parts, self.curves, strict=True):
-            total[part, part] += one.spread @ one.spread.T
+            total[part, part] += one.whitened_factor @ one.whitened_factor.T
         return total
 
     @cached_property
     def shared(self) -> Floats:
         """Covariance of the whitened errors of different curves, (2n, 2n).
 
-        Alike are the real parts at one frequency, in whatever direction they were measured.
+        Common are the errors of the real parts at one frequency, in all directions.
         """
         freq = np.round(np.hypot(self.u_cpp, self.v_cpp), 3)
         known, number = np.unique(freq, return_inverse=True)
         rows, own = [], np.zeros((2 * freq.size, 2 * freq.size))
         for part, one, (a, b) in zip(self.parts, self.curves, pairwise(self._ends), strict=True):
             places = number[a:b]
-            alike = np.zeros((b - a, known.size))
-            alike[np.arange(b - a), places] = 1 / np.sqrt(np.bincount(places)[places])
-            rows.append(one.spread[:, : b - a] @ alike)
+            same_freq = np.zeros((b - a, known.size))
+            same_freq[np.arange(b - a), places] = 1 / np.sqrt(np.bincount(places)[places])
+            rows.append(one.whitened_factor[:, : b - a] @ same_freq)
             own[part, part] = rows[-1] @ rows[-1].T
         together = np.concatenate(rows)
         return np.asarray(_COMMON * (together @ together.T - own))

@@ -11,19 +11,19 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from acutance.curves.grid import Floats
-from acutance.targets.combine.correction import Departure
-from acutance.targets.combine.curves import ChiSquare, PlaneCurve, WhitenedCurves
+from acutance.targets.combine.correction import Correction
+from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
 from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
 
 __all__ = ["CombinedFit", "FormFit", "combine_curves"]
 
-_LEAST_WEIGHT = 0.01
-_FAINT = 0.1
+_MIN_WEIGHT = 0.01
+_MIN_SINGULAR = 0.1
 _SHARES = (0.0, 0.01, 0.03, 0.1, 0.3)
-"""Standard deviations tried for the departure from a form, shares of the logarithm of the OTF."""
+"""Standard deviations tried for the correction of a form, shares of the logarithm of the OTF."""
 
-_MOST_DEPARTED = 3
+_MAX_CORRECTED = 3
 _STARTS_TRIED = 2
 _SMEAR_STARTS = ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7))
 _TRAIL_STARTS = ((0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3))
@@ -38,7 +38,7 @@ class FormFit(WeightedForm):
     inverse : (p + m, p + m) array
         Covariance of parameters and weights if the errors of different curves were independent.
     score : float
-        Minus twice the logarithm of the form's evidence, by Laplace's approximation.
+        Minus twice the log evidence of the form, by Laplace's approximation.
     """
 
     inverse: Floats
@@ -51,7 +51,7 @@ class CombinedFit:
 
     Parameters
     ----------
-    curves : tuple of PlaneCurve
+    curves : tuple of OtfSamples
     forms : tuple of FormFit
         The one of largest weight first.
     total : ChiSquare
@@ -60,10 +60,11 @@ class CombinedFit:
     members : tuple of ChiSquare
         Of each curve.
     plain : ChiSquare
-        Of all curves about the best form without a correction: whether a plain sensor holds them.
+        Of all curves about the best form without a correction: whether a plain sensor explains
+        them.
     """
 
-    curves: tuple[PlaneCurve, ...]
+    curves: tuple[OtfSamples, ...]
     forms: tuple[FormFit, ...]
     total: ChiSquare
     members: tuple[ChiSquare, ...]
@@ -78,21 +79,21 @@ class CombinedFit:
 
 
 def combine_curves(
-    curves: Sequence[PlaneCurve],
+    curves: Sequence[OtfSamples],
     *,
     detector_px: tuple[float, float] = (1.0, 1.0),
     forms: Sequence[tuple[str, ...]] = FORMS,
 ) -> CombinedFit:
-    """Fit every form to all curves, with departures of several sizes, and average.
+    """Fit every form to all curves, with corrections of several sizes, and average.
 
-    Each is weighted by its evidence, parameters and departure integrated out, so that a smear, a
-    halo or a departure enters as far as the curves show it; where they cannot tell forms apart,
-    the difference between them is part of the uncertainty (MacKay, Information Theory, Inference,
-    and Learning Algorithms, 2003, chapter 28).
+    Each is weighted by its marginal likelihood, parameters and correction integrated out, so that a
+    smear, a halo or a correction enters as far as the curves show it; where the curves do not
+    separate two forms, the difference between them is part of the uncertainty (MacKay, Information
+    Theory, Inference, and Learning Algorithms, 2003, chapter 28).
 
     Parameters
     ----------
-    curves : sequence of PlaneCurve
+    curves : sequence of OtfSamples
     detector_px : (float, float), optional
         Width of the detector across and along.
     forms : sequence of tuples of str, optional
@@ -102,25 +103,25 @@ def combine_curves(
     nowhere = np.zeros((data.values.size, 0))
     plain = [_fit_form(data, SensorForm(terms, detector_px), None, 0.0, nowhere) for terms in forms]
     first = min(plain, key=lambda one: one.score)
-    departure = Departure(first.form, tuple(first.parameters.tolist()))
-    ways = data.of(departure.directions(data.u_cpp, data.v_cpp))
-    likely = sorted(plain, key=lambda one: one.score)[:_MOST_DEPARTED]
+    correction = Correction(first.form, tuple(first.parameters.tolist()))
+    ways = data.of(correction.directions(data.u_cpp, data.v_cpp))
+    likely = sorted(plain, key=lambda one: one.score)[:_MAX_CORRECTED]
     fits = plain + [
         _fit_form(data, start.form, start, share, share * ways)
         for share in _SHARES[1:]
         for start in likely
     ]
-    weighted = _weighted([replace(one, departure=departure) for one in fits])
+    weighted = _weighted([replace(one, correction=correction) for one in fits])
     simplest = min(plain, key=lambda one: len(one.form.terms))
     total, members = _chi_squares(data, weighted, _shapes(data, simplest))
     return CombinedFit(tuple(data.curves), weighted, total, members, _chi_squares(data, [first])[0])
 
 
 def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
-    """Fits with their share in the mean, the largest first; what hardly counts is left out."""
+    """Fits with their share in the mean, the largest first; negligible ones are left out."""
     best = min(one.score for one in fits)
     odds = {id(one): math.exp(-0.5 * (one.score - best)) for one in fits}
-    kept = sorted((one for one in fits if odds[id(one)] > _LEAST_WEIGHT), key=lambda one: one.score)
+    kept = sorted((one for one in fits if odds[id(one)] > _MIN_WEIGHT), key=lambda one: one.score)
     whole = sum(odds[id(one)] for one in kept)
     return tuple(replace(one, weight=odds[id(one)] / whole) for one in kept)
 
@@ -128,8 +129,8 @@ def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
 def _fit_form(
     data: WhitenedCurves, form: SensorForm, start: FormFit | None, share: float, ways: Floats
 ) -> FormFit:
-    """The parameters of largest posterior density, the departure integrated out."""
-    mean, spread = form.mean, form.spread
+    """The parameters of largest posterior density, the correction integrated out."""
+    mean, std = form.mean, form.std
     # (1 + ways ways^T)^(-1/2), by the singular values of ways.
     left, singular, _ = np.linalg.svd(ways, full_matrices=False)
     damping = 1 / np.sqrt(1 + singular**2) - 1
@@ -139,11 +140,11 @@ def _fit_form(
 
     def residual(p: Floats) -> Floats:
         off = data.values - data.of(form.otf(p, data.u_cpp, data.v_cpp))
-        return np.concatenate([damped(off), (p - mean) / spread])
+        return np.concatenate([damped(off), (p - mean) / std])
 
     def slopes(p: Floats) -> Floats:
         by_p = data.of(form.slopes(p, data.u_cpp, data.v_cpp))
-        return np.concatenate([-damped(by_p), np.diag(1 / spread)])
+        return np.concatenate([-damped(by_p), np.diag(1 / std)])
 
     found = min(
         (
@@ -159,7 +160,7 @@ def _fit_form(
     by_p = data.of(form.slopes(p, data.u_cpp, data.v_cpp))
     design = np.concatenate([by_p, ways], axis=1)
     normal = design.T @ design
-    normal += np.diag(np.concatenate([spread**-2.0, np.ones(ways.shape[1])]))
+    normal += np.diag(np.concatenate([std**-2.0, np.ones(ways.shape[1])]))
     inverse = np.linalg.inv(normal)
     moved = design @ inverse
     value, vector = np.linalg.eigh(inverse + moved.T @ data.shared @ moved)
@@ -167,11 +168,11 @@ def _fit_form(
     # The directions' weights are counted in units of the share.
     scale = np.concatenate([np.ones(p.size), np.full(ways.shape[1], share)])
     amounts = np.linalg.solve(normal[p.size :, p.size :], ways.T @ off)
-    # Laplace: what the priors of parameters and directions lose by being narrowed.
-    whole = np.concatenate([spread, np.ones(ways.shape[1])])
+    # Laplace: the posterior of parameters and directions is narrower than their prior.
+    whole = np.concatenate([std, np.ones(ways.shape[1])])
     narrowed = np.linalg.slogdet(whole[:, None] * normal * whole)[1]
     score = 2 * float(found.cost) + float(narrowed)
-    nothing = Departure(form, tuple(p.tolist()))
+    nothing = Correction(form, tuple(p.tolist()))
     # A triangular factor of the same covariance is half as large.
     lower = np.asarray(np.linalg.qr((scale[:, None] * root).T, mode="r")).T
     return FormFit(
@@ -181,12 +182,12 @@ def _fit_form(
 
 
 def _likely(form: SensorForm, residual: Callable[[Floats], Floats]) -> list[Floats]:
-    """The starts that fit best."""
+    """The first guesses that fit best."""
     return sorted(_starts(form), key=lambda p: float(np.sum(residual(p) ** 2)))[:_STARTS_TRIED]
 
 
 def _starts(form: SensorForm) -> list[Floats]:
-    """Where to begin: none of a smear or a trail is stationary, and they have directions."""
+    """First guesses: a smear or trail of 0 is stationary, and both have directions."""
     found = [form.mean]
     for name, ways in (("smear", _SMEAR_STARTS), ("trail", _TRAIL_STARTS)):
         if name in form.terms:
@@ -209,7 +210,7 @@ def _chi_squares(
     Whitened errors e of covariance S leave the residuals ``M e``, M taking out what the
     parameters follow; a sum of their squares over a curve has the mean ``tr(P M S M)`` and the
     variance ``2 tr((P M S M)^2)``, P choosing the curve, and of each curve the `ways` (n, k) that
-    are looked at: a prior makes errors in other directions smaller than their deviations.
+    are judged: a prior makes errors in other directions smaller than their standard deviations.
     """
     best = forms[0]
     slopes = data.of(best.slopes(data.u_cpp, data.v_cpp))
@@ -227,11 +228,11 @@ def _chi_squares(
 
 def _span(ways: Floats) -> Floats:
     """Orthonormal axes of the directions some vectors span, the faint ones left out, (n, k)."""
-    # A curve exactly across sees nothing of a smear along.
+    # A curve exactly across does not depend on a smear along.
     length = np.linalg.norm(ways, axis=0)
     seen = length > 1e-9 * length.max()
     left, size, _ = np.linalg.svd(ways[:, seen] / length[seen], full_matrices=False)
-    return np.asarray(left[:, size > _FAINT * size[0]])
+    return np.asarray(left[:, size > _MIN_SINGULAR * size[0]])
 
 
 def _shapes(data: WhitenedCurves, simplest: FormFit) -> Floats:

@@ -17,7 +17,7 @@ from acutance.geometry.angles import wrap_axis
 from acutance.raster.image import AlongTrack
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import SCHEMA, ImageInfo, Record
-from acutance.targets.slices import PlaneSlices
+from acutance.targets.slices import OtfSlices
 from acutance.targets.target_result import TargetResult
 
 __all__ = [
@@ -43,14 +43,14 @@ class MeasuredInput(ShortRepr):
     ----------
     name : str
     record : Record
-    slices : PlaneSlices
+    slices : OtfSlices
     covariance_known : bool
-        Whether the record holds how errors at different frequencies belong together.
+        Whether the record holds the covariance of errors at different frequencies.
     """
 
     name: str
     record: Record
-    slices: PlaneSlices
+    slices: OtfSlices
     covariance_known: bool
 
     @property
@@ -77,7 +77,7 @@ class MeasuredInput(ShortRepr):
         return tuple(float(line[key]) for key in ("row", "col", "normal_deg"))
 
     @property
-    def of_plane(self) -> bool:
+    def has_all_directions(self) -> bool:
         """Whether it shows all directions."""
         return self.slices.normal_deg.size > 1
 
@@ -108,7 +108,7 @@ def read_inputs(
     Raises
     ------
     OptionError
-        If one is nothing that can be combined.
+        If one is no result, record or document that can be combined.
     """
     single = (Measurement, Record, TargetResult, Mapping, str)
     if isinstance(measurements, single) or not isinstance(measurements, Iterable):
@@ -201,7 +201,7 @@ def _input(record: Record, origin: str, name: str | None) -> MeasuredInput:
     return MeasuredInput(name or " ".join(filter(None, oriented)), record, slices, known)
 
 
-def _require_transfer(slices: PlaneSlices, origin: str) -> None:
+def _require_transfer(slices: OtfSlices, origin: str) -> None:
     """Refuse what is no transfer function, and one without any standard deviation."""
     lowest = np.abs(slices.otf.reshape(slices.normal_deg.size, -1)[:, 0])
     least, most = _AT_LOWEST
@@ -218,7 +218,7 @@ def _require_transfer(slices: PlaneSlices, origin: str) -> None:
         )
 
 
-def _slices(record: Record) -> tuple[PlaneSlices, bool]:
+def _slices(record: Record) -> tuple[OtfSlices, bool]:
     """The slices of a record; of documents of older versions they follow from the curves."""
     if "plane" in record.document:
         return record.slices, True
@@ -229,7 +229,7 @@ def _slices(record: Record) -> tuple[PlaneSlices, bool]:
         (one.document["mtf"], float(line["normal_deg"]) if line else directions_deg[name])
         for name, one in record.directions.items()
     ]
-    slices = [PlaneSlices.of_curve(_curve(curve), at) for curve, at in curves]
+    slices = [OtfSlices.of_curve(_curve(curve), at) for curve, at in curves]
     blocks = [one.factor for one in slices]
     columns = np.cumsum([0, *(one.shape[1] for one in blocks)])
     factor = np.zeros((sum(one.shape[0] for one in blocks), columns[-1]), complex)
@@ -237,7 +237,7 @@ def _slices(record: Record) -> tuple[PlaneSlices, bool]:
     for block, left, right in zip(blocks, columns[:-1], columns[1:], strict=True):
         factor[row : row + block.shape[0], left:right] = block
         row += block.shape[0]
-    whole = PlaneSlices(
+    whole = OtfSlices(
         np.concatenate([one.normal_deg for one in slices]),
         slices[0].freq_cpp,
         np.concatenate([one.otf for one in slices]),

@@ -1,8 +1,8 @@
 """Parametric sensors over the plane of frequencies: Gaussian x detector x smear, halo, ...
 
 Each form is a product of terms; each term is centred, so that no form moves the image. Parameters
-are unbounded numbers of order 1 with a normal prior, wide enough to say no more than what a sensor
-can be: it keeps a term that the data do not show from running away.
+are unbounded numbers of order 1 with a normal prior, as wide as the range of real sensors: it
+keeps a term that the data do not show from running away.
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ class Term:
     ----------
     otf : function of (parameters, u, v)
         OTF (n,) at frequencies in cycles per pixel, 1 at zero.
-    mean, spread : tuple of float
-        Prior of the parameters.
+    mean, std : tuple of float
+        Prior mean and standard deviation of the parameters.
     numbers : function of parameters
-        What a reader wants to know of it, by name with its unit.
+        The reported numbers, by name with the unit.
     """
 
     otf: Callable[[Floats, Floats, Floats], NDArray[np.generic]]
     mean: tuple[float, ...]
-    spread: tuple[float, ...]
+    std: tuple[float, ...]
     numbers: Callable[[Floats], dict[str, float]]
 
 
@@ -89,8 +89,8 @@ def _logistic(x: float) -> float:
 
 def _halo(p: Floats, u: Floats, v: Floats) -> Floats:
     share, sigma = _logistic(p[0]), math.exp(p[1])
-    foot = np.exp(-2 * (math.pi * sigma) ** 2 * (u**2 + v**2))
-    return np.asarray(1 - share + share * foot)
+    halo = np.exp(-2 * (math.pi * sigma) ** 2 * (u**2 + v**2))
+    return np.asarray(1 - share + share * halo)
 
 
 def _halo_numbers(p: Floats) -> dict[str, float]:
@@ -107,7 +107,7 @@ def _trail_numbers(p: Floats) -> dict[str, float]:
 
 
 def _taps(p: Floats) -> tuple[float, float]:
-    """Outer taps of the kernel across and along, less the sign: two fifths at the most."""
+    """Outer taps of the kernel across and along with the opposite sign: 2/5 at most."""
     return 0.4 * math.tanh(p[0]), 0.4 * math.tanh(p[1])
 
 
@@ -123,7 +123,7 @@ def _sharpening_numbers(p: Floats) -> dict[str, float]:
 
 
 def _mask(p: Floats) -> tuple[float, float]:
-    """Gain, which nobody makes larger than two, and width of an unsharp mask."""
+    """Gain (at most 2, as in use) and width of an unsharp mask."""
     return 2.0 * _logistic(p[0]), math.exp(p[1])
 
 
@@ -205,9 +205,9 @@ class SensorForm:
         return np.array([one for name in self.terms for one in TERMS[name].mean])
 
     @property
-    def spread(self) -> Floats:
+    def std(self) -> Floats:
         """Prior standard deviation of all parameters, (p,)."""
-        return np.array([one for name in self.terms for one in TERMS[name].spread])
+        return np.array([one for name in self.terms for one in TERMS[name].std])
 
     def otf(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF (n,), exactly 1 at zero frequency."""
@@ -230,14 +230,14 @@ class SensorForm:
         return np.stack(list(sides), axis=1) / (2 * _STEP)
 
     def numbers(self, p: Floats) -> dict[str, float]:
-        """What a reader wants to know, by name."""
+        """The reported numbers, by name."""
         found: dict[str, float] = {}
         for term, own in self._split(p):
             found |= term.numbers(own)
         return found
 
-    def least_sigma_px(self, p: Floats) -> float:
-        """Narrowest standard deviation of the Gaussian: what ends the band."""
+    def min_sigma_px(self, p: Floats) -> float:
+        """Smallest standard deviation of the Gaussian: it limits the band."""
         return self.numbers(p)["sigma_minor_px"] if "gaussian" in self.terms else 0.0
 
     def _split(self, p: Floats) -> list[tuple[Term, Floats]]:

@@ -14,14 +14,14 @@ from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.angles import wrap_axis
-from acutance.targets.combine.correction import Departure
+from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.sensor_forms import SensorForm
 
 __all__ = ["CombinedOtf", "WeightedForm"]
 
 Complexes = NDArray[np.complex128]
 
-_LARGEST_STD_DEG = 30.0
+_MAX_STD_DEG = 30.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class WeightedForm(ShortRepr):
     form : SensorForm
     share : float
         Standard deviation of the correction of the form, a share of the logarithm of the OTF.
-    departure : Departure
+    correction : Correction
         The directions of the correction.
     parameters : (p,) array
     weights : (m,) array
@@ -46,7 +46,7 @@ class WeightedForm(ShortRepr):
 
     form: SensorForm
     share: float
-    departure: Departure
+    correction: Correction
     parameters: Floats
     weights: Floats
     root: Floats
@@ -57,17 +57,17 @@ class WeightedForm(ShortRepr):
         plain = self.form.otf(self.parameters, u_cpp, v_cpp)
         if self.weights.size == 0:
             return plain
-        return np.asarray(plain + self.departure.directions(u_cpp, v_cpp) @ self.weights)
+        return np.asarray(plain + self.correction.directions(u_cpp, v_cpp) @ self.weights)
 
     def slopes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Derivatives of the OTF by parameters and weights, (n, p + m)."""
         own = self.form.slopes(self.parameters, u_cpp, v_cpp)
         if self.weights.size == 0:
             return own
-        return np.concatenate([own, self.departure.directions(u_cpp, v_cpp)], axis=1)
+        return np.concatenate([own, self.correction.directions(u_cpp, v_cpp)], axis=1)
 
     def numbers(self, widened: float = 1.0) -> dict[str, Estimate]:
-        """Parameters by name; a direction of what is round or short has no value."""
+        """Parameters by name; the direction of a round or short shape has no value (NaN)."""
         centre = self.form.numbers(self.parameters)
         step = 1e-5
         rows = {name: np.zeros(self.parameters.size) for name in centre}
@@ -85,7 +85,7 @@ class WeightedForm(ShortRepr):
             for name, value in centre.items()
         }
         for name, number in found.items():
-            if name.endswith("_deg") and not number.std < _LARGEST_STD_DEG:
+            if name.endswith("_deg") and not number.std < _MAX_STD_DEG:
                 found[name] = Estimate(math.nan, math.nan)
         return found
 
@@ -109,7 +109,7 @@ class CombinedOtf(ShortRepr):
     forms : tuple of WeightedForm
         The one of largest weight first.
     birge_ratio : float
-        What every standard deviation was widened by: 1 where the measurements agree.
+        Factor by which every standard deviation was widened: 1 where the measurements agree.
     """
 
     forms: tuple[WeightedForm, ...]
@@ -121,7 +121,7 @@ class CombinedOtf(ShortRepr):
         return self.forms[0]
 
     @property
-    def correction(self) -> float:
+    def correction_share(self) -> float:
         """Mean standard deviation of the correction, a share of the logarithm of the OTF."""
         return sum(one.weight * one.share for one in self.forms)
 
@@ -132,8 +132,8 @@ class CombinedOtf(ShortRepr):
 
     @property
     def band_cpp(self) -> float:
-        """Frequency beyond which nothing is transferred."""
-        sigma = min(one.form.least_sigma_px(one.parameters) for one in self.forms)
+        """Highest frequency that is transferred."""
+        sigma = min(one.form.min_sigma_px(one.parameters) for one in self.forms)
         return float(np.clip(0.8 / max(sigma, 1e-3), 3.0, 6.0))
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
@@ -141,7 +141,7 @@ class CombinedOtf(ShortRepr):
         return np.asarray(sum(one.weight * one.otf(u_cpp, v_cpp) for one in self.forms))
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Factor of its covariance, (n, k): that of each form, and how the forms differ."""
+        """Factor of its covariance, (n, k): that of each form, and their differences."""
         mean = self.otf(u_cpp, v_cpp)
         parts = []
         for one in self.forms:

@@ -16,7 +16,7 @@ from acutance.targets.measurement import Measurement
 from acutance.targets.periodic.bars_readings import GroupReading
 from acutance.targets.periodic.periodic_details import PeriodicDetails
 from acutance.targets.record import rounded
-from acutance.targets.slices import PlaneSlices
+from acutance.targets.slices import OtfSlices
 
 __all__ = ["BarsDetails", "BarsGroup", "BarsMeasurement", "GroupProfile"]
 
@@ -141,9 +141,9 @@ class BarsMeasurement(Measurement):
         return off[0] == min(off)
 
     @cached_property
-    def slices(self) -> PlaneSlices:
+    def slices(self) -> OtfSlices:
         """Slices of the OTF in the directions across the bars, the only ones measured."""
-        return PlaneSlices.of_plane(self.otf, self.directions_deg)
+        return OtfSlices.of_otf2d(self.otf, self.directions_deg)
 
     def target_document(self) -> dict[str, Any]:
         """Groups and directions, for JSON."""

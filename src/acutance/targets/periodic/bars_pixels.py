@@ -17,7 +17,7 @@ from acutance.numerics.lookup import CubicLookup
 from acutance.targets.periodic.otf_modes import (
     HIGHEST_CPP,
     Complexes,
-    GaussianPixel,
+    MeanOtf,
     ProcessModes,
 )
 
@@ -85,7 +85,7 @@ class GroupPixels:
 
 
 def group_columns(
-    seen: GroupPixels, blur: GaussianPixel, states: ProcessModes | None, contrast: float
+    seen: GroupPixels, blur: MeanOtf, states: ProcessModes | None, contrast: float
 ) -> tuple[Floats, Floats]:
     """The images of all modes, and the group's own columns.
 
@@ -109,7 +109,7 @@ def group_columns(
 
 
 def _profiles(
-    bars: Bars, blur: GaussianPixel, states: ProcessModes | None, reach: float
+    bars: Bars, blur: MeanOtf, states: ProcessModes | None, reach: float
 ) -> tuple[Floats, Floats]:
     """Images of all modes along the normal, then the mean's by place and by period.
 

@@ -26,7 +26,7 @@ from acutance.numerics.noise import Correlation, correlation
 from acutance.targets.periodic.bars_ends import OtfTable, end_effect, light_of_neighbours
 from acutance.targets.periodic.bars_pixels import GroupPixels, group_columns
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
-from acutance.targets.periodic.otf_modes import MEAN_MODES, GaussianPixel, ProcessModes
+from acutance.targets.periodic.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
     mean_variance,
@@ -149,9 +149,9 @@ def solve_bars(
 
 def _place_groups(
     image: Floats, stated: tuple[Bars, ...], contrast: float
-) -> tuple[GaussianPixel, tuple[Bars, ...], float]:
+) -> tuple[MeanOtf, tuple[Bars, ...], float]:
     """A Gaussian through a pixel, every group in its place, and the contrast."""
-    mean, groups = GaussianPixel(_SIGMA_PX**2, 0.0, _SIGMA_PX**2), stated
+    mean, groups = MeanOtf(_SIGMA_PX**2, 0.0, _SIGMA_PX**2), stated
     for _ in range(_MAX_PLACE_PASSES):
         pixels = _pixels_of(image, groups)
         nothing = [np.zeros(one.value.size) for one in pixels]
@@ -170,7 +170,7 @@ def _fit_otf(
     image: Floats,
     stated: tuple[Bars, ...],
     groups: tuple[Bars, ...],
-    mean: GaussianPixel,
+    mean: MeanOtf,
     contrast: float,
     levels: Levels | None,
     *,
@@ -243,7 +243,7 @@ def _same_sign(level: float, contrast: float) -> float:
 def _regression(
     pixels: tuple[GroupPixels, ...],
     stated: tuple[Bars, ...],
-    mean: GaussianPixel,
+    mean: MeanOtf,
     states: ProcessModes | None,
     contrast: float,
     weight: Floats,
@@ -273,7 +273,7 @@ def _regression(
 
 def _design(
     pixels: tuple[GroupPixels, ...],
-    mean: GaussianPixel,
+    mean: MeanOtf,
     states: ProcessModes | None,
     contrast: float,
     around: Floats,
@@ -295,7 +295,7 @@ def _design(
 def _prior(
     pixels: tuple[GroupPixels, ...],
     stated: tuple[Bars, ...],
-    mean: GaussianPixel,
+    mean: MeanOtf,
     states: ProcessModes | None,
     contrast: float,
     *,
@@ -336,9 +336,7 @@ def _longest_update(fitted: _Regression, pixels: tuple[GroupPixels, ...]) -> flo
     )
 
 
-def _width_of_bars(
-    mean: GaussianPixel, fitted: FittedOtf, pixels: tuple[GroupPixels, ...]
-) -> GaussianPixel:
+def _width_of_bars(mean: MeanOtf, fitted: FittedOtf, pixels: tuple[GroupPixels, ...]) -> MeanOtf:
     """The mean as wide as the bars show it, and round: few directions determine no more."""
     cos, sin = unit_vector(np.array([one.bars.normal_deg for one in pixels]))
     xx, xy, yy = fitted.beta[1:4] / float(fitted.beta[0])
@@ -346,7 +344,7 @@ def _width_of_bars(
     wanted = max(mean.xx + float(np.clip(change, -0.15, 0.15)), 0.02)
     if abs(wanted - mean.xx) < 0.05 * (mean.xx + 1 / 12):
         return mean
-    return GaussianPixel(wanted, 0.0, wanted)
+    return MeanOtf(wanted, 0.0, wanted)
 
 
 def _correlation(standard: Floats, pixels: tuple[GroupPixels, ...]) -> Correlation:

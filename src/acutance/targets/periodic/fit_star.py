@@ -22,7 +22,7 @@ from acutance.geometry.star_geometry import SiemensStar
 from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
 from acutance.numerics.noise import Correlation, correlation
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
-from acutance.targets.periodic.otf_modes import GaussianPixel, ProcessModes
+from acutance.targets.periodic.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
     mean_variance,
@@ -220,7 +220,7 @@ def _usable_pixels(
 
 def _first_fit(
     image: Floats, star: SiemensStar, inner: float, outer: float
-) -> tuple[GaussianPixel, float]:
+) -> tuple[MeanOtf, float]:
     """A round Gaussian through a pixel and a level, from the modulation of the rings."""
     freq, modulation, std = ring_modulations(image, star, inner, outer)
     coarse = (freq < 0.6) & (modulation > 3 * std)
@@ -236,7 +236,7 @@ def _first_fit(
     own = np.log(m) + 2 * math.pi**2 * f**2 / 12
     fit, *_ = np.linalg.lstsq(design * weight[:, None], own * weight, rcond=None)
     variance = _rounded(float(np.clip(fit[1], 0.02, 4.0)))
-    return GaussianPixel(variance, 0.0, variance), math.exp(float(fit[0]))
+    return MeanOtf(variance, 0.0, variance), math.exp(float(fit[0]))
 
 
 def _rounded(variance: float) -> float:
@@ -288,7 +288,7 @@ def _regression(
     return _Regression(posterior, otf, value - design @ posterior.beta)
 
 
-def _prior(mean: GaussianPixel, level: float, *, level_stated: bool) -> Prior:
+def _prior(mean: MeanOtf, level: float, *, level_stated: bool) -> Prior:
     """Background, phase and the mean's own modes are free; the apertures are about one pixel."""
     own_scale = np.append(np.full(_BACKGROUND, _BACKGROUND_STD), _PHASE_STD_RAD / level)
     return otf_prior(
@@ -317,7 +317,7 @@ def _moved(
     return moved, float(np.max(np.abs(move))), abs(turn)
 
 
-def _width_of_star(mean: GaussianPixel, fitted: FittedOtf) -> GaussianPixel:
+def _width_of_star(mean: MeanOtf, fitted: FittedOtf) -> MeanOtf:
     """The mean where the data want it, in coarse steps: the regression takes up the rest."""
     level = float(fitted.beta[0])
     # A wider aperture by w is a Gaussian wider by w / 6: the two share what they explain.
@@ -326,6 +326,6 @@ def _width_of_star(mean: GaussianPixel, fitted: FittedOtf) -> GaussianPixel:
     xx, xy, yy = np.array([mean.xx, mean.xy, mean.yy]) + change
     xx, yy = max(float(xx), 0.02), max(float(yy), 0.02)
     limit = 0.9 * math.sqrt(xx * yy)
-    moved = GaussianPixel(_rounded(xx), _rounded(float(np.clip(xy, -limit, limit))), _rounded(yy))
+    moved = MeanOtf(_rounded(xx), _rounded(float(np.clip(xy, -limit, limit))), _rounded(yy))
     step = max(abs(moved.xx - mean.xx), abs(moved.xy - mean.xy), abs(moved.yy - mean.yy))
     return moved if step > 0.15 * (mean.xx + mean.yy + 1 / 6) else mean

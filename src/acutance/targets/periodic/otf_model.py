@@ -13,7 +13,7 @@ from acutance.targets.periodic.otf_modes import (
     HIGHEST_CPP,
     MEAN_MODES,
     Complexes,
-    GaussianPixel,
+    MeanOtf,
     ProcessModes,
 )
 
@@ -26,7 +26,7 @@ class FittedOtf:
 
     Attributes
     ----------
-    mean : GaussianPixel
+    mean : MeanOtf
         Mean of the OTF.
     beta : (m,) array
         Coefficients of its modes and of the processes' (or of its own alone); their sum at zero
@@ -35,7 +35,7 @@ class FittedOtf:
         Factor of the covariance of beta.
     """
 
-    mean: GaussianPixel
+    mean: MeanOtf
     beta: Floats
     beta_factor: Floats
 
@@ -79,12 +79,12 @@ class FittedOtf:
         return all_modes(self.mean, self.beta.size, u_cpp, v_cpp)
 
 
-def level_row(mean: GaussianPixel, size: int) -> Floats:
+def level_row(mean: MeanOtf, size: int) -> Floats:
     """What each of `size` coefficients adds to the level: its mode at zero frequency."""
     return np.asarray(all_modes(mean, size, np.zeros(1), np.zeros(1))[0].real)
 
 
-def all_modes(mean: GaussianPixel, size: int, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+def all_modes(mean: MeanOtf, size: int, u_cpp: Floats, v_cpp: Floats) -> Complexes:
     """The mean's modes and, of more coefficients than those, the processes', (n, size)."""
     own = mean.modes(u_cpp, v_cpp)
     if size == MEAN_MODES:

@@ -7,7 +7,7 @@ Their eigenfunctions are the states of the 2-D harmonic oscillator, whose Fourie
 states again (Mehler's formula; Refregier, MNRAS 338, 35, 2003), and which are a radial function
 times cos or sin of a whole multiple of the direction. A star needs just that.
 
-Distances of the processes are in units of the blur's width, frequencies in cycles per pixel.
+Distances of the processes are in units of the width of the mean, frequencies in cycles per pixel.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from scipy.special import eval_genlaguerre, gammaln
 
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
+from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
 from acutance.numerics.lorentz_tail import tail_otf
 from acutance.numerics.process_modes import mehler
 
@@ -31,7 +32,7 @@ __all__ = [
     "MEAN_MODES",
     "PROCESSES",
     "Complexes",
-    "GaussianPixel",
+    "MeanOtf",
     "Process",
     "ProcessModes",
 ]
@@ -39,7 +40,7 @@ __all__ = [
 Complexes = NDArray[np.complex128]
 
 HIGHEST_CPP: Final = 2.5
-"""Nothing a periodic target shows comes from beyond."""
+"""Highest frequency that contributes to the image of a periodic target."""
 
 MEAN_MODES: Final = 8
 """Level, three widths, two places, two apertures: the mean's own directions."""
@@ -59,22 +60,13 @@ PROCESSES: Final = (Process(1.2, 0.6, 12), Process(0.7, 0.17, 10), Process(3.0, 
 
 
 @dataclass(frozen=True)
-class GaussianPixel:
-    """Gaussian of covariance (xx, xy, yy) in px^2 through the area of a square pixel."""
-
-    xx: float
-    xy: float
-    yy: float
+class MeanOtf(GaussianPixel2d):
+    """The mean of the prior: a Gaussian of covariance (xx, xy, yy) in px^2 through a pixel."""
 
     @property
     def width_px(self) -> float:
         """FWHM of the Gaussian with the same mean variance: the processes' unit of distance."""
         return FWHM_OF_SIGMA * math.sqrt(0.5 * (self.xx + self.yy) + 1 / 12)
-
-    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
-        """Transfer at frequencies across and along."""
-        power = self.xx * u_cpp**2 + 2 * self.xy * u_cpp * v_cpp + self.yy * v_cpp**2
-        return np.asarray(np.exp(-2 * math.pi**2 * power) * np.sinc(u_cpp) * np.sinc(v_cpp))
 
     def modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Transfer, and its derivatives by xx, xy, yy, by the place and by the aperture, (n, 8).
@@ -82,29 +74,15 @@ class GaussianPixel:
         The place in px, x and y; the aperture in px, its width and its height.
         """
         otf = self.otf(u_cpp, v_cpp)
+        slopes = self.otf_slopes(u_cpp, v_cpp)
         shift = -2j * math.pi * otf
-        blur = -2 * math.pi**2 * otf
-        return np.stack(
-            [
-                otf, blur * u_cpp**2, 2 * blur * u_cpp * v_cpp, blur * v_cpp**2,
-                shift * u_cpp, shift * v_cpp,
-                otf * _by_aperture(u_cpp), otf * _by_aperture(v_cpp),
-            ],
-            axis=-1,
-        )  # fmt: skip
-
-
-def _by_aperture(freq: Floats) -> Floats:
-    """Logarithmic derivative of ``sinc(w f)`` by w at w = 1; bounded where the sinc is zero."""
-    x = np.pi * np.where(np.abs(freq) < 1e-4, 1e-4, freq)
-    sinc = np.sinc(x / np.pi)
-    safe = np.where(np.abs(sinc) < 1e-6, 1e-6, sinc)
-    return np.asarray((np.cos(x) - sinc) / safe)
+        columns = [otf, *slopes[:, :3].T, shift * u_cpp, shift * v_cpp, *slopes[:, 3:].T]
+        return np.stack(columns, axis=-1)
 
 
 @dataclass(frozen=True)
 class ProcessModes:
-    """The states of all processes around a blur of a given width."""
+    """The states of all processes, for a mean OTF of a given width."""
 
     width_px: float
 
@@ -126,7 +104,7 @@ class ProcessModes:
         return np.stack(parts, axis=-1) if parts else np.empty((freq_cpp.size, 0))
 
     def blocks(self) -> NDArray[np.intp]:
-        """Which amplitude rules each state, in the order of `otf_modes`: see `_block`."""
+        """Number of the amplitude of each state, in the order of `otf_modes`: see `_block`."""
         return _blocks()
 
     def otf_modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:

@@ -17,7 +17,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.targets.periodic.otf_model import FittedOtf, all_modes
-from acutance.targets.periodic.otf_modes import HIGHEST_CPP, Complexes, GaussianPixel
+from acutance.targets.periodic.otf_modes import HIGHEST_CPP, Complexes, MeanOtf
 
 __all__ = ["PackedOtf"]
 
@@ -33,7 +33,7 @@ class PackedOtf:
 
     Attributes
     ----------
-    mean : GaussianPixel
+    mean : MeanOtf
         Mean of the OTF.
     beta : tuple of float
         Coefficients of its modes and of the processes'.
@@ -41,7 +41,7 @@ class PackedOtf:
         Compressed triangular factor of the covariance, by the level, in steps of 3e-7.
     """
 
-    mean: GaussianPixel
+    mean: MeanOtf
     beta: tuple[float, ...]
     packed: bytes
 
@@ -84,7 +84,7 @@ class PackedOtf:
 
 
 @cache
-def _orthonormal_root(mean: GaussianPixel, size: int) -> Floats:
+def _orthonormal_root(mean: MeanOtf, size: int) -> Floats:
     """Root of the modes' mean products over frequencies, (size, size), triangular."""
     freq = np.linspace(-HIGHEST_CPP, HIGHEST_CPP, 2 * _GRID_STEPS + 1)
     u, v = (grid.ravel() for grid in np.meshgrid(freq, freq[_GRID_STEPS:]))

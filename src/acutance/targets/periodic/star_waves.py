@@ -28,7 +28,7 @@ from acutance.targets.periodic.otf_modes import (
     HIGHEST_CPP,
     MEAN_MODES,
     Complexes,
-    GaussianPixel,
+    MeanOtf,
     ProcessModes,
 )
 
@@ -60,7 +60,7 @@ class StarTable:
 
     Parameters
     ----------
-    mean : GaussianPixel
+    mean : MeanOtf
         Mean of the transfer.
     cycles : int
     wave : {"sine", "square"}
@@ -70,7 +70,7 @@ class StarTable:
         Radius of the star.
     """
 
-    mean: GaussianPixel
+    mean: MeanOtf
     cycles: int
     wave: Wave
     inner_px: float
@@ -182,7 +182,7 @@ def _pair(
     return (factor * (one + other)).real, (-1j * factor * (one - other)).real
 
 
-def _angular_parts(blur: GaussianPixel, freq: Floats) -> Complexes:
+def _angular_parts(blur: MeanOtf, freq: Floats) -> Complexes:
     """Angular Fourier coefficients of the mean's modes, (n_f, MEAN_MODES, directions)."""
     angle = 2 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     u, v = np.outer(freq, np.cos(angle)), np.outer(freq, np.sin(angle))
@@ -212,7 +212,7 @@ def _bessel(order: int, reach: float) -> Floats:
 
 @lru_cache(maxsize=8)
 def star_table(
-    mean: GaussianPixel, cycles: int, wave: Wave, inner_px: float, outer_px: float, rim_px: float
+    mean: MeanOtf, cycles: int, wave: Wave, inner_px: float, outer_px: float, rim_px: float
 ) -> StarTable:
     """The table of a star; that of the same star is kept."""
     return StarTable(mean, cycles, wave, inner_px, outer_px, rim_px)

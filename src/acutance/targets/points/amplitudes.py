@@ -16,7 +16,13 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from acutance.curves.grid import Floats
-from acutance.numerics.marginal_likelihood import Posterior, Prior, evidence_of, regress, whiten
+from acutance.numerics.marginal_likelihood import (
+    Posterior,
+    Prior,
+    log_evidence_slopes,
+    regress,
+    whiten,
+)
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.points import tuned
 from acutance.targets.points.per_source import Blocks
@@ -42,7 +48,7 @@ def likelier_posterior(
     """
     starts = [_from(prior, variance, tuned.LIGHT_FAR_OUT), earlier]
     found = [regress(normal, prior, variance, inflation, start) for start in starts]
-    return max(found, key=lambda one: _evidence_of(normal, prior, one, inflation))
+    return max(found, key=lambda one: _posterior_log_evidence(normal, prior, one, inflation))
 
 
 def averaged_posterior(
@@ -90,11 +96,11 @@ def _share_of_others(normal: Normal, prior: Prior, mode: Floats, noise: float) -
     """Factor of what the amplitudes but HALO's and TAIL's leave open, those held, (m, k - 2)."""
     others = np.setdiff1d(np.arange(mode.size), [_HALO, _TAIL])
     white = whiten(normal, prior, mode, noise)
-    found = evidence_of(white, prior, mode)
+    found = log_evidence_slopes(white, prior, mode)
     curvature, axes = np.linalg.eigh(-found.hessian[np.ix_(others, others)])
     # No amplitude is less certain than before the data.
-    spread = axes / np.sqrt(np.maximum(curvature, 1 / prior.log_amplitude_std**2))
-    return np.asarray(white.sigma[:, None] * (found.moves[:, others] @ spread))
+    factor = axes / np.sqrt(np.maximum(curvature, 1 / prior.log_amplitude_std**2))
+    return np.asarray(white.sigma[:, None] * (found.by_amplitude[:, others] @ factor))
 
 
 def determined_directions(
@@ -167,13 +173,13 @@ def _at(mode: Floats, varied: int, other: int, log_amplitude: float) -> Floats:
 
 
 def _from(prior: Prior, variance: float, log_amplitude: Floats) -> Posterior:
-    """A posterior that holds nothing but where to begin."""
+    """A posterior without coefficients, as the first guess of amplitudes and noise."""
     nothing = np.zeros(prior.block.size)
     return Posterior(nothing, nothing[:, None], log_amplitude, variance, 0.0)
 
 
 def _log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> float:
-    """Logarithm of the evidence at given amplitudes and noise variance, hyperprior included."""
+    """Log evidence at given amplitudes and noise variance, hyperprior included."""
     sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
     precision = sigma[:, None] * normal.gram * (sigma / noise)
     precision[np.diag_indices_from(precision)] += 1.0
@@ -184,7 +190,9 @@ def _log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: fl
     return -0.5 * misfit - float(np.log(np.diagonal(lower)).sum())
 
 
-def _evidence_of(normal: Normal, prior: Prior, found: Posterior, inflation: float) -> float:
+def _posterior_log_evidence(
+    normal: Normal, prior: Prior, found: Posterior, inflation: float
+) -> float:
     """The same at a posterior's amplitudes and noise, which may differ between posteriors."""
     noise = found.variance * inflation
     level = 0.5 * normal.count / inflation * math.log(noise)

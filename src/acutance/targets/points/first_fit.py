@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.numerics.gaussian_pixel_2d import FOOT_WIDTHS, BlurSlopes, PlaneBlur
+from acutance.numerics.gaussian_pixel_2d import WIDE_WIDTHS, GaussianPixel2d, PixelSlopes
 from acutance.numerics.noise import robust_scale
 from acutance.targets.points import tuned
 from acutance.targets.points.per_source import SourceProblem
@@ -30,7 +30,7 @@ class FirstFit:
 
     Parameters
     ----------
-    blur : PlaneBlur
+    blur : GaussianPixel2d
     wings : float
         Share of a Gaussian twice as wide that is added: light around the core, or missing there.
     places : (k, 2) array
@@ -43,14 +43,14 @@ class FirstFit:
         What is left of every pixel.
     """
 
-    blur: PlaneBlur
+    blur: GaussianPixel2d
     wings: float
     places: Floats
     fluxes: Floats
     backgrounds: Floats
     residual: Floats
 
-    def both(self, core: BlurSlopes, wings: BlurSlopes) -> tuple[Floats, Floats, Floats]:
+    def both(self, core: PixelSlopes, wings: PixelSlopes) -> tuple[Floats, Floats, Floats]:
         """PSF and slopes, from those of core and wings."""
         psf, by_x, by_y = (core[i] + self.wings * wings[i] for i in range(3))
         return psf, by_x, by_y
@@ -58,7 +58,7 @@ class FirstFit:
     def psf(self, x: Floats, y: Floats) -> Floats:
         """The PSF, not normalised, at places (x, y), (n,)."""
         core = self.blur.psf(x, y)
-        return core + self.wings * self.blur.widened(FOOT_WIDTHS).psf(x, y) if self.wings else core
+        return core + self.wings * self.blur.widened(WIDE_WIDTHS).psf(x, y) if self.wings else core
 
 
 def own_columns(
@@ -111,7 +111,7 @@ def unlike_sources(stamps: Stamps, found: FirstFit) -> tuple[Floats, NDArray[np.
     core = np.hypot(x, y) <= _CORE_PX
     count = np.maximum(np.bincount(stamps.owner[core], minlength=found.fluxes.size), 1)
     power = np.bincount(stamps.owner[core], found.residual[core] ** 2, found.fluxes.size) / count
-    peak = found.fluxes * found.blur.peak * (1 + found.wings / FOOT_WIDTHS**2)
+    peak = found.fluxes * found.blur.peak * (1 + found.wings / WIDE_WIDTHS**2)
     share = np.sqrt(np.maximum(power - noise**2, 0.0)) / peak
     surely = np.sqrt(np.maximum(power - noise**2 * (1 + 3 * np.sqrt(2 / count)), 0.0)) / peak
     usual = float(np.median(surely))
@@ -124,7 +124,7 @@ def _cost(found: FirstFit) -> float:
 
 def _levels(stamps: Stamps, places: Floats, sigma_px: float) -> FirstFit:
     """Fluxes and backgrounds for a round blur at given places."""
-    blur = PlaneBlur(sigma_px**2, 0.0, sigma_px**2)
+    blur = GaussianPixel2d(sigma_px**2, 0.0, sigma_px**2)
     values = blur.psf(*stamps.all_offsets(places))
     psf = values[: stamps.value.size]
     ones = np.ones(places.shape[0])
@@ -146,7 +146,7 @@ def _residual(stamps: Stamps, found: FirstFit, values: Floats) -> Floats:
 def _step(stamps: Stamps, found: FirstFit) -> tuple[Floats, Floats]:
     """One Gauss-Newton step: of Sigma and wings, (4,), and of every source's unknowns, (k, 6)."""
     x, y = stamps.offsets(found.places)
-    core, wings = found.blur.slopes(x, y), found.blur.widened(FOOT_WIDTHS).slopes(x, y)
+    core, wings = found.blur.slopes(x, y), found.blur.widened(WIDE_WIDTHS).slopes(x, y)
     own = own_columns(stamps, found.places, found.fluxes, found.both(core, wings))
     flux = found.fluxes[stamps.owner]
     columns = [*core[3:6], wings.psf]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.numerics.gaussian_pixel_2d import PlaneBlur
+from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
 from acutance.targets.points.psf_prior import PsfDirections
 
 __all__ = ["PsfModel"]
@@ -56,7 +56,7 @@ class PsfModel(ShortRepr):
         return np.asarray(self.latent, float)
 
     @property
-    def blur(self) -> PlaneBlur:
+    def blur(self) -> GaussianPixel2d:
         """The Gaussian through a pixel that is corrected."""
         return self.directions.blur
 
@@ -79,7 +79,7 @@ class PsfModel(ShortRepr):
     @property
     def band_cpp(self) -> float:
         """Frequency beyond which nothing is transferred."""
-        return float(np.clip(0.8 / self.blur.least_sigma_px, 3.0, 6.0))
+        return float(np.clip(0.8 / self.blur.min_sigma_px, 3.0, 6.0))
 
     def psf(self, x: Floats, y: Floats) -> Floats:
         """Light per square pixel at places (x, y) from the source, pixel area included, (n,)."""

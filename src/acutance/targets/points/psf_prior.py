@@ -30,7 +30,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.numerics.gaussian_pixel_2d import FOOT_WIDTHS, BlurSlopes, Broad, PlaneBlur
+from acutance.numerics.gaussian_pixel_2d import (
+    WIDE_WIDTHS,
+    Gaussian2d,
+    GaussianPixel2d,
+    PixelSlopes,
+)
 from acutance.numerics.lorentz_tail import tail_otf, tail_psf
 from acutance.numerics.process_modes import mehler
 from acutance.targets.points import tuned
@@ -115,20 +120,20 @@ class PsfDirections:
     or of place would explain: every source has its own flux and place.
     """
 
-    blur: PlaneBlur
+    blur: GaussianPixel2d
 
-    def __reduce__(self) -> tuple[type[PsfDirections], tuple[PlaneBlur]]:
+    def __reduce__(self) -> tuple[type[PsfDirections], tuple[GaussianPixel2d]]:
         # The tables all follow from the blur.
         return PsfDirections, (self.blur,)
 
     @cached_property
-    def _patterns(self) -> tuple[PlaneBlur | Broad | Airy, ...]:
+    def _patterns(self) -> tuple[GaussianPixel2d | Gaussian2d | Airy, ...]:
         """What has a form of its own and one weight: wings, and apertures that diffract."""
         blur, sigma_px = self.blur, (self.blur.xx * self.blur.yy) ** 0.25
         airy = (Airy.as_narrow_as(sigma_px, hole, blur.aperture_px) for hole in tuned.OBSCURATIONS)
-        return (blur.widened(FOOT_WIDTHS), blur.broadened(tuned.BROAD_WIDTHS), *airy)
+        return (blur.widened(WIDE_WIDTHS), blur.broadened(tuned.BROAD_WIDTHS), *airy)
 
-    def _explicit(self, x: Floats, y: Floats, slopes: BlurSlopes) -> tuple[Floats, ...]:
+    def _explicit(self, x: Floats, y: Floats, slopes: PixelSlopes) -> tuple[Floats, ...]:
         """The directions that are no process and no tail, before the gauge."""
         return (*slopes[3:], *(one.psf(x, y) for one in self._patterns))
 
@@ -262,7 +267,7 @@ class PsfDirections:
         return psf + tail, by_x + bend * x, by_y + bend * y
 
     @cached_property
-    def _raster(self) -> tuple[Floats, Floats, BlurSlopes]:
+    def _raster(self) -> tuple[Floats, Floats, PixelSlopes]:
         """A dense raster of places, and the blur there."""
         wide, high = self.blur.widths_px
         steps = np.arange(-_GAUGE_REACH, _GAUGE_REACH + 1e-9, _GAUGE_STEP)

@@ -11,7 +11,7 @@ from scipy.linalg import get_lapack_funcs
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
 from acutance.geometry.line import Line
-from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, Blur
+from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, GaussianPixel
 from acutance.numerics.lorentz_tail import tail_esf, tail_lsf
 from acutance.targets.straight.step_profile import EDGE, Profile, pulse_profile
 from acutance.targets.straight.tuned import APERTURE_PX, TAIL_WIDTH
@@ -41,7 +41,7 @@ class FirstFit:
     """
 
     line: Line
-    blur: Blur
+    blur: GaussianPixel
     dark: float
     height: float
     noise: float
@@ -105,7 +105,7 @@ def fit_first(
             s[near], t[near], value[near], p, scale / APERTURE_PX[1], scale / _TAIL_STD,
             lowest, highest,
         )  # fmt: skip
-        blur, height = Blur(float(p[4]), float(p[5])), float(p[1])
+        blur, height = GaussianPixel(float(p[4]), float(p[5])), float(p[1])
         scale = max(left, 1e-6 * abs(height))
         wanted = _REACH_WIDTHS * blur.width_px
         if wanted <= reach * 1.05:
@@ -247,7 +247,7 @@ class _Trial:
     @classmethod
     def of(cls, s: Floats, t: Floats, value: Floats, p: Floats, penalty: Floats) -> _Trial:
         dark, height, offset, turn, sigma, aperture, tail, *steps = p.tolist()
-        blur = Blur(sigma, aperture)
+        blur = GaussianPixel(sigma, aperture)
         # Turning the normal by a small angle moves a pixel at t by -t * angle along it: the line
         # turns about its own point.
         distance = s - offset + t * turn
@@ -264,7 +264,7 @@ class _Trial:
     def jacobian(self, t: Floats) -> Floats:
         """Derivatives of the model by the parameters, (7 or 9, n)."""
         _, height, _, _, sigma, aperture, tail, *steps = self.p.tolist()
-        width = Blur(sigma, aperture).width_px
+        width = GaussianPixel(sigma, aperture).width_px
         lsf, by_sigma, by_aperture = self.slopes
         within, far = height * (1 - tail), height * tail / width * tail_lsf(self.u, TAIL_WIDTH)
         # The tail scales with the width, whose square is that of sigma and aperture / sqrt(12)

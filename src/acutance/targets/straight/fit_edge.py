@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.noise import Correlation
 from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.lsf import SplineResponse
@@ -24,7 +24,7 @@ class SplineEdge(EdgeFit):
 
     Attributes
     ----------
-    blur : Blur
+    blur : GaussianPixel
         The plain blur that explains the edge best.
     noise_dark, noise_bright : float
         Standard deviation of the noise on either side, in image units.
@@ -37,7 +37,7 @@ class SplineEdge(EdgeFit):
     """
 
     response: SplineResponse
-    blur: Blur
+    blur: GaussianPixel
     noise_dark: float
     noise_bright: float
     correlation: Correlation

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import FREQ_CPP, Floats, crossing, sample
 from acutance.curves.metrics import RerCentre
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.lorentz_tail import tail_esf, tail_lsf, tail_otf
 from acutance.targets.straight.pulse_halo import with_halo_error
 from acutance.targets.straight.spline import (
@@ -45,7 +45,7 @@ class LsfModel:
 
     Parameters
     ----------
-    blur : Blur
+    blur : GaussianPixel
         The plain blur the spline departs from.
     level : float
         Height of the blur's step, in image units.
@@ -57,7 +57,7 @@ class LsfModel:
         Factor of the covariance of spline and tail.
     """
 
-    blur: Blur
+    blur: GaussianPixel
     level: float
     spline: Floats
     tail: float

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.lorentz_tail import tail_esf, tail_lsf
 from acutance.numerics.process_modes import covariance_modes
 from acutance.targets.straight.spline import (
@@ -72,7 +72,7 @@ def _fixed() -> tuple[Floats, NDArray[np.intp]]:
     return esf, block
 
 
-def directions(blur: Blur) -> Directions:
+def directions(blur: GaussianPixel) -> Directions:
     """The directions of the prior around the mean `blur`.
 
     The level, width, place and aperture of the mean come first, then the processes and the tail.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.geometry.line import Line
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 
 __all__ = ["EdgeFit", "EdgePixels", "Pixels"]
 
@@ -57,7 +57,7 @@ class EdgePixels:
         Standard deviation of the Gaussian that fits the blur of the edge, in pixels.
     noise : float
         Standard deviation of the noise about the edge model, in the image's units.
-    blur : Blur, optional
+    blur : GaussianPixel, optional
         The plain blur fitted to the edge, with line and levels to match; without it the
         reference method fits its own.
     """
@@ -68,7 +68,7 @@ class EdgePixels:
     bright: float
     width_px: float
     noise: float
-    blur: Blur | None = None
+    blur: GaussianPixel | None = None
 
     @cached_property
     def pixels(self) -> Pixels:

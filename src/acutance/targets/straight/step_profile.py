@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.numerics.gaussian_pixel import Blur
+from acutance.numerics.gaussian_pixel import GaussianPixel
 
 __all__ = ["EDGE", "Profile", "Sides", "pulse_profile"]
 
@@ -40,7 +40,7 @@ class Profile:
         """Normal distance from every step, (n,) each."""
         return [s - position if position else s for position in self.positions_px]
 
-    def seen(self, blur: Blur, s: Floats) -> list[tuple[Floats, Floats]]:
+    def seen(self, blur: GaussianPixel, s: Floats) -> list[tuple[Floats, Floats]]:
         """ESF and LSF of a plain blur at the distances from every step, (n,) each."""
         return [blur.esf_and_lsf(distance) for distance in self.distances(s)]
 
@@ -51,7 +51,7 @@ class Profile:
             value, slope = value + share * esf, slope + share * lsf
         return value, slope
 
-    def mean(self, blur: Blur, s: Floats) -> Floats:
+    def mean(self, blur: GaussianPixel, s: Floats) -> Floats:
         """What a plain blur makes of the profile, (n,)."""
         value = blur.esf(s)
         for position, share in zip(self.positions_px[1:], self.shares[1:], strict=True):
