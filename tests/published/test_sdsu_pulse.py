@@ -88,7 +88,7 @@ def test_prf_and_edge_are_those_of_the_truth():
         assert fit.response.esf(place).value == pytest.approx(truth.esf(place).value, abs=2e-3)
     assert fit.response.rer.value == pytest.approx(truth.rer.value, abs=1.5e-3)
     assert fit.line.angle_deg == pytest.approx(6.0, abs=0.02)
-    assert fit.fall.value == pytest.approx(1.0, abs=1e-6)
+    assert fit.height_ratio.value == pytest.approx(1.0, abs=1e-6)
     assert np.std(fit.residual) < 2e-3
 
 
@@ -104,7 +104,7 @@ def test_uneven_ground_shows_in_the_fall():
         SENSOR, angle_deg=6.0, shape=(CYCLES_OF_6_DEG, 60), right_dark=210.0
     )
     fit = sdsu_2005_pulse(pulse_band(image, truth), SdsuPulseOptions(replicates=0))
-    assert fit.fall.value == pytest.approx(990 / 1100, abs=0.01)
+    assert fit.height_ratio.value == pytest.approx(990 / 1100, abs=0.01)
     assert fit.dark == pytest.approx(100, abs=1)
     assert np.std(fit.residual) < 4e-3
 
@@ -118,7 +118,7 @@ def test_stated_deviations_are_the_scatter_of_new_images():
     numbers = {
         "nyquist": [fit.response.mtf_nyquist for fit in found],
         "fwhm": [fit.prf_fwhm_px for fit in found],
-        "fall": [fit.fall for fit in found],
+        "height_ratio": [fit.height_ratio for fit in found],
     }
     for estimates in numbers.values():
         scatter = np.std([estimate.value for estimate in estimates], ddof=1)

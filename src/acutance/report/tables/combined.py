@@ -71,7 +71,7 @@ def _describe_sensor(measurement: CombinedMeasurement) -> str:
     words = f"Sensor of largest weight ({sensor.best.weight:.2f}): {sensor.best.form.name}."
     if sensor.correction_share > 0:
         words += (
-            f" A smooth correction of {100 * sensor.correction_share:.1f} % of the logarithm of the "
+            f" A smooth correction of {100 * sensor.correction_share:.1f} % of the log "
             "MTF was added to it."
         )
     return words

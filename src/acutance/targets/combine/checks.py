@@ -92,7 +92,7 @@ def _worst(inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: Limits) ->
 def _plain(fit: CombinedFit, limits: Limits) -> Check:
     plain = fit.plain
     added = (
-        f"a smooth correction of {100 * fit.otf.correction_share:.1f} % of the logarithm of the MTF "
+        f"a smooth correction of {100 * fit.otf.correction_share:.1f} % of the log MTF "
         "was added, and its uncertainty is part of every deviation"
         if fit.otf.correction_share > 0
         else "no correction was added"

@@ -74,10 +74,19 @@ class MeanOtf(GaussianPixel2d):
         The place in px, x and y; the aperture in px, its width and its height.
         """
         otf = self.otf(u_cpp, v_cpp)
-        slopes = self.otf_slopes(u_cpp, v_cpp)
+        by_sigma = self.otf_slopes(u_cpp, v_cpp)[:, :3]
         shift = -2j * math.pi * otf
-        columns = [otf, *slopes[:, :3].T, shift * u_cpp, shift * v_cpp, *slopes[:, 3:].T]
+        by_aperture = otf * _by_aperture(u_cpp), otf * _by_aperture(v_cpp)
+        columns = [otf, *by_sigma.T, shift * u_cpp, shift * v_cpp, *by_aperture]
         return np.stack(columns, axis=-1)
+
+
+def _by_aperture(freq: Floats) -> Floats:
+    """Logarithmic derivative of ``sinc(w f)`` by w at w = 1; bounded where the sinc is zero."""
+    x = np.pi * np.where(np.abs(freq) < 1e-4, 1e-4, freq)
+    sinc = np.sinc(x / np.pi)
+    safe = np.where(np.abs(sinc) < 1e-6, 1e-6, sinc)
+    return np.asarray((np.cos(x) - sinc) / safe)
 
 
 @dataclass(frozen=True)

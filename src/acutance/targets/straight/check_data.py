@@ -1,4 +1,4 @@
-"""What the checks of a straight target read: its pixels, with their places, after the fit."""
+"""The data of the checks of a straight target: its pixels, with their places, after the fit."""
 
 from __future__ import annotations
 
@@ -66,12 +66,12 @@ class CheckData:
 
     @property
     def value(self) -> Floats:
-        """The pixels, 0 on the dark and 1 on the bright ground."""
+        """The pixels, 0 on the dark and 1 on the bright plateau."""
         return self.fit.value
 
     @property
     def residual(self) -> Floats:
-        """What the fit leaves of the pixels, as a share of the contrast."""
+        """Residual of the pixels, as a share of the contrast."""
         return self.fit.residual
 
     @property
@@ -101,20 +101,19 @@ class CheckData:
 
     @cached_property
     def smoothness(self) -> float:
-        """How much more low-pass noise moves what is fitted to many pixels than white noise does.
+        """Variance of a fit to many pixels under this noise over that under white noise.
 
-        The largest ratio of the grounds' noise power to that of white noise of the same variance,
+        The largest ratio of the plateaus' noise power to that of white noise of the same variance,
         along the normal times along the target.
         """
         x, y = self.fit.line.normal
         return self.correlation((x, y)).inflation * self.correlation((-y, x)).inflation
 
     def correlation(self, direction: tuple[float, float]) -> Correlation:
-        """Correlation of the grounds' noise, and its power along a direction (x, y).
+        """Correlation of the plateaus' noise, and its power along a direction (x, y).
 
         On the plateaus alone, each about its own level: across the edge a method's own misfit
-        would pass for correlation, and so would a level that a published method takes from few
-        pixels.
+        looks like correlation, and so does a level that a published method takes from few pixels.
         """
         flat = self.outside > self.far_px
         residual = self.residual[flat]
@@ -144,11 +143,11 @@ class CheckData:
 
 
 def _std(values: Floats) -> float:
-    """What `numpy.std` gives, but quicker."""
+    """Standard deviation, faster than `numpy.std`."""
     centred = values - float(np.add.reduce(values)) / values.size
     return math.sqrt(float(centred @ centred) / values.size)
 
 
 def ratio_in_words(ratio: float) -> str:
-    """A ratio in words: beyond `MAX_RATIO` nobody asks how large it is."""
+    """A ratio in words: beyond `MAX_RATIO` only that it is larger."""
     return f"more than {MAX_RATIO:.0f}" if ratio >= MAX_RATIO else f"{ratio:.0f}"

@@ -45,7 +45,7 @@ _CANDIDATES = 4
 _ALIGNED_DEG = 0.1
 _NEAR_45_DEG = 40.0
 _SIGNIFICANT = 3.0
-_BESIDE_PX = 1.0
+_OFF_LINE_PX = 1.0
 
 
 def _spline(trimmed: EdgePixels, options: EdgeOptions) -> EdgeFit:
@@ -83,7 +83,7 @@ def measure_edge(
     image : Image or (rows, cols) array_like
         From `acutance.open_image`, or pixels in memory; NaN and masked pixels are not used.
     roi : Region, Box, (row, col, height, width) or None
-        A loose region is normal: the edge is found in it, and what serves is trimmed.
+        A loose region is normal: the edge is found in it, and its usable pixels are kept.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.
     method : {"spline", "sdsu-2005", "kompsat-2014", "iso12233", "fermi"}, optional
@@ -93,7 +93,7 @@ def measure_edge(
     Returns
     -------
     StraightMeasurement
-        Numbers with standard deviations, curves, evidence and checks. The line is in pixels of
+        Numbers with standard deviations, curves, details and checks. The line is in pixels of
         the whole image, row and column, integers at pixel centres.
 
     Raises
@@ -115,7 +115,7 @@ def measure_edge(
 
 
 def _measure_first(region: RegionPixels, method: str, options: EdgeOptions) -> StraightMeasurement:
-    """Measure the strongest edge that can be measured; if none can, say why the strongest not."""
+    """Measure the strongest edge that can be measured; if none can, raise the strongest's error."""
     first: TargetError | None = None
     for segment in find_segments(region.pixels, _CANDIDATES):
         try:
@@ -135,7 +135,7 @@ def _measure_first(region: RegionPixels, method: str, options: EdgeOptions) -> S
 def measure_segment(
     region: RegionPixels, segment: Segment, method: str, options: EdgeOptions
 ) -> StraightMeasurement:
-    """Measure one segment that was found in a cut; see `measure_edge`."""
+    """Measure one segment that was found in a region; see `measure_edge`."""
     estimate = _method(method)
     trimmed, extent = trim(region.pixels, segment)
     require_phases(trimmed, trimmed.line, limit_of("sample_phases", options.limits))
@@ -157,7 +157,7 @@ def require_phases(trimmed: EdgePixels, line: Line, wanted: float) -> None:
     trimmed : EdgePixels
     line : Line
     wanted : float
-        What the check `sample_phases` asks for, which is more than can be measured with.
+        Limit of the check `sample_phases`: more than the least that can be measured.
     """
     distance = line.normal_distance(trimmed.pixels.row, trimmed.pixels.col)
     phases = sample_phases(distance)
@@ -173,8 +173,8 @@ def require_phases(trimmed: EdgePixels, line: Line, wanted: float) -> None:
 
 
 def _fill_value(distance: Floats, value: Floats) -> float | None:
-    """The number that all pixels of one side hold where those of the other differ, as data do."""
-    sides = (value[distance < -_BESIDE_PX], value[distance > _BESIDE_PX])
+    """The value of one side if all its pixels are equal and those of the other side are not."""
+    sides = (value[distance < -_OFF_LINE_PX], value[distance > _OFF_LINE_PX])
     low, high = (float(np.ptp(side)) if side.size else 0.0 for side in sides)
     if (low == 0) == (high == 0):
         return None
@@ -193,14 +193,14 @@ def _fill_advice(fill: float) -> str:
 def _advice(line: Line, wanted: float) -> str:
     """What to do about too few phases.
 
-    The length an edge needs goes as 1 / angle, which for an aligned one is noise.
+    The length of the edge that is needed is proportional to 1 / angle: no use for an aligned one.
     """
     angle = line.angle_deg
     if angle > _NEAR_45_DEG:
         return "use an edge that is not at 45 degrees to the grid"
     if angle < max(_ALIGNED_DEG, _SIGNIFICANT * line.angle_std_deg):
         return (
-            "the edge is aligned with the grid, as nearly as can be told, and no length of it "
+            "the edge is aligned with the grid within its uncertainty, and no length of it "
             "helps: use a more inclined edge, by 2 degrees or more"
         )
     needed = (1 - 1 / wanted) / math.tan(math.radians(angle))
@@ -215,7 +215,7 @@ def _measurement(
     method: str,
     options: EdgeOptions,
 ) -> StraightMeasurement:
-    """Put together what a measurement holds; the line moves into the whole image's pixels."""
+    """The measurement, its line in pixels of the whole image."""
     fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
     data = CheckData.of(trimmed, fit)
     by_rows = method in PUBLISHED
@@ -237,7 +237,7 @@ def _measurement(
 def described(
     response: Response, line: Line, region: RegionPixels, rer_centre: RerCentre | None
 ) -> Response:
-    """The curves with the GSD along their normal, and with the centre of RER that was asked for."""
+    """The curves with the GSD along their normal and the chosen centre of the RER."""
     return replace(
         response,
         gsd_m=region.info.gsd_along(line.normal_deg),
@@ -251,6 +251,6 @@ def in_whole_image(line: Line, region: RegionPixels) -> Line:
 
 
 def details_of(region: RegionPixels, trimmed: EdgePixels, fit: EdgeFit) -> StraightDetails:
-    """The pixels of a fit, seen along the normal."""
+    """The pixels of a fit by their distance along the normal."""
     used = np.isfinite(trimmed.image)
     return StraightDetails(region.pixels, used, fit.distance_px, fit.value, fit.residual)

@@ -1,4 +1,4 @@
-"""Is this edge good enough to tell? What is found; `check_table` says what is asked, and why."""
+"""Checks of an edge: what is found; `check_table` holds questions, limits and sources."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ EDGE_CHECKS = (
     "plateau_bright_px", "saturation", "quantisation", "gradient", "correlated_noise", "structure",
     "asymmetric_wings", "profile", "outliers",
 )  # fmt: skip
-"""What is asked of an edge."""
+"""Names of all checks of an edge."""
 
 
 def check_edge(
@@ -170,7 +170,7 @@ def _lost_at_nyquist(variance_px2: float) -> float:
 
 
 def _change_along(data: CheckData, column: Floats) -> float:
-    """How much of `column` (n,) the residuals of an edge's parts hold, rms beyond their noise."""
+    """Amount of `column` (n,) in the residuals of the parts of an edge, rms beyond their noise."""
     steep = np.abs(data.before) < 1
     extent_px = float(np.ptp(data.t[steep])) if steep.any() else 0.0
     parts = max(3, min(12, int(extent_px // 5)))
@@ -182,7 +182,7 @@ def _change_along(data: CheckData, column: Floats) -> float:
     usable = power > 0.3 * np.median(power)
     amount = share[usable] / power[usable]
     variance = data.noise**2 * data.smoothness / power[usable]
-    # What all parts have in common is the fit's, and no change.
+    # The mean of all parts belongs to the fit and is no change along the edge.
     amount -= np.average(amount, weights=power[usable])
     freedom = int(usable.sum()) - 1
     chi_square = float(np.sum(amount**2 / np.maximum(variance, 1e-18)))
@@ -192,7 +192,7 @@ def _change_along(data: CheckData, column: Floats) -> float:
 
 
 def lsf_width(data: CheckData, limits: Limits) -> Check:
-    """Whether the LSF is as wide as that of any detector: numbers may be no picture of light.
+    """Whether the LSF is as wide as that of any detector: an image may hold other data than light.
 
     A square detector alone has an FWHM of 0.7 to 1 px; the strongest sharpening takes a third.
     """

@@ -1,8 +1,8 @@
 """Straight edges in an image, found from its gradient.
 
-Directions are voted for by the gradient of every pixel; for each favoured direction the pixels
-vote for a line's offset; the pixels beside the winning line then place it by least squares.
-Good to a tenth of a pixel where the noise allows: the fits start from here.
+The gradient of every pixel votes for a direction; for each direction with many votes the pixels
+vote for a line's offset; the pixels next to the winning line then locate it by least squares,
+to a tenth of a pixel where the noise allows. It is the first guess of all fits.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def _gradient_votes(image: Floats) -> _Votes:
 
 
 def _usual_strongest(magnitude: Floats) -> float:
-    """The strongest gradient there is more of than a few bad pixels make, eight each."""
+    """The strongest gradient without those of a few bad pixels, eight each."""
     few = min(magnitude.size // 40, 34)
     spoiled = max(few, min(magnitude.size // 500, 500))
     place = magnitude.size - 1 - spoiled

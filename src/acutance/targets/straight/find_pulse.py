@@ -1,4 +1,4 @@
-"""Find a pulse, a strip between two grounds, and trim a region to it."""
+"""Find a pulse, the two parallel edges of a target, and trim a region to it."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ _SPOILED = 0.005
 def find_pulse(
     image: Floats, width_px: float | None = None, *, fit_width: bool = True
 ) -> tuple[PulsePixels, Extent]:
-    """The strongest pulse of an image and the pixels that serve it.
+    """The strongest pulse of an image and its usable pixels.
 
     Parameters
     ----------
     image : (rows, cols) array
-        NaN where a pixel must not be used. The strip may be brighter or darker than the ground.
+        NaN where a pixel must not be used. The pulse may be brighter or darker than the plateaus.
     width_px : float, optional
-        Its width along the normal; without it the width is guessed from the profile.
+        Its width along the normal; without it the profile gives a first guess.
     fit_width : bool, optional
-        Whether the width may move while the pulse is placed.
+        Whether the width is fitted while the pulse is located.
 
     Raises
     ------
@@ -52,8 +52,8 @@ def find_pulse(
             except TargetError as error:
                 first = first or error
     raise first or NoEdgeError(
-        f"no straight strip stands out in the {image.shape[0]} x {image.shape[1]} pixels: choose "
-        "a region that holds one strip with ground on both sides"
+        f"no straight pulse stands out in the {image.shape[0]} x {image.shape[1]} pixels: choose "
+        "a region that holds one pulse with a plateau on both sides"
     )
 
 
@@ -68,24 +68,24 @@ def _at(
     along = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
     width_px = _guessed_width(s[along], pixels.value[along]) if stated_px is None else stated_px
     reach = _REACH_PX
-    grounds = [
+    plateaus = [
         pixels.value[along & (outside > 0.5 * reach) & (outside < reach)]
         for outside in (-s, s - width_px)
     ]
-    strip = pixels.value[along & (np.abs(s - 0.5 * width_px) < max(0.25 * width_px, 0.6))]
-    if min(strip.size, *(ground.size for ground in grounds)) < _MIN_PIXELS:
+    top = pixels.value[along & (np.abs(s - 0.5 * width_px) < max(0.25 * width_px, 0.6))]
+    if min(top.size, *(plateau.size for plateau in plateaus)) < _MIN_PIXELS:
         raise SupportError(
-            f"beside the strip of {width_px:.2f} px lie {grounds[0].size} and {grounds[1].size} "
-            f"usable pixels between {0.5 * reach:g} and {reach:g} px from it, at least "
+            f"the plateaus of the pulse of {width_px:.2f} px have {plateaus[0].size} and "
+            f"{plateaus[1].size} usable pixels {0.5 * reach:g} to {reach:g} px from it, at least "
             f"{_MIN_PIXELS} are needed: choose a region that reaches further to both sides, and "
             "check the width if it was stated"
         )
-    left, right, level = (median(part) for part in (*grounds, strip))
+    left, right, level = (median(part) for part in (*plateaus, top))
     if not (level > left and level > right):
         raise NoEdgeError(
             f"the strongest line separates levels of {sign * left:.4g}, {sign * level:.4g} and "
-            f"{sign * right:.4g}: no strip of {width_px:.2f} px between two like grounds; choose "
-            "a region with one strip, or state another width"
+            f"{sign * right:.4g}: no pulse of {width_px:.2f} px between two equal plateaus; "
+            "choose a region with one pulse, or state another width"
         )
     pulse = fit_first(
         pixels.row[along], pixels.col[along], pixels.value[along], segment.line,
@@ -94,22 +94,22 @@ def _at(
     )  # fmt: skip
     if pulse.height < MIN_SNR * pulse.noise:
         raise NoEdgeError(
-            f"the strongest strip has a height of {pulse.height:.4g} in noise of "
-            f"{pulse.noise:.3g}: an SNR of {pulse.height / pulse.noise:.1f} where {MIN_SNR:g} is "
-            "the least"
+            f"the strongest pulse has a height of {pulse.height:.4g} in noise of "
+            f"{pulse.noise:.3g}: an SNR of {pulse.height / pulse.noise:.1f} where at least "
+            f"{MIN_SNR:g} is needed; choose a region with more contrast or less noise"
         )
     usable = select_usable(image, pixels, pulse, 0.5 * (segment.stop_px - segment.start_px))
-    width, falling = pulse.profile.positions_px[1], -pulse.profile.shares[1]
+    width, height_ratio = pulse.profile.positions_px[1], -pulse.profile.shares[1]
     trimmed = PulsePixels(
         usable.image, usable.line, pulse.dark, pulse.dark + pulse.height, pulse.blur.sigma_px,
-        pulse.noise, pulse.blur, width, falling, sign,
+        pulse.noise, pulse.blur, width, height_ratio, sign,
     )  # fmt: skip
     return trimmed, usable.extent
 
 
 def _guessed_width(s: Floats, value: Floats) -> float:
     """Distance from the rising side to where the profile has fallen half way back."""
-    # Means of few pixels each: a bad one would pass for the strip.
+    # Means of few pixels each: a bad pixel would look like the pulse.
     value = np.clip(value, *np.quantile(value, (_SPOILED, 1 - _SPOILED)))
     bins = ((s + _REACH_PX) / _PROFILE_STEP_PX).astype(np.intp)
     inside = (bins >= 0) & (s < _MAX_WIDTH_PX)
@@ -123,17 +123,17 @@ def _guessed_width(s: Floats, value: Floats) -> float:
     behind = grid > 0
     if not behind.any():
         raise SupportError(
-            "the region ends at the strip's first side: choose one that holds both sides"
+            "the region ends at the rising side of the pulse: choose one that holds both sides"
         )
-    ground = median(level[grid < -1.0]) if (grid < -1.0).any() else float(level[0])
-    # The first top behind the rising side, not the scene's brightest place.
+    plateau = median(level[grid < -1.0]) if (grid < -1.0).any() else float(level[0])
+    # The first maximum behind the rising side, not the brightest place of the scene.
     falling = np.flatnonzero(np.diff(level[behind]) < 0)
     top = float(level[behind][int(falling[0])]) if falling.size else float(level.max())
     place = grid[behind][int(falling[0])] if falling.size else 0.0
-    width = crossing(grid, level, 0.5 * (ground + top), float(place))
+    width = crossing(grid, level, 0.5 * (plateau + top), float(place))
     if not width > 0:
         raise NoEdgeError(
-            f"the strip's second side was not found within {_MAX_WIDTH_PX:g} px: state its width, "
+            f"no falling side of the pulse was found within {_MAX_WIDTH_PX:g} px: state its width, "
             "or choose a region that holds both sides"
         )
     return float(width)

@@ -1,4 +1,4 @@
-"""The plain blurred target fitted to the pixels: where the reference estimator starts."""
+"""The first fit of a straight target: a Gaussian through a pixel, a line and two levels."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ _MIN_SIGMA_PX = 0.35
 _TAIL_STD = 0.1
 _APERTURE_STEP_PX = 1.0
 (_gesv,) = get_lapack_funcs(("gesv",), (np.empty((1, 1)),))
-# Parameters: dark, height, offset, turn, sigma, aperture, tail; of a pulse also width and fall.
+# Parameters: dark, height, offset, turn, sigma, aperture, tail; of a pulse also width and height
+# ratio.
 _EXPECTED: Floats = np.array([0.0, 0.0, 0.0, 0.0, 0.0, APERTURE_PX[0], 0.0, 0.0, 0.0])
 _LOWEST: Floats = np.array([*[-np.inf] * 4, _MIN_SIGMA_PX, 0.2, 0.0, 0.0, 0.0])
 _HIGHEST: Floats = np.array([*[np.inf] * 4, np.inf, 4.0, 0.5, np.inf, np.inf])
@@ -37,7 +38,7 @@ class FirstFit:
     """A target blurred by a Gaussian and a detector, fitted to the pixels.
 
     `height` is that of the first step (bright minus dark for an edge); `noise` the standard
-    deviation of what the model leaves.
+    deviation of the residuals.
     """
 
     line: Line
@@ -68,17 +69,17 @@ def fit_first(
     row, col, value : (n,) arrays
         Pixel coordinates (integers are centres) and values.
     line : Line
-        Start of the line, good to about a pixel.
+        First guess of the line, good to about a pixel.
     dark, bright : float
-        Start of the levels.
+        First guess of the levels.
     sigma_px : float, optional
-        Start of the Gaussian's width.
+        First guess of the Gaussian's standard deviation.
     noise : float, optional
-        First guess of the noise, which weighs the priors of aperture and tail.
+        First guess of the noise, the weight of the priors of aperture and tail.
     profile : Profile, optional
-        An edge, or where a pulse's steps start.
+        An edge, or the first guess of a pulse's steps.
     fit_width : bool, optional
-        Whether a pulse's width is unknown (its fall always is).
+        Whether a pulse's width is unknown (its height ratio always is).
 
     Raises
     ------
@@ -87,7 +88,7 @@ def fit_first(
     """
     t = line.tangent_distance(row, col)
     s = line.normal_distance(row, col)
-    # A bad pixel pulls by no more than a whole height.
+    # A bad pixel counts with no more than a whole height.
     levels = (dark, bright, dark + (bright - dark) * sum(profile.shares))
     span = max(levels) - min(levels)
     value = np.clip(value, min(levels) - span, max(levels) + span)
@@ -96,7 +97,7 @@ def fit_first(
     reach = max(6.0, 4 * _REACH_WIDTHS * sigma_px)
     lowest, highest = _LOWEST[: p.size].copy(), _HIGHEST[: p.size].copy()
     if p.size > 7:
-        # A pulse does not tell the aperture from its own width.
+        # A pulse does not determine the aperture apart from its own width.
         lowest[5] = highest[5] = p[5]
         lowest[7], highest[7] = (0.5 * p[7], 2.0 * p[7]) if fit_width else (p[7], p[7])
     for _ in range(4):
@@ -114,7 +115,7 @@ def fit_first(
     if not (height > 0 and math.isfinite(height)) or height < scale:
         raise NoEdgeError(
             f"no straight target was found: the best fit is a step of {height:.3g} in noise of "
-            f"{scale:.3g}; choose a region with one edge, or one strip, between uniform grounds"
+            f"{scale:.3g}; choose a region with one edge, or one pulse, between uniform plateaus"
         )
     found = profile if p.size == 7 else pulse_profile(float(p[7]), float(p[8]))
     moved = line.moved(float(p[2]), math.degrees(float(p[3])))
@@ -122,7 +123,7 @@ def fit_first(
 
 
 def _steps(profile: Profile) -> tuple[float, ...]:
-    """The free parameters of a profile: a pulse's width and fall."""
+    """The free parameters of a profile: a pulse's width and height ratio."""
     return (profile.positions_px[1], -profile.shares[1]) if len(profile.shares) > 1 else ()
 
 
@@ -138,7 +139,7 @@ def _gauss_newton(
 ) -> tuple[Floats, float]:
     """Minimise the squared residuals and the penalties over the parameters.
 
-    Returns the parameters and the standard deviation of what they leave.
+    Returns the parameters and the standard deviation of the residuals.
     """
     damping, size = _DAMPING, start.size
     # The priors of aperture and tail: two more data.
@@ -161,12 +162,12 @@ def _gauss_newton(
             np.maximum(lowest - p, -0.5 * longest),
             np.minimum(highest - p, longest),
         )
-        # A step that nothing damps or bounds gains its product with the gradient: the last one is
-        # not tried.
+        # The cost falls by the product of gradient and step where neither damping nor a bound
+        # changes the step: the last one is not tried.
         gain = float(gradient @ step)
         enough = _SETTLED * best.cost + 1e-18 * p[1] ** 2 * s.size
         settled = damping < 2 * _DAMPING and 0 <= gain <= enough
-        # A wider aperture at the same variance leaves less to the Gaussian.
+        # A wider aperture at the same variance makes the Gaussian narrower.
         variance = p[4] ** 2 + 2 * p[4] * step[4] - step[5] ** 2 / 12
         moved = p + step
         moved[4] = math.sqrt(max(variance, _MIN_SIGMA_PX**2))
@@ -187,7 +188,7 @@ def _gauss_newton(
 
 
 def _bounded_solution(gram: Floats, gradient: Floats, low: Floats, high: Floats) -> Floats:
-    """The minimum of a quadratic form within bounds, found by holding what would leave them."""
+    """The minimum of a quadratic form within bounds: parameters are held at their bounds."""
     step = _solution(gram, gradient)
     held = np.zeros(step.size, bool)
     while (outside := ((step < low) | (step > high)) & ~held).any():
@@ -220,7 +221,7 @@ def _solution(gram: Floats, gradient: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class _Trial:
-    """The blurred target at one set of parameters, compared with the pixels.
+    """The model of the target at one set of parameters, compared with the pixels.
 
     Attributes
     ----------
@@ -231,7 +232,8 @@ class _Trial:
     u : (m,) array
         Distances from the steps in widths: n from the first, n from the second if there is one.
     step, beyond : (m,) arrays
-        Response to a unit step at those distances, and what the tail's part of it has more.
+        Response to a unit step at those distances, and the difference of the tail's response from
+        it.
     slopes : three (m,) arrays
         Derivatives of the blur's response by distance, sigma and aperture.
     """

@@ -20,16 +20,16 @@ __all__ = ["SplineEdge", "fit_edge", "spline_edge"]
 
 @dataclass(frozen=True, eq=False)
 class SplineEdge(EdgeFit):
-    """The reference estimator's fit, with what its checks ask for.
+    """The reference estimator's fit, with the data of its checks.
 
     Attributes
     ----------
     blur : GaussianPixel
-        The plain blur that explains the edge best.
+        The Gaussian through a pixel that fits the edge best.
     noise_dark, noise_bright : float
         Standard deviation of the noise on either side, in image units.
     correlation : Correlation
-        What the residuals say of the noise's correlation.
+        Correlation of the noise, from the residuals.
     weights : (n,) array
         Weight of every pixel used, 1 where it is no outlier.
     tail : float
@@ -59,11 +59,11 @@ def fit_edge(trimmed: EdgePixels, *, robust: bool = True) -> SplineEdge:
     NoEdgeError
         If they hold no step.
     """
-    return spline_edge(trimmed.pixels, solve(trimmed.pixels, _start(trimmed), robust=robust))
+    return spline_edge(trimmed.pixels, solve(trimmed.pixels, _first_fit(trimmed), robust=robust))
 
 
-def _start(trimmed: EdgePixels) -> FirstFit:
-    """The plain blurred edge the linear model departs from."""
+def _first_fit(trimmed: EdgePixels) -> FirstFit:
+    """The Gaussian through a pixel about which the linear model is made."""
     if trimmed.blur is not None:
         return FirstFit(
             trimmed.line,
@@ -81,13 +81,13 @@ def _start(trimmed: EdgePixels) -> FirstFit:
 
 def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
     """Turn the coefficients into curves about the 50 % point, with their covariance."""
-    start, solution, model = solved.start, solved.solution, solved.model
+    first_fit, solution, model = solved.first_fit, solved.solution, solved.model
     middle = model.half_point()
     response = model.response(middle)
-    line = start.line.moved(middle, math.degrees(solution.rotation_rad))
+    line = first_fit.line.moved(middle, math.degrees(solution.rotation_rad))
     t = line.tangent_distance(pixels.row, pixels.col)
     s = line.normal_distance(pixels.row, pixels.col)
-    near = np.abs(s) < start.blur.width_px
+    near = np.abs(s) < first_fit.blur.width_px
     length = float(np.ptp(t[near])) if near.any() else math.nan
     dark, height = solved.dark, model.height
     line = replace(
@@ -98,6 +98,6 @@ def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
     )
     return SplineEdge(
         line, response, dark, dark + height, s, (pixels.value - dark) / height,
-        solution.residual / height, start.blur, *solution.side_noise, solved.correlation,
+        solution.residual / height, first_fit.blur, *solution.side_noise, solved.correlation,
         solved.outlier, model.tail / height,
     )  # fmt: skip

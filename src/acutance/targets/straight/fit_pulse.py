@@ -1,4 +1,4 @@
-"""The reference estimator of a pulse: LSF, line, width and fall fitted together."""
+"""The reference estimator of a pulse: LSF, line, width and height ratio fitted together."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class PulsePixels(EdgePixels):
     """A region trimmed to one pulse.
 
     Their line is the rising side of the pulse, its normal pointing into the pulse; `dark` is
-    the ground before it and `bright` the level a wide pulse would have. A dark pulse on bright
-    ground is kept with its sign turned: `sign` is -1 then, and the image's values are negated.
+    the plateau before it and `bright` the level a wide pulse would have. Of a dark pulse between
+    bright plateaus `sign` is -1, and the image's values are negated.
 
     Parameters
     ----------
@@ -31,13 +31,13 @@ class PulsePixels(EdgePixels):
         Standard deviation of the Gaussian that fits the blur (as in `EdgePixels`).
     pulse_width_px : float
         Width of the pulse along the normal, as stated or as first fitted.
-    fall : float
+    height_ratio : float
         Height of the falling side over that of the rising one.
     sign : float
     """
 
     pulse_width_px: float = 3.0
-    fall: float = 1.0
+    height_ratio: float = 1.0
     sign: float = 1.0
 
 
@@ -48,8 +48,8 @@ class SplinePulse(SplineEdge):
     Attributes
     ----------
     pulse_width : Estimate
-        Width along the normal in pixels; without deviation where it was given and held.
-    fall : Estimate
+        Width along the normal in pixels; without standard deviation where it was stated and held.
+    height_ratio : Estimate
         Height of the falling side over that of the rising one.
     width_factor : (m,) array
         Factor of the width's variance in the latent variables of the curves; zeros where it was
@@ -57,7 +57,7 @@ class SplinePulse(SplineEdge):
     """
 
     pulse_width: Estimate
-    fall: Estimate
+    height_ratio: Estimate
     width_factor: Floats
 
 
@@ -68,7 +68,7 @@ def fit_pulse(trimmed: PulsePixels, *, fit_width: bool = True, robust: bool = Tr
     ----------
     trimmed : PulsePixels
     fit_width : bool, optional
-        Whether the width is fitted with the LSF (that of `trimmed` is the start) or held.
+        Whether the width is fitted with the LSF (that of `trimmed` is the first guess) or held.
     robust : bool, optional
         Bound the weight of outliers.
 
@@ -77,23 +77,23 @@ def fit_pulse(trimmed: PulsePixels, *, fit_width: bool = True, robust: bool = Tr
     NoEdgeError
         If no pulse survives the fit.
     """
-    start = _start(trimmed, fit_width)
-    solved = solve(trimmed.pixels, start, robust=robust, fit_width=fit_width)
+    first_fit = _first_fit(trimmed, fit_width)
+    solved = solve(trimmed.pixels, first_fit, robust=robust, fit_width=fit_width)
     edge = spline_edge(trimmed.pixels, solved)
     return SplinePulse(
         **vars(edge),
         pulse_width=_width(solved, fit_width),
-        fall=Estimate(
-            -solved.start.profile.shares[1] + float(solved.solution.steps[-1]),
-            float(solved.solution.steps_std[-1]),
+        height_ratio=Estimate(
+            -solved.first_fit.profile.shares[1] + float(solved.solution.updates[-1]),
+            float(solved.solution.updates_std[-1]),
         ),
         width_factor=_width_factor(solved, fit_width),
     )
 
 
-def _start(trimmed: PulsePixels, fit_width: bool) -> FirstFit:
-    """The plain blurred pulse the linear model departs from."""
-    profile = pulse_profile(trimmed.pulse_width_px, trimmed.fall)
+def _first_fit(trimmed: PulsePixels, fit_width: bool) -> FirstFit:
+    """The Gaussian through a pixel about which the linear model is made."""
+    profile = pulse_profile(trimmed.pulse_width_px, trimmed.height_ratio)
     if trimmed.blur is not None:
         height = trimmed.bright - trimmed.dark
         return FirstFit(trimmed.line, trimmed.blur, trimmed.dark, height, trimmed.noise, profile)
@@ -106,14 +106,14 @@ def _start(trimmed: PulsePixels, fit_width: bool) -> FirstFit:
 
 
 def _width(solved: Solved, fit_width: bool) -> Estimate:
-    width_px = solved.start.profile.positions_px[1]
+    width_px = solved.first_fit.profile.positions_px[1]
     if not fit_width:
         return Estimate(width_px)
     solution = solved.solution
-    return Estimate(width_px + float(solution.steps[0]), float(solution.steps_std[0]))
+    return Estimate(width_px + float(solution.updates[0]), float(solution.updates_std[0]))
 
 
 def _width_factor(solved: Solved, fit_width: bool) -> Floats:
     factor = solved.solution.posterior.factor
-    # Last but one of the unknowns: the fall comes after it.
+    # Last but one of the unknowns: the height ratio comes after it.
     return factor[-2] if fit_width else np.zeros(factor.shape[1])

@@ -1,8 +1,8 @@
-"""Ground that is not uniform: slow trends of the plateaus, kept apart from the sensor's halo.
+"""Plateaus that are not uniform: slow trends, separated from the halo of the sensor.
 
-A slope of the ground beside an edge looks like a halo of the sensor and takes MTF away. Trends
-along the edge tell them apart: no sensor makes them. Every side of the edge gets low polynomials
-in both directions, whose common amplitude the data decide.
+A slope of a plateau next to an edge looks like a halo of the sensor and lowers the MTF. Trends
+along the edge separate the two: no sensor makes them. Every side of the edge has low polynomials
+in both directions, whose common amplitude the data determine.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def plateau_trends(sides: Sides, t: Floats) -> Floats:
     Parameters
     ----------
     sides : pairs of (n,) arrays
-        For either plateau how much of a pixel sees it, and how far out the pixel lies.
+        For either plateau its share in every pixel, and the pixel's distance outwards.
     t : (n,) array
         Distance along the edge, pixels.
     """

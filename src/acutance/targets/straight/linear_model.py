@@ -1,9 +1,10 @@
-"""A straight target to first order about a start: all its unknowns in one linear model.
+"""A straight target to first order about a first fit: all its unknowns in one linear model.
 
-Unknown are the dark level, the LSF's departure from the plain blur (`fit.prior`), the trends of
-the ground (`fit.ground`), the line's turn and, of a pulse, its width (if free) and its fall, in
-this order. What the pixels say of them hangs on the start alone, but for the columns of turn, width
-and fall: they are derivatives of the response, and follow the LSF as it becomes known.
+Unknown are the dark level, the correction of the line spread function (LSF) of the first fit
+(`lsf_prior`), the trends of the plateaus (`gradients`), the rotation of the line and, of a pulse,
+its width (if free) and its height ratio (falling over rising side), in this order. The regressors
+depend on the first fit alone, but for those of rotation, width and height ratio: they are
+derivatives of the response, and depend on the LSF.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ class NoiseModel:
     Attributes
     ----------
     sides : (2,) array
-        Variance on dark and on bright ground, relative to `scale`.
+        Variance on the dark and on the bright plateau, relative to `scale`.
     scale : float
         Their mean, in image units squared.
     relative : (n,) array
@@ -58,41 +59,41 @@ class NoiseModel:
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """The linear model of a target's pixels about a start.
+    """The linear model of a target's pixels about a first fit.
 
     Attributes
     ----------
-    start : FirstFit
-        Line, blur, levels and profile the model departs from.
+    first_fit : FirstFit
+        Line, blur, levels and profile about which the model is linear.
     s, t : (n,) arrays
         Distance of the pixels from the first step along the normal, and along the line.
     seen : pairs of (n,) arrays
-        For every step, the plain blur's ESF and LSF at the pixels.
+        For every step, the edge spread function (ESF) and the LSF of the first fit at the pixels.
     mean, slope : (n,) arrays
-        Response of the start (0 dark, 1 bright) and its derivative.
-    departure : (n,) array
-        The pixels less what the start makes of them.
+        Response of the first fit (0 dark, 1 bright) and its derivative.
+    first_residual : (n,) array
+        The pixels minus the first fit, in image units.
     stencils : pairs of arrays
         For every step, each pixel's place in the ESF's spline; see `spline.edge_weights`.
     fixed : (q, n) array
-        Regressors beside the spline that hang on the start alone.
+        Regressors other than the spline that depend on the first fit alone.
     derivatives : int
-        Number of those that hang on the LSF: turn, width, fall.
+        Number of those that depend on the LSF: rotation, width, height ratio.
     directions : Directions
-        In which the LSF may depart from the blur.
+        In which the LSF may differ from that of the first fit.
     design : (CELLS + 3 + k, r) array
-        What level, directions and tail do to the spline and to the first k of the regressors beside
-        it. Every other regressor has an unknown of its own.
+        Coefficients of the spline and of the first k further regressors for a unit of level,
+        directions and tail. Every other regressor has an unknown of its own.
     prior : Prior
     """
 
-    start: FirstFit
+    first_fit: FirstFit
     s: Floats
     t: Floats
     seen: list[tuple[Floats, Floats]]
     mean: Floats
     slope: Floats
-    departure: Floats
+    first_residual: Floats
     stencils: list[Stencil]
     fixed: Floats
     derivatives: int
@@ -101,33 +102,33 @@ class Linear:
     prior: Prior
 
     @classmethod
-    def about(cls, start: FirstFit, pixels: Pixels, *, fit_width: bool) -> Linear:
-        """The model about a `start`, of a width that is free or held."""
-        profile, width = start.profile, start.blur.width_px
-        s = start.line.normal_distance(pixels.row, pixels.col)
-        t = start.line.tangent_distance(pixels.row, pixels.col)
-        seen = profile.seen(start.blur, s)
+    def about(cls, first_fit: FirstFit, pixels: Pixels, *, fit_width: bool) -> Linear:
+        """The model about a first fit, of a width that is free or held."""
+        profile, width = first_fit.profile, first_fit.blur.width_px
+        s = first_fit.line.normal_distance(pixels.row, pixels.col)
+        t = first_fit.line.tangent_distance(pixels.row, pixels.col)
+        seen = profile.seen(first_fit.blur, s)
         mean, slope = profile.response(seen)
         stencils = []
         for distance, share in zip(profile.distances(s), profile.shares, strict=True):
             cell, basis = edge_weights(distance / width)
             stencils.append((cell, basis if share == 1 else share * basis))
         trends = plateau_trends(profile.sides(seen, s), t)
-        beside = [_beyond(profile, s, width)]
+        further = [_beyond(profile, s, width)]
         is_edge = len(profile.shares) == 1
         if not is_edge:
-            # The dark level is under every pixel once, whatever the steps.
-            beside.append(np.ones(s.size))
+            # The dark level adds to every pixel once, whatever the steps.
+            further.append(np.ones(s.size))
         derivatives = 1 if is_edge else 2 + fit_width
-        directions = lsf_prior.directions(start.blur)
-        departure = pixels.value - start.dark - start.height * mean
-        # A bad pixel pulls by no more than a whole height.
-        np.clip(departure, -start.height, start.height, out=departure)
+        directions = lsf_prior.directions(first_fit.blur)
+        residual = pixels.value - first_fit.dark - first_fit.height * mean
+        # A bad pixel counts with no more than a whole height.
+        np.clip(residual, -first_fit.height, first_fit.height, out=residual)
         return cls(
-            start, s, t, seen, mean, slope, departure,
-            stencils, np.vstack([*beside, trends]), derivatives, directions,
-            _design(directions, len(beside)),
-            _prior(start, directions, len(trends), derivatives),
+            first_fit, s, t, seen, mean, slope, residual,
+            stencils, np.vstack([*further, trends]), derivatives, directions,
+            _design(directions, len(further)),
+            _prior(first_fit, directions, len(trends), derivatives),
         )  # fmt: skip
 
     @property
@@ -137,18 +138,18 @@ class Linear:
 
     @property
     def steepness(self) -> Floats:
-        """Squared slope of the start's image relative to the largest, (n,)."""
+        """Squared slope of the first fit relative to the largest, (n,)."""
         steep: Floats = self.slope / max(float(np.max(np.abs(self.slope))), 1e-12)
         return steep * steep
 
     def noise(self, outlier: Floats, roughness: float) -> NoiseModel:
-        """The noise as the pixels' departures show it, outliers weighed by `outlier`.
+        """The noise of the residuals of the first fit, outliers weighted by `outlier`.
 
-        A ragged edge moves by fractions of a pixel from row to row: `roughness` is the noise
+        A rough edge moves by fractions of a pixel from row to row: `roughness` is the noise
         variance this adds where the image is steepest, relative to the rest.
         """
-        sides = np.array(side_variances(self.departure * np.sqrt(outlier), self.mean))
-        floor = (_NOISE_FLOOR * self.start.height) ** 2
+        sides = np.array(side_variances(self.first_residual * np.sqrt(outlier), self.mean))
+        floor = (_NOISE_FLOOR * self.first_fit.height) ** 2
         scale = float(0.5 * (sides[0] + sides[1])) + floor
         share = np.minimum(np.maximum(self.mean, 0.0), 1.0)
         relative = (sides[0] + floor + (sides[1] - sides[0]) * share) / scale
@@ -157,12 +158,12 @@ class Linear:
         return NoiseModel(sides / scale, scale, relative)
 
     def columns(self, model: LsfModel | None) -> Floats:
-        """All regressors beside the spline, those that hang on the LSF at the end.
+        """All regressors other than the spline, those that depend on the LSF at the end.
 
-        How well a pulse's width is told hangs on the LSF itself, not on the blur it departs from:
-        as soon as there is a `model` of it, its derivatives are taken.
+        The uncertainty of a pulse's width depends on the LSF itself, not on the first fit: as soon
+        as there is a `model` of it, its derivatives are taken.
         """
-        profile, height = self.start.profile, self.start.height
+        profile, height = self.first_fit.profile, self.first_fit.height
         if model is None:
             known = [(height * esf, height * lsf) for esf, lsf in self.seen]
         else:
@@ -178,26 +179,28 @@ class Linear:
         return np.vstack([self.fixed, *by_parameter])
 
     def image(self, columns: Floats, beta: Floats) -> Floats:
-        """What the unknowns make of the pixels, beside the start, (n,)."""
+        """The image of the unknowns, to be added to the first fit, (n,)."""
         r = self.design.shape[1]
         coefficients = self.design @ beta[:r]
-        beside = np.concatenate([coefficients[CELLS + 3 :], beta[r:]])
-        image = beside @ columns
+        further = np.concatenate([coefficients[CELLS + 3 :], beta[r:]])
+        image = further @ columns
         for cell, basis in self.stencils:
             image = image + combine(cell, basis, coefficients[: CELLS + 3])
         return image
 
     def model(self, posterior: Posterior) -> LsfModel:
-        """The LSF the unknowns make: the tail has its own closed form beside the spline."""
+        """The LSF of the unknowns: the tail is added to the spline in closed form."""
         inner, tail = self.directions.esf[:, :-1], self.directions.block.size
         beta, factor = posterior.beta, posterior.factor
         latent = np.vstack([inner @ factor[1:tail], factor[tail]])
         spline = inner @ beta[1:tail]
-        return LsfModel(self.start.blur, self.start.height, spline, float(beta[tail]), latent)
+        return LsfModel(
+            self.first_fit.blur, self.first_fit.height, spline, float(beta[tail]), latent
+        )
 
 
 def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
-    """What the tail adds beyond the spline's support, (n,)."""
+    """The part of the tail beyond the spline's support, (n,)."""
     total = np.zeros(s.size)
     for distance, share in zip(profile.distances(s), profile.shares, strict=True):
         far = np.abs(distance) > HALF_SUPPORT * width
@@ -207,17 +210,17 @@ def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
     return total
 
 
-def _design(directions: lsf_prior.Directions, beside: int) -> Floats:
-    """What level, directions and tail do to the spline and to the regressors beside it.
+def _design(directions: lsf_prior.Directions, further: int) -> Floats:
+    """Coefficients of spline and further regressors for a unit of level, directions and tail.
 
     The tail is the last direction, within the support and beyond: the first regressor. The dark
-    level lifts every ESF coefficient alike, because the B-splines sum to one, unless it has a
+    level lifts all ESF coefficients equally, because the B-splines sum to one, unless it has a
     regressor of its own: the second.
     """
-    design = np.zeros((CELLS + 3 + beside, 1 + directions.block.size))
+    design = np.zeros((CELLS + 3 + further, 1 + directions.block.size))
     design[: CELLS + 3, 1:] = directions.esf
     design[CELLS + 3, -1] = 1.0
-    if beside > 1:
+    if further > 1:
         design[CELLS + 4, 0] = 1.0
     else:
         design[: CELLS + 3, 0] = 1.0
@@ -225,7 +228,7 @@ def _design(directions: lsf_prior.Directions, beside: int) -> Floats:
 
 
 def _prior(
-    start: FirstFit, directions: lsf_prior.Directions, trends: int, derivatives: int
+    first_fit: FirstFit, directions: lsf_prior.Directions, trends: int, derivatives: int
 ) -> Prior:
     """The prior of all unknowns."""
     after_tail = 1 + directions.block.size
@@ -236,14 +239,14 @@ def _prior(
     block[after_tail : after_tail + trends] = log_amplitude.size
     log_amplitude = np.append(log_amplitude, TREND_LOG_AMPLITUDE)
     scale = np.ones(m)
-    # Turn (radians), width (pixels) and fall are known to about one before the pixels are seen.
-    scale[-derivatives:] = 1 / start.height
+    # Prior: rotation (radians), width (pixels) and height ratio are known to about one.
+    scale[-derivatives:] = 1 / first_fit.height
     aperture, aperture_std = APERTURE_PX
     mean = np.zeros(m)
     where = 1 + int(np.flatnonzero(directions.block == 1)[0])
     scale[where] = aperture_std
-    mean[where] = (aperture - start.blur.aperture_px) * start.height
+    mean[where] = (aperture - first_fit.blur.aperture_px) * first_fit.height
     return Prior(
         block, scale, mean, log_amplitude, LOG_AMPLITUDE_STD,
-        start.height, _NOISE_FLOOR * start.height,
+        first_fit.height, _NOISE_FLOOR * first_fit.height,
     )  # fmt: skip

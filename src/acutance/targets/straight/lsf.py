@@ -1,4 +1,4 @@
-"""The fitted line spread function: a plain blur, a spline and a tail, with their covariance."""
+"""The fitted line spread function (LSF): Gaussian through a pixel, spline and tail."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ class LsfModel:
     Parameters
     ----------
     blur : GaussianPixel
-        The plain blur the spline departs from.
+        The first fit, which spline and tail correct.
     level : float
         Height of the blur's step, in image units.
     spline : (CELLS + 3,) array
-        ESF coefficients of the departure, in image units.
+        Coefficients of the correction of the edge spread function (ESF), in image units.
     tail : float
         Height of the tail's step, in image units.
     latent : (CELLS + 4, k) array
@@ -65,7 +65,7 @@ class LsfModel:
 
     @property
     def height(self) -> float:
-        """Bright less dark: the integral of the LSF."""
+        """Bright minus dark: the integral of the LSF."""
         return float(self.level + self.spline[-1] + self.tail)
 
     def esf(self, s: Floats) -> Floats:
@@ -76,7 +76,7 @@ class LsfModel:
     def step(self, s: Floats, blurred: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
         """Response to the step and its derivative at normal distances `s`, in image units.
 
-        `blurred` is the plain blur's ESF and LSF there.
+        `blurred` is the ESF and the LSF of the first fit there.
         """
         esf, lsf = self._parts(s, blurred)
         return self._sum(*esf), self._sum(*lsf)
@@ -113,7 +113,7 @@ class LsfModel:
         return float(np.linalg.norm(response.esf.gradient(0.0))) / abs(steepness)
 
     def _parts(self, s: Floats, blurred: tuple[Floats, Floats]) -> tuple[_Parts, _Parts]:
-        """What the ESF, and the LSF per pixel, are sums of."""
+        """The terms of the ESF, and of the LSF per pixel."""
         width = self.blur.width_px
         u = s / width
         esf, lsf = blurred
@@ -126,7 +126,7 @@ class LsfModel:
     def _sum(
         self, blurred: Floats, cell: NDArray[np.intp], weights: Floats, tail: Floats
     ) -> Floats:
-        """The blur, the spline and the tail, each with what was fitted of it, in image units."""
+        """The sum of first fit, spline and tail with their fitted heights, in image units."""
         return self.level * blurred + combine(cell, weights, self.spline) + self.tail * tail
 
     def _normalised(
@@ -135,7 +135,7 @@ class LsfModel:
         """The sum, of height 1, and its design."""
         height = self.height
         value = self._sum(blurred, cell, weights, tail) / height
-        # What lifts the height lowers the curve: so do the last coefficient and the tail.
+        # The last coefficient and the tail change the height, by which the curve is divided.
         dense = np.empty((value.size, 2))
         np.multiply(value, -1 / height, out=dense[:, 0])
         np.add(dense[:, 0], tail * (1 / height), out=dense[:, 1])
@@ -147,7 +147,7 @@ class LsfModel:
         about = waves(freq, -centroid)[0] / self.height
         design = transform(freq, centroid, 1 / self.height, further=1)
         design[:, -1] = tail_otf(freq, TAIL_WIDTH) * about
-        # A real product: a complex one of this size would wake the threads of BLAS.
+        # A real product: BLAS would start threads for a complex one of this size.
         coefficients = np.append(self.spline, self.tail)
         value = self.level * self.blur.otf(freq_cpp) * about
         value += (coefficients @ design.T.view(float)).view(complex)

@@ -1,15 +1,16 @@
-"""What is known of a line spread function before the pixels are seen.
+"""The prior of a line spread function (LSF).
 
-The LSF is the mean blur (`fit.blur`) with free level, width, aperture and place, plus three
-Gaussian processes and a tail, each with an amplitude that the data decide (`fit.posterior`):
+The LSF is a mean, the Gaussian through a pixel (`gaussian_pixel`) with free level, width, aperture
+and place, plus three Gaussian processes and a tail, each with an amplitude that the data determine
+(`marginal_likelihood`):
 
-- SHAPE: smooth departures near the peak (sharpening, asymmetry, shoulders);
+- SHAPE: smooth corrections near the peak (sharpening, asymmetry, shoulders);
 - DETAIL: fine structure of the peak (a hard aperture, little optical blur);
-- HALO: broad departures out to many widths (stray light, halo, charge trails);
+- HALO: broad corrections out to many widths (stray light, halo, charge trails);
 - TAIL: a term falling like 1/u^2 without end, as diffraction does.
 
 A Gaussian process has covariance ``exp(-(u^2 + u'^2) / 2 L^2) exp(-(u - u')^2 / 2 l^2)``: its
-departures live within L widths of the edge and vary over l widths. Nothing here knows a sensor.
+functions extend over L widths and vary over l widths. Nothing here depends on a sensor.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ __all__ = [
 
 
 class Directions(NamedTuple):
-    """The directions in which the LSF may differ from the mean blur.
+    """The directions in which the LSF may differ from the mean.
 
     Attributes
     ----------
@@ -62,7 +63,7 @@ def _process(extent: float, smoothness: float) -> Floats:
 
 @cache
 def _fixed() -> tuple[Floats, NDArray[np.intp]]:
-    """All directions, with room for the four of the mean blur in front, and their blocks."""
+    """All directions, with room for the four of the mean in front, and their blocks."""
     processes = [_process(*scales) for scales in (SHAPE, DETAIL, HALO)]
     tail = quasi_interpolant(tail_lsf(CENTRES, TAIL_WIDTH))
     lsf = np.hstack([np.zeros((SIZE, 4)), *processes, tail[:, None]])
@@ -73,7 +74,7 @@ def _fixed() -> tuple[Floats, NDArray[np.intp]]:
 
 
 def directions(blur: GaussianPixel) -> Directions:
-    """The directions of the prior around the mean `blur`.
+    """The directions of the prior around the mean, `blur`.
 
     The level, width, place and aperture of the mean come first, then the processes and the tail.
     """

@@ -78,10 +78,10 @@ def _where(line: Line) -> dict[str, float]:
 def _same_edge(one: StraightMeasurement, other: StraightMeasurement) -> bool:
     """Whether two measurements took the same stretch of the same edge."""
     turn_deg = direction_difference(one.line.normal_deg, other.line.normal_deg)
-    beside = abs(float(other.line.normal_distance(one.line.row, one.line.col)))
+    offset = abs(float(other.line.normal_distance(one.line.row, one.line.col)))
     apart = abs(float(other.line.tangent_distance(one.line.row, one.line.col)))
     reach = 0.5 * min(one.line.length_px, other.line.length_px)
-    return turn_deg < 5 and beside < 2 and apart < reach
+    return turn_deg < 5 and offset < 2 and apart < reach
 
 
 def _of_the_target(

@@ -15,7 +15,7 @@ from acutance.targets.straight.check_data import MISFIT, CheckData
 from acutance.targets.straight.tuned import (
     APERTURE_TAIL_PX,
     GRADIENT_SIGMAS,
-    HARMLESS_STEP,
+    MAX_FINE_STEP,
     MIN_PILED_PIXELS,
     MIN_SIDE_PIXELS,
     OUTLIER_SIGMAS,
@@ -49,11 +49,11 @@ def _quiet(data: CheckData, side: Floats) -> bool:
 
 
 def quantisation(region: RegionPixels, data: CheckData, limits: Limits) -> Check:
-    """Noise in steps of the image's numbers: with less, rounding is no noise but a distortion."""
+    """Noise in steps of the image's numbers: below one step rounding distorts the profile."""
     values = np.unique(region.pixels[data.trimmed.pixels.at])
     step = float(np.min(np.diff(values))) if values.size > 1 else 0.0
     contrast = abs(data.fit.bright - data.fit.dark)
-    if step < HARMLESS_STEP * contrast:
+    if step < MAX_FINE_STEP * contrast:
         found = "the image's numbers are finer than the curves resolve"
         return answer("quantisation", MAX_RATIO, found, limits)
     value = min(data.plateau_std * contrast / step, MAX_RATIO)

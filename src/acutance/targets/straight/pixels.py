@@ -1,4 +1,4 @@
-"""The pixels around one straight edge that serve its measurement, and a fit of them."""
+"""The usable pixels around one straight edge, and a fit of them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Pixels:
     at : two int arrays
         Their rows and columns, as an index of the image.
     row, col : arrays
-        The same as places; integers are pixel centres.
+        The same as coordinates; integers are pixel centres.
     value : array
     """
 
@@ -43,14 +43,14 @@ class Pixels:
 
 @dataclass(frozen=True, eq=False)
 class EdgePixels:
-    """A region trimmed to one edge: what every edge method starts from.
+    """A region trimmed to one edge: the input of every edge method.
 
     Parameters
     ----------
     image : (rows, cols) array
-        The cut. Pixels that must not be used (nodata, masked, outside the trimmed) are NaN.
+        The region. Pixels that must not be used (nodata, masked, trimmed away) are NaN.
     line : Line
-        The edge in the cut's own coordinates, good to a tenth of a pixel or better.
+        The edge in pixels of the region, good to a tenth of a pixel or better.
     dark, bright : float
         Plateau levels, in the image's units.
     width_px : float
@@ -58,8 +58,8 @@ class EdgePixels:
     noise : float
         Standard deviation of the noise about the edge model, in the image's units.
     blur : GaussianPixel, optional
-        The plain blur fitted to the edge, with line and levels to match; without it the
-        reference method fits its own.
+        The Gaussian through a pixel fitted to the edge together with line and levels; without it
+        the reference method fits its own.
     """
 
     image: Floats
@@ -78,19 +78,19 @@ class EdgePixels:
 
 @dataclass(frozen=True, eq=False)
 class EdgeFit:
-    """What a method makes of trimmed pixels.
+    """The result of a method for trimmed pixels.
 
     Parameters
     ----------
     line : Line
-        The edge as the method located it, in the cut's coordinates, with standard deviations.
+        The edge as the method located it, in pixels of the region, with standard deviations.
     response : Response
         The curves with their covariance; 0 of their distance axis is the 50 % point.
     dark, bright : float
         Plateau levels as the method fitted them.
     distance_px, value, residual : (n,) arrays
         The pixels used (row-major order of the trimmed pixels): normal distance from the
-        50 % point, edge response normalised to 0..1, and what the fit leaves of it.
+        50 % point, edge response normalised to 0..1, and its residual.
     """
 
     line: Line

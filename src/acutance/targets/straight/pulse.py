@@ -1,4 +1,4 @@
-"""Measure a pulse target: a strip between two grounds, as a tarp on grass, a bridge, a stripe."""
+"""Measure a pulse target: two parallel edges, as of a tarp on grass or a bridge."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ __all__ = ["PULSE_METHODS", "measure_pulse"]
 
 
 _Fitted = tuple[EdgeFit, Estimate, Estimate, Estimate]
-"""What a method makes of a pulse: its fit, its width, the height of its falling side over that of
-the rising one, and the FWHM of its response."""
+"""Of a method: the fit of a pulse, its width, the height of its falling side over that of the
+rising one, and the FWHM of its response."""
 
 
 def _spline(trimmed: PulsePixels, fit_width: bool, options: PulseOptions) -> _Fitted:
@@ -43,7 +43,7 @@ def _spline(trimmed: PulsePixels, fit_width: bool, options: PulseOptions) -> _Fi
     fit = fit_pulse(trimmed, fit_width=fit_width, robust=options.robust)
     response = with_uncertain_halo(fit.response)
     prf = prf_fwhm(response, fit.pulse_width.value, fit.width_factor)
-    return replace(fit, response=response), fit.pulse_width, fit.fall, prf
+    return replace(fit, response=response), fit.pulse_width, fit.height_ratio, prf
 
 
 def _published(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted]:
@@ -51,7 +51,7 @@ def _published(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted
         wanted = PUBLISHED_PULSE_OPTIONS[name]
         fit = PUBLISHED_PULSE[name](trimmed, published_options(options, name, wanted))
         along_normal = fit.prf_fwhm_px / fit.px_per_normal
-        return fit, fit.pulse_width, fit.fall, along_normal
+        return fit, fit.pulse_width, fit.height_ratio, along_normal
 
     return measure
 
@@ -80,15 +80,15 @@ def measure_pulse(
     ----------
     image : Image or (rows, cols) array_like
     roi : Region, Box, (row, col, height, width) or None
-        A loose region is normal: the pulse is found in it, and what serves is trimmed.
+        A loose region is normal: the pulse is found in it, and its usable pixels are kept.
     width_px, width_m : float, optional
         Width of the target along its normal, in pixels or in metres (which needs a GSD); without
-        either it is guessed from the profile and fitted.
+        either a first guess from the profile is fitted.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.
     fit_width : bool, optional
         Whether the width is fitted with the LSF, with its own standard deviation (method
-        "spline"); the stated one is then the start, and a check compares the two.
+        "spline"); the stated one is then the first guess, and a check compares the two.
     method : {"spline", "sdsu-2005"}, optional
         The joint fit, or the published ratio of spectra with its biases: its width is the stated
         one, or else the one at which the pulse was found.
@@ -102,7 +102,7 @@ def measure_pulse(
     Raises
     ------
     ImageError, RegionError, OptionError
-        If there are no pixels to measure, or the width makes no sense.
+        If there are no pixels to measure, or the width is out of range.
     NoEdgeError, PhaseError, SupportError
         If there is no pulse, it is aligned with the grid, or too little of it is there.
     """
@@ -117,30 +117,30 @@ def measure_pulse(
         trimmed = replace(trimmed, pulse_width_px=stated_px)
     found = estimate(trimmed, free, chosen)
     if free and stated_px is not None and _is_far(found[1].value, stated_px):
-        # So far from its start the fit may have stopped in a place of its own: start near the end.
+        # Far from the first guess the fit may have stopped in a local minimum: begin near the end.
         trimmed, extent = find_pulse(region.pixels, found[1].value)
         found = estimate(trimmed, free, chosen)
     return _measurement(region, trimmed, extent, found, method, chosen, stated_px)
 
 
 def _find(region: RegionPixels, stated_px: float | None, free: bool) -> tuple[PulsePixels, Extent]:
-    """The strongest pulse; where there is none of the stated width, what there is instead."""
+    """The strongest pulse; if none has the stated width, the error names the width found."""
     try:
         return find_pulse(region.pixels, stated_px, fit_width=free)
     except TargetError as error:
         if stated_px is None:
             raise
-        seen_px = _width_seen(region)
-        if seen_px is None or not _is_far(seen_px, stated_px):
+        found_px = _width_found(region)
+        if found_px is None or not _is_far(found_px, stated_px):
             raise
         raise type(error)(
-            f"{error}; the image shows a strip of about {seen_px:.2f} px where {stated_px:.2f} px "
+            f"{error}; the image shows a pulse of about {found_px:.2f} px where {stated_px:.2f} px "
             "were stated: check the width and the GSD, or state no width"
         ) from error
 
 
-def _width_seen(region: RegionPixels) -> float | None:
-    """Width in pixels of the strip that is found when no width is stated."""
+def _width_found(region: RegionPixels) -> float | None:
+    """Width in pixels of the pulse that is found when no width is stated."""
     try:
         return find_pulse(region.pixels)[0].pulse_width_px
     except TargetError:
@@ -148,7 +148,7 @@ def _width_seen(region: RegionPixels) -> float | None:
 
 
 def _is_far(found_px: float, stated_px: float) -> bool:
-    """Whether a fitted width is another one than what was stated, not a correction of it."""
+    """Whether a fitted width is more than a correction of the stated one."""
     return abs(found_px / stated_px - 1) > MAX_CORRECTED_WIDTH
 
 
@@ -162,7 +162,7 @@ def _method(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted]:
 def _stated_width(
     region: RegionPixels, width_px: float | None, width_m: float | None
 ) -> float | None:
-    """The stated width in pixels along the normal of the region's strongest side."""
+    """The stated width in pixels along the normal of the strongest side in the region."""
     if width_px is not None and width_m is not None:
         raise OptionError("the width was given in pixels and in metres: give one of them")
     if width_m is not None:
@@ -175,7 +175,7 @@ def _stated_width(
         width_px = width_m / region.gsd.along_normal(side.line.normal_deg if side else 0.0)
     if width_px is not None and not 0.3 <= width_px <= 100:
         raise OptionError(
-            f"a pulse {width_px:.3g} px wide cannot be measured: widths of 2 to 6 px serve best; "
+            f"a pulse {width_px:.3g} px wide cannot be measured: widths of 2 to 6 px are best; "
             "check the width and the GSD"
         )
     return width_px
@@ -190,12 +190,12 @@ def _measurement(
     options: PulseOptions,
     stated_px: float | None,
 ) -> StraightMeasurement:
-    """Put together what a measurement holds; the line moves into the whole image's pixels."""
+    """The measurement, its line in pixels of the whole image."""
     fit, width, height_ratio, prf_fwhm_px = found
     fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
     data = CheckData.of(trimmed, fit, width.value)
 
-    def ask() -> tuple[Check, ...]:
+    def answers() -> tuple[Check, ...]:
         return check_pulse(
             region, data, extent, options.limits,
             width=width, height_ratio=height_ratio, stated_px=stated_px,
@@ -213,7 +213,7 @@ def _measurement(
         prf_fwhm_px=prf_fwhm_px,
         stated_width_px=stated_px,
         snr=pulse_snr(data),
-        checks=Checks(ask),
+        checks=Checks(answers),
         image=region.info,
         options=options.to_dict(),
         details=details_of(region, trimmed, fit),

@@ -1,4 +1,4 @@
-"""Is this pulse good enough to tell? The edge's questions, and those of a pulse."""
+"""Checks of a pulse: those of an edge, and of its sides, background and width."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ PULSE_CHECKS = (
     "correlated_noise", "profile", "outliers", "parallel_deg", "background_step", "width_px",
     "width_sigmas", "zero_distance_cpp",
 )  # fmt: skip
-"""What is asked of a pulse."""
+"""Names of all checks of a pulse."""
 
 
 def check_pulse(
@@ -162,10 +162,10 @@ def _stated_width(limits: Limits, width: Estimate, stated_px: float | None) -> C
 
 
 def _zero_distance(data: CheckData, limits: Limits, width_px: float, *, by_ratio: bool) -> Check:
-    """Whether what is reported lies clear of the zeros of the pulse's spectrum.
+    """Whether the reported frequencies are far enough from the zeros of the pulse's spectrum.
 
-    A ratio divides by it. The joint fit does not: it bridges a zero with wider intervals, and asks
-    nothing unless the caller does.
+    A ratio divides by it. The joint fit does not: it bridges a zero with wider intervals, and has
+    no limit unless the caller sets one.
     """
     response = data.fit.response
     reported = {"Nyquist": NYQUIST_CPP}

@@ -1,9 +1,9 @@
-"""How well a pulse tells the halo of its LSF from the ground: a systematic of its own.
+"""The systematic error of the halo of a line spread function (LSF) measured on a pulse.
 
-Of an edge a halo lifts a whole plateau; of a pulse it is a faint halo beside the strip, which
-the level and the slope of the ground take up or feed. What the fit takes for halo is wrong by a
-share of it, more than its covariance says: 0 to 28 % over halos of 1.5 to 4 px, diffraction and
-defocus (documentation, "Pulses"). Every LSF is therefore uncertain by a share of its own halo.
+The halo of an edge lifts a whole plateau; that of a pulse is faint light next to it, which the
+fit cannot separate from the level and the slope of the plateaus. The fitted halo is wrong by a
+share of itself, more than its covariance gives: 0 to 28 % over halos of 1.5 to 4 px, diffraction
+and defocus (documentation, "Pulses"). Every LSF is therefore uncertain by a share of its own halo.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Curve = TypeVar("Curve", Esf, Lsf, Mtf)
 def halo(lsf: Lsf, fwhm_px: float) -> Floats:
     """The light of an LSF beyond 1.5 FWHM, (n,): it sets in smoothly from 1 to 2 FWHM.
 
-    The dark fringe of a sharpened system is none: no ground looks like it.
+    The dark fringe of a sharpened system does not count: no plateau looks like it.
     """
     outwards = np.abs(lsf.distance_px) / fwhm_px
     within = np.clip((outwards - _FROM_WIDTHS) / (_TO_WIDTHS - _FROM_WIDTHS), 0.0, 1.0)
@@ -53,7 +53,7 @@ def with_halo_error(response: Response, share: float) -> tuple[Esf, Lsf, Mtf]:
     step = float(s[1] - s[0])
     part = halo(lsf, width)
     change = share * (part - part.sum() * step * lsf.value)
-    # No light is gained: what the grid does not hold of the LSF lies beyond it.
+    # The total light is kept: the part of the LSF outside the grid lies beyond it.
     change -= change.sum() / lsf.value.sum() * lsf.value
     lifted = np.cumsum(change) * step - 0.5 * change * step
     centre = float(s @ lsf.value / lsf.value.sum())

@@ -1,9 +1,9 @@
 """The width of the pulse response function at half of its maximum, from a fitted LSF and width.
 
-The pulse response function (PRF) is what the image shows of a pulse of height 1 on ground of 0:
-``P(s) = E(s) - E(s - w)`` with the ESF E, 0 at the rising side, and the pulse's width w. It is
-linear in the ESF, so its covariance is that of the ESF seen from two places (Helder, Choi,
-"Generic sensor modeling using pulse method", 2005, 2.3).
+The pulse response function (PRF) is the image of a pulse of height 1 between plateaus of 0:
+``P(s) = E(s) - E(s - w)`` with the edge spread function (ESF) E, 0 at the rising side, and the
+pulse's width w. It is linear in the ESF, so its covariance is that of the ESF at two distances
+(Helder, Choi, "Generic sensor modeling using pulse method", 2005, 2.3).
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ def prf_fwhm(response: Response, width_px: float, width_factor: Floats) -> Estim
     width_px : float
         Width of the pulse.
     width_factor : (m,) array
-        Factor of the width's variance in the latent variables of the curves: of a fit that finds
-        both, a pulse seen too wide goes with an LSF seen too narrow.
+        Factor of the width's variance in the latent variables of the curves: in a fit of
+        both, a pulse that is too wide comes with an LSF that is too narrow.
 
     Returns
     -------

@@ -62,7 +62,7 @@ class WidthConsistency:
 
     @property
     def difference_px(self) -> float:
-        """Found less stated."""
+        """Found minus stated."""
         return self.found_px - self.stated_px
 
     @property
@@ -127,7 +127,7 @@ def width_consistency(fit: SplinePulse, stated_width_px: float) -> WidthConsiste
     """
     if not fit.pulse_width.std > 0:
         raise OptionError(
-            "the width was held at its stated value and says nothing about it: fit the pulse "
+            "the width was held at its stated value and has no standard deviation: fit the pulse "
             "with fit_width=True"
         )
     if not stated_width_px > 0:
@@ -144,8 +144,8 @@ class WidthSearch:
     stated_px : float
         Width along the normal that was used.
     width_px, roughness : (n,) arrays
-        Widths along the normal, and the rms departure of the profile's spectrum from a smooth
-        MTF times that of a pulse of this width.
+        Widths along the normal, and the rms residual of the profile's spectrum about a smooth MTF
+        times the spectrum of a pulse of this width.
     chosen_px : float
         Width of the least roughness.
     deformation : (float, float)
@@ -168,7 +168,7 @@ class WidthSearch:
         low, high = self.deformation
         lies = f"M is {100 * low:+.0f} % off a smooth curve at .3 and {100 * high:+.0f} % at .4"
         if abs(low) + abs(high) < 0.05:
-            return f"{lies}: no deformation, the stated width of {self.stated_px:.3f} px serves"
+            return f"{lies}: no deformation, the stated width of {self.stated_px:.3f} px is usable"
         side = "large" if self.stated_px > self.chosen_px else "small"
         return (
             f"{lies}: the stated width of {self.stated_px:.3f} px is too {side}, "
@@ -196,7 +196,7 @@ def smoothest_width(
     The reports try widths and judge the curve by eye, mostly at .3 and .4 cycles per pixel. Here
     the profile's spectrum is fitted by ``sinc(w f)`` times a smooth MTF, an even polynomial of
     degree 8 that is 1 at frequency 0. What is left is the roughness of the ratio, weighted by
-    the pulse's spectrum so that the zero itself has no voice.
+    the pulse's spectrum so that the zero itself does not count.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def smoothest_width(
 
 
 def _smooth_mtf(freq: Floats, spectrum: Floats, width_px: float) -> tuple[float, Floats]:
-    """Rms of what a smooth MTF times the pulse's spectrum leaves, and the MTF's coefficients."""
+    """Rms residual of a smooth MTF times the pulse's spectrum, and the MTF's coefficients."""
     pulse = np.sinc(width_px * freq)
     basis = _even_powers(freq, float(freq[-1])) * pulse[:, None]
     coefficient = np.asarray(np.linalg.lstsq(basis, spectrum - pulse, rcond=None)[0], dtype=float)

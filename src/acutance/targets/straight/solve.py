@@ -1,10 +1,11 @@
 """The reference estimator: every straight target is one linear model.
 
 The image of a straight target is ``dark + height * sum_k share_k R(s - position_k)`` with s the
-normal distance and R the response to a unit step (`fit.profile`). R is that of the plain blurred
-edge (`fit.start`) plus a free spline and a tail (`fit.spline`, `fit.prior`), whose amplitudes the
-data decide (`fit.posterior`). The line's direction and, of a pulse, its width and its fall are
-further unknowns of the same linear model (`fit.linear`), solved again where they have moved.
+normal distance and R the response to a unit step (`step_profile`). R is that of the first fit
+(`first_fit`) plus a free spline and a tail (`spline`, `lsf_prior`), whose amplitudes the data
+determine (`marginal_likelihood`). The line's direction and, of a pulse, its width and its height
+ratio are further unknowns of the same linear model (`linear_model`), solved again where they have
+moved.
 """
 
 from __future__ import annotations
@@ -29,9 +30,9 @@ from acutance.targets.straight.step_profile import Profile
 __all__ = ["Solution", "Solved", "solve"]
 
 _SETTLED_PX = 0.01
-_SETTLED_FALL = 0.003
-"""A linear step this short leaves less than 1e-4 of the edge's height behind."""
-_RESTING = 3.0
+_SETTLED_RATIO = 0.003
+"""Updates below these: the error of linearity is less than 1e-4 of the edge's height."""
+_NEGLIGIBLE_SIGMAS = 3.0
 _MAX_PASSES = 10
 _MIN_STEEP = 20
 _SIGNIFICANT = 4.0
@@ -49,7 +50,7 @@ class Solved:
     outlier : (n,) array
         Weight of every pixel, 1 where it is no outlier.
     correlation : Correlation
-        What the residuals say of the noise's correlation.
+        Correlation of the noise, from the residuals.
     """
 
     solution: Solution
@@ -57,9 +58,9 @@ class Solved:
     correlation: Correlation
 
     @property
-    def start(self) -> FirstFit:
-        """What the linear model departs from: line, blur, levels and profile as they settled."""
-        return self.solution.linear.start
+    def first_fit(self) -> FirstFit:
+        """Line, blur, levels and profile about which the last linear model was made."""
+        return self.solution.linear.first_fit
 
     @property
     def model(self) -> LsfModel:
@@ -69,7 +70,7 @@ class Solved:
     @property
     def dark(self) -> float:
         """Level before the first step."""
-        return self.start.dark + float(self.solution.posterior.beta[0])
+        return self.first_fit.dark + float(self.solution.posterior.beta[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,11 +87,11 @@ class Solution:
     posterior : Posterior
         Of the unknowns.
     residual, noise : (n,) arrays
-        What is left of every pixel, and the noise's standard deviation there, in image units.
+        Residual of every pixel, and the standard deviation of its noise, in image units.
     side_noise : (float, float)
-        Standard deviation of the noise on dark and on bright ground.
+        Standard deviation of the noise on the dark and on the bright plateau.
     roughness : float
-        Noise variance the edge's edge roughness adds where the image is steepest, relative to the
+        Noise variance that the edge roughness adds where the image is steepest, relative to the
         rest.
     """
 
@@ -110,45 +111,45 @@ class Solution:
 
     @property
     def rotation_rad(self) -> float:
-        """How the line wants to turn."""
+        """Rotation of the line in this pass."""
         return float(self.posterior.beta[-self.linear.derivatives])
 
     @property
     def rotation_std_rad(self) -> float:
-        """Standard deviation of the turn."""
+        """Standard deviation of the rotation."""
         return _norm(self.posterior.factor[-self.linear.derivatives])
 
     @property
-    def steps(self) -> Floats:
-        """How a pulse's width (if free) and its fall want to change, (k,)."""
-        return self.posterior.beta[self._first_step :]
+    def updates(self) -> Floats:
+        """Changes of a pulse's width (if free) and of its height ratio in this pass, (k,)."""
+        return self.posterior.beta[self._first_update :]
 
     @property
-    def steps_std(self) -> Floats:
-        """Standard deviations of the steps, (k,)."""
-        return np.array([_norm(row) for row in self.posterior.factor[self._first_step :]])
+    def updates_std(self) -> Floats:
+        """Standard deviations of the updates, (k,)."""
+        return np.array([_norm(row) for row in self.posterior.factor[self._first_update :]])
 
     @property
-    def _first_step(self) -> int:
+    def _first_update(self) -> int:
         return self.posterior.beta.size - self.linear.derivatives + 1
 
 
 def solve(
-    pixels: Pixels, start: FirstFit, *, robust: bool = True, fit_width: bool = False
+    pixels: Pixels, first_fit: FirstFit, *, robust: bool = True, fit_width: bool = False
 ) -> Solved:
     """Solve the linear model until line, profile, outliers and noise have settled.
 
     Parameters
     ----------
     pixels : Pixels
-    start : FirstFit
-        Line, blur, levels and profile to depart from.
+    first_fit : FirstFit
+        Line, blur, levels and profile to begin with.
     robust : bool, optional
         Bound the weight of outliers.
     fit_width : bool, optional
-        Whether a pulse's width is unknown (its fall always is).
+        Whether a pulse's width is unknown (its height ratio always is).
     """
-    linear = Linear.about(start, pixels, fit_width=fit_width)
+    linear = Linear.about(first_fit, pixels, fit_width=fit_width)
     outlier = np.ones(pixels.value.size)
     whiteness = Correlation(1.0, 0.0, 0.0)
     earlier: Solution | None = None
@@ -158,11 +159,11 @@ def solve(
         standard = solved.residual / solved.noise
         heavy = robust and float(np.abs(standard).max()) > _OUTLYING
         again = _reweighted(standard, linear) if heavy else outlier
-        found = correlation(_bounded(standard), *pixels.at, [linear.start.line.normal])
+        found = correlation(_bounded(standard), *pixels.at, [linear.first_fit.line.normal])
         short = _are_short(solved, fit_width)
         settled = (
             short
-            # The derivative by the width is that of the blur until there is an LSF.
+            # The derivative by the width is that of the first fit until there is an LSF.
             and not (fit_width and earlier is None)
             and np.max(np.abs(again - outlier)) < 0.05
             and abs(found.inflation / whiteness.inflation - 1) < 0.05
@@ -172,58 +173,61 @@ def solve(
             break
         outlier, whiteness, earlier = again, found, solved
         roughness = solved.roughness
-        if not (short and _rest(solved)):
+        if not (short and _is_at_rest(solved)):
             linear = Linear.about(_updated(solved, fit_width), pixels, fit_width=fit_width)
     return Solved(solved, outlier, whiteness)
 
 
 def _are_short(solved: Solution, fit_width: bool) -> bool:
-    """Whether the steps of line and profile are so short that the linear model serves.
+    """Whether the updates of line and profile are short enough for the linear model.
 
-    What a linear step in the width leaves behind is about its square in pixels, of a step in the
-    fall a twentieth: it has to be small beside the standard deviation.
+    The error of a linear update of the width is about its square in pixels, of one of the height
+    ratio a twentieth: it has to be much smaller than the standard deviation.
     """
     if abs(solved.rotation_rad) * solved.linear.half_length_px >= _SETTLED_PX:
         return False
-    steps, stds = np.abs(solved.steps), solved.steps_std
-    tolerance = np.maximum(_SETTLED_FALL, 6.0 * stds)
+    updates, stds = np.abs(solved.updates), solved.updates_std
+    tolerance = np.maximum(_SETTLED_RATIO, 6.0 * stds)
     if fit_width:
         tolerance[0] = max(_SETTLED_PX, math.sqrt(0.06 * stds[0]))
-    return bool(np.all(steps < tolerance))
+    return bool(np.all(updates < tolerance))
 
 
-def _rest(solved: Solution) -> bool:
-    """Whether the steps of line and profile are no longer than the pixels tell of them."""
-    still = np.abs(solved.steps) < _RESTING * solved.steps_std
-    return bool(abs(solved.rotation_rad) < _RESTING * solved.rotation_std_rad and np.all(still))
+def _is_at_rest(solved: Solution) -> bool:
+    """Whether the updates of line and profile are within their standard deviations."""
+    still = np.abs(solved.updates) < _NEGLIGIBLE_SIGMAS * solved.updates_std
+    return bool(
+        abs(solved.rotation_rad) < _NEGLIGIBLE_SIGMAS * solved.rotation_std_rad and np.all(still)
+    )
 
 
 def _updated(solved: Solution, fit_width: bool) -> FirstFit:
-    """The start, with the line and the profile moved to where the solution wants them."""
-    start = solved.linear.start
-    if not (math.isfinite(solved.rotation_rad) and np.all(np.isfinite(solved.steps))):
+    """The first fit with the line and the profile of the solution."""
+    first_fit = solved.linear.first_fit
+    if not (math.isfinite(solved.rotation_rad) and np.all(np.isfinite(solved.updates))):
         raise NoEdgeError(
             "the fit of the target did not settle: its pixels do not follow one straight line; "
             "choose a region with one straight target"
         )
-    # A turn that is too large for the linear model is cut: three pixels at the ends a pass.
+    # A rotation too large for the linear model is cut: three pixels at the ends a pass.
     most = 3.0 / max(solved.linear.half_length_px, 1.0)
-    line = start.line.moved(0.0, math.degrees(float(np.clip(solved.rotation_rad, -most, most))))
-    if not solved.steps.size:
-        return replace(start, line=line)
-    width_px, fall = start.profile.positions_px[1], -start.profile.shares[1]
+    line = first_fit.line.moved(0.0, math.degrees(float(np.clip(solved.rotation_rad, -most, most))))
+    if not solved.updates.size:
+        return replace(first_fit, line=line)
+    width_px, height_ratio = first_fit.profile.positions_px[1], -first_fit.profile.shares[1]
     if fit_width:
-        # A step that is too long for the linear model is cut: half the width a pass.
-        width_px += float(np.clip(solved.steps[0], -0.5 * width_px, 0.5 * width_px))
-    fall += float(np.clip(solved.steps[-1], -0.5 * fall, 0.5 * fall))
-    profile = Profile((0.0, width_px), (1.0, -fall))
-    return replace(start, line=line, profile=profile)
+        # An update too large for the linear model is cut: half the width a pass.
+        width_px += float(np.clip(solved.updates[0], -0.5 * width_px, 0.5 * width_px))
+    half = 0.5 * height_ratio
+    height_ratio += float(np.clip(solved.updates[-1], -half, half))
+    profile = Profile((0.0, width_px), (1.0, -height_ratio))
+    return replace(first_fit, line=line, profile=profile)
 
 
 def _pass(
     linear: Linear, outlier: Floats, inflation: float, roughness: float, earlier: Solution | None
 ) -> Solution:
-    """Solve for the LSF's departures from the start, the levels, the line and the steps."""
+    """Solve for the correction of the LSF, the levels, the line and the profile."""
     noise = linear.noise(outlier, roughness)
     weight = outlier / noise.relative
     columns = linear.columns(None if earlier is None else earlier.model)
@@ -232,7 +236,7 @@ def _pass(
         normal.combined(linear.design), linear.prior, noise.scale, inflation,
         None if earlier is None else earlier.posterior,
     )  # fmt: skip
-    residual = linear.departure - linear.image(columns, posterior.beta)
+    residual = linear.first_residual - linear.image(columns, posterior.beta)
     std = np.sqrt(posterior.variance * noise.relative)
     standard, steep = _bounded(residual / std), linear.steepness
     dark, bright = np.sqrt(posterior.variance * noise.sides).tolist()
@@ -245,19 +249,19 @@ def _pass(
 def _equations(
     linear: Linear, weight: Floats, columns: Floats, count: float, earlier: Solution | None
 ) -> Normal:
-    """The pixels' equations; where only the LSF has become known since, most of them are there."""
-    stencils, departure = linear.stencils, linear.departure
+    """The pixels' equations; those that do not depend on the LSF are kept from an earlier pass."""
+    stencils, residual = linear.stencils, linear.first_residual
     if (
         earlier is None
         or earlier.linear is not linear
         or not np.array_equal(earlier.weight, weight)
     ):
-        return accumulate(stencils, departure, weight, columns, count)
-    return renewed(earlier.normal, stencils, departure, weight, columns, linear.derivatives)
+        return accumulate(stencils, residual, weight, columns, count)
+    return renewed(earlier.normal, stencils, residual, weight, columns, linear.derivatives)
 
 
 def _edge_roughness(standard: Floats, steep: Floats, assumed: float) -> float:
-    """How much noisier the steep pixels are than the rest, beyond what chance explains."""
+    """Excess noise variance of the steep pixels, beyond chance, relative to the rest."""
     there = steep > 0.25
     count = int(np.count_nonzero(there))
     if count < _MIN_STEEP:
@@ -282,10 +286,10 @@ def _bounded(standard: Floats) -> Floats:
 def _reweighted(standard: Floats, linear: Linear) -> Floats:
     """Weights of the pixels by their standardised residuals.
 
-    An outlier stands out from pixels like itself. Where many depart together, as in the
-    transition when the model does not yet follow the edge, nobody is one.
+    An outlier differs from pixels like itself. Where many residuals are large, as in the
+    transition when the model does not yet follow the edge, no pixel is an outlier.
     """
-    start = linear.start
-    transition = start.profile.near(linear.s, start.blur.width_px)
+    first_fit = linear.first_fit
+    transition = first_fit.profile.near(linear.s, first_fit.blur.width_px)
     bulk = [robust_scale(standard[place]) for place in (transition, ~transition) if place.any()]
     return outlier_weights(standard / min(max(bulk), 1.0))

@@ -1,12 +1,13 @@
-"""The space the line spread function lives in: uniform quadratic B-splines.
+"""Line spread functions (LSF) as sums of uniform quadratic B-splines.
 
-Distances are in units of the blur's width (``u = s / width_px``), so one basis serves every
-sensor. With cells of length h on [-U, U], an LSF is ``sum_j c_j B2_j(u)`` and its integral, the
-ESF, is a cubic B-spline whose coefficients e are the running sum of c:
+Distances are in units of the width of the first fit (``u = s / width_px``), so one basis is enough
+for every sensor. With cells of length h on [-U, U], an LSF is ``sum_j c_j B2_j(u)`` and its
+integral, the edge spread function (ESF), is a cubic B-spline whose coefficients e are the running
+sum of c:
 
     e_m = h * sum_{j <= m - 3} c_j,      ESF(u) = sum_m e_m B3_m(u)
 
-so that every pixel meets four coefficients only, and the ESF is exactly 0 and constant outside
+so that every pixel depends on four coefficients only, and the ESF is exactly 0 and constant outside
 the support. The Fourier transform of the LSF is closed form:
 
     OTF(f) = h sinc(f h)^3 sum_j c_j exp(-2 pi i f u_j)
@@ -40,7 +41,7 @@ __all__ = [
 ]
 
 HALF_SUPPORT: Final = 8.0
-"""U: the spline's LSF is zero beyond eight widths; the tail term takes over there."""
+"""U: the spline's LSF is zero beyond eight widths, where only the tail remains."""
 CELLS: Final = 80
 CELL: Final = 2 * HALF_SUPPORT / CELLS
 SIZE: Final = CELLS - 2
@@ -60,7 +61,7 @@ def _cells(u: Floats) -> tuple[NDArray[np.intp], Floats]:
 
 
 def edge_weights(u: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """The four cubic B-splines every distance meets.
+    """The four cubic B-splines that are not 0 at each distance.
 
     Parameters
     ----------

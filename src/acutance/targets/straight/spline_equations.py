@@ -25,7 +25,7 @@ def accumulate(
     Parameters
     ----------
     stencils : sequence of ((n,) int, (4, n)) arrays
-        For every step of the ground: each pixel's place in the ESF's spline, as
+        For every step of the profile: each pixel's place in the ESF's spline, as
         `spline.edge_weights` gives it, the weights times the step's share.
     y, weight : (n,) arrays
         Value, and inverse variance (any common scale) of the pixels.

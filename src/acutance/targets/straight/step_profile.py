@@ -1,4 +1,4 @@
-"""What lies on the ground along the normal of a straight target: one step, or several."""
+"""The scene along the normal of a straight target: one step, or several."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from acutance.numerics.gaussian_pixel import GaussianPixel
 __all__ = ["EDGE", "Profile", "Sides", "pulse_profile"]
 
 Sides = tuple[tuple[Floats, Floats], ...]
-"""Of either plateau, how much of every pixel sees it, and how far outwards the pixel lies."""
+"""Of either plateau, its share in every pixel, and the pixel's distance outwards."""
 
 
 @dataclass(frozen=True)
 class Profile:
-    """Steps of the ground's brightness along the normal.
+    """Steps of the scene's brightness along the normal.
 
-    With R the response to a unit step, a pixel at normal distance s sees
+    With R the response to a unit step, a pixel at normal distance s has the value
 
         dark + height * sum_k share_k R(s - position_k)
 
@@ -41,25 +41,25 @@ class Profile:
         return [s - position if position else s for position in self.positions_px]
 
     def seen(self, blur: GaussianPixel, s: Floats) -> list[tuple[Floats, Floats]]:
-        """ESF and LSF of a plain blur at the distances from every step, (n,) each."""
+        """ESF and LSF of a Gaussian through a pixel at the distances from every step, (n,) each."""
         return [blur.esf_and_lsf(distance) for distance in self.distances(s)]
 
     def response(self, seen: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
-        """What a blur makes of the profile, and its derivative by s, (n,) each."""
+        """The blurred profile and its derivative by s, (n,) each."""
         value, slope = seen[0]
         for share, (esf, lsf) in zip(self.shares[1:], seen[1:], strict=True):
             value, slope = value + share * esf, slope + share * lsf
         return value, slope
 
     def mean(self, blur: GaussianPixel, s: Floats) -> Floats:
-        """What a plain blur makes of the profile, (n,)."""
+        """The profile, blurred by a Gaussian through a pixel, (n,)."""
         value = blur.esf(s)
         for position, share in zip(self.positions_px[1:], self.shares[1:], strict=True):
             value += share * blur.esf(s - position)
         return value
 
     def sides(self, seen: list[tuple[Floats, Floats]], s: Floats) -> Sides:
-        """The two outermost plateaus: how much of a pixel sees each, and how far out it lies."""
+        """The two outermost plateaus: their share in a pixel, its distance outwards."""
         last = self.positions_px[-1]
         return (1 - seen[0][0], -s), (seen[-1][0], s - last if last else s)
 
@@ -78,6 +78,6 @@ class Profile:
 EDGE: Final = Profile((0.0,), (1.0,))
 
 
-def pulse_profile(width_px: float, fall: float = 1.0) -> Profile:
-    """A step up and one down after `width_px`; `fall` is the second's height over the first's."""
-    return Profile((0.0, width_px), (1.0, -fall))
+def pulse_profile(width_px: float, height_ratio: float = 1.0) -> Profile:
+    """A step up and one down after `width_px`; `height_ratio`: the second over the first."""
+    return Profile((0.0, width_px), (1.0, -height_ratio))

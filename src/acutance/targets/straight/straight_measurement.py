@@ -1,4 +1,4 @@
-"""What a straight target gives: numbers and curves along its normal, the line, the pixels."""
+"""The result of a straight target: numbers and curves along its normal, the line, the pixels."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["StraightDetails", "StraightMeasurement"]
 
 @dataclass(frozen=True, eq=False)
 class StraightDetails(ShortRepr):
-    """The pixels a measurement used, seen along the normal.
+    """The pixels of a measurement by their distance along the normal.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class StraightMeasurement(Measurement):
         return Estimate(self.line.angle_deg, self.line.angle_std_deg)
 
     def pulse_numbers(self) -> dict[str, Estimate]:
-        """What only a pulse has, by name: its width and that of its response; metres by a GSD."""
+        """Widths of a pulse and of its response by name, with a GSD also in metres."""
         gsd_m = self.response.gsd_m
         found: dict[str, Estimate] = {}
         for name, number in (("width", self.width_px), ("prf_fwhm", self.prf_fwhm_px)):

@@ -1,8 +1,7 @@
-"""Does something lie there that is no sensor's blur? Structure of plateaus, pulse and residuals.
+"""Structure of plateaus, pulse and residuals that is no blur of a sensor.
 
-What lies on the background is taken for the sensor's where the fit can follow it, and is left over
-where it cannot. The curves show the first (`structure`, `asymmetric_wings`), the residuals the
-second (`profile`, `target_uniformity`).
+Structure of the scene that the fit can follow is part of its curves (`structure`,
+`asymmetric_wings`); the rest is in the residuals (`profile`, `target_uniformity`).
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ _BLOCK_PX = 4
 
 
 def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> Check:
-    """Structure of one plateau: what means over 4 x 4 pixels vary beyond what noise explains."""
+    """Structure of one plateau: variation of means over 4 x 4 pixels, beyond noise."""
     variation = _blotches(data, data.value, outwards > data.far_px)
     found = (
         f"the plateau {PLACES[side]} varies by {100 * variation:.1f} % of the contrast from place "
@@ -51,7 +50,7 @@ def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> 
 
 
 def target_uniformity(data: CheckData, limits: Limits) -> Check:
-    """Structure of a pulse and of its two sides, from what the fit leaves there."""
+    """Structure of a pulse and of its two sides, from the residuals there."""
     variation = _blotches(data, data.residual, data.outside < 0.5 * data.fwhm_px)
     found = f"the pulse varies by {100 * variation:.1f} % of its height from place to place"
     return answer("uniformity_target", bounded_ratio(1.0, variation), found, limits)
@@ -95,8 +94,8 @@ def edge_roughness(data: CheckData, limits: Limits) -> Check:
     """How far the target's border moves to and fro from pixel to pixel, beyond noise.
 
     Pixels on a border that is a distance d off its line differ by d times the slope of the image:
-    d is the root of what the residuals there have more than those of the noisier plateau, by the
-    squared slope.
+    d^2 is the excess of their mean square residual over that of the noisier plateau, divided by the
+    mean square slope.
     """
     slope = data.slope
     steep = np.abs(slope) > _STEEP_SHARE * float(np.max(np.abs(slope)))
@@ -139,10 +138,10 @@ def asymmetric_wings(data: CheckData, limits: Limits) -> Check:
 
 
 def profile(data: CheckData, limits: Limits, last_px: float, *, own_misfit: bool) -> Check:
-    """What the fit leaves along the normal and repeats all along the target.
+    """Residuals along the normal that repeat all along the target.
 
-    Noise, however coloured, differs from part to part of the target; a line parallel to it, a
-    striped pulse or ringing the LSF cannot follow is the same in all of them.
+    Noise of any colour differs from part to part of the target; a line parallel to it, a striped
+    pulse or ringing that the LSF cannot follow is the same in all of them.
 
     Parameters
     ----------
@@ -150,7 +149,7 @@ def profile(data: CheckData, limits: Limits, last_px: float, *, own_misfit: bool
     last_px : float
         Place of the target's last step: 0 for an edge.
     own_misfit : bool
-        Whether the method's curves do not claim to follow the pixels (the published ones smooth).
+        Whether the method's curves do not follow the pixels (the published ones smooth).
     """
     s = -data.before
     steep, near = _STEEP_WIDTHS * data.fwhm_px, _NEAR_WIDTHS * data.fwhm_px
@@ -204,9 +203,9 @@ def _common_profile(data: CheckData, s: Floats, start: float, stop: float) -> tu
     freedom = parts - 1
     shared = float(np.sum(mean.sum(axis=0) ** 2) - np.sum(mean**2))
     apart = mean - mean.mean(axis=0)
-    spread = apart @ apart.T / freedom
-    trace = float(np.trace(spread))
-    squares = float(np.sum(spread**2)) - trace**2 / freedom
+    covariance = apart @ apart.T / freedom
+    trace = float(np.trace(covariance))
+    squares = float(np.sum(covariance**2)) - trace**2 / freedom
     squares *= freedom**2 / ((freedom - 1) * (freedom + 2))
     # A covariance of B bins cannot have a smaller trace of its square than an even one.
     variance = 2 * parts * freedom * max(squares, trace**2 / mean.shape[1], 1e-24)

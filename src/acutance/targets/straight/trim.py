@@ -1,7 +1,7 @@
-"""Trim a region to the pixels that serve one edge.
+"""Trim a region to the usable pixels of one edge.
 
-Beside a real edge there are other things: the target's end, a road, a second edge. A pixel
-serves when, going outwards from the line, everything up to it looks like the plateau of its side.
+Next to a real edge there are other things: the target's end, a road, a second edge. A pixel is
+usable if all pixels between it and the line look like the plateau of its side.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ _FAR_PX = 100.0
 _FIRST_REACH_PX = 7.0
 _REACH_WIDTHS = 2.5
 _WIDER: Floats = np.array([1.0, 1.5, 2.0, 3.0, 4.0])
-"""Plateaus to ask for, in units of what is needed."""
+"""Widths of plateaus that are tried, in units of the smallest one needed."""
 
 
 @dataclass(frozen=True)
 class Extent:
-    """What of a region serves the edge.
+    """The usable part of a region.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Extent:
     length_px : float
         How long the edge is.
     whole : bool
-        Whether the whole region serves.
+        Whether the whole region is usable.
     """
 
     dark_px: float
@@ -59,7 +59,7 @@ class Extent:
 
 
 def trim(image: Floats, segment: Segment) -> tuple[EdgePixels, Extent]:
-    """The pixels that serve the edge found as `segment`.
+    """The usable pixels of the edge found as `segment`.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgePixels, Extent]:
     Raises
     ------
     NoEdgeError
-        If the edge drowns in the noise.
+        If the edge is too low for the noise.
     SupportError
         If it is too short, or a side has no plateau.
     """
@@ -91,7 +91,7 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgePixels, Extent]:
 
 
 def near_line(image: Floats, line: Line) -> Floats:
-    """An image without what lies too far from a line to tell of the sensor, (rows, cols)."""
+    """An image without the pixels too far from a line to depend on the sensor, (rows, cols)."""
     rows, cols = image.shape
     if max(rows, cols) <= _FAR_PX:
         return image
@@ -102,7 +102,7 @@ def near_line(image: Floats, line: Line) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class UsablePixels:
-    """What of an image serves a target: its pixels (NaN elsewhere), line and extent."""
+    """The usable pixels of a target (NaN elsewhere), its line and its extent."""
 
     image: Floats
     line: Line
@@ -120,7 +120,7 @@ def select_usable(
     pixels : Pixels
         The image's finite pixels.
     edge : FirstFit
-        The plain blurred target: an edge or a pulse.
+        The first fit of the target: an edge or a pulse.
     half_length_px : float
         Half the length over which it was found.
 
@@ -129,15 +129,15 @@ def select_usable(
     NoEdgeError
         If the plateaus are too rough for the target's height.
     SupportError
-        If too few rows serve.
+        If too few rows are usable.
     """
     rows, cols = pixels.at
     s = edge.line.normal_distance(pixels.row, pixels.col)
     t = edge.line.tangent_distance(pixels.row, pixels.col)
-    departure = (pixels.value - edge.dark) / edge.height - edge.profile.mean(edge.blur, s)
-    # One bad pixel is an outlier, and no structure of the ground.
-    np.clip(departure, -1.0, 1.0, out=departure)
-    structure = _structure_mask(image.shape, rows, cols, departure, s, t, edge, half_length_px)
+    residual = (pixels.value - edge.dark) / edge.height - edge.profile.mean(edge.blur, s)
+    # One bad pixel is an outlier, and no structure of the plateaus.
+    np.clip(residual, -1.0, 1.0, out=residual)
+    structure = _structure_mask(image.shape, rows, cols, residual, s, t, edge, half_length_px)
     need = 1.5 * edge.blur.width_px + 1.5
     first, bins, dark_reach, bright_reach = _reaches(edge, s, t, structure, need)
     start, stop = _best_run(np.minimum(dark_reach, bright_reach), need)
@@ -165,13 +165,13 @@ def select_usable(
         edge.line.row + x * middle, edge.line.col - y * middle, edge.line.normal_deg,
         length_px=float(length),
     )  # fmt: skip
-    _require_contrast(edge, departure[used])
+    _require_contrast(edge, residual[used])
     extent = Extent(dark_px, bright_px, float(length), whole)
     return UsablePixels(image, line, extent)
 
 
 def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> FirstFit:
-    """Fit the plain blurred edge to the pixels close to the segment: closer for a sharper one."""
+    """Fit the Gaussian through a pixel near the segment: nearer for a sharper edge."""
     s = segment.line.normal_distance(row, col)
     t = segment.line.tangent_distance(row, col)
     along = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
@@ -201,19 +201,20 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Fir
     if edge.height < MIN_SNR * edge.noise:
         raise NoEdgeError(
             f"the strongest edge has a height of {edge.height:.4g} in noise of {edge.noise:.3g}: "
-            f"an SNR of {edge.height / edge.noise:.1f} where {MIN_SNR:g} is the least"
+            f"an SNR of {edge.height / edge.noise:.1f} where at "
+            f"least {MIN_SNR:g} is needed; choose a region with more contrast or less noise"
         )
     return edge
 
 
-def _require_contrast(edge: FirstFit, departure: Floats) -> None:
-    """Refuse an edge that is lower than its own plateaus are rough."""
-    roughness = math.sqrt(float(departure @ departure) / departure.size)
+def _require_contrast(edge: FirstFit, residual: Floats) -> None:
+    """Refuse an edge whose height is not larger than the roughness of its plateaus."""
+    roughness = math.sqrt(float(residual @ residual) / residual.size)
     if roughness * MIN_SNR > 1:
         raise NoEdgeError(
             f"the edge has a height of {edge.height:.4g}, and its sides vary by "
-            f"{roughness * edge.height:.3g}: a ratio of {1 / roughness:.1f} where {MIN_SNR:g} is "
-            "the least; choose a region whose two sides are uniform"
+            f"{roughness * edge.height:.3g}: a ratio of {1 / roughness:.1f} where at "
+            f"least {MIN_SNR:g} is needed; choose a region whose two sides are uniform"
         )
 
 
@@ -221,7 +222,7 @@ def _structure_mask(
     shape: tuple[int, ...],
     rows: NDArray[np.intp],
     cols: NDArray[np.intp],
-    departure: Floats,
+    residual: Floats,
     s: Floats,
     t: Floats,
     edge: FirstFit,
@@ -230,7 +231,7 @@ def _structure_mask(
     """Which pixels do not look like the plateau of their side, in the mean of 3 x 3 pixels."""
     place = rows * shape[1] + cols
     fields = np.zeros((2, *shape))
-    fields[0].reshape(-1)[place] = departure
+    fields[0].reshape(-1)[place] = residual
     fields[1].reshape(-1)[place] = 1.0
     total, known = _box(fields)
     smooth: Floats = (total / np.maximum(known, 1.0)).reshape(-1)[place]
@@ -239,7 +240,7 @@ def _structure_mask(
     around = (np.abs(t) < half_length_px) & (outside > width)
     around &= outside < _FIRST_REACH_PX + width
     noise = median(np.abs(smooth[around])) / 0.6745 if around.any() else 0.0
-    # Beyond a fifth of the contrast nothing passes for noise, however rough the ground is.
+    # More than a fifth of the contrast is structure, however rough the plateaus are.
     tolerance = max(PLATEAU_TOLERANCE, min(_SIGNIFICANCE * noise, MAX_TOLERANCE))
     near = outside < 1.5 * width
     return np.abs(smooth) > np.where(near, max(NEAR_TOLERANCE, tolerance), tolerance)
@@ -260,8 +261,8 @@ def _reaches(
     """How far every row of the target is clear, before its first and behind its last step.
 
     Rows are one pixel long along the edge; the reach of a row ends before the first structure pixel
-    of it or of the rows beside it, or at the last pixel there is. What is structure is blurred too:
-    where there is more than `need`, the reach keeps the blur's width away from it.
+    of it or of the rows next to it, or at the last pixel. Structure is blurred too: where the reach
+    exceeds `need`, it ends a width of the blur before the structure.
     """
     first = math.floor(float(t.min()))
     bins = (t - first).astype(np.intp)
@@ -288,15 +289,15 @@ def _reaches(
 
 
 def _spoiled(stop: Floats, rows: int) -> Floats:
-    """What is left where a structure pixel also spoils the `rows` beside its own."""
+    """The reach of every row, where a structure pixel also ends the `rows` next to its own."""
     padded = np.pad(stop, rows, constant_values=np.inf)
     return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * rows + 1).min(axis=1))
 
 
 def _best_run(reach: Floats, need: float) -> tuple[int, int]:
-    """The run of rows that serves best: long, with plateaus of at least `need` pixels.
+    """The best run of rows: long, with plateaus of at least `need` pixels.
 
-    Asking for a wider plateau shortens the run; twice the need is worth a third of the rows.
+    A wider plateau shortens the run; twice the need is worth a third of the rows.
     """
     wide = np.zeros((_WIDER.size, reach.size + 2), np.int8)
     wide[:, 1:-1] = reach >= need * _WIDER[:, None]

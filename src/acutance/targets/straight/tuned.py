@@ -20,11 +20,11 @@ __all__ = [
     "GRADIENT_SIGMAS",
     "HALO",
     "HALO_SHARE",
-    "HARMLESS_STEP",
     "LOG_AMPLITUDE",
     "LOG_AMPLITUDE_STD",
     "MAX_ANGLE_BY_ROWS_DEG",
     "MAX_CORRECTED_WIDTH",
+    "MAX_FINE_STEP",
     "MAX_TOLERANCE",
     "MIN_CONTRAST_SHARE",
     "MIN_PHASES",
@@ -48,12 +48,12 @@ __all__ = [
 
 # The prior of the LSF (lsf_prior.py): extent L and smoothness l of its processes, in widths.
 SHAPE: Final = (1.2, 0.6)
-"""Smooth departures near the peak: sharpening, asymmetry, shoulders (benchmarks/accuracy.py)."""
+"""Smooth corrections near the peak: sharpening, asymmetry, shoulders (benchmarks/accuracy.py)."""
 DETAIL: Final = (0.7, 0.17)
 """Fine structure of the peak. At (1.5, .25) obscured telescopes go from 36 to 85 % coverage of
 MTF(.25), but RMS at SNR 50 from .0105 to .0111 (benchmarks/coverage.py)."""
 HALO: Final = (3.0, 1.2)
-"""Broad departures. At (3, .6) obscured telescopes 36 to 62 %, for 15 more unknowns."""
+"""Broad corrections. At (3, .6) obscured telescopes 36 to 62 %, for 15 more unknowns."""
 TAIL_WIDTH: Final = 1.0
 """Half width of the 1/u^2 tail: diffraction's noise-free error .002 (benchmarks/accuracy.py)."""
 LOG_AMPLITUDE: Final[Floats] = np.array([-4.4, -2.5, -4.1, -4.0])
@@ -95,7 +95,7 @@ MAX_CORRECTED_WIDTH: Final = 0.15
 OUTLIER_SIGMAS: Final = 4.5
 """Beyond: an outlier. Of Gaussian noise one pixel in 150 000."""
 CHANGE_SIGMAS: Final = 4.0
-"""Chi-square of the parts along an edge, in its deviations: of 200 clean edges none beyond."""
+"""Chi-square of the parts along an edge, in its deviations: of 200 clean edges none lies beyond."""
 STRUCTURE_SIGMAS: Final = 3.0
 GRADIENT_SIGMAS: Final = 3.5
 REPEATED_SIGMAS: Final = 5.0
@@ -110,7 +110,7 @@ MIN_SIDE_PIXELS: Final = 24
 QUIET_SIDE: Final = 1e-4
 QUIET_TRANSITION: Final = 2e-3
 """Noise of a side and of the transition below which an image has none: nothing to clip."""
-HARMLESS_STEP: Final = 1e-4
+MAX_FINE_STEP: Final = 1e-4
 """Steps of the image's numbers that curves do not resolve."""
 APERTURE_TAIL_PX: Final = 0.1
 """The LSF of an aperture falls as a / s^2: a is .065 px for a cutoff of 1 c/px, .1 for .65."""

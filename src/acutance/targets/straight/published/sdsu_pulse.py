@@ -96,7 +96,7 @@ class PublishedPulse(EdgeFit):
     ----------
     pulse_width : Estimate
         The width along the normal that was stated; the method takes it and does not check it.
-    fall : Estimate
+    height_ratio : Estimate
         Height of the falling side over that of the rising one, from the grounds at both ends
         of the profile.
     prf_distance_px : (n,) array
@@ -114,7 +114,7 @@ class PublishedPulse(EdgeFit):
     """
 
     pulse_width: Estimate
-    fall: Estimate
+    height_ratio: Estimate
     prf_distance_px: Floats
     prf: Floats
     prf_fwhm_px: Estimate
@@ -148,7 +148,7 @@ class _Profile:
         return 0.5 * (self.left + self.right) + self.height
 
     @property
-    def fall(self) -> float:
+    def height_ratio(self) -> float:
         return (self.bright - self.right) / (self.bright - self.left)
 
     def otf(self) -> Complexes:
@@ -191,7 +191,7 @@ class _Curves:
     otf: Complexes
     middle_px: float
     fwhm_px: float
-    fall: float
+    height_ratio: float
 
 
 def _curves(profile: _Profile) -> _Curves:
@@ -205,7 +205,9 @@ def _curves(profile: _Profile) -> _Curves:
         )
     spline = CubicSpline(places, edge)
     x = GRID_PX + middle
-    return _Curves(spline(x), spline(x, 1), profile.otf(), middle, profile.fwhm_px, profile.fall)
+    return _Curves(
+        spline(x), spline(x, 1), profile.otf(), middle, profile.fwhm_px, profile.height_ratio
+    )
 
 
 def sdsu_2005_pulse(trimmed: PulsePixels, options: SdsuPulseOptions = _DEFAULT) -> PublishedPulse:
@@ -277,7 +279,9 @@ def sdsu_2005_pulse(trimmed: PulsePixels, options: SdsuPulseOptions = _DEFAULT) 
         value=value,
         residual=value - model / (profile.bright - profile.left),
         pulse_width=Estimate(trimmed.pulse_width_px),
-        fall=Estimate(profile.fall, _scatter([each.fall for each in drawn])),
+        height_ratio=Estimate(
+            profile.height_ratio, _scatter([each.height_ratio for each in drawn])
+        ),
         prf_distance_px=profile.distance_px,
         prf=profile.value / height,
         prf_fwhm_px=Estimate(profile.fwhm_px, _scatter([each.fwhm_px for each in drawn])),
