@@ -150,4 +150,4 @@ def test_what_means_nothing_is_exit_2_with_a_message(
 
 
 def test_pixels_without_a_pulse_are_exit_4(refused, bare_image):
-    refused(("pulse", bare_image, "--roi", "0,0,60,9"), "strip", code=4)
+    refused(("pulse", bare_image, "--roi", "0,0,60,9"), "pulse", code=4)

@@ -1,10 +1,10 @@
 """Targets: an image in, a `Measurement` out. One folder a kind of target.
 
-What the kinds share stands here: `kinds` (their names and methods), `region` (the pixels a
-measurement starts from), `options` (what callers choose), `check` and `check_table` (what is asked
-of a target), `slices` (an OTF along some directions, with covariance), `measurement` and its light
-half, `record`, and `target_result` (several measurements of one target). The kinds, which do not
-know one another:
+What the kinds share stands here: `kinds` (their names and methods), `region` (the pixels
+of a measurement), `options` (what callers choose), `check` and `check_table` (is the
+target good enough), `slices` (an OTF along some directions, with covariance), `measurement` and its
+light half, `record`, and `target_result` (several measurements of one target). The kinds, none of
+which imports another:
 
 - `straight`: edges and pulses, along their normals
 - `points`: mirrors, lamps, stars of the sky

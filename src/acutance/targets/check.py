@@ -38,7 +38,7 @@ Limits = Mapping[str, float]
 VerdictWord = Literal["good", "usable", "doubtful", "invalid"]
 
 MAX_RATIO = 999.0
-"""Stands for a ratio without bound: nothing disturbs."""
+"""Stands for larger ratios and those without bound, such as contrast without noise."""
 
 _WORDS: dict[Severity, VerdictWord] = {"fail": "invalid", "caution": "doubtful", "note": "usable"}
 
@@ -122,13 +122,13 @@ class Check:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the checks of a measurement come to.
+    """The summary of the checks of a measurement.
 
     Parameters
     ----------
     word : {"good", "usable", "doubtful", "invalid"}
         All checks passed; only notes failed (the intervals are wide, but hold); a check failed
-        that may bias the numbers; the numbers mean nothing.
+        that may bias the numbers; the numbers have no meaning.
     sentence : str
         What matters most.
     """
@@ -167,9 +167,9 @@ def answer(
     limits : mapping of str to float
         Limits the caller changed.
     default : float, optional
-        The limit of a method for which the table's means nothing.
+        The limit of a method to which that of the table does not apply.
     advice : str, optional
-        What to do, where the target at hand tells more than the table.
+        What to do, where it depends on the target and the table cannot hold it.
     """
     asked = QUESTIONS[name]
     limit = limits.get(name, asked.limit if default is None else default)
@@ -180,7 +180,7 @@ def answer(
 
 
 def bounded_ratio(over: float, under: float) -> float:
-    """A ratio, at most `MAX_RATIO`: beyond it nobody asks how large it is."""
+    """A ratio, at most `MAX_RATIO`."""
     return min(over / under, MAX_RATIO) if under > 0 else MAX_RATIO
 
 
@@ -192,7 +192,7 @@ def count_failed(checks: Sequence[Check]) -> str:
 
 
 def verdict_of(checks: Iterable[Check]) -> Verdict:
-    """The verdict: that of the gravest check that failed, with what it says."""
+    """The verdict: that of the gravest check that failed, with its message."""
     failed = [check for check in checks if not check.passed]
     if not failed:
         return Verdict("good", "every check passed")
@@ -256,21 +256,21 @@ def require_limits(limits: Any, known: Sequence[str], options: str) -> None:
 
 
 class Checks(Sequence[Check]):
-    """Checks of a target, answered when somebody first reads them: they cost as much as a fit.
+    """Checks of a target, computed when they are first read: they cost as much as a fit.
 
     Parameters
     ----------
-    ask : function without arguments
-        Gives the checks.
+    compute : function without arguments
+        Returns the checks.
     """
 
-    def __init__(self, ask: Callable[[], tuple[Check, ...]]) -> None:
-        self._ask = ask
+    def __init__(self, compute: Callable[[], tuple[Check, ...]]) -> None:
+        self._compute = compute
 
     @cached_property
     def answers(self) -> tuple[Check, ...]:
         """All checks."""
-        return self._ask()
+        return self._compute()
 
     def __repr__(self) -> str:
         return f"<{count_failed(self.answers)}>"
@@ -281,7 +281,7 @@ class Checks(Sequence[Check]):
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> tuple[type, tuple[tuple[Check, ...]]]:
-        # What the answers were read from (pixels, fits) stays where it is.
+        # The pixels and fits from which the checks are computed are not pickled.
         return tuple, (self.answers,)
 
     def __len__(self) -> int:

@@ -28,12 +28,12 @@ class Question:
     limit : float
         The default limit.
     advice : str
-        What it means where the limit is not kept, and what to do.
+        Consequences if the limit is not kept, and what to do.
     source : str
         Where the limit comes from.
     severity : {"note", "caution", "fail"}
         note: the intervals are wide, or a fact to know. caution: a bias that the intervals may not
-        hold. fail: the numbers mean nothing.
+        hold. fail: the numbers have no meaning.
     """
 
     question: str
@@ -51,13 +51,13 @@ _RESAMPLED = (
 
 _ANY_TARGET = {
     "contrast_snr": Question(
-        "How large is the contrast beside the noise?", ">=", 50.0,
+        "How large is the contrast, relative to the noise?", ">=", 50.0,
         "the intervals widen; choose a target of more contrast, or a longer one",
         "KOMPSAT-3 draft 3c; pulse report 3.4", "note",
     ),
     "saturation": Question(
         "Which share of the pixels is clipped at an end of the scale?", "<=", 0.001,
-        "the target's height and shape are then not what the sensor saw", severity="fail",
+        "the target's height and shape are then not those of the scene", severity="fail",
     ),
     "correlated_noise": Question(
         "How much do neighbouring pixels' noise correlate?", "<=", 0.1, _RESAMPLED, severity="note",
@@ -121,21 +121,21 @@ _STRAIGHT = {
     **{
         f"plateau_{side}_px": Question(
             f"How wide is the uniform plateau {where}?", ">=", 7.0,
-            "what lies further of a halo is not seen and raises the MTF", "Li et al. 4.2 (7 to 10)",
+            "a halo beyond it is not measured and raises the MTF", "Li et al. 4.2 (7 to 10)",
         )
         for side, where in _PLATEAUS.items()
     },
     "quantisation": Question(
         "How many steps of the image's numbers is the noise?", ">=", 0.55,
         "so much rounding is no noise: it is equal for the pixels of a plateau and shifts its "
-        "level by more than the intervals say; use data of more bits",
+        "level by more than the intervals; use data of more bits",
     ),
     "gradient": Question(
-        "How steep is the background far from the target, beside an aperture's wings?", "<=", 1.0,
+        "How steep is the background far from the target, in units of aperture wings?", "<=", 1.0,
         "the fit cannot separate a slope from a wide halo; choose a region with flat sides",
     ),
     "structure": Question(
-        "How much does the profile go up and down beside the edge?", "<=", 0.02,
+        "How much does the profile go up and down next to the edge?", "<=", 0.02,
         "something else lies there, and its spectrum is taken for the sensor's",
     ),
     "asymmetric_wings": Question(
@@ -200,7 +200,7 @@ _POINTS = {
         "it is no point, or the PSF differs over the region; leave it out",
     ),
     "background_uniformity": Question(
-        "How much do the backgrounds differ, beside the median peak?", "<=", 0.05,
+        "How much do the backgrounds differ, relative to the median peak?", "<=", 0.05,
         "use a uniform grassy area", "QuickBird report 4.4",
     ),
     "survey_px": Question(
@@ -279,7 +279,7 @@ _PAIR = {
     ),
     "coherence": Question(
         "Which share of the low image's detail at Nyquist does the high one explain?", ">=", 0.1,
-        "the rest is noise, aliasing and what the two see differently; choose a region with roads, "
+        "the rest is noise, aliasing and scene differences; choose a region with roads, "
         "shorelines, buildings", "Li et al. 5.2", "note",
     ),
     "pixels": Question(
@@ -301,7 +301,7 @@ _PAIR = {
     ),
     "residual_correlation": Question(
         "How much do neighbouring residuals correlate?", "<=", 0.2,
-        "the two bands see different colours, or the scene changed; the fit whitens the residuals "
+        "the two bands have different colours, or the scene changed; the fit whitens the residuals "
         "and the intervals allow for it, but a difference that looks like blur stays in the MTF",
     ),
     "inflation": Question(
@@ -334,7 +334,7 @@ _COMBINED = {
     ),
     "failed_inputs": Question(
         "How many measurements have a failed check of their own?", "<=", 0.0,
-        "read what those checks say, or leave the measurements out",
+        "read those checks, or leave the measurements out",
     ),
     "shared_targets": Question(
         "How many pairs of measurements used the same pixels?", "<=", 0.0,

@@ -27,12 +27,12 @@ _STEPS = 2
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Measurement(HasResponse, HasChecks):
-    """What was measured on a target of any kind.
+    """The result of a measurement of a target of any kind.
 
     A straight target shows one direction: `m.mtf_nyquist`, `m.rer`, `m.mtf(0.25)` and all other
     numbers are those of its normal. Other targets show two: `m.across` and `m.along` have the same
-    numbers and curves, and `m.mtf_at` those of any direction. The classes of the kinds add what
-    only they know (a line, sources, groups of bars).
+    numbers and curves, and `m.mtf_at` those of any direction. The classes of the kinds add the
+    results of their own (a line, sources, groups of bars).
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class Measurement(HasResponse, HasChecks):
     snr : float
         Signal to noise ratio, as the kind defines it.
     checks : sequence of Check
-        What was asked of the target.
+        Whether the target was good enough.
     image : ImageInfo
         Where the pixels came from.
     options : mapping
@@ -118,7 +118,7 @@ class Measurement(HasResponse, HasChecks):
 
     @property
     def measured_directions(self) -> tuple[Orientation, ...]:
-        """The directions that the target shows; others follow from what all sensors have."""
+        """The directions that the target shows; others follow from the prior."""
         return tuple(self.directions)
 
     @property
@@ -194,7 +194,7 @@ class Measurement(HasResponse, HasChecks):
         return self.record.to_dict()
 
     def target_document(self) -> dict[str, Any]:
-        """What the kind of target adds to the document; nothing unless it says so."""
+        """Fields that the kind of target adds to the document; none unless overridden."""
         return {}
 
     def _document(self) -> dict[str, Any]:

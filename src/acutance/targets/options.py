@@ -49,7 +49,7 @@ def chosen_options(options: Any, kind: type[Options]) -> Options:
 
 @cache
 def _default(kind: Any) -> Any:
-    """Options nobody changed: frozen, so one of them serves all."""
+    """The default options: frozen, so one object is enough."""
     return kind()
 
 
@@ -64,7 +64,7 @@ class _HasMethodOptions(Protocol):
 
 
 def published_options(options: _HasMethodOptions, method: str, kind: type[Options]) -> Options:
-    """What the options of a measurement hold for a published method.
+    """The options of a published method, out of those of a measurement.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def _is_of(value: Any, kind: Any) -> bool:
     if origin is tuple:
         return _are_of(value, parts)
     if origin is Mapping:
-        # What it maps is checked by `require_limits`, which knows the names.
+        # Names and values are checked by `require_limits`.
         return isinstance(value, Mapping)
     if kind is bool:
         return isinstance(value, bool | np.bool_)

@@ -153,7 +153,7 @@ class RecordedDirection(ShortRepr):
         return at, value, std
 
     def summary(self) -> str:
-        """The three numbers everybody asks for."""
+        """The three main numbers."""
         return f"mtf_nyquist {self.mtf_nyquist}, rer {self.rer}, fwhm_px {self.fwhm_px}"
 
 
@@ -164,7 +164,7 @@ class Record(ShortRepr, HasChecks):
     Parameters
     ----------
     document : mapping
-        Strict JSON types. What this version does not know is kept as it is.
+        Strict JSON types. Fields that this version does not have are kept as they are.
 
     Examples
     --------
@@ -242,7 +242,7 @@ class Record(ShortRepr, HasChecks):
 
     @cached_property
     def checks(self) -> tuple[Check, ...]:
-        """What was asked of the target."""
+        """The checks of the target."""
         return tuple(map(Check.from_dict, self.document["checks"]))
 
     @cached_property

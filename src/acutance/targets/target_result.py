@@ -37,7 +37,7 @@ class Rejected:
 
 @dataclass(frozen=True, eq=False)
 class EdgeGroup(ShortRepr, Generic[One]):
-    """Edges of one orientation and what they say together.
+    """Edges of one orientation and their mean.
 
     Attributes
     ----------
@@ -48,16 +48,16 @@ class EdgeGroup(ShortRepr, Generic[One]):
         that of the mean is widened by the square root of chi-square per degree of freedom.
     chi_square, p_value : dict of float
         Consistency: chi-square of the edges about the mean, and the chance of a larger one; ``nan``
-        for a single edge, and where it means nothing (below).
+        for a single edge, and where it is not defined (below).
     degrees_of_freedom : int
 
     Notes
     -----
-    No metric can be negative: a modulus that drowns in noise, or an overshoot that is not there,
+    No metric can be negative: a modulus below the noise, or an overshoot that is not there,
     is reported as 0. Where one of the edges lies within its standard deviation of 0, the values
     are no longer Gaussian, and neither weights nor chi-square mean anything. The mean is then the
     plain one. As clipped errors do not average out, its standard deviation is the root mean square
-    of the edges', or what the edges' scatter says if that is more; chi-square and p are ``nan``.
+    of the edges', or that of their scatter if it is larger; chi-square and p are ``nan``.
     """
 
     orientation: Orientation

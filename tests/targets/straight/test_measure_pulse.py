@@ -1,4 +1,4 @@
-"""The pulse method from pixels to numbers: width, grounds, real bars of the joint fit."""
+"""The pulse method from pixels to numbers: width, plateaus, real bars of the joint fit."""
 
 import numpy as np
 import pytest
@@ -97,9 +97,9 @@ def test_a_wrong_width_is_detected_and_does_not_hurt():
 
 
 @pytest.mark.parametrize("stated", [8.0, 20.0])
-def test_a_width_that_finds_no_strip_is_set_beside_the_one_that_is_seen(stated):
+def test_the_error_of_a_wrong_width_names_the_width_found(stated):
     image, _ = simulated(shape=(60, 60))
-    with pytest.raises(ac.TargetError, match=r"a strip of about 3\.\d\d px where .* were stated"):
+    with pytest.raises(ac.TargetError, match=r"a pulse of about 3\.\d\d px where .* were stated"):
         ac.measure_pulse(image, width_px=stated)
     noise = np.random.default_rng(0).normal(100, 5, (50, 50))
     with pytest.raises(ac.TargetError) as refused:
@@ -194,7 +194,7 @@ def test_a_pulse_of_a_pixel_is_too_narrow_unless_told_otherwise():
 
 
 def test_the_ratio_warns_where_a_reported_frequency_lies_beside_a_zero():
-    # 3 px have their first zero at 1/3 c/px: far from Nyquist, beside the MTF50 of this system.
+    # 3 px have their first zero at 1/3 c/px: far from Nyquist, next to the MTF50 of this system.
     image, _ = simulated(system=SYSTEMS["halo"], snr=200.0, shape=(60, 60))
     zero = check_named(
         ac.measure_pulse(image, width_px=3.0, method="sdsu-2005"), "zero_distance_cpp"

@@ -1,4 +1,4 @@
-"""Structure of the ground that is no sensor's blur: seen where it is, not seen where it is not."""
+"""Structure of the scene that is no sensor's blur: found where it is, and only there."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def failed(measurement):
 
 
 def seen_step(truth, s):
-    """A step of the ground as the system sees it."""
+    """A step of the scene, blurred by the system."""
     return np.interp(s, truth.esf.distance_px, truth.esf.value)
 
 

@@ -102,7 +102,7 @@ def _groups_of(region: RegionPixels, options: BarsOptions) -> tuple[tuple[Bars, 
 
 
 def _contrast(image: Floats, groups: tuple[Bars, ...]) -> float:
-    """Bars less background, from the mean of every stated group and of what is next to it."""
+    """Bars minus background, from the mean of every stated group and of what is next to it."""
     rows, cols = np.nonzero(np.isfinite(image))
     value = image[rows, cols]
     found = []

@@ -1,4 +1,4 @@
-"""What is asked of groups of bars."""
+"""Checks of groups of bars."""
 
 from __future__ import annotations
 

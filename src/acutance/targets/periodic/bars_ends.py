@@ -1,4 +1,4 @@
-"""What the ends of the bars take from their middle: light that is scattered along the bars."""
+"""The effect of the ends of the bars: light that is scattered along the bars."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class OtfTable:
 
 
 def end_effect(otf: OtfTable, bars: Bars, across_px: Floats, along_px: Floats) -> Floats:
-    """Image of bars of their length less that of endless ones, for unit contrast, (n,).
+    """Image of bars of their length minus that of endless ones, for unit contrast, (n,).
 
     ``sum over g of L sinc(L g) exp(2 pi i g t) [H(f, g) - H(f, 0)]``, through the profile's
     spectrum at every f: small and smooth well inside the bars, and zero for a system that does
@@ -91,7 +91,7 @@ def light_of_neighbours(
     groups: Sequence[Bars],
     places: Sequence[tuple[NDArray[np.intp], NDArray[np.intp]]],
 ) -> list[Floats]:
-    """What every group's pixels see of all other groups, for unit contrast.
+    """Light of all other groups at the pixels of every group, for unit contrast.
 
     Groups are some pixels apart, so that coarse structure is all that matters: frequencies fade
     out from 0.25 to 0.5 c/px, and one Fourier transform a group is exact.

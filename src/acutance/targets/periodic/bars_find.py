@@ -1,7 +1,7 @@
 """Where the groups of bars of an image are, how many bars each has, and their period.
 
-A group stands out of the background as a whole, also where its bars are too fine to be seen. Its
-direction is that of its gradients; number and period come from comparing its profile with those
+A group stands out of the background as a whole, also where its bars are too fine to be resolved.
+Its direction is that of its gradients; number and period come from comparing its profile with those
 of finite groups, blurred plainly.
 """
 
@@ -46,7 +46,7 @@ def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...]
     Parameters
     ----------
     image : (rows, cols) array
-        NaN where there is nothing to use.
+        NaN where a pixel must not be used.
     count : int, optional
         Number of bars in every group; counted unless given.
 
@@ -55,7 +55,7 @@ def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...]
     groups : tuple of Bars
         The widest period first.
     contrast : float
-        Bars less background, before the sensor.
+        Bars minus background, before the sensor.
 
     Raises
     ------
@@ -69,15 +69,17 @@ def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...]
     sign = 1.0 if high >= -low else -1.0
     height = max(high, -low)
     if not height > 0:
-        raise NoBarsError("the region is uniform: there are no bars to be seen in it")
+        raise NoBarsError(
+            "the region is uniform, without bars: choose a region that holds the groups"
+        )
     bright = sign * difference / height
     best: list[_Candidate] = []
     min_alone: float = math.inf
     for close in _CLOSE_PX:
-        seen = [_measured(bright, blob, count) for blob in _blobs(bright, close)]
-        groups = [one for one in seen if one is not None and one.bars.count > 1]
+        measured = [_measured(bright, blob, count) for blob in _blobs(bright, close)]
+        groups = [one for one in measured if one is not None and one.bars.count > 1]
         # Bars that are wider than the gaps closed stand alone, as a patch of the bars' level does.
-        alone = len(seen) - len(groups)
+        alone = len(measured) - len(groups)
         if groups and alone < min_alone:
             best, min_alone = groups, alone
         if best and not min_alone:
@@ -132,7 +134,7 @@ def _recounted(bright: Floats, one: _Candidate, count: int) -> _Candidate:
 def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Candidate | None:
     """The group a blob holds, or the one bar it is; nothing if it is neither."""
     near = ndimage.binary_dilation(blob, iterations=2)
-    # Differences of neighbours would turn the direction: they see fine structure too weakly.
+    # Differences of neighbours would bias the direction: fine structure is too weak in them.
     down = ndimage.gaussian_filter(bright, 1.0, order=(1, 0))
     right = ndimage.gaussian_filter(bright, 1.0, order=(0, 1))
     xx, yy = float(np.sum(right[near] ** 2)), float(np.sum(down[near] ** 2))

@@ -26,7 +26,7 @@ _MAX_OFF_NORMAL_DEG = 30.0
 
 @dataclass(frozen=True)
 class BarsGroup(ShortRepr):
-    """What one group of bars gives.
+    """The result of one group of bars.
 
     Attributes
     ----------
@@ -107,9 +107,9 @@ class BarsMeasurement(Measurement):
         In the order they were stated or found.
     directions_deg : tuple of float
         Directions across the bars, from the column axis towards the row axis: what is measured.
-        Other directions follow from what all sensors have in common.
+        Other directions follow from the prior, which all sensors have in common.
     contrast : Estimate
-        Bars less background, before the sensor.
+        Bars minus background, before the sensor.
     """
 
     groups: tuple[BarsGroup, ...]

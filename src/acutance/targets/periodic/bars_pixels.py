@@ -1,4 +1,4 @@
-"""The pixels of a group of bars, and what every mode of a transfer function makes of them."""
+"""The pixels of a group of bars, and the image of every mode of a transfer function there."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class GroupPixels:
 
 
 def group_columns(
-    seen: GroupPixels, blur: MeanOtf, states: ProcessModes | None, contrast: float
+    pixels: GroupPixels, blur: MeanOtf, states: ProcessModes | None, contrast: float
 ) -> tuple[Floats, Floats]:
     """The images of all modes, and the group's own columns.
 
@@ -96,14 +96,14 @@ def group_columns(
     own : (n, 5) array
         Level, slope, and by place along the normal (px), period (px) and direction (radians).
     """
-    reach = float(np.max(np.abs(seen.across))) + 1.0
-    places, table = _profiles(seen.bars, blur, states, reach)
-    looked = CubicLookup.of(seen.across, places)(table)
+    reach = float(np.max(np.abs(pixels.across))) + 1.0
+    places, table = _profiles(pixels.bars, blur, states, reach)
+    looked = CubicLookup.of(pixels.across, places)(table)
     by_place = contrast * looked[:, -2]
     own = (
-        np.ones(by_place.size), seen.across / reach, by_place, contrast * looked[:, -1],
+        np.ones(by_place.size), pixels.across / reach, by_place, contrast * looked[:, -1],
         # A turn of the normal moves pixels along it by their distance along the bars.
-        -seen.along * by_place,
+        -pixels.along * by_place,
     )  # fmt: skip
     return looked[:, :-2], np.stack(own, axis=1)
 

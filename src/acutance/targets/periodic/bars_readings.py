@@ -47,7 +47,7 @@ def read_group(
     across_px, value : (n,) arrays
         Pixels between the middle of the first bar and that of the last one.
     contrast : float
-        Bright less dark, before the sensor.
+        Bright minus dark, before the sensor.
     noise : float
         Standard deviation of the noise.
     """

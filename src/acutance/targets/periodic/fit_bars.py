@@ -1,12 +1,12 @@
 """The reference estimator of bars: all groups are one linear model of the transfer function.
 
-Along its normal a group is a finite profile with a known spectrum P(f), so a pixel sees
+Along its normal a group is a finite profile with a known spectrum P(f), so a pixel has the value
 
     background + contrast * integral P(f) H(f n) exp(2 pi i f s) df
 
 which is linear in H: the modes of `otf_modes`, in the directions of the bars' normals. The widest
 bars and the group as a whole determine the contrast, the finest ones the highest frequencies;
-nothing is taken for an endless wave. Place, period and direction of every group are fitted too.
+no group is taken for an endless wave. Place, period and direction of every group are fitted too.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ _SETTLED_PX: Final = 0.005
 _SETTLED_SCATTERED: Final = 2e-4
 _SETTLED_WEIGHT: Final = 0.05
 _FIXED: Final = 1e-6
-"""Prior deviation of what is not fitted."""
+"""Prior standard deviation of coefficients that are not fitted."""
 _BACKGROUND_STD: Final = 1e3
 _OWN: Final = 5
 """Columns every group has for itself: level, slope, place, period, direction."""
@@ -69,9 +69,9 @@ class BarsSolution:
     groups : tuple of GroupPixels
         The pixels of every group where it settled.
     residuals : tuple of (n,) arrays
-        What the fit leaves of them, image units.
+        Their residuals, image units.
     backgrounds : tuple of float
-        Level under every group.
+        Background level of every group.
     period_std_px : tuple of float
         Standard deviations of their periods.
     noise : float
@@ -128,7 +128,7 @@ def solve_bars(
     groups : tuple of Bars
         Where the groups are, to a quarter of their period.
     contrast : float
-        First guess of bright less dark; negative for dark bars.
+        First guess of bright minus dark; negative for dark bars.
     levels : Levels, optional
         Levels of background and bars, if something else in the image shows them.
     robust : bool, optional
@@ -225,7 +225,7 @@ def _pixels_of(image: Floats, groups: tuple[Bars, ...]) -> tuple[GroupPixels, ..
 
 
 def _at_pixels(stack: Floats, pixels: tuple[GroupPixels, ...]) -> list[Floats]:
-    """What a stack (groups, rows, cols) holds at the pixels of every group."""
+    """The values of a stack (groups, rows, cols) at the pixels of every group."""
     return [layer[one.rows, one.cols] for layer, one in zip(stack, pixels, strict=True)]
 
 
@@ -303,7 +303,7 @@ def _prior(
 ) -> Prior:
     """Levels are free; places, periods and directions are those stated, to a part of a period.
 
-    Their coefficients are how far the groups still have to go from where they are.
+    Their coefficients are the distances from the current to the fitted groups.
     """
     height = abs(contrast)
     scales, means = [], []
@@ -337,7 +337,7 @@ def _longest_update(fitted: _Regression, pixels: tuple[GroupPixels, ...]) -> flo
 
 
 def _width_of_bars(mean: MeanOtf, fitted: FittedOtf, pixels: tuple[GroupPixels, ...]) -> MeanOtf:
-    """The mean as wide as the bars show it, and round: few directions determine no more."""
+    """The mean with the width of the bars, and round: few directions determine no more."""
     cos, sin = unit_vector(np.array([one.bars.normal_deg for one in pixels]))
     xx, xy, yy = fitted.beta[1:4] / float(fitted.beta[0])
     change = float(np.mean(xx * cos**2 + 2 * xy * cos * sin + yy * sin**2))
@@ -354,7 +354,7 @@ def _correlation(standard: Floats, pixels: tuple[GroupPixels, ...]) -> Correlati
 
 
 def _scattered(otf: FittedOtf, pixels: tuple[GroupPixels, ...]) -> list[Floats]:
-    """What the bars' ends take from every group's pixels, and other groups add, for contrast 1."""
+    """Effect of the bars' ends and light of other groups at every group's pixels, contrast 1."""
     table = OtfTable.of(otf)
     others = light_of_neighbours(
         table, [one.bars for one in pixels], [(one.rows, one.cols) for one in pixels]

@@ -38,7 +38,7 @@ from acutance.targets.periodic.tuned import APERTURE_STD, STAR_FINEST_CPP, STAR_
 __all__ = ["SIDE_MARGIN_PX", "StarSolution", "amplitude_of", "solve_star"]
 
 _RIM_MARGIN_PX: Final = 3.0
-"""Pixels nearer to the star's rim are left out: what lies beyond is not known."""
+"""Pixels nearer to the star's rim are left out: the scene beyond it is not known."""
 SIDE_MARGIN_PX: Final = 5.0
 """Pixels nearer to a straight side of a fan are left out."""
 _MAX_PASSES: Final = 8
@@ -72,7 +72,7 @@ class StarSolution:
     rows, cols : (n,) int arrays
         The pixels used.
     value, residual : (n,) arrays
-        Their values, and what the fit leaves of them, image units.
+        Their values and residuals, image units.
     noise : float
         Standard deviation of the noise, image units.
     correlation : Correlation
@@ -132,7 +132,7 @@ def solve_star(
     levels : Levels, optional
         Levels of the spokes, if something else in the image shows them.
     inner_px : float, optional
-        Pixels nearer to the centre are not used; those that see 1.3 c/px and more unless given.
+        Pixels nearer to the centre are not used; those of 1.3 c/px and more unless given.
     robust : bool, optional
         Bound the weight of outliers.
 
@@ -300,7 +300,7 @@ def _prior(mean: MeanOtf, level: float, *, level_stated: bool) -> Prior:
 def _moved(
     star: SiemensStar, posterior: Posterior, level: float
 ) -> tuple[SiemensStar, float, float]:
-    """The star where the regression wants it, and how far that is in px and in phase.
+    """The star of the regression, and the size of the update in px and in phase.
 
     The modes of the place move the image; the centre moves with it.
     """
@@ -318,9 +318,9 @@ def _moved(
 
 
 def _width_of_star(mean: MeanOtf, fitted: FittedOtf) -> MeanOtf:
-    """The mean where the data want it, in coarse steps: the regression takes up the rest."""
+    """The mean of the data's width, in coarse steps: the regression fits the rest."""
     level = float(fitted.beta[0])
-    # A wider aperture by w is a Gaussian wider by w / 6: the two share what they explain.
+    # A wider aperture by w is a Gaussian wider by w / 6: their coefficients are correlated.
     aperture = np.array([fitted.beta[6], 0.0, fitted.beta[7]]) / (6 * level)
     change = np.clip(fitted.beta[1:4] / level + aperture, -0.15, 0.15)
     xx, xy, yy = np.array([mean.xx, mean.xy, mean.yy]) + change

@@ -41,7 +41,7 @@ class FittedOtf:
 
     @property
     def band_cpp(self) -> float:
-        """Frequency beyond which nothing is transferred."""
+        """Highest frequency that is transferred."""
         return HIGHEST_CPP
 
     def packed(self) -> OtfModel:
@@ -80,7 +80,7 @@ class FittedOtf:
 
 
 def level_row(mean: MeanOtf, size: int) -> Floats:
-    """What each of `size` coefficients adds to the level: its mode at zero frequency."""
+    """Contribution of each of `size` coefficients to the level: its mode at zero frequency."""
     return np.asarray(all_modes(mean, size, np.zeros(1), np.zeros(1))[0].real)
 
 

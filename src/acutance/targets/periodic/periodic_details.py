@@ -1,4 +1,4 @@
-"""The heavy half of a measurement of bars or of a star: the pixels and what the fit leaves."""
+"""The heavy half of a measurement of bars or of a star: the pixels and their residuals."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class PeriodicDetails(ShortRepr):
     pixels : (rows, cols) array
         The region; NaN where there is nothing to use.
     residual : (rows, cols) array
-        What the fit leaves of the pixels used (NaN elsewhere), image units.
+        Residuals of the pixels used (NaN elsewhere), image units.
     """
 
     pixels: Floats
@@ -30,5 +30,5 @@ class PeriodicDetails(ShortRepr):
 
     @property
     def noise(self) -> float:
-        """Standard deviation of what the fit leaves, outliers aside, image units."""
+        """Standard deviation of the residuals, outliers aside, image units."""
         return robust_scale(self.residual[np.isfinite(self.residual)])

@@ -1,4 +1,4 @@
-"""What is asked of a star."""
+"""Checks of a star."""
 
 from __future__ import annotations
 

@@ -54,7 +54,9 @@ def find_star(
     smooth = ndimage.gaussian_filter(filled, _SMOOTH_PX)
     usable = ndimage.binary_erosion(known, iterations=3, border_value=0)
     if not usable.any() or float(np.ptp(smooth[usable])) == 0.0:
-        raise NoStarError("the region is uniform: there are no spokes to be seen in it")
+        raise NoStarError(
+            "the region is uniform, without spokes: choose a region that holds the star"
+        )
     row, col = _gradient_centre(smooth, usable) if centre is None else centre
     lively = usable & _is_lively(smooth)
     farthest = _farthest(lively, row, col)
@@ -173,10 +175,10 @@ def _require_count(
     other = _settled(smooth, lively, replace(star, cycles=best))
     again = _strengths(smooth, lively, (other.row, other.col), star.rim_px, best)
     best = max(again, key=lambda n: again[n])
-    seen = f"the rings show {best}" if again[best] > MIN_STAR_STRENGTH else "no number fits"
+    found = f"the rings show {best}" if again[best] > MIN_STAR_STRENGTH else "no number fits"
     raise NoStarError(
         f"a star of {star.cycles} cycles was asked for, but about row {other.row:.1f}, column "
-        f"{other.col:.1f} {seen}: check the number of cycles and the region"
+        f"{other.col:.1f} {found}: check the number of cycles and the region"
     )
 
 

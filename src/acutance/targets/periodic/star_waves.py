@@ -37,7 +37,7 @@ __all__ = ["StarTable", "Wave", "star_table"]
 Wave = Literal["sine", "square"]
 
 _HARMONICS_CPP: Final = 1.3
-"""Harmonics whose frequency is beyond this at the rim are not seen anywhere."""
+"""Harmonics whose frequency is beyond this at the rim are left out."""
 _STEP_PX: Final = 0.05
 _BESSEL_STEP: Final = 0.02
 _BESSEL_REACH: Final = 64.0
@@ -56,7 +56,7 @@ class _Harmonic:
 
 @dataclass(frozen=True)
 class StarTable:
-    """What every mode of a transfer function makes of a star, by radius.
+    """The image of a star for every mode of a transfer function, by radius.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def _angular_parts(blur: MeanOtf, freq: Floats) -> Complexes:
 
 
 def _rim(cycles: int, rim_px: float, freq: Floats) -> Floats:
-    """Q: what the star's end does to its spectrum."""
+    """Q: the effect of the star's end on its spectrum."""
     reach = _reach(rim_px)
     x = _BESSEL_STEP * np.arange(_bessel(cycles, reach).size)
     integrand = x * _bessel(cycles, reach)
@@ -200,7 +200,7 @@ def _rim(cycles: int, rim_px: float, freq: Floats) -> Floats:
 
 
 def _reach(radius_px: float) -> float:
-    """Largest argument of a Bessel function, in coarse steps, so that tables serve many stars."""
+    """Largest argument of a Bessel function, in coarse steps, so that many stars share a table."""
     return math.ceil(2 * math.pi * radius_px * HIGHEST_CPP / _BESSEL_REACH) * _BESSEL_REACH
 
 

@@ -64,7 +64,7 @@ def with_level(normal: Normal, row: Floats, level: float, std: float, variance: 
     ----------
     normal : Normal
     row : (m,) array
-        What every coefficient adds to the level.
+        Contribution of every coefficient to the level.
     level, std : float
         The observation, image units; a deviation below 1e-4 of the level counts as that.
     variance : float

@@ -65,10 +65,10 @@ SCATTERED_STD: Final = 1.0
 
 BARS_NOISE_FLOOR: Final = 1e-3
 STAR_NOISE_FLOOR: Final = 2e-4
-"""The smallest noise, relative to the contrast: what the models leave of images without noise."""
+"""The smallest noise, relative to the contrast: the models' residual of images without noise."""
 
 STAR_FINEST_CPP: Final = 1.3
-"""Pixels that see finer spokes than this are left out: the printed centre may end there."""
+"""Pixels of finer spokes than this are left out: the printed centre may end there."""
 
 MAX_RAISED: Final = 3.0
 """No restoration raises the contrast of coarse spokes more: the fit of another wave does."""

@@ -18,7 +18,7 @@ __all__ = ["centroid_locations", "cubic_locations", "fermi_locations"]
 _SEARCH_PX = 2.0
 _FERMI_POINTS = 7
 _FERMI_STEPS = 40
-_LARGEST_DAMPING = 1e6
+_MAX_DAMPING = 1e6
 _NARROWEST_PX, _WIDEST_PX = 0.05, 5.0
 
 
@@ -97,7 +97,7 @@ def _fit_fermi_rows(points: Floats, width_px: float) -> Floats:
         unknown = np.where(better[:, None], trial, unknown)
         damping = np.clip(np.where(better, damping / 5, damping * 5), 1e-12, 1e12)
         cost = np.minimum(cost, trial_cost)
-        settled |= (cost <= exact) | (damping > _LARGEST_DAMPING)
+        settled |= (cost <= exact) | (damping > _MAX_DAMPING)
         if settled.all():
             break
     return np.asarray(unknown[:, 0])
@@ -131,10 +131,10 @@ def centroid_locations(value: Floats, expected: Floats, width_px: float) -> Floa
         with np.errstate(divide="ignore", invalid="ignore"):
             place = np.where(total > 0, weighted @ middle / total, np.nan)
         place = np.where((place >= 0) & (place <= value.shape[1] - 1), place, np.nan)
-        seen = np.isfinite(place)
-        if seen.sum() < 2:
+        found = np.isfinite(place)
+        if found.sum() < 2:
             return place
-        # What the start line lacks is a straight line as well, and small.
-        lack = np.polyfit(row[seen], (place - expected)[seen], 1)
-        centre = expected + np.polyval(lack, row)
+        # The correction of the first line is a straight line as well, and small.
+        correction = np.polyfit(row[found], (place - expected)[found], 1)
+        centre = expected + np.polyval(correction, row)
     return place

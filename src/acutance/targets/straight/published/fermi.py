@@ -31,7 +31,7 @@ from acutance.targets.straight.published.row_profiles import Frame, crossing_row
 
 __all__ = ["FermiOptions", "fermi"]
 
-_LARGEST_TERM = 20.0
+_MAX_TERM = 20.0
 _PIXELS_PER_UNKNOWN = 5
 
 
@@ -146,7 +146,7 @@ class _Pixels:
 
 
 def _best_sum(pixels: _Pixels, trimmed: EdgePixels, options: FermiOptions) -> _Fit:
-    """The number of terms with the best criterion; each starts from the best with one less."""
+    """The number of terms with the best criterion; each begins with the best sum before."""
     width = max(0.55 * trimmed.width_px, 0.05)
     single = FermiSum(np.array([trimmed.bright - trimmed.dark]), np.zeros(1), np.array([width]))
     best = _fit(pixels, np.concatenate(([0.0, trimmed.dark], single.to_vector())), options)
@@ -219,7 +219,7 @@ def _fit(pixels: _Pixels, start: Floats, options: FermiOptions) -> _Fit | None:
         max_nfev=200,
     )
     terms = FermiSum.from_vector(found.x[2:])
-    if terms.contrast <= 0 or np.abs(terms.amplitude).max() > _LARGEST_TERM * terms.contrast:
+    if terms.contrast <= 0 or np.abs(terms.amplitude).max() > _MAX_TERM * terms.contrast:
         return None
     jacobian = pixels.jacobian(found.x)
     scale = np.sqrt(np.einsum("ij,ij->j", jacobian, jacobian))

@@ -35,7 +35,7 @@ class FermiSum:
 
     @property
     def contrast(self) -> float:
-        """Bright less dark level."""
+        """Bright minus dark level."""
         return float(self.amplitude.sum())
 
     @property

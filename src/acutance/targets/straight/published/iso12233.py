@@ -28,7 +28,7 @@ from acutance.targets.straight.published.windows import hamming_window, tukey_wi
 __all__ = ["Iso12233Options", "iso12233"]
 
 _SHORTEST_PX = 3.0
-_LARGEST_CORRECTION = 10.0
+_MAX_CORRECTION = 10.0
 
 
 @dataclass(frozen=True)
@@ -156,7 +156,7 @@ def _sample(rows: LocatedRows, weight: Floats, options: Iso12233Options) -> Samp
         bright=float(esf[places > places[-1] / 2].mean()),
         lsf_distance_px=inner,
         lsf=lsf * taper,
-        correction=np.minimum(correction, _LARGEST_CORRECTION),
+        correction=np.minimum(correction, _MAX_CORRECTION),
     )
 
 

@@ -173,7 +173,7 @@ def start_points(
     """Where the dark area ends and the bright one starts, step 7 of the draft.
 
     The LSF of a first smoothing spline is differentiated twice more; its bend is strongest
-    at the two feet of the LSF, and these are the points.
+    at the two ends of the LSF, and these are the points.
 
     Parameters
     ----------

@@ -191,7 +191,7 @@ def fit_with_bootstrap(
         Mtf(FREQ_CPP, otf[:, 0], covariance_factor(otf[:, 1:])),
         rer_centre=rer_centre,
     )
-    line = rows.frame.line_in_cut(edge.line)
+    line = rows.frame.line_in_region(edge.line)
     per_normal_px = edge.per_row_px / edge.line.cosine
     return edge_fit(
         trimmed,
@@ -265,7 +265,7 @@ def edge_fit(
     ----------
     trimmed : EdgePixels
     line : Line
-        Through the 50 % point, in the cut's coordinates.
+        Through the 50 % point, in pixels of the region.
     response : Response
     dark, bright : float
         Levels of the plateaus.

@@ -2,7 +2,7 @@
 
 The published edge methods all work row by row on an edge that rises to the right. Here
 the edge is brought into that position once, and everything found there is taken back to
-the coordinates of the cut.
+the pixels of the region.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class Frame:
         return upright[:, ::-1] if self.flipped else upright
 
     def turned_line(self, line: Line) -> tuple[float, float]:
-        """Slope and column at row 0 of a `line` of the cut, in the turned image."""
+        """Slope and column at row 0 of a `line` of the region, in the turned image."""
         row, col, (x, y) = line.row, line.col, line.normal
         if self.transposed:
             row, col, x, y = col, row, y, x
@@ -84,8 +84,8 @@ class Frame:
         slope = -y / x
         return slope, col - slope * row
 
-    def line_in_cut(self, line: RowLine) -> Line:
-        """A line of the turned image in the coordinates of the cut."""
+    def line_in_region(self, line: RowLine) -> Line:
+        """A line of the turned image, in pixels of the region."""
         length = math.hypot(1.0, line.slope)
         row, col, x, y = line.row, line.col, 1.0 / length, -line.slope / length
         if self.flipped:

@@ -41,7 +41,7 @@ __all__ = ["PublishedPulse", "SdsuPulseOptions", "sdsu_2005_pulse"]
 
 Complexes = NDArray[np.complex128]
 
-_SMALLEST_SINC = 1e-6
+_MIN_SINC = 1e-6
 _MARGIN_PX = 1.5
 _END_PX = 1.0
 _EDGE_PX: Floats = np.arange(-130.0, 131.0) * STEP_PX
@@ -90,20 +90,20 @@ _DEFAULT = SdsuPulseOptions()
 
 @dataclass(frozen=True, eq=False)
 class PublishedPulse(EdgeFit):
-    """A pulse as the ratio of two spectra sees it.
+    """A pulse measured by the ratio of two spectra.
 
     Attributes
     ----------
     pulse_width : Estimate
         The width along the normal that was stated; the method takes it and does not check it.
     height_ratio : Estimate
-        Height of the falling side over that of the rising one, from the grounds at both ends
+        Height of the falling side over that of the rising one, from the plateaus at both ends
         of the profile.
     prf_distance_px : (n,) array
         Distances of the pulse response function from the middle of its half-height points, on
         the axis of the profile.
     prf : (n,) array
-        Pulse response function, ground 0; 1 is the height of the pulse, its area over
+        Pulse response function, plateaus 0; 1 is the height of the pulse, its area over
         `ratio_width_px`.
     prf_fwhm_px : Estimate
         Its width at half of its maximum, on the axis of the profile.
@@ -124,7 +124,7 @@ class PublishedPulse(EdgeFit):
 
 @dataclass(frozen=True, eq=False)
 class _Profile:
-    """A trimmed profile across the pulse, about its middle, less the mean of its two grounds.
+    """A trimmed profile across the pulse, about its middle, minus the mean of its two plateaus.
 
     `middle_px` counts from the line, on the axis of the profile, as do all distances.
     """
@@ -160,13 +160,13 @@ class _Profile:
         waves = np.cumprod(np.broadcast_to(turn, (FREQ_CPP.size - 1, turn.size)), axis=0)
         spectrum = np.concatenate(([1.0 + 0j], waves @ self.value / total))
         pulse = np.sinc(self.width_px * FREQ_CPP)
-        pulse = np.where(np.abs(pulse) < _SMALLEST_SINC, _SMALLEST_SINC, pulse)
+        pulse = np.where(np.abs(pulse) < _MIN_SINC, _MIN_SINC, pulse)
         return np.asarray(spectrum / pulse)
 
     def edge(self) -> tuple[Floats, Floats]:
         """The step the profile is a difference of: distances from the rising one, values.
 
-        P(s) = E(s) - E(s - w), so E(s) is the sum of P at s, s - w, s - 2 w ..., and 1 less that
+        P(s) = E(s) - E(s - w), so E(s) is the sum of P at s, s - w, s - 2 w ..., and 1 minus that
         at s + w, s + 2 w ...: the first is short before the pulse, the second behind it. Over
         the pulse one passes into the other.
         """
@@ -219,8 +219,8 @@ def sdsu_2005_pulse(trimmed: PulsePixels, options: SdsuPulseOptions = _DEFAULT) 
     width.
 
     The ratio is kept as it is: near the zeros of the pulse's spectrum, the multiples of
-    1 / ratio_width_px, it says nothing. The mean of the grounds at both ends is taken off the
-    profile first.
+    1 / ratio_width_px, it has no meaning. The mean of the plateaus at both ends is subtracted
+    from the profile first.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def sdsu_2005_pulse(trimmed: PulsePixels, options: SdsuPulseOptions = _DEFAULT) 
     Raises
     ------
     SupportError
-        If rows or ground do not suffice.
+        If there are too few rows or the plateaus are too short.
     NoEdgeError, PhaseError
         See `locate_rows`; also if the profile is no pulse, and if the samples have too few
         phases for a polynomial of that order.
@@ -260,13 +260,13 @@ def sdsu_2005_pulse(trimmed: PulsePixels, options: SdsuPulseOptions = _DEFAULT) 
         Mtf(FREQ_CPP, curves.otf, _factor([each.otf for each in drawn], FREQ_CPP.size)),
     )
     rising_px = profile.middle_px - 0.5 * profile.width_px + curves.middle_px
-    line = rows.frame.line_in_cut(profile.line).moved(rising_px / profile.px_per_normal, 0.0)
+    line = rows.frame.line_in_region(profile.line).moved(rising_px / profile.px_per_normal, 0.0)
     pixels = trimmed.pixels
     distance = line.normal_distance(pixels.row, pixels.col)
     height = profile.height
     value = (pixels.value - profile.left) / (profile.bright - profile.left)
     place = distance * profile.px_per_normal + rising_px - profile.middle_px
-    # Beyond the trimmed profile lie the two grounds, which may differ.
+    # Beyond the trimmed profile lie the two plateaus, which may differ.
     step = profile.right - profile.left
     model = np.interp(place, profile.distance_px, profile.value, -0.5 * step, 0.5 * step)
     model += 0.5 * step
@@ -327,7 +327,7 @@ def _profile(
     left, right = float(kept[:end].mean()), float(kept[-end:].mean())
     kept = kept - 0.5 * (left + right)
     if not kept.sum() > 0:
-        raise NoEdgeError("the profile is no pulse above its ground: choose another region")
+        raise NoEdgeError("the profile is no pulse above its plateaus: choose another region")
     return _Profile(
         line, width_px, px_per_normal, middle, grid[first : first + count] - middle,
         kept, left, right, right_px - left_px,
@@ -335,16 +335,16 @@ def _profile(
 
 
 def _half_points(grid: Floats, value: Floats) -> tuple[float, float]:
-    """Where the profile passes half of its height above the ground at its ends."""
+    """Where the profile passes half of its height above the plateaus at its ends."""
     end = round(_END_PX / STEP_PX)
-    ground = 0.5 * float(value[:end].mean() + value[-end:].mean())
+    plateau = 0.5 * float(value[:end].mean() + value[-end:].mean())
     top = int(np.argmax(value))
-    level = 0.5 * (ground + float(value[top]))
+    level = 0.5 * (plateau + float(value[top]))
     left, right = (crossing(grid, value, level, float(grid[top]), way) for way in (-1, 1))
     if math.isnan(left) or math.isnan(right):
         raise NoEdgeError(
             "the profile does not fall to half of its height on both sides: choose a region "
-            "with ground on both sides of the pulse"
+            "with a plateau on both sides of the pulse"
         )
     return left, right
 
