@@ -11,11 +11,11 @@
     │   ├── NoStarError                   no Siemens star, or not with that number of cycles
     │   ├── PhaseError                    the edge is aligned with the grid: no sub-pixel phases
     │   └── SupportError                  too few rows or too narrow plateaus
-    ├── OptionError         (ValueError)  an option has a value that means nothing
+    ├── OptionError         (ValueError)  an option has a value out of its range
     └── ModelError          (ValueError)  a sensor or a scene is described in contradiction
 
 Every message says what was asked, what was found and what to do. Every class is also
-the builtin that fits, so that code which knows nothing of acutance can catch it.
+the builtin that fits, so that code which does not import acutance can catch it.
 """
 
 __all__ = [
@@ -58,7 +58,7 @@ class NoBarsError(TargetError):
 
 
 class NoStarError(TargetError):
-    """No Siemens star, or not with the number of cycles it was said to have."""
+    """No Siemens star, or not with the number of cycles that was stated."""
 
 
 class PhaseError(TargetError):

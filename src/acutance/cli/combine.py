@@ -43,7 +43,7 @@ def combine(
     """Combine measurements of one sensor into one 2-D OTF: across and along exactly.
 
     Edges and pulses of several directions, points, stars, bars and pairs of images are fitted
-    together by a parametric sensor; a chi-square says whether they agree.
+    together by a parametric sensor; a chi-square shows whether they agree.
     """
     outputs = Outputs.checked(wanted, files)
     documents = [_read(name) for name in files]

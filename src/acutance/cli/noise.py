@@ -1,4 +1,4 @@
-"""The options that say what the detector of a simulated image adds to the signal."""
+"""The options of the noise of a simulated image."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class NoiseOptions:
         float | None,
         typer.Option(
             metavar="RATIO",
-            help="Contrast, or peak of a point, over noise; no noise if nothing says it.",
+            help="Contrast, or peak of a point, over noise; no noise unless given.",
         ),
     ] = None
     read_noise: Annotated[

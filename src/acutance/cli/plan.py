@@ -44,7 +44,7 @@ def plan(
     ] = None,
     snr: Annotated[
         float | None,
-        typer.Option(metavar="RATIO", help="Contrast over noise; 100 if nothing else says it."),
+        typer.Option(metavar="RATIO", help="Contrast over noise; 100 unless given."),
     ] = None,
     contrast: Annotated[
         float | None, typer.Option(metavar="DN", help="Height of the target; needs --noise.")
@@ -125,7 +125,7 @@ def _snr(snr: float | None, contrast: float | None, noise: float | None) -> floa
 
 def _widths(width_px: str | None, width_m: str | None, sensor: Sensor) -> tuple[float, ...]:
     if width_px is not None and width_m is not None:
-        raise OptionError("--width-px and --width-m say the same: give one of them")
+        raise OptionError("--width-px and --width-m were both given: give one of them")
     if width_m is None:
         return _numbers("--width-px", width_px or "3")
     if sensor.gsd_m is None:

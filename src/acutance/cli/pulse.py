@@ -1,4 +1,4 @@
-"""``acutance pulse``: measure a strip between two backgrounds."""
+"""``acutance pulse``: measure a pulse between two plateaus."""
 
 from __future__ import annotations
 

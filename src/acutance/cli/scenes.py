@@ -130,11 +130,13 @@ def pulse(
     noise: NoiseOptions,
     ground_noise: Annotated[
         bool,
-        typer.Option("--ground-noise", help="Uneven ground: 20 grains of variance 100 each."),
+        typer.Option(
+            "--ground-noise", help="Clutter of the ground: 20 grains of variance 100 each."
+        ),
     ] = False,
     seed: Seed = 0,
 ) -> None:
-    """Render a pulse: a bright strip between two backgrounds."""
+    """Render a pulse: two parallel edges between plateaus."""
     files, shape = SimulatedFiles.of(out, sensor), parse_size(size)
     system = named_sensor(sensor)
 

@@ -1,4 +1,4 @@
-"""Curves and the metrics that read them: the ground floor, numpy only."""
+"""Curves and their metrics: the lowest layer, which imports numpy only."""
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates

@@ -17,7 +17,7 @@ __all__ = ["Estimates", "estimates_of"]
 
 @dataclass(frozen=True, eq=False)
 class Estimates(ShortRepr):
-    """What a curve answers at an array of places: one estimate a place.
+    """The estimates of a curve at an array of places, one a place.
 
     Parameters
     ----------

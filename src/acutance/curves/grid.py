@@ -44,7 +44,7 @@ DISTANCE_PX = _regular(-200, 200, 0.05)
 
 
 class Rows(Protocol):
-    """A matrix (n, k) that makes its rows when somebody asks: most of a factor is never read."""
+    """A matrix (n, k) that makes its rows on demand: most of a factor is never read."""
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""What a system does to an edge, in one direction: the three curves and their numbers."""
+"""The response of a system in one direction: its three curves and their numbers."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Response(ShortRepr):
 
     @cached_property
     def rer(self) -> Estimate:
-        """Relative edge response, centred as `rer_centre` says."""
+        """Relative edge response, about the centre `rer_centre`."""
         return metrics.rer(self.esf, self.lsf, self.rer_centre)
 
     @cached_property
@@ -101,7 +101,7 @@ class Response(ShortRepr):
         return metrics.giqe_h(self.esf)
 
     def summary(self) -> str:
-        """The three numbers everybody asks for."""
+        """The three main numbers."""
         return f"mtf_nyquist {self.mtf_nyquist}, rer {self.rer}, fwhm_px {self.fwhm_px}"
 
     def metrics(self) -> dict[str, Estimate]:

@@ -19,7 +19,7 @@ class ShortRepr:
     """A dataclass of arrays that prints as one line and compares by its fields.
 
     A class made from it has this representation instead of that of dataclasses, which writes out
-    every array: its name, and what `summary` says. Unless it finds better words, these are its
+    every array: its name, and its `summary`. Unless a class overrides it, this is its
     fields, arrays by their shapes.
 
     Two of one class are equal when all their fields are, arrays element by element and ``nan``

@@ -32,7 +32,7 @@ class _SpreadCurve(ShortRepr):
         All curves of one measurement share the same z. A truth has k = 0.
     latent : (k, m) array, optional
         A second factor that all curves of one measurement share: the error is then
-        ``factor @ latent @ z``. Nothing of size (n, m) is formed until somebody asks.
+        ``factor @ latent @ z``. Nothing of size (n, m) is formed until it is needed.
     """
 
     distance_px: Floats
@@ -51,8 +51,8 @@ class _SpreadCurve(ShortRepr):
     @cached_property
     def std(self) -> Floats:
         """Standard deviation at every distance, (n,)."""
-        spread = self.covariance_factor
-        return np.asarray(np.sqrt(np.einsum("ij,ij->i", spread, spread)))
+        factor = self.covariance_factor
+        return np.asarray(np.sqrt(np.einsum("ij,ij->i", factor, factor)))
 
     @cached_property
     def covariance_factor(self) -> Floats:

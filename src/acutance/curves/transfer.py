@@ -69,7 +69,7 @@ class Mtf(ShortRepr):
 
     @property
     def value(self) -> Floats:
-        """The MTF, (n,): modulus of the OTF, less what noise in quadrature adds to a modulus.
+        """The MTF, (n,): modulus of the OTF minus the bias of a modulus by noise in quadrature.
 
         Noise perpendicular to the OTF lengthens it (Rice), by var / (2 M) to first order. Where
         it is longer than the OTF itself, nothing is left: the MTF is clipped at 0.
@@ -81,7 +81,7 @@ class Mtf(ShortRepr):
         """Standard deviation of the MTF at every frequency, (n,).
 
         It is that of the OTF's component along itself, also where the MTF is clipped at 0: there
-        it says how large an MTF may hide, and not how a modulus scatters.
+        it is the size of an MTF that noise may hide, and not the scatter of a modulus.
         """
         along = self.covariance_factor
         return np.asarray(np.sqrt(np.einsum("ij,ij->i", along, along)))

@@ -1,9 +1,9 @@
-"""What the fits of two or more target kinds share.
+"""Numerical methods that the fits of two or more kinds of target share.
 
 - normal_equations, marginal_likelihood: linear models with priors whose amplitudes the data set.
 - noise: its level, its outliers, its correlation; robust scales.
 - gaussian_pixel, gaussian_pixel_2d: a Gaussian seen through a pixel, with its derivatives.
-- process_modes, lorentz_tail: what a prior adds to it.
+- process_modes, lorentz_tail: the corrections that a prior allows.
 - clipping: pixels at the end of the scale.
 - lookup: cubic interpolation of tables; one_thread: linear algebra of many small matrices.
 """

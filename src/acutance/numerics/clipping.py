@@ -1,4 +1,4 @@
-"""Clipped pixels: at the detector's limit, or piled up at an end of what the values reach."""
+"""Clipped pixels: at the detector's limit, or piled up at an end of the range of values."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def clipped_share(
     saturation_level : float or None
         The largest value the detector can give.
     noisy : bool, optional
-        Whether noise should have spread the values: uniform ground in an image without noise is
-        all one number, and no sign of clipping.
+        Whether the image has noise: a uniform background without noise is all one number, which
+        is no sign of clipping.
     """
     limit = at_limit_share(values, saturation_level)
     if not noisy:

@@ -1,4 +1,4 @@
-"""Normal equations: all that the pixels say of a linear model, in one small matrix."""
+"""Normal equations: the pixels of a linear model, summed into one small matrix."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Normal:
     Attributes
     ----------
     gram : (m, m) array
-        Sum of w a a^T, with a the row of the design every pixel makes.
+        Sum of w a a^T, with a the row of the design of a pixel.
     projection : (m,) array
         Sum of w a y.
     data : float
@@ -33,7 +33,7 @@ class Normal:
     count: float
 
     def combined(self, directions: Floats) -> Normal:
-        """The equations where r unknowns beta make the first p ones, (p, r): the others stay."""
+        """The equations if the first p unknowns are combinations (p, r) of r others."""
         p, r = directions.shape
         rest = self.projection.size - p
         half = directions.T @ self.gram[:p]

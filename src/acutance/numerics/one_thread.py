@@ -2,7 +2,8 @@
 
 Every fit solves dozens of systems of some fifty to some hundred unknowns. Shared among threads
 each of them takes longer than alone: 20 sources four times as long on two cores, an edge six times
-when another program needs one of them. Whoever has several cores measures several images at once.
+when another program needs one of them. Several cores are used best by measuring several images at
+once.
 """
 
 from __future__ import annotations

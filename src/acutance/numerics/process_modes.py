@@ -1,7 +1,7 @@
-"""Gaussian processes that live within an extent and vary over a smoothness: priors of departures.
+"""Gaussian processes of finite extent and smoothness: priors of corrections.
 
-A process has the covariance ``exp(-(x^2 + x'^2) / 2 L^2) exp(-(x - x')^2 / 2 l^2)``: what it adds
-lives within L of the origin and varies over l. On places of a grid its modes are those of a matrix
+A process has the covariance ``exp(-(x^2 + x'^2) / 2 L^2) exp(-(x - x')^2 / 2 l^2)``: its functions
+extend over L about the origin and vary over l. On places of a grid its modes are those of a matrix
 (`covariance_modes`); in closed form they are Hermite functions whose variances fall by a constant
 factor from order to order (`mehler`: Mehler's formula; Rasmussen and Williams, Gaussian Processes
 for Machine Learning, 2006, 4.3.1).

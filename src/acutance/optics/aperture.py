@@ -34,8 +34,8 @@ class Gaussian:
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
         along = self.sigma_px if self.sigma_along_px is None else self.sigma_along_px
-        spread = (self.sigma_px * np.asarray(u)) ** 2 + (along * np.asarray(v)) ** 2
-        return np.exp(-2 * math.pi**2 * spread)
+        power = (self.sigma_px * np.asarray(u)) ** 2 + (along * np.asarray(v)) ** 2
+        return np.exp(-2 * math.pi**2 * power)
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Diffraction:
     Out of focus, use `Defocus` alone: it holds this block, and the OTF of the curved pupil is not
     the product of the two.
 
-    The OTF is the autocorrelation of the annular pupil: the overlap of two discs, less twice
+    The OTF is the autocorrelation of the annular pupil: the overlap of two discs, minus twice
     that of a disc with an obscuration, plus that of two obscurations (the closed form of
     O'Neill, J. Opt. Soc. Am. 46, 285, 1956).
 
@@ -123,7 +123,7 @@ class Defocus:
         H(nu) = 4 / (pi (1 - e^2)) * integral_0^X (a(x) - b(x)) cos(8 pi W nu x) dx
 
     in units of the pupil's radius, with half the chord ``a = sqrt(1 - (x + nu)^2)`` of the
-    farther pupil less that of the nearer obscuration, ``b = sqrt(e^2 - (x - nu)^2)`` where it is
+    farther pupil minus that of the nearer obscuration, ``b = sqrt(e^2 - (x - nu)^2)`` where it is
     real. The overlap ends at X, the pupil's rim at ``1 - nu`` or the place ``(1 - e^2) / (4 nu)``
     where the obscuration crosses it, whichever comes first. By Gauss-Legendre quadrature; the
     error is below 1e-10. Beyond some 0.6 waves it is negative over part of the band (reversed

@@ -1,4 +1,4 @@
-"""What every OTF block has in common: a transfer over two frequencies, and sane parameters."""
+"""The base of every OTF block: a transfer over two frequencies, and parameters within range."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The MTF budget: what every block of a sensor leaves of the contrast at one frequency."""
+"""The MTF budget: the transfer of every block of a sensor at one frequency."""
 
 from __future__ import annotations
 

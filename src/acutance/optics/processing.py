@@ -38,7 +38,7 @@ def interpolation_weight(kernel: Interpolation, distance_px: ArrayLike, a: float
     kernel : {"nearest", "bilinear", "cubic"}
         "cubic" is Keys' cubic convolution (IEEE Trans. ASSP 29, 1153, 1981).
     distance_px : array
-        Place of the pixel less the interpolated place.
+        Place of the pixel minus the interpolated place.
     a : float, optional
         Slope of the cubic kernel at distance 1: -0.5 (Keys, third order), -0.75 and -1 are in use.
 

@@ -126,9 +126,9 @@ def as_result(result: Result) -> Measurement | TargetResult[Measurement] | Compa
                 "edges of a target, or a list of measurements"
             )
         result = Comparison(tuple(result))
-    strange = [one for one in result.measurements if not isinstance(one, Measurement)]
-    if strange or not result.measurements:
-        found = type(strange[0]).__name__ if strange else "nothing"
+    wrong = [one for one in result.measurements if not isinstance(one, Measurement)]
+    if wrong or not result.measurements:
+        found = type(wrong[0]).__name__ if wrong else "nothing"
         raise OptionError(f"a comparison holds {found}: give measurements of one target")
     if not result.directions:
         raise OptionError(

@@ -45,7 +45,7 @@ MISSING = "–"
 
 _ROUNDING_STD = 1e-9
 """Standard deviations below this are rounding errors of the computer: the number is exact."""
-_SMALLEST_STD = 1e-6
+_MIN_STD = 1e-6
 _RATIO = "MTF ratio low/high"
 
 KIND_WORDS = {
@@ -212,7 +212,7 @@ def word_estimate(estimate: Estimate) -> NumberWords:
     digits = min(max(0, 1 - math.floor(math.log10(std))), 7)
     low, high = estimate.interval(0.95)
     is_cut = estimate.lowest is not None and low <= estimate.lowest
-    if std < _SMALLEST_STD:
+    if std < _MIN_STD:
         shown, least, most = (write_fixed(part, 6) for part in (value, low, high))
         return NumberWords(shown, f"{std:.0e}".replace("-", "−"), least, most, is_cut)
     shown, scatter, least, most = (write_fixed(part, digits) for part in (value, std, low, high))
@@ -298,13 +298,13 @@ def _line_words(measurement: Any) -> list[str]:
     return parts
 
 
-def provenance(result: Measurement | Record, most_name: int | None = None) -> dict[str, str]:
+def provenance(result: Measurement | Record, max_name: int | None = None) -> dict[str, str]:
     """Where the pixels came from, by name: file, band, region, GSD, satellite, dates.
 
     Parameters
     ----------
     result : Measurement or Record
-    most_name : int, optional
+    max_name : int, optional
         Longer names of files are shortened to so many characters.
     """
     image = result.image
@@ -312,7 +312,7 @@ def provenance(result: Measurement | Record, most_name: int | None = None) -> di
     has_pixels = bool(height and width)
     # A combination has no pixels of its own.
     unnamed = "array in memory" if has_pixels else "several images"
-    found = {"image": shorten_name(image.path or unnamed, most_name)}
+    found = {"image": shorten_name(image.path or unnamed, max_name)}
     if has_pixels:
         found["band"] = str(image.band)
         found["region"] = f"rows {row}–{row + height - 1}, columns {col}–{col + width - 1}"
@@ -333,10 +333,10 @@ def _gsd_words(image: ImageInfo) -> str:
     return f"{along} m" if along == across else f"{across} m across, {along} m along"
 
 
-def describe_image(result: Measurement | Record, most_name: int | None = None) -> str:
+def describe_image(result: Measurement | Record, max_name: int | None = None) -> str:
     """`provenance` in one line."""
     plain = ("image", "region")
-    found = provenance(result, most_name)
+    found = provenance(result, max_name)
     return ", ".join(value if name in plain else f"{name} {value}" for name, value in found.items())
 
 

@@ -36,7 +36,7 @@ class BarGroup(Bars):
     """A group of bars as it lies in a scene."""
 
     def patches(self, contrast: float) -> list[Patch]:
-        """The bars as rectangles of the given level above the ground."""
+        """The bars as rectangles of the given level above the background."""
         middle = Line(self.row, self.col, self.normal_deg)
         lines = [middle.moved(place, 0.0) for place in self.places_px.tolist()]
         half = 0.5 * self.period_px
@@ -48,7 +48,7 @@ class BarGroup(Bars):
 
 @dataclass(frozen=True, eq=False)
 class BarsTruth(ShortRepr):
-    """What a perfect measurement of simulated bars would return.
+    """The truth of simulated bars: the result of a perfect measurement.
 
     Parameters
     ----------
@@ -56,9 +56,9 @@ class BarsTruth(ShortRepr):
     groups : tuple of BarGroup
         All with the same normal.
     dark, bright : float
-        Levels of the ground and of the bars.
+        Levels of the background and of the bars.
     noise : Noise, optional
-        What was added to the image.
+        Noise that was added to the image.
     """
 
     sensor: Sensor
@@ -153,7 +153,7 @@ def bars(
     orientation : {"across", "along"}, optional
         The axis their normal is near to: "across" gives nearly vertical bars.
     dark, bright : float, optional
-        Levels of the ground and of the bars, in image units.
+        Levels of the background and of the bars, in image units.
     snr : float, optional
         Contrast over the standard deviation of added white noise.
     noise : Noise, optional

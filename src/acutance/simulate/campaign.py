@@ -38,7 +38,7 @@ STRIPE_ROWS = 256
 
 @dataclass(frozen=True)
 class Placed:
-    """What lies on a site besides tarps.
+    """The targets of a site other than tarps.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Placed:
         Levels between which its spokes go.
     mirrors : sequence of (row, col), optional
     mirror_peak : float, optional
-        What a mirror on the centre of a pixel adds to that pixel.
+        Signal that a mirror on the centre of a pixel adds to that pixel.
     """
 
     bars: tuple[BarGroup, ...] = ()

@@ -1,4 +1,4 @@
-"""A straight edge on uniform ground, as a sensor sees it."""
+"""A straight edge between uniform plateaus, as a sensor sees it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Polarity = Literal["rising", "falling"]
 
 @dataclass(frozen=True, eq=False)
 class Truth(HasResponse):
-    """What a perfect measurement of a simulated edge would return.
+    """The truth of a simulated edge: the result of a perfect measurement.
 
     Parameters
     ----------
@@ -37,11 +37,11 @@ class Truth(HasResponse):
     dark, bright : float
         Plateau levels in image units.
     noise : Noise, optional
-        What was added to the image.
+        Noise that was added to the image.
     regrid : Regrid, optional
         The resampling the image went through, after the noise.
     ground_noise : GroundNoise, optional
-        How uneven the ground was, before the sensor.
+        Clutter of the scene, before the sensor.
     """
 
     response: Response
@@ -125,7 +125,7 @@ def edge(
         Resample the noisy image, which correlates its noise. Line, shape and truth are those of
         the resampled image.
     ground_noise : GroundNoise, optional
-        Uneven ground, which the sensor blurs with the edge.
+        Clutter, which the sensor blurs with the edge.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 

@@ -1,4 +1,4 @@
-"""Ground drawn in fine squares, and ground that is not uniform, as a sensor sees them."""
+"""Ground drawn in fine squares, and clutter (ground that is not uniform), as a sensor sees them."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ def render_raster(
     subpixels : int
         At least 1.
     drawn : {"squares", "points", "means"}, optional
-        What a sample is: the level of a uniform square, the level at the square's centre, or
-        the mean over the square. The last two suppose that the ground holds
-        little beyond ``subpixels / 2`` cycles per pixel.
+        The meaning of a sample: the level of a uniform square, the level at the square's centre, or
+        the mean over the square. The last two hold for ground with
+        little contrast beyond ``subpixels / 2`` cycles per pixel.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def _fold(spectrum: Transfer, index: NDArray[np.int_], size: int) -> Transfer:
 
 @dataclass(frozen=True)
 class GroundNoise:
-    """Ground that is not uniform: white fields of several grain sizes, added to the target.
+    """Clutter, ground that is not uniform: white fields of several grain sizes on the target.
 
     As in the SDSU generic sensor model (2005, 3.4.3.1): for every grain a field of independent,
     normally distributed squares, with a random origin of its grid; all fields have the same

@@ -25,7 +25,8 @@ class NativeGrid:
     """The grid a sensor samples on, and interpolation with a cubic spline from there.
 
     The phase between the two grids varies over the image, so the transfer of the interpolation is
-    that of the mean phase, and what the native sampling aliased has no fixed phase in the product.
+    that of the mean phase, and light aliased by the native sampling has no fixed phase in the
+    product.
 
     Parameters
     ----------

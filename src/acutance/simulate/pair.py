@@ -25,7 +25,7 @@ from acutance.simulate.noise import Noise, noise_of_snr
 __all__ = ["Landscape", "PairTruth", "landscape", "pair"]
 
 MARGIN_PX = 8
-"""Ground rendered beyond the low image on every side: what is scattered further comes back from
+"""Ground rendered beyond the low image on every side: light scattered further comes back from
 the other side."""
 
 MAX_SAMPLES = 40_000_000
@@ -60,7 +60,7 @@ class Landscape:
 
 @dataclass(frozen=True, eq=False)
 class PairTruth(ShortRepr):
-    """What a perfect measurement of a simulated pair would return.
+    """The truth of a simulated pair: the result of a perfect measurement.
 
     Frequencies and distances are in pixels of the low image.
 
@@ -77,7 +77,7 @@ class PairTruth(ShortRepr):
     gain, offset : float
         Of the low image's radiometry against the high one's.
     noise_low, noise_high : Noise, optional
-        What was added to either image.
+        Noise that was added to either image.
     """
 
     sensor: Sensor
@@ -95,7 +95,7 @@ class PairTruth(ShortRepr):
         return Rescaled(self.reference, self.ratio)
 
     def ratio_otf(self, u: Floats, v: Floats) -> Transfer:
-        """OTF of the low sensor over that of the reference: what the pair alone determines."""
+        """OTF of the low sensor over that of the reference: the pair alone determines it."""
         return np.asarray(self.sensor.otf(u, v) / self.reference_in_low_px.otf(u, v))
 
     def response(self, orientation: Orientation = "across") -> Response:
@@ -269,7 +269,7 @@ def _image(
     offset: float = 0.0,
     shift_px: tuple[float, float] = (0.0, 0.0),
 ) -> Floats:
-    """What a sensor makes of the ground, `samples` of it in a pixel; its margin cut off."""
+    """The ground blurred by a sensor, `samples` of it in a pixel; its margin cut off."""
     whole = tuple(size // samples for size in spectrum.shape)
     first = MARGIN_PX * quarters // samples
     inner = slice(first, first + shape[0]), slice(first, first + shape[1])

@@ -23,7 +23,7 @@ __all__ = ["PointsTruth", "mirror_columns", "mirror_square", "points"]
 
 @dataclass(frozen=True, eq=False)
 class PointsTruth(ShortRepr):
-    """What a perfect measurement of simulated point sources would return.
+    """The truth of simulated point sources: the result of a perfect measurement.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class PointsTruth(ShortRepr):
         Light of each source, summed over pixels.
     background : float
     noise : Noise, optional
-        What was added to the image.
+        Noise that was added to the image.
     """
 
     sensor: Sensor
@@ -104,8 +104,8 @@ def mirror_columns(
     (count * columns, 2) array
     """
     down = np.arange(count)[:, None] * np.array(step)
-    beside = np.arange(columns)[:, None, None] * np.array([0.0, apart_px])
-    return np.asarray((np.array(first) + beside + down).reshape(-1, 2))
+    right = np.arange(columns)[:, None, None] * np.array([0.0, apart_px])
+    return np.asarray((np.array(first) + right + down).reshape(-1, 2))
 
 
 def mirror_square(first: tuple[float, float], *, side: int = 4, pitch_px: float = 5.25) -> Floats:
@@ -152,7 +152,7 @@ def points(
     fluxes : (n,) array_like or float, optional
         Light of each source, summed over pixels.
     peak : float, optional
-        What a source on the centre of a pixel adds to that pixel, instead of `fluxes`.
+        Signal that a source on the centre of a pixel adds to that pixel, instead of `fluxes`.
     background : float, optional
         Level of the ground.
     shape : (rows, cols), optional
@@ -205,5 +205,5 @@ def points(
 
 
 def peak_per_flux(sensor: Sensor) -> float:
-    """What a source of flux 1 on the centre of a pixel adds to that pixel."""
+    """Signal that a source of flux 1 on the centre of a pixel adds to that pixel."""
     return float(render_patches(sensor, [Point(8.0, 8.0, 1.0)], (17, 17))[8, 8])

@@ -1,4 +1,4 @@
-"""A pulse target, a bright strip between two darker ones, as a sensor sees it."""
+"""A pulse target, two parallel edges between plateaus, as a sensor sees it."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ __all__ = ["PulseTruth", "pulse", "render_pulse"]
 
 @dataclass(frozen=True, eq=False)
 class PulseTruth(HasResponse):
-    """What a perfect measurement of a simulated pulse would return.
+    """The truth of a simulated pulse: the result of a perfect measurement.
 
     Parameters
     ----------
     system : Sensor
-        What the image shows: the sensor, and the resampling if there was one.
+        System of the image: the sensor, and the resampling if there was one.
     line : Line
         The middle of the pulse as the image shows it: half way between the places where the
         sensor's ESF passes 50 % at either edge. Its normal points from the left background to the
@@ -41,11 +41,11 @@ class PulseTruth(HasResponse):
     left, level, right : float
         Levels of the background before the pulse, of the pulse, and of the background behind it.
     noise : Noise, optional
-        What was added to the image.
+        Noise that was added to the image.
     regrid : Regrid, optional
         The resampling the image went through, after the noise.
     ground_noise : GroundNoise, optional
-        Clutter of the ground, before the sensor.
+        Clutter of the scene, before the sensor.
     """
 
     system: Sensor
@@ -163,7 +163,7 @@ def render_pulse(
     if length_px is None:
         first, second = profile.esf(s + half), profile.esf(s - half)
         return np.asarray(left + (level - left) * first + (right - level) * second)
-    ground = left + ((right - left) * profile.esf(s) if right != left else 0.0)
+    plateaus = left + ((right - left) * profile.esf(s) if right != left else 0.0)
     # The line is where the image shows the middle; the tarp itself lies the ESF's 50 % point off.
     middle = line.moved(-profile.half_px, 0.0)
     sides = [
@@ -173,7 +173,7 @@ def render_pulse(
         Patch(at.row, at.col, half, length_px, line.normal_deg, level - below)
         for at, below in sides
     ]
-    return np.asarray(ground + render_patches(sensor, tarp, shape))
+    return np.asarray(plateaus + render_patches(sensor, tarp, shape))
 
 
 def pulse(
@@ -207,24 +207,24 @@ def pulse(
         The axis the normal is near to: "across" gives a nearly vertical pulse.
     shape : (rows, cols), optional
     dark : float, optional
-        Level of the ground, in image units.
+        Level of the plateaus, in image units.
     bright : float, optional
-        Level of the pulse; below the ground for a dark pulse on bright ground.
+        Level of the pulse; below `dark` for a dark pulse between bright plateaus.
     right_dark : float, optional
-        Level of the ground on the side of higher columns (rows), if it differs from `dark`.
+        Level of the plateau on the side of higher columns (rows), if it differs from `dark`.
     length_px : float, optional
         Length of the pulse; endless unless given.
     offset_px : float, optional
         Distance along the normal from the image's centre to the middle of the pulse.
     snr : float, optional
-        Height of the pulse over the mean ground, divided by the standard deviation of added
-        white noise.
+        Height of the pulse over the mean of the plateaus, divided by the standard deviation of
+        added white noise.
     noise : Noise, optional
         A description of the noise, instead of `snr` or, without `read`, together with it.
     regrid : Regrid, optional
         Resample the noisy image; line, width, shape and truth are those of the new image.
     ground_noise : GroundNoise, optional
-        Uneven ground, which the sensor blurs with the pulse.
+        Clutter, which the sensor blurs with the pulse.
     rng : numpy.random.Generator, optional
         Source of randomness; needed as soon as there is noise.
 

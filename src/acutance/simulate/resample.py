@@ -35,7 +35,7 @@ def resample(
     image : (m, n) array
     rows, cols : (p, q) arrays
         Places in pixels of `image`; integers are pixel centres. Shift, stretch and rotation are
-        all said by these.
+        all given by these.
     kernel : {"nearest", "bilinear", "cubic"}, optional
     a : float, optional
         Parameter of the cubic kernel; see `acutance.optics.processing.interpolation_weight`.
@@ -70,7 +70,7 @@ class Regrid:
     scale : float, optional
         Size of the new pixels in old ones, 0.5 to 2. At 1 all new pixels have the same phase
         and the resampled system is known exactly; otherwise the phases vary, the transfer is
-        that of the mean phase, and single pixels depart from it by what their phase does.
+        that of the mean phase, and single pixels differ from it with their phase.
     kernel : {"nearest", "bilinear", "cubic"}, optional
     a : float, optional
         Parameter of the cubic kernel.

@@ -108,7 +108,7 @@ class Star:
 
 @dataclass(frozen=True, eq=False)
 class StarTruth(ShortRepr):
-    """What a perfect measurement of a simulated star would return.
+    """The truth of a simulated star: the result of a perfect measurement.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class StarTruth(ShortRepr):
     ground : float
         Level around the star.
     noise : Noise, optional
-        What was added to the image.
+        Noise that was added to the image.
     """
 
     sensor: Sensor

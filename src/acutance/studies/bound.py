@@ -1,4 +1,4 @@
-"""Cramér-Rao bounds of a planned target: what no unbiased estimator can beat.
+"""Cramér-Rao bounds of a planned target: the smallest errors of unbiased estimators.
 
 Two bounds, for white noise:
 

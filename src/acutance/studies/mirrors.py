@@ -46,7 +46,7 @@ POSITION_BOUND = 0.80
 
 @dataclass(frozen=True)
 class MirrorPlanOptions:
-    """What an array of mirrors is planned for.
+    """The purpose of an array of mirrors.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class MirrorPlanOptions:
         bounds = {
             "count": (self.count, 1, 400),
             "columns": (self.columns, 1, self.count),
-            "spacing_px": (self.least_spacing_px, MIN_SPACING_PX, 100.0),
+            "spacing_px": (self.min_spacing_px, MIN_SPACING_PX, 100.0),
             "snr": (self.snr, 1.0, 1e6),
             "ground": (self.ground, 0.0, 0.95),
             "level": (self.level, self.ground + 0.01, 100.0),
@@ -118,7 +118,7 @@ class MirrorPlanOptions:
                 raise OptionError(f"{name} is {value:g}: it has to be {low:g} to {high:g}")
 
     @property
-    def least_spacing_px(self) -> float:
+    def min_spacing_px(self) -> float:
         """The spacing requested, or 10 px in columns and 5 px in a square."""
         if self.spacing_px is not None:
             return self.spacing_px
@@ -225,7 +225,7 @@ def plan_mirrors(options: MirrorPlanOptions, execution: Execution | None = None)
     along_m = options.sensor.gsd_along_m or gsd_m
     layout = lay_out_mirrors(
         options.count, pixel_m=(along_m, gsd_m), arrangement=options.arrangement,
-        columns=options.columns, spacing_px=options.least_spacing_px,
+        columns=options.columns, spacing_px=options.min_spacing_px,
     )  # fmt: skip
     share = _peak_share(options.sensor, layout)
     light = (options.level - options.ground) / share
@@ -263,7 +263,7 @@ def _draw(options: MirrorPlanOptions, _: int, rng: np.random.Generator) -> Recor
     """Errors and stated deviations of one simulated image; nan where it is refused."""
     layout = lay_out_mirrors(
         options.count, pixel_m=(1.0, 1.0), arrangement=options.arrangement,
-        columns=options.columns, spacing_px=options.least_spacing_px,
+        columns=options.columns, spacing_px=options.min_spacing_px,
     )  # fmt: skip
     places = _images_places(layout, rng)
     image, truth = points(options.sensor, positions=places, snr=options.snr, rng=rng)
@@ -288,7 +288,7 @@ def _draw(options: MirrorPlanOptions, _: int, rng: np.random.Generator) -> Recor
 
 
 def place_errors_px(found: Floats, places: Floats) -> Floats:
-    """Errors (k, 2) of measured places against the nearest true ones, less their common shift.
+    """Errors (k, 2) of measured places against the nearest true ones, minus their common shift.
 
     Parameters
     ----------

@@ -63,7 +63,7 @@ def measure_both_pulses(image: Floats, *, width_px: float) -> Record:
     ----------
     image : (rows, cols) array
     width_px : float
-        As stated: the published estimator believes it, ours starts from it.
+        As stated: the published estimator uses it as it is, ours as a first guess.
 
     Returns
     -------

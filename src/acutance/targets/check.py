@@ -1,4 +1,4 @@
-"""Checks: what is asked of a target, what was found, and the verdict that follows.
+"""Checks: the questions asked of a target, the answers found, and the verdict.
 
 The questions of all kinds of target, with their limits, sources and advice, stand in
 `acutance.targets.check_table`.
@@ -45,7 +45,7 @@ _WORDS: dict[Severity, VerdictWord] = {"fail": "invalid", "caution": "doubtful",
 
 @dataclass(frozen=True)
 class Check:
-    """One question asked of a target, with what was found and what is asked.
+    """One question asked of a target, with the answer and its limit.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Check:
     sense : {">=", "<="}
         Whether the limit is a minimum or a maximum.
     limit : float
-        What is asked.
+        The limit asked for.
     passed : bool
     message : str
         What was found, in words; where the limit is not kept, also what it means and what to do.

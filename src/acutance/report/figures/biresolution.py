@@ -46,7 +46,7 @@ def biresolution_panels(measurement: BiresolutionMeasurement) -> tuple[Panel, ..
         Panel(
             "Residuals",
             "Low image minus the blurred high one, in standard deviations. What is left out is "
-            "yellow. Structures of the scene mean that the two bands see different things.",
+            "yellow. Structures of the scene mean that the two images show different things.",
             on_axes(_draw_residual, measurement),
         ),
         Panel(

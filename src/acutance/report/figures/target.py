@@ -1,4 +1,4 @@
-"""All edges of one target: where they are and what they say together."""
+"""All edges of one target: where they are and their means."""
 
 from __future__ import annotations
 

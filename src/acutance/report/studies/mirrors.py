@@ -109,7 +109,7 @@ def _narrow(plan: MirrorPlan) -> str:
 
 
 def _biased(plan: MirrorPlan) -> str:
-    """Which numbers a bias rules, that neither mirrors nor images average out."""
+    """Numbers with a bias that neither more mirrors nor more images average out."""
     measured = plan.options.draws - plan.refused
     if measured < _ENOUGH_DRAWS:
         return ""

@@ -119,8 +119,8 @@ def difference_table(entries: Sequence[CampaignEntry], name: str = "mtf_nyquist"
 
 def _between(one: CampaignEntry, other: CampaignEntry, name: str) -> float:
     (first, true), (second, also_true) = one.numbers(name), other.numbers(name)
-    spread = math.hypot(first.std, second.std)
-    return ((first.value - true) - (second.value - also_true)) / spread if spread > 0 else math.nan
+    std = math.hypot(first.std, second.std)
+    return ((first.value - true) - (second.value - also_true)) / std if std > 0 else math.nan
 
 
 def _stds(off: float) -> str:

@@ -73,7 +73,7 @@ def headline_table(numbers: Numbers, measurement: Measurement | None = None) -> 
         metric_words(name) if measurement is None else measurement_metric_words(measurement, name)
         for name in names
     ]
-    # "FWHM on the ground [m]" stands beside "FWHM [px]": the unit tells them apart.
+    # "FWHM on the ground [m]" is next to "FWHM [px]": their units differ.
     labels = [one.label_with_unit.replace(" on the ground", "") for one in words]
     return Table(("", *labels), rows, "l" + "r" * len(names))
 

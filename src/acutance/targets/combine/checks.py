@@ -18,7 +18,7 @@ COMBINE_CHECKS = (
     "agreement", "worst_member", "plain_sensor", "directions", "failed_inputs", "shared_targets",
     "assumed_covariance", "unknown_gsd",
 )  # fmt: skip
-"""What is asked of a combination."""
+"""Names of all checks of a combination."""
 
 _DISTINCT_DEG = 15.0
 _SAME_LINE_PX = 3.0

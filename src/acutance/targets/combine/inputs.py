@@ -1,4 +1,4 @@
-"""What is combined: results, their records, or the JSON documents that the commands write."""
+"""Inputs of a combination: results, their records, or the JSON documents of the commands."""
 
 from __future__ import annotations
 
@@ -202,7 +202,7 @@ def _input(record: Record, origin: str, name: str | None) -> MeasuredInput:
 
 
 def _require_transfer(slices: OtfSlices, origin: str) -> None:
-    """Refuse what is no transfer function, and one without any standard deviation."""
+    """Refuse curves that are no transfer function, and those without standard deviations."""
     lowest = np.abs(slices.otf.reshape(slices.normal_deg.size, -1)[:, 0])
     least, most = _AT_LOWEST
     if not (np.all(lowest > least) and np.all(lowest < most)):

@@ -1,4 +1,4 @@
-"""What a caller may change of a combination, and the limits its checks hold it to."""
+"""Options of a combination, and the limits of its checks."""
 
 from __future__ import annotations
 

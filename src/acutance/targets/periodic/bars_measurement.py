@@ -1,4 +1,4 @@
-"""What was measured on groups of bars."""
+"""The result of a measurement of bars."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class BarsMeasurement(Measurement):
     groups : tuple of BarsGroup
         In the order they were stated or found.
     directions_deg : tuple of float
-        Directions across the bars, from the column axis towards the row axis: what is measured.
+        Measured directions, across the bars, from the column axis towards the row axis.
         Other directions follow from the prior, which all sensors have in common.
     contrast : Estimate
         Bars minus background, before the sensor.

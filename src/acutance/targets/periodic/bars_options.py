@@ -1,4 +1,4 @@
-"""What a caller may change of a measurement of bars."""
+"""Options of a measurement of bars."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the regressions of bars and stars share: weights, noise about the mean, the prior."""
+"""Steps that the regressions of bars and stars share: weights, noise about the mean, the prior."""
 
 from __future__ import annotations
 

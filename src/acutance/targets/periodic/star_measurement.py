@@ -1,4 +1,4 @@
-"""What was measured on a Siemens star."""
+"""The result of a measurement of a Siemens star."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a caller may change of a star measurement."""
+"""Options of a measurement of a star."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Levels of a periodic target's materials where they are wide: what its contrast is known by."""
+"""Levels of a periodic target's materials where they are wide: they determine its contrast."""
 
 from __future__ import annotations
 

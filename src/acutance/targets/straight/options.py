@@ -1,4 +1,4 @@
-"""What a caller may change of the measurement of an edge or a pulse."""
+"""Options of the measurement of an edge or a pulse."""
 
 from __future__ import annotations
 
