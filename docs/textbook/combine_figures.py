@@ -117,9 +117,9 @@ def departure() -> Figure:
     true = np.abs(sensor.otf(freq, none))
     figure = new_page(10.4, 3.6)
     left, right = figure.subplots(1, 2)
-    plain = forced.fit.plain
+    plain = forced.details.plain
     left.plot(freq, true, color=INK, ls="--", label="truth")
-    best = min(forced.fit.forms, key=lambda one: one.share)
+    best = min(forced.details.forms, key=lambda one: one.share)
     gauss = np.abs(best.form.otf(np.array(best.correction.parameters), freq, none))
     left.plot(
         freq, gauss, color=ORANGE, label=f"Gaussian, chi² {plain.value:.0f}/{plain.expected:.0f}"

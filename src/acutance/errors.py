@@ -14,7 +14,7 @@
     ├── OptionError         (ValueError)  an option has a value out of its range
     └── ModelError          (ValueError)  a sensor or a scene is described in contradiction
 
-Every message says what was asked, what was found and what to do. Every class is also
+Every message names what was asked, what was found and what to do. Every class is also
 the builtin that fits, so that code which does not import acutance can catch it.
 """
 

@@ -179,7 +179,8 @@ class Sharpening:
             )
         if not abs(taps.sum()) > 1e-6 * np.abs(taps).sum():
             raise ModelError(
-                "Sharpening: the kernel sums to zero, so it has no gain to normalise by"
+                "Sharpening: the kernel sums to zero, so it has no gain to "
+                "normalise by: give a kernel with a positive sum"
             )
         object.__setattr__(self, "kernel", tuple(tuple(row) for row in taps.tolist()))
 

@@ -93,7 +93,9 @@ def read_sensor(path: str | os.PathLike[str]) -> Sensor:
         text = Path(path).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise ModelError(f"the sensor file {path} cannot be read ({reason})") from error
+        raise ModelError(
+            f"the sensor file {path} cannot be read ({reason}): check its path"
+        ) from error
     return sensor_file_from_toml(text, os.fspath(path)).sensor
 
 
@@ -117,7 +119,9 @@ def write_sensor(described: Sensor | SensorFile, path: str | os.PathLike[str]) -
     try:
         Path(path).write_text(text, encoding="utf-8")
     except OSError as error:
-        raise ModelError(f"{path} cannot be written ({error.strerror})") from error
+        raise ModelError(
+            f"{path} cannot be written ({error.strerror}): choose another path"
+        ) from error
 
 
 def sensor_file_from_toml(text: str, origin: str = "the sensor") -> SensorFile:
@@ -219,7 +223,7 @@ def _block(table: Any, pixel_m: tuple[float, float] | None, origin: str) -> Bloc
     for key, value in given.items():
         name = _parameter(key, list(parameters), origin)
         if name in values:
-            raise ModelError(f"{origin}: {name} is given in pixels and in metres")
+            raise ModelError(f"{origin}: {name} is given in pixels and in metres: leave one out")
         if name == key:
             values[name] = _value(value, key, origin)
             continue

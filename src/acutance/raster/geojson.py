@@ -33,7 +33,9 @@ def load_geojson(name: str) -> dict[str, Any]:
             f"{name} cannot be read as GeoJSON ({error}): write a file of Polygons or Points"
         ) from error
     if not isinstance(document, dict):
-        raise RegionError(f"{name} holds a {type(document).__name__}, not a GeoJSON object")
+        raise RegionError(
+            f"{name} holds a {type(document).__name__}, not a GeoJSON object: export it again"
+        )
     return document
 
 
@@ -125,7 +127,7 @@ def _polygons(node: Any, name: str, label: str = "") -> Iterator[tuple[str, Any]
     if node is None:
         return
     if not isinstance(node, dict):
-        raise RegionError(f"{name} holds {node!r:.40} where GeoJSON has an object")
+        raise RegionError(f"{name} holds {node!r:.40} where GeoJSON has an object: export it again")
     kind = node.get("type")
     if kind == "FeatureCollection":
         for number, feature in enumerate(_members(node, "features", name), start=1):
@@ -159,7 +161,7 @@ def _title(feature: dict[str, Any]) -> str | None:
 def _members(node: dict[str, Any], key: str, name: str) -> list[Any]:
     members = node.get(key)
     if not isinstance(members, list):
-        raise RegionError(f"{name} holds a {node['type']} without a list of {key}")
+        raise RegionError(f"{name} holds a {node['type']} without a list of {key}: export it again")
     return members
 
 

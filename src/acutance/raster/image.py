@@ -188,6 +188,6 @@ def _as_array(array: Any) -> NDArray[Any]:
         return np.asanyarray(array)
     except (TypeError, ValueError) as error:
         raise ImageError(
-            f"the {type(array).__name__} given cannot be made an array ({error}): an image has "
+            f"the {type(array).__name__} given cannot be made an array ({error}): give "
             "rows of equal length"
         ) from error

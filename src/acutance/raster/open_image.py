@@ -113,7 +113,7 @@ def _require_file(name: str) -> None:
     except OSError as error:
         raise ImageError(f"{name} cannot be reached ({error.strerror}): check the path") from error
     if is_empty:
-        raise ImageError(f"{name} is empty (0 bytes): it was not written or not copied whole")
+        raise ImageError(f"{name} is empty (0 bytes): write or copy it again")
     if not is_file and not is_folder and not _GDAL_NAME.match(name):
         found = "its folder exists" if path.parent.is_dir() else "nor does its folder"
         raise ImageError(f"{name} does not exist ({found}): check the path")

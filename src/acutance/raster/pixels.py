@@ -27,7 +27,7 @@ __all__ = [
 
 _NPY_MAGIC = b"\x93NUMPY"
 _MAPPED_BYTES = 32 * 2**20
-"""Of a file mapped at once: what a strip down all its rows may hold in memory."""
+"""Of a file mapped at once: limit of the memory held by a column down all its rows."""
 
 
 class PixelSource(Protocol):
@@ -77,7 +77,7 @@ class NpyPixels:
     nodata: float | None = None
 
     def read(self, box: Box) -> Floats:
-        # The system maps the neighbourhood of every page touched: a strip down all rows of a
+        # The system maps the neighbourhood of every page touched: a column down all rows of a
         # large file would hold the whole file, so it is mapped anew for every few lines.
         values = np.empty(box.shape)
         header = self.map()
@@ -149,7 +149,9 @@ def require_image_array(array: NDArray[Any], name: str) -> None:
             f"{name} has shape {array.shape}; an image has two axes, (rows, columns): {advice}"
         )
     if array.size == 0:
-        raise ImageError(f"{name} has shape {array.shape}: it is empty, so there is no image")
+        raise ImageError(
+            f"{name} has shape {array.shape}: it is empty; give an array with rows and columns"
+        )
 
 
 def equals_nodata(raw: NDArray[Any], nodata: float | None) -> NDArray[np.bool_]:

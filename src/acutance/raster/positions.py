@@ -62,9 +62,11 @@ def read_positions(path: str, image: Image) -> Floats:
     else:
         places = _of_csv(path, text, image)
     if places.shape[0] == 0:
-        raise RegionError(f"{path} holds no positions")
+        raise RegionError(f"{path} holds no positions: write at least one")
     if not np.isfinite(places).all():
-        raise RegionError(f"{path} holds positions that are not finite, or off the map")
+        raise RegionError(
+            f"{path} holds positions that are not finite, or off the map: remove them"
+        )
     return places
 
 
@@ -89,7 +91,7 @@ def _of_csv(path: str, text: str, image: Image) -> Floats:
             numbers.append([float(row[place]) for place in places])
         except (ValueError, IndexError) as error:
             raise RegionError(
-                f"{path}, line {line}: {','.join(row)} holds no two numbers there"
+                f"{path}, line {line}: {','.join(row)} holds no two numbers there: correct it"
             ) from error
     down, right = np.array(numbers).reshape(-1, 2).T
     return _in_pixels(path, kind, right, down, image)

@@ -216,13 +216,15 @@ def _outline(vertices: ArrayLike) -> Floats:
             f"an outline is an array of (row, col) pairs, shape (n, 2), not {corners.shape}"
         )
     if not np.isfinite(corners).all():
-        raise RegionError("an outline has a coordinate that is not a finite number")
+        raise RegionError("an outline has a coordinate that is not a finite number: draw it again")
     if len(corners) > 1 and np.array_equal(corners[0], corners[-1]):
         corners = corners[:-1]
     if len(corners) < 3:
         raise RegionError(f"an outline of {len(corners)} corners has no inside: give 3 or more")
     if np.linalg.matrix_rank(corners[1:] - corners[0]) < 2:
-        raise RegionError("the corners of an outline lie on one line, so it has no inside")
+        raise RegionError(
+            "the corners of an outline lie on one line, so it has no inside: draw it again"
+        )
     corners.setflags(write=False)
     return corners
 

@@ -70,7 +70,7 @@ def render_raster(
     if subpixels < 1 or ground.ndim != 2 or any(size % subpixels for size in ground.shape):
         raise ModelError(
             f"ground of shape {ground.shape} does not fill whole pixels of {subpixels} by "
-            f"{subpixels} squares"
+            f"{subpixels} squares: give sizes that are multiples of {subpixels}"
         )
     rows, cols = (size // subpixels for size in ground.shape)
     reach = alias_bands(sensor) + 0.5

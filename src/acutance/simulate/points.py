@@ -188,11 +188,16 @@ def points(
         shape = (int(last[0]), int(last[1]))
     require_shape(shape)
     if np.any(places < 0) or np.any(places > np.array(shape) - 1):
-        raise ModelError(f"a source lies outside the image of {shape[0]} by {shape[1]} pixels")
+        raise ModelError(
+            f"a source lies outside the image of {shape[0]} by {shape[1]} pixels: give a "
+            "larger shape"
+        )
     brightness = peak_per_flux(sensor)
     light = np.asarray(peak / brightness if fluxes is None else fluxes, float)
     if light.shape not in ((), (places.shape[0],)):
-        raise ModelError(f"{light.size} fluxes were given for {places.shape[0]} positions")
+        raise ModelError(
+            f"{light.size} fluxes were given for {places.shape[0]} positions: give one for each"
+        )
     light = np.broadcast_to(light, places.shape[:1]).copy()
     sources = [
         Point(row, col, float(flux))

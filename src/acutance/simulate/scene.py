@@ -1,4 +1,4 @@
-"""Ground made of rectangles and strips, as a sensor sees it."""
+"""Ground made of rectangles and straight strips, as a sensor sees it."""
 
 from __future__ import annotations
 

@@ -185,7 +185,7 @@ def _numbers(blur: GaussianPixel) -> Floats:
 
 
 def _response(blur: GaussianPixel) -> Response:
-    """The curves of a plain blur."""
+    """The curves of a Gaussian through a pixel."""
     nothing = np.zeros((TRUTH_DISTANCE_PX.size, 0))
     return Response(
         Esf(TRUTH_DISTANCE_PX, blur.esf(TRUTH_DISTANCE_PX), nothing),

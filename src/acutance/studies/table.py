@@ -33,7 +33,7 @@ class Table:
     def __post_init__(self) -> None:
         lengths = {name: len(values) for name, values in self.columns.items()}
         if len(set(lengths.values())) > 1:
-            raise ValueError(f"the columns of a table have one length, found {lengths}")
+            raise ValueError(f"give columns of one length to a table, found {lengths}")
 
     @classmethod
     def of_rows(cls, rows: Iterable[Mapping[str, Cell]]) -> Table:

@@ -135,8 +135,8 @@ class Measurement(HasResponse, HasChecks):
         found = self.directions.get(name)
         if found is None:
             raise AttributeError(
-                f"this {self.kind} was measured {self.orientation} track, not {name}: its numbers "
-                "stand on the measurement itself"
+                f"this {self.kind} was measured {self.orientation} track, not {name}: read its "
+                "numbers from the measurement itself"
             )
         return found
 

@@ -197,7 +197,8 @@ class Record(ShortRepr, HasChecks):
             _ = record.image, record.checks, record.directions
         except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
             raise OptionError(
-                f"the document cannot be read as a measurement ({error!r})"
+                f"the document cannot be read as a measurement ({error!r}): give one that "
+                "acutance wrote"
             ) from error
         return record
 

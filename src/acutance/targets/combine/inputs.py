@@ -118,7 +118,9 @@ def read_inputs(
         )
     measurements = tuple(measurements)
     if names is not None and len(names) != len(measurements):
-        raise OptionError(f"{len(names)} names were given for {len(measurements)} measurements")
+        raise OptionError(
+            f"{len(names)} names were given for {len(measurements)} measurements: give one for each"
+        )
     found: list[MeasuredInput] = []
     for i, one in enumerate(measurements):
         name = None if names is None else names[i]
@@ -161,7 +163,10 @@ def _documents(document: Mapping[str, Any], origin: str) -> list[Mapping[str, An
             "once, so measure with one method (without --compare)"
         )
     if isinstance(schema, str) and schema.startswith("acutance/"):
-        raise OptionError(f"{origin} is a document {schema}, no measurement ({SCHEMA})")
+        raise OptionError(
+            f"{origin} is a document {schema}, no measurement ({SCHEMA}): give the JSON "
+            "document of a measurement"
+        )
     raise OptionError(
         f"{origin} is no measurement of acutance: write one with a measuring command and --json"
     )
@@ -204,12 +209,12 @@ def _input(record: Record, origin: str, name: str | None) -> MeasuredInput:
 def _require_transfer(slices: OtfSlices, origin: str) -> None:
     """Refuse curves that are no transfer function, and those without standard deviations."""
     lowest = np.abs(slices.otf.reshape(slices.normal_deg.size, -1)[:, 0])
-    least, most = _AT_LOWEST
-    if not (np.all(lowest > least) and np.all(lowest < most)):
+    low, high = _AT_LOWEST
+    if not (np.all(lowest > low) and np.all(lowest < high)):
         raise OptionError(
             f"{origin}: its MTF at {slices.freq_cpp[0]:g} c/px is {lowest.min():.3g} to "
             f"{lowest.max():.3g}, that of a sensor is near 1: the document was changed, or the "
-            "measurement failed"
+            "measurement failed; measure it again"
         )
     if not np.any(slices.factor):
         raise OptionError(

@@ -97,7 +97,7 @@ class PairSpectra:
         return np.asarray(share * _smooth(self.low) + _smooth(floor))
 
     def along_axis(self, axis: str) -> tuple[Floats, Floats]:
-        """Frequencies from 0 and squared coherence across or along, over a strip of 7 bins."""
+        """Frequencies from 0 and squared coherence across or along, averaged over 7 bins."""
         middle_v, middle_u = self.v_cpp.size // 2, self.u_cpp.size // 2
         if axis == "across":
             return self.u_cpp[middle_u:], self._coherence((7, 3))[middle_v, middle_u:]

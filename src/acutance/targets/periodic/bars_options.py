@@ -51,7 +51,7 @@ class BarsOptions:
         stated_levels(self.dark, self.bright, self.level_std)
         if self.count is not None and not 2 <= self.count <= 40:
             raise OptionError(
-                f"{self.count} bars in a group: 2 to 40 can be measured; a single bar is a pulse "
+                f"{self.count} bars in a group: give 2 to 40; a single bar is a pulse "
                 "(measure_pulse, acutance pulse)"
             )
         for number, one in enumerate(self.groups, 1):
@@ -63,8 +63,8 @@ class BarsOptions:
             if not (1.2 <= one.period_px <= 100 and one.length_px >= 6):
                 raise OptionError(
                     f"group {number} has a period of {one.period_px:g} px and bars of "
-                    f"{one.length_px:g} px: periods of 1.2 to 100 px and bars of at least 6 px "
-                    "can be measured"
+                    f"{one.length_px:g} px: give periods of 1.2 to 100 px and bars of at least "
+                    "6 px"
                 )
 
     @property

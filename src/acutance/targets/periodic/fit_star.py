@@ -227,7 +227,7 @@ def _first_fit(
     if np.count_nonzero(coarse) < 3:
         raise NoStarError(
             "the spokes do not stand out of the noise in three rings: the star is too faint, too "
-            "small or not where it was found"
+            "small or not where it was found; choose a region that holds the whole star"
         )
     f, m = freq[coarse], modulation[coarse]
     weight = (m / std[coarse]) * np.sqrt(1 / (1 + (f / 0.4) ** 4))

@@ -107,7 +107,7 @@ def _require_cycles(cycles: Any) -> None:
             "count them"
         )
     if not 4 <= float(cycles) <= 1000:
-        raise OptionError(f"a star of {cycles} cycles: 4 to 1000 can be measured")
+        raise OptionError(f"a star of {cycles} cycles was asked for: give 4 to 1000")
 
 
 def _in_region(

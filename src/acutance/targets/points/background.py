@@ -1,6 +1,6 @@
 """The background under point sources: a plane that all share, and how far each lies off it.
 
-Light in the wings of a PSF and a raised background look alike. Where the backgrounds of many
+Light in the wings of a PSF and a raised background look the same. Where the backgrounds of many
 sources agree with one plane, they are tied to it as closely as they agree, and the wings are seen
 against the background far from all sources; where they do not, every source keeps its own.
 """

@@ -27,7 +27,7 @@ POINTS_CHECKS = (
     "outliers",
     "survey_px",
 )
-"""Names of all checks of point sources; `acutance.targets.QUESTIONS` says what they ask."""
+"""Names of all checks of point sources; their questions are in `acutance.targets.QUESTIONS`."""
 
 _PHASES = 21
 _MIN_ABOUT_PLANE = 5

@@ -118,7 +118,7 @@ class MirrorFit:
 
 @dataclass(frozen=True)
 class AlignedFit:
-    """What the report tells of the Gaussian through all aligned samples.
+    """The reported numbers of the Gaussian through all aligned samples.
 
     Parameters
     ----------

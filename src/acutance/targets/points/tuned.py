@@ -1,7 +1,7 @@
 """Tuned numbers of the points room: what each is, what set it, what it gave.
 
 "Benchmark" is ``benchmarks/points.py`` (eleven systems, 20 mirrors at 80 times the noise). "At
-twice" and "at half" say how far MTF and RER move, in standard deviations, and by how much these
+twice" and "at half" give how far MTF and RER move, in standard deviations, and by how much these
 change, at most in five scenes of ten mirrors (a Gaussian, a halo, diffraction, a charge trail with
 shot noise, grass).
 """

@@ -46,7 +46,7 @@ def zeros_cpp(width_px: float, up_to_cpp: float = 1.0) -> Floats:
         Ascending; empty where the first zero lies higher.
     """
     if not width_px > 0:
-        raise OptionError(f"a pulse has a width above 0, found {width_px:g} px")
+        raise OptionError(f"a pulse has a width of {width_px:g} px: give one above 0")
     return np.arange(1, math.floor(up_to_cpp * width_px + 1e-9) + 1) / width_px
 
 
@@ -70,7 +70,7 @@ def width_error_gain(
     freq = np.asarray(freq_cpp, dtype=float)
     true, used = np.asarray(width_true_px, dtype=float), np.asarray(width_used_px, dtype=float)
     if not (np.all(true > 0) and np.all(used > 0)):
-        raise OptionError("a pulse has a width above 0")
+        raise OptionError("a pulse has a width that is not above 0: give one above 0 px")
     with np.errstate(divide="ignore", invalid="ignore"):
         gain = np.abs(_sinc(true * freq) / _sinc(used * freq))
     return np.asarray(np.where(np.broadcast_to(true == used, gain.shape), 1.0, gain))

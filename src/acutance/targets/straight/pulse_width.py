@@ -131,7 +131,7 @@ def width_consistency(fit: SplinePulse, stated_width_px: float) -> WidthConsiste
             "with fit_width=True"
         )
     if not stated_width_px > 0:
-        raise OptionError(f"a pulse has a width above 0, found {stated_width_px:g} px")
+        raise OptionError(f"a pulse has a width of {stated_width_px:g} px: give one above 0")
     return WidthConsistency(stated_width_px, fit.pulse_width.value, fit.pulse_width.std)
 
 

@@ -287,7 +287,10 @@ def _middle(terms: FermiSum, by_contrast: Floats) -> tuple[float, Floats]:
     wide = np.arange(-200.0, 201.0) * 0.05 + terms.centroid_px
     middle = crossing_of_half(wide, terms.value(wide) / terms.contrast)
     if math.isnan(middle):
-        raise NoEdgeError("the fitted sum of Fermi functions never passes 50 % of its contrast")
+        raise NoEdgeError(
+            "the fitted sum of Fermi functions never passes 50 % of its contrast: choose a region "
+            "with one edge between uniform plateaus"
+        )
     there = np.array([middle])
     steepness = float(terms.slope(there)[0]) / terms.contrast
     rise = _padded(terms.value_gradient(there), by_contrast.size)[0] / terms.contrast

@@ -68,7 +68,7 @@ class Iso12233Options:
                 f"found {self.bins_per_px} and {self.edge_order}"
             )
         if not 0 < self.tukey_alpha <= 1:
-            raise OptionError(f"tukey_alpha lies over 0 to 1, found {self.tukey_alpha}")
+            raise OptionError(f"tukey_alpha is {self.tukey_alpha}: give one above 0 and up to 1")
 
 
 _DEFAULT = Iso12233Options()

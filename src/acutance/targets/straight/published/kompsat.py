@@ -30,7 +30,7 @@ from acutance.targets.straight.published.smoothing_spline import fit_smoothing_s
 
 __all__ = ["KompsatOptions", "kompsat_2014", "start_points"]
 
-_FARTHEST_START_PX = 4.0
+_MAX_START_PX = 4.0
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class KompsatOptions:
     ----------
     distance : {"normal", "as-drafted"}
         6a. "normal" multiplies row distances by the cosine of the edge's angle. The draft's
-        words say to divide by it, which costs -31 to -39 % of the MTF at Nyquist at 20
+        words divide by it, which costs -31 to -39 % of the MTF at Nyquist at 20
         degrees; "as-drafted" does that, for comparison with results obtained so.
     start_smoothness : float
         7a. The csaps p of the first spline, which only finds where the plateaus start; the
@@ -74,8 +74,8 @@ class KompsatOptions:
         require_types(self)
         if not (0 < self.smoothness < 1 and 0 < self.start_smoothness < 1):
             raise OptionError(
-                f"smoothness and start_smoothness lie between 0 and 1, "
-                f"found {self.smoothness} and {self.start_smoothness}"
+                f"smoothness is {self.smoothness} and start_smoothness {self.start_smoothness}: "
+                "give both between 0 and 1"
             )
         if self.plateau_px <= 0:
             raise OptionError(f"plateau_px must be positive, found {self.plateau_px}")
@@ -195,7 +195,7 @@ def start_points(
     )
     middles = low + (np.arange(spline.coefficient.size - 3.0) + 0.5) * step
     lsf, bend = spline(middles, 1), spline(middles, 3)
-    near = np.abs(middles) <= _FARTHEST_START_PX
+    near = np.abs(middles) <= _MAX_START_PX
     peak = middles[near][int(np.argmax(lsf[near]))]
     dark = near & (middles < peak)
     bright = near & (middles > peak)

@@ -144,7 +144,10 @@ def _sample(rows: LocatedRows, weight: Floats, options: SdsuOptions) -> SampledE
     dark, bright = _plateaus(grid, esf, options.trim_px)
     middle = crossing_of_half(grid, normalised(esf, dark, bright))
     if math.isnan(middle):
-        raise NoEdgeError("the interpolated edge never passes half of its contrast")
+        raise NoEdgeError(
+            "the interpolated edge never passes half of its contrast: choose a region with one "
+            "edge between uniform plateaus"
+        )
     count = round(options.trim_px / STEP_PX)
     first = round((middle - places[0]) / STEP_PX - (count - 1) / 2)
     first = min(max(first, 0), places.size - count)
