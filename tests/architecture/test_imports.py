@@ -131,7 +131,7 @@ def test_libraries_stay_on_their_floors(module: str) -> None:
         root = found.target.split(".")[0]
         if root == "acutance" or root in sys.stdlib_module_names:
             continue
-        assert root in LIBRARIES, f"{found}: a library nobody has chosen"
+        assert root in LIBRARIES, f"{found}: a library that is not in the list"
         allowed = floor_of(module) in LIBRARIES[root]
         assert allowed or (module, found.target) in EXCEPTIONS, f"{found}: belongs elsewhere"
 
@@ -141,7 +141,7 @@ def test_the_exceptions_are_all_needed() -> None:
     assert set(EXCEPTIONS) | set(UPWARD_EXCEPTIONS) <= seen
 
 
-def test_nobody_uses_pyplot() -> None:
+def test_no_module_uses_pyplot() -> None:
     assert not [str(found) for found in all_imports() if "pyplot" in found.target]
     named = [module for module in MODULES if "pyplot" in _names(module)]
     assert not named

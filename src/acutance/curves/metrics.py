@@ -72,7 +72,8 @@ def rer(esf: Esf, lsf: Lsf, centre: RerCentre = "half") -> Estimate:
     ----------
     esf, lsf : Esf, Lsf
     centre : {"half", "peak"}
-        The 50 % point (GIQE), or the peak of the LSF (KOMPSAT-3 draft, step 9b).
+        The 50 % point (GIQE), or the peak of the line spread function (LSF) (KOMPSAT-3 draft, step
+        9b).
     """
     grid = esf.distance_px
     if centre == "half":
@@ -134,7 +135,7 @@ def mtf_area(mtf: Mtf) -> Estimate:
 
 
 def edge_slope(esf: Esf) -> Estimate:
-    """Mean slope of the ESF between its 40 % and 60 % points, 1/px."""
+    """Mean slope of the edge spread function (ESF) between its 40 % and 60 % points, 1/px."""
     low, low_moves = _level_position(esf, 0.4)
     high, high_moves = _level_position(esf, 0.6)
     if math.isnan(low) or math.isnan(high):

@@ -29,8 +29,8 @@ class OtfModel(Protocol):
     """An OTF over the plane of frequencies, with its covariance.
 
     Frequencies are in cycles per pixel: `u_cpp` across (along the rows of pixels, x), `v_cpp`
-    along (down the columns, y). Sign of the phase: the OTF is the Fourier transform of the point
-    spread function with the kernel ``exp(-2 pi i (u x + v y))``.
+    along (down the columns, y). Sign of the phase: the optical transfer function (OTF) is the
+    Fourier transform of the point spread function with the kernel ``exp(-2 pi i (u x + v y))``.
     """
 
     @property
@@ -79,8 +79,8 @@ class Otf2d(ShortRepr):
     def response(self, normal_deg: float) -> Response:
         """ESF, LSF and MTF along a direction: an edge whose normal points there would show them.
 
-        The MTF is the slice of the OTF, and the LSF its inverse Fourier transform: the PSF
-        integrated over the other axis (projection-slice theorem).
+        The MTF is the slice of the OTF, and the line spread function (LSF) its inverse Fourier
+        transform: the PSF integrated over the other axis (projection-slice theorem).
 
         Parameters
         ----------
@@ -146,7 +146,7 @@ def _along(normal_deg: float, freq_cpp: Floats) -> tuple[Floats, Floats]:
 def _spread(
     freq: Floats, otf: Complexes, factor: Complexes
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """ESF and LSF about the 50 % point, with their covariance factors.
+    """Edge spread function (ESF) and LSF about the 50 % point, with their covariance factors.
 
     Sums over a regular grid of frequencies: the integral of the repeated LSF, whose mean is taken
     out and put back as a straight line.

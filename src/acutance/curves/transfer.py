@@ -28,9 +28,9 @@ class Mtf(ShortRepr):
     freq_cpp : (n,) array
         Regular grid of frequencies in cycles per pixel, from 0 to 1 at least.
     otf : (n,) complex array
-        Phase relative to the centroid of the LSF, so that an asymmetric system shows: the
-        Fourier transform of the LSF with the kernel ``exp(-2 pi i f s)``. A trail towards the
-        bright side has a positive phase at low frequencies.
+        Phase relative to the centroid of the line spread function (LSF), so that an asymmetric
+        system shows: the Fourier transform of the LSF with the kernel ``exp(-2 pi i f s)``. A trail
+        towards the bright side has a positive phase at low frequencies.
     factor : (n, k) complex array
         Factor of the covariance: the error of `otf` is ``factor @ z``, z standard normal.
     latent : (k, m) array, optional
@@ -71,8 +71,9 @@ class Mtf(ShortRepr):
     def value(self) -> Floats:
         """The MTF, (n,): modulus of the OTF minus the bias of a modulus by noise in quadrature.
 
-        Noise perpendicular to the OTF lengthens it (Rice), by var / (2 M) to first order. Where
-        it is longer than the OTF itself, nothing is left: the MTF is clipped at 0.
+        Noise perpendicular to the optical transfer function (OTF) lengthens it (Rice), by var / (2
+        M) to first order. Where it is longer than the OTF itself, nothing is left: the MTF is
+        clipped at 0.
         """
         return self._modulus[0]
 

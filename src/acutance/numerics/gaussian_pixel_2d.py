@@ -91,7 +91,7 @@ class GaussianPixel2d:
 
     @cached_property
     def widths_px(self) -> tuple[float, float]:
-        """FWHM across and along of the Gaussians with the same variances."""
+        """Full widths at half maximum across and along of Gaussians with the same variances."""
         box = self.aperture_px**2 / 12
         return (
             FWHM_OF_SIGMA * math.sqrt(self.xx + box),

@@ -69,9 +69,9 @@ class Diffraction:
     Out of focus, use `Defocus` alone: it holds this block, and the OTF of the curved pupil is not
     the product of the two.
 
-    The OTF is the autocorrelation of the annular pupil: the overlap of two discs, minus twice
-    that of a disc with an obscuration, plus that of two obscurations (the closed form of
-    O'Neill, J. Opt. Soc. Am. 46, 285, 1956).
+    The optical transfer function (OTF) is the autocorrelation of the annular pupil: the overlap of
+    two discs, minus twice that of a disc with an obscuration, plus that of two obscurations (the
+    closed form of O'Neill, J. Opt. Soc. Am. 46, 285, 1956).
 
     Parameters
     ----------

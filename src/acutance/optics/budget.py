@@ -23,7 +23,8 @@ class BudgetRow:
     description : str
         Its kind and parameters, with units.
     across, along : float
-        Modulus of its OTF at the budget's frequency along either image axis.
+        Modulus of its optical transfer function (OTF) at the budget's frequency along either image
+        axis.
     formula : str
         Its OTF in plain text.
     source : str

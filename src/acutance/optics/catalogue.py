@@ -25,7 +25,8 @@ class BlockKind:
     make : type
         The block's class.
     formula : str
-        Its OTF in plain text; u is across, v along, f the radial frequency, in cycles per pixel.
+        Its optical transfer function (OTF) in plain text; u is across, v along, f the radial
+        frequency, in cycles per pixel.
     source : str
         Where the formula is from.
     """

@@ -24,11 +24,11 @@ class GroundCurves(ShortRepr):
     gsd_m : float
         Metres per pixel along the normal, by which everything was converted.
     distance_m : (n,) array
-        Normal distances in metres; 0 is where the ESF passes 50 %.
+        Normal distances in metres; 0 is where the edge spread function (ESF) passes 50 %.
     esf : (n,) array
         0 to 1.
     lsf_per_m : (n,) array
-        The LSF in 1/m, area 1.
+        The line spread function (LSF) in 1/m, area 1.
     freq_cpm : (m,) array
         Frequencies in cycles per metre.
     mtf : (m,) array

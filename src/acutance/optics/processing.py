@@ -70,8 +70,8 @@ def _require_kernel(block: object, kernel: str) -> None:
 class Resampling:
     """Interpolation onto a grid whose phase against the pixels varies evenly over the image.
 
-    The OTF is the Fourier transform of the interpolation kernel in both axes, which is the
-    average of the transfers over all phases. For one constant phase use `Shift`.
+    The optical transfer function (OTF) is the Fourier transform of the interpolation kernel in both
+    axes, which is the average of the transfers over all phases. For one constant phase use `Shift`.
 
     Parameters
     ----------

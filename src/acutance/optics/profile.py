@@ -29,8 +29,8 @@ TAIL_PX, CORE_PX = 1.0, 0.3
 class Profile:
     """Edge and line spread functions of one direction.
 
-    Both are inverse Fourier transforms of the OTF h(f), taken as sums over a regular grid of
-    frequencies::
+    Both are inverse Fourier transforms of the optical transfer function (OTF) h(f), taken as sums
+    over a regular grid of frequencies::
 
         LSF(s) = 2 Re integral_0^inf h(f) exp(2 pi i f s) df
         ESF(s) = 1/2 + integral_0^inf [Re h sin(2 pi f s) + Im h cos(2 pi f s)] / (pi f) df

@@ -70,7 +70,7 @@ def numerical_psf(sensor: Sensor, *, subpixels: int = 20, trim_px: float = 5.0) 
     ----------
     sensor : Sensor
         `Detector` and `Smear` become rows of samples, rounded to whole ones; the other blocks
-        enter by their OTF at the frequencies of the grid.
+        enter by their optical transfer function (OTF) at the frequencies of the grid.
     subpixels : int, optional
         Samples per pixel, 2 to 100.
     trim_px : float, optional

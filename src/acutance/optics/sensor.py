@@ -1,4 +1,4 @@
-"""A sensor: the product of its OTF blocks."""
+"""A sensor: the product of its optical transfer function (OTF) blocks."""
 
 from __future__ import annotations
 
@@ -151,9 +151,9 @@ class Sensor:
         """The true curves for an edge whose normal points in `normal_deg`, dark to bright.
 
         The OTF is the slice ``otf(f cos t, f sin t)`` with its phase relative to the centroid
-        of the LSF, on frequencies 0 to 1 cycles per pixel in steps of 0.01; ESF and LSF lie on
-        distances of -16 to 16 px in steps of 0.05 px from the 50 % point. A truth has no
-        uncertainty: the covariance factors have no columns.
+        of the LSF, on frequencies 0 to 1 cycles per pixel in steps of 0.01; edge spread function
+        (ESF) and LSF lie on distances of -16 to 16 px in steps of 0.05 px from the 50 % point. A
+        truth has no uncertainty: the covariance factors have no columns.
         """
         profile = self.profile(normal_deg)
         shift = np.exp(2j * math.pi * FREQ_CPP * profile.centroid_px)

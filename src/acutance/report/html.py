@@ -45,7 +45,7 @@ class Headline:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the checks come to.
+    """The summary of the checks.
 
     Parameters
     ----------

@@ -6,7 +6,8 @@ Two bounds, for white noise:
   and between levels that are unknown too (and, of a pulse, with unknown width and fall). The
   inverse of that model's information matrix bounds every metric; it is optimistic, because no
   real system's shape is known.
-- of a free LSF: nothing is known of the LSF but that it ends within a window. For an edge
+- of a free line spread function (LSF): nothing is known of the LSF but that it ends within a
+window. For an edge
   ``std M(f) = 2 pi f sqrt(W / (2 n)) / SNR``, for a pulse, whose response is divided by that of
   the ground, ``pi f / |sin(pi w f)| sqrt(W / (2 n)) / SNR``, with W the window's length and n
   the samples per pixel of distance: the rows over the cosine of the angle. A fitted line costs

@@ -40,7 +40,7 @@ class PlanOptions:
     """What is planned, and what it is varied by.
 
     The first number of rows and the first angle are the plan itself; of several widths it is
-    the one with the least bound of a free LSF.
+    the one with the least bound of a free line spread function (LSF).
 
     Parameters
     ----------

@@ -220,7 +220,7 @@ class HasChecks:
 
     @property
     def verdict(self) -> Verdict:
-        """What the checks come to, in a word and a sentence."""
+        """The summary of the checks, in a word and a sentence."""
         return verdict_of(self.checks)
 
 

@@ -179,7 +179,7 @@ def test_limits_can_be_changed():
     assert (check.sense, check.limit, check.asked) == (">=", 10.0, ">= 10")
 
 
-def test_the_angle_is_limited_by_the_method_unless_somebody_limits_it():
+def test_the_angle_is_limited_by_the_method_unless_a_limit_is_given():
     image, _ = simulated(angle_deg=35.0)
     strict = EdgeOptions(limits={"angle_deg": 10.0})
     assert "angle_deg" not in failed(ac.measure_edge(image))

@@ -1,4 +1,4 @@
-"""Several measurements of one sensor as one two-dimensional OTF.
+"""Several measurements of one sensor as one two-dimensional optical transfer function (OTF).
 
 In the order data take: `inputs` (records of measurements), `pixel_size` (do they have the same
 pixels), `curves` (the OTF of each), `sensor_forms` (products of OTF blocks), `correction` (smooth

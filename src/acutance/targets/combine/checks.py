@@ -1,4 +1,4 @@
-"""Do the measurements agree, and do they determine a 2-D OTF?"""
+"""Do the measurements agree, and do they determine a 2-D optical transfer function (OTF)?"""
 
 from __future__ import annotations
 

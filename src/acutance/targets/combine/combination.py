@@ -36,7 +36,7 @@ def combine(
     gsd_m: float | Gsd | None = None,
     options: CombineOptions | None = None,
 ) -> CombinedMeasurement:
-    """Combine measurements of one sensor into one 2-D OTF.
+    """Combine measurements of one sensor into one 2-D optical transfer function (OTF).
 
     Parameters
     ----------

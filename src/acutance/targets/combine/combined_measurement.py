@@ -85,7 +85,8 @@ class CombinedMeasurement(Measurement):
     chi_square : ChiSquare
         Of all measurements: whether they agree.
     plain_sensor : ChiSquare
-        Of all measurements about the best product of OTF blocks, without a correction.
+        Of all measurements about the best product of optical transfer function (OTF) blocks,
+        without a correction.
     """
 
     parts: tuple[CombinedPart, ...]

@@ -1,4 +1,4 @@
-"""Curves of many measurements in the plane of frequencies, their errors whitened."""
+"""Optical transfer functions (OTF) of many measurements, their errors whitened."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One parametric 2-D OTF through the curves of many measurements, by generalised least squares."""
+"""One parametric optical transfer function (OTF) of many measurements: least squares."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ class Term:
     Parameters
     ----------
     otf : function of (parameters, u, v)
-        OTF (n,) at frequencies in cycles per pixel, 1 at zero.
+        Optical transfer function (OTF), (n,), at frequencies in cycles per pixel, 1 at zero.
     mean, std : tuple of float
         Prior mean and standard deviation of the parameters.
     numbers : function of parameters

@@ -32,7 +32,8 @@ class WeightedForm(ShortRepr):
     ----------
     form : SensorForm
     share : float
-        Standard deviation of the correction of the form, a share of the logarithm of the OTF.
+        Standard deviation of the correction of the form, a share of the logarithm of the optical
+        transfer function (OTF).
     correction : Correction
         The directions of the correction.
     parameters : (p,) array

@@ -35,7 +35,7 @@ class OtfTable:
     Attributes
     ----------
     table : (2 n + 1, 2 n + 1) array
-        OTF at rows v, columns u, in steps of 0.02 c/px about zero.
+        Optical transfer function (OTF) at rows v, columns u, in steps of 0.02 c/px about zero.
     """
 
     table: Complexes

@@ -1,4 +1,4 @@
-"""The result of a measurement of bars."""
+"""The result of a measurement of bars: readings and one optical transfer function (OTF)."""
 
 from __future__ import annotations
 

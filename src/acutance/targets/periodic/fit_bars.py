@@ -1,4 +1,4 @@
-"""The reference estimator of bars: all groups are one linear model of the transfer function.
+"""The reference estimator of bars: all groups are one linear model of the transfer function (OTF).
 
 Along its normal a group is a finite profile with a known spectrum P(f), so a pixel has the value
 

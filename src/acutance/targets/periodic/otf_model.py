@@ -27,7 +27,7 @@ class FittedOtf:
     Attributes
     ----------
     mean : MeanOtf
-        Mean of the OTF.
+        Mean of the optical transfer function (OTF).
     beta : (m,) array
         Coefficients of its modes and of the processes' (or of its own alone); their sum at zero
         frequency is the level.

@@ -65,7 +65,10 @@ class MeanOtf(GaussianPixel2d):
 
     @property
     def width_px(self) -> float:
-        """FWHM of the Gaussian with the same mean variance: the processes' unit of distance."""
+        """Full width at half maximum (FWHM) of the Gaussian with the same mean variance.
+
+        It is the unit of distance of the processes.
+        """
         return FWHM_OF_SIGMA * math.sqrt(0.5 * (self.xx + self.yy) + 1 / 12)
 
     def modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
@@ -91,7 +94,7 @@ def _by_aperture(freq: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class ProcessModes:
-    """The states of all processes, for a mean OTF of a given width."""
+    """The states of all processes, for a mean optical transfer function (OTF) of a given width."""
 
     width_px: float
 

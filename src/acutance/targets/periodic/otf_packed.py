@@ -1,9 +1,9 @@
 """The fitted OTF in a twentieth of its size: its covariance rounded where it makes no difference.
 
-The coefficients of the modes are uncertain by far more than the OTF, whose errors they cancel
-between them. So the covariance is rounded in other coordinates, in which the values of the OTF at
-the frequencies it is used at are orthonormal: there a small error of an element is a small one of
-the OTF.
+The coefficients of the modes are uncertain by far more than the optical transfer function (OTF),
+whose errors they cancel between them. So the covariance is rounded in other coordinates, in which
+the values of the OTF at the frequencies it is used at are orthonormal: there a small error of an
+element is a small one of the OTF.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ class CheckData:
 
     @property
     def fwhm_px(self) -> float:
-        """FWHM of the LSF; 1 where it is undefined."""
+        """Full width at half maximum (FWHM) of the line spread function (LSF); 1 if undefined."""
         fwhm = self.fit.response.fwhm_px.value
         return fwhm if math.isfinite(fwhm) else 1.0
 

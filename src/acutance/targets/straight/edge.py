@@ -1,4 +1,7 @@
-"""Measure a straight edge: from pixels to MTF, RER and FWHM with their standard deviations."""
+"""Measure a straight edge: from pixels to MTF, RER and FWHM with their standard deviations.
+
+RER is the relative edge response, FWHM the full width at half maximum of the line spread function.
+"""
 
 from __future__ import annotations
 

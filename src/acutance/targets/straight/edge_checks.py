@@ -151,7 +151,8 @@ def straightness(data: CheckData, limits: Limits) -> Check:
 def blur_uniformity(data: CheckData, limits: Limits) -> Check:
     """How much the blur changes along the edge, as the share of the MTF at Nyquist that it moves.
 
-    A blur wider by a variance v has an ESF that differs by v / 2 times the slope of the LSF.
+    A blur wider by a variance v has an edge spread function (ESF) that differs by v / 2 times the
+    slope of the line spread function (LSF).
     """
     lsf = data.fit.response.lsf
     bend = np.gradient(lsf.value, lsf.distance_px)
@@ -194,7 +195,8 @@ def _change_along(data: CheckData, column: Floats) -> float:
 def lsf_width(data: CheckData, limits: Limits) -> Check:
     """Whether the LSF is as wide as that of any detector: an image may hold other data than light.
 
-    A square detector alone has an FWHM of 0.7 to 1 px; the strongest sharpening takes a third.
+    A square detector alone has a full width at half maximum (FWHM) of 0.7 to 1 px; the strongest
+    sharpening takes a third.
     """
     value = data.fwhm_px
     return answer("lsf_width_px", value, f"the LSF is {value:.2f} px wide at half maximum", limits)

@@ -33,7 +33,7 @@ class SplineEdge(EdgeFit):
     weights : (n,) array
         Weight of every pixel used, 1 where it is no outlier.
     tail : float
-        Share of the LSF in the 1/x^2 tail.
+        Share of the line spread function (LSF) in the 1/x^2 tail.
     """
 
     response: SplineResponse

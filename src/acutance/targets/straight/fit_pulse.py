@@ -1,4 +1,7 @@
-"""The reference estimator of a pulse: LSF, line, width and height ratio fitted together."""
+"""The reference estimator of a pulse.
+
+Line spread function (LSF), line, width and height ratio are fitted together.
+"""
 
 from __future__ import annotations
 

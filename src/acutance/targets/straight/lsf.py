@@ -142,7 +142,7 @@ class LsfModel:
         return value, SplineRows(cell, weights * (1 / height), dense, further=1)
 
     def _otf(self, freq_cpp: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Normalised OTF about the LSF's centroid, and its design."""
+        """Normalised optical transfer function (OTF) about the LSF's centroid, and its design."""
         freq, centroid = freq_cpp * self.blur.width_px, self._centroid()
         about = waves(freq, -centroid)[0] / self.height
         design = transform(freq, centroid, 1 / self.height, further=1)

@@ -46,7 +46,7 @@ class Directions(NamedTuple):
     Attributes
     ----------
     esf : (CELLS + 3, r) array
-        ESF coefficients of every direction, for an LSF per width.
+        Coefficients of the edge spread function (ESF) for every direction, for an LSF per width.
     block : (r,) int array
         0 level, width and place (free), 1 aperture, 2 shape, 3 detail, 4 halo, 5 tail.
     """

@@ -30,8 +30,8 @@ class EdgeOptions:
     Parameters
     ----------
     rer_centre : {"half", "peak"} or None
-        What RER is centred on; None leaves it to the method (the 50 % point, but the LSF's peak
-        for "kompsat-2014", step 9b).
+        What relative edge response (RER) is centred on; None leaves it to the method (the 50 %
+        point, but the peak of the line spread function, LSF, for "kompsat-2014", step 9b).
     robust : bool
         Bound the weight of outlying pixels (method "spline").
     limits : mapping of str to float

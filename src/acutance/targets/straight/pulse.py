@@ -34,7 +34,7 @@ __all__ = ["PULSE_METHODS", "measure_pulse"]
 
 _Fitted = tuple[EdgeFit, Estimate, Estimate, Estimate]
 """Of a method: the fit of a pulse, its width, the height of its falling side over that of the
-rising one, and the FWHM of its response."""
+rising one, and the full width at half maximum (FWHM) of its response."""
 
 
 def _spline(trimmed: PulsePixels, fit_width: bool, options: PulseOptions) -> _Fitted:
@@ -87,8 +87,9 @@ def measure_pulse(
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.
     fit_width : bool, optional
-        Whether the width is fitted with the LSF, with its own standard deviation (method
-        "spline"); the stated one is then the first guess, and a check compares the two.
+        Whether the width is fitted with the line spread function (LSF), with its own standard
+        deviation (method "spline"); the stated one is then the first guess, and a check compares
+        the two.
     method : {"spline", "sdsu-2005"}, optional
         The joint fit, or the published ratio of spectra with its biases: its width is the stated
         one, or else the one at which the pulse was found.

@@ -26,6 +26,8 @@ Curve = TypeVar("Curve", Esf, Lsf, Mtf)
 def halo(lsf: Lsf, fwhm_px: float) -> Floats:
     """The light of an LSF beyond 1.5 FWHM, (n,): it sets in smoothly from 1 to 2 FWHM.
 
+    FWHM is the full width at half maximum.
+
     The dark fringe of a sharpened system does not count: no plateau looks like it.
     """
     outwards = np.abs(lsf.distance_px) / fwhm_px
@@ -37,7 +39,8 @@ def with_halo_error(response: Response, share: float) -> tuple[Esf, Lsf, Mtf]:
     """The same curves, with one more common cause of error: `share` of the halo.
 
     Of an LSF L = core + F with the halo's energy E, one standard deviation more of it is
-    ``share (F - E L)``, normalised again; ESF and OTF err by its integral and its transform.
+    ``share (F - E L)``, normalised again; edge spread function
+    (ESF) and transfer function (OTF) err by its integral and its transform.
 
     Parameters
     ----------

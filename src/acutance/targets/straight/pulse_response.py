@@ -29,7 +29,7 @@ def prf_fwhm(response: Response, width_px: float, width_factor: Floats) -> Estim
         Width of the pulse.
     width_factor : (m,) array
         Factor of the width's variance in the latent variables of the curves: in a fit of
-        both, a pulse that is too wide comes with an LSF that is too narrow.
+        both, a pulse that is too wide comes with a line spread function (LSF) that is too narrow.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """The spectrum of a pulse, ``sinc(w f)``: where it vanishes, and what a wrong width does.
 
 The ratio method divides by it: a wrong width shows, and near its zeros everything does. The joint
-fit of pulse and LSF does not divide.
+fit of pulse and line spread function (LSF) does not divide.
 
 Source of the sensitivities and corrections: Helder, Choi, "Generic sensor modeling using pulse
 method" (2005), section 3.6.

@@ -1,9 +1,10 @@
 """Whether the stated width of a pulse can be right: by the joint fit, and the published way.
 
-The joint fit finds the width with the LSF, with a standard deviation. The reports of South Dakota
-State University (Helder, Choi, "Generic sensor modeling using pulse method", 2005, sections 3.6.3
-and 3.6.4) look at the MTF of the ratio: with too large a width it lies too high at .3 and too low
-at .4 cycles per pixel, and the width that makes it smooth is taken for the true one.
+The joint fit finds the width with the line spread function (LSF), with a standard deviation. The
+reports of South Dakota State University (Helder, Choi, "Generic sensor modeling using pulse
+method", 2005, sections 3.6.3 and 3.6.4) look at the MTF of the ratio: with too large a width it
+lies too high at .3 and too low at .4 cycles per pixel, and the width that makes it smooth is taken
+for the true one.
 
 What a wrong width does is in `pulse_spectrum`; its functions can be had here too.
 """

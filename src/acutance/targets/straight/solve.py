@@ -64,7 +64,7 @@ class Solved:
 
     @property
     def model(self) -> LsfModel:
-        """The LSF."""
+        """The line spread function (LSF)."""
         return self.solution.model
 
     @property

@@ -8,7 +8,7 @@ sum of c:
     e_m = h * sum_{j <= m - 3} c_j,      ESF(u) = sum_m e_m B3_m(u)
 
 so that every pixel depends on four coefficients only, and the ESF is exactly 0 and constant outside
-the support. The Fourier transform of the LSF is closed form:
+the support. The Fourier transform of the LSF, the optical transfer function (OTF), is closed form:
 
     OTF(f) = h sinc(f h)^3 sum_j c_j exp(-2 pi i f u_j)
 """

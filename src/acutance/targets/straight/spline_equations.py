@@ -1,4 +1,4 @@
-"""Sums of an edge's pixels into the normal equations of its ESF spline."""
+"""Sums of an edge's pixels into the normal equations of its edge spread function (ESF) spline."""
 
 from __future__ import annotations
 

@@ -21,7 +21,8 @@ Sides = tuple[tuple[Floats, Floats], ...]
 class Profile:
     """Steps of the scene's brightness along the normal.
 
-    With R the response to a unit step, a pixel at normal distance s has the value
+    With R the response to a unit step, the edge spread function (ESF), whose derivative is the line
+    spread function (LSF), a pixel at normal distance s has the value
 
         dark + height * sum_k share_k R(s - position_k)
 

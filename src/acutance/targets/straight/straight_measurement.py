@@ -32,7 +32,7 @@ class StraightDetails(ShortRepr):
     value : (n,) array
         Their edge response, normalised to 0 (dark plateau) .. 1 (bright plateau).
     residual : (n,) array
-        Value minus the fitted ESF, same scale.
+        Value minus the fitted edge spread function (ESF), same scale.
     """
 
     pixels: Floats

@@ -1,6 +1,7 @@
 """Structure of plateaus, pulse and residuals that is no blur of a sensor.
 
-Structure of the scene that the fit can follow is part of its curves (`structure`,
+Structure of the scene that the fit can follow is part of its curves, the edge spread function (ESF)
+and its derivative, the line spread function, LSF (`structure`,
 `asymmetric_wings`); the rest is in the residuals (`profile`, `target_uniformity`).
 """
 
@@ -141,7 +142,7 @@ def profile(data: CheckData, limits: Limits, last_px: float, *, own_misfit: bool
     """Residuals along the normal that repeat all along the target.
 
     Noise of any colour differs from part to part of the target; a line parallel to it, a striped
-    pulse or ringing that the LSF cannot follow is the same in all of them.
+    pulse or ringing that the line spread function (LSF) cannot follow is the same in all of them.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Numbers of this room that were tuned: what each is, which benchmark set it, what it gave.
 
-Lengths named WIDTHS are in units of the blur's FWHM, shares in units of the contrast. Tolerances
-of iterations and the sizes of grids stand where they are used.
+Lengths named WIDTHS are in units of the blur's full width at half maximum (FWHM), shares in units
+of the contrast. Tolerances of iterations and the sizes of grids stand where they are used.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ __all__ = [
     "TREND_LOG_AMPLITUDE",
 ]
 
-# The prior of the LSF (lsf_prior.py): extent L and smoothness l of its processes, in widths.
+# The prior of the line spread function, LSF (lsf_prior.py): extent L and smoothness l of its
+# processes, in widths.
 SHAPE: Final = (1.2, 0.6)
 """Smooth corrections near the peak: sharpening, asymmetry, shoulders (benchmarks/accuracy.py)."""
 DETAIL: Final = (0.7, 0.17)

@@ -75,8 +75,9 @@ def fermi(trimmed: EdgePixels, options: FermiOptions = _DEFAULT) -> EdgeFit:
     """Measure an edge by a sum of one to three Fermi functions.
 
     Direction, dark level and all terms are fitted to all pixels together by non-linear least
-    squares; the number of terms is the one with the best information criterion. ESF, LSF and
-    OTF are closed forms of the fitted numbers.
+    squares; the number of terms is the one with the best information criterion. Edge spread
+    function (ESF), line spread function (LSF) and optical transfer function (OTF) are closed forms
+    of the fitted numbers.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ class Iso12233Options:
         Degree of the polynomial through the rows' centroids, 1 to 5. The edition of 2023 allows
         up to 5 for the bent edges of wide-angle lenses; edges on the ground are straight.
     window : {"tukey", "hamming"}
-        Taper of the LSF: Tukey since the edition of 2023, Hamming before.
+        Taper of the line spread function (LSF): Tukey since the edition of 2023, Hamming before.
     tukey_alpha : float
         Share of the Tukey window that is tapered, over 0 to 1; 1 (a Hann window) is what the
         reference program uses.

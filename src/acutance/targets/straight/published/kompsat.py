@@ -53,8 +53,8 @@ class KompsatOptions:
     smoothness : float
         8a. The csaps p of the spline, 0.98 in the draft's figures.
     rer_centre : {"peak", "half"} or None
-        9. None follows the draft: the peak of the LSF with a spline (9b), the 50 % point
-        with a Fermi function (9d).
+        9. None follows the draft: the peak of the line spread function (LSF) with a spline (9b),
+        the 50 % point with a Fermi function (9d).
     replicates : int
         Draws of the rows for the standard deviations.
     seed : int
@@ -104,8 +104,8 @@ def kompsat_2014(trimmed: EdgePixels, options: KompsatOptions = _DEFAULT) -> Edg
     -------
     EdgeFit
         Curves along the normal (with ``distance="as-drafted"`` on the draft's axis). Beyond
-        the trimmed length the ESF is its plateau and the LSF 0. The covariance comes from
-        draws of the rows: scatter, not bias.
+        the trimmed length the edge spread function (ESF) is its plateau and the LSF 0. The
+        covariance comes from draws of the rows: scatter, not bias.
 
     Raises
     ------

@@ -2,9 +2,9 @@
 
 The non-parametric pipelines smooth and differentiate, so their errors have no closed form.
 Instead the rows of the edge are drawn with replacement and everything after the location of
-the edge in each row (line, ESF, LSF, OTF) is repeated. The scatter of the repetitions is the
-scatter that another image of the same edge would show; a bias of the pipeline is the same
-in every repetition and is NOT covered.
+the edge in each row (line, ESF, line spread function (LSF), OTF) is repeated. The scatter of the
+repetitions is the scatter that another image of the same edge would show; a bias of the pipeline is
+the same in every repetition and is NOT covered.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ GRID_PX: Floats = np.arange(-100.0, 101.0) * STEP_PX
 """Distances of the ESF and the LSF, 0 at the 50 % point."""
 
 FREQ_CPP: Floats = np.arange(101.0) * 0.01
-"""Frequencies of the OTF."""
+"""Frequencies of the optical transfer function (OTF)."""
 
 Complexes = NDArray[np.complex128]
 T = TypeVar("T")
@@ -164,7 +164,7 @@ def fit_with_bootstrap(
     rng : numpy.random.Generator
         Draws the rows.
     rer_centre : {"half", "peak"}, optional
-        What the response centres its RER on.
+        What the response centres its relative edge response (RER) on.
 
     Raises
     ------

@@ -52,7 +52,8 @@ class SdsuOptions:
         coincide. It raises the frequency axis by 1 / cos(angle): M(f) becomes
         M(f / cos(angle)). "normal" removes that.
     trim_px : float
-        Length of the LSF that is transformed; 10 px (200 sub-pixels) in the reports.
+        Length of the line spread function (LSF) that is transformed; 10 px (200 sub-pixels) in the
+        reports.
     smoothing_points : int
         Frame of the fourth-order Savitzky-Golay filter on the LSF, odd, 7 or more, or 0 for
         none. The reports do not print it; 21 points are one pixel, the window of the

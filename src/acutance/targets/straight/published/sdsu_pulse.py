@@ -232,9 +232,10 @@ def sdsu_2005_pulse(trimmed: PulsePixels, options: SdsuPulseOptions = _DEFAULT) 
     -------
     PublishedPulse
         Distances and frequencies run along the ROWS unless ``options.distance == "normal"``.
-        The reports give MTF and PRF. ESF and LSF, and so RER and FWHM, are an addition: the
-        profile is the difference of two steps a width apart, and is summed up to one of them.
-        The covariance comes from draws of the rows: scatter, not bias.
+        The reports give MTF and PRF. Edge spread function (ESF) and line spread function (LSF), and
+        so relative edge response (RER) and full width at half maximum (FWHM), are an addition: the
+        profile is the difference of two steps a width apart, and is summed up to one of them. The
+        covariance comes from draws of the rows: scatter, not bias.
 
     Raises
     ------
