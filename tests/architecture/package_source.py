@@ -32,7 +32,7 @@ def dotted_name(module: str) -> str:
 
 
 def imports_of(module: str) -> Iterator[Import]:
-    """Every import of a module, at its top, in functions and for type checking alike."""
+    """Every import of a module, at its top, in functions and for type checking."""
     tree = ast.parse((ROOT / module).read_text(encoding="utf-8"))
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):

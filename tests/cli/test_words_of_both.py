@@ -1,4 +1,4 @@
-"""Messages help whoever typed a command as well as whoever wrote a program; nodata is an option."""
+"""Messages help users of the command and of the library; nodata is an option."""
 
 import json
 

@@ -32,12 +32,12 @@ class Larger(Thing):
 
 def test_fields_are_told_in_short():
     fields = ("a", 1 / 3, Estimate(0.5, 0.01), np.zeros((60, 40)), (1.5, 2.0), tuple(range(9)))
-    told = (
+    summary = (
         "name 'a', size 0.333333, width 0.500 ± 0.010, samples array of 60 x 40, "
         "place (1.5, 2), parts (9 of them), sensor <Sensor>"
     )
-    assert repr(Thing(*fields, SENSOR)) == f"<Thing: {told}>"
-    assert repr(Larger(*fields, SENSOR)) == f"<Larger: {told}, more None>"
+    assert repr(Thing(*fields, SENSOR)) == f"<Thing: {summary}>"
+    assert repr(Larger(*fields, SENSOR)) == f"<Larger: {summary}, more None>"
 
 
 @pytest.fixture(scope="module")

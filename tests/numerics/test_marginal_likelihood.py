@@ -1,4 +1,4 @@
-"""The posterior against dense Bayesian formulas, and the evidence's slopes against differences."""
+"""The posterior against dense Bayesian formulas, log evidence slopes against differences."""
 
 import numpy as np
 import pytest

@@ -43,7 +43,7 @@ def test_noise_free_edge_is_measured_exactly(name, angle_deg):
     )
     found = ac.measure_edge(image)
     assert mtf_error(found, truth) <= (0.006 if name == "diffraction" else 0.001)
-    # Tails like 1/x^2 leave the region: its edges cannot tell the plateaus' height exactly.
+    # Tails like 1/x^2 leave the region: it does not determine the plateaus' height exactly.
     assert abs(found.rer.value - truth.rer.value) <= 0.001
     assert abs(found.fwhm_px.value - truth.fwhm_px.value) <= 0.01
     assert found.orientation == truth.orientation
@@ -105,7 +105,7 @@ def pooled_z():
 @pytest.mark.parametrize("metric", METRICS)
 def test_intervals_hold_the_truth_as_often_as_they_say(pooled_z, metric):
     inside = np.abs(pooled_z[:, list(METRICS).index(metric)]) < 1.959964
-    # Three binomial standard deviations of 400 draws beside 93 and 97 %: 3.8 and 2.6 points.
+    # Three binomial standard deviations of 400 draws about 93 and 97 %: 3.8 and 2.6 points.
     assert 0.892 < inside.mean() < 0.996
 
 

@@ -1,4 +1,4 @@
-"""What holds for every published method: symmetry, evidence, refusals, standard deviations."""
+"""What holds for every published method: symmetry, details, refusals, standard deviations."""
 
 import math
 

@@ -106,7 +106,7 @@ def test_meaningless_options_are_refused(wrong):
 
 @pytest.mark.parametrize("beside_deg", [-0.03, 0.0, 0.06])
 def test_quartic_over_four_phases_is_refused_and_a_parabola_is_not(beside_deg):
-    # Measured all the same, the sharpened system is wrong by up to .2 beside tan = 1/4.
+    # Measured all the same, the sharpened system is wrong by up to .2 near tan = 1/4.
     sensor = simulate.reference_systems()["sharpened"]
     angle_deg = math.degrees(math.atan(0.25)) + beside_deg
     image, truth = simulate.edge(sensor, angle_deg=angle_deg, shape=(40, 60), offset_px=0.1)

@@ -33,7 +33,7 @@ def lonlat() -> dict[str, Any]:
 
 @pytest.fixture
 def pixels() -> NDArray[np.uint16]:
-    """40 rows x 50 columns of counts from 1 to 2000: no two alike."""
+    """40 rows x 50 columns of counts from 1 to 2000: no two are equal."""
     rng = np.random.default_rng(5)
     return rng.permutation(np.arange(1, 2001, dtype=np.uint16)).reshape(40, 50)
 

@@ -1,4 +1,4 @@
-"""A window of a large file costs its own pixels: small ones, and a strip down all its rows."""
+"""A window of a large file costs its own pixels: small ones, and a column down all its rows."""
 
 import subprocess
 import sys

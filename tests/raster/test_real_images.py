@@ -1,4 +1,4 @@
-"""The real images beside the project open as what they are."""
+"""The real images open with their bands, types and positions."""
 
 from pathlib import Path
 

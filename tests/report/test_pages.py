@@ -50,8 +50,8 @@ def test_a_page_says_where_the_pixels_come_from_and_when_they_were_measured(meas
         assert fact in facts
     assert "measured 2026-01-02 03:04 UTC" in facts
     assert "satellite" not in facts
-    told = replace(measurement, options={"sensor": "QB02", "acquired": "2003-04-05"})
-    assert "satellite QB02 acquired 2003-04-05 measured" in words(page(told))
+    described = replace(measurement, options={"sensor": "QB02", "acquired": "2003-04-05"})
+    assert "satellite QB02 acquired 2003-04-05 measured" in words(page(described))
     assert "from 203 to 1208 DN" in facts
 
 

@@ -43,7 +43,7 @@ def test_long_bars_are_sums_of_steps(orientation, angle):
 
 
 def test_contrast_of_bars_is_that_of_many_bars():
-    """Eleven bars, read midway on the middle bar and in the gaps beside it."""
+    """Eleven bars, read midway on the middle bar and in the gaps next to it."""
     image, truth = bars(GENERIC, periods_px=(8.0, 4.0), count=11, length_px=30)
     assert truth.freq_cpp.tolist() == [0.125, 0.25]
     for group, ctf in zip(truth.groups, truth.ctf, strict=True):

@@ -146,14 +146,14 @@ def test_truth_of_a_stretched_image_is_the_mean_over_phases(sensor):
     # Along 921 rows the edge passes three whole cycles of phase in columns, 29 in rows.
     image, truth = edge(sensor, shape=(921, 130), regrid=regrid)
     expected = render_edge(regrid.system(sensor), truth.line, image.shape, 200.0, 1200.0)
-    departure = contrast(image) - contrast(expected)
+    deviation = contrast(image) - contrast(expected)
     rows, cols = np.indices(image.shape)
     distance = truth.line.normal_distance(rows, cols)
     steep = np.abs(distance) < 0.25
-    assert np.std(departure[steep]) < 0.03
+    assert np.std(deviation[steep]) < 0.03
     for low in np.arange(-1.5, 1.5, 0.25):
         inside = (distance >= low) & (distance < low + 0.25)
-        assert np.mean(departure[inside]) == pytest.approx(0.0, abs=4e-3)
+        assert np.mean(deviation[inside]) == pytest.approx(0.0, abs=4e-3)
     # Pixels of another size, blurred by the mean kernel: both have to show.
     assert truth.mtf_nyquist.value == pytest.approx(
         sensor.mtf(6.0)(0.5 / 1.031).value * np.sinc(0.5 / 1.031) ** 2, rel=0.02

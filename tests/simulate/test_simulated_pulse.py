@@ -1,4 +1,4 @@
-"""Simulated pulses: exact pixels, two grounds, ends, and an honest truth."""
+"""Simulated pulses: exact pixels, two plateaus, ends, and the truth."""
 
 import math
 

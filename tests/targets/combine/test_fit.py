@@ -17,9 +17,9 @@ DIRECTIONS = (6.0, 97.0, 31.0, 62.0)
 
 
 def smooth_factor(std, freq=FREQ):
-    """Errors alike over 0.08 c/px, real and imaginary, and none at zero frequency."""
-    alike = np.exp(-0.5 * ((freq[:, None] - freq) / 0.08) ** 2)
-    size, vector = np.linalg.eigh(alike)
+    """Errors that are equal over 0.08 c/px, real and imaginary, and none at zero frequency."""
+    common = np.exp(-0.5 * ((freq[:, None] - freq) / 0.08) ** 2)
+    size, vector = np.linalg.eigh(common)
     root = std * np.minimum(1.0, freq / 0.2)[:, None] * vector * np.sqrt(np.maximum(size, 0.0))
     return np.concatenate([root, 1j * root], axis=1)
 
@@ -193,8 +193,8 @@ def test_errors_of_curves_that_share_a_prior_are_correlated_at_one_frequency():
     one, other = data.parts
     assert not data.shared[one, one].any()
     # A quarter of the variance of the real parts, less where the floor under the errors rules.
-    alike = data.shared[one, other].diagonal()[:16]
-    assert np.all((alike > 0.1) & (alike < 0.25))
+    common = data.shared[one, other].diagonal()[:16]
+    assert np.all((common > 0.1) & (common < 0.25))
     assert np.abs(data.shared[one, other].diagonal()[16:]).max() < 0.05
     assert np.linalg.eigvalsh(data.covariance).min() > -1e-9
 

@@ -202,7 +202,7 @@ class TestRealTrouble:
 
     @pytest.mark.parametrize("texture", [0.0, 1.0])
     def test_cloud_over_half_the_scene(self, texture: float) -> None:
-        """As much of the scene as there is ground: no median can tell which is which."""
+        """As much of the scene as there is ground: no median separates the two."""
         low, high, truth = rendered("smeared", 2.0, 4, (112, 112))
         other, _, _ = rendered("smeared", 2.0, 79, (112, 112))
         noisy = 3000 + 10 * noise(low.shape) + texture * other

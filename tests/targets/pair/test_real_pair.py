@@ -1,4 +1,4 @@
-"""Sentinel-2: B8 at 10 m and B8A at 20 m of the same ground, beside edges and the figures in use.
+"""Sentinel-2: B8 at 10 m and B8A at 20 m of the same ground, against edges and the figures in use.
 
 The files have no geotransform: the ratio is that of the shapes, and the shift found says that both
 begin at the same corner. Both are products, interpolated from a grid turned by 18 degrees with
@@ -112,7 +112,7 @@ def test_edges_of_the_same_image_agree() -> None:
 
 
 def test_both_are_interpolated_from_a_turned_grid() -> None:
-    """How noisy interpolated pixels are follows the phase of the two grids, in every band alike."""
+    """Noise of interpolated pixels follows the phase of the two grids, equally in every band."""
     for path, size, count in ((LOW, 300, 6), (HIGH, 600, 4)):
         power = np.zeros((size - 2, size - 2))
         for band in range(1, count + 1):

@@ -54,10 +54,10 @@ def test_every_direction_is_the_transform_it_says():
     processes = (directions.block >= 0) & (directions.block <= 2)
     for u, v in ((0.0, 0.0), (0.3, 0.2), (-0.5, 0.1)):
         sums = np.exp(-2j * np.pi * (u * x + v * y)) @ columns * 0.04
-        told = directions.transform(np.array([u]), np.array([v]))[0]
-        assert np.abs(sums - told)[processes | (directions.block < 0)].max() < 1e-8
+        transform = directions.transform(np.array([u]), np.array([v]))[0]
+        assert np.abs(sums - transform)[processes | (directions.block < 0)].max() < 1e-8
         # What falls like 1 / r^3 goes on beyond the square.
-        assert np.abs(sums - told).max() < 0.07
+        assert np.abs(sums - transform).max() < 0.07
 
 
 def test_the_sum_and_its_slopes(places):

@@ -82,7 +82,7 @@ def test_numbers_at_zero_are_not_averaged_as_if_gaussian():
     assert mean.value == 0.0
     assert 0.011 < mean.std < 0.017
     assert math.isnan(chi_square)
-    # Two overshoots that are not there, with next to no deviation, beside one that is.
+    # Two overshoots that are not there, with next to no deviation, and one that is.
     mean, chi_square = _weighted_mean(
         [Estimate(0, 0.0007), Estimate(0, 0.0009), Estimate(0.042, 0.012)]
     )

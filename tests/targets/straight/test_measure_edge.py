@@ -245,9 +245,9 @@ class TestRefusals:
         image[place] = fill
         with pytest.raises(ac.PhaseError, match=r"no data.*--nodata") as error:
             ac.measure_edge(image)
-        told = float(str(error.value).split("nodata=")[1].split(",")[0])
+        named = float(str(error.value).split("nodata=")[1].split(",")[0])
         stored = image.astype(np.float32)
-        assert ac.measure_edge(ac.Image.from_array(stored, nodata=told)).mtf_nyquist.std < 0.1
+        assert ac.measure_edge(ac.Image.from_array(stored, nodata=named)).mtf_nyquist.std < 0.1
 
     def test_an_aligned_edge_without_noise_is_no_fill(self):
         image, _ = simulated(angle_deg=0.0, snr=None)

@@ -67,5 +67,5 @@ def test_intervals_of_a_halo_hold_the_truth():
         )  # fmt: skip
         m = ac.measure_pulse(image, width_px=3.0)
         z.append((m.rer.value - truth.rer.value) / m.rer.std)
-    # Without the foot's own term 20 to 27 of 40 are held.
+    # Without the halo's own term 20 to 27 of 40 are held.
     assert np.mean(np.abs(z) < 1.96) >= 0.75

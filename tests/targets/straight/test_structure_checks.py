@@ -94,7 +94,7 @@ def test_an_even_strip_passes(name):
 
 
 def test_a_strip_brighter_on_one_half_is_seen():
-    # A roof with a ridge: one half of the strip is 11 % brighter.
+    # A roof with a ridge: one half of the pulse is 11 % brighter.
     for seed in range(3):
         image, _ = a_pulse(seed)
         half, _ = pulse(

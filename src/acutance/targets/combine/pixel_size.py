@@ -39,12 +39,12 @@ def common_gsd(inputs: Sequence[MeasuredInput]) -> Gsd | None:
 def _require_equal(known: Mapping[str, tuple[float, ...]]) -> None:
     """Refuse sizes, (rows, columns) or along a normal, that differ by more than rounding."""
     for axis in range(len(next(iter(known.values()), ()))):
-        least, most = (pick(known, key=lambda name: known[name][axis]) for pick in (min, max))
-        if known[most][axis] > known[least][axis] * (1 + _GSD_SHARE):
+        smallest, largest = (pick(known, key=lambda name: known[name][axis]) for pick in (min, max))
+        if known[largest][axis] > known[smallest][axis] * (1 + _GSD_SHARE):
             raise OptionError(
-                f"the measurements have different pixels: {least} {_size(known[least])}, {most} "
-                f"{_size(known[most])}. Frequencies per pixel mean different things then: combine "
-                "those of one sensor and one product; for pixels that are not square state both "
+                f"the measurements have different pixels: {smallest} {_size(known[smallest])}, "
+                f"{largest} {_size(known[largest])}. Frequencies per pixel mean different things "
+                "then: combine those of one sensor and one product; for pixels that are not square state both "
                 "distances (--gsd ROW,COL)"
             )
 
