@@ -11,7 +11,7 @@ from acutance.report.html import Headline, Link, Section, Table, Verdict, render
 from acutance.targets import Check, TargetResult
 from acutance.targets.straight.many_edges import combine_edges
 
-PLATEAU = "the bright plateau is 2.0 px wide: what lies further of a halo is not seen"
+PLATEAU = "the bright plateau is 2.0 px wide: a halo beyond it is not measured"
 
 
 def parsed(html):

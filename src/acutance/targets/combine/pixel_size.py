@@ -44,8 +44,8 @@ def _require_equal(known: Mapping[str, tuple[float, ...]]) -> None:
             raise OptionError(
                 f"the measurements have different pixels: {smallest} {_size(known[smallest])}, "
                 f"{largest} {_size(known[largest])}. Frequencies per pixel mean different things "
-                "then: combine those of one sensor and one product; for pixels that are not square state both "
-                "distances (--gsd ROW,COL)"
+                "then: combine those of one sensor and one product; for pixels that are not square "
+                "state both distances (--gsd ROW,COL)"
             )
 
 
