@@ -48,6 +48,11 @@ TEXTS: dict[str, Callable[[], str]] = {
     "phase-error.inc": tables.phase_error,
     "row-distances.inc": tables.row_distances,
     "checks.inc": tables.checks,
+    "questions.inc": tables.questions,
+    **{
+        f"questions-{kind}.inc": tables.questions_of(kind)
+        for kind in ("pulse", "points", "biresolution", "bars", "star", "combined")
+    },
     "methods.inc": tables.methods,
     "blocks.inc": tables.blocks,
     "systems.inc": tables.systems,

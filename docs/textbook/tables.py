@@ -5,14 +5,22 @@ from __future__ import annotations
 import inspect
 import math
 import textwrap
+from collections.abc import Callable
 
 import numpy as np
-from numpydoc.docscrape import ClassDoc
 
 import acutance as ac
 from acutance import optics, simulate
 from acutance.numerics.gaussian_pixel import Blur
-from acutance.targets.straight import METHODS, EdgeLimits
+from acutance.targets import QUESTIONS
+from acutance.targets.combine.checks import COMBINE_CHECKS
+from acutance.targets.pair.checks import PAIR_CHECKS
+from acutance.targets.periodic.bars_checks import BARS_CHECKS
+from acutance.targets.periodic.star_checks import STAR_CHECKS
+from acutance.targets.points.checks import POINTS_CHECKS
+from acutance.targets.straight import METHODS
+from acutance.targets.straight.edge_checks import EDGE_CHECKS
+from acutance.targets.straight.pulse_checks import PULSE_CHECKS
 from acutance.targets.straight.published import PUBLISHED
 from textbook.rst import list_table
 
@@ -23,6 +31,8 @@ __all__ = [
     "methods",
     "phase_error",
     "phases",
+    "questions",
+    "questions_of",
     "row_distances",
     "sites",
     "slices",
@@ -51,6 +61,16 @@ FORMULAS = {
     "Tdi": r"\frac{\sin(N x)}{N \sin(x)} \, \mathrm{sinc}(v / p), \quad x = \pi \, d \cdot (u, v)",
     "Turbulence": r"e^{-3.44 (f/f_0)^{5/3}}",
     "WavefrontError": r"e^{-(2\pi w)^2 \left(1 - e^{-(f / (l f_c))^2}\right)}",
+}
+
+CHECKS_BY_KIND = {
+    "edge": EDGE_CHECKS,
+    "pulse": PULSE_CHECKS,
+    "points": POINTS_CHECKS,
+    "biresolution": PAIR_CHECKS,
+    "bars": BARS_CHECKS,
+    "star": STAR_CHECKS,
+    "combined": COMBINE_CHECKS,
 }
 
 _NOT_BLOCKS = ("Block", "Sensor")
@@ -149,27 +169,45 @@ def row_distances() -> str:
 
 
 def checks() -> str:
-    """Every check with its default limit, what it asks and what it says of a simulated edge."""
+    """The checks of an edge, with what each finds on a simulated one."""
     sensor = simulate.reference_systems()["gaussian"]
     image, _ = simulate.edge(sensor, shape=(60, 40), snr=100, rng=np.random.default_rng(3))
-    asked = {p.name: " ".join(p.desc) for p in ClassDoc(EdgeLimits)["Parameters"]}
+    by_rows = {c.name: c.asked for c in ac.measure_edge(image, method="kompsat-2014").checks}
     rows = []
-    by_rows = {c.name: c.limit for c in ac.measure_edge(image, method="kompsat-2014").checks}
     for check in ac.measure_edge(image).checks:
-        limit = check.limit
+        limit = check.asked
         if by_rows[check.name] != limit:
             limit += f" ({by_rows[check.name]} row by row)"
-        rows.append([f"``{check.name}``", limit, _asked(check.name, asked), check.message])
-    head = ["check", "limit", "what is limited", "what it says of a simulated edge"]
-    return list_table(head, rows, (16, 12, 27, 45))
+        rows.append([f"``{check.name}``", limit, check.question, check.message])
+    head = ["check", "limit", "question", "what it finds on a simulated edge"]
+    return list_table(head, rows, (18, 12, 30, 40))
 
 
-def _asked(name: str, asked: dict[str, str]) -> str:
-    """What the limit of a check is, from `EdgeLimits`: its field has most of the check's name."""
-    words = set(name.split("_"))
-    shared = {field: len(words & set(field.split("_"))) for field in asked}
-    best = max(shared, key=lambda field: shared[field])
-    return asked[best] if shared[best] else "-"
+def questions_of(kind: str) -> Callable[[], str]:
+    """A text: the rows of the table of checks that a kind of target asks."""
+    return lambda: _questions(CHECKS_BY_KIND[kind])
+
+
+def questions() -> str:
+    """The whole table of checks, with the kinds that ask each of them."""
+    return _questions(tuple(QUESTIONS), with_kinds=True)
+
+
+def _questions(names: tuple[str, ...], *, with_kinds: bool = False) -> str:
+    head = ["check", "limit", "question", "what a failure means, what to do", "severity", "source"]
+    widths = [17, 9, 23, 31, 8, 12]
+    rows = []
+    for name in names:
+        asked = QUESTIONS[name]
+        limit = f"{asked.sense} {asked.limit:g}"
+        row = [f"``{name}``", limit, asked.question, asked.advice, asked.severity, asked.source]
+        if with_kinds:
+            row.insert(1, ", ".join(kind for kind, asks in CHECKS_BY_KIND.items() if name in asks))
+        rows.append(row)
+    if with_kinds:
+        head.insert(1, "asked of")
+        widths.insert(1, 10)
+    return list_table(head, rows, widths)
 
 
 def methods() -> str:
