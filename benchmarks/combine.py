@@ -96,7 +96,7 @@ class Found:
     ratio: float
     agreement: float
     plain: float
-    departure: float
+    correction: float
 
 
 def combined(draw: Draw) -> Found | str:
@@ -114,10 +114,10 @@ def combined(draw: Draw) -> Found | str:
             number, wanted = read(own), read(true).value
             errors[f"{metric} {name}"] = (number.value - wanted) / number.std
         share += own.mtf_nyquist.std / true.mtf_nyquist.value / len(DIRECTIONS_DEG)
-    fit = result.fit
+    total, sensor_found = result.chi_square, result.sensor
     return Found(
-        errors, share, fit.best.form.name, fit.total.value / fit.total.expected,
-        fit.total.p_value, fit.plain.p_value, fit.departure,
+        errors, share, sensor_found.forms[0].form.name, total.value / total.expected,
+        total.p_value, result.plain_sensor.p_value, sensor_found.correction,
     )  # fmt: skip
 
 
@@ -151,7 +151,7 @@ def row(name: str, results: list[Found | str]) -> list[str]:
         f"{np.mean([one.ratio for one in found]):.2f}",
         f"{100 * np.mean([one.agreement < 0.01 for one in found]):.0f}",
         f"{100 * np.mean([one.plain < 0.01 for one in found]):.0f}",
-        f"{100 * np.mean([one.departure for one in found]):.1f}",
+        f"{100 * np.mean([one.correction for one in found]):.1f}",
         ", ".join(f"{form} {count}" for form, count in forms.most_common(2)),
     ]
 
@@ -172,14 +172,14 @@ def main() -> None:
     rows.append(row("all", results))
     head = [
         "system", "draws", *METRICS, "std / %", "chi² ratio", "disagree / %", "no plain / %",
-        "departure / %", "form of largest weight",
+        "correction / %", "form of largest weight",
     ]  # fmt: skip
     text = (
         "Cells: per cent of the intervals that hold the truth across, along and at 45 degrees "
         "(mean z ± deviation of z). Std: mean standard deviation of MTF at Nyquist over its "
         "value. Chi² ratio: chi-square of the agreement over its expectation. Disagree, no "
         "plain: combinations whose checks `agreement` and `plain_sensor` failed. Departure: mean "
-        "size of the departure from the parametric form. G: Gaussian and detector. The last "
+        "size of the correction of the parametric form. G: Gaussian and detector. The last "
         "three systems are held by no form."
     )
     publish("Combination of edges and pulses", [text, table(head, rows)], arguments)

@@ -70,7 +70,7 @@ def what_limits() -> Figure:
     """Ratio of moduli, ratio of cross spectra, and the coherence, for a low sensor that aliases."""
     low, high, truth = _pair("sharpened", 3.0)
     m = ac.measure_biresolution(low, high)
-    spectra = m.spectra
+    spectra = m.details.spectra
     freq, coherence = spectra.along_axis("across")
     row, col = spectra.cross.shape[0] // 2, spectra.cross.shape[1] // 2
     strip = slice(row - 2, row + 3)
