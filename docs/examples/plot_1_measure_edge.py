@@ -31,7 +31,7 @@ measurement = ac.measure_edge(image, gsd_m=1.0)
 print(report.text(measurement))
 
 # %%
-# Every number beside what it should be.
+# Every number and its true value.
 for name, estimate in measurement.metrics().items():
     true = getattr(truth.response, name)
     print(f"{name:22}{estimate!s:>20}   truth {true.value:.4f}")

@@ -14,7 +14,7 @@ from acutance.targets.straight import METHODS
 from acutance.targets.straight.published import SdsuOptions
 
 # %%
-# A sensor with a tenth of its light in a halo: a long foot that short windows cut.
+# A sensor with a tenth of its light in a halo: wide wings that short windows cut.
 sensor = ac.simulate.reference_systems()["halo"]
 image, truth = ac.simulate.edge(
     sensor, angle_deg=8, shape=(60, 60), snr=150, rng=np.random.default_rng(5)

@@ -12,7 +12,7 @@ import acutance as ac
 from acutance import report
 
 # %%
-# A site on grass, with a road beside it.
+# A site on grass, next to a road.
 sensor = ac.Sensor([ac.optics.Gaussian(0.45), ac.optics.Detector(), ac.optics.Smear(0.5, "along")])
 scene = ac.simulate.site(sensor, np.random.default_rng(8))
 result = ac.measure_edges(scene.image)

@@ -46,6 +46,8 @@ right.legend()
 # Without the levels the contrast is fitted from spokes of 0.12 c/px and finer, and a check says
 # what that costs.
 free = ac.measure_star(image, options=ac.StarOptions(wave="square"))
-print(f"mean MTF at Nyquist: {star.mean_mtf_nyquist} with stated levels, {free.mean_mtf_nyquist} without")
+print(
+    f"mean MTF at Nyquist: {star.mean_mtf_nyquist} with stated levels, {free.mean_mtf_nyquist} without"
+)
 for check in free.failed_checks:
     print(f"{check.name}: {check.message}")

@@ -29,7 +29,7 @@ def _page(path: Path) -> str:
 def _index(names: list[str]) -> str:
     title = heading("Benchmarks")
     if not names:
-        return title + "\nNo run has been recorded yet: see ``benchmarks/`` beside this folder.\n"
+        return title + "\nNo run has been recorded yet: see ``benchmarks/``.\n"
     entries = "\n".join(f"   benchmark-{name}" for name in names)
     return (
         f"{title}\nOutputs of runs, as they were.\n\n.. toctree::\n   :maxdepth: 1\n\n{entries}\n"

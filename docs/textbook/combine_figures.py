@@ -102,7 +102,7 @@ def _draw_gain(
         )  # fmt: skip
     axes.axvline(0, color=FAINT, lw=1)
     axes.set_yticks(range(len(rows)), [name for name, _, _ in rows])
-    axes.set(title="Less the truth", xlabel="MTF at Nyquist, off by")
+    axes.set(title="Error", xlabel="MTF at Nyquist, measured minus true")
     axes.invert_yaxis()
 
 
@@ -134,7 +134,7 @@ def correction() -> Figure:
     right.plot(freq, value - true, color=BLUE)
     right.axhline(0, color=FAINT, lw=1)
     right.axvline(0.5, color=VERMILION, lw=1, ls=":")
-    right.set(title="Less the truth", xlabel="frequency, c/px")
+    right.set(title="Measured minus true", xlabel="frequency, c/px")
     return figure
 
 

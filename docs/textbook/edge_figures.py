@@ -12,12 +12,12 @@ from acutance.targets.straight import lsf_prior as prior
 from acutance.targets.straight.spline import combine, edge_and_line_weights
 from acutance.targets.straight.tuned import LOG_AMPLITUDE
 
-__all__ = ["measured_beside_truth", "prior_directions", "what_truncation_does"]
+__all__ = ["measured_and_truth", "prior_directions", "what_truncation_does"]
 
 _TWO_SIDED_95 = 1.96
 
 
-def measured_beside_truth() -> Figure:
+def measured_and_truth() -> Figure:
     """One noisy edge: samples, curves with 95 % intervals, and the truth."""
     sensor = ac.simulate.reference_systems()["sharpened"]
     image, truth = ac.simulate.edge(
@@ -45,7 +45,7 @@ def measured_beside_truth() -> Figure:
     error.fill_between(found.mtf.freq_cpp, -_TWO_SIDED_95 * found.mtf.std,
                        _TWO_SIDED_95 * found.mtf.std, color=BLUE, alpha=0.2, lw=0,
                        label="95 % interval")  # fmt: skip
-    error.plot(found.mtf.freq_cpp, difference, color=BLUE, label="measured less true")
+    error.plot(found.mtf.freq_cpp, difference, color=BLUE, label="measured minus true")
     error.axhline(0, color=VERMILION, ls="--", lw=1.3)
     error.set(title="Error of the MTF", xlabel="frequency, cycles per pixel", xlim=(0, 1))
     for axes in (esf, lsf, mtf, error):

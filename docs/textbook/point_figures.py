@@ -74,7 +74,7 @@ def phases_make_a_finer_grid() -> Figure:
     return figure
 
 
-def mirrors_beside_truth() -> Figure:
+def mirrors_and_truth() -> Figure:
     """20 mirrors seen by a smeared sensor: the image, and both slices with the truth."""
     sensor = ac.Sensor(
         [ac.optics.Gaussian(0.35), ac.optics.Smear(0.9, "along"), ac.optics.Detector()]
@@ -112,6 +112,6 @@ def mirrors_beside_truth() -> Figure:
 
 FIGURES: dict[str, Callable[[], Figure]] = {
     "point-layouts": layouts_and_phases,
-    "point-mirrors": mirrors_beside_truth,
+    "point-mirrors": mirrors_and_truth,
     "point-phases": phases_make_a_finer_grid,
 }

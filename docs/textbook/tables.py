@@ -12,7 +12,7 @@ import numpy as np
 import acutance as ac
 from acutance import optics, simulate
 from acutance.numerics.gaussian_pixel import Blur
-from acutance.targets import QUESTIONS
+from acutance.targets import QUESTIONS, Question
 from acutance.targets.combine.checks import COMBINE_CHECKS
 from acutance.targets.pair.checks import PAIR_CHECKS
 from acutance.targets.periodic.bars_checks import BARS_CHECKS
@@ -184,30 +184,31 @@ def checks() -> str:
 
 
 def questions_of(kind: str) -> Callable[[], str]:
-    """A text: the rows of the table of checks that a kind of target asks."""
-    return lambda: _questions(CHECKS_BY_KIND[kind])
+    """A text: what a kind of target is asked, with the limits."""
+    return lambda: list_table(
+        ["check", "limit", "question"],
+        [
+            [f"``{name}``", _limit(QUESTIONS[name]), QUESTIONS[name].question]
+            for name in CHECKS_BY_KIND[kind]
+        ],
+        (25, 12, 63),
+    )
 
 
 def questions() -> str:
-    """The whole table of checks, with the kinds that ask each of them."""
-    return _questions(tuple(QUESTIONS), with_kinds=True)
-
-
-def _questions(names: tuple[str, ...], *, with_kinds: bool = False) -> str:
-    head = ["check", "limit", "question", "what a failure means, what to do", "severity", "source"]
-    widths = [17, 9, 23, 31, 8, 12]
+    """The whole table of checks, with the kinds of target that are asked each of them."""
     rows = []
-    for name in names:
-        asked = QUESTIONS[name]
-        limit = f"{asked.sense} {asked.limit:g}"
-        row = [f"``{name}``", limit, asked.question, asked.advice, asked.severity, asked.source]
-        if with_kinds:
-            row.insert(1, ", ".join(kind for kind, asks in CHECKS_BY_KIND.items() if name in asks))
-        rows.append(row)
-    if with_kinds:
-        head.insert(1, "asked of")
-        widths.insert(1, 10)
-    return list_table(head, rows, widths)
+    for name, asked in QUESTIONS.items():
+        kinds = ", ".join(kind for kind, names in CHECKS_BY_KIND.items() if name in names)
+        source = f" Source: {asked.source}." if asked.source else ""
+        advice = f"{asked.advice[0].upper()}{asked.advice[1:]}.{source}"
+        rows.append([f"``{name}``", kinds, _limit(asked), asked.question, asked.severity, advice])
+    head = ["check", "asked of", "limit", "question", "severity", "if it fails"]
+    return list_table(head, rows, (18, 12, 9, 22, 8, 31))
+
+
+def _limit(asked: Question) -> str:
+    return f"{asked.sense} {asked.limit:g}"
 
 
 def methods() -> str:
