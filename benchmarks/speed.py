@@ -147,7 +147,7 @@ def main() -> None:
     head = ["method", "median / ms", "10 to 90 % / ms", "first time / ms", "ratio to plain"]
     parts = [
         "One region of 40 x 40 px, SNR 100, the reference systems in turn, angles 3 to 12 "
-        "degrees; one core. Of every image the shortest of five times counts; next to it the first. "
+        "degrees; one core. Of every image the shortest of five times counts; then the first. "
         "The ratio is the median over the images.",
         table(head, rows),
     ]

@@ -5,6 +5,8 @@ Measure a simulated edge
 Simulate a sensor and a target, measure the edge, and look at every step.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_1_measure_edge.png"
+
 import numpy as np
 
 import acutance as ac

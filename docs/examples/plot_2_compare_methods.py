@@ -6,6 +6,8 @@ The published methods have biases of their own. On a simulated edge they show, b
 known; on a real one, the methods can only be compared with each other.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_2_compare_methods.png"
+
 import numpy as np
 
 import acutance as ac

@@ -6,6 +6,8 @@ A two by two checkerboard has four inner edges, two in each direction. They are 
 averaged by direction, with a test whether they agree.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_3_checkerboard.png"
+
 import numpy as np
 
 import acutance as ac

@@ -6,6 +6,8 @@ The standard deviation of the MTF at Nyquist against the length of the edge and 
 method predicts it and as the scatter of repetitions shows it.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_4_how_many_rows.png"
+
 import numpy as np
 from matplotlib.figure import Figure
 

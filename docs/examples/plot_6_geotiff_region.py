@@ -5,6 +5,8 @@ A region of a GeoTIFF by a polygon
 A georeferenced image, a polygon drawn in a GIS around the target, and a measurement in metres.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_6_geotiff_region.png"
+
 import json
 import tempfile
 from pathlib import Path

@@ -5,6 +5,8 @@ A sensor measured against a finer one
 No target, only the same fields seen twice: at 20 m and at 10 m.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_8_two_resolutions.png"
+
 import numpy as np
 from matplotlib.figure import Figure
 

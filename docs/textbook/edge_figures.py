@@ -63,7 +63,7 @@ def _draw_band(axes, x, value, std, reach) -> None:
 
 
 def prior_directions() -> Figure:
-    """Draws from the prior: in what ways, and how much, an LSF may differ from a Gaussian through a pixel."""
+    """Draws from the prior: how an LSF may differ from a Gaussian through a pixel, and how much."""
     blur = Blur(0.4)
     known = prior.directions(blur)
     u = np.linspace(-6, 6, 601)
@@ -86,8 +86,8 @@ def prior_directions() -> Figure:
         axes.set_ylim(-0.165, 0.215)
         axes.set(title=f"{name}, {100 * amplitude:.1f} %", xlabel="distance, widths")
     panels[0].set_ylabel("correction of the LSF, per width")
-    panels[0].text(-6, 0.21, "dashed: a fifth of\nthe Gaussian\nthrough a pixel", color=FAINT, fontsize=8.5,
-                   va="top")  # fmt: skip
+    dashed = "dashed: a fifth of\nthe Gaussian\nthrough a pixel"
+    panels[0].text(-6, 0.21, dashed, color=FAINT, fontsize=8.5, va="top")
     return figure
 
 

@@ -20,8 +20,8 @@ from acutance.targets.periodic.star_checks import STAR_CHECKS
 from acutance.targets.points.checks import POINTS_CHECKS
 from acutance.targets.straight import METHODS
 from acutance.targets.straight.edge_checks import EDGE_CHECKS
-from acutance.targets.straight.pulse_checks import PULSE_CHECKS
 from acutance.targets.straight.published import PUBLISHED
+from acutance.targets.straight.pulse_checks import PULSE_CHECKS
 from textbook.rst import list_table
 
 __all__ = [
