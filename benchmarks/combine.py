@@ -1,4 +1,4 @@
-"""How often the 95 % intervals of `acutance.combine` hold the truth, and what its checks say.
+"""How often the 95 % intervals of `acutance.combine` hold the truth, and which of its checks fail.
 
 Four edges near 6, 97, 30 and 62 degrees and two pulses of 3 px, 50 by 50 and 50 by 40 px each,
 SNR 50 or 100, are combined. Systems that the forms hold, and systems that they do not.

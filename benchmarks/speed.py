@@ -5,7 +5,7 @@ row: the shortest is what the computation takes, the first what a user waits who
 measured something else (and whatever else the machine did meanwhile). Timed for the package:
 `measure_edge` from the pixels and the numbers a user reads, each with its standard deviation. The
 plain e-SFR is what comparable programs do and no more: row centroids, line, quarter-pixel bins,
-difference, Hamming window, Fourier transform; it finds no edge, trims nothing and knows no
+difference, Hamming window, Fourier transform; it finds no edge, trims nothing and has no
 uncertainty. `iso12233` is the package's method of that name without its resampled deviations.
 Pulses are measured with their width fitted from a start 3 % off.
 """

@@ -33,7 +33,7 @@ for snr in (50, 100, 200):
         found[snr, count] = values
 
 # %%
-# Lines: what the intervals say. Marks: root mean square of the errors. Both fall with the root of
+# Lines: the stated deviations. Marks: root mean square of the errors. Both fall with the root of
 # the rows and with the SNR.
 figure = Figure(figsize=(7.5, 4.8), layout="constrained")
 axes = figure.subplots()

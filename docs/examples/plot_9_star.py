@@ -45,7 +45,7 @@ right.set(title="MTF by direction (dashed: truth)", xlabel="degrees from the row
 right.legend()
 
 # %%
-# Without the levels the contrast is fitted from spokes of 0.12 c/px and finer, and a check says
+# Without the levels the contrast is fitted from spokes of 0.12 c/px and finer, and a check states
 # what that costs.
 free = ac.measure_star(image, options=ac.StarOptions(wave="square"))
 stated, fitted = star.mean_mtf_nyquist, free.mean_mtf_nyquist

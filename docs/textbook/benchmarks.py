@@ -75,7 +75,7 @@ def _fenced(lines: object) -> list[str]:
 
 
 def _table(rows: list[list[str]]) -> str:
-    """The second row of a Markdown table only says how columns are aligned."""
+    """The second row of a Markdown table only aligns the columns."""
     head, *body = [row for i, row in enumerate(rows) if i != 1]
     width = len(head)
     return list_table(head, [(row + [""] * width)[:width] for row in body])

@@ -1,4 +1,4 @@
-"""Pages of the API, and the commands' own help, from what the package says is public."""
+"""Pages of the API, and the commands' own help, from the public names of the package."""
 
 from __future__ import annotations
 

@@ -128,8 +128,6 @@ def test_every_kind_but_the_straight_ones_has_panels_and_tables():
 
 
 def test_every_parameter_of_a_combined_sensor_has_its_words():
-    found = [
-        name for term in TERMS.values() for name in term.numbers(np.asarray(term.mean, float))
-    ]
+    found = [name for term in TERMS.values() for name in term.numbers(np.asarray(term.mean, float))]
     assert len(found) >= len(TERMS)
     assert set(found) == set(PARAMETERS)
