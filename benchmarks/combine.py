@@ -1,4 +1,4 @@
-"""How often the 95 % intervals of `acutance.combine` hold the truth, and what its checks say.
+"""How often the 95 % intervals of `acutance.combine` hold the truth, and which of its checks fail.
 
 Four edges near 6, 97, 30 and 62 degrees and two pulses of 3 px, 50 by 50 and 50 by 40 px each,
 SNR 50 or 100, are combined. Systems that the forms hold, and systems that they do not.
@@ -114,10 +114,10 @@ def combined(draw: Draw) -> Found | str:
             number, wanted = read(own), read(true).value
             errors[f"{metric} {name}"] = (number.value - wanted) / number.std
         share += own.mtf_nyquist.std / true.mtf_nyquist.value / len(DIRECTIONS_DEG)
-    fit = result.details
+    total, sensor_found = result.chi_square, result.sensor
     return Found(
-        errors, share, fit.otf.best.form.name, fit.total.value / fit.total.expected,
-        fit.total.p_value, fit.plain.p_value, fit.otf.correction_share,
+        errors, share, sensor_found.forms[0].form.name, total.value / total.expected,
+        total.p_value, result.plain_sensor.p_value, sensor_found.correction_share,
     )  # fmt: skip
 
 

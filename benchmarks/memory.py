@@ -1,7 +1,7 @@
 """Peak memory of measuring a region of 60 x 60 px in a file of 30,000 x 30,000.
 
 A sparse GeoTIFF with one edge in it is written to a temporary folder; a fresh process imports the
-package, opens the file and measures; its largest resident set is reported beside that of an
+package, opens the file and measures; its largest resident set is reported next to that of an
 `import acutance` with an array of the region's size.
 """
 

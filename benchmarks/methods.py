@@ -16,7 +16,7 @@ from acutance import optics
 from acutance.curves import Response
 from acutance.raster import Region
 from acutance.simulate import PointsTruth, PulseTruth, SceneTarget
-from acutance.targets import Measurement, Measurement2d
+from acutance.targets import Measurement
 
 GROUNDS = {"uniform ground": 0.0, "grass": 14.0}
 NUMBERS = ("mtf_nyquist", "rer", "fwhm_px")
@@ -49,7 +49,7 @@ def site_errors(draw: Draw) -> Errors:
         sensor(), np.random.default_rng(draw.seeds), texture_std=draw.texture_std
     )
     image = np.asarray(scene.image, float)
-    results: list[Measurement | Measurement2d] = []
+    results: list[Measurement] = []
     found: Errors = {}
     for edge in scene.edges:
         one = ac.measure_edge(image, Region(edge.region))
@@ -58,14 +58,14 @@ def site_errors(draw: Draw) -> Errors:
     for target in scene.targets:
         measured = _measured(image, target)
         results.append(measured)
-        if isinstance(measured, Measurement) and isinstance(target.truth, PulseTruth):
+        if isinstance(target.truth, PulseTruth):
             found["pulse, across"] = _errors(measured.response, target.truth.response)
-        elif isinstance(measured, Measurement2d):
+        else:
             found |= _plane_errors(target.name, measured, scene.sensor)
     return found | _plane_errors("all combined", ac.combine(results), scene.sensor)
 
 
-def _measured(image: np.ndarray, target: SceneTarget) -> Measurement | Measurement2d:
+def _measured(image: np.ndarray, target: SceneTarget) -> Measurement:
     region, truth = Region(target.region), target.truth
     if isinstance(truth, PulseTruth):
         return ac.measure_pulse(image, region, width_px=truth.width_px)
@@ -76,7 +76,7 @@ def _measured(image: np.ndarray, target: SceneTarget) -> Measurement | Measureme
     )
 
 
-def _plane_errors(name: str, measured: Measurement2d, sensor: ac.Sensor) -> Errors:
+def _plane_errors(name: str, measured: Measurement, sensor: ac.Sensor) -> Errors:
     found = {f"{name}, across": _errors(measured.across, sensor.response())}
     if name != "bars":
         found[f"{name}, along"] = _errors(measured.along, sensor.response(0.0, "along"))

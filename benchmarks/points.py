@@ -113,7 +113,7 @@ def _coverage(names: list[str], arguments) -> list[str]:
         pairs = np.array([e[0] for e in kept]).reshape(len(kept), 2, len(METRICS), 2)
         z = (pairs[..., 0] / pairs[..., 1]).reshape(-1, len(METRICS))
         error, std = pairs[..., 0], pairs[..., 1]
-        # Every system counts alike, however many images of it there are.
+        # Every system counts the same, however many images of it there are.
         pooled.append(np.mean(np.abs(z) < 1.96, axis=0))
         rows.append(
             (
@@ -127,12 +127,12 @@ def _coverage(names: list[str], arguments) -> list[str]:
             )
         )
         away = np.vstack([e[1] for e in kept])
-        told = np.vstack([e[2] for e in kept])
+        stated = np.vstack([e[2] for e in kept])
         places.append(
             (
                 name,
                 f"{np.sqrt(np.mean(away**2)) * SNR:.2f}",
-                f"{100 * np.mean(np.abs(away) < 1.96 * told):.1f}",
+                f"{100 * np.mean(np.abs(away) < 1.96 * stated):.1f}",
                 f"{100 * (1 - len(away) / (20 * len(own))):.2f}",
             )
         )

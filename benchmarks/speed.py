@@ -1,11 +1,11 @@
-"""Time of one region: the method "spline" beside a plain 4x-binned e-SFR, interleaved; and a pulse.
+"""Time of one region: the method "spline" and a plain 4x-binned e-SFR, interleaved; and a pulse.
 
 One process on one core, the images in memory. Every method measures every image five times in a
-row: the shortest is what the computation takes, the first what somebody waits who has just
+row: the shortest is what the computation takes, the first what a user waits who has just
 measured something else (and whatever else the machine did meanwhile). Timed for the package:
 `measure_edge` from the pixels and the numbers a user reads, each with its standard deviation. The
 plain e-SFR is what comparable programs do and no more: row centroids, line, quarter-pixel bins,
-difference, Hamming window, Fourier transform; it finds no edge, trims nothing and knows no
+difference, Hamming window, Fourier transform; it finds no edge, trims nothing and has no
 uncertainty. `iso12233` is the package's method of that name without its resampled deviations.
 Pulses are measured with their width fitted from a start 3 % off.
 """
@@ -147,7 +147,7 @@ def main() -> None:
     head = ["method", "median / ms", "10 to 90 % / ms", "first time / ms", "ratio to plain"]
     parts = [
         "One region of 40 x 40 px, SNR 100, the reference systems in turn, angles 3 to 12 "
-        "degrees; one core. Of every image the shortest of five times counts; beside it the first. "
+        "degrees; one core. Of every image the shortest of five times counts; then the first. "
         "The ratio is the median over the images.",
         table(head, rows),
     ]

@@ -65,7 +65,7 @@ html_copy_source = False
 html_show_sourcelink = False
 html_sidebars = {"**": ["about.html", "searchfield.html", "navigation.html"]}
 html_theme_options = {
-    "description": "How sharp an Earth-observation satellite really sees",
+    "description": "Spatial quality of imaging sensors in orbit",
     "page_width": "1180px",
     "body_max_width": "920px",
     "sidebar_width": "230px",

@@ -5,6 +5,8 @@ Measure a simulated edge
 Simulate a sensor and a target, measure the edge, and look at every step.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_1_measure_edge.png"
+
 import numpy as np
 
 import acutance as ac
@@ -31,7 +33,7 @@ measurement = ac.measure_edge(image, gsd_m=1.0)
 print(report.text(measurement))
 
 # %%
-# Every number beside what it should be.
+# Every number and its true value.
 for name, estimate in measurement.metrics().items():
     true = getattr(truth.response, name)
     print(f"{name:22}{estimate!s:>20}   truth {true.value:.4f}")

@@ -6,6 +6,8 @@ The published methods have biases of their own. On a simulated edge they show, b
 known; on a real one, the methods can only be compared with each other.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_2_compare_methods.png"
+
 import numpy as np
 
 import acutance as ac
@@ -14,7 +16,7 @@ from acutance.targets.straight import METHODS
 from acutance.targets.straight.published import SdsuOptions
 
 # %%
-# A sensor with a tenth of its light in a halo: a long foot that short windows cut.
+# A sensor with a tenth of its light in a halo: wide wings that short windows cut.
 sensor = ac.simulate.reference_systems()["halo"]
 image, truth = ac.simulate.edge(
     sensor, angle_deg=8, shape=(60, 60), snr=150, rng=np.random.default_rng(5)

@@ -6,13 +6,15 @@ A two by two checkerboard has four inner edges, two in each direction. They are 
 averaged by direction, with a test whether they agree.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_3_checkerboard.png"
+
 import numpy as np
 
 import acutance as ac
 from acutance import report
 
 # %%
-# A site on grass, with a road beside it.
+# A site on grass, next to a road.
 sensor = ac.Sensor([ac.optics.Gaussian(0.45), ac.optics.Detector(), ac.optics.Smear(0.5, "along")])
 scene = ac.simulate.site(sensor, np.random.default_rng(8))
 result = ac.measure_edges(scene.image)

@@ -6,6 +6,8 @@ The standard deviation of the MTF at Nyquist against the length of the edge and 
 method predicts it and as the scatter of repetitions shows it.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_4_how_many_rows.png"
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -31,7 +33,7 @@ for snr in (50, 100, 200):
         found[snr, count] = values
 
 # %%
-# Lines: what the intervals say. Marks: root mean square of the errors. Both fall with the root of
+# Lines: the stated deviations. Marks: root mean square of the errors. Both fall with the root of
 # the rows and with the SNR.
 figure = Figure(figsize=(7.5, 4.8), layout="constrained")
 axes = figure.subplots()

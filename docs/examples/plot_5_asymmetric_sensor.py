@@ -2,8 +2,10 @@
 The phase of an asymmetric sensor
 =================================
 
-A charge trail blurs to one side. The MTF does not tell; the phase of the OTF and the LSF do.
+A charge trail blurs to one side. The MTF does not show it; the phase of the OTF and the LSF do.
 """
+
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_5_asymmetric_sensor.png"
 
 import numpy as np
 from matplotlib.figure import Figure

@@ -5,6 +5,8 @@ A region of a GeoTIFF by a polygon
 A georeferenced image, a polygon drawn in a GIS around the target, and a measurement in metres.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_6_geotiff_region.png"
+
 import json
 import tempfile
 from pathlib import Path
@@ -49,7 +51,7 @@ print(image.gsd(), "region (row, column, height, width):", measurement.image.roi
 print(f"FWHM {measurement.fwhm_m} m, truth {edge.truth.fwhm_px.value * 0.7:.4f} m")
 print(f"RER {measurement.rer}, truth {edge.truth.rer}")
 for check in measurement.failed_checks:
-    print(f"failed: {check.name} {check.value:.2f} {check.limit}: {check.message}")
+    print(f"failed: {check.name} {check.value:.2f} {check.asked}: {check.message}")
 
 # %%
 # On the command line: ``acutance edge scene.tif --roi target.geojson --figure edge.png``.

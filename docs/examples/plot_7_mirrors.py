@@ -5,6 +5,8 @@ Twenty mirrors and their PSF
 Mirrors in two slanted columns sample the PSF at every fifth of a pixel. What is no mirror is named.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_7_mirrors.png"
+
 import numpy as np
 from matplotlib.figure import Figure
 

@@ -5,6 +5,8 @@ A sensor measured against a finer one
 No target, only the same fields seen twice: at 20 m and at 10 m.
 """
 
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_8_two_resolutions.png"
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -25,7 +27,7 @@ print("shift:", *m.shift_px, " gain:", round(m.gain, 3))
 print("failed checks:", [check.name for check in m.failed_checks])
 
 # %%
-# Without the reference the result is the quotient of both MTFs, and a check says so. At a ratio
+# Without the reference the result is the quotient of both MTFs, and a check fails. At a ratio
 # of 2 that is a third too large at Nyquist.
 bare = ac.measure_biresolution(low, high)
 print("MTF_low / MTF_high at Nyquist:", bare.along.mtf_nyquist)

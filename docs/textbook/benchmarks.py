@@ -29,7 +29,7 @@ def _page(path: Path) -> str:
 def _index(names: list[str]) -> str:
     title = heading("Benchmarks")
     if not names:
-        return title + "\nNo run has been recorded yet: see ``benchmarks/`` beside this folder.\n"
+        return title + "\nNo run has been recorded yet: see ``benchmarks/``.\n"
     entries = "\n".join(f"   benchmark-{name}" for name in names)
     return (
         f"{title}\nOutputs of runs, as they were.\n\n.. toctree::\n   :maxdepth: 1\n\n{entries}\n"
@@ -75,7 +75,7 @@ def _fenced(lines: object) -> list[str]:
 
 
 def _table(rows: list[list[str]]) -> str:
-    """The second row of a Markdown table only says how columns are aligned."""
+    """The second row of a Markdown table only aligns the columns."""
     head, *body = [row for i, row in enumerate(rows) if i != 1]
     width = len(head)
     return list_table(head, [(row + [""] * width)[:width] for row in body])

@@ -11,11 +11,8 @@ from matplotlib.figure import Figure
 import acutance as ac
 from acutance.report.paper import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, VERMILION, new_page
 from acutance.simulate import NativeGrid
-from acutance.targets import QUESTIONS
-from acutance.targets.pair import PAIR_CHECKS
-from textbook.rst import list_table
 
-__all__ = ["FIGURES", "TEXTS", "checks", "measured_pair", "products", "what_limits"]
+__all__ = ["FIGURES", "measured_pair", "products", "what_limits"]
 
 _SYSTEMS = ac.simulate.reference_systems()
 _REFERENCE = _SYSTEMS["gaussian"]
@@ -30,7 +27,7 @@ def _pair(system: str, ratio: float, snr: float = 100.0) -> tuple[np.ndarray, np
 
 
 def measured_pair() -> Figure:
-    """A pair, and the MTF by both estimators beside the truth."""
+    """A pair, and the MTF by both estimators, and the truth."""
     low, high, truth = _pair("smeared", 2.0)
     figure = new_page(10.4, 4.0)
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 1.35))
@@ -70,7 +67,7 @@ def what_limits() -> Figure:
     """Ratio of moduli, ratio of cross spectra, and the coherence, for a low sensor that aliases."""
     low, high, truth = _pair("sharpened", 3.0)
     m = ac.measure_biresolution(low, high)
-    spectra = m.spectra
+    spectra = m.details.spectra
     freq, coherence = spectra.along_axis("across")
     row, col = spectra.cross.shape[0] // 2, spectra.cross.shape[1] // 2
     strip = slice(row - 2, row + 3)
@@ -138,22 +135,8 @@ def products() -> Figure:
     return figure
 
 
-def checks() -> str:
-    """The limits of the checks, with what they ask."""
-    rows = [
-        [
-            f"``{name}``",
-            f"{QUESTIONS[name].sense} {QUESTIONS[name].limit:g}",
-            QUESTIONS[name].question,
-        ]
-        for name in PAIR_CHECKS
-    ]
-    return list_table(["check", "limit", "what it asks"], rows, (25, 12, 63))
-
-
 FIGURES = {
     "biresolution-pair": measured_pair,
     "biresolution-limits": what_limits,
     "biresolution-products": products,
 }
-TEXTS = {"biresolution-checks.inc": checks}

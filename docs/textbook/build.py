@@ -28,7 +28,7 @@ __all__ = ["write_all"]
 FIGURES: dict[str, Callable[[], Figure]] = {
     "pixel-grid": plane_figures.pixel_grid,
     "metrics": plane_figures.metrics_on_curves,
-    "edge-curves": edge_figures.measured_beside_truth,
+    "edge-curves": edge_figures.measured_and_truth,
     "tail-and-support": edge_figures.what_truncation_does,
     "prior-directions": edge_figures.prior_directions,
     "step-gains": method_figures.gains_of_steps,
@@ -48,14 +48,19 @@ TEXTS: dict[str, Callable[[], str]] = {
     "phase-error.inc": tables.phase_error,
     "row-distances.inc": tables.row_distances,
     "checks.inc": tables.checks,
+    "questions.inc": tables.questions,
+    **{
+        f"questions-{kind}.inc": tables.questions_of(kind)
+        for kind in ("pulse", "points", "biresolution", "bars", "star", "combined")
+    },
     "methods.inc": tables.methods,
     "blocks.inc": tables.blocks,
     "systems.inc": tables.systems,
     "sites.inc": tables.sites,
-    "top-names.inc": reference.top_names,
+    "calls.inc": reference.called_names,
+    "results.inc": reference.result_names,
+    "other-names.inc": reference.other_names,
     **reference.help_texts(),
-    **biresolution_figures.TEXTS,
-    **star_figures.TEXTS,
     **study_figures.TEXTS,
 }
 
@@ -85,6 +90,6 @@ def _forget_old_pages(folder: Path) -> None:
 
 
 def _write(path: Path, text: str) -> None:
-    """Leave a file that says the same alone, so that unchanged pages are not built again."""
+    """Write a file only if its text changes, so that unchanged pages are not built again."""
     if not path.is_file() or path.read_text(encoding="utf-8") != text:
         path.write_text(text, encoding="utf-8")

@@ -13,7 +13,7 @@ from acutance.report.paper import BLUE, FAINT, INK, ORANGE, PALETTE, VERMILION, 
 from acutance.targets import Measurement
 from acutance.targets.combine import CombinedMeasurement, CombineOptions
 
-__all__ = ["FIGURES", "departure", "slices_and_plane"]
+__all__ = ["FIGURES", "correction", "slices_and_plane"]
 
 _TWO_SIDED_95 = 1.96
 _EDGES = ((6.0, "across"), (7.0, "along"), (30.0, "across"), (-30.0, "along"))
@@ -102,11 +102,11 @@ def _draw_gain(
         )  # fmt: skip
     axes.axvline(0, color=FAINT, lw=1)
     axes.set_yticks(range(len(rows)), [name for name, _, _ in rows])
-    axes.set(title="Less the truth", xlabel="MTF at Nyquist, off by")
+    axes.set(title="Error", xlabel="MTF at Nyquist, measured minus true")
     axes.invert_yaxis()
 
 
-def departure() -> Figure:
+def correction() -> Figure:
     """A sensor that diffracts: forced through a Gaussian, and with all that is tried."""
     sensor = ac.simulate.reference_systems()["diffraction"]
     edges = _edges(sensor, 5)
@@ -117,9 +117,9 @@ def departure() -> Figure:
     true = np.abs(sensor.otf(freq, none))
     figure = new_page(10.4, 3.6)
     left, right = figure.subplots(1, 2)
-    plain = forced.details.plain
+    plain = forced.plain_sensor
     left.plot(freq, true, color=INK, ls="--", label="truth")
-    best = min(forced.details.forms, key=lambda one: one.share)
+    best = min(forced.sensor.forms, key=lambda one: one.share)
     gauss = np.abs(best.form.otf(np.array(best.correction.parameters), freq, none))
     left.plot(
         freq, gauss, color=ORANGE, label=f"Gaussian, chi² {plain.value:.0f}/{plain.expected:.0f}"
@@ -134,7 +134,7 @@ def departure() -> Figure:
     right.plot(freq, value - true, color=BLUE)
     right.axhline(0, color=FAINT, lw=1)
     right.axvline(0.5, color=VERMILION, lw=1, ls=":")
-    right.set(title="Less the truth", xlabel="frequency, c/px")
+    right.set(title="Measured minus true", xlabel="frequency, c/px")
     return figure
 
 
@@ -150,5 +150,5 @@ def _draw_band(
 
 FIGURES: dict[str, Callable[[], Figure]] = {
     "combine-slices": slices_and_plane,
-    "combine-departure": departure,
+    "combine-correction": correction,
 }

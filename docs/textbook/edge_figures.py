@@ -10,13 +10,14 @@ from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.report.paper import BLUE, FAINT, INK, PALETTE, VERMILION, new_page
 from acutance.targets.straight import lsf_prior as prior
 from acutance.targets.straight.spline import combine, edge_and_line_weights
+from acutance.targets.straight.tuned import LOG_AMPLITUDE
 
-__all__ = ["measured_beside_truth", "prior_directions", "what_truncation_does"]
+__all__ = ["measured_and_truth", "prior_directions", "what_truncation_does"]
 
 _TWO_SIDED_95 = 1.96
 
 
-def measured_beside_truth() -> Figure:
+def measured_and_truth() -> Figure:
     """One noisy edge: samples, curves with 95 % intervals, and the truth."""
     sensor = ac.simulate.reference_systems()["sharpened"]
     image, truth = ac.simulate.edge(
@@ -44,7 +45,7 @@ def measured_beside_truth() -> Figure:
     error.fill_between(found.mtf.freq_cpp, -_TWO_SIDED_95 * found.mtf.std,
                        _TWO_SIDED_95 * found.mtf.std, color=BLUE, alpha=0.2, lw=0,
                        label="95 % interval")  # fmt: skip
-    error.plot(found.mtf.freq_cpp, difference, color=BLUE, label="measured less true")
+    error.plot(found.mtf.freq_cpp, difference, color=BLUE, label="measured minus true")
     error.axhline(0, color=VERMILION, ls="--", lw=1.3)
     error.set(title="Error of the MTF", xlabel="frequency, cycles per pixel", xlim=(0, 1))
     for axes in (esf, lsf, mtf, error):
@@ -62,7 +63,7 @@ def _draw_band(axes, x, value, std, reach) -> None:
 
 
 def prior_directions() -> Figure:
-    """Draws from the prior: in what ways, and how much, an LSF may leave the plain blur."""
+    """Draws from the prior: how an LSF may differ from a Gaussian through a pixel, and how much."""
     blur = GaussianPixel(0.4)
     known = prior.directions(blur)
     u = np.linspace(-6, 6, 601)
@@ -74,7 +75,7 @@ def prior_directions() -> Figure:
     plain = blur.width_px * blur.lsf(u * blur.width_px)
     for k, (axes, name) in enumerate(zip(panels, names, strict=True)):
         own = np.flatnonzero(known.block == k + 2)
-        amplitude = float(np.exp(prior.LOG_AMPLITUDE[k]))
+        amplitude = float(np.exp(LOG_AMPLITUDE[k]))
         for i in range(3):
             if name == "tail":
                 drawn = known.esf[:, own] @ np.array([(i + 1) * amplitude])
@@ -84,14 +85,14 @@ def prior_directions() -> Figure:
         axes.plot(u, 0.2 * plain, color=FAINT, lw=1, ls="--")
         axes.set_ylim(-0.165, 0.215)
         axes.set(title=f"{name}, {100 * amplitude:.1f} %", xlabel="distance, widths")
-    panels[0].set_ylabel("departure of the LSF, per width")
-    panels[0].text(-6, 0.21, "dashed: a fifth of\nthe plain blur", color=FAINT, fontsize=8.5,
-                   va="top")  # fmt: skip
+    panels[0].set_ylabel("correction of the LSF, per width")
+    dashed = "dashed: a fifth of\nthe Gaussian\nthrough a pixel"
+    panels[0].text(-6, 0.21, dashed, color=FAINT, fontsize=8.5, va="top")
     return figure
 
 
 def what_truncation_does() -> Figure:
-    """An LSF cut off at a distance raises the whole MTF: three systems with feet."""
+    """An LSF cut off at a distance raises the whole MTF: three systems with wings."""
     figure = new_page(10.4, 3.7)
     panels = figure.subplots(1, 3, sharey=True)
     systems = ac.simulate.reference_systems()

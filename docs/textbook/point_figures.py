@@ -48,20 +48,20 @@ def phases_make_a_finer_grid() -> Figure:
     sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
     image, _ = ac.simulate.points(sensor, snr=80, rng=np.random.default_rng(4))
     found = ac.measure_points(image)
-    fit = found.fit
+    fit = found.details.fit
     assert fit is not None
     figure = new_page(10.4, 4.2)
     one, all_of_them = figure.subplots(1, 2, sharey=True)
     x, y = fit.stamps.offsets(fit.places)
     owner = fit.stamps.owner
-    ground = fit.fitted - fit.light
+    background = fit.fitted - fit.light
     peak = float(fit.model.psf(np.zeros(1), np.zeros(1))[0])
     places = np.linspace(-3, 3, 301)
     model = fit.model.psf(places, np.zeros_like(places)) / peak
     near = (np.abs(y) <= 0.5) & (np.abs(x) < 3)
-    # The nearest row passes the source at up to half a pixel: the model tells the difference.
+    # The nearest row passes the source at up to half a pixel: the model has the difference.
     raised = (fit.model.psf(x, np.zeros_like(y)) - fit.model.psf(x, y)) / peak
-    value = (fit.stamps.value - ground) / fit.peaks[owner] + raised
+    value = (fit.stamps.value - background) / fit.peaks[owner] + raised
     for axes, chosen, title in (
         (one, near & (owner == owner[near][0]), "the row nearest to one source"),
         (all_of_them, near, "the nearest rows of all sources"),
@@ -74,7 +74,7 @@ def phases_make_a_finer_grid() -> Figure:
     return figure
 
 
-def mirrors_beside_truth() -> Figure:
+def mirrors_and_truth() -> Figure:
     """20 mirrors seen by a smeared sensor: the image, and both slices with the truth."""
     sensor = ac.Sensor(
         [ac.optics.Gaussian(0.35), ac.optics.Smear(0.9, "along"), ac.optics.Detector()]
@@ -112,6 +112,6 @@ def mirrors_beside_truth() -> Figure:
 
 FIGURES: dict[str, Callable[[], Figure]] = {
     "point-layouts": layouts_and_phases,
-    "point-mirrors": mirrors_beside_truth,
+    "point-mirrors": mirrors_and_truth,
     "point-phases": phases_make_a_finer_grid,
 }

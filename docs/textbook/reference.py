@@ -1,4 +1,4 @@
-"""Pages of the API, and the commands' own help, from what the package says is public."""
+"""Pages of the API, and the commands' own help, from the public names of the package."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import inspect
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from typer.main import get_command
@@ -16,38 +16,107 @@ import acutance
 from acutance.cli.app import app
 from textbook.rst import heading, list_table
 
-__all__ = ["help_texts", "object_pages", "package_pages", "top_names"]
+__all__ = [
+    "called_names",
+    "help_texts",
+    "object_pages",
+    "other_names",
+    "package_pages",
+    "result_names",
+]
 
+# Pages of the API, the public face of the packages first, then modules worth a page of their own.
 PACKAGES = (
+    "targets",
+    "targets.straight",
+    "targets.straight.published",
+    "targets.points",
+    "targets.pair",
+    "targets.periodic",
+    "targets.combine",
+    "simulate",
+    "optics",
+    "raster",
+    "report",
+    "studies",
     "curves",
     "curves.metrics",
-    "optics",
-    "fit.line",
-    "fit.band",
-    "fit.edge",
-    "fit.pulse",
-    "fit.point_sources",
-    "raster",
-    "simulate",
-    "measure",
-    "measure.published",
-    "measure.pulse_width",
-    "studies",
-    "report",
+    "geometry",
+    "geometry.angles",
+    "targets.kinds",
+    "targets.check_table",
+    "targets.straight.fit_edge",
+    "targets.straight.fit_pulse",
+    "targets.straight.pulse_width",
+    "targets.points.fit",
+    "numerics.noise",
+    "numerics.clipping",
+    "numerics.normal_equations",
+    "numerics.process_modes",
 )
 
 
-def top_names() -> str:
-    """The names of ``import acutance as ac`` and where they are described."""
+CALLS = (
+    "measure_edge",
+    "measure_edges",
+    "measure_pulse",
+    "measure_points",
+    "measure_bars",
+    "measure_star",
+    "measure_biresolution",
+    "combine",
+    "open_image",
+    "sites",
+    "Sensor",
+    "optics",
+    "simulate",
+    "report",
+)
+RESULTS = (
+    "Measurement",
+    "StraightMeasurement",
+    "PointsMeasurement",
+    "BarsMeasurement",
+    "StarMeasurement",
+    "BiresolutionMeasurement",
+    "CombinedMeasurement",
+    "TargetResult",
+    "Rejected",
+    "Record",
+    "Check",
+    "Verdict",
+    "Estimate",
+    "Estimates",
+    "Response",
+    "Mtf",
+    "Esf",
+    "Lsf",
+)
+
+
+def called_names() -> str:
+    """What is called: measuring, combining, opening, simulating, reporting."""
+    return _names(CALLS)
+
+
+def result_names() -> str:
+    """What calls return."""
+    return _names(RESULTS)
+
+
+def other_names() -> str:
+    """The other names of ``import acutance as ac``, errors left out."""
+    listed = {*CALLS, *RESULTS, *acutance.errors.__all__, "__version__"}
+    return _names([name for name in acutance.__all__ if name not in listed])
+
+
+def _names(names: Sequence[str]) -> str:
+    """Names of ``import acutance as ac``, linked to where they are described."""
     rows = []
-    for name in acutance.__all__:
+    for name in names:
         found = getattr(acutance, name)
-        if name.startswith("__"):
-            continue
         if inspect.ismodule(found):
             link = f":doc:`acutance.{name} </generated/acutance.{name}>`"
-        elif name in acutance.errors.__all__:
-            continue
         else:
             link = f":py:obj:`{name} <{acutance._HOMES[name]}.{name}>`"
         summary = (inspect.getdoc(found) or "").split("\n")[0]

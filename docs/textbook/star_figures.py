@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache, partial
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -22,11 +22,9 @@ from acutance.report.paper import (
     VERMILION,
     new_page,
 )
-from acutance.targets import QUESTIONS
-from acutance.targets.periodic import BARS_CHECKS, STAR_CHECKS, BarsOptions, StarOptions
-from textbook.rst import list_table
+from acutance.targets.periodic import BarsOptions, StarOptions
 
-__all__ = ["FIGURES", "TEXTS", "finite_bars", "measured_bars", "measured_star", "what_levels_do"]
+__all__ = ["FIGURES", "finite_bars", "measured_bars", "measured_star", "what_levels_do"]
 
 _SYSTEMS = ac.simulate.reference_systems()
 
@@ -56,7 +54,7 @@ def _bars(system: str) -> tuple[Any, Any]:
 
 
 def measured_star() -> Figure:
-    """A star with its aliased centre, its rings and the joint fit beside the truth."""
+    """A star with its aliased centre, its rings and the joint fit, and the truth."""
     found, truth = _star("diffraction", 36, levels=True)
     figure = new_page(10.4, 4.3)
     left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.5))
@@ -118,7 +116,7 @@ def what_levels_do() -> Figure:
 
 
 def measured_bars() -> Figure:
-    """Groups of bars, one profile, and MTF by every reading beside the truth."""
+    """Groups of bars, one profile, and MTF by every reading, and the truth."""
     found, truth = _bars("sharpened")
     figure = new_page(10.4, 4.3)
     left, middle, right = figure.subplots(1, 3, width_ratios=(0.42, 1.0, 1.3))
@@ -166,23 +164,9 @@ def finite_bars() -> Figure:
     return figure
 
 
-def _checks(names: tuple[str, ...]) -> str:
-    """The checks of a target: what they ask, and their limits."""
-    asked = [QUESTIONS[name] for name in names]
-    rows = [
-        [f"``{name}``", f"{one.sense} {one.limit:g}", one.question]
-        for name, one in zip(names, asked, strict=True)
-    ]
-    return list_table(["check", "limit", "what is asked"], rows, (24, 12, 64))
-
-
 FIGURES: dict[str, Callable[[], Figure]] = {
     "star-measured": measured_star,
     "star-levels": what_levels_do,
     "bars-measured": measured_bars,
     "bars-finite": finite_bars,
-}
-TEXTS: dict[str, Callable[[], str]] = {
-    "star-checks.inc": partial(_checks, STAR_CHECKS),
-    "bars-checks.inc": partial(_checks, BARS_CHECKS),
 }

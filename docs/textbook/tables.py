@@ -5,15 +5,23 @@ from __future__ import annotations
 import inspect
 import math
 import textwrap
+from collections.abc import Callable
 
 import numpy as np
-from numpydoc.docscrape import ClassDoc
 
 import acutance as ac
 from acutance import optics, simulate
 from acutance.numerics.gaussian_pixel import GaussianPixel
-from acutance.targets.straight import METHODS, EdgeLimits
+from acutance.targets import QUESTIONS, Question
+from acutance.targets.combine.checks import COMBINE_CHECKS
+from acutance.targets.pair.checks import PAIR_CHECKS
+from acutance.targets.periodic.bars_checks import BARS_CHECKS
+from acutance.targets.periodic.star_checks import STAR_CHECKS
+from acutance.targets.points.checks import POINTS_CHECKS
+from acutance.targets.straight import METHODS
+from acutance.targets.straight.edge_checks import EDGE_CHECKS
 from acutance.targets.straight.published import PUBLISHED
+from acutance.targets.straight.pulse_checks import PULSE_CHECKS
 from textbook.rst import list_table
 
 __all__ = [
@@ -23,6 +31,8 @@ __all__ = [
     "methods",
     "phase_error",
     "phases",
+    "questions",
+    "questions_of",
     "row_distances",
     "sites",
     "slices",
@@ -51,6 +61,16 @@ FORMULAS = {
     "Tdi": r"\frac{\sin(N x)}{N \sin(x)} \, \mathrm{sinc}(v / p), \quad x = \pi \, d \cdot (u, v)",
     "Turbulence": r"e^{-3.44 (f/f_0)^{5/3}}",
     "WavefrontError": r"e^{-(2\pi w)^2 \left(1 - e^{-(f / (l f_c))^2}\right)}",
+}
+
+CHECKS_BY_KIND = {
+    "edge": EDGE_CHECKS,
+    "pulse": PULSE_CHECKS,
+    "points": POINTS_CHECKS,
+    "biresolution": PAIR_CHECKS,
+    "bars": BARS_CHECKS,
+    "star": STAR_CHECKS,
+    "combined": COMBINE_CHECKS,
 }
 
 _NOT_BLOCKS = ("Block", "Sensor")
@@ -149,27 +169,46 @@ def row_distances() -> str:
 
 
 def checks() -> str:
-    """Every check with its default limit, what it asks and what it says of a simulated edge."""
+    """The checks of an edge, with what each finds on a simulated one."""
     sensor = simulate.reference_systems()["gaussian"]
     image, _ = simulate.edge(sensor, shape=(60, 40), snr=100, rng=np.random.default_rng(3))
-    asked = {p.name: " ".join(p.desc) for p in ClassDoc(EdgeLimits)["Parameters"]}
+    by_rows = {c.name: c.asked for c in ac.measure_edge(image, method="kompsat-2014").checks}
     rows = []
-    by_rows = {c.name: c.limit for c in ac.measure_edge(image, method="kompsat-2014").checks}
     for check in ac.measure_edge(image).checks:
-        limit = check.limit
+        limit = check.asked
         if by_rows[check.name] != limit:
             limit += f" ({by_rows[check.name]} row by row)"
-        rows.append([f"``{check.name}``", limit, _asked(check.name, asked), check.message])
-    head = ["check", "limit", "what is limited", "what it says of a simulated edge"]
-    return list_table(head, rows, (16, 12, 27, 45))
+        rows.append([f"``{check.name}``", limit, check.question, check.message])
+    head = ["check", "limit", "question", "what it finds on a simulated edge"]
+    return list_table(head, rows, (18, 12, 30, 40))
 
 
-def _asked(name: str, asked: dict[str, str]) -> str:
-    """What the limit of a check is, from `EdgeLimits`: its field has most of the check's name."""
-    words = set(name.split("_"))
-    shared = {field: len(words & set(field.split("_"))) for field in asked}
-    best = max(shared, key=lambda field: shared[field])
-    return asked[best] if shared[best] else "-"
+def questions_of(kind: str) -> Callable[[], str]:
+    """A text: what a kind of target is asked, with the limits."""
+    return lambda: list_table(
+        ["check", "limit", "question"],
+        [
+            [f"``{name}``", _limit(QUESTIONS[name]), QUESTIONS[name].question]
+            for name in CHECKS_BY_KIND[kind]
+        ],
+        (25, 12, 63),
+    )
+
+
+def questions() -> str:
+    """The whole table of checks, with the kinds of target that are asked each of them."""
+    rows = []
+    for name, asked in QUESTIONS.items():
+        kinds = ", ".join(kind for kind, names in CHECKS_BY_KIND.items() if name in names)
+        source = f" Source: {asked.source}." if asked.source else ""
+        advice = f"{asked.advice[0].upper()}{asked.advice[1:]}.{source}"
+        rows.append([f"``{name}``", kinds, _limit(asked), asked.question, asked.severity, advice])
+    head = ["check", "asked of", "limit", "question", "severity", "if it fails"]
+    return list_table(head, rows, (18, 12, 9, 22, 8, 31))
+
+
+def _limit(asked: Question) -> str:
+    return f"{asked.sense} {asked.limit:g}"
 
 
 def methods() -> str:

@@ -23,7 +23,9 @@ from acutance.report import (
     text,
 )
 from acutance.report.figure import KIND_PANELS
+from acutance.report.tables.combined import PARAMETERS
 from acutance.report.tables.result import KIND_TABLES
+from acutance.targets.combine.sensor_forms import TERMS
 
 SENSOR = ac.Sensor([ac.optics.Gaussian(0.39), ac.optics.Detector()], gsd_m=0.7)
 
@@ -123,3 +125,9 @@ def test_all_outputs_are_made_without_details(result):
 def test_every_kind_but_the_straight_ones_has_panels_and_tables():
     kinds = {"points", "biresolution", "bars", "star", "combined"}
     assert set(KIND_PANELS) == set(KIND_TABLES) == kinds
+
+
+def test_every_parameter_of_a_combined_sensor_has_its_words():
+    found = [name for term in TERMS.values() for name in term.numbers(np.asarray(term.mean, float))]
+    assert len(found) >= len(TERMS)
+    assert set(found) == set(PARAMETERS)

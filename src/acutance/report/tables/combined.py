@@ -27,6 +27,10 @@ PARAMETERS = {
     "trail_along_px": ("charge trail, along", "px"),
     "cutoff_cpp": ("cutoff of the aperture", "c/px"),
     "obscuration": ("obscuration of the aperture", ""),
+    "sharpening_across": ("sharpening kernel, across", ""),
+    "sharpening_along": ("sharpening kernel, along", ""),
+    "unsharp_gain": ("unsharp mask, gain", ""),
+    "unsharp_sigma_px": ("unsharp mask, Gaussian", "px"),
 }
 PART_COLUMNS = ("measurement", "method", "normal", "MTF at Nyquist", "combined", "chi²", "of", "p")
 
