@@ -12,7 +12,7 @@ def test_the_text_holds_every_number_and_check(measurement):
         assert check.asked in shown
     assert "CAUTION  plateau_bright_px" in shown
     assert "doubtful: 1 of 6 checks failed." in shown
-    assert "plateau_bright_px (caution): the bright plateau is 2.0 px wide: what lies" in shown
+    assert "plateau_bright_px (caution): the bright plateau is 2.0 px wide: a halo beyond" in shown
     assert "scene.tif, band 1, rows 100–139, columns 260–295" in shown
     assert "measured 2026-01-02 03:04 UTC" in shown
 
