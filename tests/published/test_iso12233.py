@@ -104,7 +104,7 @@ def test_a_polynomial_follows_a_bent_edge():
     "wrong", [{"bins_per_px": 0}, {"edge_order": 6}, {"window": "hann"}, {"tukey_alpha": 0.0}]
 )
 def test_meaningless_options_are_refused(wrong):
-    with pytest.raises(OptionError, match="found"):
+    with pytest.raises(OptionError, match=r"found|give"):
         Iso12233Options(**wrong)
 
 

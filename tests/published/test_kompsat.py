@@ -134,5 +134,5 @@ def test_plateaus_that_end_too_soon_are_refused():
     "wrong", [{"distance": "row"}, {"smoothness": 1.0}, {"plateau_px": 0.0}, {"esf": "loess"}]
 )
 def test_meaningless_options_are_refused(wrong):
-    with pytest.raises(OptionError, match="found"):
+    with pytest.raises(OptionError, match=r"found|give"):
         KompsatOptions(**wrong)

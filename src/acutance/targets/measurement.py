@@ -180,9 +180,8 @@ class Measurement(HasResponse, HasChecks):
         return light
 
     def __getstate__(self) -> dict[str, Any]:
-        # A light measurement keeps the record of the whole one.
-        record = {} if self.details is not None else {"record": self.record}
-        return {**super().__getstate__(), **record}
+        # The record of a copy, or of its light half, is that of the original to the last digit.
+        return {**super().__getstate__(), "record": self.record}
 
     @cached_property
     def record(self) -> Record:
@@ -259,6 +258,6 @@ def _direction_document(response: Response) -> dict[str, Any]:
 def _curve_document(curve: Mapping[str, list[float]], steps: int) -> dict[str, list[float]]:
     """A curve at every few of its places, with the digits its deviation deserves."""
     return {
-        key: rounded(values[::steps], 3) if key == "std" else np.round(values[::steps], 6).tolist()
+        key: rounded(values[::steps], 3) if key == "std" else np.round(values[::steps], 5).tolist()
         for key, values in curve.items()
     }

@@ -26,12 +26,10 @@ SLICE_DIRECTIONS_DEG = (0.0, 45.0, 90.0, 135.0)
 _FREQ_CPP: Floats = np.asarray(np.arange(1, 17) * 0.05)
 _MIN_STD = 1.5e-4
 """Columns of a covariance factor below this are left out: no method is that exact."""
-_MIN_STD_SHARE = 0.02
-"""Of a document: share of the largest standard deviation to which smaller ones are raised."""
-_REST = 0.02
-"""Of a document: share of the variance whose covariance between places is left out."""
-_STEP = 0.05
-"""Of a document: largest last digit, in units of the standard deviation."""
+_ROUNDING = 0.05
+"""Of a document: what rounding adds to the factor of a place, relative to the median deviation. It
+adds to the variance. Fewer columns instead, with the rest as independent errors, take from it:
+combinations then state half their deviations."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,14 +82,15 @@ class OtfSlices(ShortRepr):
 
     def to_dict(self) -> dict[str, Any]:
         """Directions, frequencies, OTF and factor as lists."""
-        factor, rest = _few_columns(self.factor)
+        factor = _triangular(self.factor)
+        decimals = _decimals(factor)
         return {
             "normal_deg": self.normal_deg.tolist(),
             "freq_cpp": np.round(self.freq_cpp, 6).tolist(),
             "otf_real": np.round(self.otf.real, 6).tolist(),
             "otf_imag": np.round(self.otf.imag, 6).tolist(),
-            **_listed("factor", factor),
-            **_listed("rest_std", rest),
+            "factor_real": np.round(factor.real, decimals).tolist(),
+            "factor_imag": np.round(factor.imag, decimals).tolist(),
         }
 
     @classmethod
@@ -122,9 +121,6 @@ class OtfSlices(ShortRepr):
                 f"{normal.size} directions and {freq.size} frequencies with {otf.size} values and "
                 f"a factor of {factor.shape[0]} rows"
             )
-        if "rest_std_real" in document:
-            rest = _complex(document, "rest_std")
-            factor = np.hstack([factor, np.diag(rest.real), 1j * np.diag(rest.imag)])
         if not all(np.isfinite(part).all() for part in (normal, freq, otf, factor)):
             raise ValueError("numbers that are not finite")
         return cls(normal, freq, otf, factor)
@@ -140,36 +136,20 @@ def _places(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
     return np.outer(x, freq_cpp).ravel(), np.outer(y, freq_cpp).ravel()
 
 
-def _few_columns(factor: Complexes) -> tuple[Complexes, Complexes]:
-    """A factor of nearly the same covariance with few columns, and the rest of the variance.
-
-    Returns
-    -------
-    factor : (n, k) complex array
-        All but two per cent of the variance, in units of the deviations.
-    rest_std : (n,) complex array
-        Standard deviations, of the real and of the imaginary parts, of those two per cent.
-    """
-    stacked = np.concatenate([factor.real, factor.imag])
-    variance = np.einsum("ij,ij->i", stacked, stacked)
-    if not variance.any():
-        return factor[:, :0], np.zeros(factor.shape[0], complex)
-    std = np.maximum(np.sqrt(variance), _MIN_STD_SHARE * math.sqrt(variance.max()))
-    left, size, _ = np.linalg.svd(stacked / std[:, None], full_matrices=False)
-    kept = int(np.searchsorted(np.cumsum(size**2), (1 - _REST) * np.sum(size**2))) + 1
-    step = 10.0 ** np.floor(np.log10(_STEP * std))
-    few = np.round(left[:, :kept] * size[:kept] * (std / step)[:, None]) * step[:, None]
-    rest = np.sqrt(np.maximum(variance - np.einsum("ij,ij->i", few, few), 0.0))
+def _triangular(factor: Complexes) -> Complexes:
+    """Another factor of the same covariance, with zeros above its diagonal: a shorter text."""
     n = factor.shape[0]
-    return few[:n] + 1j * few[n:], rest[:n] + 1j * rest[n:]
+    stacked = np.concatenate([factor.real, factor.imag])
+    lower = np.asarray(np.linalg.qr(stacked.T, mode="r")).T
+    return np.asarray(lower[:n] + 1j * lower[n:])
 
 
-def _listed(name: str, values: Complexes) -> dict[str, list[Any]]:
-    """Real and imaginary parts of numbers, rounded to 8 decimals."""
-    return {
-        f"{name}_real": np.round(values.real, 8).tolist(),
-        f"{name}_imag": np.round(values.imag, 8).tolist(),
-    }
+def _decimals(factor: Complexes) -> int:
+    """Decimals with which the columns of a factor together err by little, 4 at least."""
+    std = np.sqrt(np.einsum("ij,ij->i", factor.real, factor.real))
+    allowed = _ROUNDING * float(np.median(std)) if std.size else 0.0
+    step = allowed * math.sqrt(12 / max(factor.shape[1], 1))
+    return int(np.clip(-math.floor(math.log10(step)), 4, 6)) if step > 0 else 6
 
 
 def _narrowed(factor: Complexes) -> Complexes:
