@@ -13,6 +13,8 @@ import rasterio
 from numpy.typing import NDArray
 from rasterio.errors import NotGeoreferencedWarning
 
+from acutance.raster import Image, open_image
+
 WriteRaster = Callable[..., str]
 
 
@@ -69,3 +71,15 @@ def write_raster(tmp_path: Path) -> WriteRaster:
         return path
 
     return write
+
+
+@pytest.fixture
+def plain() -> Image:
+    """40 rows x 50 columns without a place on the ground."""
+    return Image.from_array(np.zeros((40, 50)))
+
+
+@pytest.fixture
+def located(pixels: NDArray[np.uint16], write_raster: WriteRaster, utm: dict[str, Any]) -> Image:
+    """The same size, in a file of 0.5 m pixels on the map."""
+    return open_image(write_raster("located.tif", pixels, **utm))

@@ -6,19 +6,9 @@ import numpy as np
 import pytest
 
 from acutance.errors import RegionError
-from acutance.raster import Image, open_image, read_positions
+from acutance.raster import read_positions
 
 PLACES = np.array([[5.25, 10.5], [14.0, 29.75]])
-
-
-@pytest.fixture
-def plain():
-    return Image.from_array(np.zeros((40, 50)))
-
-
-@pytest.fixture
-def located(pixels, write_raster, utm):
-    return open_image(write_raster("located.tif", pixels, **utm))
 
 
 @pytest.fixture

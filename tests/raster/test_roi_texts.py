@@ -7,21 +7,11 @@ import pytest
 import rasterio
 
 from acutance.errors import RegionError
-from acutance.raster import Box, Image, open_image, parse_roi, parse_rois
+from acutance.raster import Box, open_image, parse_roi, parse_rois
 
 SQUARE = [[9.5, 4.5], [29.5, 4.5], [29.5, 14.5], [9.5, 14.5], [9.5, 4.5]]
 SQUARE_BOX = Box(5, 10, 10, 20)
 PIXEL_CRS = {"type": "name", "properties": {"name": "pixel"}}
-
-
-@pytest.fixture
-def plain():
-    return Image.from_array(np.zeros((40, 50)))
-
-
-@pytest.fixture
-def located(pixels, write_raster, utm):
-    return open_image(write_raster("located.tif", pixels, **utm))
 
 
 @pytest.fixture
