@@ -62,8 +62,6 @@ class GaussianFit:
         Between the low image and the blurred high one, local means left out.
     steps : sequence of GaussianStep
         The iterations.
-    converged : bool
-        Whether the last change was below the threshold.
     """
 
     down: AxisGaussian
@@ -74,7 +72,6 @@ class GaussianFit:
     signal: float
     correlation: float
     steps: Sequence[GaussianStep]
-    converged: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +136,7 @@ def fit_gaussian(
         across = _updated(across, *(update[[2, 4]] / gain).tolist())
     return GaussianFit(
         down, across, gain, offset, noise, abs(gain) * sums.signal, sums.correlation,
-        tuple(steps), change < stop_change,
+        tuple(steps),
     )  # fmt: skip
 
 

@@ -95,14 +95,6 @@ class PairTiles:
         """Rows and columns of the map of local statistics."""
         return self._counts
 
-    def region_box(self, number: int) -> Box:
-        """The low pixels of one region of the map."""
-        box = self.box
-        i, j = divmod(number, self._counts[1])
-        rows = [_share(k, box.height, self._counts[0]) for k in (i, i + 1)]
-        cols = [_share(k, box.width, self._counts[1]) for k in (j, j + 1)]
-        return Box(box.row + rows[0], box.col + cols[0], rows[1] - rows[0], cols[1] - cols[0])
-
     @cached_property
     def boxes(self) -> tuple[Box, ...]:
         """The low pixels of every tile that is read."""

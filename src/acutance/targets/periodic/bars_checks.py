@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from acutance.numerics.clipping import clipped_share
-from acutance.numerics.noise import outlier_share
-from acutance.targets.check import MAX_RATIO, Check, Limits, answer
+from acutance.targets.check import Check, Limits, answer
 from acutance.targets.periodic.fit_bars import BarsSolution
-from acutance.targets.periodic.tuned import QUIET_SNR
+from acutance.targets.periodic.pattern_checks import (
+    contrast_snr,
+    correlated_noise,
+    level,
+    outliers,
+    saturation,
+)
 
 __all__ = ["BARS_CHECKS", "bars_checks"]
 
@@ -37,25 +41,23 @@ def bars_checks(
     limits : mapping of str to float
         Limits the caller changed.
     """
-    snr = min(solved.snr, MAX_RATIO)
-    contrast = abs(solved.otf.level)
+    pixels = np.concatenate([one.value for one in solved.groups])
+    residual = np.concatenate(solved.residuals)
     return (
-        answer("contrast_snr", snr, f"the bars' contrast is {snr:.0f} times the noise", limits),
-        _level(solved, limits),
+        contrast_snr(solved.snr, "the bars'", limits),
+        level(solved.otf, "the bars' contrast", limits),
         _bars(solved, limits),
         _directions(directions_deg, limits),
         *_frequencies(solved, limits),
         _misfit(solved, limits),
-        _saturation(solved, saturation_level, limits),
-        _correlated_noise(solved, limits),
-        _outliers(solved, contrast, limits),
-    )
-
-
-def _level(solved: BarsSolution, limits: Limits) -> Check:
-    relative = solved.otf.level_std / abs(solved.otf.level)
-    found = f"the bars' contrast before the sensor is known to {relative:.1%}"
-    return answer("level", relative, found, limits)
+        saturation(pixels, saturation_level, solved.snr, "the pixels", limits),
+        correlated_noise(
+            solved.correlation, solved.snr, limits,
+            advice="the image was resampled, or the bars are not as they were taken to be (place, "
+            "direction, number, period, levels)",
+        ),
+        outliers(residual, solved.noise, solved.otf, "the bars", limits),
+    )  # fmt: skip
 
 
 def _bars(solved: BarsSolution, limits: Limits) -> Check:
@@ -82,27 +84,3 @@ def _misfit(solved: BarsSolution, limits: Limits) -> Check:
     worst = int(np.argmax(misfits))
     found = f"the residuals of group {worst + 1} are {misfits[worst]:.1f} times the noise of all"
     return answer("misfit", misfits[worst], found, limits)
-
-
-def _saturation(solved: BarsSolution, saturation_level: float | None, limits: Limits) -> Check:
-    values = np.concatenate([one.value for one in solved.groups])
-    clipped = clipped_share(values, saturation_level, noisy=solved.snr <= QUIET_SNR)
-    found = f"{clipped:.1%} of the pixels are clipped at an end of the scale"
-    return answer("saturation", clipped, found, limits)
-
-
-def _correlated_noise(solved: BarsSolution, limits: Limits) -> Check:
-    # Of an image without noise, the residuals are the arithmetic's.
-    strongest = 0.0 if solved.snr > QUIET_SNR else solved.correlation.significant
-    return answer(
-        "correlated_noise", strongest,
-        f"residuals of neighbouring pixels correlate by {strongest:.2f}", limits,
-        advice="the image was resampled, or the bars are not as they were taken to be (place, "
-        "direction, number, period, levels)",
-    )  # fmt: skip
-
-
-def _outliers(solved: BarsSolution, contrast: float, limits: Limits) -> Check:
-    noise = max(solved.noise, contrast / QUIET_SNR)
-    share = outlier_share(np.concatenate(solved.residuals), noise)
-    return answer("outliers", share, f"{share:.1%} of the pixels do not fit the bars", limits)

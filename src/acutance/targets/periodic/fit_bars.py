@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from acutance.targets.periodic.otf_model import FittedOtf, level_row
 from acutance.targets.periodic.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
+    Regression,
     mean_variance,
     otf_prior,
     reweighted,
@@ -94,23 +95,6 @@ class BarsSolution:
         return abs(self.otf.level) / self.noise if self.noise > 0 else math.inf
 
 
-class _Regression(NamedTuple):
-    """One regression of all groups where they are taken to be."""
-
-    posterior: Posterior
-    otf: FittedOtf
-    residual: Floats
-
-    @property
-    def noise(self) -> float:
-        return math.sqrt(self.posterior.variance)
-
-    def own(self, number: int) -> tuple[Floats, Floats]:
-        """A group's own coefficients and their standard deviations, (5,) each."""
-        own = slice(_OWN * number, _OWN * (number + 1))
-        return self.posterior.beta[own], np.linalg.norm(self.posterior.factor[own], axis=1)
-
-
 def solve_bars(
     image: Floats,
     groups: tuple[Bars, ...],
@@ -159,7 +143,7 @@ def _place_groups(
         fitted = _regression(pixels, stated, mean, None, contrast, weight, nothing)
         wider = _width_of_bars(mean, fitted.otf, pixels)
         settled = wider == mean and _longest_update(fitted, pixels) < _PLACED_PX
-        groups = tuple(one.moved(fitted.own(k)[0][2:]) for k, one in enumerate(pixels))
+        groups = tuple(one.moved(_own(fitted, k)[0][2:]) for k, one in enumerate(pixels))
         mean, contrast = wider, _same_sign(fitted.otf.level, contrast)
         if settled:
             break
@@ -203,12 +187,12 @@ def _fit_otf(
             and float(np.max(np.abs(again - weight))) < _SETTLED_WEIGHT
         ):
             break
-        groups = tuple(one.moved(fitted.own(k)[0][2:]) for k, one in enumerate(pixels))
+        groups = tuple(one.moved(_own(fitted, k)[0][2:]) for k, one in enumerate(pixels))
         _store(weights, pixels, np.split(again, ends))
         _store(all_scattered, pixels, found)
         earlier = fitted.posterior
         contrast = _same_sign(fitted.otf.level, contrast)
-    own = [fitted.own(number) for number in range(len(pixels))]
+    own = [_own(fitted, number) for number in range(len(pixels))]
     return BarsSolution(
         otf=fitted.otf,
         groups=pixels,
@@ -218,6 +202,12 @@ def _fit_otf(
         noise=fitted.noise,
         correlation=noise_found,
     )
+
+
+def _own(fitted: Regression, number: int) -> tuple[Floats, Floats]:
+    """A group's own coefficients and their standard deviations, (5,) each."""
+    own = slice(_OWN * number, _OWN * (number + 1))
+    return fitted.posterior.beta[own], np.linalg.norm(fitted.posterior.factor[own], axis=1)
 
 
 def _pixels_of(image: Floats, groups: tuple[Bars, ...]) -> tuple[GroupPixels, ...]:
@@ -251,7 +241,7 @@ def _regression(
     levels: Levels | None = None,
     inflation: float = 1.0,
     earlier: Posterior | None = None,
-) -> _Regression:
+) -> Regression:
     """All groups where they are taken to be, in one linear model; without `states` the mean's."""
     around = contrast * np.concatenate(scattered)
     design = _design(pixels, mean, states, contrast, around)
@@ -268,7 +258,7 @@ def _regression(
     prior = _prior(pixels, stated, mean, states, contrast, level_stated=levels is not None)
     posterior = regress(normal, prior, variance, inflation, earlier)
     otf = FittedOtf(mean, posterior.beta[first:], posterior.factor[first:])
-    return _Regression(posterior, otf, value - design @ posterior.beta)
+    return Regression(posterior, otf, value - design @ posterior.beta)
 
 
 def _design(
@@ -328,10 +318,10 @@ def _prior(
     )  # fmt: skip
 
 
-def _longest_update(fitted: _Regression, pixels: tuple[GroupPixels, ...]) -> float:
+def _longest_update(fitted: Regression, pixels: tuple[GroupPixels, ...]) -> float:
     """How far the regression moves the pixels of a group at most, px."""
     return max(
-        float(np.max(np.abs(fitted.own(k)[0][2:] * [1.0, one.bars.count, one.bars.length_px])))
+        float(np.max(np.abs(_own(fitted, k)[0][2:] * [1.0, one.bars.count, one.bars.length_px])))
         for k, one in enumerate(pixels)
     )
 

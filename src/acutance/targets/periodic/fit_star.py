@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from acutance.targets.periodic.otf_model import FittedOtf, level_row
 from acutance.targets.periodic.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
+    Regression,
     mean_variance,
     otf_prior,
     reweighted,
@@ -97,18 +98,6 @@ class StarSolution:
     def reach_cpp(self) -> tuple[float, float]:
         """Lowest and highest frequency of the spokes used."""
         return self.star.freq_cpp(self.outer_px), self.star.freq_cpp(self.inner_px)
-
-
-class _Regression(NamedTuple):
-    """One regression about a centre."""
-
-    posterior: Posterior
-    otf: FittedOtf
-    residual: Floats
-
-    @property
-    def noise(self) -> float:
-        return math.sqrt(self.posterior.variance)
 
 
 def solve_star(
@@ -270,7 +259,7 @@ def _regression(
     inflation: float,
     earlier: Posterior | None,
     noise: float | None,
-) -> _Regression:
+) -> Regression:
     """One regression; `noise` is that of the one before."""
     normal = weighted_normal(design, value, weight)
     variance = mean_variance(normal, _FIRST + 6)
@@ -285,7 +274,7 @@ def _regression(
     prior = _prior(table.mean, level, level_stated=levels is not None)
     posterior = regress(normal, prior, variance, inflation, earlier)
     otf = FittedOtf(table.mean, posterior.beta[_FIRST:], posterior.factor[_FIRST:])
-    return _Regression(posterior, otf, value - design @ posterior.beta)
+    return Regression(posterior, otf, value - design @ posterior.beta)
 
 
 def _prior(mean: MeanOtf, level: float, *, level_stated: bool) -> Prior:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.marginal_likelihood import Prior
+from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
+from acutance.targets.periodic.otf_model import FittedOtf
 from acutance.targets.periodic.otf_modes import MEAN_MODES, ProcessModes
 from acutance.targets.periodic.tuned import (
     FREE_LEVEL_LOG_AMPLITUDE,
@@ -15,12 +19,32 @@ from acutance.targets.periodic.tuned import (
     LOG_AMPLITUDE_STD,
 )
 
-__all__ = ["FREE_STD", "mean_variance", "otf_prior", "reweighted", "weighted_normal"]
+__all__ = [
+    "FREE_STD",
+    "Regression",
+    "mean_variance",
+    "otf_prior",
+    "reweighted",
+    "weighted_normal",
+]
 
 FREE_STD = 3.0
 """Standard deviation of a mode of the mean that is free, relative to the target's height."""
 
 _MIN_VARIANCE = 1e-12
+
+
+class Regression(NamedTuple):
+    """One regression of the pixels, with the target where it is taken to be."""
+
+    posterior: Posterior
+    otf: FittedOtf
+    residual: Floats
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of the noise, image units."""
+        return math.sqrt(self.posterior.variance)
 
 
 def weighted_normal(design: Floats, value: Floats, weight: Floats) -> Normal:

@@ -6,11 +6,15 @@ import math
 
 import numpy as np
 
-from acutance.numerics.clipping import clipped_share
-from acutance.numerics.noise import outlier_share
-from acutance.targets.check import MAX_RATIO, Check, Limits, answer
+from acutance.targets.check import Check, Limits, answer
 from acutance.targets.periodic.fit_star import StarSolution
-from acutance.targets.periodic.tuned import QUIET_SNR
+from acutance.targets.periodic.pattern_checks import (
+    contrast_snr,
+    correlated_noise,
+    level,
+    outliers,
+    saturation,
+)
 
 __all__ = ["STAR_CHECKS", "star_checks", "third_harmonic"]
 
@@ -36,26 +40,19 @@ def star_checks(
     limits : mapping of str to float
         Limits the caller changed.
     """
-    bounded = min(snr, MAX_RATIO)
     return (
-        answer(
-            "contrast_snr", bounded, f"the spokes' contrast is {bounded:.0f} times the noise",
-            limits,
-        ),
-        _level(solved, limits),
+        contrast_snr(snr, "the spokes'", limits),
+        level(solved.otf, "the contrast of the spokes", limits),
         *_frequencies(solved, limits),
         _sweep(solved, limits),
         _wave(solved, limits),
-        _saturation(solved, snr, saturation_level, limits),
-        _correlated_noise(solved, snr, limits),
-        _outliers(solved, limits),
+        saturation(solved.value, saturation_level, snr, "the star's pixels", limits),
+        correlated_noise(
+            solved.correlation, snr, limits,
+            advice="the image was resampled, or the spokes are not those of a perfect star",
+        ),
+        outliers(solved.residual, solved.noise, solved.otf, "the star", limits),
     )  # fmt: skip
-
-
-def _level(solved: StarSolution, limits: Limits) -> Check:
-    relative = solved.otf.level_std / solved.otf.level
-    found = f"the contrast of the spokes before the sensor is known to {relative:.1%}"
-    return answer("level", relative, found, limits)
 
 
 def _frequencies(solved: StarSolution, limits: Limits) -> tuple[Check, Check]:
@@ -75,30 +72,6 @@ def _wave(solved: StarSolution, limits: Limits) -> Check:
     share = third_harmonic(solved)
     found = f"{share:.1%} of the contrast is a third harmonic that the stated wave does not have"
     return answer("wave", share, found, limits)
-
-
-def _saturation(
-    solved: StarSolution, snr: float, saturation_level: float | None, limits: Limits
-) -> Check:
-    clipped = clipped_share(solved.value, saturation_level, noisy=snr <= QUIET_SNR)
-    found = f"{clipped:.1%} of the star's pixels are clipped at an end of the scale"
-    return answer("saturation", clipped, found, limits)
-
-
-def _correlated_noise(solved: StarSolution, snr: float, limits: Limits) -> Check:
-    # Of an image without noise, the residuals are the arithmetic's.
-    strongest = 0.0 if snr > QUIET_SNR else solved.correlation.significant
-    return answer(
-        "correlated_noise", strongest,
-        f"residuals of neighbouring pixels correlate by {strongest:.2f}", limits,
-        advice="the image was resampled, or the spokes are not those of a perfect star",
-    )  # fmt: skip
-
-
-def _outliers(solved: StarSolution, limits: Limits) -> Check:
-    noise = max(solved.noise, abs(solved.otf.level) / QUIET_SNR)
-    share = outlier_share(solved.residual, noise)
-    return answer("outliers", share, f"{share:.1%} of the pixels do not fit the star", limits)
 
 
 def third_harmonic(solved: StarSolution) -> float:
