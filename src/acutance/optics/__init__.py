@@ -9,6 +9,7 @@ from acutance.optics.detector import ChargeDiffusion, Detector
 from acutance.optics.electronics import Butterworth, Exponential
 from acutance.optics.metres import GroundCurves, on_the_ground, psf_on_the_ground
 from acutance.optics.motion import Jitter, Smear, Tdi
+from acutance.optics.population import FAMILIES, draw_sensor
 from acutance.optics.preset import preset, presets
 from acutance.optics.processing import Resampling, Rescaled, Sharpening, Shift
 from acutance.optics.profile import Profile
@@ -24,6 +25,7 @@ from acutance.optics.sensor_file import (
 
 __all__ = [
     "BLOCKS",
+    "FAMILIES",
     "Aerosol",
     "Block",
     "BlockKind",
@@ -53,6 +55,7 @@ __all__ = [
     "WavefrontError",
     "budget",
     "describe_block",
+    "draw_sensor",
     "numerical_psf",
     "on_the_ground",
     "preset",

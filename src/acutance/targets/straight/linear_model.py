@@ -190,12 +190,12 @@ class Linear:
 
     def model(self, posterior: Posterior) -> LsfModel:
         """The LSF of the unknowns: the tail is added to the spline in closed form."""
-        inner, tail = self.directions.esf[:, :-1], self.directions.block.size
-        beta, factor = posterior.beta, posterior.factor
-        latent = np.vstack([inner @ factor[1:tail], factor[tail]])
-        spline = inner @ beta[1:tail]
+        esf, tail, block = self.directions
+        own = slice(1, 1 + block.size)
+        beta, factor = posterior.beta[own], posterior.factor[own]
+        latent = np.vstack([esf @ factor, tail @ factor])
         return LsfModel(
-            self.first_fit.blur, self.first_fit.height, spline, float(beta[tail]), latent
+            self.first_fit.blur, self.first_fit.height, esf @ beta, float(tail @ beta), latent
         )
 
 
@@ -213,13 +213,13 @@ def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
 def _design(directions: lsf_prior.Directions, further: int) -> Floats:
     """Coefficients of spline and further regressors for a unit of level, directions and tail.
 
-    The tail is the last direction, within the support and beyond: the first regressor. The dark
-    level lifts all ESF coefficients equally, because the B-splines sum to one, unless it has a
+    A tail is part of the spline within the support, and the first regressor beyond. The dark level
+    lifts all ESF coefficients equally, because the B-splines sum to one, unless it has a
     regressor of its own: the second.
     """
     design = np.zeros((CELLS + 3 + further, 1 + directions.block.size))
-    design[: CELLS + 3, 1:] = directions.esf
-    design[CELLS + 3, -1] = 1.0
+    design[: CELLS + 3, 1:] = directions.esf + np.outer(lsf_prior.tail_spline(), directions.tail)
+    design[CELLS + 3, 1:] = directions.tail
     if further > 1:
         design[CELLS + 4, 0] = 1.0
     else:
@@ -234,7 +234,7 @@ def _prior(
     after_tail = 1 + directions.block.size
     m = after_tail + trends + derivatives
     block = np.full(m, -1)
-    block[1:after_tail] = np.where(directions.block >= 2, directions.block - 2, -1)
+    block[1:after_tail] = np.maximum(directions.block - lsf_prior.FIRST_BLOCK, -1)
     log_amplitude = LOG_AMPLITUDE
     block[after_tail : after_tail + trends] = log_amplitude.size
     log_amplitude = np.append(log_amplitude, TREND_LOG_AMPLITUDE)

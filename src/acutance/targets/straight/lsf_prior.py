@@ -1,21 +1,22 @@
-"""The prior of a line spread function (LSF).
+"""The prior of the line spread function (LSF): how it may differ from a Gaussian through a pixel.
 
-The LSF is a mean, the Gaussian through a pixel (`gaussian_pixel`) with free level, width, aperture
-and place, plus three Gaussian processes and a tail, each with an amplitude that the data determine
-(`marginal_likelihood`):
+The mean is the Gaussian through a pixel that fits the target best; its level, width, place and
+aperture are directions of their own. The other directions come in blocks, each with an amplitude
+that the data determine:
 
-- SHAPE: smooth corrections near the peak (sharpening, asymmetry, shoulders);
-- DETAIL: fine structure of the peak (a hard aperture, little optical blur);
-- HALO: broad corrections out to many widths (stray light, halo, charge trails);
-- TAIL: a term falling like 1/u^2 without end, as diffraction does.
+- the families of sensors (`learn_lsf`): the principal directions in which telescopes, halos,
+  trails, smear, sharpened and resampled products depart from the mean;
+- "detail": a smooth process near the peak, for what no family has;
+- a tail like 1/u^2, as behind a diffracting aperture.
 
-A Gaussian process has covariance ``exp(-(u^2 + u'^2) / 2 L^2) exp(-(u - u')^2 / 2 l^2)``: its
-functions extend over L widths and vary over l widths. Nothing here depends on a sensor.
+Directions are coefficients of the spline (`spline`) and a share of the tail, which reaches beyond
+the spline and has a closed form.
 """
 
 from __future__ import annotations
 
 from functools import cache
+from importlib.resources import files
 from typing import NamedTuple
 
 import numpy as np
@@ -32,12 +33,17 @@ from acutance.targets.straight.spline import (
     esf_from_lsf,
     quasi_interpolant,
 )
-from acutance.targets.straight.tuned import DETAIL, HALO, SHAPE, TAIL_WIDTH
+from acutance.targets.straight.tuned import DETAIL, FAMILY_LOG_AMPLITUDES, TAIL_WIDTH
 
 __all__ = [
+    "FIRST_BLOCK",
     "Directions",
     "directions",
+    "tail_spline",
 ]
+
+FIRST_BLOCK = 2
+"""Number of the first block whose amplitude the data determine."""
 
 
 class Directions(NamedTuple):
@@ -46,42 +52,60 @@ class Directions(NamedTuple):
     Attributes
     ----------
     esf : (CELLS + 3, r) array
-        Coefficients of the edge spread function (ESF) for every direction, for an LSF per width.
+        Coefficients of the edge spread function (ESF) for every direction, for an LSF per width,
+        without its tail.
+    tail : (r,) array
+        Share of every direction in the tail.
     block : (r,) int array
-        0 level, width and place (free), 1 aperture, 2 shape, 3 detail, 4 halo, 5 tail.
+        0 level, width and place (free), 1 aperture, then the families, detail and the tail alone.
     """
 
     esf: Floats
+    tail: Floats
     block: NDArray[np.intp]
 
 
-def _process(extent: float, smoothness: float) -> Floats:
-    """Square root of a Gaussian process's covariance, (SIZE, r), to 1e-4 of its variance."""
-    variance, shape = covariance_modes(CENTRES, extent, smoothness, 1e-4)
-    return np.asarray(shape * np.sqrt(variance))
+def _families() -> list[Floats]:
+    """The directions of every family, (SIZE + 1, r) each: spline and tail."""
+    path = files("acutance.targets.straight").joinpath("lsf_families.npz")
+    with path.open("rb") as file, np.load(file, allow_pickle=False) as learned:
+        return [learned[name].astype(float) for name in FAMILY_LOG_AMPLITUDES]
+
+
+def _detail() -> Floats:
+    """Square root of the covariance of the process of fine structure, (SIZE + 1, r)."""
+    variance, shape = covariance_modes(CENTRES, *DETAIL, 1e-4)
+    return np.vstack([shape * np.sqrt(variance), np.zeros(variance.size)])
 
 
 @cache
-def _fixed() -> tuple[Floats, NDArray[np.intp]]:
-    """All directions, with room for the four of the mean in front, and their blocks."""
-    processes = [_process(*scales) for scales in (SHAPE, DETAIL, HALO)]
-    tail = quasi_interpolant(tail_lsf(CENTRES, TAIL_WIDTH))
-    lsf = np.hstack([np.zeros((SIZE, 4)), *processes, tail[:, None]])
-    block = np.repeat([0, 1, 2, 3, 4, 5], [3, 1, *(p.shape[1] for p in processes), 1])
-    esf = esf_from_lsf(lsf)
-    esf[:, -1] += float(tail_esf(np.array(-HALF_SUPPORT), TAIL_WIDTH))
-    return esf, block
+def _fixed() -> Directions:
+    """All directions, with room for the four of the mean in front."""
+    alone = np.zeros((SIZE + 1, 1))
+    alone[-1] = 1.0
+    blocks = [*_families(), _detail(), alone]
+    every = np.hstack([np.zeros((SIZE + 1, 4)), *blocks])
+    sizes = [3, 1, *(block.shape[1] for block in blocks)]
+    return Directions(esf_from_lsf(every[:-1]), every[-1], np.repeat(np.arange(len(sizes)), sizes))
+
+
+@cache
+def tail_spline() -> Floats:
+    """ESF coefficients of the tail within the spline's support, (CELLS + 3,)."""
+    esf = esf_from_lsf(quasi_interpolant(tail_lsf(CENTRES, TAIL_WIDTH)))
+    return np.asarray(esf + float(tail_esf(np.array(-HALF_SUPPORT), TAIL_WIDTH)))
 
 
 def directions(blur: GaussianPixel) -> Directions:
     """The directions of the prior around the mean, `blur`.
 
-    The level, width, place and aperture of the mean come first, then the processes and the tail.
+    The level, width, place and aperture of the mean come first, then the families, detail and the
+    tail alone.
     """
-    esf, block = _fixed()
+    fixed = _fixed()
     width = blur.width_px
     lsf, by_place, by_sigma, by_aperture = blur.lsf_slopes(CENTRES * width)
     shapes = np.stack([lsf, by_sigma, -by_place, by_aperture], axis=1)
-    everything = esf.copy()
+    everything = fixed.esf.copy()
     everything[:, :4] = esf_from_lsf(quasi_interpolant(width * shapes))
-    return Directions(everything, block)
+    return Directions(everything, fixed.tail, fixed.block)

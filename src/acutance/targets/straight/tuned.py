@@ -17,8 +17,9 @@ __all__ = [
     "APERTURE_TAIL_PX",
     "CHANGE_SIGMAS",
     "DETAIL",
+    "DETAIL_LOG_AMPLITUDE",
+    "FAMILY_LOG_AMPLITUDES",
     "GRADIENT_SIGMAS",
-    "HALO",
     "HALO_SHARE",
     "LOG_AMPLITUDE",
     "LOG_AMPLITUDE_STD",
@@ -39,29 +40,36 @@ __all__ = [
     "QUIET_SIDE",
     "QUIET_TRANSITION",
     "REPEATED_SIGMAS",
-    "SHAPE",
     "STRUCTURE_OUTLIER_SIGMAS",
     "STRUCTURE_SIGMAS",
+    "TAIL_LOG_AMPLITUDE",
     "TAIL_WIDTH",
     "TREND_LOG_AMPLITUDE",
 ]
 
-# The prior of the line spread function, LSF (lsf_prior.py): extent L and smoothness l of its
-# processes, in widths.
-SHAPE: Final = (1.2, 0.6)
-"""Smooth corrections near the peak: sharpening, asymmetry, shoulders (benchmarks/accuracy.py)."""
+# The prior of the line spread function, LSF (lsf_prior.py).
+FAMILY_LOG_AMPLITUDES: Final = {
+    "telescope": -0.5,
+    "halo": -1.5,
+    "trail": -3.0,
+    "smear": -3.0,
+    "sharpened": -3.0,
+    "resampled": -3.0,
+}
+"""Expected amplitude of every family relative to that of its own population: light of every sensor
+goes through an aperture, few have the other causes."""
 DETAIL: Final = (0.7, 0.17)
-"""Fine structure of the peak. At (1.5, .25) obscured telescopes go from 36 to 85 % coverage of
-MTF(.25), but RMS at SNR 50 from .0105 to .0111 (benchmarks/coverage.py)."""
-HALO: Final = (3.0, 1.2)
-"""Broad corrections. At (3, .6) obscured telescopes 36 to 62 %, for 15 more unknowns."""
+"""Fine structure of the peak: extent L and smoothness l of its process, in widths."""
+DETAIL_LOG_AMPLITUDE: Final = -3.0
+TAIL_LOG_AMPLITUDE: Final = -5.0
 TAIL_WIDTH: Final = 1.0
 """Half width of the 1/u^2 tail: diffraction's noise-free error .002 (benchmarks/accuracy.py)."""
-LOG_AMPLITUDE: Final[Floats] = np.array([-4.4, -2.5, -4.1, -4.0])
-LOG_AMPLITUDE_STD: Final = 1.2
-"""Amplitudes of SHAPE, DETAIL, HALO and tail relative to the height: 1 to 2 % (detail 8 %), within
-a factor 3.3 either way. Set once over systems of many shapes: 2400 images, intervals hold 94.6 to
-97 % (benchmarks/coverage.py)."""
+LOG_AMPLITUDE: Final[Floats] = np.array(
+    [*FAMILY_LOG_AMPLITUDES.values(), DETAIL_LOG_AMPLITUDE, TAIL_LOG_AMPLITUDE]
+)
+LOG_AMPLITUDE_STD: Final = 2.0
+"""Within a factor of 7 either way: narrower ones make Gaussian sensors pay for what they do not
+have (MTF at Nyquist, 40 px, SNR 100: RMS .0060 at 1.2, .0056 at 2)."""
 APERTURE_PX: Final = (1.0, 0.18)
 """Mean and standard deviation of the detector's aperture: fill factors are near one."""
 TREND_LOG_AMPLITUDE: Final = -2.5

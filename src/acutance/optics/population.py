@@ -1,0 +1,126 @@
+"""Sensors drawn at random, from broad ranges: what a sensor of unknown make may look like.
+
+Priors are learned from these families, and benchmarks measure how estimators do over them. A
+family has one cause of blur that a Gaussian through a pixel does not describe:
+
+- "telescope": an aperture with a central obscuration, in focus, out of it or with wavefront error,
+  and any jitter, smear and diffusion of charge;
+- "halo": light scattered over some pixels, 2 to 15 % of it;
+- "trail": charge left behind, on one side;
+- "smear": motion of .5 to 2.2 px during the exposure;
+- "sharpened": compensation on the ground by kernels of 3 to 15 taps, designed as Wiener filters
+  or set by hand;
+- "resampled": an interpolated product.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from acutance.errors import OptionError
+from acutance.optics.aperture import Defocus, Diffraction, Gaussian, Halo, WavefrontError
+from acutance.optics.block import Block
+from acutance.optics.detector import ChargeDiffusion, Detector
+from acutance.optics.electronics import Exponential
+from acutance.optics.motion import Smear
+from acutance.optics.processing import Resampling, Sharpening
+from acutance.optics.sensor import Sensor
+
+__all__ = ["FAMILIES", "draw_sensor"]
+
+_LOWEST_MTF, _HIGHEST_MTF = 0.01, 1.0
+"""MTF at Nyquist beyond which there is nothing to measure, or no detector behind it."""
+
+
+def draw_sensor(family: str, rng: np.random.Generator) -> Sensor:
+    """Draw a sensor of a family, with an MTF at Nyquist between .01 and 1.
+
+    Smear and trail act across; the others have the same blur in all directions, or nearly.
+
+    Raises
+    ------
+    OptionError
+        If there is no such family.
+    """
+    if family not in FAMILIES:
+        raise OptionError(
+            f"there is no family of sensors {family!r}: choose one of {', '.join(FAMILIES)}"
+        )
+    while True:
+        sensor = Sensor(FAMILIES[family](rng))
+        if _LOWEST_MTF < abs(sensor.otf(0.5, 0.0).item()) < _HIGHEST_MTF:
+            return sensor
+
+
+def _telescope(rng: np.random.Generator) -> list[Block]:
+    cutoff_cpp = rng.uniform(0.8, 2.2)
+    obscuration = rng.uniform(0.0, 0.5) if rng.random() < 0.8 else 0.0
+    blocks: list[Block] = []
+    if rng.random() < 0.4:
+        blocks.append(Defocus(rng.uniform(0.0, 0.45), cutoff_cpp, obscuration))
+    else:
+        blocks.append(Diffraction(cutoff_cpp, obscuration))
+        if rng.random() < 0.5:
+            wavefront = rng.uniform(0.0, 0.14), rng.uniform(0.1, 0.4)
+            blocks.append(WavefrontError(*wavefront, cutoff_cpp))
+    blocks.append(Gaussian(rng.uniform(0.05, 0.5)))
+    if rng.random() < 0.5:
+        blocks.append(Smear(rng.uniform(0.0, 1.2), "across"))
+    if rng.random() < 0.3:
+        blocks.append(ChargeDiffusion(rng.uniform(0.1, 0.6), rng.uniform(0.5, 2.0)))
+    return [*blocks, Detector(rng.uniform(0.8, 1.0))]
+
+
+def _plain(rng: np.random.Generator) -> list[Block]:
+    return [Gaussian(rng.uniform(0.25, 0.8)), Detector(rng.uniform(0.85, 1.0))]
+
+
+def _halo(rng: np.random.Generator) -> list[Block]:
+    return [*_plain(rng), Halo(rng.uniform(0.02, 0.15), rng.uniform(1.5, 5.0))]
+
+
+def _trail(rng: np.random.Generator) -> list[Block]:
+    return [*_plain(rng), Exponential(rng.uniform(0.1, 0.8), "across")]
+
+
+def _smear(rng: np.random.Generator) -> list[Block]:
+    return [*_plain(rng), Smear(rng.uniform(0.5, 2.2), "across")]
+
+
+def _sharpened(rng: np.random.Generator) -> list[Block]:
+    if rng.random() < 0.4:
+        return [*_plain(rng), Sharpening.both_axes(rng.uniform(0.05, 0.8))]
+    return [*_plain(rng), _wiener_kernel(rng)]
+
+
+def _wiener_kernel(rng: np.random.Generator) -> Sharpening:
+    """A Wiener filter of a Gaussian blur through a pixel, cut to 3 to 15 taps by least squares."""
+    half = int(rng.integers(1, 8))
+    sigma_px, noise_power = rng.uniform(0.3, 0.8), 10 ** rng.uniform(-2.5, -0.7)
+    freq_cpp = np.linspace(0.0, 0.5, 101)
+    blur = np.exp(-2 * (np.pi * sigma_px * freq_cpp) ** 2) * np.sinc(freq_cpp)
+    wanted = blur / (blur**2 + noise_power)
+    cosines = 2 * np.cos(2 * np.pi * np.outer(freq_cpp, np.arange(half + 1)))
+    cosines[:, 0] = 1.0
+    taps = np.linalg.lstsq(cosines, wanted / wanted[0], rcond=None)[0]
+    kernel = np.concatenate([taps[:0:-1], taps])
+    return Sharpening(tuple(tuple(row) for row in np.outer(kernel, kernel).tolist()))
+
+
+def _resampled(rng: np.random.Generator) -> list[Block]:
+    if rng.random() < 0.3:
+        return [*_plain(rng), Resampling("bilinear")]
+    return [*_plain(rng), Resampling("cubic", rng.uniform(-0.75, -0.3))]
+
+
+FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
+    "telescope": _telescope,
+    "halo": _halo,
+    "trail": _trail,
+    "smear": _smear,
+    "sharpened": _sharpened,
+    "resampled": _resampled,
+}
+"""How to draw the blocks of a sensor of each family."""

@@ -1,0 +1,105 @@
+"""Learn from optics how line spread functions (LSF) depart from a Gaussian through a pixel.
+
+Sensors of every family (`acutance.optics.FAMILIES`) are drawn at random. Each is fitted as the
+first fit of an edge would be, and what is left of its LSF, in the spline of `lsf_prior` and the
+tail, is its departure. The principal directions of a family's departures, each with the root of
+its mean square, are the family's part of the prior.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.geometry.line import Line
+from acutance.numerics.lorentz_tail import tail_lsf
+from acutance.optics import FAMILIES, Sensor, draw_sensor
+from acutance.targets.straight.first_fit import fit_first
+from acutance.targets.straight.spline import CENTRES, quasi_interpolant
+from acutance.targets.straight.tuned import TAIL_WIDTH
+
+__all__ = ["departure", "learn", "principal_directions", "write"]
+
+_REACH_PX, _STEP_PX = 9.0, 0.1
+_NOISE = 0.01
+"""Noise, relative to the height, at which the first fit weighs its expectations."""
+_NEGLIGIBLE = {"telescope": 1e-3}
+_NEGLIGIBLE_ELSEWHERE = 5e-3
+"""Share of the mean square of a family's first direction below which directions are left out:
+about what an edge of 100 px at SNR 100 can tell."""
+
+
+def departure(sensor: Sensor, normal_deg: float = 0.0) -> Floats:
+    """What a Gaussian through a pixel leaves of a sensor's LSF.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    normal_deg : float, optional
+        Direction of the edge's normal.
+
+    Returns
+    -------
+    (SIZE + 1,) array
+        Coefficients of the LSF's spline, in which place, level and width of the Gaussian have no
+        part, and the share of light in the 1/s^2 tail.
+    """
+    profile = sensor.profile(normal_deg)
+    s = np.arange(-_REACH_PX, _REACH_PX + _STEP_PX, _STEP_PX)
+    along = np.zeros(s.size)
+    fit = fit_first(
+        along, s, profile.esf(s + profile.half_px), Line(row=0.0, col=0.0, normal_deg=0.0),
+        dark=0.0, bright=1.0, noise=_NOISE,
+    )  # fmt: skip
+    width, places = fit.blur.width_px, CENTRES * fit.blur.width_px
+    # The profile's own tail is tail / (pi s^2), ours tail TAIL_WIDTH / (pi u^2) per width.
+    tail = profile.tail / (width * TAIL_WIDTH)
+    seen = width * profile.lsf(places + profile.half_px + fit.line.col)
+    seen -= tail * tail_lsf(CENTRES, TAIL_WIDTH)
+    lsf, by_place, by_sigma, _ = fit.blur.lsf_slopes(places)
+    free = np.linalg.qr(quasi_interpolant(np.stack([lsf, by_place, by_sigma], axis=1)))[0]
+    left = quasi_interpolant(seen - width * fit.height * lsf)
+    return np.append(left - free @ (free.T @ left), tail)
+
+
+def principal_directions(departures: Floats, negligible: float) -> Floats:
+    """Directions in which departures vary about none, and about as often mirrored as not.
+
+    Parameters
+    ----------
+    departures : (n, SIZE + 1) array
+    negligible : float
+        Directions of a smaller share of the first one's mean square are left out.
+
+    Returns
+    -------
+    (SIZE + 1, r) array
+        Columns times their standard normal variables give a random departure.
+    """
+    mirrored = departures.copy()
+    mirrored[:, :-1] = departures[:, -2::-1]
+    both = np.concatenate([departures, mirrored])
+    power, axes = np.linalg.eigh(both.T @ both / len(both))
+    kept = power > negligible * power[-1]
+    return np.asarray(axes[:, kept] * np.sqrt(power[kept]))
+
+
+def learn(
+    sensors_per_family: int, seed: int, families: Iterable[str] = FAMILIES
+) -> dict[str, Floats]:
+    """The directions of every family, (SIZE + 1, r) each."""
+    found = {}
+    for number, family in enumerate(families):
+        rng = np.random.default_rng((seed, number))
+        drawn = [departure(draw_sensor(family, rng)) for _ in range(sensors_per_family)]
+        negligible = _NEGLIGIBLE.get(family, _NEGLIGIBLE_ELSEWHERE)
+        found[family] = principal_directions(np.array(drawn), negligible)
+    return found
+
+
+def write(path: Path, directions: dict[str, Floats]) -> None:
+    """Keep the directions of all families in a file that `lsf_prior` reads."""
+    np.savez(path, allow_pickle=False, **{name: d.astype("<f4") for name, d in directions.items()})
