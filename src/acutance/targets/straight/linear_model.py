@@ -20,6 +20,7 @@ from acutance.numerics.noise import side_variances
 from acutance.targets.straight import lsf_prior
 from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.gradients import plateau_trends
+from acutance.targets.straight.ground_steps import Ground
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.spline import CELLS, HALF_SUPPORT, combine, edge_weights
@@ -27,6 +28,7 @@ from acutance.targets.straight.spline_equations import Stencil
 from acutance.targets.straight.step_profile import Profile
 from acutance.targets.straight.tuned import (
     APERTURE_PX,
+    GROUND_LOG_AMPLITUDE,
     LOG_AMPLITUDE,
     LOG_AMPLITUDE_STD,
     TAIL_WIDTH,
@@ -113,9 +115,10 @@ class Linear:
         for distance, share in zip(profile.distances(s), profile.shares, strict=True):
             cell, basis = edge_weights(distance / width)
             stencils.append((cell, basis if share == 1 else share * basis))
-        trends = plateau_trends(profile.sides(seen, s), t)
+        sides, is_edge = profile.sides(seen, s), len(profile.shares) == 1
+        trends = plateau_trends(sides, t)
+        ground = Ground.beside([away / width for _, away in sides], is_edge=is_edge)
         further = [_beyond(profile, s, width)]
-        is_edge = len(profile.shares) == 1
         if not is_edge:
             # The dark level adds to every pixel once, whatever the steps.
             further.append(np.ones(s.size))
@@ -126,9 +129,9 @@ class Linear:
         np.clip(residual, -first_fit.height, first_fit.height, out=residual)
         return cls(
             first_fit, s, t, seen, mean, slope, residual,
-            stencils, np.vstack([*further, trends]), derivatives, directions,
-            _design(directions, len(further)),
-            _prior(first_fit, directions, len(trends), derivatives),
+            stencils, np.vstack([*further, trends, ground.columns]), derivatives,
+            directions, _design(directions, ground, len(further)),
+            _prior(first_fit, directions, ground, len(trends), derivatives),
         )  # fmt: skip
 
     @property
@@ -210,16 +213,19 @@ def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
     return total
 
 
-def _design(directions: lsf_prior.Directions, further: int) -> Floats:
-    """Coefficients of spline and further regressors for a unit of level, directions and tail.
+def _design(directions: lsf_prior.Directions, ground: Ground, further: int) -> Floats:
+    """Coefficients of spline and further regressors for a unit of level, directions and ground.
 
     A tail is part of the spline within the support, and the first regressor beyond. The dark level
     lifts all ESF coefficients equally, because the B-splines sum to one, unless it has a
     regressor of its own: the second.
     """
-    design = np.zeros((CELLS + 3 + further, 1 + directions.block.size))
-    design[: CELLS + 3, 1:] = directions.esf + np.outer(lsf_prior.tail_spline(), directions.tail)
-    design[CELLS + 3, 1:] = directions.tail
+    after = 1 + directions.block.size
+    design = np.zeros((CELLS + 3 + further, after + ground.spline.shape[1]))
+    design[: CELLS + 3, 1:after] = directions.esf
+    design[: CELLS + 3, 1:after] += np.outer(lsf_prior.tail_spline(), directions.tail)
+    design[CELLS + 3, 1:after] = directions.tail
+    design[: CELLS + 3, after:] = ground.spline
     if further > 1:
         design[CELLS + 4, 0] = 1.0
     else:
@@ -228,25 +234,30 @@ def _design(directions: lsf_prior.Directions, further: int) -> Floats:
 
 
 def _prior(
-    first_fit: FirstFit, directions: lsf_prior.Directions, trends: int, derivatives: int
+    first_fit: FirstFit,
+    directions: lsf_prior.Directions,
+    ground: Ground,
+    trends: int,
+    derivatives: int,
 ) -> Prior:
     """The prior of all unknowns."""
-    after_tail = 1 + directions.block.size
-    m = after_tail + trends + derivatives
-    block = np.full(m, -1)
-    block[1:after_tail] = np.maximum(directions.block - lsf_prior.FIRST_BLOCK, -1)
-    log_amplitude = LOG_AMPLITUDE
-    block[after_tail : after_tail + trends] = log_amplitude.size
-    log_amplitude = np.append(log_amplitude, TREND_LOG_AMPLITUDE)
-    scale = np.ones(m)
+    trend, first_side = LOG_AMPLITUDE.size, LOG_AMPLITUDE.size + 1
+    near, far = np.split(ground.side, [ground.spline.shape[1]])
+    block = np.concatenate([
+        [-1], np.maximum(directions.block - lsf_prior.FIRST_BLOCK, -1), first_side + near,
+        np.full(trends, trend), first_side + far, np.full(derivatives, -1),
+    ])  # fmt: skip
+    scale = np.ones(block.size)
+    scale[block >= first_side] = ground.scale
     # Prior: rotation (radians), width (pixels) and height ratio are known to about one.
     scale[-derivatives:] = 1 / first_fit.height
+    mean = np.zeros(block.size)
     aperture, aperture_std = APERTURE_PX
-    mean = np.zeros(m)
     where = 1 + int(np.flatnonzero(directions.block == 1)[0])
     scale[where] = aperture_std
     mean[where] = (aperture - first_fit.blur.aperture_px) * first_fit.height
+    sides = [GROUND_LOG_AMPLITUDE] * 2
     return Prior(
-        block, scale, mean, log_amplitude, LOG_AMPLITUDE_STD,
-        first_fit.height, _NOISE_FLOOR * first_fit.height,
+        block, scale, mean, np.array([*LOG_AMPLITUDE, TREND_LOG_AMPLITUDE, *sides]),
+        LOG_AMPLITUDE_STD, first_fit.height, _NOISE_FLOOR * first_fit.height,
     )  # fmt: skip

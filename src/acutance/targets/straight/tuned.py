@@ -20,6 +20,9 @@ __all__ = [
     "DETAIL_LOG_AMPLITUDE",
     "FAMILY_LOG_AMPLITUDES",
     "GRADIENT_SIGMAS",
+    "FAR_GROUND_STEPS",
+    "GROUND_LOG_AMPLITUDE",
+    "NEAR_GROUND_STEPS",
     "HALO_SHARE",
     "LOG_AMPLITUDE",
     "LOG_AMPLITUDE_STD",
@@ -72,6 +75,12 @@ LOG_AMPLITUDE_STD: Final = 2.0
 have (MTF at Nyquist, 40 px, SNR 100: RMS .0060 at 1.2, .0056 at 2)."""
 APERTURE_PX: Final = (1.0, 0.18)
 """Mean and standard deviation of the detector's aperture: fill factors are near one."""
+NEAR_GROUND_STEPS: Final[Floats] = np.array([1.5, 2, 2.5, 3, 3.5, 4, 4.75, 5.5, 6.25, 7])
+FAR_GROUND_STEPS: Final[Floats] = np.array([8.2, 10, 13, 17, 23])
+"""Where the ground beside a target may have steps, in widths: from where the blur ends
+(ground_steps.py)."""
+GROUND_LOG_AMPLITUDE: Final = -6.0
+"""Random walk of the ground: .25 % of the height per root of a width, within a factor of 7."""
 TREND_LOG_AMPLITUDE: Final = -2.5
 """Trends of the plateaus (gradients.py): 8 % of the height, larger than any on purpose. An
 amplitude that may vanish does so where a slope is too weak to be seen, and the slope is then taken
