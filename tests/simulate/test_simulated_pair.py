@@ -9,7 +9,7 @@ import pytest
 
 from acutance import ModelError, optics
 from acutance.report import json_text
-from acutance.simulate import Landscape, NativeGrid, Noise, landscape, pair, reference_systems
+from acutance.simulate import PairGround, NativeGrid, Noise, pair_ground, pair, reference_systems
 
 SENSORS = reference_systems()
 
@@ -68,7 +68,7 @@ def test_truth() -> None:
 
 
 def test_landscape_has_the_slope_it_was_asked() -> None:
-    field = landscape((512, 512), 8, Landscape(fields=0, texture=1.0), np.random.default_rng(6))
+    field = pair_ground((512, 512), 8, PairGround(fields=0, texture=1.0), np.random.default_rng(6))
     power = np.abs(np.fft.fft2(field)) ** 2
     radius = np.hypot(np.fft.fftfreq(512)[:, None], np.fft.fftfreq(512))
     inner, outer = (

@@ -6,7 +6,7 @@ from acutance.simulate.edge import Truth, edge, render_edge
 from acutance.simulate.ground import GroundNoise, alias_bands, render_raster
 from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise
-from acutance.simulate.pair import Landscape, PairTruth, landscape, pair
+from acutance.simulate.pair import PairGround, PairTruth, pair, pair_ground
 from acutance.simulate.points import PointsTruth, mirror_columns, mirror_square, points
 from acutance.simulate.pulse import PulseTruth, pulse, render_pulse
 from acutance.simulate.resample import Regrid, resample
@@ -30,9 +30,9 @@ __all__ = [
     "BarsTruth",
     "EdgeTarps",
     "GroundNoise",
-    "Landscape",
     "NativeGrid",
     "Noise",
+    "PairGround",
     "PairTruth",
     "Patch",
     "Placed",
@@ -55,10 +55,10 @@ __all__ = [
     "brookings",
     "checkerboard",
     "edge",
-    "landscape",
     "mirror_columns",
     "mirror_square",
     "pair",
+    "pair_ground",
     "points",
     "pulse",
     "reference_systems",

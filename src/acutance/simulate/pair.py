@@ -22,7 +22,7 @@ from acutance.simulate.limits import require_finite, require_rng, require_shape
 from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise, noise_of_snr
 
-__all__ = ["Landscape", "PairTruth", "landscape", "pair"]
+__all__ = ["PairGround", "PairTruth", "pair", "pair_ground"]
 
 MARGIN_PX = 8
 """Ground rendered beyond the low image on every side: light scattered further comes back from
@@ -34,7 +34,7 @@ Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
-class Landscape:
+class PairGround:
     """Fields with straight borders, and a texture whose power falls like a power of frequency.
 
     Parameters
@@ -55,7 +55,7 @@ class Landscape:
         require(self, 0.0, 40.0, fields=self.fields)
         require(self, texture=self.texture, slope=self.slope)
         if self.fields == 0 and self.texture == 0:
-            raise ModelError("Landscape: no fields and no texture leave uniform ground")
+            raise ModelError("PairGround: no fields and no texture leave uniform ground")
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +140,7 @@ def pair(
     shift_px: tuple[float, float] = (0.0, 0.0),
     gain: float = 1.0,
     offset: float = 0.0,
-    ground: Landscape | None = None,
+    ground: PairGround | None = None,
     dark: float = 200.0,
     bright: float = 1200.0,
     snr: float | None = None,
@@ -167,7 +167,7 @@ def pair(
         registration.
     gain, offset : float, optional
         The low image is ``gain * radiance + offset``.
-    ground : Landscape, optional
+    ground : PairGround, optional
     dark, bright : float, optional
         Levels of the darkest and of the brightest field in the high image.
     snr : float, optional
@@ -199,7 +199,7 @@ def pair(
     quarters = _quarters(ratio)
     wide = _with_margin(shape, quarters, ratio)
     fine = (wide[0] * quarters, wide[1] * quarters)
-    radiance = landscape(fine, quarters, ground or Landscape(), drawn)
+    radiance = pair_ground(fine, quarters, ground or PairGround(), drawn)
     spectrum = fft.fft2(dark + (bright - dark) * radiance)
     added_low = noise_of_snr(gain * (bright - dark), snr, noise_low)
     added_high = noise_of_snr(bright - dark, snr, noise_high)
@@ -293,8 +293,8 @@ def _whole(size: int, quarters: int) -> int:
     return size
 
 
-def landscape(
-    shape: tuple[int, int], period: int, ground: Landscape, rng: np.random.Generator
+def pair_ground(
+    shape: tuple[int, int], period: int, ground: PairGround, rng: np.random.Generator
 ) -> Floats:
     """Samples of a landscape, 0 in the darkest field and 1 in the brightest, texture added.
 
@@ -303,7 +303,7 @@ def landscape(
     shape : (rows, cols)
     period : int
         Samples in a low pixel; the texture levels off at periods longer than 64 of these.
-    ground : Landscape
+    ground : PairGround
     rng : numpy.random.Generator
 
     Returns

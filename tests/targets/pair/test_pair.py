@@ -12,7 +12,7 @@ from pair_scenes import NYQUIST, REFERENCE, SMALL, both, measured, rendered
 import acutance as ac
 from acutance.curves.grid import Floats
 from acutance.raster.geolocation import Geolocation
-from acutance.simulate import Landscape, NativeGrid
+from acutance.simulate import PairGround, NativeGrid
 
 
 class TestTruth:
@@ -378,4 +378,4 @@ def test_local_statistics() -> None:
 
 def test_landscape_without_anything() -> None:
     with pytest.raises(ac.ModelError):
-        Landscape(fields=0, texture=0.0)
+        PairGround(fields=0, texture=0.0)
