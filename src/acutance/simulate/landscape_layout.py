@@ -1,0 +1,124 @@
+"""Where the objects of a landscape lie, and the ground between them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from acutance.curves.direction import unit_vector
+from acutance.curves.grid import Floats
+from acutance.simulate.landscape_objects import draw_object
+from acutance.simulate.landscape_options import LandscapeOptions
+from acutance.simulate.parcel import Parcel
+
+__all__ = ["Waves", "draw_waves", "place_objects"]
+
+_CELL_PX = 2
+"""Occupied ground is kept in squares of this side."""
+
+_ATTEMPTS = 80
+"""Places tried for an object before it is left out."""
+
+_WAVES, _WAVE_PX = 5, (250.0, 900.0)
+"""The ground is a sum of so many waves; no sensor changes waves of these lengths."""
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Waves:
+    """Ground that rises and falls slowly: a mean level and long waves of any direction.
+
+    Parameters
+    ----------
+    level : float
+        Mean, in image units.
+    waves : tuple of (float, float, float, float)
+        Of each wave: amplitude, frequency along the columns and along the rows in cycles per
+        pixel, phase in radians.
+    """
+
+    level: float
+    waves: tuple[tuple[float, float, float, float], ...]
+
+    def at(self, rows: ArrayLike, cols: ArrayLike) -> Floats:
+        """Level at places, which broadcast against each other."""
+        down, right = np.asarray(rows, float), np.asarray(cols, float)
+        found = np.full(np.broadcast_shapes(down.shape, right.shape), self.level)
+        for amplitude, u, v, phase in self.waves:
+            # The product of two short vectors, for rows and columns of an image.
+            turning = np.exp(2j * math.pi * v * down + 1j * phase) * amplitude
+            found += (turning * np.exp(2j * math.pi * u * right)).real
+        return found
+
+
+def draw_waves(options: LandscapeOptions, rng: np.random.Generator) -> Waves:
+    """Ground of the wanted root mean square slope."""
+    slope = options.slope_per_px * options.typical_contrast / math.sqrt(_WAVES)
+    waves = []
+    for _ in range(_WAVES):
+        x, y = unit_vector(rng.uniform(0.0, 360.0))
+        length = rng.uniform(*_WAVE_PX)
+        amplitude = slope * math.sqrt(2) * length / (2 * math.pi)
+        waves.append((amplitude, x / length, y / length, rng.uniform(0.0, 2 * math.pi)))
+    return Waves(options.ground, tuple(waves))
+
+
+def place_objects(
+    shape: tuple[int, int], options: LandscapeOptions, rng: np.random.Generator
+) -> list[tuple[Parcel, ...]]:
+    """Objects at random places, none nearer to another than asked for.
+
+    Parameters
+    ----------
+    shape : (rows, cols)
+        Of the image, which holds all of them whole.
+    options : LandscapeOptions
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    list of tuple of Parcel
+        The parcels of each object. Objects that find no room are left out.
+    """
+    count = max(1, round(options.density_per_mpx * shape[0] * shape[1] / 1e6))
+    drawn = [draw_object(options, rng) for _ in range(count)]
+    masks = [_mask(one, 0.5 * options.clear_px) for one in drawn]
+    taken = np.zeros([size // _CELL_PX for size in shape], bool)
+    placed = []
+    # The large ones first: the small ones still find room between them.
+    for i in sorted(range(count), key=lambda i: -masks[i][0].size):
+        mask, first_row, first_col = masks[i]
+        spot = _free_place(taken, mask, rng)
+        if spot is None:
+            continue
+        taken[spot[0] : spot[0] + mask.shape[0], spot[1] : spot[1] + mask.shape[1]] |= mask
+        down, right = (_CELL_PX * (at + rng.uniform(0.0, 1.0)) for at in spot)
+        placed.append(tuple(one.moved(down - first_row, right - first_col) for one in drawn[i]))
+    return placed
+
+
+def _mask(parcels: tuple[Parcel, ...], room_px: float) -> tuple[Mask, float, float]:
+    """Cells that an object takes with room around it; row and column of the first cell."""
+    outlines = np.concatenate([one.outline() for one in parcels])
+    reach = room_px + max(one.outer_px for one in parcels) + _CELL_PX
+    low, high = outlines.min(axis=0) - reach, outlines.max(axis=0) + reach
+    rows, cols = (np.arange(low[i], high[i] + _CELL_PX, _CELL_PX) for i in (0, 1))
+    taken = np.zeros((rows.size, cols.size), bool)
+    for one in parcels:
+        taken |= one.distance(rows[:, None], cols[None, :]) > -(room_px + one.outer_px)
+    return taken, float(low[0]), float(low[1])
+
+
+def _free_place(taken: Mask, mask: Mask, rng: np.random.Generator) -> tuple[int, int] | None:
+    room = [whole - part - 1 for whole, part in zip(taken.shape, mask.shape, strict=True)]
+    if min(room) < 0:
+        return None
+    for _ in range(_ATTEMPTS):
+        row, col = (int(rng.integers(0, size + 1)) for size in room)
+        if not np.any(taken[row : row + mask.shape[0], col : col + mask.shape[1]] & mask):
+            return row, col
+    return None
