@@ -9,7 +9,7 @@ import pytest
 
 from acutance import ModelError, optics
 from acutance.report import json_text
-from acutance.simulate import PairGround, NativeGrid, Noise, pair_ground, pair, reference_systems
+from acutance.simulate import NativeGrid, Noise, PairGround, pair, pair_ground, reference_systems
 
 SENSORS = reference_systems()
 

@@ -65,11 +65,11 @@ class SimulatedFiles:
     truth: OutputFile
 
     @classmethod
-    def of(cls, out: str, *inputs: str | None) -> SimulatedFiles:
+    def of(cls, out: str, *inputs: str | None, truth_ending: str = ".json") -> SimulatedFiles:
         """The files for ``--out``, refused if they cannot be written or are among the inputs."""
         image = check_output("--out", out, (".tif", ".tiff"), keep=inputs)
-        truth_name = str(image.path.with_suffix(".truth.json"))
-        truth = check_output("--out", truth_name, (".json",), keep=inputs)
+        truth_name = str(image.path.with_suffix(f".truth{truth_ending}"))
+        truth = check_output("--out", truth_name, (truth_ending,), keep=inputs)
         return cls(image, truth)
 
     def write(self, pixels: Floats, sensor: Sensor, document: dict[str, Any], seed: int) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from acutance.cli import scenes, simulate_pair, simulate_site
+from acutance.cli import scenes, simulate_landscape, simulate_pair, simulate_site
 from acutance.cli.noise import NoiseOptions
 from acutance.cli.option_groups import with_groups
 from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
@@ -160,4 +160,7 @@ for _name, _command in (
     _example = (scenes.EXAMPLES | simulate_site.SITE_EXAMPLES)[_name]
     app.command(_name, epilog=f"\b\nExample:\n{_example}")(_command)
 app.command("pair", epilog=f"\b\nExample:\n{simulate_pair.PAIR_EXAMPLE}")(simulate_pair.pair)
+app.command("landscape", epilog=f"\b\nExample:\n{simulate_landscape.LANDSCAPE_EXAMPLE}")(
+    simulate_landscape.landscape
+)
 app.command("sensor-budget", epilog=BUDGET_EXAMPLE)(sensor_budget)

@@ -32,7 +32,12 @@ from acutance.report.studies.study import plan_text, study_figure, study_text
 from acutance.report.tables.points import sources_csv
 from acutance.report.tables.result import tables
 from acutance.report.text import text
-from acutance.report.truth import scene_document, target_truth_document, truth_document
+from acutance.report.truth import (
+    landscape_document,
+    scene_document,
+    target_truth_document,
+    truth_document,
+)
 
 __all__ = [
     "Comparison",
@@ -47,6 +52,7 @@ __all__ = [
     "draw",
     "figure_bytes",
     "json_text",
+    "landscape_document",
     "measurement_schema",
     "mirror_plan_figure",
     "mirror_plan_text",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import asdict, fields
 from typing import TYPE_CHECKING, Any
 
@@ -9,9 +11,23 @@ from acutance.report.budget import sensor_document
 
 if TYPE_CHECKING:
     from acutance.optics import Sensor
-    from acutance.simulate import BarsTruth, PointsTruth, PulseTruth, Scene, StarTruth, Truth
+    from acutance.simulate import (
+        BarsTruth,
+        LandscapeEdge,
+        LandscapeTruth,
+        PointsTruth,
+        PulseTruth,
+        Scene,
+        StarTruth,
+        Truth,
+    )
 
-__all__ = ["scene_document", "target_truth_document", "truth_document"]
+__all__ = [
+    "landscape_document",
+    "scene_document",
+    "target_truth_document",
+    "truth_document",
+]
 
 
 def truth_document(truth: Truth | PulseTruth, sensor: Sensor) -> dict[str, Any]:
@@ -98,4 +114,71 @@ def scene_document(scene: Scene) -> dict[str, Any]:
         "description": scene.description,
         "edges": edges,
         "targets": targets,
+    }
+
+
+def landscape_document(
+    truth: LandscapeTruth,
+    *,
+    half_width_px: float = 20.0,
+    progress: Callable[[int, int], None] | None = None,
+) -> dict[str, Any]:
+    """A landscape's edges as GeoJSON in pixels, x the column and y the row: regions and truths.
+
+    The regions are what ``--roi`` takes. Properties of each edge: its place, direction and
+    length, levels, softness, radius, what lies beside it, and the numbers of the image along its
+    normal (``mtf_nyquist``, ``rer``, ``fwhm_px``) and of the sensor alone (``sensor_...``).
+
+    Parameters
+    ----------
+    truth : LandscapeTruth
+    half_width_px : float, optional
+        How far the regions reach on either side.
+    progress : function of (done, total), optional
+        Called after each edge.
+    """
+    features = []
+    for done, edge in enumerate(truth.edges, start=1):
+        ring = edge.region(half_width_px)[:, ::-1].round(3).tolist()
+        features.append(
+            {
+                "type": "Feature",
+                "properties": _landscape_edge(edge, half_width_px),
+                "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]},
+            }
+        )
+        if progress is not None:
+            progress(done, len(truth.edges))
+    return {
+        "type": "FeatureCollection",
+        "schema": "acutance/landscape/1",
+        "crs": "pixel",
+        "options": asdict(truth.options),
+        "noise": None if truth.noise is None else _fields(truth.noise),
+        "features": features,
+    }
+
+
+def _landscape_edge(edge: LandscapeEdge, half_width_px: float) -> dict[str, Any]:
+    numbers = ("mtf_nyquist", "rer", "fwhm_px")
+    alone = edge.sensor_response
+    return {
+        "name": edge.name,
+        **edge.line.to_dict(),
+        "angle_deg": edge.line.angle_deg,
+        "ends": edge.ends().round(4).tolist(),
+        "radius_px": edge.radius_px if math.isfinite(edge.radius_px) else None,
+        "curvature_per_px": edge.curvature_per_px,
+        "softness_px": edge.softness_px,
+        "dark": edge.dark,
+        "bright": edge.bright,
+        "snr": edge.snr if math.isfinite(edge.snr) else None,
+        "texture_dark": edge.texture_dark,
+        "texture_bright": edge.texture_bright,
+        "kind": edge.kind(half_width_px),
+        "clean_dark_px": edge.clean_dark_px,
+        "clean_bright_px": edge.clean_bright_px,
+        "beside": [asdict(one) for one in edge.beside],
+        **{name: getattr(edge, name).value for name in numbers},
+        **{f"sensor_{name}": getattr(alone, name).value for name in numbers},
     }

@@ -4,9 +4,15 @@ from acutance.simulate.bars import BarGroup, BarsTruth, bars
 from acutance.simulate.campaign import Placed, brookings, render_site
 from acutance.simulate.edge import Truth, edge, render_edge
 from acutance.simulate.ground import GroundNoise, alias_bands, render_raster
+from acutance.simulate.landscape import LandscapeTruth, landscape
+from acutance.simulate.landscape_edges import Beside, LandscapeEdge
+from acutance.simulate.landscape_layout import Waves
+from acutance.simulate.landscape_options import LandscapeOptions
 from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise
 from acutance.simulate.pair import PairGround, PairTruth, pair, pair_ground
+from acutance.simulate.parcel import Border, Parcel, SideStrip
+from acutance.simulate.parcel_image import render_parcels
 from acutance.simulate.points import PointsTruth, mirror_columns, mirror_square, points
 from acutance.simulate.pulse import PulseTruth, pulse, render_pulse
 from acutance.simulate.resample import Regrid, resample
@@ -20,6 +26,7 @@ from acutance.simulate.scene import (
     stamp,
     texture,
 )
+from acutance.simulate.sensor_field import SensorField, SoftCorners
 from acutance.simulate.site import Scene, SceneEdge, SceneTarget, checkerboard, site
 from acutance.simulate.star import Star, StarTruth, add_star, star
 from acutance.simulate.systems import reference_systems
@@ -28,12 +35,18 @@ from acutance.simulate.tarps import EdgeTarps, PulseTarp, tarp_patches, tarp_reg
 __all__ = [
     "BarGroup",
     "BarsTruth",
+    "Beside",
+    "Border",
     "EdgeTarps",
     "GroundNoise",
+    "LandscapeEdge",
+    "LandscapeOptions",
+    "LandscapeTruth",
     "NativeGrid",
     "Noise",
     "PairGround",
     "PairTruth",
+    "Parcel",
     "Patch",
     "Placed",
     "Point",
@@ -44,10 +57,14 @@ __all__ = [
     "Scene",
     "SceneEdge",
     "SceneTarget",
+    "SensorField",
+    "SideStrip",
+    "SoftCorners",
     "Star",
     "StarTruth",
     "Strip",
     "Truth",
+    "Waves",
     "add_patches",
     "add_star",
     "alias_bands",
@@ -55,6 +72,7 @@ __all__ = [
     "brookings",
     "checkerboard",
     "edge",
+    "landscape",
     "mirror_columns",
     "mirror_square",
     "pair",
@@ -63,6 +81,7 @@ __all__ = [
     "pulse",
     "reference_systems",
     "render_edge",
+    "render_parcels",
     "render_patches",
     "render_pulse",
     "render_raster",

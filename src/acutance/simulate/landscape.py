@@ -12,9 +12,10 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.optics.sensor import Sensor
-from acutance.simulate.landscape_edges import LandscapeEdge, edges_of
+from acutance.simulate.landscape_edges import LandscapeEdge
 from acutance.simulate.landscape_layout import Waves, draw_waves, place_objects
 from acutance.simulate.landscape_options import LandscapeOptions
+from acutance.simulate.landscape_survey import edges_of
 from acutance.simulate.limits import MAX_SCENE_PIXELS, require_rng, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.parcel import Parcel
@@ -143,7 +144,7 @@ def _draw_objects(
     shape: tuple[int, int],
     progress: Callable[[int, int], None] | None,
 ) -> tuple[Canvas, Canvas]:
-    """Objects on ground of level 0; share of each pixel they cover, and that times their texture."""
+    """Objects on ground of level 0; how much of each pixel they cover, and that times texture."""
     image, covers = np.zeros(shape, np.float32), np.zeros((2, *shape), np.float32)
     places = [(0.0, 0.0), _middle(shape), (shape[0] - 1.0, shape[1] - 1.0)]
     typical = {sensor_at(sensor, *place) for place in places}

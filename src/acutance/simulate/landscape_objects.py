@@ -89,7 +89,7 @@ def _rectangle(
     kind: ParcelKind, turn_deg: float, width_px: float, height_px: float, contrast: float
 ) -> Parcel:
     """A rectangle about (0, 0): its width along the direction `turn_deg`."""
-    normals = turn_deg + 90.0 * np.arange(4)
+    normals = np.array([turn_deg, turn_deg + 90.0, turn_deg + 180.0, turn_deg + 270.0])
     found = polygon(kind, normals, 0.5 * np.array([width_px, height_px] * 2), contrast)
     if found is None:
         raise AssertionError("every rectangle has four sides")
@@ -107,7 +107,8 @@ def _shape(kind: ParcelKind, options: LandscapeOptions, rng: np.random.Generator
         )
         return Parcel(kind, 0.0, 0.0, (around,), 1.0)
     if kind == "roof":
-        return _rectangle(kind, turn, *rng.uniform(*options.roof_px, 2), 1.0)
+        width, height = rng.uniform(*options.roof_px, 2)
+        return _rectangle(kind, turn, width, height, 1.0)
     if kind == "road":
         width, length = rng.uniform(*options.road_width_px), rng.uniform(*options.road_length_px)
         return _rectangle(kind, turn, width, length, 1.0)
@@ -132,7 +133,11 @@ def _field(turn_deg: float, options: LandscapeOptions, rng: np.random.Generator)
         if rng.random() < options.curved:
             radius = math.exp(rng.uniform(*np.log(options.radius_px)))
             bend = float(rng.choice([-1, 1])) / radius
-        borders.append(replace(one, softness_px=soft, curvature_per_px=bend))
+        # The arc goes through both corners.
+        row, col = one.point(0.0, -0.125 * bend * one.length_px**2)
+        borders.append(
+            replace(one, row=float(row), col=float(col), softness_px=soft, curvature_per_px=bend)
+        )
     return replace(found, borders=tuple(borders))
 
 
@@ -217,18 +222,19 @@ def _beyond(
     drawn: Range
     shape: ParcelKind
     if kind == "road":
-        shape, width, drawn = "road", rng.uniform(*options.road_width_px), options.side_road_contrast
+        shape, drawn = "road", options.side_road_contrast
+        width = rng.uniform(*options.road_width_px)
     else:
-        shape, width, drawn = "field", rng.uniform(*options.roof_px), options.neighbour_contrast
+        shape, drawn = "field", options.neighbour_contrast
+        width = rng.uniform(*options.roof_px)
     strength = float(rng.choice([-1, 1])) * abs(contrast) * rng.uniform(*drawn)
     strength = max(strength, -(1 - _DARKEST) * options.ground)
     tilt = rng.uniform(-options.tilt_deg, options.tilt_deg)
-    # The end that comes nearest, and the middle of an arc that bulges outwards, keep the gap.
+    # The end that comes nearest keeps the gap, on a hollow arc too.
     nearer = 0.5 * border.length_px * math.sin(math.radians(abs(tilt)))
-    bulge = max(0.0, border.curvature_per_px) * border.length_px**2 / 8
-    away = -(rng.uniform(*options.gap_px) + nearer + bulge + 0.5 * width)
+    nearer += max(0.0, -border.curvature_per_px) * border.length_px**2 / 8
+    away = -(rng.uniform(*options.gap_px) + nearer + 0.5 * width)
     flat = replace(border, curvature_per_px=0.0)
     row, col = flat.point(0.0, away)
     made = _rectangle(shape, border.normal_deg + tilt, width, border.length_px, 1.0)
     return _on_the_ground(made.moved(float(row), float(col)), strength, options, rng)
-

@@ -144,7 +144,8 @@ def _extent(parcel: Parcel) -> tuple[float, float, float, float]:
 
 def _window(parcel: Parcel, shape: tuple[int, int], blur_px: float) -> tuple[slice, slice]:
     """Rows and columns of the image in which a parcel is drawn."""
-    softness = [one.softness_px for one in (*parcel.borders, *parcel.strips)]
+    softness = [one.softness_px for one in parcel.borders]
+    softness += [one.softness_px for one in parcel.strips]
     room = 7 * math.hypot(blur_px, max(softness)) + 1
     top, left, bottom, right = _extent(parcel)
     return (

@@ -12,7 +12,7 @@ from pair_scenes import NYQUIST, REFERENCE, SMALL, both, measured, rendered
 import acutance as ac
 from acutance.curves.grid import Floats
 from acutance.raster.geolocation import Geolocation
-from acutance.simulate import PairGround, NativeGrid
+from acutance.simulate import NativeGrid, PairGround
 
 
 class TestTruth:
