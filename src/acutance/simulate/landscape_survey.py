@@ -30,6 +30,9 @@ _CORNER_CLEAR_PX = 20.0
 _MIN_LENGTH_PX = 12.0
 """Shorter borders are not listed."""
 
+_PAST_ENDS_PX = 2.0
+"""What lies past the ends of an edge by no more than this is beside it too: its blur is."""
+
 
 @dataclass(frozen=True)
 class _Thing:
@@ -127,8 +130,9 @@ def _usable_borders(parcel: Parcel) -> Iterator[tuple[int, Border]]:
     for j, border in enumerate(parcel.borders):
         half = 0.5 * border.length_px
         # Along the tangent of an inward normal, the next border comes first.
-        begin = -half + _guard(parcel.borders[(j + 1) % count], border)
-        end = half - _guard(border, parcel.borders[j - 1])
+        following, last = (j + 1) % count, (j - 1) % count
+        begin = -half + _guard(parcel.borders[following], border) + _inner_px(parcel, following)
+        end = half - _guard(border, parcel.borders[last]) - _inner_px(parcel, last)
         if end - begin >= _MIN_LENGTH_PX:
             yield j, border.part(begin, end)
 
@@ -140,6 +144,11 @@ def _guard(one: Border, before: Border) -> float:
     if inside_deg >= 90.0:
         return GUARD_PX
     return GUARD_PX + _CORNER_CLEAR_PX / math.tan(math.radians(inside_deg))
+
+
+def _inner_px(parcel: Parcel, j: int) -> float:
+    """How far strips along border `j` reach into the parcel: they cross its other borders."""
+    return max([0.0, *(one.far_px for one in parcel.strips if one.border == j)])
 
 
 def _end_normal_deg(border: Border, share: float) -> float:
@@ -221,7 +230,7 @@ def _others(
     index = np.array(sorted(near), int)
     along, across = border.along_and_across(*outlines.places[index].T)
     own = (outlines.owner[index] == i) & (outlines.border[index] == j)
-    kept = (np.abs(along) <= half) & (np.abs(across) <= LOOK_PX) & ~own
+    kept = (np.abs(along) <= half + _PAST_ENDS_PX) & (np.abs(across) <= LOOK_PX) & ~own
     thing, across = outlines.thing[index[kept]], across[kept]
     for k in np.unique(thing):
         one = outlines.things[k]
