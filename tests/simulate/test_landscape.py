@@ -219,6 +219,7 @@ def test_snr_and_noise_are_those_of_the_levels():
         ({"gap_px": (5.0, 2.0)}, "gap_px is 5 to 2"),
         ({"texture": 0.02}, "two numbers"),
         ({"field_px": (5.0, 20.0)}, "field_px is 5"),
+        ({"road_width_px": (0.5, 3.0)}, "road_width_px is 0.5"),
         ({"texture_grain_px": 0.2}, "texture_grain_px"),
     ],
 )

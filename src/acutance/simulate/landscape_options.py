@@ -23,6 +23,19 @@ _SHARE_GROUPS = (
 )
 
 
+_SMALLEST_PX = {
+    "field_px": 20.0,
+    "roof_px": 20.0,
+    "road_width_px": 2.0,
+    "road_length_px": 20.0,
+    "disc_radius_px": 2.0,
+    "radius_px": 100.0,
+    "line_width_px": 0.1,
+    "shadow_width_px": 0.1,
+}
+"""What sizes have to be at least."""
+
+
 @dataclass(frozen=True)
 class LandscapeOptions:
     """What a landscape is made of. Levels are in image units, lengths in pixels.
@@ -124,8 +137,8 @@ class LandscapeOptions:
         for one in fields(self):
             if one.type == "Range":
                 self._require_range(one.name)
-        for name, low in (("field_px", 20.0), ("roof_px", 20.0), ("radius_px", 100.0)):
-            require(self, low, **{name: getattr(self, name)[0]})
+        for name, lowest in _SMALLEST_PX.items():
+            require(self, lowest, **{name: getattr(self, name)[0]})
 
     def _require_shares(self, names: tuple[str, ...]) -> None:
         shares = {name: getattr(self, name) for name in names}

@@ -1,0 +1,86 @@
+"""``acutance simulate landscape``: an image, and its edges as regions that can be measured."""
+
+import json
+
+import numpy as np
+import pytest
+
+from acutance.raster import open_image
+
+
+@pytest.fixture
+def render(acutance, tmp_path):
+    """Render a small landscape: image, edges, what was printed, the file of edges."""
+
+    def run(*words, name="land.tif"):
+        out = tmp_path / name
+        size = () if "--size" in words else ("--size", "300,320")
+        result = acutance("simulate", "landscape", *size, *words, "--out", out)
+        assert result.exit_code == 0, result.stderr
+        path = out.with_suffix(".truth.geojson")
+        return open_image(out), json.loads(path.read_text(encoding="utf-8")), result, path
+
+    return run
+
+
+def test_every_edge_has_a_region_and_a_truth(render):
+    image, document, result, _ = render("--snr", 100, "--half-width", 15, "--seed", 2)
+    assert image.shape == (300, 320)
+    assert (document["schema"], document["crs"]) == ("acutance/landscape/1", "pixel")
+    assert document["seed"] == 2
+    assert document["noise"]["read"] == pytest.approx(6.25)
+    features = document["features"]
+    assert len(features) >= 8
+    assert f"{len(features)} edges" in result.stdout
+    for feature in features:
+        edge, ring = feature["properties"], np.array(feature["geometry"]["coordinates"][0])
+        np.testing.assert_array_equal(ring[0], ring[-1])
+        # x is the column.
+        ends = np.array(edge["ends"])
+        assert np.hypot(*(ends[1] - ends[0])) == pytest.approx(edge["length_px"], rel=0.01)
+        middle = ring[:-1].mean(axis=0)
+        assert np.hypot(middle[1] - edge["row"], middle[0] - edge["col"]) < 0.1
+        assert edge["dark"] < edge["bright"]
+        if edge["softness_px"] == 0:
+            assert edge["mtf_nyquist"] == edge["sensor_mtf_nyquist"]
+        else:
+            assert edge["mtf_nyquist"] < edge["sensor_mtf_nyquist"]
+
+
+def test_its_regions_are_measured_by_name(render, acutance):
+    _, document, _, path = render("--clean", "--snr", 200, "--texture", "0,0", "--curved", 0)
+    image = path.with_name("land.tif")
+    result = acutance("edge", image, "--roi", path, "--json")
+    assert result.exit_code == 0
+    found = {one["region"]: one for one in json.loads(result.stdout)["results"]}
+    truths = {one["properties"]["name"]: one["properties"] for one in document["features"]}
+    assert set(found) <= set(truths)
+    assert len(found) >= 0.8 * len(truths)
+    errors = [one["rer"]["value"] - truths[name]["rer"] for name, one in found.items()]
+    assert np.median(np.abs(errors)) < 0.01
+
+
+def test_blur_in_the_corners(render):
+    _, even, _, _ = render()
+    _, soft, _, _ = render("--corner-blur", 0.5)
+    nyquist = [
+        [one["properties"]["sensor_mtf_nyquist"] for one in document["features"]]
+        for document in (even, soft)
+    ]
+    assert all(one < before for before, one in zip(*nyquist, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--clean", "--rims", 0.1), "leave it out, or --rims"),
+        (("--texture", "0.1"), "lowest and highest"),
+        (("--rims", 0.9, "--shadows", 0.4), "add up to"),
+        (("--size", "20,20"), "finds room"),
+    ],
+)
+def test_what_cannot_be_is_refused(acutance, tmp_path, words, message):
+    result = acutance("simulate", "landscape", *words, "--out", tmp_path / "land.tif")
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert not (tmp_path / "land.tif").exists()
