@@ -91,8 +91,8 @@ def _rectangle(
     """A rectangle about (0, 0): its width along the direction `turn_deg`."""
     normals = np.array([turn_deg, turn_deg + 90.0, turn_deg + 180.0, turn_deg + 270.0])
     found = polygon(kind, normals, 0.5 * np.array([width_px, height_px] * 2), contrast)
-    if found is None:
-        raise AssertionError("every rectangle has four sides")
+    # Every rectangle has its four sides.
+    assert found is not None
     return found
 
 
