@@ -1,6 +1,7 @@
 """Learn the prior of line spread functions from sensors drawn at random, and keep it.
 
-Example: python benchmarks/learn_lsf.py --sensors 2000 --out src/acutance/targets/straight/lsf_families.npz
+Example: python benchmarks/learn_lsf.py --sensors 1700 --out lsf_families.npz
+The file lies beside targets/straight/lsf_prior.py.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from acutance.targets.straight.learn_lsf import learn, write
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--sensors", type=int, default=2000, help="sensors a family")
+    parser.add_argument("--sensors", type=int, default=1700, help="sensors a family")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, required=True)
     arguments = parser.parse_args()

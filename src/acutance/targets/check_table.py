@@ -148,6 +148,15 @@ _STRAIGHT = {
         "lines parallel to it, a pulse that is not of one brightness, or ringing finer than the "
         "fit follows; the intervals do not allow for it",
     ),
+    "ground": Question(
+        "How much does the ground beside the target differ from its level at the target?",
+        "<=", 0.02, "the fit follows it, and the intervals allow for it", severity="note",
+    ),
+    "mirrored_ground": Question(
+        "How much is the ground on one side the mirror image of that on the other?", "<=", 0.8,
+        "ground is not; ringing of a sharpened or compressed product is, and it is then missing "
+        "from the sensor's MTF; measure another target of the product",
+    ),
     "parallel_deg": Question(
         "Are the two sides of the pulse parallel?", "<=", 0.5,
         "the width changes along the target; choose another part, or another target",

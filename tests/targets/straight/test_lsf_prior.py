@@ -5,7 +5,7 @@ import pytest
 
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.lorentz_tail import tail_esf, tail_lsf, tail_otf
-from acutance.targets.straight.lsf_prior import directions
+from acutance.targets.straight.lsf_prior import directions, tail_spline
 from acutance.targets.straight.spline import (
     CELLS,
     CENTRES,
@@ -13,7 +13,7 @@ from acutance.targets.straight.spline import (
     edge_and_line_weights,
     edge_weights,
 )
-from acutance.targets.straight.tuned import TAIL_WIDTH
+from acutance.targets.straight.tuned import DETAIL, LOG_AMPLITUDE, TAIL_WIDTH
 
 BLURS = [GaussianPixel(0.4), GaussianPixel(1.3, 0.6)]
 
@@ -24,8 +24,10 @@ def test_layout(blur):
     assert found.esf.shape == (CELLS + 3, found.block.size)
     assert np.isfinite(found.esf).all()
     assert found.block.tolist() == sorted(found.block.tolist())
-    assert np.bincount(found.block)[[0, 1, 5]].tolist() == [3, 1, 1]
-    assert np.bincount(found.block)[[2, 3, 4]].min() >= 8
+    count = np.bincount(found.block)
+    assert count.size == 2 + LOG_AMPLITUDE.size
+    assert count[[0, 1, -1]].tolist() == [3, 1, 1]
+    assert count[2:-1].min() >= 2
 
 
 @pytest.mark.parametrize("blur", BLURS)
@@ -39,14 +41,14 @@ def test_mean_directions_are_the_blur_and_its_slopes(blur):
         assert np.max(np.abs(lsf - shape)) < 0.02 * np.max(np.abs(shape))
 
 
-def test_processes_have_the_covariance_they_promise():
+def test_the_detail_has_the_covariance_it_promises():
     found = directions(GaussianPixel(0.4))
-    for block, extent, smoothness in ((2, 1.2, 0.6), (3, 0.7, 0.17), (4, 3.0, 1.2)):
-        root = np.diff(found.esf[2:-2, found.block == block], axis=0) / (CENTRES[1] - CENTRES[0])
-        u = CENTRES
-        expected = np.exp(-0.5 * (u**2 + u[:, None] ** 2) / extent**2)
-        expected *= np.exp(-0.5 * ((u - u[:, None]) / smoothness) ** 2)
-        assert np.max(np.abs(root @ root.T - expected)) < 2e-4
+    own = found.esf[:, found.block == found.block.max() - 1]
+    root = np.diff(own[2:-2], axis=0) / (CENTRES[1] - CENTRES[0])
+    u = CENTRES
+    expected = np.exp(-0.5 * (u**2 + u[:, None] ** 2) / DETAIL[0] ** 2)
+    expected *= np.exp(-0.5 * ((u - u[:, None]) / DETAIL[1]) ** 2)
+    assert np.max(np.abs(root @ root.T - expected)) < 2e-4
 
 
 def test_tail_curves_belong_together():
@@ -61,8 +63,17 @@ def test_tail_curves_belong_together():
 
 
 def test_tail_direction_is_the_tail_within_the_support():
-    found = directions(GaussianPixel(0.4))
     u = np.linspace(-7, 7, 141)
-    spline = combine(*edge_weights(u), found.esf[:, -1])
+    spline = combine(*edge_weights(u), tail_spline())
     assert np.max(np.abs(spline - tail_esf(u, TAIL_WIDTH))) < 2e-3
-    assert TAIL_WIDTH > 0
+
+
+def test_the_tail_of_a_direction_is_kept_apart_from_its_spline():
+    found = directions(GaussianPixel(0.4))
+    assert found.tail[-1] == 1
+    assert not found.esf[:, -1].any()
+    # Of the families only telescopes have light beyond the spline.
+    telescope = found.block == 2
+    assert np.abs(found.tail[telescope]).max() > 0.05
+    others = found.tail[(found.block > 2) & (found.block < found.block.max())]
+    assert np.abs(others).max() < 1e-9

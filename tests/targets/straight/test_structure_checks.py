@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from scipy.ndimage import convolve1d
 
 import acutance as ac
+from acutance.optics import Sensor, Sharpening
 from acutance.simulate import Noise, Regrid, edge, pulse, reference_systems
 
 SYSTEMS = reference_systems()
@@ -46,13 +46,27 @@ def test_no_false_alarms_whatever_the_system_and_the_noise(scene):
     assert sum(alarms) <= 1
 
 
+def errors(m, truth):
+    """MTF at Nyquist, MTF(.25) and RER in units of their standard deviations."""
+    found, true = m.response, truth.response
+    pairs = [
+        (found.mtf_nyquist, true.mtf_nyquist),
+        (found.mtf(0.25), true.mtf(0.25)),
+        (found.rer, true.rer),
+    ]
+    return np.array([(one.value - other.value) / one.std for one, other in pairs])
+
+
 @pytest.mark.parametrize("at_px", [5.0, 8.0, 12.0, -8.0])
-def test_a_step_of_the_ground_beside_the_edge_is_seen(at_px):
+def test_a_step_of_the_ground_beside_the_edge_is_told_and_measured_around(at_px):
+    # Taken for wings of the LSF, 3 % of the contrast lie 4 to 9 deviations off.
     for seed in range(3):
         image, truth = an_edge(seed)
         s = truth.line.normal_distance(*np.indices(image.shape))
         step = seen_step(truth, s - at_px)
-        assert failed(ac.measure_edge(image + 30 * step)) & {"asymmetric_wings", "profile"}
+        m = ac.measure_edge(image + 30 * step)
+        assert "ground" in failed(m)
+        assert np.abs(errors(m, truth)).max() < 3
 
 
 def test_a_halo_and_a_charge_trail_are_not_lopsided():
@@ -69,15 +83,15 @@ def test_a_weak_slope_across_the_edge_is_seen(slope, size):
         assert "gradient" in failed(ac.measure_edge(image + 1000 * slope * s / 50))
 
 
-def test_ringing_finer_than_the_fit_follows_is_seen():
+def test_ringing_of_a_product_is_the_sensor_s_and_not_the_ground_s():
     k = np.arange(-10, 11)
     ringing = 0.04 * np.cos(2 * np.pi * k / 4.0) * np.exp(-np.abs(k) / 4.0) * (np.abs(k) > 1)
     ringing[10] = 1 - ringing.sum()
-    clean, _ = edge(SYSTEMS["sharpened"], angle_deg=7, shape=(110, 110), dark=200, bright=1200)
-    rings = convolve1d(convolve1d(clean, ringing, axis=0), ringing, axis=1)[15:-15, 15:-15]
-    noise = np.random.default_rng(3).normal(0, 6, rings.shape)
-    assert "profile" in failed(ac.measure_edge(rings + noise))
-    assert "profile" not in failed(ac.measure_edge(clean[15:-15, 15:-15] + noise))
+    product = Sensor([*SYSTEMS["sharpened"].blocks, Sharpening(np.outer(ringing, ringing))])
+    clean, truth = edge(product, angle_deg=7, shape=(80, 80), dark=200, bright=1200)
+    m = ac.measure_edge(clean + np.random.default_rng(3).normal(0, 6, clean.shape))
+    assert np.abs(errors(m, truth)[[0, 2]]).max() < 3
+    assert m.verdict.word == "doubtful"
 
 
 def a_pulse(seed, system="gaussian", **changes):
@@ -93,16 +107,15 @@ def test_an_even_strip_passes(name):
         assert not failed(ac.measure_pulse(image, width_px=5.0)) & OF_STRUCTURE
 
 
-def test_a_strip_brighter_on_one_half_is_seen():
-    # A roof with a ridge: one half of the pulse is 11 % brighter.
+def test_a_pulse_brighter_on_one_half_is_measured_as_one():
+    # A roof with a ridge: one half of the pulse is 12 % brighter, of which RER takes 5 deviations.
     for seed in range(3):
-        image, _ = a_pulse(seed)
+        image, truth = a_pulse(seed)
         half, _ = pulse(
             SYSTEMS["gaussian"], width_px=2.5, angle_deg=8.0, shape=(45, 45), dark=0, bright=120,
             offset_px=-1.25,
         )  # fmt: skip
-        found = failed(ac.measure_pulse(image + half, width_px=5.0))
-        assert "profile" in found
+        assert np.abs(errors(ac.measure_pulse(image + half, width_px=5.0), truth)).max() < 3
 
 
 def test_patches_along_the_strip_are_seen():

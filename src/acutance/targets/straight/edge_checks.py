@@ -12,6 +12,7 @@ from acutance.geometry.line import Line
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
 from acutance.targets.region import RegionPixels
 from acutance.targets.straight.check_data import PLACES, CheckData, ratio_in_words
+from acutance.targets.straight.ground_checks import ground_checks
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,
     gradient,
@@ -51,7 +52,7 @@ EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases", "rows",
     "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px", "plateau_dark_px",
     "plateau_bright_px", "saturation", "quantisation", "gradient", "correlated_noise", "structure",
-    "asymmetric_wings", "profile", "outliers",
+    "asymmetric_wings", "profile", "outliers", "ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -93,6 +94,7 @@ def check_edge(
         asymmetric_wings(data, limits),
         profile(data, limits, 0.0, own_misfit=by_rows),
         outliers(data, limits),
+        *ground_checks(data, limits, ("dark", "bright")),
     )
 
 

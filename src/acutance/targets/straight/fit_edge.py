@@ -11,6 +11,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.noise import Correlation
 from acutance.targets.straight.first_fit import FirstFit, fit_first
+from acutance.targets.straight.ground_steps import GroundSide
 from acutance.targets.straight.lsf import SplineResponse
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels, Pixels
 from acutance.targets.straight.solve import Solved, solve
@@ -34,6 +35,8 @@ class SplineEdge(EdgeFit):
         Weight of every pixel used, 1 where it is no outlier.
     tail : float
         Share of the line spread function (LSF) in the 1/x^2 tail.
+    ground : pair of GroundSide
+        The ground before and behind the target.
     """
 
     response: SplineResponse
@@ -43,6 +46,7 @@ class SplineEdge(EdgeFit):
     correlation: Correlation
     weights: Floats
     tail: float
+    ground: tuple[GroundSide, GroundSide]
 
 
 def fit_edge(trimmed: EdgePixels, *, robust: bool = True) -> SplineEdge:
@@ -99,5 +103,5 @@ def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
     return SplineEdge(
         line, response, dark, dark + height, s, (pixels.value - dark) / height,
         solution.residual / height, first_fit.blur, *solution.side_noise, solved.correlation,
-        solved.outlier, model.tail / height,
+        solved.outlier, model.tail / height, solved.ground,
     )  # fmt: skip

@@ -13,6 +13,7 @@ pulse, are regressors of their own.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -25,10 +26,16 @@ from scipy.special import ndtr
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, gaussian
 from acutance.targets.straight.spline import CELLS, CENTRES, esf_from_lsf, quasi_interpolant
-from acutance.targets.straight.tuned import FAR_GROUND_STEPS, NEAR_GROUND_STEPS
+from acutance.targets.straight.tuned import (
+    FAR_GROUND_STEPS,
+    NEAR_GROUND_STEPS,
+    STRUCTURE_SIGMAS,
+)
 
-__all__ = ["Ground"]
+__all__ = ["Ground", "GroundSide"]
 
+_SEAMS: Final = np.array([0.25, 0.5, 0.75])
+"""Where a pulse may be brighter or darker from there on, in units of its own width."""
 _ROOM = 1.0
 """How far the pixels have to reach beyond a step, in widths."""
 _PLACES: Final = np.concatenate([NEAR_GROUND_STEPS, FAR_GROUND_STEPS])
@@ -46,7 +53,7 @@ class Ground:
     columns : (k, n) array
         Response of the pixels to the k steps that follow.
     side : (j + k,) int array
-        On which side each step lies: 0 before the target, 1 behind it.
+        On which side each step lies: 0 before the target, 1 behind it, 2 on a pulse itself.
     scale : (j + k,) array
         Standard deviation of every step for a walk of unit variance per width: the root of its
         spacing.
@@ -58,25 +65,86 @@ class Ground:
     scale: Floats
 
     @classmethod
-    def beside(cls, outwards: Sequence[Floats], *, is_edge: bool) -> Ground:
-        """The ground beside an edge or a pulse.
+    def beside_edge(cls, outwards: Sequence[Floats]) -> Ground:
+        """The ground beside an edge.
 
         Parameters
         ----------
         outwards : pair of (n,) arrays
-            Distance of the pixels outwards from the target's end, before and behind, in widths.
-        is_edge : bool
-            Whether the spline of the target has one step only.
+            Distance of the pixels outwards from the edge, on the dark and on the bright side, in
+            widths.
         """
-        spline = _edge_spline() if is_edge else np.zeros((CELLS + 3, 0))
-        first = NEAR_GROUND_STEPS.size if is_edge else 0
-        columns, side, scale = [], [np.repeat([0, 1], first)], [*[_SCALE[:first]] * 2]
-        for number, distance in enumerate(outwards):
-            last = int(np.searchsorted(_PLACES, float(distance.max()) - _ROOM))
-            columns.append(_blurred(distance, _PLACES[first:last]))
-            side.append(np.full(columns[-1].shape[0], number))
-            scale.append(_SCALE[first : max(first, last)])
-        return cls(spline, np.vstack(columns), np.concatenate(side), np.concatenate(scale))
+        near = NEAR_GROUND_STEPS.size
+        far = [_steps(distance, near) for distance in outwards]
+        side = [np.repeat([0, 1], near), *_numbers(far)]
+        scale = [_SCALE[:near], _SCALE[:near], *(_SCALE[near : near + len(steps)] for steps in far)]
+        return cls(_edge_spline(), np.vstack(far), np.concatenate(side), np.concatenate(scale))
+
+    @classmethod
+    def beside_pulse(cls, outwards: Sequence[Floats], width: float) -> Ground:
+        """The ground beside a pulse, and the seams of the pulse itself.
+
+        Parameters
+        ----------
+        outwards : pair of (n,) arrays
+            Distance of the pixels outwards from the pulse's first and last step, in widths.
+        width : float
+            The pulse's own width, in widths of the blur.
+        """
+        beside = [_steps(distance, 0) for distance in outwards]
+        seams = _blurred(-outwards[0], width * _SEAMS) - _blurred(outwards[1], np.zeros(1))
+        steps = [*beside, seams]
+        scale = [_SCALE[: len(steps)] for steps in beside]
+        scale.append(np.full(_SEAMS.size, math.sqrt(width / (_SEAMS.size + 1))))
+        none = np.zeros((CELLS + 3, 0))
+        return cls(none, np.vstack(steps), np.concatenate(_numbers(steps)), np.concatenate(scale))
+
+    @property
+    def walks(self) -> int:
+        """Number of sides, those of the target itself included."""
+        return int(self.side.max()) + 1
+
+
+def _numbers(steps: Sequence[Floats]) -> list[NDArray[np.intp]]:
+    return [np.full(len(own), number) for number, own in enumerate(steps)]
+
+
+def _steps(outwards: Floats, first: int) -> Floats:
+    """The steps of one side that the pixels reach beyond, from the first one on, (k, n)."""
+    last = int(np.searchsorted(_PLACES, float(outwards.max()) - _ROOM))
+    return _blurred(outwards, _PLACES[first : max(first, last)])
+
+
+@dataclass(frozen=True, eq=False)
+class GroundSide:
+    """The fitted ground on one side of a target.
+
+    Attributes
+    ----------
+    distance_px : (k,) array
+        Where the ground may have steps, outwards from the target's end.
+    step : (k,) array
+        The steps, as shares of the target's height.
+    level, std : (k,) arrays
+        Level of the ground beyond each of them, relative to that at the target, and its standard
+        deviation.
+    """
+
+    distance_px: Floats
+    step: Floats
+    level: Floats
+    std: Floats
+
+    @property
+    def seen(self) -> NDArray[np.bool_]:
+        """Beyond which steps the level is beyond chance, (k,)."""
+        return np.asarray(np.abs(self.level) > STRUCTURE_SIGMAS * self.std)
+
+    @classmethod
+    def of(cls, step: Floats, factor: Floats, width_px: float) -> GroundSide:
+        """From the steps, (k,), and a factor of their covariance, (k, m)."""
+        std = np.sqrt(np.sum(np.cumsum(factor, axis=0) ** 2, axis=1))
+        return cls(_PLACES[: step.size] * width_px, step, np.cumsum(step), std)
 
 
 @cache

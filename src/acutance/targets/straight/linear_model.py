@@ -20,7 +20,7 @@ from acutance.numerics.noise import side_variances
 from acutance.targets.straight import lsf_prior
 from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.gradients import plateau_trends
-from acutance.targets.straight.ground_steps import Ground
+from acutance.targets.straight.ground_steps import Ground, GroundSide
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.spline import CELLS, HALF_SUPPORT, combine, edge_weights
@@ -117,7 +117,11 @@ class Linear:
             stencils.append((cell, basis if share == 1 else share * basis))
         sides, is_edge = profile.sides(seen, s), len(profile.shares) == 1
         trends = plateau_trends(sides, t)
-        ground = Ground.beside([away / width for _, away in sides], is_edge=is_edge)
+        beside = [away / width for _, away in sides]
+        if is_edge:
+            ground = Ground.beside_edge(beside)
+        else:
+            ground = Ground.beside_pulse(beside, profile.positions_px[-1] / width)
         further = [_beyond(profile, s, width)]
         if not is_edge:
             # The dark level adds to every pixel once, whatever the steps.
@@ -201,6 +205,16 @@ class Linear:
             self.first_fit.blur, self.first_fit.height, esf @ beta, float(tail @ beta), latent
         )
 
+    def ground(self, posterior: Posterior) -> tuple[GroundSide, GroundSide]:
+        """The ground before and behind the target, as shares of its first step's height."""
+        first = LOG_AMPLITUDE.size + 1
+        height, width = self.first_fit.height, self.first_fit.blur.width_px
+        sides = [
+            GroundSide.of(posterior.beta[own] / height, posterior.factor[own] / height, width)
+            for own in (self.prior.block == first, self.prior.block == first + 1)
+        ]
+        return sides[0], sides[1]
+
 
 def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
     """The part of the tail beyond the spline's support, (n,)."""
@@ -256,8 +270,8 @@ def _prior(
     where = 1 + int(np.flatnonzero(directions.block == 1)[0])
     scale[where] = aperture_std
     mean[where] = (aperture - first_fit.blur.aperture_px) * first_fit.height
-    sides = [GROUND_LOG_AMPLITUDE] * 2
+    walks = [GROUND_LOG_AMPLITUDE] * ground.walks
     return Prior(
-        block, scale, mean, np.array([*LOG_AMPLITUDE, TREND_LOG_AMPLITUDE, *sides]),
+        block, scale, mean, np.array([*LOG_AMPLITUDE, TREND_LOG_AMPLITUDE, *walks]),
         LOG_AMPLITUDE_STD, first_fit.height, _NOISE_FLOOR * first_fit.height,
     )  # fmt: skip

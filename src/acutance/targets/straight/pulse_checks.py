@@ -20,6 +20,7 @@ from acutance.targets.straight.edge_checks import (
     plateau,
     straightness,
 )
+from acutance.targets.straight.ground_checks import ground_checks
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,
     gradient,
@@ -45,7 +46,7 @@ PULSE_CHECKS = (
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
     "plateau_before_px", "plateau_behind_px", "saturation", "quantisation", "gradient",
     "correlated_noise", "profile", "outliers", "parallel_deg", "background_step", "width_px",
-    "width_sigmas", "zero_distance_cpp",
+    "width_sigmas", "zero_distance_cpp", "ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of a pulse."""
 
@@ -102,6 +103,7 @@ def check_pulse(
         _wide_enough(limits, width.value),
         _stated_width(limits, width, stated_px),
         _zero_distance(data, limits, width.value, by_ratio=by_ratio),
+        *ground_checks(data, limits, ("before", "behind")),
     )
 
 

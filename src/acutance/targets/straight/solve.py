@@ -21,6 +21,7 @@ from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.first_fit import FirstFit
+from acutance.targets.straight.ground_steps import GroundSide
 from acutance.targets.straight.linear_model import Linear
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
@@ -66,6 +67,11 @@ class Solved:
     def model(self) -> LsfModel:
         """The line spread function (LSF)."""
         return self.solution.model
+
+    @property
+    def ground(self) -> tuple[GroundSide, GroundSide]:
+        """The ground before and behind the target."""
+        return self.solution.linear.ground(self.solution.posterior)
 
     @property
     def dark(self) -> float:

@@ -1,0 +1,71 @@
+"""Checks of the ground beside a straight target, as the reference estimator fitted it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from acutance.targets.check import Check, Limits, answer
+from acutance.targets.straight.check_data import PLACES, CheckData
+from acutance.targets.straight.fit_edge import SplineEdge
+from acutance.targets.straight.ground_steps import GroundSide
+
+__all__ = ["ground_checks"]
+
+_MIN_LEVEL = 0.003
+"""Share of the contrast below which ground is taken as even when the two sides are compared."""
+
+
+def ground_checks(data: CheckData, limits: Limits, sides: tuple[str, str]) -> tuple[Check, ...]:
+    """What lies beside the target; nothing where the method has no model of it.
+
+    Parameters
+    ----------
+    data : CheckData
+    limits : mapping of str to float
+    sides : (str, str)
+        Names of the sides before and behind the target.
+    """
+    if not isinstance(data.fit, SplineEdge):
+        return ()
+    return _ground(data.fit, limits, sides), _mirrored(data.fit, limits)
+
+
+def _ground(fit: SplineEdge, limits: Limits, sides: tuple[str, str]) -> Check:
+    """How much the ground beside the target differs from its level at the target."""
+    spans = [_span(side) for side in fit.ground]
+    worst = int(np.argmax([span for span, _ in spans]))
+    value, from_px = spans[worst]
+    found = "the ground beside the target is even"
+    if value > 0:
+        found = (
+            f"{PLACES[sides[worst]]} the ground differs by {100 * value:.1f} % of the contrast "
+            f"from {from_px:.1f} px on"
+        )
+    return answer("ground", value, found, limits)
+
+
+def _span(side: GroundSide) -> tuple[float, float]:
+    """The largest significant level of a side, and where it begins, px."""
+    seen = side.seen
+    if not seen.any():
+        return 0.0, math.inf
+    return float(np.abs(side.level[seen]).max()), float(side.distance_px[int(np.argmax(seen))])
+
+
+def _mirrored(fit: SplineEdge, limits: Limits) -> Check:
+    """Whether the ground on one side is the mirror image of that on the other.
+
+    Ground is not; ringing of a sharpened product, which is as far out on both sides of an edge,
+    is. The likeness is the correlation of the steps on both sides, opposite in sign, where the
+    levels they add up to are large enough to matter.
+    """
+    before, behind = fit.ground
+    count = min(before.step.size, behind.step.size)
+    one, other = before.step[:count], -behind.step[:count]
+    power = math.sqrt(float(one @ one) * float(other @ other))
+    large = min(_span(before)[0], _span(behind)[0]) > _MIN_LEVEL
+    value = max(float(one @ other) / power, 0.0) if large else 0.0
+    found = f"what lies beside the target is to {100 * value:.0f} % mirrored on its other side"
+    return answer("mirrored_ground", value, found, limits)
