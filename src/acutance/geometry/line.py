@@ -1,9 +1,9 @@
-"""A straight edge in the image plane."""
+"""A straight or gently curved edge in the image plane."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -20,7 +20,9 @@ Orientation = Literal["across", "along"]
 
 @dataclass(frozen=True)
 class Line:
-    """A straight line with a direction: its unit normal points from dark to bright.
+    """A line with a direction: its unit normal points from dark to bright.
+
+    A curved one is a parabola that touches the straight one in its point.
 
     Parameters
     ----------
@@ -35,6 +37,8 @@ class Line:
         Standard deviation of the position along the normal.
     length_px : float, optional
         How much of the line was used.
+    curvature_per_px : float, optional
+        One over its radius, positive where it bends towards the bright side.
     """
 
     row: float
@@ -43,6 +47,7 @@ class Line:
     angle_std_deg: float = 0.0
     offset_std_px: float = 0.0
     length_px: float = math.nan
+    curvature_per_px: float = 0.0
 
     @property
     def normal(self) -> tuple[float, float]:
@@ -62,7 +67,10 @@ class Line:
     def normal_distance(self, row: ArrayLike, col: ArrayLike) -> Floats:
         """Signed distance along the normal in pixels, positive on the bright side."""
         x, y = self.normal
-        return x * (np.asarray(col, float) - self.col) + y * (np.asarray(row, float) - self.row)
+        straight = x * (np.asarray(col, float) - self.col) + y * (np.asarray(row, float) - self.row)
+        if self.curvature_per_px == 0:
+            return straight
+        return straight - 0.5 * self.curvature_per_px * self.tangent_distance(row, col) ** 2
 
     def tangent_distance(self, row: ArrayLike, col: ArrayLike) -> Floats:
         """Signed distance along the line in pixels, from its point (row, col)."""
@@ -72,13 +80,27 @@ class Line:
     def moved(self, offset_px: float, turn_deg: float) -> Line:
         """The line shifted along its normal, then turned about its point (small changes)."""
         x, y = self.normal
-        return Line(
-            self.row + offset_px * y,
-            self.col + offset_px * x,
-            wrap_direction(self.normal_deg + turn_deg),
-            self.angle_std_deg,
-            self.offset_std_px,
-            self.length_px,
+        return replace(
+            self,
+            row=self.row + offset_px * y,
+            col=self.col + offset_px * x,
+            normal_deg=wrap_direction(self.normal_deg + turn_deg),
+        )
+
+    def bent(self, curvature_per_px: float) -> Line:
+        """The line with some more curvature."""
+        return replace(self, curvature_per_px=self.curvature_per_px + curvature_per_px)
+
+    def slid(self, along_px: float) -> Line:
+        """The same line, by another of its points."""
+        x, y = self.normal
+        aside_px = 0.5 * self.curvature_per_px * along_px**2
+        turn_deg = math.degrees(self.curvature_per_px * along_px)
+        return replace(
+            self,
+            row=self.row + x * along_px + y * aside_px,
+            col=self.col - y * along_px + x * aside_px,
+            normal_deg=wrap_direction(self.normal_deg - turn_deg),
         )
 
     def to_dict(self) -> dict[str, float | str | None]:
@@ -88,5 +110,6 @@ class Line:
             "col": self.col,
             "normal_deg": self.normal_deg,
             "length_px": self.length_px if math.isfinite(self.length_px) else None,
+            "curvature_per_px": self.curvature_per_px,
             "orientation": self.orientation,
         }

@@ -7,6 +7,7 @@ import numpy as np
 from acutance.curves.grid import Floats, crossing
 from acutance.errors import NoEdgeError, SupportError, TargetError
 from acutance.numerics.noise import median
+from acutance.targets.straight.bend import bent
 from acutance.targets.straight.find_edges import Segment, find_segments
 from acutance.targets.straight.first_fit import fit_first
 from acutance.targets.straight.fit_pulse import PulsePixels
@@ -92,6 +93,9 @@ def _at(
         dark=left, bright=level, profile=pulse_profile(width_px, (level - right) / (level - left)),
         fit_width=fit_width,
     )  # fmt: skip
+    pulse = bent(
+        pixels.row[along], pixels.col[along], pixels.value[along], pulse, fit_width=fit_width
+    )
     if pulse.height < MIN_SNR * pulse.noise:
         raise NoEdgeError(
             f"the strongest pulse has a height of {pulse.height:.4g} in noise of "

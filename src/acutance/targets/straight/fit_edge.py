@@ -89,6 +89,7 @@ def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
     middle = model.half_point()
     response = model.response(middle)
     line = first_fit.line.moved(middle, math.degrees(solution.rotation_rad))
+    line = line.bent(solution.curvature_per_px)
     t = line.tangent_distance(pixels.row, pixels.col)
     s = line.normal_distance(pixels.row, pixels.col)
     near = np.abs(s) < first_fit.blur.width_px

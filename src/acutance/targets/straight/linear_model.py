@@ -1,10 +1,10 @@
 """A straight target to first order about a first fit: all its unknowns in one linear model.
 
 Unknown are the dark level, the correction of the line spread function (LSF) of the first fit
-(`lsf_prior`), the trends of the plateaus (`gradients`), the rotation of the line and, of a pulse,
-its width (if free) and its height ratio (falling over rising side), in this order. The regressors
-depend on the first fit alone, but for those of rotation, width and height ratio: they are
-derivatives of the response, and depend on the LSF.
+(`lsf_prior`), the trends of the plateaus (`gradients`) and the ground beside them (`ground_steps`),
+rotation and curvature of the line and, of a pulse, its width (if free) and its height ratio
+(falling over rising side), in this order. The regressors depend on the first fit alone, but for
+those of line, width and height ratio: they are derivatives of the response, and depend on the LSF.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from acutance.targets.straight.spline_equations import Stencil
 from acutance.targets.straight.step_profile import Profile
 from acutance.targets.straight.tuned import (
     APERTURE_PX,
+    CURVATURE_STD_PER_PX,
     GROUND_LOG_AMPLITUDE,
     LOG_AMPLITUDE,
     LOG_AMPLITUDE_STD,
@@ -80,7 +81,7 @@ class Linear:
     fixed : (q, n) array
         Regressors other than the spline that depend on the first fit alone.
     derivatives : int
-        Number of those that depend on the LSF: rotation, width, height ratio.
+        Number of those that depend on the LSF: rotation, curvature, width, height ratio.
     directions : Directions
         In which the LSF may differ from that of the first fit.
     design : (CELLS + 3 + k, r) array
@@ -126,7 +127,7 @@ class Linear:
         if not is_edge:
             # The dark level adds to every pixel once, whatever the steps.
             further.append(np.ones(s.size))
-        derivatives = 1 if is_edge else 2 + fit_width
+        derivatives = 2 if is_edge else 3 + fit_width
         directions = lsf_prior.directions(first_fit.blur)
         residual = pixels.value - first_fit.dark - first_fit.height * mean
         # A bad pixel counts with no more than a whole height.
@@ -179,10 +180,11 @@ class Linear:
                 for distance, blurred in zip(profile.distances(self.s), self.seen, strict=True)
             ]
         _, slope = profile.response(known)
-        by_parameter = [self.t * slope]
+        # A line bent towards the bright side leaves its pixels nearer to the dark one.
+        by_parameter = [self.t * slope, -0.5 * self.t**2 * slope]
         if len(known) > 1:
             esf, lsf = known[1]
-            by_parameter += [-profile.shares[1] * lsf, -esf][-(self.derivatives - 1) :]
+            by_parameter += [-profile.shares[1] * lsf, -esf][-(self.derivatives - 2) :]
         return np.vstack([self.fixed, *by_parameter])
 
     def image(self, columns: Floats, beta: Floats) -> Floats:
@@ -265,6 +267,7 @@ def _prior(
     scale[block >= first_side] = ground.scale
     # Prior: rotation (radians), width (pixels) and height ratio are known to about one.
     scale[-derivatives:] = 1 / first_fit.height
+    scale[1 - derivatives] = CURVATURE_STD_PER_PX / first_fit.height
     mean = np.zeros(block.size)
     aperture, aperture_std = APERTURE_PX
     where = 1 + int(np.flatnonzero(directions.block == 1)[0])

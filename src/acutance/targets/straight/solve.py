@@ -126,6 +126,16 @@ class Solution:
         return _norm(self.posterior.factor[-self.linear.derivatives])
 
     @property
+    def curvature_per_px(self) -> float:
+        """What the line bends in this pass."""
+        return float(self.posterior.beta[1 - self.linear.derivatives])
+
+    @property
+    def curvature_std_per_px(self) -> float:
+        """Standard deviation of the curvature."""
+        return _norm(self.posterior.factor[1 - self.linear.derivatives])
+
+    @property
     def updates(self) -> Floats:
         """Changes of a pulse's width (if free) and of its height ratio in this pass, (k,)."""
         return self.posterior.beta[self._first_update :]
@@ -137,7 +147,7 @@ class Solution:
 
     @property
     def _first_update(self) -> int:
-        return self.posterior.beta.size - self.linear.derivatives + 1
+        return self.posterior.beta.size - self.linear.derivatives + 2
 
 
 def solve(
@@ -190,7 +200,10 @@ def _are_short(solved: Solution, fit_width: bool) -> bool:
     The error of a linear update of the width is about its square in pixels, of one of the height
     ratio a twentieth: it has to be much smaller than the standard deviation.
     """
-    if abs(solved.rotation_rad) * solved.linear.half_length_px >= _SETTLED_PX:
+    half_px = solved.linear.half_length_px
+    if abs(solved.rotation_rad) * half_px >= _SETTLED_PX:
+        return False
+    if abs(solved.curvature_per_px) * half_px**2 / 2 >= _SETTLED_PX:
         return False
     updates, stds = np.abs(solved.updates), solved.updates_std
     tolerance = np.maximum(_SETTLED_RATIO, 6.0 * stds)
@@ -203,7 +216,9 @@ def _is_at_rest(solved: Solution) -> bool:
     """Whether the updates of line and profile are within their standard deviations."""
     still = np.abs(solved.updates) < _NEGLIGIBLE_SIGMAS * solved.updates_std
     return bool(
-        abs(solved.rotation_rad) < _NEGLIGIBLE_SIGMAS * solved.rotation_std_rad and np.all(still)
+        abs(solved.rotation_rad) < _NEGLIGIBLE_SIGMAS * solved.rotation_std_rad
+        and abs(solved.curvature_per_px) < _NEGLIGIBLE_SIGMAS * solved.curvature_std_per_px
+        and np.all(still)
     )
 
 
@@ -218,6 +233,7 @@ def _updated(solved: Solution, fit_width: bool) -> FirstFit:
     # A rotation too large for the linear model is cut: three pixels at the ends a pass.
     most = 3.0 / max(solved.linear.half_length_px, 1.0)
     line = first_fit.line.moved(0.0, math.degrees(float(np.clip(solved.rotation_rad, -most, most))))
+    line = line.bent(solved.curvature_per_px)
     if not solved.updates.size:
         return replace(first_fit, line=line)
     width_px, height_ratio = first_fit.profile.positions_px[1], -first_fit.profile.shares[1]

@@ -7,7 +7,7 @@ usable if all pixels between it and the line look like the plateau of its side.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, SupportError
 from acutance.geometry.line import Line
 from acutance.numerics.noise import median
+from acutance.targets.straight.bend import bent
 from acutance.targets.straight.find_edges import Segment
 from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.pixels import EdgePixels, Pixels
@@ -160,11 +161,7 @@ def select_usable(
         float(np.sort(reach[start:stop])[tenth]) for reach in (dark_reach, bright_reach)
     )
     middle = first + 0.5 * (start + stop)
-    x, y = edge.line.normal
-    line = Line(
-        edge.line.row + x * middle, edge.line.col - y * middle, edge.line.normal_deg,
-        length_px=float(length),
-    )  # fmt: skip
+    line = replace(edge.line.slid(middle), length_px=float(length))
     _require_contrast(edge, residual[used])
     extent = Extent(dark_px, bright_px, float(length), whole)
     return UsablePixels(image, line, extent)
@@ -195,6 +192,7 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Fir
             row[near], col[near], value[near], segment.line,
             dark=levels[0], bright=levels[1], sigma_px=sigma_px,
         )  # fmt: skip
+        edge = bent(row[near], col[near], value[near], edge)
         if edge.blur.width_px * _REACH_WIDTHS <= reach:
             break
         reach, sigma_px = 1.2 * _REACH_WIDTHS * edge.blur.width_px, edge.blur.sigma_px

@@ -16,6 +16,7 @@ __all__ = [
     "APERTURE_PX",
     "APERTURE_TAIL_PX",
     "CHANGE_SIGMAS",
+    "CURVATURE_STD_PER_PX",
     "DETAIL",
     "DETAIL_LOG_AMPLITUDE",
     "FAMILY_LOG_AMPLITUDES",
@@ -75,6 +76,8 @@ LOG_AMPLITUDE_STD: Final = 2.0
 have (MTF at Nyquist, 40 px, SNR 100: RMS .0060 at 1.2, .0056 at 2)."""
 APERTURE_PX: Final = (1.0, 0.18)
 """Mean and standard deviation of the detector's aperture: fill factors are near one."""
+CURVATURE_STD_PER_PX: Final = 1e-3
+"""Curvature of lines beyond that of the first fit (bend.py): radii of 1000 px and more."""
 NEAR_GROUND_STEPS: Final[Floats] = np.array([1.5, 2, 2.5, 3, 3.5, 4, 4.75, 5.5, 6.25, 7])
 FAR_GROUND_STEPS: Final[Floats] = np.array([8.2, 10, 13, 17, 23])
 """Where the ground beside a target may have steps, in widths: from where the blur ends
