@@ -91,7 +91,7 @@ class Measurement(HasResponse, HasChecks):
             raise AttributeError(
                 f"{self.kind} shows two directions: use .across, .along or .response_at(angle_deg)"
             )
-        return self.transfer
+        return self.directions[self.orientation]
 
     @property
     def otf(self) -> Otf2d:
@@ -107,8 +107,14 @@ class Measurement(HasResponse, HasChecks):
     def directions(self) -> dict[Orientation, Response]:
         """The curves by direction: "across", "along", or both."""
         if isinstance(self.transfer, Response):
-            return {self.orientation: self.transfer}
-        return {name: self.response_at(angle) for name, angle in self.axes_deg.items()}
+            found = {self.orientation: self.transfer}
+        else:
+            found = {name: self.response_at(angle) for name, angle in self.axes_deg.items()}
+        if "record" not in vars(self):
+            return found
+        # The record is older than the rounding of a light half: its numbers stand.
+        stated = self.record.directions
+        return {name: one.with_numbers(stated[name].numbers) for name, one in found.items()}
 
     @property
     def axes_deg(self) -> dict[Orientation, float]:
@@ -170,11 +176,12 @@ class Measurement(HasResponse, HasChecks):
     def without_details(self) -> Self:
         """The same measurement without pixels and fits: light enough to be sent and kept.
 
-        Its record, and so its document, is that of the whole measurement. A covariance over the
-        plane of frequencies may be rounded: deviations read from its curves again differ by some
-        thousandths, of points by up to 6 %.
+        Its record, and so its document and its numbers, are those of the whole measurement.
+        The curves of one direction keep all standard deviations, but their correlations may be
+        rounded. So may a covariance over the plane of frequencies: deviations of its curves
+        differ by some thousandths, of points by up to a sixth.
         """
-        transfer = self.transfer.packed() if isinstance(self.transfer, Otf2d) else self.transfer
+        transfer = self.transfer.packed()
         light = replace(self, details=None, checks=tuple(self.checks), transfer=transfer)
         vars(light)["record"] = self.record
         return light
