@@ -16,6 +16,7 @@ from acutance.curves.grid import Floats
 from acutance.geometry.angles import is_nearer_columns
 from acutance.geometry.line import Orientation
 from acutance.targets.check import Check, HasChecks, count_failed
+from acutance.targets.directions import HasDirections
 from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
 from acutance.targets.slices import OtfSlices
 
@@ -26,7 +27,7 @@ _STEPS = 2
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Measurement(HasResponse, HasChecks):
+class Measurement(HasResponse, HasDirections[Response], HasChecks):
     """The result of a measurement of a target of any kind.
 
     A straight target shows one direction: `m.mtf_nyquist`, `m.rer`, `m.mtf(0.25)` and all other
@@ -127,25 +128,6 @@ class Measurement(HasResponse, HasChecks):
         """The directions that the target shows; others follow from the prior."""
         return tuple(self.directions)
 
-    @property
-    def across(self) -> Response:
-        """The curves and numbers across track: along the rows of pixels, if not declared else."""
-        return self._direction("across")
-
-    @property
-    def along(self) -> Response:
-        """The curves and numbers along track: down the columns of pixels, if not declared else."""
-        return self._direction("along")
-
-    def _direction(self, name: Orientation) -> Response:
-        found = self.directions.get(name)
-        if found is None:
-            raise AttributeError(
-                f"this {self.kind} was measured {self.orientation} track, not {name}: read its "
-                "numbers from the measurement itself"
-            )
-        return found
-
     def response_at(self, angle_deg: float) -> Response:
         """The curves of any direction, from the column axis (0) towards the row axis (90)."""
         return self.otf.response(angle_deg)
@@ -243,11 +225,6 @@ class Measurement(HasResponse, HasChecks):
         snr = f", snr {self.snr:.3g}" if math.isfinite(self.snr) else ""
         failed = count_failed(self.checks)
         return f"{self.kind} by {self.method}, {', '.join(named)}{snr}, {failed}"
-
-    def _repr_html_(self) -> str:
-        from acutance.report import notebook_html
-
-        return notebook_html(self)
 
 
 def _direction_document(response: Response) -> dict[str, Any]:
