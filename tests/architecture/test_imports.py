@@ -52,10 +52,9 @@ EXCEPTIONS: dict[tuple[str, str], str] = {}
 
 # The same for imports of a higher floor.
 UPWARD_EXCEPTIONS = {
-    ("targets/measurement.py", "acutance.report"): (
+    ("targets/directions.py", "acutance.report"): (
         "notebooks ask a result for HTML: _repr_html_ loads the reports only then"
     ),
-    ("targets/record.py", "acutance.report"): "as measurement.py",
 }
 
 

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
 
 from acutance.curves import metrics
 from acutance.curves.estimate import Estimate
+from acutance.curves.grid import Floats
+from acutance.curves.rounded_rows import RoundedRows, principal_axes
 from acutance.curves.short_repr import ShortRepr
 from acutance.curves.spread import Esf, Lsf
-from acutance.curves.transfer import Mtf
+from acutance.curves.transfer import Mtf, phasor
 
-__all__ = ["METRICS", "HasResponse", "Response"]
+__all__ = ["METRICS", "HasResponse", "PackedResponse", "Response"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +113,78 @@ class Response(ShortRepr):
         """All numbers by name, in the order a report prints them."""
         found = {name: getattr(self, name) for name in METRICS}
         return {name: number for name, number in found.items() if number is not None}
+
+    def with_numbers(self, numbers: Mapping[str, Estimate]) -> Self:
+        """The same curves, with numbers that were read of them before their covariance was rounded.
+
+        Parameters
+        ----------
+        numbers : mapping of str to Estimate
+            By the names in `METRICS`; others are read from the curves.
+        """
+        stated = replace(self)
+        vars(stated).update(numbers)
+        return stated
+
+    @property
+    def covariance_factor(self) -> Floats:
+        """Factor of the common covariance: rows of the ESF, of the LSF, of the OTF, (n, k).
+
+        Of the optical transfer function (OTF) there are all components along itself first, whose
+        deviations are those of the MTF, then all in quadrature.
+        """
+        turned = np.conj(phasor(self.mtf.otf))[:, None] * self.mtf.otf_factor
+        spread = self.esf.covariance_factor, self.lsf.covariance_factor
+        return np.concatenate([*spread, turned.real, turned.imag])
+
+    def packed(self) -> Response:
+        """The same curves in fewer bytes: their correlations are rounded, no standard deviation.
+
+        Along principal axes few components of the rows are large.
+        """
+        factor = self.covariance_factor
+        return PackedResponse.of(self, RoundedRows.of(factor @ principal_axes(factor)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PackedResponse(Response):
+    """Curves whose correlations were rounded. They are pickled in an eighth of the bytes.
+
+    Parameters
+    ----------
+    rows : RoundedRows
+        Of `covariance_factor`.
+    """
+
+    rows: RoundedRows
+
+    @classmethod
+    def of(cls, curves: Response, rows: RoundedRows) -> PackedResponse:
+        """The values of `curves` with the covariance of `rows`."""
+        n = curves.mtf.freq_cpp.size
+        factor, along, quadrature = np.split(rows.factor(), [-2 * n, -n])
+        esf, lsf = np.split(factor, [curves.esf.distance_px.size])
+        return cls(
+            Esf(curves.esf.distance_px, curves.esf.value, esf),
+            Lsf(curves.lsf.distance_px, curves.lsf.value, lsf),
+            replace(curves.mtf, factor=phasor(curves.mtf.otf)[:, None] * (along + 1j * quadrature),
+                    latent=None),
+            curves.gsd_m, curves.rer_centre, rows=rows,
+        )  # fmt: skip
+
+    def packed(self) -> PackedResponse:
+        """Itself."""
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        esf, lsf, mtf = self.esf, self.lsf, self.mtf
+        bare = Response(
+            Esf(esf.distance_px, esf.value, np.zeros((esf.value.size, 0))),
+            Lsf(lsf.distance_px, lsf.value, np.zeros((lsf.value.size, 0))),
+            Mtf(mtf.freq_cpp, mtf.otf, np.zeros((mtf.otf.size, 0), complex)),
+            self.gsd_m, self.rer_centre,
+        )  # fmt: skip
+        return PackedResponse.of, (bare, self.rows)
 
 
 class HasResponse(ShortRepr):

@@ -14,7 +14,7 @@ from acutance.curves.estimates import Estimates, estimates_of
 from acutance.curves.grid import Floats, Places, as_places, sample
 from acutance.curves.short_repr import ShortRepr
 
-__all__ = ["Mtf"]
+__all__ = ["Mtf", "phasor"]
 
 Complexes = NDArray[np.complex128]
 
@@ -150,10 +150,15 @@ def _modulus(otf: Complexes, factor: Complexes, latent: Floats | None) -> tuple[
     The error of a modulus is that of the OTF's part in phase with itself.
     """
     modulus = np.abs(otf)
-    known = modulus > 0
-    turn = np.conj(np.where(known, otf, 1.0)) / np.where(known, modulus, 1.0)
-    turned = turn[..., None] * factor
+    turned = np.conj(phasor(otf))[..., None] * factor
     parts = np.stack([turned.real, turned.imag])
     along, quadrature = parts if latent is None else parts @ latent
     power = modulus**2 - np.einsum("...j,...j->...", quadrature, quadrature)
     return np.asarray(np.sqrt(np.maximum(power, 0.0))), along
+
+
+def phasor(otf: Complexes) -> Complexes:
+    """Direction of an OTF in the complex plane, (...); 1 where the OTF is 0."""
+    modulus = np.abs(otf)
+    known = modulus > 0
+    return np.asarray(np.where(known, otf, 1.0) / np.where(known, modulus, 1.0))

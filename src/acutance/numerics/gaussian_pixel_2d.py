@@ -2,7 +2,7 @@
 
 Point spread function (PSF) = Gaussian(Sigma) * square of side `aperture_px`, of unit volume, with x
 the column and y the row direction. It is the first fit of point sources and the mean of the prior
-of their PSF.
+of their PSF, and the mean of the transfer function of bars and stars.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
 What the kinds share stands here: `kinds` (their names and methods), `region` (the pixels
 of a measurement), `options` (what callers choose), `check` and `check_table` (is the
 target good enough), `slices` (an OTF along some directions, with covariance), `measurement` and its
-light half, `record`, and `target_result` (several measurements of one target). The kinds, none of
-which imports another:
+light half, `record`, `directions` (what these two have in common), and `target_result` (several
+measurements of one target). The kinds, none of which imports another:
 
 - `straight`: edges and pulses, along their normals
 - `points`: mirrors, lamps, stars of the sky

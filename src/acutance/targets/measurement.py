@@ -16,6 +16,7 @@ from acutance.curves.grid import Floats
 from acutance.geometry.angles import is_nearer_columns
 from acutance.geometry.line import Orientation
 from acutance.targets.check import Check, HasChecks, count_failed
+from acutance.targets.directions import HasDirections
 from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
 from acutance.targets.slices import OtfSlices
 
@@ -26,7 +27,7 @@ _STEPS = 2
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Measurement(HasResponse, HasChecks):
+class Measurement(HasResponse, HasDirections[Response], HasChecks):
     """The result of a measurement of a target of any kind.
 
     A straight target shows one direction: `m.mtf_nyquist`, `m.rer`, `m.mtf(0.25)` and all other
@@ -91,7 +92,7 @@ class Measurement(HasResponse, HasChecks):
             raise AttributeError(
                 f"{self.kind} shows two directions: use .across, .along or .response_at(angle_deg)"
             )
-        return self.transfer
+        return self.directions[self.orientation]
 
     @property
     def otf(self) -> Otf2d:
@@ -107,8 +108,14 @@ class Measurement(HasResponse, HasChecks):
     def directions(self) -> dict[Orientation, Response]:
         """The curves by direction: "across", "along", or both."""
         if isinstance(self.transfer, Response):
-            return {self.orientation: self.transfer}
-        return {name: self.response_at(angle) for name, angle in self.axes_deg.items()}
+            found = {self.orientation: self.transfer}
+        else:
+            found = {name: self.response_at(angle) for name, angle in self.axes_deg.items()}
+        if "record" not in vars(self):
+            return found
+        # The record is older than the rounding of a light half: its numbers stand.
+        stated = self.record.directions
+        return {name: one.with_numbers(stated[name].numbers) for name, one in found.items()}
 
     @property
     def axes_deg(self) -> dict[Orientation, float]:
@@ -120,25 +127,6 @@ class Measurement(HasResponse, HasChecks):
     def measured_directions(self) -> tuple[Orientation, ...]:
         """The directions that the target shows; others follow from the prior."""
         return tuple(self.directions)
-
-    @property
-    def across(self) -> Response:
-        """The curves and numbers across track: along the rows of pixels, if not declared else."""
-        return self._direction("across")
-
-    @property
-    def along(self) -> Response:
-        """The curves and numbers along track: down the columns of pixels, if not declared else."""
-        return self._direction("along")
-
-    def _direction(self, name: Orientation) -> Response:
-        found = self.directions.get(name)
-        if found is None:
-            raise AttributeError(
-                f"this {self.kind} was measured {self.orientation} track, not {name}: read its "
-                "numbers from the measurement itself"
-            )
-        return found
 
     def response_at(self, angle_deg: float) -> Response:
         """The curves of any direction, from the column axis (0) towards the row axis (90)."""
@@ -170,11 +158,12 @@ class Measurement(HasResponse, HasChecks):
     def without_details(self) -> Self:
         """The same measurement without pixels and fits: light enough to be sent and kept.
 
-        Its record, and so its document, is that of the whole measurement. A covariance over the
-        plane of frequencies may be rounded: deviations read from its curves again differ by some
-        thousandths, of points by up to 6 %.
+        Its record, and so its document and its numbers, are those of the whole measurement.
+        The curves of one direction keep all standard deviations, but their correlations may be
+        rounded. So may a covariance over the plane of frequencies: deviations of its curves
+        differ by some thousandths, of points by up to a sixth.
         """
-        transfer = self.transfer.packed() if isinstance(self.transfer, Otf2d) else self.transfer
+        transfer = self.transfer.packed()
         light = replace(self, details=None, checks=tuple(self.checks), transfer=transfer)
         vars(light)["record"] = self.record
         return light
@@ -236,11 +225,6 @@ class Measurement(HasResponse, HasChecks):
         snr = f", snr {self.snr:.3g}" if math.isfinite(self.snr) else ""
         failed = count_failed(self.checks)
         return f"{self.kind} by {self.method}, {', '.join(named)}{snr}, {failed}"
-
-    def _repr_html_(self) -> str:
-        from acutance.report import notebook_html
-
-        return notebook_html(self)
 
 
 def _direction_document(response: Response) -> dict[str, Any]:

@@ -25,6 +25,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.raster.image import AlongTrack
 from acutance.targets.check import Check, HasChecks, count_failed
+from acutance.targets.directions import HasDirections
 from acutance.targets.slices import OtfSlices
 
 __all__ = ["SCHEMA", "ImageInfo", "Record", "RecordedDirection", "rounded", "strict_json"]
@@ -158,7 +159,7 @@ class RecordedDirection(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False)
-class Record(ShortRepr, HasChecks):
+class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
     """A measurement without its pixels: the document ``acutance/measurement/1``, read by name.
 
     Parameters
@@ -258,24 +259,6 @@ class Record(ShortRepr, HasChecks):
         """The directions that the target showed; in older documents all of them."""
         return tuple(self.document.get("measured_directions", self.directions))
 
-    @property
-    def across(self) -> RecordedDirection:
-        """Numbers and curves across track."""
-        return self._direction("across")
-
-    @property
-    def along(self) -> RecordedDirection:
-        """Numbers and curves along track."""
-        return self._direction("along")
-
-    def _direction(self, name: str) -> RecordedDirection:
-        found = self.directions.get(name)
-        if found is None:
-            raise AttributeError(
-                f"this {self.kind} was measured {' and '.join(self.directions)} track, not {name}"
-            )
-        return found
-
     @cached_property
     def slices(self) -> OtfSlices:
         """The OTF along the measured directions, with its covariance.
@@ -312,11 +295,6 @@ class Record(ShortRepr, HasChecks):
         """Target and method, the main numbers, and how many checks failed."""
         named = (f"{name}: {self.directions[name].summary()}" for name in self.measured_directions)
         return f"{self.kind} by {self.method}, {', '.join(named)}, {count_failed(self.checks)}"
-
-    def _repr_html_(self) -> str:
-        from acutance.report import notebook_html
-
-        return notebook_html(self)
 
 
 def rounded(values: ArrayLike, digits: int = 6) -> list[Any]:

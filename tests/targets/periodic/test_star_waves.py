@@ -97,3 +97,15 @@ def test_modes_are_those_of_real_spread_functions():
     step = 1e-5
     by_xy = (MeanOtf(0.2, 0.05 + step, 0.15).otf(u, v) - blur.otf(u, v)) / step
     assert np.allclose(blur.modes(u, v)[:, 2], by_xy, atol=1e-4)
+    wider = MeanOtf(0.2, 0.05, 0.15, 1 + step).otf(u, v) - blur.otf(u, v)
+    assert np.allclose(blur.modes(u, v)[:, 6:].sum(axis=1), wider / step, atol=1e-4)
+
+
+def test_modes_are_smooth_where_the_pixel_transfers_nothing():
+    """A detector of another width does not vanish at 1 and 2 cycles per pixel."""
+    blur = MeanOtf(0.1, 0.0, 0.1)
+    freq = np.array([0.999, 1.0, 1.001, 1.999, 2.0, 2.001])
+    modes = blur.modes(freq, np.zeros(freq.size))
+    assert modes[1] == pytest.approx(modes[[0, 2]].mean(axis=0), abs=1e-5)
+    assert modes[4] == pytest.approx(modes[[3, 5]].mean(axis=0), abs=1e-5)
+    assert abs(modes[1, 6]) > 0.1

@@ -99,6 +99,9 @@ def fit_gaussian(
 ) -> GaussianFit:
     """Fit shift and blur along both axes, gain and offset.
 
+    No least squares of fixed weights: every iteration weighs the pixels by the noise of the one
+    before, and sums them tile by tile, as residuals of a whole scene are too many to be kept.
+
     Parameters
     ----------
     tiles : Tiles

@@ -134,7 +134,11 @@ def solve_bars(
 def _place_groups(
     image: Floats, stated: tuple[Bars, ...], contrast: float
 ) -> tuple[MeanOtf, tuple[Bars, ...], float]:
-    """A Gaussian through a pixel, every group in its place, and the contrast."""
+    """A Gaussian through a pixel, every group in its place, and the contrast.
+
+    No least squares of fixed data: a group that moves takes in other pixels, and a mean that is
+    widened has other modes.
+    """
     mean, groups = MeanOtf(_SIGMA_PX**2, 0.0, _SIGMA_PX**2), stated
     for _ in range(_MAX_PLACE_PASSES):
         pixels = _pixels_of(image, groups)
@@ -160,7 +164,11 @@ def _fit_otf(
     *,
     robust: bool,
 ) -> BarsSolution:
-    """The transfer function itself, with what bars' ends and neighbours do to the pixels."""
+    """The transfer function itself, with what bars' ends and neighbours do to the pixels.
+
+    No least squares of fixed weights: every pass finds the prior's amplitudes by the marginal
+    likelihood, and the weights and the correlation of the noise from what it leaves.
+    """
     states = ProcessModes(mean.width_px)
     # By group and pixel: a group that moves takes in other pixels, and groups may share some.
     weights = np.ones((len(groups), *image.shape))

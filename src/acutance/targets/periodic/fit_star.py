@@ -111,6 +111,9 @@ def solve_star(
 ) -> StarSolution:
     """Solve for centre, phase, level, background and transfer function.
 
+    No least squares of fixed weights: every pass finds the prior's amplitudes by the marginal
+    likelihood, and the weights and the correlation of the noise from what it leaves.
+
     Parameters
     ----------
     image : (rows, cols) array

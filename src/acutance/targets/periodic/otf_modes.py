@@ -23,6 +23,7 @@ from scipy.special import eval_genlaguerre, gammaln
 
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
+from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
 from acutance.numerics.lorentz_tail import tail_otf
 from acutance.numerics.process_modes import mehler
 
@@ -59,12 +60,8 @@ PROCESSES: Final = (Process(1.2, 0.6, 12), Process(0.7, 0.17, 10), Process(3.0, 
 
 
 @dataclass(frozen=True)
-class MeanOtf:
+class MeanOtf(GaussianPixel2d):
     """The mean of the prior: a Gaussian of covariance (xx, xy, yy) in px^2 through a pixel."""
-
-    xx: float
-    xy: float
-    yy: float
 
     @property
     def width_px(self) -> float:
@@ -74,35 +71,14 @@ class MeanOtf:
         """
         return FWHM_OF_SIGMA * math.sqrt(0.5 * (self.xx + self.yy) + 1 / 12)
 
-    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
-        """Transfer at frequencies across and along."""
-        power = self.xx * u_cpp**2 + 2 * self.xy * u_cpp * v_cpp + self.yy * v_cpp**2
-        return np.asarray(np.exp(-2 * math.pi**2 * power) * np.sinc(u_cpp) * np.sinc(v_cpp))
-
     def modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Transfer, and its derivatives by xx, xy, yy, by the place and by the aperture, (n, 8).
 
         The place in px, x and y; the aperture in px, its width and its height.
         """
-        otf = self.otf(u_cpp, v_cpp)
-        shift = -2j * math.pi * otf
-        blur = -2 * math.pi**2 * otf
-        return np.stack(
-            [
-                otf, blur * u_cpp**2, 2 * blur * u_cpp * v_cpp, blur * v_cpp**2,
-                shift * u_cpp, shift * v_cpp,
-                otf * _by_aperture(u_cpp), otf * _by_aperture(v_cpp),
-            ],
-            axis=-1,
-        )  # fmt: skip
-
-
-def _by_aperture(freq: Floats) -> Floats:
-    """Logarithmic derivative of ``sinc(w f)`` by w at w = 1; bounded where the sinc is zero."""
-    x = np.pi * np.where(np.abs(freq) < 1e-4, 1e-4, freq)
-    sinc = np.sinc(x / np.pi)
-    safe = np.where(np.abs(sinc) < 1e-6, 1e-6, sinc)
-    return np.asarray((np.cos(x) - sinc) / safe)
+        otf, slopes = self.otf(u_cpp, v_cpp), self.otf_slopes(u_cpp, v_cpp)
+        by_place = -2j * math.pi * otf[:, None] * np.stack([u_cpp, v_cpp], axis=1)
+        return np.column_stack([otf, slopes[:, :3], by_place, slopes[:, 3:]])
 
 
 @dataclass(frozen=True)

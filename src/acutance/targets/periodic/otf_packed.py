@@ -37,13 +37,13 @@ class PackedOtf:
         Mean of the OTF.
     beta : tuple of float
         Coefficients of its modes and of the processes'.
-    packed : bytes
+    steps : bytes
         Compressed triangular factor of the covariance, by the level, in steps of 3e-7.
     """
 
     mean: MeanOtf
     beta: tuple[float, ...]
-    packed: bytes
+    steps: bytes
 
     @classmethod
     def of(cls, fitted: FittedOtf) -> PackedOtf:
@@ -70,7 +70,7 @@ class PackedOtf:
     @cached_property
     def _fitted(self) -> FittedOtf:
         beta = np.array(self.beta)
-        steps = np.frombuffer(zlib.decompress(self.packed), "<i4")
+        steps = np.frombuffer(zlib.decompress(self.steps), "<i4")
         triangle = np.zeros((beta.size, beta.size))
         triangle[np.tril_indices(beta.size)] = _STEP * steps
         factor = np.asarray(
@@ -80,7 +80,7 @@ class PackedOtf:
         return FittedOtf(self.mean, beta, level * factor)
 
     def __getstate__(self) -> dict[str, object]:
-        return {"mean": self.mean, "beta": self.beta, "packed": self.packed}
+        return {"mean": self.mean, "beta": self.beta, "steps": self.steps}
 
 
 @cache

@@ -77,6 +77,11 @@ def own_columns(
 def fit_first_gaussian(stamps: Stamps, places: Floats) -> FirstFit:
     """Fit flux, place and background of every source, and one blur for all.
 
+    This is plain least squares, but six of the unknowns of each source touch its own pixels alone:
+    eliminated source by source, a step costs as many times more as there are sources.
+    ``scipy.optimize.least_squares`` needs twice the time with a dense Jacobian of 20 sources, 1.5
+    times with a sparse one of 150.
+
     Parameters
     ----------
     stamps : Stamps

@@ -149,7 +149,12 @@ class _State:
 def _settle(
     stamps: Stamps, first: FirstFit, state: _State, background: Background, robust: bool
 ) -> tuple[_State, Blocks, Prior, Posterior, PointNoise]:
-    """Solve the linear problem again until nothing moves: the last one, and where it was posed."""
+    """Solve the linear problem again until nothing moves: the last one, and where it was posed.
+
+    No least squares of fixed weights: every pass finds the prior's amplitudes by the marginal
+    likelihood of its linear problem, and weights, correlation and growth of the noise from what is
+    left.
+    """
     peaks = first.fluxes * first.blur.peak
     brightest = float(peaks.max())
     min_floor = tuned.NOISE_FLOOR * brightest

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import FREQ_CPP, Floats, crossing, sample
 from acutance.curves.metrics import RerCentre
+from acutance.curves.rounded_rows import principal_axes
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.lorentz_tail import tail_esf, tail_lsf, tail_otf
 from acutance.targets.straight.pulse_halo import with_halo_error
@@ -32,6 +33,8 @@ __all__ = ["LsfModel", "SplineResponse", "with_uncertain_halo"]
 
 _STEP_PX = 0.05
 _MIN_HALF_PX = 10.0
+_NEGLIGIBLE = 1e-9
+"""Of a variance: what is left out of the light half of a measurement."""
 _Linear = tuple[Floats, SplineRows]
 _Parts = tuple[Floats, NDArray[np.intp], Floats, Floats]
 
@@ -177,10 +180,18 @@ class SplineResponse(Response):
     middle_px: float
     halo_share: float = 0.0
 
+    def packed(self) -> SplineResponse:
+        """The same curves, with as many latent variables as their deviations depend on."""
+        axes = principal_axes(self.model.response(self.middle_px).covariance_factor, _NEGLIGIBLE)
+        narrow = replace(self.model, latent=self.model.latent @ axes)
+        return _restored(narrow, *self._parts[1:])
+
+    @property
+    def _parts(self) -> tuple[LsfModel, float, float, float | None, RerCentre]:
+        return self.model, self.middle_px, self.halo_share, self.gsd_m, self.rer_centre
+
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        return _restored, (
-            self.model, self.middle_px, self.halo_share, self.gsd_m, self.rer_centre,
-        )  # fmt: skip
+        return _restored, self._parts
 
 
 def _restored(

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, SupportError
 from acutance.geometry.line import Line
-from acutance.numerics.noise import median
+from acutance.numerics.noise import median, robust_scale
 from acutance.targets.straight.bend import bent
 from acutance.targets.straight.find_edges import Segment
 from acutance.targets.straight.first_fit import FirstFit, fit_first
@@ -237,7 +237,7 @@ def _structure_mask(
     outside = edge.profile.outside(s)
     around = (np.abs(t) < half_length_px) & (outside > width)
     around &= outside < _FIRST_REACH_PX + width
-    noise = median(np.abs(smooth[around])) / 0.6745 if around.any() else 0.0
+    noise = robust_scale(smooth[around]) if around.any() else 0.0
     # More than a fifth of the contrast is structure, however rough the plateaus are.
     tolerance = max(PLATEAU_TOLERANCE, min(_SIGNIFICANCE * noise, MAX_TOLERANCE))
     near = outside < 1.5 * width

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -102,14 +103,10 @@ def iso12233(trimmed: EdgePixels, options: Iso12233Options = _DEFAULT) -> EdgeFi
         See `locate_rows`; SupportError also when the bins reach less than 3 px.
     """
     rows = _whole_cycles(locate_rows(trimmed, centroid_locations))
-
-    def pipeline(rows: LocatedRows, weight: Floats) -> SampledEdge:
-        return _sample(rows, weight, options)
-
     return fit_with_bootstrap(
         trimmed,
         rows,
-        pipeline,
+        partial(_sample, options=options),
         replicates=options.replicates,
         rng=np.random.default_rng(options.seed),
     )

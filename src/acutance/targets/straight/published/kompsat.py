@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -115,15 +116,11 @@ def kompsat_2014(trimmed: EdgePixels, options: KompsatOptions = _DEFAULT) -> Edg
         See `locate_rows`.
     """
     rows = locate_rows(trimmed, cubic_locations)
-
-    def pipeline(rows: LocatedRows, weight: Floats) -> SampledEdge:
-        return _sample(rows, weight, options)
-
     centre: RerCentre = "peak" if options.esf == "spline" else "half"
     return fit_with_bootstrap(
         trimmed,
         rows,
-        pipeline,
+        partial(_sample, options=options),
         replicates=options.replicates,
         rng=np.random.default_rng(options.seed),
         rer_centre=options.rer_centre or centre,

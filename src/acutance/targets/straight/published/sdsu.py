@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -115,14 +116,10 @@ def sdsu_2005(trimmed: EdgePixels, options: SdsuOptions = _DEFAULT) -> EdgeFit:
     """
     rows = locate_rows(trimmed, fermi_locations)
     require_phases_for(options.order, rows)
-
-    def pipeline(rows: LocatedRows, weight: Floats) -> SampledEdge:
-        return _sample(rows, weight, options)
-
     return fit_with_bootstrap(
         trimmed,
         rows,
-        pipeline,
+        partial(_sample, options=options),
         replicates=options.replicates,
         rng=np.random.default_rng(options.seed),
     )
