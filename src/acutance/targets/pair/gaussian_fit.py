@@ -14,6 +14,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
+from acutance.numerics.noise import robust_scale
 from acutance.targets.pair.axis_gaussian import MAX_VARIANCE_PX2, MIN_VARIANCE_PX2, AxisGaussian
 from acutance.targets.pair.tile import TapGrid, Tiles, core, filtered
 
@@ -199,7 +200,7 @@ def _accumulate(
     gain, offset, noise = level
     gram, projection = np.zeros((5, 5)), np.zeros(5)
     power = weights = level_error = low_power = model_power = product = 0.0
-    sizes: list[Floats] = []
+    residuals: list[Floats] = []
     for tile in tiles():
         field = filtered(tile, grid, down.taps(grid.down)[:, :3], across.taps(grid.across)[:, :3])
         low, columns = core(tile.low), core(field)
@@ -225,8 +226,8 @@ def _accumulate(
         low_power += float(weight @ y_centred**2)
         model_power += float(weight @ centred[:, 0] ** 2)
         product += float(weight @ (y_centred * centred[:, 0]))
-        sizes.append(np.abs(rest_centred))
-    scale = 1.4826 * float(np.median(np.concatenate(sizes)))
+        residuals.append(rest_centred)
+    scale = robust_scale(np.concatenate(residuals))
     return _Sums(
         gram,
         projection,
@@ -240,5 +241,5 @@ def _accumulate(
 
 def _weights(residual: Floats, noise: float) -> Floats:
     """Cauchy weights about four standard deviations; before a noise is known, about the median."""
-    scale = noise if noise > 0 else 1.4826 * float(np.median(np.abs(residual)))
+    scale = noise if noise > 0 else robust_scale(residual)
     return 1 / (1 + (residual / (4 * scale)) ** 2) if scale > 0 else np.ones(residual.size)

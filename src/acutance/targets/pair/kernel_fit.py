@@ -22,7 +22,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
 from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
-from acutance.numerics.noise import outlier_weights
+from acutance.numerics.noise import outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.pair import tuned
 from acutance.targets.pair.gaussian_fit import GaussianFit
@@ -210,9 +210,9 @@ class _Residuals:
 
     def scale(self) -> float:
         """Robust standard deviation of the whitened residuals."""
-        sizes = [np.abs(_finite(self.whitening(rest))) for rest in self.fields()]
-        every = np.concatenate(sizes) if sizes else np.zeros(0)
-        return 1.4826 * float(np.median(every)) if every.size else 0.0
+        whitened = [_finite(self.whitening(rest)) for rest in self.fields()]
+        every = np.concatenate(whitened) if whitened else np.zeros(0)
+        return robust_scale(every) if every.size else 0.0
 
     def normals(self, basis: KernelBasis) -> Mapping[int, Normal]:
         """Normal equations of every region, tile means left out."""

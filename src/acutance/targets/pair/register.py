@@ -15,6 +15,7 @@ from scipy.ndimage import uniform_filter
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
+from acutance.numerics.noise import robust_scale
 from acutance.raster import Image, Region
 from acutance.targets.pair import tuned
 from acutance.targets.pair.grid import PairGrid
@@ -166,10 +167,10 @@ def _detail(image: Floats) -> Floats:
     detail = np.where(usable & (share > 0.3), image - mean, 0.0)
     # What rounding leaves of a uniform image is no structure.
     detail[np.abs(detail) < _ROUNDING * float(np.abs(filled).max())] = 0.0
-    some = np.abs(detail[detail != 0])
+    some = detail[detail != 0]
     if some.size == 0:
         return detail
-    bound = _BOUND_SIGMAS * max(1.4826 * float(np.median(some)), 0.2 * float(some.std()))
+    bound = _BOUND_SIGMAS * max(robust_scale(some), 0.2 * float(np.abs(some).std()))
     return np.asarray(np.clip(detail, -bound, bound))
 
 
