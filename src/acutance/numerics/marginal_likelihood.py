@@ -53,8 +53,8 @@ class Prior:
         Prior mean, in data units.
     log_amplitude : (k,) array
         Hyperprior mean of the logarithm of every block's amplitude, relative to `height`.
-    log_amplitude_std : float
-        Its standard deviation.
+    log_amplitude_std : float or (k,) array
+        Its standard deviation, of all blocks or of each.
     height : float
         Height of the edge, in data units.
     noise_floor : float
@@ -65,7 +65,7 @@ class Prior:
     scale: Floats
     mean: Floats
     log_amplitude: Floats
-    log_amplitude_std: float
+    log_amplitude_std: float | Floats
     height: float
     noise_floor: float
 
@@ -260,11 +260,11 @@ def log_evidence_slopes(white: Whitened, prior: Prior, log_amplitude: Floats) ->
                          - delta_kj (2 |m_k|^2 + 2 tr N_kk + 1 / s^2)
         d beta / d a_j = 2 sigma N E_j m
     """
-    members, precision = prior.members, 1 / prior.log_amplitude_std**2
+    members, precision = prior.members, 1 / np.square(prior.log_amplitude_std)
     own = members * white.mean[:, None]
     shifts = white.covariance @ own
     explained = (white.mean**2 + white.variances) @ members
     gradient = explained - prior.sizes - (log_amplitude - prior.log_amplitude) * precision
     hessian = 4 * (own.T @ shifts) + 2 * (members.T @ (white.covariance**2 @ members))
     hessian.reshape(-1)[:: gradient.size + 1] -= 2 * explained + precision
-    return LogEvidence(gradient, hessian, 2 * shifts, precision / 4)
+    return LogEvidence(gradient, hessian, 2 * shifts, float(np.min(precision)) / 4)

@@ -79,7 +79,8 @@ _STRAIGHT = {
     **{
         f"uniformity_{side}": Question(
             f"How uniform is the plateau {where}, contrast over variation?", ">=", 50.0,
-            "choose a more uniform background", "KOMPSAT-3 draft 3b",
+            "the intervals allow for it; choose a more uniform background", "KOMPSAT-3 draft 3b",
+            "note",
         )
         for side, where in _PLATEAUS.items()
     },
@@ -121,7 +122,8 @@ _STRAIGHT = {
     **{
         f"plateau_{side}_px": Question(
             f"How wide is the uniform plateau {where}?", ">=", 7.0,
-            "a halo beyond it is not measured and raises the MTF", "Li et al. 4.2 (7 to 10)",
+            "a halo beyond it is not measured, and the intervals are wide", "Li et al. 4.2 (7 to 10)",
+            "note",
         )
         for side, where in _PLATEAUS.items()
     },
@@ -132,7 +134,8 @@ _STRAIGHT = {
     ),
     "gradient": Question(
         "How steep is the background far from the target, in units of aperture wings?", "<=", 1.0,
-        "the fit cannot separate a slope from a wide halo; choose a region with flat sides",
+        "the fit cannot separate a slope from a wide halo, and the intervals are wide; choose a "
+        "region with flat sides", severity="note",
     ),
     "structure": Question(
         "How much does the profile go up and down next to the edge?", "<=", 0.02,

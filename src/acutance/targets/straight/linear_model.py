@@ -34,6 +34,7 @@ from acutance.targets.straight.tuned import (
     LOG_AMPLITUDE_STD,
     TAIL_WIDTH,
     TREND_LOG_AMPLITUDE,
+    TREND_LOG_AMPLITUDE_STD,
 )
 
 __all__ = ["Linear", "NoiseModel"]
@@ -273,8 +274,10 @@ def _prior(
     where = 1 + int(np.flatnonzero(directions.block == 1)[0])
     scale[where] = aperture_std
     mean[where] = (aperture - first_fit.blur.aperture_px) * first_fit.height
-    walks = [GROUND_LOG_AMPLITUDE] * ground.walks
+    walks = np.full(ground.walks, GROUND_LOG_AMPLITUDE)
+    log_amplitude_std = np.full(first_side + ground.walks, LOG_AMPLITUDE_STD)
+    log_amplitude_std[trend] = TREND_LOG_AMPLITUDE_STD
     return Prior(
         block, scale, mean, np.array([*LOG_AMPLITUDE, TREND_LOG_AMPLITUDE, *walks]),
-        LOG_AMPLITUDE_STD, first_fit.height, _NOISE_FLOOR * first_fit.height,
+        log_amplitude_std, first_fit.height, _NOISE_FLOOR * first_fit.height,
     )  # fmt: skip

@@ -49,6 +49,7 @@ __all__ = [
     "TAIL_LOG_AMPLITUDE",
     "TAIL_WIDTH",
     "TREND_LOG_AMPLITUDE",
+    "TREND_LOG_AMPLITUDE_STD",
 ]
 
 # The prior of the line spread function, LSF (lsf_prior.py).
@@ -85,10 +86,10 @@ FAR_GROUND_STEPS: Final[Floats] = np.array([8.2, 10, 13, 17, 23])
 GROUND_LOG_AMPLITUDE: Final = -6.0
 """Random walk of the ground: .25 % of the height per root of a width, within a factor of 7."""
 TREND_LOG_AMPLITUDE: Final = -2.5
-"""Trends of the plateaus (gradients.py): 8 % of the height, larger than any on purpose. An
-amplitude that may vanish does so where a slope is too weak to be seen, and the slope is then taken
-for a halo; -4 saves 2 % of the deviation of MTF(.25) on uniform plateaus and errs a fifth more on
-slopes of 1 % (benchmarks/trials.py)."""
+TREND_LOG_AMPLITUDE_STD: Final = 0.5
+"""Trends of the plateaus (gradients.py): 8 % of the height, larger than any on purpose, and known
+within a factor of 1.6. An amplitude that may vanish does so where a slope is too weak to be seen,
+and the slope is then taken for a halo."""
 HALO_SHARE: Final = 0.2
 """Standard deviation of a pulse's halo relative to itself (pulse_halo.py): fits are wrong by 0 to
 28 % of it over halos of 1.5 to 4 px, diffraction and defocus (benchmarks/pulse.py)."""
