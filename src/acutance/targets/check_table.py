@@ -122,8 +122,8 @@ _STRAIGHT = {
     **{
         f"plateau_{side}_px": Question(
             f"How wide is the uniform plateau {where}?", ">=", 7.0,
-            "a halo beyond it is not measured, and the intervals are wide", "Li et al. 4.2 (7 to 10)",
-            "note",
+            "a halo beyond it is not measured, and the intervals are wide",
+            "Li et al. 4.2 (7 to 10)", "note",
         )
         for side, where in _PLATEAUS.items()
     },
@@ -154,6 +154,19 @@ _STRAIGHT = {
     "ground": Question(
         "How much does the ground beside the target differ from its level at the target?",
         "<=", 0.02, "the fit follows it, and the intervals allow for it", severity="note",
+    ),
+    "close_ground": Question(
+        "How much does the ground step where the blur of the target ends?", "<=", 0.05,
+        "a step closer to it would be taken for blur; choose a target with a plain border",
+    ),
+    "one_sided_overshoot": Question(
+        "How much more does the profile overshoot on one side than on the other?", "<=", 0.03,
+        "sharpening does so on both: a bright rim or a dark line runs along the edge; choose "
+        "another edge",
+    ),
+    "double_edge": Question(
+        "How high is a second peak of the LSF, relative to the first?", "<=", 0.15,
+        "two edges lie close to one another; choose another one", severity="fail",
     ),
     "mirrored_ground": Question(
         "How much is the ground on one side the mirror image of that on the other?", "<=", 0.8,

@@ -22,9 +22,12 @@ from acutance.targets.straight.pixel_checks import (
 )
 from acutance.targets.straight.structure_checks import (
     asymmetric_wings,
+    double_edge,
     edge_roughness,
+    one_sided_overshoot,
     profile,
     structure,
+    tolerable_px,
     uniformity,
 )
 from acutance.targets.straight.trim import Extent
@@ -52,7 +55,8 @@ EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases", "rows",
     "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px", "plateau_dark_px",
     "plateau_bright_px", "saturation", "quantisation", "gradient", "correlated_noise", "structure",
-    "asymmetric_wings", "profile", "outliers", "ground", "mirrored_ground",
+    "one_sided_overshoot", "double_edge", "asymmetric_wings", "profile", "outliers", "ground",
+    "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -91,6 +95,8 @@ def check_edge(
         gradient(data, limits),
         correlated_noise(data, limits),
         structure(data, limits),
+        one_sided_overshoot(data, limits),
+        double_edge(data, limits),
         asymmetric_wings(data, limits),
         profile(data, limits, 0.0, own_misfit=by_rows),
         outliers(data, limits),
@@ -147,7 +153,8 @@ def straightness(data: CheckData, limits: Limits) -> Check:
         f"the edge leaves its line by {value:.3f} px rms, which takes "
         f"{100 * _lost_at_nyquist(value**2):.1f} % of the MTF at Nyquist"
     )
-    return answer("straightness_px", value, found, limits)
+    tolerable = tolerable_px(data, "straightness_px")
+    return answer("straightness_px", value, found, limits, default=tolerable)
 
 
 def blur_uniformity(data: CheckData, limits: Limits) -> Check:

@@ -13,6 +13,7 @@ from acutance.targets.straight.ground_steps import GroundSide
 
 __all__ = ["ground_checks"]
 
+_CLOSE_WIDTHS = 2.5
 _MIN_LEVEL = 0.003
 """Share of the contrast below which ground is taken as even when the two sides are compared."""
 
@@ -29,7 +30,10 @@ def ground_checks(data: CheckData, limits: Limits, sides: tuple[str, str]) -> tu
     """
     if not isinstance(data.fit, SplineEdge):
         return ()
-    return _ground(data.fit, limits, sides), _mirrored(data.fit, limits)
+    return (
+        _ground(data.fit, limits, sides), _close(data.fit, limits, sides),
+        _mirrored(data.fit, limits),
+    )  # fmt: skip
 
 
 def _ground(fit: SplineEdge, limits: Limits, sides: tuple[str, str]) -> Check:
@@ -52,6 +56,20 @@ def _span(side: GroundSide) -> tuple[float, float]:
     if not seen.any():
         return 0.0, math.inf
     return float(np.abs(side.level[seen]).max()), float(side.distance_px[int(np.argmax(seen))])
+
+
+def _close(fit: SplineEdge, limits: Limits, sides: tuple[str, str]) -> Check:
+    """How much the ground steps where the blur ends: a step closer still is taken for blur."""
+    levels = []
+    for side in fit.ground:
+        near = side.distance_px <= _CLOSE_WIDTHS * fit.blur.width_px
+        levels.append(float(np.max(np.abs(side.level[near & side.seen]), initial=0.0)))
+    worst = int(np.argmax(levels))
+    found = (
+        f"{PLACES[sides[worst]]} the ground steps by {100 * levels[worst]:.1f} % of the contrast "
+        f"within {_CLOSE_WIDTHS * fit.blur.width_px:.1f} px of the target"
+    )
+    return answer("close_ground", levels[worst], found, limits)
 
 
 def _mirrored(fit: SplineEdge, limits: Limits) -> Check:

@@ -46,7 +46,7 @@ PULSE_CHECKS = (
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
     "plateau_before_px", "plateau_behind_px", "saturation", "quantisation", "gradient",
     "correlated_noise", "profile", "outliers", "parallel_deg", "background_step", "width_px",
-    "width_sigmas", "zero_distance_cpp", "ground", "mirrored_ground",
+    "width_sigmas", "zero_distance_cpp", "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of a pulse."""
 

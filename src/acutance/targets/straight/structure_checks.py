@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.targets.check import Check, Limits, answer, bounded_ratio
+from acutance.curves.metrics import NYQUIST_CPP
+from acutance.targets.check import Check, Limits, answer, bounded_ratio, limit_of
 from acutance.targets.straight.check_data import PLACES, CheckData
 from acutance.targets.straight.tuned import (
     REPEATED_SIGMAS,
@@ -23,10 +24,13 @@ from acutance.targets.straight.tuned import (
 
 __all__ = [
     "asymmetric_wings",
+    "double_edge",
     "edge_roughness",
+    "one_sided_overshoot",
     "profile",
     "structure",
     "target_uniformity",
+    "tolerable_px",
     "uniformity",
 ]
 
@@ -38,6 +42,7 @@ _PART_PX = 5.0
 _MIN_PARTS, _MAX_PARTS = 4, 12
 _STEEP_SHARE = 0.3
 _BLOCK_PX = 4
+_MAX_OFFSET_PX = 0.25
 
 
 def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> Check:
@@ -91,6 +96,40 @@ def structure(data: CheckData, limits: Limits) -> Check:
     return answer("structure", value, found, limits)
 
 
+def one_sided_overshoot(data: CheckData, limits: Limits) -> Check:
+    """Whether the ESF overshoots on one side only.
+
+    Sharpening overshoots equally on both sides. A bright rim of the bright side, or a dark line
+    along the dark one, does on one.
+    """
+    response = data.fit.response
+    over, under = response.overshoot, response.undershoot
+    std = math.hypot(over.std, under.std)
+    apart = abs(over.value - under.value)
+    value = apart if apart > STRUCTURE_SIGMAS * std else 0.0
+    side = "bright" if over.value > under.value else "dark"
+    found = f"the ESF overshoots by {100 * value:.1f} % of the contrast more {PLACES[side]}"
+    return answer("one_sided_overshoot", value, found, limits)
+
+
+def double_edge(data: CheckData, limits: Limits) -> Check:
+    """Whether the LSF has a second peak: two edges so near to one another that they look like one.
+
+    The second peak counts by its height over the lowest place between the two, relative to the
+    first.
+    """
+    lsf = data.fit.response.lsf
+    value = lsf.value / float(np.max(lsf.value))
+    top = int(np.argmax(value))
+    worst = 0.0
+    for side in (value[top:], value[: top + 1][::-1]):
+        # A lobe of sharpening lies below 0, and what comes after it is no peak.
+        valley = np.maximum(np.minimum.accumulate(side), 0.0)
+        worst = max(worst, float(np.max(side - valley)))
+    found = f"the LSF has a second peak of {100 * worst:.0f} % of the first"
+    return answer("double_edge", worst, found, limits)
+
+
 def edge_roughness(data: CheckData, limits: Limits) -> Check:
     """How far the target's border moves to and fro from pixel to pixel, beyond noise.
 
@@ -111,7 +150,21 @@ def edge_roughness(data: CheckData, limits: Limits) -> Check:
     found = (
         f"from pixel to pixel the border lies {value:.3f} px rms off the fitted line and profile"
     )
-    return answer("edge_roughness_px", value, found, limits)
+    return answer(
+        "edge_roughness_px", value, found, limits, default=tolerable_px(data, "edge_roughness_px")
+    )
+
+
+def tolerable_px(data: CheckData, name: str) -> float:
+    """How far a border may lie off its line until that takes half a deviation of MTF at Nyquist.
+
+    Offsets of variance v multiply the MTF by ``exp(-2 pi^2 f^2 v)``. The limit of the check `name`
+    where that is more.
+    """
+    nyquist = data.fit.response.mtf_nyquist
+    share = 0.5 * nyquist.std / max(nyquist.value, 1e-9)
+    blur_px = math.sqrt(-math.log(max(1 - share, 0.1)) / 2) / (math.pi * NYQUIST_CPP)
+    return max(limit_of(name, {}), min(blur_px, _MAX_OFFSET_PX))
 
 
 def asymmetric_wings(data: CheckData, limits: Limits) -> Check:
