@@ -75,9 +75,11 @@ class SrgbCurve:
 
     @property
     def words(self) -> str:
+        """What the curve is."""
         return f"sRGB (IEC 61966-2-1), white at {self.full_scale:g}"
 
     def linear(self, values: Floats) -> Floats:
+        """Values proportional to light, of the same shape."""
         share = values / self.full_scale
         if self.full_scale == 1 and _largest(share) > _MAX_FLOAT_SRGB:
             raise ImageError(
@@ -115,9 +117,11 @@ class PowerCurve:
 
     @property
     def words(self) -> str:
+        """What the curve is."""
         return f"gamma {self.gamma:g}, full scale {self.full_scale:g}"
 
     def linear(self, values: Floats) -> Floats:
+        """Values proportional to light, of the same shape."""
         share = values / self.full_scale
         return np.asarray(np.copysign(np.abs(share) ** self.gamma, share) * self.full_scale)
 
@@ -144,9 +148,11 @@ class LogCurve:
 
     @property
     def words(self) -> str:
+        """What the curve is."""
         return f"logarithm, {self.decade:g} for ten times the light"
 
     def linear(self, values: Floats) -> Floats:
+        """Values proportional to light, of the same shape."""
         decades = values / self.decade
         if _largest(np.abs(decades)) > _MAX_DECADES:
             raise ImageError(
@@ -196,6 +202,7 @@ class TableCurve(ShortRepr):
 
     @property
     def words(self) -> str:
+        """What the curve is."""
         return (
             f"table {self.name}, {self.values.size} rows from {self.values[0]:g} to "
             f"{self.values[-1]:g}"
@@ -206,6 +213,7 @@ class TableCurve(ShortRepr):
         return self.words
 
     def linear(self, values: Floats) -> Floats:
+        """Values proportional to light, of the same shape."""
         finite = values[np.isfinite(values)]
         if finite.size and not self.values[0] <= finite.min() <= finite.max() <= self.values[-1]:
             raise ImageError(
@@ -235,6 +243,7 @@ class LinearizedPixels:
     curve: Characteristic
 
     def read(self, box: Box) -> Floats:
+        """(height, width) linear values of a box; NaN where unusable."""
         return self.curve.linear(self.source.read(box))
 
 

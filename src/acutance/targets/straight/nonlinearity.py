@@ -22,51 +22,42 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.numerics.gaussian_pixel import GaussianPixel
-from acutance.numerics.marginal_likelihood import Prior, Whitened, log_evidence_slopes, whiten
 from acutance.numerics.noise import outlier_weights, side_variances
-from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.check_data import CheckData
-from acutance.targets.straight.first_fit import fit_first
-from acutance.targets.straight.gradients import plateau_trends
-from acutance.targets.straight.lsf_parity import LOG_AMPLITUDE_STD, LOG_AMPLITUDES, parts
-from acutance.targets.straight.spline import combine, edge_and_line_weights, edge_weights
-from acutance.targets.straight.spline_equations import Stencil, accumulate
-from acutance.targets.straight.step_profile import Profile, pulse_profile
+from acutance.targets.straight.curved_model import (
+    CURVATURE_STD,
+    NOISE_FLOOR,
+    CurvedModel,
+    solve,
+)
+from acutance.targets.straight.step_profile import Profile
 
 __all__ = ["Curvature", "find_curvature", "gamma_of"]
 
-_PRIOR_STD: Final = 0.3
-"""Of c: a gamma of 2.2 between 20 and 220 of 255 is .56, one of 1.3 between 50 and 200 .15."""
 _MAX_CURVATURE: Final = 0.8
 _MIN_SIGMAS: Final = 1.2
 """Of c in the first, linear step: below it no curve is looked for."""
 _MAX_STEPS: Final = 5
 _MAX_STEP: Final = 0.3
 _SETTLED_SIGMAS: Final = 0.2
-_AMPLITUDE_STEPS: Final = 12
-_SETTLED_AMPLITUDE: Final = 0.05
-_TREND_LOG_AMPLITUDE: Final = -2.5
-_APERTURE_STD_PX: Final = 0.3
-_NOISE_FLOOR: Final = 2e-4
 _NEAR_WIDTHS: Final = 1.5
 _MIN_SIDE_PIXELS: Final = 24
 _HIGHER_ORDERS: Final = 0.1
 _MIN_NOISE_SIGMAS: Final = 3.0
 _MAX_LOG_RATIO: Final = 3.0
 _MORE_THAN_PHOTONS: Final = 0.3
-_APERTURE: Final = 3
 
 _PRIOR_EVEN, _PRIOR_ODD, _PRIOR_LOW_ODD = 0.5, 0.4, 0.1
-"""Of linear sensors: an even LSF, any odd part, one of low order that looks like a curve."""
+_LOW_ODD_STD: Final = 0.2
+"""Of linear sensors: an even LSF, any odd part, one of low order that looks like a curve; the
+curvature it looks like: .2 is coma of .015 waves rms or a trail of .17 px."""
 _WHITE, _PHOTONS, _TEXTURE = 0.5, 0.35, 0.15
 """Of the noise of the two sides: equal, growing with the light, different for other reasons."""
 _NOISE_BEFORE: Final = 0.85
@@ -146,7 +137,7 @@ class _Shape:
 
 def _shape(data: CheckData, profile: Profile) -> _Shape | None:
     """Compare an even LSF, one with an odd part, and a curve; of a pulse, any LSF and a curve."""
-    linear = _Linear.about(data, profile, 0.0)
+    linear = CurvedModel.about(data, profile, 0.0)
     everything = np.append(np.full(linear.odd.size, True), False)
     no_curve = (
         everything & np.append(~linear.odd, False) if len(profile.shares) == 1 else everything
@@ -157,22 +148,22 @@ def _shape(data: CheckData, profile: Profile) -> _Shape | None:
     # A second time about the fitted response, not about that of the first fit.
     for _ in range(2):
         normal = linear.normal(weight, u, 0.0)
-        even = _solve(normal, linear, no_curve, 0.0)
+        even = solve(normal, linear, no_curve, 0.0)
         u = linear.response(even.beta)
         if len(profile.shares) > 1:
-            linear = _Linear.about(data, linear.profile_of(even.beta), 0.0, linear, even.beta)
-    curved = _solve(linear.normal(weight, u, 0.0), linear, curve, 0.0)
+            linear = CurvedModel.about(data, linear.profile_of(even.beta), 0.0, linear, even.beta)
+    curved = solve(linear.normal(weight, u, 0.0), linear, curve, 0.0)
     if abs(curved.beta[-1]) < _MIN_SIGMAS * curved.last_std and not _noise_differs(data):
         return None
-    odd = _solve(normal, linear, everything, 0.0)
+    odd = solve(normal, linear, everything, 0.0)
     c = 0.0
     for _ in range(_MAX_STEPS):
         step = float(curved.beta[-1])
         c = min(max(c + min(max(step, -_MAX_STEP), _MAX_STEP), -_MAX_CURVATURE), _MAX_CURVATURE)
         if abs(step) < _SETTLED_SIGMAS * curved.last_std:
             break
-        linear = _Linear.about(data, linear.profile_of(curved.beta), c, linear, curved.beta)
-        curved = _solve(linear.normal(weight, u, c), linear, curve, c)
+        linear = CurvedModel.about(data, linear.profile_of(curved.beta), c, linear, curved.beta)
+        curved = solve(linear.normal(weight, u, c), linear, curve, c)
         u = linear.response(curved.beta)
     # A parabola is the second order of a curve: the rest may cost a tenth of what it explains.
     explained = max(curved.log_evidence - even.log_evidence, 0.0)
@@ -191,7 +182,7 @@ def _noise_ratio(data: CheckData) -> tuple[float, float] | None:
     """Logarithm of bright over dark noise variance, and its deviation; none without noise."""
     dark, bright = side_variances(data.residual, data.value - data.residual)
     sides = [int(np.count_nonzero(side > data.far_px)) for side in (data.before, data.behind)]
-    if min(dark, bright) <= _NOISE_FLOOR**2 or min(sides) < _MIN_SIDE_PIXELS:
+    if min(dark, bright) <= NOISE_FLOOR**2 or min(sides) < _MIN_SIDE_PIXELS:
         return None
     chance = data.smoothness * (2 / sides[0] + 2 / sides[1])
     return math.log(bright / dark), math.hypot(_NOISE_STD, math.sqrt(chance))
@@ -201,7 +192,7 @@ def _weights(data: CheckData) -> Floats:
     """Inverse variance of the pixels, in shares of the contrast; outliers count for less."""
     fitted = data.value - data.residual
     dark, bright = side_variances(data.residual, fitted)
-    variance = dark + (bright - dark) * np.clip(fitted, 0.0, 1.0) + _NOISE_FLOOR**2
+    variance = dark + (bright - dark) * np.clip(fitted, 0.0, 1.0) + NOISE_FLOOR**2
     # Where pixels leave the fit of the measurement by more than their noise, as on a rough border.
     near = data.outside < _NEAR_WIDTHS * data.fwhm_px
     excess = (
@@ -211,184 +202,14 @@ def _weights(data: CheckData) -> Floats:
     return outlier_weights(data.residual / np.sqrt(variance)) / variance
 
 
-@dataclass(frozen=True, eq=False)
-class _Linear:
-    """A straight target to first order about a Gaussian through a pixel, in shares of the contrast.
-
-    Attributes
-    ----------
-    value : (n,) array
-        The pixels.
-    blur : GaussianPixel
-    profile : Profile
-        Of the first fit.
-    mean : (n,) array
-        Response of the first fit.
-    stencils : pairs of arrays
-        For every step, each pixel's place in the ESF's spline.
-    columns : (q, n) array
-        Further regressors: level, trends of the plateaus, rotation, and a pulse's steps.
-    design : (CELLS + 3, r) array
-        Spline coefficients of the directions of the LSF.
-    odd : (r + q,) bool array
-        Which unknowns make the LSF odd.
-    block, scale : (r + q + 1,) arrays
-        Of the prior; the last unknown is the curvature.
-    """
-
-    value: Floats
-    blur: GaussianPixel
-    profile: Profile
-    mean: Floats
-    stencils: list[Stencil]
-    columns: Floats
-    design: Floats
-    odd: NDArray[np.bool_]
-    block: NDArray[np.intp]
-    scale: Floats
-
-    @classmethod
-    def about(
-        cls,
-        data: CheckData,
-        profile: Profile,
-        c: float,
-        earlier: _Linear | None = None,
-        beta: Floats | None = None,
-    ) -> _Linear:
-        """The model of the pixels without a curvature c.
-
-        The derivatives by a pulse's width and height ratio are those of an `earlier` solution
-        `beta`, if there is one: they depend on the LSF.
-        """
-        fit, pixels = data.fit, data.trimmed.pixels
-        straight = _straightened(data.value, c)
-        steps = len(profile.shares) - 1
-        first = fit_first(
-            pixels.row, pixels.col, straight, fit.line, dark=0.0, bright=1.0,
-            sigma_px=data.trimmed.width_px, noise=data.noise, profile=profile,
-        )  # fmt: skip
-        s = first.line.normal_distance(pixels.row, pixels.col)
-        t = first.line.tangent_distance(pixels.row, pixels.col)
-        seen = first.profile.seen(first.blur, s)
-        response, slope = first.profile.response(seen)
-        stencils = []
-        for distance, share in zip(first.profile.distances(s), first.profile.shares, strict=True):
-            cell, basis = edge_weights(distance / first.blur.width_px)
-            stencils.append((cell, share * basis))
-        trends = plateau_trends(first.profile.sides(seen, s), t)
-        columns = [np.ones((1, s.size)), trends, (t * slope)[None]]
-        if steps:
-            esf, lsf = seen[1]
-            if earlier is not None and beta is not None:
-                esf, lsf = earlier.step(first.profile.distances(s)[1], beta)
-            columns.append(np.stack([-first.profile.shares[1] * lsf, -esf]))
-        further = np.vstack(columns)
-        lsf_parts = parts(first.blur)
-        blocks = LOG_AMPLITUDES.size
-        block = np.concatenate(
-            [lsf_parts.block, [-1], np.full(len(trends), blocks), np.full(2 + 2 * steps, -1)]
-        )
-        scale = np.ones(block.size)
-        scale[_APERTURE] = _APERTURE_STD_PX
-        scale[-1] = _PRIOR_STD
-        odd = np.append(lsf_parts.odd, np.full(len(further), False))
-        return cls(
-            data.value, first.blur, first.profile, first.dark + first.height * response, stencils,
-            further, lsf_parts.esf, odd, block, scale,
-        )  # fmt: skip
-
-    def normal(self, weight: Floats, u: Floats, c: float) -> Normal:
-        """The equations of the unknowns about the linear image u, (n,), and a curvature c."""
-        bend = u * (1 - u)
-        slope = 1 + c * (1 - 2 * u)
-        stencils = [(cell, basis * slope) for cell, basis in self.stencils]
-        columns = np.vstack([self.columns * slope, bend])
-        left = self.value - u - c * bend + slope * (u - self.mean)
-        return accumulate(stencils, left, weight, columns, u.size).combined(self.design)
-
-    def step(self, s: Floats, beta: Floats) -> tuple[Floats, Floats]:
-        """Response to a unit step and its derivative at distances s, (n,), of some unknowns."""
-        coefficients = self.design @ beta[: self.design.shape[1]]
-        cell, basis, slopes = edge_and_line_weights(s / self.blur.width_px)
-        esf, lsf = self.blur.esf_and_lsf(s)
-        esf = esf + combine(cell, basis, coefficients)
-        lsf = lsf + combine(cell, slopes, coefficients) / self.blur.width_px
-        return esf, lsf
-
-    def profile_of(self, beta: Floats) -> Profile:
-        """The profile with a pulse's width and height ratio moved by some unknowns."""
-        if len(self.profile.shares) == 1:
-            return self.profile
-        wider, higher = np.clip(beta[-3:-1], -_MAX_STEP, _MAX_STEP).tolist()
-        width_px, ratio = self.profile.positions_px[1], -self.profile.shares[1]
-        return pulse_profile(width_px + wider, ratio + higher)
-
-    def response(self, beta: Floats) -> Floats:
-        """The linear image of the unknowns, (n,)."""
-        r = self.design.shape[1]
-        image = self.mean + beta[r:-1] @ self.columns
-        coefficients = self.design @ beta[:r]
-        for cell, basis in self.stencils:
-            image += combine(cell, basis, coefficients)
-        return np.asarray(image)
-
-
-def _straightened(value: Floats, c: float) -> Floats:
-    """The linear image of values of curvature c, (n,)."""
-    # Values far beyond the plateaus have no place on the parabola: its vertex stands for them.
-    root = np.sqrt(np.maximum((1 + c) ** 2 - 4 * c * value, 1e-4))
-    return np.asarray(2 * value / (1 + c + root))
-
-
-class _Solved(NamedTuple):
-    """Some unknowns of a model: all their means (0 for the others), and the log evidence."""
-
-    beta: Floats
-    last_std: float
-    log_evidence: float
-
-
-def _solve(normal: Normal, linear: _Linear, free: NDArray[np.bool_], c: float) -> _Solved:
-    """Solve for the free unknowns, the last being added to c, and the prior's amplitudes."""
-    mean = np.zeros(free.size)
-    mean[-1] = -c
-    prior = Prior(
-        linear.block[free].astype(float), linear.scale[free], mean[free],
-        np.append(LOG_AMPLITUDES, _TREND_LOG_AMPLITUDE), LOG_AMPLITUDE_STD, 1.0, _NOISE_FLOOR,
-    )  # fmt: skip
-    some = Normal(
-        normal.gram[np.ix_(free, free)], normal.projection[free], normal.data, normal.count
-    )
-    log_amplitude = prior.log_amplitude
-    for _ in range(_AMPLITUDE_STEPS):
-        white = whiten(some, prior, log_amplitude, 1.0)
-        step = log_evidence_slopes(white, prior, log_amplitude).step()
-        log_amplitude = log_amplitude + step
-        if float(np.abs(step).max()) < _SETTLED_AMPLITUDE:
-            break
-    white = whiten(some, prior, log_amplitude, 1.0)
-    beta = np.zeros(free.size)
-    beta[free] = white.sigma * white.mean
-    last_std = float(white.sigma[-1] * math.sqrt(white.variances[-1]))
-    return _Solved(beta, last_std, _log_evidence(some, prior, log_amplitude, white))
-
-
-def _log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, white: Whitened) -> float:
-    """Logarithm of the marginal likelihood, for weights that are inverse variances."""
-    mean, deviation = prior.mean, white.sigma * white.mean - prior.mean
-    left = normal.projection - normal.gram @ mean
-    misfit = normal.data - float(mean @ (normal.projection + left))
-    _, log_det = np.linalg.slogdet(white.covariance)
-    hyper = float(np.sum(((log_amplitude - prior.log_amplitude) / prior.log_amplitude_std) ** 2))
-    return 0.5 * (float(deviation @ left) - misfit + float(log_det) - hyper)
-
-
 def _with_noise(data: CheckData, shape: _Shape) -> Curvature:
     """Weigh the shape with what the noise of the two sides shows."""
+    # An odd part that looks like a curve of c: of sensors it is smaller than of curves.
+    rarer = _log_normal(shape.value, _LOW_ODD_STD) - _log_normal(shape.value, CURVATURE_STD)
+    low_odd = math.log(_PRIOR_LOW_ODD) + rarer + shape.curved
     linear = np.logaddexp(
         math.log(_PRIOR_EVEN) + shape.even,
-        np.logaddexp(math.log(_PRIOR_ODD) + shape.odd, math.log(_PRIOR_LOW_ODD) + shape.curved),
+        np.logaddexp(math.log(_PRIOR_ODD) + shape.odd, low_odd),
     )
     odds = shape.curved - float(linear)
     ratio = _noise_ratio(data)
@@ -424,3 +245,7 @@ def _noise_density(log_ratio: Floats, std: float, widest: float) -> Floats:
 
 def _normal(x: Floats, std: float) -> Floats:
     return np.asarray(np.exp(-0.5 * (x / std) ** 2) / (std * math.sqrt(2 * math.pi)))
+
+
+def _log_normal(x: float, std: float) -> float:
+    return -0.5 * (x / std) ** 2 - math.log(std)
