@@ -128,7 +128,7 @@ _STRAIGHT = {
         for side, where in _PLATEAUS.items()
     },
     "quantisation": Question(
-        "How many steps of the image's numbers is the noise?", ">=", 0.55,
+        "How many steps of the image's numbers is the noise?", ">=", 0.2,
         "so much rounding is no noise: it is equal for the pixels of a plateau and shifts its "
         "level by more than the intervals; use data of more bits",
     ),

@@ -54,7 +54,7 @@ def test_numbers_that_wrapped_around_are_no_edge_of_light(offset):
 
 def test_numbers_too_coarse_for_the_intervals_are_noticed():
     image, _ = edge(53, shape=(40, 40))
-    coarse = np.round(image * 0.03).astype("uint8")
+    coarse = np.round(image * 0.01).astype("uint8")
     assert "quantisation" in failed(ac.measure_edge(coarse))
     assert "quantisation" not in failed(ac.measure_edge(np.round(image).astype("uint16")))
 

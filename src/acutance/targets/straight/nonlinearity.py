@@ -41,7 +41,8 @@ from acutance.targets.straight.step_profile import Profile
 
 __all__ = ["Curvature", "find_curvature", "gamma_of"]
 
-_MAX_CURVATURE: Final = 0.8
+_MAX_CURVATURE: Final = 0.7
+"""A gamma of 3; where more were needed it is no curve but an asymmetric LSF."""
 _MIN_SIGMAS: Final = 1.2
 """Of c in the first, linear step: below it no curve is looked for."""
 _MAX_STEPS: Final = 5
@@ -165,6 +166,8 @@ def _shape(data: CheckData, profile: Profile) -> _Shape | None:
         linear = CurvedModel.about(data, linear.profile_of(curved.beta), c, linear, curved.beta)
         curved = solve(linear.normal(weight, u, c), linear, curve, c)
         u = linear.response(curved.beta)
+    if abs(c) >= _MAX_CURVATURE:
+        return None
     # A parabola is the second order of a curve: the rest may cost a tenth of what it explains.
     explained = max(curved.log_evidence - even.log_evidence, 0.0)
     whole = curved.log_evidence + _HIGHER_ORDERS * explained
