@@ -56,11 +56,13 @@ _MAX_LOG_RATIO: Final = 3.0
 _MORE_THAN_PHOTONS: Final = 0.3
 
 _PRIOR_EVEN, _PRIOR_ODD, _PRIOR_LOW_ODD = 0.5, 0.4, 0.1
-_LOW_ODD_STD: Final = 0.2
+_LOW_ODD_STD: Final = 0.25
 """Of linear sensors: an even LSF, any odd part, one of low order that looks like a curve; the
-curvature it looks like: .2 is coma of .015 waves rms or a trail of .17 px."""
-_WHITE, _PHOTONS, _TEXTURE = 0.5, 0.35, 0.15
-"""Of the noise of the two sides: equal, growing with the light, different for other reasons."""
+curvature it looks like: .25 is coma of .02 waves rms or a trail of .18 px."""
+_WHITE, _PHOTONS = 0.6, 0.4
+"""Of a sensor's noise on the two sides: equal, or growing with the light."""
+_TEXTURE_SNR: Final = 42.0
+"""Contrast over noise at which the noise is as likely the ground's, of any ratio: 15 % at 100."""
 _NOISE_BEFORE: Final = 0.85
 """Share of curves that the noise goes through; else it is added behind, as by compression."""
 _TEXTURE_STD: Final = 1.0
@@ -111,7 +113,7 @@ def find_curvature(data: CheckData, profile: Profile) -> Curvature:
 def gamma_of(curvature: float, curvature_std: float, dark: float, bright: float) -> str:
     """The power law of a curvature in words, if 0 is no light: "a gamma of 1.31 ± 0.08".
 
-    Values are the 1 / gamma-th power of light. Empty where the levels have no such law.
+    Values are the 1 / gamma-th power of light. Empty where no such law bends so between the levels.
     """
     if not 0 < dark < bright:
         return ""
@@ -119,6 +121,8 @@ def gamma_of(curvature: float, curvature_std: float, dark: float, bright: float)
     levels = np.power.outer([dark, bright], gammas)
     middle = (0.5 * (levels[0] + levels[1])) ** (1 / gammas)
     bend = 4 * ((middle - dark) / (bright - dark) - 0.5)
+    if not bend[0] < curvature < bend[-1]:
+        return ""
     gamma, low, high = np.interp(
         [curvature, curvature - curvature_std, curvature + curvature_std], bend, gammas
     ).tolist()
@@ -220,11 +224,12 @@ def _with_noise(data: CheckData, shape: _Shape) -> Curvature:
         return Curvature(shape.value, shape.std, odds)
     found, std = ratio
     widest = _most_photons(data.fit.dark, data.fit.bright)
+    texture = 1 / (1 + (1 / (_TEXTURE_SNR * data.noise)) ** 2)
     c = np.clip(shape.value + shape.std * _GRID, -_MAX_CURVATURE, _MAX_CURVATURE)
     through = np.exp(-0.5 * _GRID**2) * _noise_density(
-        found - 2 * np.log((1 - c) / (1 + c)), std, widest
+        found - 2 * np.log((1 - c) / (1 + c)), std, widest, texture
     )
-    without = float(_noise_density(np.array([found]), std, widest)[0])
+    without = float(_noise_density(np.array([found]), std, widest, texture)[0])
     behind = np.exp(-0.5 * _GRID**2) * without
     density = _NOISE_BEFORE * through + (1 - _NOISE_BEFORE) * behind
     total = float(density.sum())
@@ -239,11 +244,15 @@ def _most_photons(dark: float, bright: float) -> float:
     return photons + _MORE_THAN_PHOTONS
 
 
-def _noise_density(log_ratio: Floats, std: float, widest: float) -> Floats:
-    """Density of the logarithm of the ratio of bright to dark noise variance, for linear values."""
+def _noise_density(log_ratio: Floats, std: float, widest: float, texture: float) -> Floats:
+    """Density of the logarithm of bright over dark noise variance, for linear values.
+
+    `texture` is the chance that the noise is the ground's.
+    """
     photons = (ndtr(log_ratio / std) - ndtr((log_ratio - widest) / std)) / widest
-    texture = _normal(log_ratio, math.hypot(_TEXTURE_STD, std))
-    return np.asarray(_WHITE * _normal(log_ratio, std) + _PHOTONS * photons + _TEXTURE * texture)
+    sensor = _WHITE * _normal(log_ratio, std) + _PHOTONS * photons
+    ground = _normal(log_ratio, math.hypot(_TEXTURE_STD, std))
+    return np.asarray((1 - texture) * sensor + texture * ground)
 
 
 def _normal(x: Floats, std: float) -> Floats:
