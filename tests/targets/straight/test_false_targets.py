@@ -121,5 +121,5 @@ def test_checks_print_how_many_failed():
     assert repr(found.checks) == f"<0 of {len(found.checks)} checks failed>"
     strict = ac.EdgeOptions(limits={"rows": 1000})
     assert repr(ac.measure_edge(image, options=strict).checks).endswith(
-        "1 of 21 checks failed (rows)>"
+        f"1 of {len(found.checks)} checks failed (rows)>"
     )
