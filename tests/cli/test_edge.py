@@ -181,3 +181,16 @@ def test_the_input_is_never_overwritten(acutance, edge_image, tmp_path):
     image.write_bytes(b"pixels")
     assert acutance("edge", image, "--figure", image).exit_code == 2
     assert image.read_bytes() == b"pixels"
+
+
+def test_values_of_a_known_curve_are_linearised(acutance, edge_image, keeps_to_schema):
+    result = acutance("edge", edge_image, "--gamma", "1.2", "--json")
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    keeps_to_schema(document)
+    assert document["image"]["linearized"].startswith("gamma 1.2, full scale ")
+    plain = json.loads(acutance("edge", edge_image, "--json").stdout)
+    assert plain["image"]["linearized"] is None
+    both = acutance("edge", edge_image, "--gamma", "1.2", "--linearize", "sRGB")
+    assert both.exit_code == 2
+    assert "--gamma and --linearize both name a curve: give one of them" in both.stderr

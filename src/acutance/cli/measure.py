@@ -55,7 +55,7 @@ def measure_target(
     inputs : iterable of str or None, optional
         Files the command reads besides.
     """
-    kept = (path, pixels.roi, *inputs)
+    kept = (path, pixels.roi, pixels.linearize, *inputs)
     outputs = Outputs.checked(wanted, kept)
     chosen = kind.load(kind.options)(**options, limits=wanted.limits)
     image, regions = pixels.open(path)

@@ -115,6 +115,20 @@ class PixelOptions:
         str,
         typer.Option(metavar="x|y", help="The image axis along track: y, down the columns, or x."),
     ] = "y"
+    gamma: Annotated[
+        float | None,
+        typer.Option(
+            metavar="G", help="The values are the 1/G-th power of light: linearise them first."
+        ),
+    ] = None
+    linearize: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CURVE",
+            help="Linearise the values first: sRGB (or sRGB:WHITE), log:DECADE, or a table "
+            "FILE.csv of stored values and light.",
+        ),
+    ] = None
 
     def open(self, path: str) -> tuple[Image, dict[str, Region | None]]:
         """Open the image and find the regions the options ask for, by name.
@@ -128,11 +142,16 @@ class PixelOptions:
             raise OptionError("--roi and --site both name a region: give one of them")
         if self.along_track not in _AXES:
             raise OptionError(f"--along-track {self.along_track}: it has to be x or y")
+        if self.gamma is not None and self.linearize is not None:
+            raise OptionError("--gamma and --linearize both name a curve: give one of them")
         gsd_m = parse_gsd(self.gsd)
         from acutance.raster import find_site, open_image, parse_rois, site_region
 
         place = None if self.site is None else find_site(self.site)
-        image = open_image(path, self.band, gsd_m, self.nodata, along_track=_AXES[self.along_track])
+        image = open_image(
+            path, self.band, gsd_m, self.nodata, along_track=_AXES[self.along_track],
+            linearize=self.linearize if self.gamma is None else self.gamma,
+        )  # fmt: skip
         if place is not None:
             return image, {place.name: site_region(place, image)}
         if self.roi is None:

@@ -3,6 +3,7 @@
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import Image
+from acutance.raster.linearization import LogCurve, PowerCurve, SrgbCurve, TableCurve
 from acutance.raster.open_image import open_image
 from acutance.raster.positions import read_positions
 from acutance.raster.region import Box, Region
@@ -15,8 +16,12 @@ __all__ = [
     "Geolocation",
     "Gsd",
     "Image",
+    "LogCurve",
+    "PowerCurve",
     "Region",
     "Site",
+    "SrgbCurve",
+    "TableCurve",
     "find_site",
     "open_image",
     "parse_roi",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -14,6 +14,12 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, OptionError
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
+from acutance.raster.linearization import (
+    Characteristic,
+    LinearizedPixels,
+    LinearizeLike,
+    characteristic,
+)
 from acutance.raster.pixels import (
     ArrayPixels,
     PixelSource,
@@ -59,6 +65,9 @@ class Image(ShortRepr):
         the geolocation's.
     along_track : {"y", "x"}
         The axis along track: y, down the columns, of an image as a pushbroom scanner takes it.
+    characteristic : Characteristic or None
+        The curve that stored values are turned back through, so that `read` gives values
+        proportional to light; ``None`` if they are taken as they are.
     """
 
     path: str | None
@@ -71,6 +80,7 @@ class Image(ShortRepr):
     geolocation: Geolocation | None = None
     own_gsd: Gsd | None = None
     along_track: AlongTrack = "y"
+    characteristic: Characteristic | None = None
 
     def __post_init__(self) -> None:
         if self.along_track not in ("x", "y"):
@@ -121,6 +131,38 @@ class Image(ShortRepr):
             along_track=along_track,
         )
 
+    def linearized(self, linearize: LinearizeLike) -> Image:
+        """The same image with values proportional to light, of known characteristic curve.
+
+        Parameters
+        ----------
+        linearize : str, float, Characteristic or None
+            "sRGB" (white at the largest value of the type, 1 of floats) or "sRGB:WHITE"; a number,
+            the gamma of a power law; "log:DECADE", by how much values rise for ten times the light
+            ("log" alone: natural logarithms); the path of a table of two rising columns, stored
+            value and light; or an object with `linear` and `words`. None leaves the image as it is.
+
+        Raises
+        ------
+        OptionError
+            If there is no such curve, or the image has one already.
+        """
+        curve = characteristic(linearize, self.saturation_level)
+        if curve is None:
+            return self
+        if self.characteristic is not None:
+            raise OptionError(
+                f"the image is linearised already ({self.characteristic.words}): open it anew to "
+                "choose another curve"
+            )
+        level = self.saturation_level
+        return replace(
+            self,
+            source=LinearizedPixels(self.source, curve),
+            saturation_level=None if level is None else _linear_level(curve, level),
+            characteristic=curve,
+        )
+
     @property
     def crs(self) -> str | None:
         """The coordinate reference system as text ("EPSG:32631", WKT), or ``None``."""
@@ -169,6 +211,14 @@ class Image(ShortRepr):
         at_row = (self.shape[0] - 1) / 2 if row is None else row
         at_col = (self.shape[1] - 1) / 2 if col is None else col
         return self.geolocation.gsd(at_row, at_col)
+
+
+def _linear_level(curve: Characteristic, level: float) -> float | None:
+    """The light of the largest stored value; ``None`` where the curve does not reach it."""
+    try:
+        return float(curve.linear(np.array([level]))[0])
+    except ImageError:
+        return None
 
 
 def _as_array(array: Any) -> NDArray[Any]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from acutance.errors import ImageError
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import AlongTrack, Image
+from acutance.raster.linearization import LinearizeLike
 from acutance.raster.pixels import NpyPixels, largest_count, require_image_array, type_name
 
 __all__ = ["open_image"]
@@ -28,6 +29,7 @@ def open_image(
     gsd_m: float | Gsd | None = None,
     nodata: float | None = None,
     along_track: AlongTrack = "y",
+    linearize: LinearizeLike = None,
 ) -> Image:
     """Open one band of an image file.
 
@@ -47,6 +49,9 @@ def open_image(
     along_track : {"y", "x"}, optional
         The axis along track, after which results are called across and along: y, down the
         columns, unless the image was turned.
+    linearize : str, float, Characteristic or None, optional
+        The characteristic curve of the stored values, if they are not proportional to light: see
+        `Image.linearized`.
 
     Returns
     -------
@@ -58,17 +63,18 @@ def open_image(
         If the file is missing, empty, damaged, a directory without an image, of a kind that
         cannot be measured (complex, palette), or has no such band.
     OptionError
-        If the GSD is not a positive number.
+        If the GSD is not a positive number, or there is no such curve.
     """
     gsd = Gsd.given(gsd_m)
     name = _as_name(path)
     _require_file(name)
     if name.lower().endswith(".npy"):
         opened = _open_npy(name, band, gsd, nodata)
-        return replace(opened, along_track=along_track)
+        return replace(opened, along_track=along_track).linearized(linearize)
     from acutance.raster.dataset import open_dataset
 
-    return replace(open_dataset(name, band, gsd, nodata), along_track=along_track)
+    opened = replace(open_dataset(name, band, gsd, nodata), along_track=along_track)
+    return opened.linearized(linearize)
 
 
 def _as_name(path: Any) -> str:

@@ -318,6 +318,8 @@ def provenance(result: Measurement | Record, max_name: int | None = None) -> dic
         found["region"] = f"rows {row}–{row + height - 1}, columns {col}–{col + width - 1}"
     if image.pixel_gsd_m is not None:
         found["GSD"] = _gsd_words(image)
+    if image.linearized is not None:
+        found["linearised"] = image.linearized
     for name, title in (("sensor", "satellite"), ("acquired", "acquired")):
         if result.options.get(name):
             found[title] = str(result.options[name])

@@ -233,7 +233,12 @@ def _failed_section(result: TargetResult[Any]) -> tuple[Section, ...]:
 def _command(measurement: Any, compared: Sequence[str] = ()) -> str | None:
     """The command line that repeats an edge or a pulse of a file, measured from Python."""
     image = measurement.image
-    if image.path is None or measurement.kind not in ("edge", "pulse"):
+    # Of a linearised image the document has the curve's words, not the option that names it.
+    if (
+        image.path is None
+        or image.linearized is not None
+        or measurement.kind not in ("edge", "pulse")
+    ):
         return None
     words = ["acutance", measurement.kind, image.path, "--roi", ",".join(map(str, image.roi))]
     if image.band != 1:

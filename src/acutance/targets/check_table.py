@@ -128,9 +128,16 @@ _STRAIGHT = {
         for side, where in _PLATEAUS.items()
     },
     "quantisation": Question(
-        "How many steps of the image's numbers is the noise?", ">=", 0.55,
+        "How many steps of the image's numbers is the noise?", ">=", 0.2,
         "so much rounding is no noise: it is equal for the pixels of a plateau and shifts its "
         "level by more than the intervals; use data of more bits",
+    ),
+    "nonlinearity": Question(
+        "How far from a straight line between the plateaus is the image's characteristic?",
+        "<=", 0.01,
+        "values that are not proportional to light change RER and MTF; linearise the image by its "
+        "known curve (linearize, --gamma, --linearize), or take the product before its "
+        "enhancement",
     ),
     "gradient": Question(
         "How steep is the background far from the target, in units of aperture wings?", "<=", 1.0,

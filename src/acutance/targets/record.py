@@ -53,6 +53,9 @@ class ImageInfo:
         The image axis the satellite flew along.
     pixel_gsd_m : (float, float) or None
         GSD from row to row and from column to column.
+    linearized : str or None
+        The characteristic curve that stored values were turned back through, in words; ``None``
+        if they were taken as they are.
     """
 
     path: str | None = None
@@ -61,6 +64,7 @@ class ImageInfo:
     crs: str | None = None
     along_track: AlongTrack = "y"
     pixel_gsd_m: tuple[float, float] | None = None
+    linearized: str | None = None
 
     @property
     def gsd_m(self) -> float | None:
@@ -86,6 +90,7 @@ class ImageInfo:
             "roi": list(self.roi),
             "crs": self.crs,
             "along_track": self.along_track,
+            "linearized": self.linearized,
         }
 
     @classmethod
@@ -102,6 +107,7 @@ class ImageInfo:
             document.get("crs"),
             "x" if document.get("along_track", "y") == "x" else "y",
             None if sides is None else (float(sides[0]), float(sides[1])),
+            document.get("linearized"),
         )
 
 

@@ -55,6 +55,7 @@ def image_info(image: Image, box: Box, gsd: Gsd | None) -> ImageInfo:
     return ImageInfo(
         image.path, image.band, box.as_tuple(), image.crs, image.along_track,
         None if gsd is None else (gsd.row_m, gsd.col_m),
+        None if image.characteristic is None else image.characteristic.words,
     )  # fmt: skip
 
 

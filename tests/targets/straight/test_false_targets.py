@@ -54,7 +54,7 @@ def test_numbers_that_wrapped_around_are_no_edge_of_light(offset):
 
 def test_numbers_too_coarse_for_the_intervals_are_noticed():
     image, _ = edge(53, shape=(40, 40))
-    coarse = np.round(image * 0.03).astype("uint8")
+    coarse = np.round(image * 0.01).astype("uint8")
     assert "quantisation" in failed(ac.measure_edge(coarse))
     assert "quantisation" not in failed(ac.measure_edge(np.round(image).astype("uint16")))
 
@@ -121,5 +121,5 @@ def test_checks_print_how_many_failed():
     assert repr(found.checks) == f"<0 of {len(found.checks)} checks failed>"
     strict = ac.EdgeOptions(limits={"rows": 1000})
     assert repr(ac.measure_edge(image, options=strict).checks).endswith(
-        "1 of 20 checks failed (rows)>"
+        f"1 of {len(found.checks)} checks failed (rows)>"
     )

@@ -16,10 +16,12 @@ from acutance.targets.straight.ground_checks import ground_checks
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,
     gradient,
+    nonlinearity,
     outliers,
     quantisation,
     saturation,
 )
+from acutance.targets.straight.step_profile import EDGE
 from acutance.targets.straight.structure_checks import (
     asymmetric_wings,
     double_edge,
@@ -54,9 +56,9 @@ __all__ = [
 EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases", "rows",
     "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px", "plateau_dark_px",
-    "plateau_bright_px", "saturation", "quantisation", "gradient", "correlated_noise", "structure",
-    "one_sided_overshoot", "double_edge", "asymmetric_wings", "profile", "outliers", "ground",
-    "close_ground", "mirrored_ground",
+    "plateau_bright_px", "saturation", "quantisation", "nonlinearity", "gradient",
+    "correlated_noise", "structure", "one_sided_overshoot", "double_edge", "asymmetric_wings",
+    "profile", "outliers", "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -92,6 +94,7 @@ def check_edge(
         plateau(limits, "bright", extent.bright_px),
         saturation(region, data, limits),
         quantisation(region, data, limits),
+        nonlinearity(data, limits, EDGE),
         gradient(data, limits),
         correlated_noise(data, limits),
         structure(data, limits),

@@ -10,6 +10,7 @@ those of line, width and height ratio: they are derivatives of the response, and
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from acutance.targets.straight.gradients import plateau_trends
 from acutance.targets.straight.ground_steps import Ground, GroundSide
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
+from acutance.targets.straight.rounding import Rounding, rounding_of
 from acutance.targets.straight.spline import CELLS, HALF_SUPPORT, combine, edge_weights
 from acutance.targets.straight.spline_equations import Stencil
 from acutance.targets.straight.step_profile import Profile
@@ -89,6 +91,8 @@ class Linear:
         Coefficients of the spline and of the first k further regressors for a unit of level,
         directions and tail. Every other regressor has an unknown of its own.
     prior : Prior
+    rounding : Rounding
+        Of the image's numbers; its modes are the last of the fixed regressors.
     """
 
     first_fit: FirstFit
@@ -104,10 +108,22 @@ class Linear:
     directions: lsf_prior.Directions
     design: Floats
     prior: Prior
+    rounding: Rounding
 
     @classmethod
-    def about(cls, first_fit: FirstFit, pixels: Pixels, *, fit_width: bool) -> Linear:
-        """The model about a first fit, of a width that is free or held."""
+    def about(
+        cls,
+        first_fit: FirstFit,
+        pixels: Pixels,
+        *,
+        fit_width: bool,
+        fitted: Floats | None = None,
+    ) -> Linear:
+        """The model about a first fit, of a width that is free or held.
+
+        `fitted` is the image of an earlier solution, (n,), by which rounding is judged; without it
+        that of the first fit.
+        """
         profile, width = first_fit.profile, first_fit.blur.width_px
         s = first_fit.line.normal_distance(pixels.row, pixels.col)
         t = first_fit.line.tangent_distance(pixels.row, pixels.col)
@@ -133,11 +149,17 @@ class Linear:
         residual = pixels.value - first_fit.dark - first_fit.height * mean
         # A bad pixel counts with no more than a whole height.
         np.clip(residual, -first_fit.height, first_fit.height, out=residual)
+        if fitted is None:
+            fitted = first_fit.dark + first_fit.height * mean
+        rounding = _rounding(first_fit, pixels, s, fitted)
+        fixed = [*further, trends, ground.columns]
+        if rounding.std.size:
+            fixed.append(rounding.modes)
         return cls(
             first_fit, s, t, seen, mean, slope, residual,
-            stencils, np.vstack([*further, trends, ground.columns]), derivatives,
+            stencils, np.vstack(fixed), derivatives,
             directions, _design(directions, ground, len(further)),
-            _prior(first_fit, directions, ground, len(trends), derivatives),
+            _prior(first_fit, directions, ground, len(trends), rounding, derivatives), rounding,
         )  # fmt: skip
 
     @property
@@ -158,6 +180,7 @@ class Linear:
         variance this adds where the image is steepest, relative to the rest.
         """
         sides = np.array(side_variances(self.first_residual * np.sqrt(outlier), self.mean))
+        sides = np.maximum(sides, self.rounding.floor**2)
         floor = (_NOISE_FLOOR * self.first_fit.height) ** 2
         scale = float(0.5 * (sides[0] + sides[1])) + floor
         share = np.minimum(np.maximum(self.mean, 0.0), 1.0)
@@ -250,25 +273,40 @@ def _design(directions: lsf_prior.Directions, ground: Ground, further: int) -> F
     return design
 
 
+def _rounding(first_fit: FirstFit, pixels: Pixels, s: Floats, fitted: Floats) -> Rounding:
+    """Rounding of the pixels: of the plateaus before, between and behind the steps."""
+    ends = [-np.inf, *first_fit.profile.positions_px, np.inf]
+    groups = [(s >= start) & (s < stop) for start, stop in pairwise(ends)]
+    share = (fitted - first_fit.dark) / first_fit.height
+    dark, bright = side_variances(pixels.value - fitted, share)
+    variances = np.array([dark, bright, dark])[: len(groups)]
+    return rounding_of(
+        pixels.value, fitted, first_fit.profile.outside(s), groups, first_fit.height, variances
+    )
+
+
 def _prior(
     first_fit: FirstFit,
     directions: lsf_prior.Directions,
     ground: Ground,
     trends: int,
+    rounding: Rounding,
     derivatives: int,
 ) -> Prior:
     """The prior of all unknowns."""
     trend, first_side = LOG_AMPLITUDE.size, LOG_AMPLITUDE.size + 1
     near, far = np.split(ground.side, [ground.spline.shape[1]])
+    waves = rounding.std.size
     block = np.concatenate([
         [-1], np.maximum(directions.block - lsf_prior.FIRST_BLOCK, -1), first_side + near,
-        np.full(trends, trend), first_side + far, np.full(derivatives, -1),
+        np.full(trends, trend), first_side + far, np.full(waves + derivatives, -1),
     ])  # fmt: skip
     scale = np.ones(block.size)
     scale[block >= first_side] = ground.scale
     # Prior: rotation (radians), width (pixels) and height ratio are known to about one.
     scale[-derivatives:] = 1 / first_fit.height
     scale[1 - derivatives] = CURVATURE_STD_PER_PX / first_fit.height
+    scale[block.size - derivatives - waves : -derivatives] = rounding.std / first_fit.height
     mean = np.zeros(block.size)
     aperture, aperture_std = APERTURE_PX
     where = 1 + int(np.flatnonzero(directions.block == 1)[0])
@@ -279,5 +317,6 @@ def _prior(
     log_amplitude_std[trend] = TREND_LOG_AMPLITUDE_STD
     return Prior(
         block, scale, mean, np.array([*LOG_AMPLITUDE, TREND_LOG_AMPLITUDE, *walks]),
-        log_amplitude_std, first_fit.height, _NOISE_FLOOR * first_fit.height,
+        log_amplitude_std, first_fit.height,
+        max(_NOISE_FLOOR * first_fit.height, rounding.floor),
     )  # fmt: skip

@@ -11,19 +11,30 @@ from acutance.numerics.clipping import at_limit_share, piled_up_share
 from acutance.numerics.noise import outlier_share
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.region import RegionPixels
-from acutance.targets.straight.check_data import MISFIT, CheckData
+from acutance.targets.straight.check_data import MISFIT, PLACES, CheckData
+from acutance.targets.straight.nonlinearity import find_curvature, gamma_of
+from acutance.targets.straight.rounding import level_step, smallest_step
+from acutance.targets.straight.step_profile import Profile
 from acutance.targets.straight.tuned import (
     APERTURE_TAIL_PX,
     GRADIENT_SIGMAS,
     MAX_FINE_STEP,
     MIN_PILED_PIXELS,
     MIN_SIDE_PIXELS,
+    NONLINEAR_LOG_ODDS,
     OUTLIER_SIGMAS,
     QUIET_SIDE,
     QUIET_TRANSITION,
 )
 
-__all__ = ["correlated_noise", "gradient", "outliers", "quantisation", "saturation"]
+__all__ = [
+    "correlated_noise",
+    "gradient",
+    "nonlinearity",
+    "outliers",
+    "quantisation",
+    "saturation",
+]
 
 
 def saturation(region: RegionPixels, data: CheckData, limits: Limits) -> Check:
@@ -50,15 +61,57 @@ def _quiet(data: CheckData, side: Floats) -> bool:
 
 def quantisation(region: RegionPixels, data: CheckData, limits: Limits) -> Check:
     """Noise in steps of the image's numbers: below one step rounding distorts the profile."""
-    values = np.unique(region.pixels[data.trimmed.pixels.at])
-    step = float(np.min(np.diff(values))) if values.size > 1 else 0.0
+    values = region.pixels[data.trimmed.pixels.at]
+    step = smallest_step(values)
     contrast = abs(data.fit.bright - data.fit.dark)
+    if region.image.characteristic is not None:
+        return _uneven_quantisation(data, values, contrast, limits)
     if step < MAX_FINE_STEP * contrast:
         found = "the image's numbers are finer than the curves resolve"
         return answer("quantisation", MAX_RATIO, found, limits)
     value = min(data.plateau_std * contrast / step, MAX_RATIO)
     found = f"the plateaus' noise is {value:.2f} steps of the image's numbers"
     return answer("quantisation", value, found, limits)
+
+
+def _uneven_quantisation(data: CheckData, values: Floats, contrast: float, limits: Limits) -> Check:
+    """The same of an image that was linearised: its steps differ from level to level."""
+    value, found = MAX_RATIO, "the image's numbers are finer than the curves resolve"
+    for place, name in (
+        (data.before > data.far_px, "before"),
+        (data.behind > data.far_px, "behind"),
+    ):
+        side = values[place]
+        step = level_step(values, float(np.median(side))) if side.size > 1 else 0.0
+        if step < MAX_FINE_STEP * contrast:
+            continue
+        ratio = float(np.std(side)) / step
+        if ratio < value:
+            value = ratio
+            found = f"the noise {PLACES[name]} is {ratio:.2f} steps of the image's numbers there"
+    return answer("quantisation", value, found, limits)
+
+
+def nonlinearity(data: CheckData, limits: Limits, profile: Profile, sign: float = 1.0) -> Check:
+    """How far the image's values depart from a straight line of light, half way up the contrast.
+
+    Zero where a linear sensor explains the image about as well. `sign` is -1 of a dark pulse, whose
+    values are negated.
+    """
+    found = find_curvature(data, profile)
+    if found.log_odds < NONLINEAR_LOG_ODDS:
+        return answer("nonlinearity", 0.0, "the image's values are proportional to light", limits)
+    value = 0.25 * abs(found.value)
+    curvature = sign * found.value
+    levels = sorted((sign * data.fit.dark, sign * data.fit.bright))
+    law = gamma_of(curvature, found.std, *levels)
+    words = (
+        f"half way up the contrast the values lie {100 * value:.1f} ± {25 * found.std:.1f} % of it "
+        f"{'above' if curvature > 0 else 'below'} a straight line of light"
+    )
+    if law:
+        words += f", as {law} gives if 0 is dark"
+    return answer("nonlinearity", value, words, limits)
 
 
 def gradient(data: CheckData, limits: Limits) -> Check:

@@ -20,16 +20,19 @@ from acutance.targets.straight.edge_checks import (
     plateau,
     straightness,
 )
+from acutance.targets.straight.fit_pulse import PulsePixels
 from acutance.targets.straight.ground_checks import ground_checks
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,
     gradient,
+    nonlinearity,
     outliers,
     quantisation,
     saturation,
 )
 from acutance.targets.straight.published import PublishedPulse
 from acutance.targets.straight.pulse_spectrum import zeros_cpp
+from acutance.targets.straight.step_profile import pulse_profile
 from acutance.targets.straight.structure_checks import (
     edge_roughness,
     profile,
@@ -44,9 +47,9 @@ __all__ = ["PULSE_CHECKS", "check_pulse", "pulse_snr"]
 PULSE_CHECKS = (
     "contrast_snr", "uniformity_before", "uniformity_behind", "uniformity_target", "angle_deg",
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
-    "plateau_before_px", "plateau_behind_px", "saturation", "quantisation", "gradient",
-    "correlated_noise", "profile", "outliers", "parallel_deg", "background_step", "width_px",
-    "width_sigmas", "zero_distance_cpp", "ground", "close_ground", "mirrored_ground",
+    "plateau_before_px", "plateau_behind_px", "saturation", "quantisation", "nonlinearity",
+    "gradient", "correlated_noise", "profile", "outliers", "parallel_deg", "background_step",
+    "width_px", "width_sigmas", "zero_distance_cpp", "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of a pulse."""
 
@@ -94,6 +97,7 @@ def check_pulse(
         plateau(limits, "behind", extent.bright_px),
         saturation(region, data, limits),
         quantisation(region, data, limits),
+        _nonlinearity(data, limits, width.value, height_ratio.value),
         gradient(data, limits),
         correlated_noise(data, limits),
         profile(data, limits, width.value, own_misfit=by_ratio),
@@ -124,6 +128,11 @@ def _contrast(data: CheckData, limits: Limits) -> Check:
         "above it"
     )
     return answer("contrast_snr", value, found, limits)
+
+
+def _nonlinearity(data: CheckData, limits: Limits, width_px: float, height_ratio: float) -> Check:
+    sign = data.trimmed.sign if isinstance(data.trimmed, PulsePixels) else 1.0
+    return nonlinearity(data, limits, pulse_profile(width_px, height_ratio), sign)
 
 
 def _parallel(data: CheckData, limits: Limits, height_ratio: float) -> Check:

@@ -179,6 +179,7 @@ def solve(
         short = _are_short(solved, fit_width)
         settled = (
             short
+            and not (linear.rounding.floor > 0 and earlier is None)
             # The derivative by the width is that of the first fit until there is an LSF.
             and not (fit_width and earlier is None)
             and np.max(np.abs(again - outlier)) < 0.05
@@ -187,10 +188,17 @@ def solve(
         )
         if settled:
             break
+        # The phase of rounding follows the wings, which the first fit does not have.
+        fitted = pixels.value - solved.residual
+        is_rounded = earlier is None and linear.rounding.floor > 0
         outlier, whiteness, earlier = again, found, solved
         roughness = solved.roughness
         if not (short and _is_at_rest(solved)):
-            linear = Linear.about(_updated(solved, fit_width), pixels, fit_width=fit_width)
+            linear = Linear.about(
+                _updated(solved, fit_width), pixels, fit_width=fit_width, fitted=fitted
+            )
+        elif is_rounded:
+            linear = Linear.about(linear.first_fit, pixels, fit_width=fit_width, fitted=fitted)
     return Solved(solved, outlier, whiteness)
 
 

@@ -1,0 +1,93 @@
+"""Values that are not proportional to light, and sensors that only look so."""
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance import optics
+from acutance.targets.straight.nonlinearity import gamma_of
+
+SYSTEMS = ac.simulate.reference_systems()
+FULL_SCALE = 255.0
+
+
+def edge(sensor, seed, gamma=1.0, snr=100.0, noise=None, dark=None, bright=None):
+    """An edge of 40 to 60 px and SNR 100 whose values are the 1 / gamma-th power of light."""
+    rng = np.random.default_rng(seed)
+    levels = [(50.0, 200.0), (20.0, 220.0), (30.0, 160.0)][seed % 3]
+    size = int(rng.integers(40, 61))
+    image, _ = ac.simulate.edge(
+        sensor, angle_deg=float(rng.uniform(3, 15)), shape=(size, size),
+        dark=levels[0] if dark is None else dark, bright=levels[1] if bright is None else bright,
+        polarity=("rising", "falling")[seed % 2], orientation=("across", "along")[seed // 2 % 2],
+        offset_px=float(rng.uniform(-0.5, 0.5)), snr=snr if noise is None else None, noise=noise,
+        rng=rng,
+    )  # fmt: skip
+    return FULL_SCALE * (np.clip(np.asarray(image), 0, None) / FULL_SCALE) ** (1 / gamma)
+
+
+def check(measurement):
+    return next(one for one in measurement.checks if one.name == "nonlinearity")
+
+
+def fired(sensor, seeds, **options):
+    return np.mean([not check(ac.measure_edge(edge(sensor, s, **options))).passed for s in seeds])
+
+
+@pytest.mark.parametrize("name", ["gaussian", "wide", "diffraction", "halo", "sharpened"])
+def test_a_gamma_of_1_3_is_seen(name):
+    assert fired(SYSTEMS[name], range(12), gamma=1.3) >= 9 / 12
+
+
+def test_a_gamma_of_2_2_is_seen_and_named():
+    for seed in range(6):
+        found = ac.measure_edge(edge(SYSTEMS["diffraction"], seed, gamma=2.2))
+        assert not check(found).passed
+        assert "above a straight line of light, as a gamma of 2." in check(found).message
+        assert "--gamma" in check(found).message
+        assert found.verdict.word == "doubtful"
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["gaussian", "wide", "diffraction", "halo", "sharpened", "defocused", "smeared", "asymmetric"],
+)
+def test_linear_sensors_pass(name):
+    assert fired(SYSTEMS[name], range(10)) == 0
+
+
+@pytest.mark.parametrize("trail_px", [0.1, 0.2, 0.6])
+def test_a_trail_is_no_curve(trail_px):
+    trail = [optics.Exponential(trail_px, "across"), optics.Exponential(trail_px, "along")]
+    sensor = ac.Sensor([optics.Gaussian(0.35), *trail, optics.Detector()])
+    assert fired(sensor, range(12)) <= 1 / 12
+
+
+def test_noise_of_photons_is_no_curve():
+    noise = ac.simulate.Noise(read=0.5, shot_gain=0.02)
+    assert fired(SYSTEMS["diffraction"], range(12), noise=noise) <= 1 / 12
+
+
+@pytest.mark.parametrize("bright", [False, True])
+def test_a_pulse_shows_both_polarities(bright):
+    levels = {"dark": 20.0, "bright": 220.0}
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        image, _ = ac.simulate.pulse(
+            SYSTEMS["sharpened"], width_px=5.0, shape=(60, 60), snr=100, rng=rng, **levels
+        )
+        light = np.asarray(image) if bright else sum(levels.values()) - np.asarray(image)
+        assert check(ac.measure_pulse(light, width_px=5.0)).passed
+        values = FULL_SCALE * (np.clip(light, 0, None) / FULL_SCALE) ** (1 / 1.3)
+        found = check(ac.measure_pulse(values, width_px=5.0))
+        assert not found.passed
+        assert "above a straight line" in found.message
+
+
+def test_the_gamma_of_a_curvature():
+    for gamma in (0.7, 1.3, 2.2):
+        dark, bright = (np.array([20.0, 220.0]) / 255) ** (1 / gamma) * 255
+        middle = (120 / 255) ** (1 / gamma) * 255
+        bend = 4 * ((middle - dark) / (bright - dark) - 0.5)
+        assert gamma_of(bend, 0.05, dark, bright).startswith(f"a gamma of {gamma:.2f} ± 0.")
+    assert gamma_of(0.2, 0.05, -5.0, 100.0) == ""
