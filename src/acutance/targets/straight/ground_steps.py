@@ -36,6 +36,7 @@ __all__ = ["Ground", "GroundSide"]
 
 _SEAMS: Final = np.array([0.25, 0.5, 0.75])
 """Where a pulse may be brighter or darker from there on, in units of its own width."""
+_FAR_SIGMAS = 7.0
 _ROOM = 1.0
 """How far the pixels have to reach beyond a step, in widths."""
 _PLACES: Final = np.concatenate([NEAR_GROUND_STEPS, FAR_GROUND_STEPS])
@@ -158,4 +159,7 @@ def _edge_spline() -> Floats:
 
 def _blurred(outwards: Floats, places: Floats) -> Floats:
     """Response to a unit step at every place, (k, n)."""
-    return np.asarray(ndtr(FWHM_OF_SIGMA * (outwards - places[:, None])))
+    # Far out the normal distribution is 0 or 1, and slow to compute.
+    far = _FAR_SIGMAS / FWHM_OF_SIGMA
+    apart = np.minimum(np.maximum(outwards - places[:, None], -far), far)
+    return np.asarray(ndtr(FWHM_OF_SIGMA * apart))

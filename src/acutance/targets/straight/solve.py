@@ -31,6 +31,8 @@ from acutance.targets.straight.step_profile import Profile
 __all__ = ["Solution", "Solved", "solve"]
 
 _SETTLED_PX = 0.01
+_SETTLED_BEND_PX = 0.03
+"""At the ends of the target, the only places where it is that much."""
 _SETTLED_RATIO = 0.003
 """Updates below these: the error of linearity is less than 1e-4 of the edge's height."""
 _NEGLIGIBLE_SIGMAS = 3.0
@@ -211,7 +213,7 @@ def _are_short(solved: Solution, fit_width: bool) -> bool:
     half_px = solved.linear.half_length_px
     if abs(solved.rotation_rad) * half_px >= _SETTLED_PX:
         return False
-    if abs(solved.curvature_per_px) * half_px**2 / 2 >= _SETTLED_PX:
+    if abs(solved.curvature_per_px) * half_px**2 / 2 >= _SETTLED_BEND_PX:
         return False
     updates, stds = np.abs(solved.updates), solved.updates_std
     tolerance = np.maximum(_SETTLED_RATIO, 6.0 * stds)
