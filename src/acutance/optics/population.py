@@ -89,10 +89,15 @@ def _smear(rng: np.random.Generator) -> list[Block]:
     return [*_plain(rng), Smear(rng.uniform(0.5, 2.2), "across")]
 
 
+def _processed(rng: np.random.Generator) -> list[Block]:
+    """What a product is made from: the image of a telescope, or one with a Gaussian blur."""
+    return _telescope(rng) if rng.random() < 0.6 else _plain(rng)
+
+
 def _sharpened(rng: np.random.Generator) -> list[Block]:
     if rng.random() < 0.4:
-        return [*_plain(rng), Sharpening.both_axes(rng.uniform(0.05, 0.8))]
-    return [*_plain(rng), _wiener_kernel(rng)]
+        return [*_processed(rng), Sharpening.both_axes(rng.uniform(0.05, 0.8))]
+    return [*_processed(rng), _wiener_kernel(rng)]
 
 
 def _wiener_kernel(rng: np.random.Generator) -> Sharpening:
@@ -111,8 +116,8 @@ def _wiener_kernel(rng: np.random.Generator) -> Sharpening:
 
 def _resampled(rng: np.random.Generator) -> list[Block]:
     if rng.random() < 0.3:
-        return [*_plain(rng), Resampling("bilinear")]
-    return [*_plain(rng), Resampling("cubic", rng.uniform(-0.75, -0.3))]
+        return [*_processed(rng), Resampling("bilinear")]
+    return [*_processed(rng), Resampling("cubic", rng.uniform(-0.75, -0.3))]
 
 
 FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
