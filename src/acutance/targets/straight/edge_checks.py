@@ -10,7 +10,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.geometry.line import Line
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
-from acutance.targets.region import RegionPixels
+from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import PLACES, CheckData, ratio_in_words
 from acutance.targets.straight.ground_checks import ground_checks
 from acutance.targets.straight.pixel_checks import (
@@ -56,8 +56,8 @@ __all__ = [
 EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases", "rows",
     "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px", "plateau_dark_px",
-    "plateau_bright_px", "saturation", "quantisation", "nonlinearity", "gradient",
-    "correlated_noise", "structure", "one_sided_overshoot", "double_edge", "asymmetric_wings",
+    "plateau_bright_px", "saturation", "undeclared_fill", "quantisation", "nonlinearity",
+    "gradient", "correlated_noise", "structure", "one_sided_overshoot", "double_edge", "asymmetric_wings",
     "profile", "outliers", "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of an edge."""
@@ -93,6 +93,7 @@ def check_edge(
         plateau(limits, "dark", extent.dark_px),
         plateau(limits, "bright", extent.bright_px),
         saturation(region, data, limits),
+        undeclared_fill([region.fill], limits),
         quantisation(region, data, limits),
         nonlinearity(data, limits, EDGE),
         gradient(data, limits),
