@@ -101,11 +101,13 @@ def _show_edges(
 
 def _panels(page: FigureBase, count: int) -> list[Axes]:
     """As many panels as there are directions, one below the other."""
-    return list(np.atleast_1d(page.subplots(count, 1)))
+    return list(np.atleast_1d(page.subplots(count, 1))) if count else []
 
 
 def _mosaic(measurements: Sequence[Any]) -> tuple[Floats | None, tuple[int, int]]:
     """The regions put where they belong, NaN between them; nothing where pixels are missing."""
+    if not measurements:
+        return None, (0, 0)
     boxes = np.array([one.image.roi for one in measurements])
     first = boxes[:, :2].min(axis=0)
     if any(one.details is None for one in measurements):
