@@ -74,9 +74,10 @@ def test_texts_and_files_carry_the_names(acutance, folder, shown, tmp_path):
         acutance, folder, "--csv", tmp_path / "edge.csv", "--figure", tmp_path / "edge.svg"
     )
     assert result.exit_code == 0, result.stderr
-    first, second = result.stdout.split("region ")[1:]
+    first, second, grass = result.stdout.split("region ")[1:]
     assert first.startswith("north: Edge, method spline")
     assert second.startswith("field A/1: Edge, method spline")
+    assert grass.startswith("grass: not measured: no straight edge")
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {
         f"edge-{name}.{end}" for name in ("north", "field-A-1") for end in ("csv", "svg")

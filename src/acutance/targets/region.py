@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
-from acutance.errors import RegionError
+from acutance.errors import NoDataError, RegionError
 from acutance.raster import Box, Fill, Gsd, Image, Region, find_fill
 from acutance.targets.check import Check, Limits, answer
 from acutance.targets.record import ImageInfo
@@ -89,8 +89,8 @@ def read_region(
     ImageError, OptionError
         If there is no image, or the GSD is no positive number.
     RegionError
-        If the region is none, lies outside the image, holds too few usable pixels, or is far
-        larger than any target.
+        If the region is none, lies outside the image, is too small, or far larger than any target;
+        `NoDataError` if it holds too few pixels with data.
     """
     source = image if isinstance(image, Image) else Image.from_array(image)
     where = Box.whole(source.shape) if roi is None else chosen_region(roi)
@@ -116,7 +116,7 @@ def read_region(
         fill = None if fill is None else fill.within(inside)
     usable = int(np.count_nonzero(np.isfinite(pixels)))
     if usable < _MIN_SIDE_PX**2:
-        raise RegionError(
+        raise NoDataError(
             f"only {usable} of the region's {pixels.size} pixels hold data: the rest is nodata, "
             f"masked, NaN{'' if fill is None else f' or a constant fill of {fill.value:.9g}'}; "
             "choose another region, or correct the nodata value if pixels that have it are data "

@@ -194,11 +194,14 @@ def _change_along(data: CheckData, column: Floats) -> float:
     clipped = np.clip(data.residual, -OUTLIER_SIGMAS * data.noise, OUTLIER_SIGMAS * data.noise)
     share = np.bincount(part, column * clipped, parts)
     usable = power > 0.3 * np.median(power)
+    freedom = int(usable.sum()) - 1
+    if freedom < 1:
+        # Pixels lie next to one part of the edge at most.
+        return 0.0
     amount = share[usable] / power[usable]
     variance = data.noise**2 * data.smoothness / power[usable]
     # The mean of all parts belongs to the fit and is no change along the edge.
     amount -= np.average(amount, weights=power[usable])
-    freedom = int(usable.sum()) - 1
     chi_square = float(np.sum(amount**2 / np.maximum(variance, 1e-18)))
     if chi_square <= freedom + CHANGE_SIGMAS * math.sqrt(2 * freedom):
         return 0.0
