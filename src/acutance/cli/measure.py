@@ -94,14 +94,30 @@ def _compared(function: Callable[..., Measurement], names: Sequence[str]) -> Com
     first: TargetError | None = None
     for name in names:
         try:
-            found.append(function(method=name))
+            one = function(method=name)
+            _require_same_direction(one, found)
         except TargetError as error:
             first = first or error
             rejected.append(Rejected("method", str(error), {"method": name}))
             say(f"acutance: method {name}: {error}")
+        else:
+            found.append(one)
     if first is not None and not found:
         raise first
     return Comparison(tuple(found), rejected=tuple(rejected))
+
+
+def _require_same_direction(one: Measurement, found: Sequence[Measurement]) -> None:
+    """Refuse the measurement of another edge than the first method's: there is nothing to compare.
+
+    A method that cannot measure the strongest edge of a region goes on to the next.
+    """
+    if found and not set(one.measured_directions) & set(found[0].measured_directions):
+        raise TargetError(
+            f"{one.method} measured another target of the region, "
+            f"{' and '.join(one.measured_directions)} track, than {found[0].method}, "
+            f"{' and '.join(found[0].measured_directions)} track: choose a region around one target"
+        )
 
 
 def _every_target(
