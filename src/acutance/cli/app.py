@@ -115,7 +115,7 @@ for _name, _module, _words in (
     ("demo", demo, "Measure a simulated campaign by every method."),
 ):
     _measures = _name in KINDS or _name == "combine"
-    _epilog = f"{_module.EXAMPLE}\n\n{EXIT_CODES}" if _measures else _module.EXAMPLE
+    _epilog = f"{EXIT_CODES}\n\n{_module.EXAMPLE}" if _measures else _module.EXAMPLE
     app.command(_name, epilog=_epilog, short_help=_words)(getattr(_module, _name))
 app.add_typer(simulate.app, name="simulate")
 app.add_typer(plan_mirrors.app, name="plan")
