@@ -16,6 +16,8 @@ from acutance.curves.grid import FREQ_CPP
 from acutance.geometry.line import Line
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.targets.pair.gaussian_fit import _weights
+from acutance.targets.pair.spectral_ratio import pair_spectra
+from acutance.targets.pair.tile import TapAxis, TapGrid
 from acutance.targets.periodic.bars_find import find_bars
 from acutance.targets.points.fit import _growth
 from acutance.targets.points.noise import PointNoise
@@ -136,6 +138,14 @@ def test_a_curve_that_is_steepest_at_its_end_has_no_start_points():
     x = np.linspace(-8, 8, 400)
     with pytest.raises(ac.NoEdgeError, match="at the end of the search"):
         start_points(x, np.exp(x), np.ones(x.size), -8.0, 8.0, 0.5)
+
+
+def test_windows_displaced_by_more_than_their_size_have_no_spectra():
+    axis = TapAxis(2, 0.0, 8)
+    gaussian = SimpleNamespace(
+        down=SimpleNamespace(shift_px=0.0), across=SimpleNamespace(shift_px=40.0)
+    )
+    assert pair_spectra([], [], TapGrid(axis, axis), gaussian, 16) is None
 
 
 def test_weights_of_residuals_of_any_size():

@@ -74,10 +74,6 @@ def test_a_region_of_fill_holds_no_data():
         ac.measure_edge(image, (10, 39, 40, 30))
 
 
-def points(**scene):
-    return simulate.points(SENSOR, rng=np.random.default_rng(2), snr=100, **scene)[0]
-
-
 def test_points_bars_stars_and_pulses_leave_fill_out():
     scenes = {
         "pulse": simulate.pulse(
@@ -93,10 +89,9 @@ def test_points_bars_stars_and_pulses_leave_fill_out():
     }  # fmt: skip
     for kind, image in scenes.items():
         room = KINDS[kind]
-        wide = np.random.default_rng(3).normal(
-            np.median(image), np.std(image) / 50, (20, image.shape[1])
-        )
-        filled = np.vstack([image, wide, np.zeros_like(wide)])
+        rng, size = np.random.default_rng(3), (20, image.shape[1])
+        wide = rng.normal(np.median(image), np.std(image) / 50, size)
+        filled = np.vstack([image, wide, np.zeros(size)])
         found = room.load(room.measure)(filled)
         assert note(found).value == wide.size, kind
         assert note(room.load(room.measure)(image)).passed, kind
