@@ -156,8 +156,8 @@ def undeclared_fill(fills: Sequence[Fill | None], limits: Limits) -> Check:
     found = "no fill was found that is not declared"
     if count:
         found = (
-            f"{count} pixels up to the image's border are exactly {named} or mixed with it, and "
-            "end more sharply than any sensor's image: fill without data"
+            f"{count} pixels are fill without data, the value {named} up to the image's border, "
+            "which ends more sharply than any sensor's image"
         )
     return answer("undeclared_fill", count, found, limits)
 
