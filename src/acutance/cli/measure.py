@@ -125,6 +125,7 @@ def _every_target(
 ) -> Shown:
     """All edges of a region, on the pixels they are drawn on."""
     from acutance.raster import Box
+    from acutance.targets.region import read_data
 
     result = kind.load(str(kind.measure_all))(image, region, **given)
     if not result.measurements:
@@ -135,7 +136,7 @@ def _every_target(
             "target"
         )
     box = Box.whole(image.shape) if region is None else region.box(image.shape)
-    return Shown(result, {"backdrop": image.read(box), "origin": (box.row, box.col)})
+    return Shown(result, {"backdrop": read_data(image, box)[0], "origin": (box.row, box.col)})
 
 
 def _deliver_regions(

@@ -57,8 +57,8 @@ EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases", "rows",
     "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px", "plateau_dark_px",
     "plateau_bright_px", "saturation", "undeclared_fill", "quantisation", "nonlinearity",
-    "gradient", "correlated_noise", "structure", "one_sided_overshoot", "double_edge", "asymmetric_wings",
-    "profile", "outliers", "ground", "close_ground", "mirrored_ground",
+    "gradient", "correlated_noise", "structure", "one_sided_overshoot", "double_edge",
+    "asymmetric_wings", "profile", "outliers", "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of an edge."""
 

@@ -47,9 +47,10 @@ __all__ = ["PULSE_CHECKS", "check_pulse", "pulse_snr"]
 PULSE_CHECKS = (
     "contrast_snr", "uniformity_before", "uniformity_behind", "uniformity_target", "angle_deg",
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
-    "plateau_before_px", "plateau_behind_px", "saturation", "undeclared_fill", "quantisation", "nonlinearity",
-    "gradient", "correlated_noise", "profile", "outliers", "parallel_deg", "background_step",
-    "width_px", "width_sigmas", "zero_distance_cpp", "ground", "close_ground", "mirrored_ground",
+    "plateau_before_px", "plateau_behind_px", "saturation", "undeclared_fill", "quantisation",
+    "nonlinearity", "gradient", "correlated_noise", "profile", "outliers", "parallel_deg",
+    "background_step", "width_px", "width_sigmas", "zero_distance_cpp", "ground", "close_ground",
+    "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of a pulse."""
 
