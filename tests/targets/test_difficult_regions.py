@@ -34,23 +34,6 @@ from acutance.targets.straight.trim import trim
 SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()])
 
 
-def line_on_a_step(seed, shape=(40, 40)):
-    """A blurred line next to a weak step, 5 px from the image's border."""
-    rng = np.random.default_rng(seed)
-    rows, cols = np.indices(shape).astype(float)
-    angle = np.radians(rng.uniform(2, 12))
-    distance = (cols - rng.uniform(3, 8)) * np.cos(angle) + (rows - 20) * np.sin(angle)
-    line = rng.uniform(50, 200) * np.exp(-0.5 * (distance / rng.uniform(0.5, 1.2)) ** 2)
-    step = rng.uniform(0, 30) * (distance > 0)
-    return 100 + line + step + rng.normal(0, rng.uniform(1, 6), shape)
-
-
-@pytest.mark.parametrize("seed", [104, 217])
-def test_a_line_whose_fitted_height_is_negative_is_no_pulse(seed):
-    with pytest.raises(ac.NoEdgeError, match=r"the free one of -"):
-        ac.measure_pulse(line_on_a_step(seed))
-
-
 def solved_edge():
     image, truth = simulate.edge(
         SENSOR, angle_deg=6.0, shape=(40, 40), snr=100, rng=np.random.default_rng(2)
