@@ -4,7 +4,8 @@
 
     AcutanceError
     ├── ImageError          (OSError)     a file is missing, unreadable, or holds no image
-    ├── RegionError         (ValueError)  a region lies outside the image or holds too few pixels
+    ├── RegionError         (ValueError)  a region lies outside the image or is too small
+    │   └── NoDataError                   what it holds is nodata, masked, NaN or fill
     ├── TargetError         (ValueError)  the pixels hold no target that can be measured
     │   ├── NoEdgeError                   no straight edge stands out of the noise
     │   ├── NoBarsError                   no groups of bars, or not as described
@@ -23,6 +24,7 @@ __all__ = [
     "ImageError",
     "ModelError",
     "NoBarsError",
+    "NoDataError",
     "NoEdgeError",
     "NoStarError",
     "OptionError",
@@ -42,7 +44,11 @@ class ImageError(AcutanceError, OSError):
 
 
 class RegionError(AcutanceError, ValueError):
-    """A region lies outside the image or holds too few usable pixels."""
+    """A region lies outside the image, is too small, or far larger than any target."""
+
+
+class NoDataError(RegionError):
+    """A region holds too few pixels with data: the rest is nodata, masked, NaN or fill."""
 
 
 class TargetError(AcutanceError, ValueError):

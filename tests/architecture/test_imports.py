@@ -36,7 +36,7 @@ FORBIDDEN = {
 # Libraries, and the floors that may use them.
 LIBRARIES = {
     "numpy": set(FLOORS) - {"errors"},
-    "scipy": {"targets", "simulate", "numerics", "optics"},
+    "scipy": {"targets", "simulate", "raster", "numerics", "optics"},
     "rasterio": {"raster"},
     "matplotlib": {"report"},
     "jinja2": {"report"},

@@ -5,6 +5,10 @@ import json
 import numpy as np
 import pytest
 
+from acutance import optics, simulate
+
+SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()])
+
 
 def test_the_text_report_goes_to_stdout(acutance, edge_image):
     result = acutance("edge", edge_image)
@@ -91,12 +95,36 @@ def test_methods_are_compared(acutance, edge_image, shown, tmp_path):
     words = ("edge", edge_image, "--compare", "spline,iso12233", "--report", tmp_path / "c.html")
     result = acutance(*words)
     assert result.exit_code == 0, result.stderr
-    ((_, measurements, _),) = shown
-    assert [one.method for one in measurements] == ["spline", "iso12233"]
+    ((_, comparison, _),) = shown
+    assert [one.method for one in comparison.measurements] == ["spline", "iso12233"]
     assert all(method in result.stdout for method in ("spline", "iso12233"))
     document = json.loads(acutance("edge", edge_image, "--compare", "fermi", "--json").stdout)
     assert document["schema"] == "acutance/comparison/1"
     assert [one["method"] for one in document["measurements"]] == ["spline", "fermi"]
+    assert document["rejected"] == []
+
+
+def test_a_method_that_cannot_measure_leaves_the_others_their_results(acutance, tmp_path):
+    """24 rows at 20 degrees are too few for the method of 2005."""
+    image, _ = simulate.edge(
+        SENSOR, angle_deg=20.0, shape=(24, 24), snr=100, rng=np.random.default_rng(1)
+    )
+    np.save(tmp_path / "short.npy", image)
+    words = ("edge", tmp_path / "short.npy", "--compare", "sdsu-2005,fermi")
+    result = acutance(*words, "--report", tmp_path / "c.html", "--figure", tmp_path / "c.svg")
+    assert result.exit_code == 0, result.stderr
+    assert "sdsu-2005: not measured: an angle of 20" in result.stdout
+    assert "method sdsu-2005: an angle of 20" in result.stderr
+    page = (tmp_path / "c.html").read_text(encoding="utf-8")
+    assert "sdsu-2005 – Not measured: an angle of 20" in page
+    document = json.loads(acutance(*words, "--json").stdout)
+    assert [one["method"] for one in document["measurements"]] == ["spline", "fermi"]
+    ((stage, reason, values),) = (one.values() for one in document["rejected"])
+    assert (stage, values) == ("method", {"method": "sdsu-2005"})
+    assert reason.startswith("an angle of 20")
+    assert acutance(*words, "--strict").exit_code == 3
+    alone = acutance("edge", tmp_path / "short.npy", "--method", "sdsu-2005")
+    assert (alone.exit_code, alone.stdout) == (4, "")
 
 
 def test_all_edges_of_a_site_are_measured(acutance, site_image, shown, tmp_path, keeps_to_schema):

@@ -74,14 +74,39 @@ def test_texts_and_files_carry_the_names(acutance, folder, shown, tmp_path):
         acutance, folder, "--csv", tmp_path / "edge.csv", "--figure", tmp_path / "edge.svg"
     )
     assert result.exit_code == 0, result.stderr
-    first, second = result.stdout.split("region ")[1:]
+    first, second, grass = f"\n{result.stdout}".split("\nregion ")[1:]
     assert first.startswith("north: Edge, method spline")
     assert second.startswith("field A/1: Edge, method spline")
+    assert grass.startswith("grass: not measured: no straight edge")
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {
         f"edge-{name}.{end}" for name in ("north", "field-A-1") for end in ("csv", "svg")
     }
     assert len(shown) == 2
+
+
+def test_a_page_stands_in_the_place_of_the_polygon_without_a_target(acutance, folder, tmp_path):
+    page = tmp_path / "edge.html"
+    result = measured(acutance, folder, "--report", page)
+    assert result.exit_code == 0, result.stderr
+    assert {one.name for one in tmp_path.iterdir()} == {
+        f"edge-{name}.html" for name in (*STEMS, "grass")
+    }
+    refused = (tmp_path / "edge-grass.html").read_text(encoding="utf-8")
+    assert "Not measured: no straight edge stands out" in refused
+    assert "Region grass" in refused
+
+
+def test_a_polygon_outside_the_image_leaves_the_others_their_results(acutance, folder, tmp_path):
+    places = {"far": (500, 500, 30, 30), "north": PLACES["north"], "four pixels": (3, 3, 2, 2)}
+    write_polygons(tmp_path / "some.geojson", places)
+    result = measured(acutance, folder, "--json", roi=tmp_path / "some.geojson")
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert [one["region"] for one in document["results"]] == ["north"]
+    reasons = {one["values"]["region"]: one["reason"] for one in document["rejected"]}
+    assert "lies outside the image" in reasons["far"]
+    assert set(reasons) == {"far", "four pixels"}
 
 
 def test_files_are_refused_before_anything_is_measured(acutance, folder, tmp_path):

@@ -257,9 +257,20 @@ def test_every_polygon_of_a_file_by_its_name(plain, write_geojson):
     assert regions["bars part 2"].box(plain.shape) == Box(25, 10, 10, 20)
 
 
-def test_one_of_several_polygons_outside_the_image_is_named(plain, write_geojson):
+def test_one_of_several_polygons_outside_the_image_is_refused_when_it_is_read(plain, write_geojson):
     away = [[x + 100, y] for x, y in SQUARE]
     document = collection(feature(polygon(), name="near"), feature(polygon(away), name="away"))
+    regions = parse_rois(write_geojson(document), plain)
+    assert list(regions) == ["near", "away"]
+    assert regions["near"].box(plain.shape)
+    with pytest.raises(RegionError, match=r"^the region lies outside the image"):
+        regions["away"].box(plain.shape)
+
+
+def test_several_polygons_of_which_none_lies_in_the_image_are_refused(plain, write_geojson):
+    away = [[x + 100, y] for x, y in SQUARE]
+    further = [[x, y + 200] for x, y in SQUARE]
+    document = collection(feature(polygon(away), name="away"), feature(polygon(further), name="b"))
     with pytest.raises(RegionError, match=r"^away: the region lies outside the image"):
         parse_rois(write_geojson(document), plain)
 

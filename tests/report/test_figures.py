@@ -11,6 +11,7 @@ from matplotlib.text import Text
 
 from acutance import optics, simulate
 from acutance.report import compare, draw, figure_bytes, panels, save_figure
+from acutance.report.figures.pixels import show_pixels
 from acutance.report.paper import new_page, styled
 from acutance.targets import Check, TargetResult
 from acutance.targets.straight import measure_pulse
@@ -305,3 +306,13 @@ def test_the_truth_of_a_pulse_knows_the_width_of_its_response():
     assert known["prf_fwhm_px"].value == pytest.approx(truth.prf_fwhm_px, abs=1e-3)
     assert known["prf_fwhm_px"].std == 0
     assert "prf_fwhm_m" not in known
+
+
+@pytest.mark.parametrize("shape", [(12, 187), (300, 8)])
+def test_a_narrow_image_has_ticks_on_both_sides(shape):
+    """Sides a twelfth as long as the other would have no interval between ticks at all."""
+    figure = new_page(6.0, 4.0)
+    axes = figure.subplots()
+    show_pixels(axes, np.arange(shape[0] * shape[1], dtype=float).reshape(shape), 226, 507)
+    assert figure_bytes(figure, ".png").startswith(b"\x89PNG")
+    assert min(len(axes.get_xticks()), len(axes.get_yticks())) >= 2

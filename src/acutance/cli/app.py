@@ -34,7 +34,8 @@ from acutance.cli.terminal import (
     stop,
     stop_printing,
 )
-from acutance.errors import AcutanceError, TargetError
+from acutance.errors import AcutanceError, NoDataError, TargetError
+from acutance.targets.kinds import KINDS
 
 __all__ = ["app", "run"]
 
@@ -51,7 +52,7 @@ class _Commands(TyperGroup):
         try:
             with _stdout_needed():
                 return super().invoke(ctx)
-        except TargetError as error:
+        except (TargetError, NoDataError) as error:
             fail(str(error), NOTHING_MEASURED)
         except AcutanceError as error:
             fail(str(error))
@@ -113,7 +114,9 @@ for _name, _module, _words in (
     ("study", study, "Run a study of targets and estimators."),
     ("demo", demo, "Measure a simulated campaign by every method."),
 ):
-    app.command(_name, epilog=_module.EXAMPLE, short_help=_words)(getattr(_module, _name))
+    _measures = _name in KINDS or _name == "combine"
+    _epilog = f"{EXIT_CODES}\n\n{_module.EXAMPLE}" if _measures else _module.EXAMPLE
+    app.command(_name, epilog=_epilog, short_help=_words)(getattr(_module, _name))
 app.add_typer(simulate.app, name="simulate")
 app.add_typer(plan_mirrors.app, name="plan")
 

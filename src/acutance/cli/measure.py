@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -15,6 +16,8 @@ from acutance.targets.kinds import Kind
 
 if TYPE_CHECKING:
     from acutance.raster import Image, Region
+    from acutance.report import Comparison
+    from acutance.targets import Measurement
 
 __all__ = ["measure_target"]
 
@@ -65,9 +68,8 @@ def measure_target(
     def measure(region: Region | None) -> Shown:
         if measure_all:
             return _every_target(kind, image, region, {**given, "method": names[0]})
-        function = kind.load(kind.measure)
-        found = [function(image, roi=region, method=name, **given) for name in names]
-        return Shown(found[0] if len(found) == 1 else found)
+        function = partial(kind.load(kind.measure), image, roi=region, **given)
+        return Shown(function(method=names[0]) if len(names) == 1 else _compared(function, names))
 
     if len(regions) == 1:
         (region,) = regions.values()
@@ -76,11 +78,54 @@ def measure_target(
         _deliver_regions(outputs, regions, measure, kept)
 
 
+def _compared(function: Callable[..., Measurement], names: Sequence[str]) -> Comparison:
+    """A target by several methods; one that cannot measure it leaves the others their results.
+
+    Raises
+    ------
+    TargetError
+        That of the first method, if none measures it.
+    """
+    from acutance.report import Comparison
+    from acutance.targets import Rejected
+
+    found: list[Measurement] = []
+    rejected: list[Rejected] = []
+    first: TargetError | None = None
+    for name in names:
+        try:
+            one = function(method=name)
+            _require_same_direction(one, found)
+        except TargetError as error:
+            first = first or error
+            rejected.append(Rejected("method", str(error), {"method": name}))
+            say(f"acutance: method {name}: {error}")
+        else:
+            found.append(one)
+    if first is not None and not found:
+        raise first
+    return Comparison(tuple(found), rejected=tuple(rejected))
+
+
+def _require_same_direction(one: Measurement, found: Sequence[Measurement]) -> None:
+    """Refuse the measurement of another edge than the first method's: there is nothing to compare.
+
+    A method that cannot measure the strongest edge of a region goes on to the next.
+    """
+    if found and not set(one.measured_directions) & set(found[0].measured_directions):
+        raise TargetError(
+            f"{one.method} measured another target of the region, "
+            f"{' and '.join(one.measured_directions)} track, than {found[0].method}, "
+            f"{' and '.join(found[0].measured_directions)} track: choose a region around one target"
+        )
+
+
 def _every_target(
     kind: Kind, image: Image, region: Region | None, given: Mapping[str, Any]
 ) -> Shown:
     """All edges of a region, on the pixels they are drawn on."""
     from acutance.raster import Box
+    from acutance.targets.region import read_data
 
     result = kind.load(str(kind.measure_all))(image, region, **given)
     if not result.measurements:
@@ -91,7 +136,7 @@ def _every_target(
             "target"
         )
     box = Box.whole(image.shape) if region is None else region.box(image.shape)
-    return Shown(result, {"backdrop": image.read(box), "origin": (box.row, box.col)})
+    return Shown(result, {"backdrop": read_data(image, box)[0], "origin": (box.row, box.col)})
 
 
 def _deliver_regions(
@@ -113,6 +158,7 @@ def _deliver_regions(
         except (TargetError, RegionError) as error:
             rejected[name] = str(error)
             say(f"acutance: region {name}: {error}")
+            own.write_rejection(f"Region {name}", str(error))
             continue
         own.write_files(found[name])
     if not found:
@@ -120,8 +166,9 @@ def _deliver_regions(
     if outputs.as_json:
         typer.echo(report.json_text(_regions_document(found, rejected, outputs.covariance)))
     else:
-        texts = (f"region {name}: {report.text(shown.result)}" for name, shown in found.items())
-        typer.echo("\n\n".join(texts))
+        texts = {name: report.text(shown.result) for name, shown in found.items()}
+        texts |= {name: f"not measured: {reason}" for name, reason in rejected.items()}
+        typer.echo("\n\n".join(f"region {name}: {texts[name]}" for name in regions))
     outputs.require_checks(found.values(), missing=len(rejected))
 
 

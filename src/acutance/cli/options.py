@@ -107,7 +107,8 @@ class PixelOptions:
         float | None,
         typer.Option(
             metavar="VALUE",
-            help="The stored value of unusable pixels; that of the file without it.",
+            help="The stored value of unusable pixels; that of the file without it. nan: every "
+            "value is data, also a constant beyond a swath's border.",
         ),
     ] = None
     gsd: GsdOption = None

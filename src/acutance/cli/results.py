@@ -15,6 +15,7 @@ from acutance.cli.terminal import FAILED_CHECK, command_line, say
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
+    from acutance.report import Comparison
     from acutance.targets import Measurement, TargetResult
 
 __all__ = ["Outputs", "Shown"]
@@ -26,25 +27,28 @@ class Shown:
 
     Parameters
     ----------
-    result : Measurement, sequence of Measurement, or TargetResult
+    result : Measurement, Comparison or TargetResult
         Of one method, of several to be compared, or of all edges of a target.
     drawn_on : mapping
         What `acutance.report` needs besides to draw it: the pixels of a target, and their place.
     """
 
-    result: Measurement | Sequence[Measurement] | TargetResult[Measurement]
+    result: Measurement | Comparison | TargetResult[Measurement]
     drawn_on: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def measurements(self) -> Sequence[Measurement]:
         """All measurements of the result."""
-        from acutance.targets import TargetResult
+        from acutance.targets import Measurement
 
-        if isinstance(self.result, Sequence):
-            return self.result
-        if isinstance(self.result, TargetResult):
-            return self.result.measurements
-        return [self.result]
+        return [self.result] if isinstance(self.result, Measurement) else self.result.measurements
+
+    @property
+    def methods_missing(self) -> int:
+        """By how many of the methods compared the target could not be measured."""
+        from acutance.report import Comparison
+
+        return len(self.result.rejected) if isinstance(self.result, Comparison) else 0
 
 
 @dataclass(frozen=True)
@@ -132,9 +136,18 @@ class Outputs:
         if self.csv is not None:
             self.csv.deliver(report.csv(shown.result))
 
+    def write_rejection(self, what: str, reason: str) -> None:
+        """Write a page in the place of a result that there is none of, if pages were asked for."""
+        from acutance import report
+
+        if self.report is not None:
+            self.report.deliver(report.rejection_page(what, reason, command=command_line()))
+
     def require_checks(self, results: Iterable[Shown], missing: int = 0) -> None:
         """End with exit code 3 where ``--strict`` asks for more than there is."""
-        measurements = [one for shown in results for one in shown.measurements]
+        shown_results = list(results)
+        missing += sum(shown.methods_missing for shown in shown_results)
+        measurements = [one for shown in shown_results for one in shown.measurements]
         failed = sum(not one.trusted for one in measurements)
         if self.strict and failed:
             say(f"acutance: a check failed in {failed} of {len(measurements)} measurements")

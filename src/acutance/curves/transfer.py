@@ -160,5 +160,6 @@ def _modulus(otf: Complexes, factor: Complexes, latent: Floats | None) -> tuple[
 def phasor(otf: Complexes) -> Complexes:
     """Direction of an OTF in the complex plane, (...); 1 where the OTF is 0."""
     modulus = np.abs(otf)
-    known = modulus > 0
+    # Below the smallest normal number a modulus has lost its digits: to divide by it overflows.
+    known = modulus >= np.finfo(float).tiny
     return np.asarray(np.where(known, otf, 1.0) / np.where(known, modulus, 1.0))

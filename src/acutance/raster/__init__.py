@@ -1,5 +1,6 @@
 """Images in and out, regions, geolocation, sites. Only files opened here load rasterio."""
 
+from acutance.raster.fill import Fill, find_fill
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import Image
@@ -13,6 +14,7 @@ from acutance.raster.writing import write_geotiff
 
 __all__ = [
     "Box",
+    "Fill",
     "Geolocation",
     "Gsd",
     "Image",
@@ -22,6 +24,7 @@ __all__ = [
     "Site",
     "SrgbCurve",
     "TableCurve",
+    "find_fill",
     "find_site",
     "open_image",
     "parse_roi",

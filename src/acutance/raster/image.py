@@ -23,6 +23,7 @@ from acutance.raster.linearization import (
 from acutance.raster.pixels import (
     ArrayPixels,
     PixelSource,
+    is_nan,
     largest_count,
     require_image_array,
     type_name,
@@ -68,6 +69,8 @@ class Image(ShortRepr):
     characteristic : Characteristic or None
         The curve that stored values are turned back through, so that `read` gives values
         proportional to light; ``None`` if they are taken as they are.
+    every_value_is_data : bool
+        If true, fill that is not declared is not looked for: see `acutance.raster.Fill`.
     """
 
     path: str | None
@@ -81,6 +84,7 @@ class Image(ShortRepr):
     own_gsd: Gsd | None = None
     along_track: AlongTrack = "y"
     characteristic: Characteristic | None = None
+    every_value_is_data: bool = False
 
     def __post_init__(self) -> None:
         if self.along_track not in ("x", "y"):
@@ -106,7 +110,7 @@ class Image(ShortRepr):
         gsd_m : float or Gsd, optional
             Ground sampling distance in metres, the same both ways unless a `Gsd` is given.
         nodata : float, optional
-            A value that marks unusable pixels.
+            A value that marks unusable pixels; NaN if every value is data.
         along_track : {"y", "x"}, optional
             The axis along track.
 
@@ -129,6 +133,7 @@ class Image(ShortRepr):
             saturation_level=largest_count(values.dtype),
             own_gsd=Gsd.given(gsd_m),
             along_track=along_track,
+            every_value_is_data=is_nan(nodata),
         )
 
     def linearized(self, linearize: LinearizeLike) -> Image:

@@ -14,7 +14,7 @@ from acutance.errors import ImageError
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import AlongTrack, Image
 from acutance.raster.linearization import LinearizeLike
-from acutance.raster.pixels import NpyPixels, largest_count, require_image_array, type_name
+from acutance.raster.pixels import NpyPixels, is_nan, largest_count, require_image_array, type_name
 
 __all__ = ["open_image"]
 
@@ -45,7 +45,7 @@ def open_image(
         Ground sampling distance in metres; it replaces the one of the geotransform.
     nodata : float, optional
         The stored value of unusable pixels; it replaces the one the file declares. Masks and
-        alpha bands still apply.
+        alpha bands still apply. NaN: every value is data, also a constant beyond a swath's border.
     along_track : {"y", "x"}, optional
         The axis along track, after which results are called across and along: y, down the
         columns, unless the image was turned.
@@ -70,10 +70,11 @@ def open_image(
     _require_file(name)
     if name.lower().endswith(".npy"):
         opened = _open_npy(name, band, gsd, nodata)
-        return replace(opened, along_track=along_track).linearized(linearize)
-    from acutance.raster.dataset import open_dataset
+    else:
+        from acutance.raster.dataset import open_dataset
 
-    opened = replace(open_dataset(name, band, gsd, nodata), along_track=along_track)
+        opened = open_dataset(name, band, gsd, nodata)
+    opened = replace(opened, along_track=along_track, every_value_is_data=is_nan(nodata))
     return opened.linearized(linearize)
 
 

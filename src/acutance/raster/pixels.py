@@ -19,6 +19,7 @@ __all__ = [
     "NpyPixels",
     "PixelSource",
     "equals_nodata",
+    "is_nan",
     "largest_count",
     "require_image_array",
     "type_name",
@@ -162,6 +163,11 @@ def equals_nodata(raw: NDArray[Any], nodata: float | None) -> NDArray[np.bool_]:
         return np.asarray(raw == nodata)
     with np.errstate(over="ignore"):
         return np.asarray(raw == raw.dtype.type(nodata))
+
+
+def is_nan(nodata: float | None) -> bool:
+    """Whether the nodata value is NaN, given to say that every value is data."""
+    return nodata is not None and bool(np.isnan(nodata))
 
 
 def usable_values(raw: NDArray[Any], masked: NDArray[np.bool_]) -> Floats:

@@ -80,14 +80,14 @@ def parse_rois(text: str, image: Image) -> dict[str, Region]:
     -------
     dict of str to Region
         In the order of the file, by the name of each feature (``properties.name``, else ``id``,
-        else "feature 2"); other texts name their only region themselves. Each holds at least one
-        pixel centre of the image. A polygon may reach beyond it.
+        else "feature 2"); other texts name their only region themselves. A polygon may reach
+        beyond the image, and some of several may lie outside it: to read those is refused.
 
     Raises
     ------
     RegionError
         If the text is none of these, the file has no polygon, its coordinates cannot be related
-        to the image, or a region holds none of the image's pixels.
+        to the image, or no region holds any of the image's pixels.
     """
     if _RECTANGLE.match(text):
         box = Box(*(int(number) for number in text.split(",")))
@@ -127,13 +127,19 @@ def _geojson_regions(name: str, image: Image) -> dict[str, Region]:
     else:
         meant = crs
     regions: dict[str, Region] = {}
+    outside: dict[str, RegionError] = {}
+    reading = _UNDECLARED_PIXELS.format(name) if crs is None and meant == PIXELS else ""
     for label, rings in found.items():
+        of_which = f"{label}: " if len(found) > 1 else ""
         try:
             outline, *holes = (to_pixels(ring, meant, image) for ring in rings)
             regions[label] = Region(outline, tuple(holes))
+        except RegionError as error:
+            raise RegionError(f"{of_which}{error}{reading}") from None
+        try:
             regions[label].box(image.shape)
         except RegionError as error:
-            of_which = f"{label}: " if len(found) > 1 else ""
-            reading = _UNDECLARED_PIXELS.format(name) if crs is None and meant == PIXELS else ""
-            raise RegionError(f"{of_which}{error}{reading}") from None
+            outside[label] = RegionError(f"{of_which}{error}{reading}")
+    if len(outside) == len(regions):
+        raise next(iter(outside.values()))
     return regions

@@ -25,7 +25,7 @@ from acutance.report.figures.panel import Panel
 from acutance.report.html import Table
 from acutance.report.json import document, json_text, measurement_schema
 from acutance.report.notebook import notebook_html
-from acutance.report.page import page
+from acutance.report.page import page, rejection_page
 from acutance.report.paper import figure_bytes, save_figure
 from acutance.report.studies.mirrors import mirror_plan_figure, mirror_plan_text
 from acutance.report.studies.study import plan_text, study_figure, study_text
@@ -60,6 +60,7 @@ __all__ = [
     "page",
     "panels",
     "plan_text",
+    "rejection_page",
     "save_figure",
     "scene_document",
     "sensor_document",

@@ -11,7 +11,7 @@ import numpy as np
 from acutance.curves import Estimate, Response
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
-from acutance.targets import Measurement, TargetResult
+from acutance.targets import Measurement, Rejected, TargetResult
 from acutance.targets.straight.pulse_response import prf_fwhm
 
 __all__ = ["Comparison", "Result", "as_result", "compare"]
@@ -29,11 +29,14 @@ class Comparison(ShortRepr):
         The true curves of a simulated target by direction, "across" and "along".
     true_numbers : dict of Estimate, optional
         What else is known of it, by the names of the measurements: "width_px".
+    rejected : tuple of Rejected, optional
+        What could not be measured, and why; `values` hold the "method".
     """
 
     measurements: tuple[Measurement, ...]
     truth: Mapping[str, Response] = field(default_factory=dict)
     true_numbers: Mapping[str, Estimate] = field(default_factory=dict)
+    rejected: tuple[Rejected, ...] = ()
 
     @property
     def labels(self) -> tuple[str, ...]:

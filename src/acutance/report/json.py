@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.report.comparison import Comparison, Result, as_result
-from acutance.targets import TargetResult
+from acutance.targets import Rejected, TargetResult
 from acutance.targets.record import strict_json
 
 if TYPE_CHECKING:
@@ -53,7 +53,11 @@ def document(result: Result, covariance: bool = False) -> dict[str, Any]:
         return _target_document(found, covariance)
     if isinstance(found, Comparison):
         each = [_measurement_document(one, covariance) for one in found.measurements]
-        return {"schema": "acutance/comparison/1", "measurements": each}
+        return {
+            "schema": "acutance/comparison/1",
+            "measurements": each,
+            "rejected": _rejected_documents(found.rejected),
+        }
     return _measurement_document(found, covariance)
 
 
@@ -102,11 +106,14 @@ def _target_document(result: TargetResult[Any], covariance: bool) -> dict[str, A
             }
             for orientation, group in result.groups.items()
         },
-        "rejected": [
-            {"stage": one.stage, "reason": one.reason, "values": dict(one.values)}
-            for one in result.rejected
-        ],
+        "rejected": _rejected_documents(result.rejected),
     }
+
+
+def _rejected_documents(rejected: Sequence[Rejected]) -> list[dict[str, Any]]:
+    return [
+        {"stage": one.stage, "reason": one.reason, "values": dict(one.values)} for one in rejected
+    ]
 
 
 def json_text(document: Mapping[str, Any]) -> str:

@@ -359,10 +359,16 @@ def failed_by_check(measurements: Sequence[Measurement]) -> tuple[tuple[str, str
             name,
             ", ".join(f"{number} ({format_number(check.value, 3)})" for number, check in failed)
             + f"; asked {failed[0][1].asked}",
-            QUESTIONS[name].advice if name in QUESTIONS else failed[0][1].message,
+            _meaning(name, [check.message for _, check in failed], len(measurements)),
         )
         for name, failed in found.items()
     )
+
+
+def _meaning(name: str, messages: Sequence[str], count: int) -> str:
+    """What was found, where all edges share it, as what lies in their region; else the advice."""
+    shared = len(messages) == count > 1 and len(set(messages)) == 1
+    return messages[0] if shared or name not in QUESTIONS else QUESTIONS[name].advice
 
 
 def count_failed_checks(measurements: Sequence[Measurement | Record]) -> str:

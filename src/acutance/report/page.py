@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from acutance.targets.measurement import Measurement
     from acutance.targets.record import Record
 
-__all__ = ["page", "panel_plate", "sections", "verdict_of"]
+__all__ = ["page", "panel_plate", "rejection_page", "sections", "verdict_of"]
 
 PLATE_IN, WIDE_IN = 6.0, 12.4
 
@@ -75,6 +75,23 @@ def page(
         named = f"{kind} by {', '.join(found.labels)}{', with the truth' if found.truth else ''}"
         return render_page("Methods compared", named, content, provenance(first))
     return render_page(title_of(found), describe_target(found), content, provenance(found))
+
+
+def rejection_page(what: str, reason: str, *, command: str | None = None) -> str:
+    """A page in the place of a result that there is none of.
+
+    Parameters
+    ----------
+    what : str
+        What was to be measured: "edge, region north".
+    reason : str
+        The message of the error.
+    command : str, optional
+        The command line.
+    """
+    verdict = Verdict("invalid", f"Not measured: {reason}")
+    content = (Section("Result", verdicts=(verdict,), command=command),)
+    return render_page("Not measured", what, content)
 
 
 def sections(
@@ -150,6 +167,10 @@ def _comparison_sections(comparison: Comparison, command: str | None) -> tuple[S
         for label, one in zip(comparison.labels, measurements, strict=True)
     )
     against = "the truth" if comparison.truth else "the first method"
+    refused = tuple(
+        Verdict("invalid", f"{one.values['method']} – Not measured: {one.reason}")
+        for one in comparison.rejected
+    )
     curves = Plate.of_figure(
         comparison_figure(comparison, on_page=True),
         "MTFs, their differences and the differences of the ESFs",
@@ -157,7 +178,7 @@ def _comparison_sections(comparison: Comparison, command: str | None) -> tuple[S
         wide=True,
     )
     return (
-        Section("Verdict", verdicts=verdicts),
+        Section("Verdict", verdicts=(*verdicts, *refused)),
         Section("Target and curves", plates=(*_target_plates(measurements[0]), curves)),
         *map(Section.of_table, tables(comparison)),
         _with_command(

@@ -80,12 +80,13 @@ def _comparison_text(comparison: Comparison) -> str:
         for label, one in zip(comparison.labels, comparison.measurements, strict=True)
         for line in _verdict_lines(one)
     )
+    refused = (f"{one.values['method']}: not measured: {one.reason}" for one in comparison.rejected)
     return "\n\n".join(
         (
             f"{title} by {len(comparison.labels)} methods, {' and '.join(comparison.directions)} "
             f"track\n  {describe_image(first)}",
             *map(_table_text, tables(comparison)),
-            "\n".join(verdicts),
+            "\n".join((*verdicts, *refused)),
         )
     )
 

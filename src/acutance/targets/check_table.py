@@ -59,6 +59,11 @@ _ANY_TARGET = {
         "Which share of the pixels is clipped at an end of the scale?", "<=", 0.001,
         "the target's height and shape are then not those of the scene", severity="fail",
     ),
+    "undeclared_fill": Question(
+        "How many pixels are a constant without data that the image does not declare?", "<=", 0.0,
+        "they are left out; declare the value (nodata, --nodata), or state that every value is "
+        "data (nan)", severity="note",
+    ),
     "correlated_noise": Question(
         "How much do neighbouring pixels' noise correlate?", "<=", 0.1, _RESAMPLED, severity="note",
     ),

@@ -10,11 +10,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
-from acutance.errors import RegionError
-from acutance.raster import Box, Gsd, Image, Region
+from acutance.errors import NoDataError, RegionError
+from acutance.raster import Box, Fill, Gsd, Image, Region, find_fill
+from acutance.targets.check import Check, Limits, answer
 from acutance.targets.record import ImageInfo
 
-__all__ = ["RegionPixels", "RoiLike", "chosen_region", "image_info", "read_region"]
+__all__ = [
+    "RegionPixels",
+    "RoiLike",
+    "chosen_region",
+    "image_info",
+    "read_data",
+    "read_region",
+    "undeclared_fill",
+]
 
 _MAX_PIXELS = 9_000_000
 _MIN_SIDE_PX = 8
@@ -36,6 +45,8 @@ class RegionPixels:
         The largest value the detector can give.
     gsd : Gsd or None
     image : Image
+    fill : Fill or None
+        Undeclared fill that was left out: NaN in `pixels`.
     """
 
     pixels: Floats
@@ -43,6 +54,7 @@ class RegionPixels:
     saturation_level: float | None
     gsd: Gsd | None
     image: Image
+    fill: Fill | None = None
 
     @property
     def info(self) -> ImageInfo:
@@ -77,8 +89,8 @@ def read_region(
     ImageError, OptionError
         If there is no image, or the GSD is no positive number.
     RegionError
-        If the region is none, lies outside the image, holds too few usable pixels, or is far
-        larger than any target.
+        If the region is none, lies outside the image, is too small, or far larger than any target;
+        `NoDataError` if it holds too few pixels with data.
     """
     source = image if isinstance(image, Image) else Image.from_array(image)
     where = Box.whole(source.shape) if roi is None else chosen_region(roi)
@@ -97,20 +109,57 @@ def read_region(
             f"the region has {box.height} x {box.width} pixels: a target needs at least "
             f"{_MIN_SIDE_PX} both ways"
         )
-    pixels = source.read(box)
+    pixels, fill = read_data(source, box)
     if region is not None:
-        pixels = np.where(region.mask(box), pixels, np.nan)
+        inside = region.mask(box)
+        pixels = np.where(inside, pixels, np.nan)
+        fill = None if fill is None else fill.within(inside)
     usable = int(np.count_nonzero(np.isfinite(pixels)))
     if usable < _MIN_SIDE_PX**2:
-        raise RegionError(
+        raise NoDataError(
             f"only {usable} of the region's {pixels.size} pixels hold data: the rest is nodata, "
-            "masked or NaN; choose another region, or correct the nodata value if pixels that "
-            "have it are data (nodata, --nodata)"
+            f"masked, NaN{'' if fill is None else f' or a constant fill of {fill.value:.9g}'}; "
+            "choose another region, or correct the nodata value if pixels that have it are data "
+            "(nodata, --nodata; nan: every value is data)"
         )
     gsd = source.gsd(box.row + box.height / 2, box.col + box.width / 2)
     if gsd_m is not None:
         gsd = Gsd.given(gsd_m)
-    return RegionPixels(pixels, box, source.saturation_level, gsd, source)
+    return RegionPixels(pixels, box, source.saturation_level, gsd, source, fill)
+
+
+def read_data(image: Image, box: Box) -> tuple[Floats, Fill | None]:
+    """The pixels of a box that hold data, (height, width), NaN elsewhere.
+
+    Undeclared fill is no data, and is returned beside them where there is some.
+    """
+    pixels = image.read(box)
+    fill = find_fill(image, box, pixels)
+    if fill is not None:
+        pixels[fill.mask] = np.nan
+    return pixels, fill
+
+
+def undeclared_fill(fills: Sequence[Fill | None], limits: Limits) -> Check:
+    """The check that names undeclared fill of the pixels read.
+
+    Parameters
+    ----------
+    fills : sequence of Fill or None
+        One of every reading.
+    limits : mapping of str to float
+        Limits the caller changed.
+    """
+    count = sum(one.count for one in fills if one is not None)
+    values = sorted({one.value for one in fills if one is not None})
+    named = " or ".join(f"{value:.9g}" for value in values)
+    found = "no fill was found that is not declared"
+    if count:
+        found = (
+            f"{count} pixels are fill without data, the value {named} up to the image's border, "
+            "which ends more sharply than any sensor's image"
+        )
+    return answer("undeclared_fill", count, found, limits)
 
 
 def chosen_region(roi: Any) -> Region | Box:

@@ -67,11 +67,18 @@ def comparison_figure(comparison: Comparison, on_page: bool = False) -> Figure:
         first = comparison.measurements[0]
         if not on_page:
             figure.suptitle(
-                f"{title_of(first).split(',')[0]} measured by {len(comparison.labels)} methods\n"
+                f"{title_of(first).split(',')[0]} measured by {len(comparison.labels)} methods"
+                f"{_not_measured(comparison)}\n"
                 f"{describe_image(first, NAME_WITH_ROOM)}",
                 x=0.012, ha="left", fontsize=11,
             )  # fmt: skip
     return figure
+
+
+def _not_measured(comparison: Comparison) -> str:
+    """The methods by which there is no result: "; not by sdsu-2005"."""
+    names = ", ".join(str(one.values["method"]) for one in comparison.rejected)
+    return f"; not by {names}" if names else ""
 
 
 def _draw_direction(page: FigureBase, comparison: Comparison, direction: str, first: bool) -> None:

@@ -44,7 +44,7 @@ def _extent(pixels: Floats, row: int, col: int, step: int = 1) -> tuple[float, f
 
 def _tick_count(relative_length: float) -> int:
     """How many intervals between ticks have room on a side of an image."""
-    return math.ceil(6 * min(1.0, relative_length) - 0.5)
+    return max(1, math.ceil(6 * min(1.0, relative_length) - 0.5))
 
 
 def draw_residual_map(

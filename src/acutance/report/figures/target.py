@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from acutance.errors import OptionError
 from acutance.report.figures.curves import COLORS, TWO_SIDED_95, band_edges, mark_frequencies
 from acutance.report.figures.pixels import show_pixels
 from acutance.report.figures.writing import write_grid
@@ -58,7 +59,18 @@ def target_figure(
     Returns
     -------
     matplotlib.figure.Figure
+
+    Raises
+    ------
+    OptionError
+        If no edge was measured.
     """
+    if not result.measurements:
+        reasons = "".join(f"; {one.reason}" for one in result.rejected[:1])
+        raise OptionError(
+            f"there is nothing to draw: none of the {len(result.rejected)} edges tried was "
+            f"measured{reasons}. Print the result as text or JSON instead"
+        )
     pixels, (row, col) = (
         (backdrop, origin) if backdrop is not None else _mosaic(result.measurements)
     )

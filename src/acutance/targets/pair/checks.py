@@ -7,11 +7,12 @@ sees and the other does not is no noise, and limits real pairs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from acutance.curves.metrics import NYQUIST_CPP
+from acutance.raster import Fill
 from acutance.targets.check import Check, Limits, answer
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.grid import PairGrid
@@ -19,6 +20,7 @@ from acutance.targets.pair.kernel_fit import KernelFit
 from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit
 from acutance.targets.pair.spectral_ratio import PairSpectra
+from acutance.targets.region import undeclared_fill
 
 __all__ = ["PAIR_CHECKS", "check_pair"]
 
@@ -35,6 +37,7 @@ PAIR_CHECKS = (
     "residual_correlation",
     "inflation",
     "saturation",
+    "undeclared_fill",
     "iteration_change",
 )
 """The checks of a pair; "reference_directions" only where the reference was measured in one."""
@@ -51,6 +54,7 @@ def check_pair(
     *,
     stop_change: float,
     clipped: float,
+    fills: Sequence[Fill | None],
     inverted: bool,
 ) -> tuple[Check, ...]:
     """All checks of a pair.
@@ -70,6 +74,8 @@ def check_pair(
         Threshold of the parametric fit.
     clipped : float
         Share of clipped pixels, of the worse image.
+    fills : sequence of Fill or None
+        Undeclared fill of both images, tile by tile.
     inverted : bool
         Whether the images match better with opposite sign.
     """
@@ -84,6 +90,7 @@ def check_pair(
         answer(
             "saturation", clipped, f"{100 * clipped:.2f} % of an image's pixels are clipped", limits
         ),
+        undeclared_fill(fills, limits),
         _iteration(gaussian, stop_change, limits),
     )
 

@@ -23,6 +23,7 @@ __all__ = ["GaussianFit", "GaussianStep", "fit_gaussian"]
 _MAX_SHIFT_UPDATE_PX = 0.6
 _MAX_VARIANCE_UPDATE_PX2 = 0.25
 _MIN_PIXELS = 60
+_MOST_SCALES = 1e9
 
 
 @dataclass(frozen=True)
@@ -242,4 +243,7 @@ def _accumulate(
 def _weights(residual: Floats, noise: float) -> Floats:
     """Cauchy weights about four standard deviations; before a noise is known, about the median."""
     scale = noise if noise > 0 else robust_scale(residual)
-    return 1 / (1 + (residual / (4 * scale)) ** 2) if scale > 0 else np.ones(residual.size)
+    if not scale > 0:
+        return np.ones(residual.size)
+    # Where most residuals are next to nothing, the square of the others would overflow.
+    return 1 / (1 + np.minimum(np.abs(residual) / (4 * scale), _MOST_SCALES) ** 2)

@@ -118,7 +118,8 @@ def measure_biresolution(
         snr=_snr(gaussian, pixel_fit),
         checks=check_pair(
             tiles.grid, gaussian, pixel_fit, model, spectra, local, chosen.limits,
-            stop_change=chosen.stop_change, clipped=_clipped(tiles), inverted=match.inverted,
+            stop_change=chosen.stop_change, clipped=_clipped(tiles), fills=tiles.fills(),
+            inverted=match.inverted,
         ),
         image=info,
         options={**chosen.to_dict(), "ratio": ratio, "reference_given": reference is not None},

@@ -115,7 +115,7 @@ def pair_spectra(
     gaussian: GaussianFit,
     size_px: int,
 ) -> PairSpectra | None:
-    """Spectra of all windows with both images whole; None where there are too few of them.
+    """Spectra of all windows with both images whole; None where too few of them fit together.
 
     Parameters
     ----------
@@ -129,6 +129,9 @@ def pair_spectra(
     """
     down = _Window(grid.down, gaussian.down.shift_px, size_px)
     across = _Window(grid.across, gaussian.across.shift_px, size_px)
+    if not (down.high_taper.any() and across.high_taper.any()):
+        # Displaced by more than a window: no two show the same ground.
+        return None
     shape = down.order.size, across.order.size
     cross, high = np.zeros((_PARTS**2, *shape), complex), np.zeros((_PARTS**2, *shape))
     low, count = np.zeros(shape), 0

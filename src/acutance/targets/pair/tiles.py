@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
-from acutance.raster import Box, Image, Region
+from acutance.raster import Box, Fill, Image, Region
 from acutance.targets.pair.grid import PairGrid
 from acutance.targets.pair.noise import fine_noise
 from acutance.targets.pair.tile import FAR_PX, PAD_PX, PairTile, TapAxis, TapGrid, first_of_cell
+from acutance.targets.region import read_data
 
 __all__ = ["PairTiles"]
 
@@ -149,7 +150,7 @@ class PairTiles:
         step = max(1, len(self.boxes) // 16)
         for box in self.boxes[::step]:
             window = self._high_box(box)
-            found.append(fine_noise(self.high.read(window)))
+            found.append(fine_noise(read_data(self.high, window)[0]))
         raw = float(np.median([one for one in found if one > 0] or [0.0]))
         stretch = 1.0
         for axis in (self.grid.down, self.grid.across):
@@ -157,6 +158,13 @@ class PairTiles:
                 stretch *= axis.per_px / axis.ratio
         # Interpolated samples share the noise of fewer pixels, or average that of more.
         return raw * float(np.sqrt(stretch))
+
+    def fills(self) -> list[Fill | None]:
+        """Undeclared fill of the low image's tiles, and of the high image's next to them."""
+        fills = []
+        for box in self.boxes:
+            fills += [read_data(self.low, box)[1], read_data(self.high, self._high_box(box))[1]]
+        return fills
 
     def _high_box(self, box: Box) -> Box:
         rows = _window(self.grid.down.taps(self.reach_px), box.row, box.height, far=False)
@@ -197,7 +205,7 @@ class PairTiles:
         shared = box.intersection(inner)
         if shared is None:
             return values
-        read = self.low.read(shared)
+        read, _ = read_data(self.low, shared)
         if self.region is not None:
             read = np.where(self.region.mask(shared), read, np.nan)
         top, left = shared.row - box.row, shared.col - box.col
@@ -209,7 +217,7 @@ class PairTiles:
     ) -> tuple[Floats, NDArray[np.bool_]]:
         """Reference samples of a window, holes filled with its mean, and where the holes are."""
         (row, height), (col, width) = self.grid.down.window(*rows), self.grid.across.window(*cols)
-        values = self.high.read(Box(row, col, height, width))
+        values, _ = read_data(self.high, Box(row, col, height, width))
         missing = ~np.isfinite(values)
         if missing.any():
             known = values[~missing]

@@ -82,7 +82,7 @@ def measure_bars(
         method=method,
         transfer=Otf2d(solved.otf, region.info.pixel_gsd_m),
         snr=solved.snr,
-        checks=bars_checks(solved, directions, region.saturation_level, chosen.limits),
+        checks=bars_checks(solved, directions, region, chosen.limits),
         image=region.info,
         options=chosen.to_dict(),
         details=_details(region, solved),

@@ -13,12 +13,13 @@ from acutance.targets.periodic.pattern_checks import (
     outliers,
     saturation,
 )
+from acutance.targets.region import RegionPixels, undeclared_fill
 
 __all__ = ["BARS_CHECKS", "bars_checks"]
 
 BARS_CHECKS = (
     "contrast_snr", "level", "bars", "bar_directions", "coarsest_cpp", "finest_cpp", "misfit",
-    "saturation", "correlated_noise", "outliers",
+    "saturation", "undeclared_fill", "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of bars."""
 
@@ -26,7 +27,7 @@ BARS_CHECKS = (
 def bars_checks(
     solved: BarsSolution,
     directions_deg: tuple[float, ...],
-    saturation_level: float | None,
+    region: RegionPixels,
     limits: Limits,
 ) -> tuple[Check, ...]:
     """All checks of bars.
@@ -36,8 +37,7 @@ def bars_checks(
     solved : BarsSolution
     directions_deg : tuple of float
         Directions across the bars.
-    saturation_level : float or None
-        The largest value the detector can give.
+    region : RegionPixels
     limits : mapping of str to float
         Limits the caller changed.
     """
@@ -50,7 +50,8 @@ def bars_checks(
         _directions(directions_deg, limits),
         *_frequencies(solved, limits),
         _misfit(solved, limits),
-        saturation(pixels, saturation_level, solved.snr, "the pixels", limits),
+        saturation(pixels, region.saturation_level, solved.snr, "the pixels", limits),
+        undeclared_fill([region.fill], limits),
         correlated_noise(
             solved.correlation, solved.snr, limits,
             advice="the image was resampled, or the bars are not as they were taken to be (place, "

@@ -32,6 +32,9 @@ __all__ = ["find_bars"]
 
 _CLOSE_PX = (2.0, 3.5, 6.0)
 _MIN_BLOB_PX = 40
+_MAX_BLOBS = 200
+_MARGIN_PX = 10
+"""Pixels around a part of the image that its direction and its profile depend on."""
 _COUNTS = range(2, 16)
 _BLUR_PX = 0.65
 _BLURS_PX = (0.5, 0.8)
@@ -76,7 +79,10 @@ def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...]
     best: list[_Candidate] = []
     min_alone: float = math.inf
     for close in _CLOSE_PX:
-        measured = [_measured(bright, blob, count) for blob in _blobs(bright, close)]
+        blobs = _blobs(bright, close)
+        if len(blobs) > _MAX_BLOBS:
+            continue
+        measured = [_measured(blob, count) for blob in blobs]
         groups = [one for one in measured if one is not None and one.bars.count > 1]
         # Bars that are wider than the gaps closed stand alone, as a patch of the bars' level does.
         alone = len(measured) - len(groups)
@@ -85,15 +91,40 @@ def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...]
         if best and not min_alone:
             break
     if best:
-        counted = [_recounted(bright, one, _usual_count(best)) for one in best]
+        counted = [_recounted(one, _usual_count(best)) for one in best]
         return _of_one_kind(counted), sign * height
+    if len(blobs) > _MAX_BLOBS:
+        raise NoBarsError(
+            f"{len(blobs)} separate parts stand out of the background, more than any target has "
+            "groups: choose a region around the groups, or state where they are (groups)"
+        )
     raise NoBarsError(
         "no whole group of parallel bars stands out of the background: choose a region that holds "
         "the groups and some background on all sides of them, or state where they are (groups)"
     )
 
 
-def _blobs(bright: Floats, close_px: float) -> list[NDArray[np.bool_]]:
+@dataclass(frozen=True, eq=False)
+class _Blob:
+    """A part of the image that stands out, in a window around it.
+
+    Attributes
+    ----------
+    top, left : int
+        The window's first row and column.
+    bright : (height, width) array
+        The image there, 0 background and 1 bars.
+    mask : (height, width) bool array
+        Which pixels stand out.
+    """
+
+    top: int
+    left: int
+    bright: Floats
+    mask: NDArray[np.bool_]
+
+
+def _blobs(bright: Floats, close_px: float) -> list[_Blob]:
     """Parts of the image that stand out of the background once gaps are closed.
 
     One that reaches the border is no target: a group is known by its background on all sides.
@@ -102,11 +133,13 @@ def _blobs(bright: Floats, close_px: float) -> list[NDArray[np.bool_]]:
     labels, number = ndimage.label(whole)
     cut_off = set(np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]]).tolist())
     size = np.bincount(labels.ravel())
-    return [
-        labels == one
-        for one in range(1, number + 1)
-        if size[one] > _MIN_BLOB_PX and one not in cut_off
-    ]
+    found = []
+    for one, (down, right) in enumerate(ndimage.find_objects(labels, number), 1):
+        if size[one] > _MIN_BLOB_PX and one not in cut_off:
+            top, left = max(down.start - _MARGIN_PX, 0), max(right.start - _MARGIN_PX, 0)
+            window = slice(top, down.stop + _MARGIN_PX), slice(left, right.stop + _MARGIN_PX)
+            found.append(_Blob(top, left, bright[window], labels[window] == one))
+    return found
 
 
 @dataclass(frozen=True)
@@ -114,7 +147,7 @@ class _Candidate:
     bars: Bars
     sureness: float
     rest: float
-    blob: NDArray[np.bool_]
+    blob: _Blob
 
 
 def _usual_count(groups: list[_Candidate]) -> int:
@@ -123,20 +156,20 @@ def _usual_count(groups: list[_Candidate]) -> int:
     return int(np.argmax(votes))
 
 
-def _recounted(bright: Floats, one: _Candidate, count: int) -> _Candidate:
+def _recounted(one: _Candidate, count: int) -> _Candidate:
     """The group with the usual number of bars, if that explains it about as well."""
     if one.bars.count == count:
         return one
-    other = _measured(bright, one.blob, count)
+    other = _measured(one.blob, count)
     return other if other is not None and other.rest < 2 * one.rest + ABOUT_AS_WELL else one
 
 
-def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Candidate | None:
+def _measured(blob: _Blob, count: int | None) -> _Candidate | None:
     """The group a blob holds, or the one bar it is; nothing if it is neither."""
-    near = ndimage.binary_dilation(blob, iterations=2)
+    near = ndimage.binary_dilation(blob.mask, iterations=2)
     # Differences of neighbours would bias the direction: fine structure is too weak in them.
-    down = ndimage.gaussian_filter(bright, 1.0, order=(1, 0))
-    right = ndimage.gaussian_filter(bright, 1.0, order=(0, 1))
+    down = ndimage.gaussian_filter(blob.bright, 1.0, order=(1, 0))
+    right = ndimage.gaussian_filter(blob.bright, 1.0, order=(0, 1))
     xx, yy = float(np.sum(right[near] ** 2)), float(np.sum(down[near] ** 2))
     xy = float(np.sum(right[near] * down[near]))
     sureness = math.hypot(xx - yy, 2 * xy) / max(xx + yy, 1e-300)
@@ -145,7 +178,7 @@ def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Ca
     best: tuple[float, Bars] | None = None
     # A group wider than its bars are long may show its ends more than its bars.
     for angle in (normal, normal - 90 if normal > 45 else normal + 90):
-        found = _profile_fit(bright, blob, angle, count)
+        found = _profile_fit(blob, angle, count)
         if found is not None and (best is None or found[0] < best[0]):
             best = found
         if best is not None and sureness > SURE_DIRECTION:
@@ -155,14 +188,12 @@ def _measured(bright: Floats, blob: NDArray[np.bool_], count: int | None) -> _Ca
     return _Candidate(best[1], sureness, best[0], blob)
 
 
-def _profile_fit(
-    bright: Floats, blob: NDArray[np.bool_], normal_deg: float, count: int | None
-) -> tuple[float, Bars] | None:
+def _profile_fit(blob: _Blob, normal_deg: float, count: int | None) -> tuple[float, Bars] | None:
     """Share of the profile's variance that the best group leaves, and that group."""
-    rows, cols = np.nonzero(ndimage.binary_dilation(blob, iterations=4))
+    rows, cols = np.nonzero(ndimage.binary_dilation(blob.mask, iterations=4))
     centre = Bars(float(rows.mean()), float(cols.mean()), normal_deg, 1.0, 1, 1.0)
     across, along = centre.across_and_along(rows.astype(float), cols.astype(float))
-    value = bright[rows, cols]
+    value = blob.bright[rows, cols]
     middle, length = _span(along, value)
     if not length > 6:
         return None
@@ -203,8 +234,8 @@ def _profile_fit(
     if not bars:
         return None
     x, y = unit_vector(normal_deg)
-    row = centre.row + place * y + middle * x
-    col = centre.col + place * x - middle * y
+    row = blob.top + centre.row + place * y + middle * x
+    col = blob.left + centre.col + place * x - middle * y
     return rest, Bars(row, col, normal_deg, period, bars, length)
 
 

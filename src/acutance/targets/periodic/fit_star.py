@@ -38,6 +38,8 @@ from acutance.targets.periodic.tuned import APERTURE_STD, STAR_FINEST_CPP, STAR_
 
 __all__ = ["SIDE_MARGIN_PX", "StarSolution", "amplitude_of", "solve_star"]
 
+_MAX_RIM_PX: Final = 300.0
+"""At 300 px the tables of a star take half a gigabyte; they grow with the square."""
 _RIM_MARGIN_PX: Final = 3.0
 """Pixels nearer to the star's rim are left out: the scene beyond it is not known."""
 SIDE_MARGIN_PX: Final = 5.0
@@ -131,8 +133,9 @@ def solve_star(
     Raises
     ------
     NoStarError
-        If too few pixels are usable, or the fit does not settle.
+        If the star is too large, or too few pixels are usable.
     """
+    _require_fitting(star)
     inner = max(star.radius_at(STAR_FINEST_CPP), inner_px or 0.0, 1.5)
     outer = star.rim_px - _RIM_MARGIN_PX
     rows, cols = _usable_pixels(image, star, inner, outer)
@@ -176,6 +179,17 @@ def solve_star(
         star, (row_std, col_std), fitted.otf, rows, cols, value, fitted.residual, fitted.noise,
         noise_found, inner, outer,
     )  # fmt: skip
+
+
+def _require_fitting(star: SiemensStar) -> None:
+    """Refuse a star whose tables would take gigabytes."""
+    if star.rim_px > _MAX_RIM_PX:
+        raise NoStarError(
+            f"the star found about row {star.row:.0f}, column {star.col:.0f} has a radius of "
+            f"{star.rim_px:.0f} px, and at most {_MAX_RIM_PX:g} px are fitted: the spokes further "
+            "out are coarse and show little of the sensor; choose a region around the star's "
+            "middle"
+        )
 
 
 def _has_settled(new: float, old: float | None, share: float) -> bool:

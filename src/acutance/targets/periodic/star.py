@@ -84,7 +84,7 @@ def measure_star(
         method=method,
         transfer=Otf2d(solved.otf, region.info.pixel_gsd_m),
         snr=snr,
-        checks=star_checks(solved, snr, region.saturation_level, chosen.limits),
+        checks=star_checks(solved, snr, region, chosen.limits),
         image=region.info,
         options=chosen.to_dict(),
         details=_details(region, solved),

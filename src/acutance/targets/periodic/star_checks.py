@@ -15,18 +15,19 @@ from acutance.targets.periodic.pattern_checks import (
     outliers,
     saturation,
 )
+from acutance.targets.region import RegionPixels, undeclared_fill
 
 __all__ = ["STAR_CHECKS", "star_checks", "third_harmonic"]
 
 STAR_CHECKS = (
     "contrast_snr", "level", "rim_cpp", "centre_cpp", "sweep_deg", "wave", "saturation",
-    "correlated_noise", "outliers",
+    "undeclared_fill", "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of a star."""
 
 
 def star_checks(
-    solved: StarSolution, snr: float, saturation_level: float | None, limits: Limits
+    solved: StarSolution, snr: float, region: RegionPixels, limits: Limits
 ) -> tuple[Check, ...]:
     """All checks of a star.
 
@@ -35,8 +36,7 @@ def star_checks(
     solved : StarSolution
     snr : float
         Contrast of the spokes over noise.
-    saturation_level : float or None
-        The largest value the detector can give.
+    region : RegionPixels
     limits : mapping of str to float
         Limits the caller changed.
     """
@@ -46,7 +46,8 @@ def star_checks(
         *_frequencies(solved, limits),
         _sweep(solved, limits),
         _wave(solved, limits),
-        saturation(solved.value, saturation_level, snr, "the star's pixels", limits),
+        saturation(solved.value, region.saturation_level, snr, "the star's pixels", limits),
+        undeclared_fill([region.fill], limits),
         correlated_noise(
             solved.correlation, snr, limits,
             advice="the image was resampled, or the spokes are not those of a perfect star",

@@ -9,9 +9,11 @@ from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
 from acutance.numerics.noise import Correlation
+from acutance.raster import Fill
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.points.sources import PointSource
 from acutance.targets.points.survey import SurveyErrors
+from acutance.targets.region import undeclared_fill
 
 __all__ = ["POINTS_CHECKS", "check_points", "check_survey", "phase_gap_px"]
 
@@ -22,6 +24,7 @@ POINTS_CHECKS = (
     "phase_gap_px",
     "background_uniformity",
     "source_misfit",
+    "undeclared_fill",
     "full_scale",
     "correlated_noise",
     "outliers",
@@ -37,6 +40,7 @@ def check_points(
     sources: Sequence[PointSource],
     limits: Limits,
     *,
+    fill: Fill | None = None,
     full_scale: float | None = None,
     correlation: Correlation | None = None,
     outliers: float | None = None,
@@ -48,6 +52,8 @@ def check_points(
     sources : sequence of PointSource
     limits : mapping of str to float
         Limits the caller changed.
+    fill : Fill, optional
+        Undeclared fill that was left out.
     full_scale : float, optional
         The brightest pixel of a source over the detector's limit, where that is known.
     correlation : Correlation, optional
@@ -62,6 +68,7 @@ def check_points(
         _phase_gap(sources, limits),
         _background_uniformity(sources, limits),
         _source_misfit(sources, limits),
+        undeclared_fill([fill], limits),
     ]
     if full_scale is not None:
         found = f"the brightest pixel is at {100 * full_scale:.0f} % of the detector's range"

@@ -288,6 +288,9 @@ def _growth(
         if not noise_grows(state.residual, state.light, leverage):
             return 0.0
     dark = state.light < _DARK * float(state.light.max())
+    if not dark.any():
+        # Sources so close that no pixel shows the background alone.
+        return noise.growth
     variance = max(robust_scale(state.residual[dark]), prior.noise_floor) ** 2
     inflated = variance * noise.correlation.inflation
     axes = determined_directions(blocks.normal, prior, posterior.log_amplitude, inflated)

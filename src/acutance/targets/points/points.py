@@ -48,7 +48,7 @@ def _fit_jointly(
     fit = fit_points(stamps, first, robust=options.robust)
     sources, shown = sources_of_fit(fit, region.pixels, _origin(region))
     checks = check_points(
-        sources, options.limits, full_scale=_full_scale(shown, region),
+        sources, options.limits, fill=region.fill, full_scale=_full_scale(shown, region),
         correlation=fit.correlation, outliers=outlier_share(fit.standard_residual, 1.0),
     )  # fmt: skip
     return _measurement(
@@ -79,7 +79,9 @@ def _fit_gaussians(
     chosen = published_options(options, "gaussian-2003", SdsuMirrorsOptions)
     found = sdsu_2003_mirrors(cover_rejected(region.pixels, rejected), places, chosen)
     sources, shown = sources_of_mirrors(found, region.pixels, _origin(region), chosen.window_px)
-    checks = check_points(sources, options.limits, full_scale=_full_scale(shown, region))
+    checks = check_points(
+        sources, options.limits, fill=region.fill, full_scale=_full_scale(shown, region)
+    )
     return _measurement(
         "gaussian-2003", found.psf, region, options, sources, rejected, checks=checks,
         noise_std=found.aligned.background_std, aligned=found.aligned,

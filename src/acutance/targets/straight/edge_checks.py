@@ -10,7 +10,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.geometry.line import Line
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
-from acutance.targets.region import RegionPixels
+from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import PLACES, CheckData, ratio_in_words
 from acutance.targets.straight.ground_checks import ground_checks
 from acutance.targets.straight.pixel_checks import (
@@ -56,9 +56,9 @@ __all__ = [
 EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases", "rows",
     "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px", "plateau_dark_px",
-    "plateau_bright_px", "saturation", "quantisation", "nonlinearity", "gradient",
-    "correlated_noise", "structure", "one_sided_overshoot", "double_edge", "asymmetric_wings",
-    "profile", "outliers", "ground", "close_ground", "mirrored_ground",
+    "plateau_bright_px", "saturation", "undeclared_fill", "quantisation", "nonlinearity",
+    "gradient", "correlated_noise", "structure", "one_sided_overshoot", "double_edge",
+    "asymmetric_wings", "profile", "outliers", "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -93,6 +93,7 @@ def check_edge(
         plateau(limits, "dark", extent.dark_px),
         plateau(limits, "bright", extent.bright_px),
         saturation(region, data, limits),
+        undeclared_fill([region.fill], limits),
         quantisation(region, data, limits),
         nonlinearity(data, limits, EDGE),
         gradient(data, limits),
@@ -193,11 +194,14 @@ def _change_along(data: CheckData, column: Floats) -> float:
     clipped = np.clip(data.residual, -OUTLIER_SIGMAS * data.noise, OUTLIER_SIGMAS * data.noise)
     share = np.bincount(part, column * clipped, parts)
     usable = power > 0.3 * np.median(power)
+    freedom = int(usable.sum()) - 1
+    if freedom < 1:
+        # Pixels lie next to one part of the edge at most.
+        return 0.0
     amount = share[usable] / power[usable]
     variance = data.noise**2 * data.smoothness / power[usable]
     # The mean of all parts belongs to the fit and is no change along the edge.
     amount -= np.average(amount, weights=power[usable])
-    freedom = int(usable.sum()) - 1
     chi_square = float(np.sum(amount**2 / np.maximum(variance, 1e-18)))
     if chi_square <= freedom + CHANGE_SIGMAS * math.sqrt(2 * freedom):
         return 0.0

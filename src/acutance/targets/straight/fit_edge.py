@@ -8,13 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.errors import NoEdgeError
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.noise import Correlation
 from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.ground_steps import GroundSide
-from acutance.targets.straight.lsf import SplineResponse
+from acutance.targets.straight.lsf import LsfModel, SplineResponse
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels, Pixels
 from acutance.targets.straight.solve import Solved, solve
+from acutance.targets.straight.tuned import MIN_FITTED_HEIGHT
 
 __all__ = ["SplineEdge", "fit_edge", "spline_edge"]
 
@@ -84,9 +86,15 @@ def _first_fit(trimmed: EdgePixels) -> FirstFit:
 
 
 def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
-    """Turn the coefficients into curves about the 50 % point, with their covariance."""
+    """Turn the coefficients into curves about the 50 % point, with their covariance.
+
+    Raises
+    ------
+    NoEdgeError
+        If what was fitted is no step.
+    """
     first_fit, solution, model = solved.first_fit, solved.solution, solved.model
-    middle = model.half_point()
+    middle = _half_point(model, first_fit)
     response = model.response(middle)
     line = first_fit.line.moved(middle, math.degrees(solution.rotation_rad))
     line = line.bent(solution.curvature_per_px)
@@ -106,3 +114,30 @@ def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
         solution.residual / height, first_fit.blur, *solution.side_noise, solved.correlation,
         solved.outlier, model.tail / height, solved.ground,
     )  # fmt: skip
+
+
+def _half_point(model: LsfModel, first_fit: FirstFit) -> float:
+    """Normal distance of the 50 % point of a response that rises from one level to another.
+
+    Next to a line or a bump of the background the correction takes the height of the first fit
+    away again: what is left is no step, and its curves would be divided by a height of about zero.
+
+    Raises
+    ------
+    NoEdgeError
+        If the response is none of a step.
+    """
+    if model.height < MIN_FITTED_HEIGHT * first_fit.height:
+        raise NoEdgeError(
+            f"a first fit has a height of {first_fit.height:.4g}, the free one of "
+            f"{model.height:.4g}: the pixels follow a line or a bump and no step; choose a region "
+            "with one edge, or one pulse, between uniform plateaus"
+        )
+    middle = model.half_point()
+    if math.isnan(middle):
+        raise NoEdgeError(
+            "the fitted response does not pass half its height within two widths "
+            f"({2 * first_fit.blur.width_px:.1f} px) of the line: something else lies next to it; "
+            "choose a region with one edge, or one pulse, between uniform plateaus"
+        )
+    return middle

@@ -156,6 +156,11 @@ def select_usable(
         used &= (-s < dark_reach[bins]) & (s - last < bright_reach[bins])
         image = image.copy()
         image[rows[~used], cols[~used]] = np.nan
+    if not used.any():
+        raise SupportError(
+            f"no pixel of the target's {length} rows is usable: next to its line they hold no "
+            "data; choose a region with fewer missing pixels"
+        )
     tenth = length // 10
     dark_px, bright_px = (
         float(np.sort(reach[start:stop])[tenth]) for reach in (dark_reach, bright_reach)
@@ -269,7 +274,8 @@ def _reaches(
     nothing = not structure.any()
     blur_px, last_step = edge.blur.width_px, edge.profile.positions_px[-1]
     for outwards in (-s, s - last_step):
-        outside = outwards > 0
+        # A row whose only pixels lie further out has no plateau.
+        outside = (outwards > 0) & (outwards < _MAX_HALF_WIDTH_PX + 1)
         last = np.zeros(count)
         np.maximum.at(last, bins[outside], outwards[outside])
         last = np.minimum(last + 0.5, _MAX_HALF_WIDTH_PX)

@@ -31,6 +31,7 @@ __all__ = [
     "MAX_FINE_STEP",
     "MAX_TOLERANCE",
     "MIN_CONTRAST_SHARE",
+    "MIN_FITTED_HEIGHT",
     "MIN_PHASES",
     "MIN_PILED_PIXELS",
     "MIN_ROWS",
@@ -105,6 +106,9 @@ MIN_ROWS: Final = 8
 """Rows of an edge with plateaus on both sides: one cycle of phases at 7 degrees."""
 MIN_SNR: Final = 3.0
 """Height over noise, and over the plateaus' roughness, below which there is no edge."""
+MIN_FITTED_HEIGHT: Final = 0.1
+"""Height of the fitted response over that of the first fit, below which there is no step: of the
+random regions of benchmarks/fuzz.py those below had no 50 % point, or an MTF of ten."""
 MIN_PHASES: Final = 2.0
 """Sub-pixel phases below which nothing is measured: the profile has gaps of half a pixel."""
 MIN_STRENGTH_SHARE: Final = 0.1

@@ -16,7 +16,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import RerCentre
-from acutance.errors import OptionError, SupportError
+from acutance.errors import NoEdgeError, OptionError, SupportError
 from acutance.targets.options import require_types
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.edge_location import cubic_locations
@@ -184,6 +184,11 @@ def start_points(
     Returns
     -------
     dark_end, bright_start : float
+
+    Raises
+    ------
+    NoEdgeError
+        If the spline is steepest at an end of the search.
     """
     kept = (x >= low) & (x <= high)
     step = (high - low) / math.ceil((high - low) / STEP_PX)
@@ -196,6 +201,12 @@ def start_points(
     peak = middles[near][int(np.argmax(lsf[near]))]
     dark = near & (middles < peak)
     bright = near & (middles > peak)
+    if not (dark.any() and bright.any()):
+        raise NoEdgeError(
+            f"the spline of kompsat-2014 is steepest at {peak:.2f} px from the edge, at the end of "
+            "the search: something steeper lies next to the edge; choose a region with one edge, "
+            "or the method spline"
+        )
     return (
         float(middles[dark][int(np.argmax(bend[dark]))]),
         float(middles[bright][int(np.argmax(bend[bright]))]),
