@@ -2,6 +2,10 @@
 
 Every function returns an `Estimate`. Definitions: the documentation's page
 "Conventions"; RER and half extents follow GIQE, the 40-60 % slope follows Kohm (2004).
+
+The error of a curve at x is F(x) z, with z standard normal and F(x) its `gradient` there: a row of
+the factor of its covariance. A place where the curve passes a level moves by -F(x) z / f'(x), with
+f' the `slope` of the curve. So every number has a row g of its own, and the variance g g^T.
 """
 
 from __future__ import annotations
