@@ -3,6 +3,7 @@
 from acutance.simulate.bars import BarGroup, BarsTruth, bars
 from acutance.simulate.campaign import Placed, brookings, render_site
 from acutance.simulate.edge import Truth, edge, render_edge
+from acutance.simulate.galaxy import Galaxy
 from acutance.simulate.ground import GroundNoise, alias_bands, render_raster
 from acutance.simulate.landscape import LandscapeTruth, landscape
 from acutance.simulate.landscape_edges import Beside, LandscapeEdge
@@ -28,6 +29,7 @@ from acutance.simulate.scene import (
 )
 from acutance.simulate.sensor_field import SensorField, SoftCorners
 from acutance.simulate.site import Scene, SceneEdge, SceneTarget, checkerboard, site
+from acutance.simulate.sky import SkyField, SkyTruth, sky
 from acutance.simulate.star import Star, StarTruth, add_star, star
 from acutance.simulate.systems import reference_systems
 from acutance.simulate.tarps import EdgeTarps, PulseTarp, tarp_patches, tarp_region, tarp_rows
@@ -38,6 +40,7 @@ __all__ = [
     "Beside",
     "Border",
     "EdgeTarps",
+    "Galaxy",
     "GroundNoise",
     "LandscapeEdge",
     "LandscapeOptions",
@@ -59,6 +62,8 @@ __all__ = [
     "SceneTarget",
     "SensorField",
     "SideStrip",
+    "SkyField",
+    "SkyTruth",
     "SoftCorners",
     "Star",
     "StarTruth",
@@ -89,6 +94,7 @@ __all__ = [
     "render_strip",
     "resample",
     "site",
+    "sky",
     "stamp",
     "star",
     "tarp_patches",
