@@ -8,7 +8,8 @@ it is usable is asked one question after the other; what is not is kept with its
 - ``hot pixel``: one pixel alone is bright, no light reached its neighbours;
 - ``cosmic ray``: narrower than the other spots in one direction, so no optics made it;
 - ``blended``: another source is too near, or it is much wider than the others;
-- ``faint``: its peak is too low.
+- ``extended``: wider than the points among which it lies, a galaxy;
+- ``faint``: its peak is too low, or its size too uncertain to tell a point from a galaxy.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +29,16 @@ from acutance.curves.grid import Floats
 from acutance.numerics.clipping import piled_up_share
 from acutance.numerics.noise import robust_scale
 from acutance.targets.points import tuned
-from acutance.targets.points.moments import SpotShape, spot_shape
+from acutance.targets.points.moments import (
+    BROAD_WINDOW_PX,
+    WINDOW_PX,
+    SpotShape,
+    half_window_px,
+    spot_shape,
+)
+from acutance.targets.points.population import Population, sharpest_population
 
-__all__ = ["RejectedSpot", "Spot", "find_spots", "match_spots", "sort_spots"]
+__all__ = ["RejectedSpot", "SortedSpots", "Spot", "find_spots", "match_spots", "sort_spots"]
 
 CLEAR_PX: Final = 3
 """Pixels that have to be there on all sides of a source."""
@@ -38,7 +46,6 @@ _SMOOTHING_PX: Final = 0.7
 _BLOCK_PX: Final = 24
 _MAX_SPOTS: Final = 2000
 _MAX_AWAY_PX: Final = 1.5
-_RING_PX: Final = 4
 _MIN_RING: Final = 16
 
 
@@ -92,6 +99,22 @@ class RejectedSpot:
     col: float
     reason: str
     message: str
+
+
+class SortedSpots(NamedTuple):
+    """Which spots are usable.
+
+    Attributes
+    ----------
+    usable : tuple of Spot
+    rejected : tuple of RejectedSpot
+    mixed : bool
+        Whether most of what is bright has a size of its own: stars among galaxies.
+    """
+
+    usable: tuple[Spot, ...]
+    rejected: tuple[RejectedSpot, ...]
+    mixed: bool
 
 
 def find_spots(image: Floats) -> tuple[tuple[Spot, ...], Floats, float]:
@@ -185,23 +208,33 @@ def _in_blocks(length: int, borders: NDArray[np.intp]) -> Floats:
 
 def _spot(residual: Floats, top: tuple[int, int], noise: float) -> Spot:
     """Peak and shape of what is around the brightest pixel nearby."""
+    row, col = _brightest_near(residual, top)
+    peak = float(residual[row, col])
+    return Spot(top, _shape(residual, (row, col), noise, WINDOW_PX), peak, peak / noise)
+
+
+def _brightest_near(residual: Floats, top: tuple[int, int]) -> tuple[int, int]:
+    """The brightest of a pixel and its eight neighbours."""
     row, col = top
     window = residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2]
     up, left = np.unravel_index(int(np.argmax(window)), window.shape)
-    row, col = max(row - 1, 0) + int(up), max(col - 1, 0) + int(left)
-    peak = float(residual[row, col])
-    background, rough = _ring_around(residual, row, col)
-    shape = spot_shape(residual, (row, col), max(noise, rough), background)
-    return Spot(top, shape, peak, peak / noise)
+    return max(row - 1, 0) + int(up), max(col - 1, 0) + int(left)
 
 
-def _ring_around(residual: Floats, row: int, col: int) -> tuple[float, float]:
+def _shape(residual: Floats, middle: tuple[int, int], noise: float, window_px: float) -> SpotShape:
+    """The shape of what is around a spot's brightest pixel, above what is around that."""
+    background, rough = _ring_around(residual, *middle, half_window_px(window_px) + 1)
+    return spot_shape(residual, middle, max(noise, rough), background, window_px)
+
+
+def _ring_around(residual: Floats, row: int, col: int, inner_px: int) -> tuple[float, float]:
     """Level and roughness of the ring of pixels around a spot: grass is not the block's median."""
-    top, side = max(row - _RING_PX, 0), max(col - _RING_PX, 0)
-    part = residual[top : row + _RING_PX + 1, side : col + _RING_PX + 1]
+    outer_px = inner_px + 1
+    top, side = max(row - outer_px, 0), max(col - outer_px, 0)
+    part = residual[top : row + outer_px + 1, side : col + outer_px + 1]
     down, right = np.arange(top, top + part.shape[0]), np.arange(side, side + part.shape[1])
     away = np.maximum(np.abs(down - row)[:, None], np.abs(right - col))
-    ring = part[away >= CLEAR_PX]
+    ring = part[away >= inner_px]
     if ring.size < _MIN_RING:
         return 0.0, 0.0
     level = float(np.median(ring))
@@ -219,7 +252,7 @@ def sort_spots(
     min_snr: float,
     min_distance_px: float,
     rivals: Sequence[Spot] | None = None,
-) -> tuple[tuple[Spot, ...], tuple[RejectedSpot, ...]]:
+) -> SortedSpots:
     """The usable spots, and the others with their reasons.
 
     Parameters
@@ -242,22 +275,54 @@ def sort_spots(
     single = [_own_fault(image, residual, one, limit, noise) for one in spots]
     whole = [one for one, fault in zip(spots, single, strict=True) if fault is None]
     usual = [one for one in whole if one.snr >= min_snr]
-    shapes = np.array([(one.shape.narrow_px2, one.shape.wide_px2) for one in usual])
-    shapes = shapes.reshape(-1, 2)
+    shapes, population = _compared_shapes(residual, usual, noise)
+    mixed = population is not None and population.mixed
+    narrow, wide = _usual_variances(shapes, population)
     kept, rejected = [], []
     for one, fault in zip(spots, single, strict=True):
         reason = fault
         if reason is None and one.snr < min_snr:
             reason = "faint", f"its peak is {one.snr:.1f} times the noise, {min_snr:g} are asked"
         if reason is None and len(usual) >= tuned.MIN_COMPARED:
-            reason = _compared(one, *np.median(shapes, axis=0).tolist())
+            reason = _compared(shapes[usual.index(one)], narrow, wide)
+        if reason is None and population is not None and mixed:
+            reason = population.fault(usual.index(one))
         if reason is None:
             reason = _crowded(one, others, min_distance_px)
         if reason is None:
             kept.append(one)
         else:
             rejected.append(RejectedSpot(one.row, one.col, *reason))
-    return tuple(kept), tuple(rejected)
+    return SortedSpots(tuple(kept), tuple(rejected), mixed)
+
+
+def _compared_shapes(
+    residual: Floats, usual: Sequence[Spot], noise: float
+) -> tuple[list[SpotShape], Population | None]:
+    """The shapes that are compared, under a broader window where points are broad, and the points.
+
+    Only where points are few among others is the broader window needed.
+    """
+    shapes = [one.shape for one in usual]
+    population = sharpest_population(shapes)
+    if population is None or population.narrow_px2 < tuned.BROAD_PX2:
+        return shapes, population
+    tops = [_brightest_near(residual, one.top) for one in usual]
+    broad = [_shape(residual, top, noise, BROAD_WINDOW_PX) for top in tops]
+    found = sharpest_population(broad)
+    return (broad, found) if found is not None and found.mixed else (shapes, population)
+
+
+def _usual_variances(
+    shapes: Sequence[SpotShape], population: Population | None
+) -> tuple[float, float]:
+    """Variances of a point along both axes: of the majority, or of the sharpest population."""
+    if population is not None and population.mixed:
+        return population.narrow_px2, population.wide_px2
+    if not shapes:
+        return math.nan, math.nan
+    narrow, wide = np.median([(one.narrow_px2, one.wide_px2) for one in shapes], axis=0).tolist()
+    return narrow, wide
 
 
 def _limit(image: Floats) -> float:
@@ -293,9 +358,8 @@ def _own_fault(
     return None
 
 
-def _compared(one: Spot, narrow: float, wide: float) -> tuple[str, str] | None:
+def _compared(shape: SpotShape, narrow: float, wide: float) -> tuple[str, str] | None:
     """What is wrong with a spot, compared to the others."""
-    shape = one.shape
     thin = max(shape.narrow_px2, 0.0)
     if shape.narrow_at_most_px2 < min(tuned.NARROW_RATIO * narrow, narrow - tuned.MIN_LACK_PX2):
         if shape.wide_px2 < narrow:

@@ -49,7 +49,7 @@ def select_spots(
     """
     everything, residual, noise = find_spots(region.pixels)
     spots, missing = (everything, ()) if wanted is None else match_spots(everything, wanted)
-    usable, rejected = sort_spots(
+    usable, rejected, mixed = sort_spots(
         region.pixels, residual, spots,
         saturation=region.saturation_level, noise=noise, min_snr=options.min_snr,
         min_distance_px=options.min_distance_px, rivals=everything,

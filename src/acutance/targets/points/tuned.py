@@ -19,10 +19,14 @@ __all__ = [
     "BEND",
     "BRIGHTEST_OVER_DARK",
     "BRIGHT_SHARE",
+    "BROAD_PX2",
     "BROAD_WIDTHS",
+    "CONFUSED_SIGMAS",
     "COVERED_ELSE_PX",
     "COVERED_PX",
+    "DENSE_SHARE",
     "DETERMINED_POWER",
+    "EXTENDED_RATIO",
     "GROWTH_LOG_EVIDENCE",
     "LIGHT_FAR_OUT",
     "LIT_PX",
@@ -30,11 +34,16 @@ __all__ = [
     "LOBE_SHARE",
     "LOG_AMPLITUDE",
     "LOG_AMPLITUDE_STD",
+    "MAX_CONFUSED",
     "MAX_LEVERAGE",
     "MIN_COMPARED",
     "MIN_LACK_PX2",
     "MIN_NEIGHBOUR_SHARE",
+    "MIN_POINT_PX2",
+    "MIN_POPULATION",
+    "MIN_SIZE_STD_PX2",
     "MIN_TIED_SOURCES",
+    "MIXED_SHARE",
     "MODEL_ERROR",
     "MOMENT_LENIENCE_PX2",
     "MOMENT_SIGMAS",
@@ -42,9 +51,12 @@ __all__ = [
     "NEGLIGIBLE_BEND",
     "NOISE_FLOOR",
     "OBSCURATIONS",
+    "PRECISE_SIZE",
     "PROCESSES",
+    "SAME_SIZE_SIGMAS",
     "SHAPE_ERROR",
     "SIGNIFICANT_GROWTH",
+    "SIZE_TOLERANCE",
     "SMALL_LOG_AMPLITUDE",
     "STANDS_OUT",
     "TIMES_USUAL",
@@ -82,6 +94,32 @@ many times what is usual: diffraction leaves up to 0.03 of every source."""
 COVERED_PX: Final = {"saturated": 9.0, "blended": 4.0, "hot pixel": 1.0, "cosmic ray": 3.0}
 COVERED_ELSE_PX: Final = 2.5
 """Radius around a rejected spot whose pixels are left out, by the reason."""
+
+# Population --------------------------------------------------------------------------------------
+SIZE_TOLERANCE: Final = 0.02
+MIN_SIZE_STD_PX2: Final = 0.003
+"""What optics that are no Gaussian add to the scatter of variances: a share of them, and so much in
+any case; of simulated stars behind six systems 1 to 2 % (benchmarks/sky.py, as for all of these)."""
+PRECISE_SIZE: Final = 0.1
+"""Deviation of a variance over itself up to which a spot takes part in the search."""
+SAME_SIZE_SIGMAS: Final = 3.0
+"""Two sizes agree within so many standard deviations."""
+BROAD_PX2: Final = 0.9
+"""Variance of points from which on they are compared under a broader window."""
+MIN_POINT_PX2: Final = 0.13
+"""Variance through a pixel (0.083 alone) below which only the densest place is one of points."""
+DENSE_SHARE: Final = 0.1
+"""Density over the largest one from which on a place among the sizes is dense."""
+MIN_POPULATION: Final = 3
+"""Spots of the same size that make a population, and wider ones that make a field mixed."""
+EXTENDED_RATIO: Final = 1.35
+MIXED_SHARE: Final = 0.2
+"""A field is mixed where this share of the precise spots is so many times as wide (variances) as the
+population: a camera whose PSF varies over its field has 1.5 at its corners, in few spots."""
+CONFUSED_SIGMAS: Final = 2.0
+MAX_CONFUSED: Final = 0.15
+"""Up to so many of its standard deviations an excess of size hides in a spot's noise, and largest
+share of extended objects among the spots so hidden."""
 
 # Noise -------------------------------------------------------------------------------------------
 LIT_PX: Final = 12.0
