@@ -172,7 +172,9 @@ def sky(
     return image, SkyTruth(points, galaxies, doubles, rays, hot, noise)
 
 
-def _places(count: int, shape: tuple[int, int], border_px: float, rng: np.random.Generator) -> Floats:
+def _places(
+    count: int, shape: tuple[int, int], border_px: float, rng: np.random.Generator
+) -> Floats:
     high = np.array(shape) - 1 - border_px
     return np.asarray(rng.uniform(border_px, high, (count, 2)))
 
@@ -224,9 +226,7 @@ def _add(image: Floats, sensor: Sensor, one: Point | Galaxy) -> None:
     stamp(image, render_patches(sensor, [moved], (side, side), margin_px=0), top, left)
 
 
-def _add_cosmic_rays(
-    image: Floats, count: int, std: float, rng: np.random.Generator
-) -> Floats:
+def _add_cosmic_rays(image: Floats, count: int, std: float, rng: np.random.Generator) -> Floats:
     """Straight tracks of 0.2 to 8 px, each with an even charge along its length, in place."""
     starts = _places(count, (image.shape[0], image.shape[1]), 10.0, rng)
     lengths, turns = _log_uniform((0.2, 8.0), count, rng), rng.uniform(0, 2 * np.pi, count)

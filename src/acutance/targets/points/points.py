@@ -18,12 +18,19 @@ from acutance.raster import Gsd, Image
 from acutance.targets.options import chosen_options, published_options
 from acutance.targets.points.checks import check_points, check_survey
 from acutance.targets.points.detect import RejectedSpot
+from acutance.targets.points.extent import excess_variances
 from acutance.targets.points.first_fit import FirstFit, fit_first_gaussian, unlike_sources
-from acutance.targets.points.fit import fit_points
+from acutance.targets.points.fit import PointsFit, fit_points
 from acutance.targets.points.options import PointsOptions
 from acutance.targets.points.points_measurement import PointsDetails, PointsMeasurement
 from acutance.targets.points.published import SdsuMirrorsOptions, sdsu_2003_mirrors
-from acutance.targets.points.selection import cover_rejected, reject_unlike, select_spots
+from acutance.targets.points.selection import (
+    Selection,
+    cover_rejected,
+    reject_extended,
+    reject_unlike,
+    select_spots,
+)
 from acutance.targets.points.sources import (
     PointSource,
     SourceStamp,
@@ -36,16 +43,16 @@ from acutance.targets.region import RegionPixels, RoiLike, read_region
 
 __all__ = ["POINTS_METHODS", "measure_points"]
 
+_MAX_ROUNDS = 4
 _Rejected = tuple[RejectedSpot, ...]
 
 
 def _fit_jointly(
-    region: RegionPixels, places: Floats, rejected: _Rejected, options: PointsOptions
+    region: RegionPixels, selected: Selection, options: PointsOptions
 ) -> PointsMeasurement:
     if options.method_options is not None:
         raise OptionError("method_options belong to the published method: leave them out")
-    stamps, first, rejected = _fit_first(region, places, rejected, options)
-    fit = fit_points(stamps, first, robust=options.robust)
+    fit, rejected = _fit_alike(region, selected, options)
     sources, shown = sources_of_fit(fit, region.pixels, _origin(region))
     checks = check_points(
         sources, options.limits, fill=region.fill, full_scale=_full_scale(shown, region),
@@ -56,6 +63,23 @@ def _fit_jointly(
         noise_std=fit.noise, noise_gain=fit.gain,
         details=PointsDetails(region.pixels, shown, fit=fit),
     )  # fmt: skip
+
+
+def _fit_alike(
+    region: RegionPixels, selected: Selection, options: PointsOptions
+) -> tuple[PointsFit, _Rejected]:
+    """The joint fit; in a mixed field made again without sources wider than the points."""
+    places, rejected, mixed = selected
+    for _ in range(_MAX_ROUNDS):
+        stamps, first, rejected = _fit_first(region, places, rejected, options)
+        fit = fit_points(stamps, first, robust=options.robust)
+        if not mixed:
+            break
+        same, rejected = reject_extended(fit.places, *excess_variances(fit), rejected)
+        if same.all():
+            break
+        places = fit.places[same]
+    return fit, rejected
 
 
 def _fit_first(
@@ -74,8 +98,9 @@ def _fit_first(
 
 
 def _fit_gaussians(
-    region: RegionPixels, places: Floats, rejected: _Rejected, options: PointsOptions
+    region: RegionPixels, selected: Selection, options: PointsOptions
 ) -> PointsMeasurement:
+    places, rejected, _ = selected
     chosen = published_options(options, "gaussian-2003", SdsuMirrorsOptions)
     found = sdsu_2003_mirrors(cover_rejected(region.pixels, rejected), places, chosen)
     sources, shown = sources_of_mirrors(found, region.pixels, _origin(region), chosen.window_px)
@@ -113,9 +138,10 @@ def _measurement(
     )
 
 
-POINTS_METHODS: dict[
-    str, Callable[[RegionPixels, Floats, _Rejected, PointsOptions], PointsMeasurement]
-] = {"psf-fit": _fit_jointly, "gaussian-2003": _fit_gaussians}
+POINTS_METHODS: dict[str, Callable[[RegionPixels, Selection, PointsOptions], PointsMeasurement]] = {
+    "psf-fit": _fit_jointly,
+    "gaussian-2003": _fit_gaussians,
+}
 
 
 @one_thread
@@ -164,21 +190,21 @@ def measure_points(
     _require_method(method)
     region = read_region(image, roi, gsd_m)
     wanted = None if positions is None else _places_of("positions", positions) - _origin(region)
-    places, rejected = select_spots(region, wanted, chosen)
-    measurement = _measured(method, region, places, rejected, chosen)
+    selected = select_spots(region, wanted, chosen)
+    measurement = _measured(method, region, selected, chosen)
     if surveyed is None:
         return measurement
     return _with_survey(measurement, _places_of("surveyed", surveyed), survey_reference, chosen)
 
 
 def _measured(
-    method: str, region: RegionPixels, places: Floats, rejected: _Rejected, options: PointsOptions
+    method: str, region: RegionPixels, selected: Selection, options: PointsOptions
 ) -> PointsMeasurement:
     try:
-        return POINTS_METHODS[method](region, places, rejected, options)
+        return POINTS_METHODS[method](region, selected, options)
     except np.linalg.LinAlgError as error:
         raise TargetError(
-            f"the {len(places)} sources found are not explained by one point spread function, "
+            f"the {len(selected.places)} sources found are not explained by one point spread function, "
             "however wide: they are no points, or not of one kind; give their positions, or a "
             "region that holds nothing but mirrors or stars"
         ) from error

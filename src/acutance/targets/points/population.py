@@ -64,7 +64,10 @@ class Population:
             return "extended", f"{found}, those of points are {points}"
         if self.confused[index] > tuned.MAX_CONFUSED:
             share = 100 * float(self.confused[index])
-            return "faint", f"of spots as faint as it, {share:.0f} % that look like points are wider"
+            return (
+                "faint",
+                f"of spots as faint as it, {share:.0f} % that look like points are wider",
+            )
         return None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +18,32 @@ from acutance.targets.points.detect import (
     match_spots,
     sort_spots,
 )
+from acutance.targets.points.extent import same_extent
 from acutance.targets.points.options import PointsOptions
 from acutance.targets.region import RegionPixels
 
-__all__ = ["cover_rejected", "reject_unlike", "select_spots"]
+__all__ = ["Selection", "cover_rejected", "reject_extended", "reject_unlike", "select_spots"]
 
 
-def select_spots(
-    region: RegionPixels, wanted: Floats | None, options: PointsOptions
-) -> tuple[Floats, tuple[RejectedSpot, ...]]:
+class Selection(NamedTuple):
+    """Which bright spots of a region are measured.
+
+    Attributes
+    ----------
+    places : (k, 2) array
+        Of the usable sources, (row, col) in the region.
+    rejected : tuple of RejectedSpot
+        In pixels of the region.
+    mixed : bool
+        Whether they are points among objects that have sizes of their own.
+    """
+
+    places: Floats
+    rejected: tuple[RejectedSpot, ...]
+    mixed: bool
+
+
+def select_spots(region: RegionPixels, wanted: Floats | None, options: PointsOptions) -> Selection:
     """The usable point sources of a region, and the bright spots that are none.
 
     Parameters
@@ -34,13 +52,6 @@ def select_spots(
     wanted : (n, 2) array, optional
         Approximate places (row, col) in the region; all spots without them.
     options : PointsOptions
-
-    Returns
-    -------
-    places : (k, 2) array
-        Of the usable sources, (row, col) in the region.
-    rejected : tuple of RejectedSpot
-        In pixels of the region.
 
     Raises
     ------
@@ -64,7 +75,55 @@ def select_spots(
     unasked = (one for one in everything if one not in spots and one.snr >= options.min_snr)
     left_out += [_left_out(one, "it is not among the positions that were given") for one in unasked]
     places = np.array([(one.row, one.col) for one in usable if one in taken])
-    return places, (*rejected, *left_out)
+    if mixed and len(places) < tuned.MIN_POPULATION:
+        raise TargetError(_no_population(len(places), rejected))
+    return Selection(places, (*rejected, *left_out), mixed)
+
+
+def reject_extended(
+    places: Floats, excess: Floats, std: Floats, rejected: tuple[RejectedSpot, ...]
+) -> tuple[NDArray[np.bool_], tuple[RejectedSpot, ...]]:
+    """The sources of a mixed field that have not the extent of its points.
+
+    Parameters
+    ----------
+    places : (k, 2) array
+    excess, std : (k,) arrays
+        Variance of every source beyond that of the common PSF, as a share, and its deviation.
+    rejected : tuple of RejectedSpot
+        What was rejected before.
+
+    Returns
+    -------
+    same : (k,) bool array
+        Which sources remain.
+    rejected : tuple of RejectedSpot
+        The others, after what was rejected before.
+
+    Raises
+    ------
+    TargetError
+        If the sources have no extent in common.
+    """
+    same = same_extent(excess, std)
+    if same is None:
+        raise TargetError(_no_population(len(places), rejected))
+    others = tuple(
+        RejectedSpot(
+            row, col, "extended" if more > 0 else "unlike",
+            f"its variance differs from that of the points by {100 * more:+.0f} %",
+        )
+        for (row, col), more in zip(places[~same].tolist(), excess[~same].tolist(), strict=True)
+    )  # fmt: skip
+    return same, (*rejected, *others)
+
+
+def _no_population(left: int, rejected: Sequence[RejectedSpot]) -> str:
+    return (
+        f"of {left + len(rejected)} bright spots no three of the sharpest have one size in common "
+        f"({_counted(rejected)}): these are galaxies or other objects with sizes of their own, no "
+        "points; choose a region with stars or mirrors, or give their positions"
+    )
 
 
 def reject_unlike(
@@ -115,10 +174,13 @@ def _refusal(rejected: Sequence[RejectedSpot], options: PointsOptions) -> str:
             "no point source stands out of the noise: choose a region with sources, or a longer "
             "exposure"
         )
-    reasons = [one.reason for one in rejected]
-    counted = ", ".join(f"{reasons.count(one)} {one}" for one in dict.fromkeys(reasons))
     return (
-        f"none of {len(rejected)} bright spots is a usable point source ({counted}): choose "
+        f"none of {len(rejected)} bright spots is a usable point source ({_counted(rejected)}): choose "
         f"another region, or ask less (min_snr {options.min_snr:g}, min_distance_px "
         f"{options.min_distance_px:g})"
     )
+
+
+def _counted(rejected: Sequence[RejectedSpot]) -> str:
+    reasons = [one.reason for one in rejected]
+    return ", ".join(f"{reasons.count(one)} {one}" for one in dict.fromkeys(reasons))

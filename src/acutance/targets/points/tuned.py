@@ -27,6 +27,7 @@ __all__ = [
     "DENSE_SHARE",
     "DETERMINED_POWER",
     "EXTENDED_RATIO",
+    "EXTENT_TOLERANCE",
     "GROWTH_LOG_EVIDENCE",
     "LIGHT_FAR_OUT",
     "LIT_PX",
@@ -35,6 +36,7 @@ __all__ = [
     "LOG_AMPLITUDE",
     "LOG_AMPLITUDE_STD",
     "MAX_CONFUSED",
+    "MAX_COVERED_PX",
     "MAX_LEVERAGE",
     "MIN_COMPARED",
     "MIN_LACK_PX2",
@@ -61,6 +63,7 @@ __all__ = [
     "STANDS_OUT",
     "TIMES_USUAL",
     "UNLIKE_SHARE",
+    "VISIBLE_LIGHT",
     "WIDE_RATIO",
 ]
 
@@ -94,6 +97,10 @@ many times what is usual: diffraction leaves up to 0.03 of every source."""
 COVERED_PX: Final = {"saturated": 9.0, "blended": 4.0, "hot pixel": 1.0, "cosmic ray": 3.0}
 COVERED_ELSE_PX: Final = 2.5
 """Radius around a rejected spot whose pixels are left out, by the reason."""
+MAX_COVERED_PX: Final = 20
+VISIBLE_LIGHT: Final = 0.5
+"""Around a spot in a mixed field, as far as its light exceeds so many deviations of the noise, but
+not beyond so many pixels."""
 
 # Population --------------------------------------------------------------------------------------
 SIZE_TOLERANCE: Final = 0.02
@@ -116,6 +123,8 @@ EXTENDED_RATIO: Final = 1.35
 MIXED_SHARE: Final = 0.2
 """A field is mixed where this share of the precise spots is so many times as wide (variances) as the
 population: a camera whose PSF varies over its field has 1.5 at its corners, in few spots."""
+EXTENT_TOLERANCE: Final = 0.015
+"""The same as `SIZE_TOLERANCE`, of extents about a common blur."""
 CONFUSED_SIGMAS: Final = 2.0
 MAX_CONFUSED: Final = 0.15
 """Up to so many of its standard deviations an excess of size hides in a spot's noise, and largest
