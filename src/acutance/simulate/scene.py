@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +22,7 @@ from acutance.simulate.ground import alias_bands
 __all__ = [
     "Patch",
     "Point",
+    "Shape",
     "Strip",
     "add_patches",
     "render_patches",
@@ -132,9 +133,27 @@ class Point:
         return np.full(np.broadcast_shapes(np.shape(u), np.shape(v)), self.flux)
 
 
+class Shape(Protocol):
+    """What lies on the ground at a place, with a spectrum in closed form."""
+
+    @property
+    def row(self) -> float:
+        """Row of its centre in pixels."""
+        ...
+
+    @property
+    def col(self) -> float:
+        """Column of its centre."""
+        ...
+
+    def spectrum(self, u: ArrayLike, v: ArrayLike) -> Floats:
+        """Fourier transform about its own centre, at cycles per pixel."""
+        ...
+
+
 def render_patches(
     sensor: Sensor,
-    patches: Sequence[Patch | Point],
+    patches: Sequence[Shape],
     shape: tuple[int, int],
     *,
     margin_px: int = MARGIN_PX,
@@ -150,7 +169,7 @@ def render_patches(
     Parameters
     ----------
     sensor : Sensor
-    patches : sequence of Patch or Point
+    patches : sequence of Patch, Point or another Shape
         Inside the image or less than half the margin outside of it.
     shape : (rows, cols)
     margin_px : int, optional

@@ -198,10 +198,10 @@ def _galaxies(
     )
     return tuple(
         Galaxy(
-            *place, flux, half_light_px=half, axis_ratio=ratio, turn_deg=turn,
+            row, col, flux, half_light_px=half, axis_ratio=ratio, turn_deg=turn,
             profile="de-vaucouleurs" if bulge else "exponential",
         )
-        for place, flux, half, bulge, ratio, turn in columns
+        for (row, col), flux, half, bulge, ratio, turn in columns
     )  # fmt: skip
 
 

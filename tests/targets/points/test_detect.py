@@ -25,7 +25,7 @@ def scene():
 
 def sorted_by_reason(image, saturation=None):
     spots, residual, noise = find_spots(image)
-    kept, rejected = sort_spots(
+    kept, rejected, _ = sort_spots(
         image, residual, spots,
         saturation=saturation, noise=noise, min_snr=10.0, min_distance_px=4.0,
     )  # fmt: skip

@@ -204,9 +204,9 @@ def _measured(
         return POINTS_METHODS[method](region, selected, options)
     except np.linalg.LinAlgError as error:
         raise TargetError(
-            f"the {len(selected.places)} sources found are not explained by one point spread function, "
-            "however wide: they are no points, or not of one kind; give their positions, or a "
-            "region that holds nothing but mirrors or stars"
+            f"the {len(selected.places)} sources found are not explained by one point spread "
+            "function, however wide: they are no points, or not of one kind; give their positions, "
+            "or a region that holds nothing but mirrors or stars"
         ) from error
 
 

@@ -86,8 +86,8 @@ def sharpest_population(shapes: Sequence[SpotShape]) -> Population | None:
     """
     sizes = np.array([(one.narrow_px2, one.wide_px2) for one in shapes]).reshape(-1, 2)
     noise = np.array([(one.narrow_std_px2, one.wide_std_px2) for one in shapes]).reshape(-1, 2)
-    std = np.hypot(noise, tuned.SIZE_TOLERANCE * np.abs(sizes) + tuned.MIN_SIZE_STD_PX2)
-    precise = (sizes[:, 0] > 0) & np.all(std < tuned.PRECISE_SIZE * sizes, axis=1)
+    std = np.hypot(noise, _tolerance(sizes) * np.abs(sizes) + tuned.MIN_SIZE_STD_PX2)
+    precise = (sizes[:, 0] > 0) & np.all(noise < tuned.PRECISE_SIZE * sizes, axis=1)
     if precise.sum() < tuned.MIN_COMPARED:
         return None
     middle = densest_sharpest(sizes[precise], std[precise])
@@ -95,14 +95,26 @@ def sharpest_population(shapes: Sequence[SpotShape]) -> Population | None:
         middle = sizes[precise][np.argmin(sizes[precise].sum(axis=1))]
     away = (sizes - middle) / std
     members = np.hypot(*away.T) < tuned.SAME_SIZE_SIGMAS
+    narrow, wide = middle.tolist()
     return Population(
         shapes,
-        *middle.tolist(),
+        narrow,
+        wide,
         members,
         away > tuned.SAME_SIZE_SIGMAS,
         _confused(sizes.mean(axis=1), std.mean(axis=1), float(middle.mean()), precise, members),
         _is_mixed(sizes[precise], std[precise], middle),
     )
+
+
+def _tolerance(sizes: Floats) -> Floats:
+    """How far variances of one PSF scatter beside the noise, as a share, (n, 1).
+
+    What lies within a pixel or two shows different variances at different places within its pixel,
+    unless it is a Gaussian: the sharper the PSF, the more.
+    """
+    sharp = np.clip((tuned.SAMPLED_PX2 - sizes[:, :1]) / tuned.SHARP_PX2, 0.0, 1.0)
+    return np.asarray(tuned.SIZE_TOLERANCE + tuned.SHARP_TOLERANCE * sharp)
 
 
 def densest_sharpest(sizes: Floats, std: Floats) -> Floats | None:
@@ -116,7 +128,7 @@ def densest_sharpest(sizes: Floats, std: Floats) -> Floats | None:
     Returns
     -------
     (d,) array or None
-        The median of the sizes there; without one where fewer than three sizes agree.
+        The median of the sizes there; without one where fewer than five sizes agree.
     """
     together = std[:, None] ** 2 + std[None] ** 2
     apart = ((sizes[:, None] - sizes[None]) ** 2 / together).sum(axis=2)
@@ -151,7 +163,7 @@ def _is_mixed(sizes: Floats, std: Floats, middle: Floats) -> bool:
     larger = sizes[:, 1] - doubt[:, 1] > ratio * middle[1]
     smaller = (sizes[:, 0] + doubt[:, 0]) * ratio < middle[0]
     odd = int((larger | smaller).sum())
-    return odd >= max(tuned.MIN_POPULATION, tuned.MIXED_SHARE * sizes.shape[0])
+    return odd >= float(max(tuned.MIN_ODD, tuned.MIXED_SHARE * sizes.shape[0]))
 
 
 def _confused(

@@ -66,6 +66,8 @@ def select_spots(region: RegionPixels, wanted: Floats | None, options: PointsOpt
         min_distance_px=options.min_distance_px, rivals=everything,
     )  # fmt: skip
     rejected = (*missing, *rejected)
+    if mixed and len(usable) < tuned.MIN_POPULATION:
+        raise TargetError(_no_population(len(usable), rejected))
     if not usable:
         raise TargetError(_refusal(rejected, options))
     by_peak = sorted(usable, key=lambda one: -one.peak)
@@ -75,8 +77,6 @@ def select_spots(region: RegionPixels, wanted: Floats | None, options: PointsOpt
     unasked = (one for one in everything if one not in spots and one.snr >= options.min_snr)
     left_out += [_left_out(one, "it is not among the positions that were given") for one in unasked]
     places = np.array([(one.row, one.col) for one in usable if one in taken])
-    if mixed and len(places) < tuned.MIN_POPULATION:
-        raise TargetError(_no_population(len(places), rejected))
     return Selection(places, (*rejected, *left_out), mixed)
 
 
@@ -120,7 +120,7 @@ def reject_extended(
 
 def _no_population(left: int, rejected: Sequence[RejectedSpot]) -> str:
     return (
-        f"of {left + len(rejected)} bright spots no three of the sharpest have one size in common "
+        f"of {left + len(rejected)} bright spots no five of the sharpest have one size in common "
         f"({_counted(rejected)}): these are galaxies or other objects with sizes of their own, no "
         "points; choose a region with stars or mirrors, or give their positions"
     )
@@ -175,8 +175,8 @@ def _refusal(rejected: Sequence[RejectedSpot], options: PointsOptions) -> str:
             "exposure"
         )
     return (
-        f"none of {len(rejected)} bright spots is a usable point source ({_counted(rejected)}): choose "
-        f"another region, or ask less (min_snr {options.min_snr:g}, min_distance_px "
+        f"none of {len(rejected)} bright spots is a usable point source ({_counted(rejected)}): "
+        f"choose another region, or ask less (min_snr {options.min_snr:g}, min_distance_px "
         f"{options.min_distance_px:g})"
     )
 

@@ -41,6 +41,7 @@ __all__ = [
     "MIN_COMPARED",
     "MIN_LACK_PX2",
     "MIN_NEIGHBOUR_SHARE",
+    "MIN_ODD",
     "MIN_POINT_PX2",
     "MIN_POPULATION",
     "MIN_SIZE_STD_PX2",
@@ -55,8 +56,11 @@ __all__ = [
     "OBSCURATIONS",
     "PRECISE_SIZE",
     "PROCESSES",
+    "SAMPLED_PX2",
     "SAME_SIZE_SIGMAS",
     "SHAPE_ERROR",
+    "SHARP_PX2",
+    "SHARP_TOLERANCE",
     "SIGNIFICANT_GROWTH",
     "SIZE_TOLERANCE",
     "SMALL_LOG_AMPLITUDE",
@@ -106,7 +110,13 @@ not beyond so many pixels."""
 SIZE_TOLERANCE: Final = 0.02
 MIN_SIZE_STD_PX2: Final = 0.003
 """What optics that are no Gaussian add to the scatter of variances: a share of them, and so much in
-any case; of simulated stars behind six systems 1 to 2 % (benchmarks/sky.py, as for all of these)."""
+any case; of simulated stars behind six systems 1 to 2 % (benchmarks/sky.py, which set all of these
+numbers)."""
+SAMPLED_PX2: Final = 0.5
+SHARP_PX2: Final = 0.2
+SHARP_TOLERANCE: Final = 0.13
+"""Variance of spots below which these scatter with their phase, and by how much from so far below
+on: of an obscured aperture 1 % at 0.49 px², 9 % at 0.37 and 15 % at 0.30."""
 PRECISE_SIZE: Final = 0.1
 """Deviation of a variance over itself up to which a spot takes part in the search."""
 SAME_SIZE_SIGMAS: Final = 3.0
@@ -117,11 +127,12 @@ MIN_POINT_PX2: Final = 0.13
 """Variance through a pixel (0.083 alone) below which only the densest place is one of points."""
 DENSE_SHARE: Final = 0.1
 """Density over the largest one from which on a place among the sizes is dense."""
-MIN_POPULATION: Final = 3
-"""Spots of the same size that make a population, and wider ones that make a field mixed."""
+MIN_ODD: Final = 3
+MIN_POPULATION: Final = 5
+"""Spots of other sizes that make a field mixed, and spots of one size that make its points."""
 EXTENDED_RATIO: Final = 1.35
 MIXED_SHARE: Final = 0.2
-"""A field is mixed where this share of the precise spots is so many times as wide (variances) as the
+"""A field is mixed where this share of the precise spots has variances so many times those of the
 population: a camera whose PSF varies over its field has 1.5 at its corners, in few spots."""
 EXTENT_TOLERANCE: Final = 0.015
 """The same as `SIZE_TOLERANCE`, of extents about a common blur."""
