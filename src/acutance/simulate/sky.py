@@ -175,8 +175,8 @@ def sky(
 def _places(
     count: int, shape: tuple[int, int], border_px: float, rng: np.random.Generator
 ) -> Floats:
-    high = np.array(shape) - 1 - border_px
-    return np.asarray(rng.uniform(border_px, high, (count, 2)))
+    columns = [rng.uniform(border_px, size - 1 - border_px, count) for size in shape]
+    return np.stack(columns, axis=1)
 
 
 def _log_uniform(limits: tuple[float, float], count: int, rng: np.random.Generator) -> Floats:

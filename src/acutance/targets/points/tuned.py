@@ -36,7 +36,6 @@ __all__ = [
     "LOG_AMPLITUDE",
     "LOG_AMPLITUDE_STD",
     "MAX_CONFUSED",
-    "MAX_COVERED_PX",
     "MAX_LEVERAGE",
     "MIN_COMPARED",
     "MIN_LACK_PX2",
@@ -56,8 +55,8 @@ __all__ = [
     "OBSCURATIONS",
     "PRECISE_SIZE",
     "PROCESSES",
-    "SAMPLED_PX2",
     "SAME_SIZE_SIGMAS",
+    "SAMPLED_PX2",
     "SHAPE_ERROR",
     "SHARP_PX2",
     "SHARP_TOLERANCE",
@@ -67,7 +66,6 @@ __all__ = [
     "STANDS_OUT",
     "TIMES_USUAL",
     "UNLIKE_SHARE",
-    "VISIBLE_LIGHT",
     "WIDE_RATIO",
 ]
 
@@ -101,10 +99,6 @@ many times what is usual: diffraction leaves up to 0.03 of every source."""
 COVERED_PX: Final = {"saturated": 9.0, "blended": 4.0, "hot pixel": 1.0, "cosmic ray": 3.0}
 COVERED_ELSE_PX: Final = 2.5
 """Radius around a rejected spot whose pixels are left out, by the reason."""
-MAX_COVERED_PX: Final = 20
-VISIBLE_LIGHT: Final = 0.5
-"""Around a spot in a mixed field, as far as its light exceeds so many deviations of the noise, but
-not beyond so many pixels."""
 
 # Population --------------------------------------------------------------------------------------
 SIZE_TOLERANCE: Final = 0.02
