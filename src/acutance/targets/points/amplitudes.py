@@ -32,6 +32,7 @@ __all__ = [
     "determined_directions",
     "likelier_posterior",
     "likeliest_growth",
+    "posterior_log_evidence",
 ]
 
 # Places in SHAPE, DETAIL, HALO, TAIL, APERTURE, WINGS, AIRY.
@@ -48,7 +49,16 @@ def likelier_posterior(
     """
     starts = [_from(prior, variance, tuned.LIGHT_FAR_OUT), earlier]
     found = [regress(normal, prior, variance, inflation, start) for start in starts]
-    return max(found, key=lambda one: _posterior_log_evidence(normal, prior, one, inflation))
+    return max(found, key=lambda one: posterior_log_evidence(normal, prior, one, inflation))
+
+
+def posterior_log_evidence(
+    normal: Normal, prior: Prior, found: Posterior, inflation: float
+) -> float:
+    """Log evidence at a posterior's amplitudes and noise, which may differ between posteriors."""
+    noise = found.variance * inflation
+    level = 0.5 * normal.count / inflation * math.log(noise)
+    return _log_evidence(normal, prior, found.log_amplitude, noise) - level
 
 
 def averaged_posterior(
@@ -188,12 +198,3 @@ def _log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: fl
     away = (log_amplitude - prior.log_amplitude) / prior.log_amplitude_std
     misfit = normal.data / noise - float(seen @ seen) + float(away @ away)
     return -0.5 * misfit - float(np.log(np.diagonal(lower)).sum())
-
-
-def _posterior_log_evidence(
-    normal: Normal, prior: Prior, found: Posterior, inflation: float
-) -> float:
-    """The same at a posterior's amplitudes and noise, which may differ between posteriors."""
-    noise = found.variance * inflation
-    level = 0.5 * normal.count / inflation * math.log(noise)
-    return _log_evidence(normal, prior, found.log_amplitude, noise) - level

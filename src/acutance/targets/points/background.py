@@ -7,7 +7,7 @@ against the background far from all sources; where they do not, every source kee
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,6 +43,7 @@ class Background:
     anchors: Floats
     scale: Floats
     scatter: Floats
+    pads: bool = False
 
     @classmethod
     def of(cls, stamps: Stamps, first: FirstFit) -> Background:
@@ -73,6 +74,21 @@ class Background:
         levels = first.backgrounds[:, 0]
         scale = np.full(_PLANE, 10 * (float(np.abs(levels).max()) + noise) + 1e-9)
         return cls(columns, anchors, scale, scatter)
+
+    def with_pads(self, image: Floats, contrast_std: float) -> Background:
+        """The background with pads under the sources: their image for unit contrast, (n,)."""
+        none = np.zeros((*self.anchors.shape[:2], 1))
+        return replace(
+            self,
+            columns=np.hstack([self.columns, image[:, None]]),
+            anchors=np.concatenate([self.anchors, none], axis=2),
+            scale=np.append(self.scale, contrast_std),
+            pads=True,
+        )
+
+    def light_of_pads(self, common: Floats) -> Floats | float:
+        """What pads give every pixel, (n,), from the common unknowns; 0 without pads."""
+        return np.asarray(self.columns[:, -1] * common[-1]) if self.pads else 0.0
 
     def tie(self, noise: float) -> Floats:
         """What ties flux, place, level and slopes of a source, for `SourceProblem`."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import Correlation, robust_scale
@@ -26,6 +27,7 @@ from acutance.targets.points.amplitudes import (
 from acutance.targets.points.background import Background
 from acutance.targets.points.first_fit import FirstFit, own_columns
 from acutance.targets.points.noise import PointNoise, noise_around, noise_grows
+from acutance.targets.points.pads import Pads, log_evidence_of_pads, pads_image
 from acutance.targets.points.per_source import Blocks, SourceProblem
 from acutance.targets.points.psf import PsfModel
 from acutance.targets.points.psf_prior import PsfDirections
@@ -68,6 +70,8 @@ class PointsFit:
         Variance of the noise per unit of light, 0 where the noise does not grow with it.
     correlation : Correlation
         Of the noise between neighbouring pixels.
+    pads : Pads, optional
+        Pads under the sources, where the pixels ask for them.
     """
 
     stamps: Stamps
@@ -83,6 +87,7 @@ class PointsFit:
     noise: float
     gain: float
     correlation: Correlation
+    pads: Pads | None = None
 
     @property
     def residual(self) -> Floats:
@@ -123,10 +128,54 @@ def fit_points(stamps: Stamps, first: FirstFit, *, robust: bool = True) -> Point
     """
     background = Background.of(stamps, first)
     state = _first_state(stamps, first)
-    state, blocks, prior, posterior, noise = _settle(stamps, first, state, background, robust)
+    settled = _settle(stamps, first, state, background, robust)
+    side_px = _likely_pads(stamps, first, background, *settled)
+    if side_px is not None:
+        image = pads_image(stamps, settled[0].places, first.blur, side_px)
+        background = background.with_pads(image, _pad_contrast(first))
+        settled = _settle(stamps, first, state, background, robust)
+    state, blocks, prior, posterior, noise = settled
     posterior = averaged_posterior(blocks.normal, prior, noise.correlation.inflation, posterior)
     state = _updated(stamps, state, background, blocks, posterior)
-    return _points_fit(stamps, state, background, blocks, posterior, noise)
+    fit = _points_fit(stamps, state, background, blocks, posterior, noise)
+    return fit if side_px is None else replace(fit, pads=_pads(side_px, posterior))
+
+
+def _likely_pads(
+    stamps: Stamps,
+    first: FirstFit,
+    background: Background,
+    state: _State,
+    blocks: Blocks,
+    prior: Prior,
+    posterior: Posterior,
+    noise: PointNoise,
+) -> float | None:
+    """The side of pads that make the pixels clearly likelier, if there is one."""
+    if blocks.own_data.shape[0] < tuned.MIN_TIED_SOURCES:
+        return None
+    problem = _linear_problem(stamps, state, background, math.sqrt(posterior.variance))
+    gains = log_evidence_of_pads(
+        problem,
+        [pads_image(stamps, state.places, state.model.blur, one) for one in tuned.PAD_SIDES_PX],
+        _pad_contrast(first),
+        noise.weight(state.light),
+        prior,
+        posterior,
+        noise.correlation.inflation,
+    )
+    best = int(np.argmax(gains))
+    return tuned.PAD_SIDES_PX[best] if gains[best] > tuned.PAD_LOG_EVIDENCE else None
+
+
+def _pad_contrast(first: FirstFit) -> float:
+    """Prior standard deviation of the contrast of pads, in image units."""
+    return tuned.PAD_CONTRAST * float((first.fluxes * first.blur.peak).max())
+
+
+def _pads(side_px: float, posterior: Posterior) -> Pads:
+    std = float(np.sqrt(posterior.factor[-1] @ posterior.factor[-1]))
+    return Pads(side_px, Estimate(float(posterior.beta[-1]), std))
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,15 +306,22 @@ def _updated(
         state.places + np.clip(own[:, [2, 1]], -_MAX_STEP_PX, _MAX_STEP_PX),
         state.fluxes * (1 + change),
         own[:, 3:] + background.common(posterior.beta[size:]),
+        background.light_of_pads(posterior.beta[size:]),
     )
 
 
 def _state_of(
-    stamps: Stamps, model: PsfModel, places: Floats, fluxes: Floats, backgrounds: Floats
+    stamps: Stamps,
+    model: PsfModel,
+    places: Floats,
+    fluxes: Floats,
+    backgrounds: Floats,
+    pads: Floats | float = 0.0,
 ) -> _State:
     """The state with its light and its residuals."""
     psf = model.directions.sum(*stamps.all_offsets(places), model.weights)
     residual = stamps.value - stamps.summed(fluxes, psf) - stamps.levels(places, backgrounds)
+    residual -= pads
     light = fluxes[stamps.owner] * psf[: stamps.value.size]
     return _State(model, places, fluxes, backgrounds, light, residual)
 

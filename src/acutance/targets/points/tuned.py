@@ -53,6 +53,9 @@ __all__ = [
     "NEGLIGIBLE_BEND",
     "NOISE_FLOOR",
     "OBSCURATIONS",
+    "PAD_CONTRAST",
+    "PAD_LOG_EVIDENCE",
+    "PAD_SIDES_PX",
     "PRECISE_SIZE",
     "PROCESSES",
     "SAME_SIZE_SIGMAS",
@@ -167,6 +170,14 @@ MIN_TIED_SOURCES: Final = 6
 """Sources from which on their backgrounds are tied to a common plane, of which three determine it.
 At twice, where none of the ten is tied, 1.2 deviations with a halo, and errors half as large
 again."""
+
+# Pads --------------------------------------------------------------------------------------------
+PAD_SIDES_PX: Final = (2.0, 3.0, 4.0, 5.0)
+"""Sides of pads under the sources that are tried."""
+PAD_CONTRAST: Final = 0.03
+"""Prior standard deviation of their contrast over the peak of the brightest source."""
+PAD_LOG_EVIDENCE: Final = 0.0
+"""Gain of log evidence from which on pads are part of the model."""
 
 # Prior of the point spread function --------------------------------------------------------------
 PROCESSES: Final = ((1.2, 0.6, 12), (0.7, 0.2, 13), (3.0, 1.2, 11))
