@@ -42,6 +42,9 @@ class Population:
         pass for points if they were as faint as this one.
     mixed : bool
         Whether there are so many wider spots that this is a field of stars and galaxies.
+    distinct : bool
+        Whether more spots have this size than sizes next to it: galaxies alone have a densest
+        size, too, but no gap around it.
     """
 
     shapes: Sequence[SpotShape]
@@ -51,6 +54,7 @@ class Population:
     wider: NDArray[np.bool_]
     confused: Floats
     mixed: bool
+    distinct: bool
 
     def fault(self, index: int) -> tuple[str, str] | None:
         """Why a spot is no member of a mixed field's points: reason and message."""
@@ -58,6 +62,8 @@ class Population:
         points = f"{self.narrow_px2:.2f} and {self.wide_px2:.2f} px²"
         found = f"variances of {shape.narrow_px2:.2f} and {shape.wide_px2:.2f} px² along its axes"
         narrow_wider, wide_wider = self.wider[index].tolist()
+        if not self.distinct:
+            return "extended", f"{found}, and as many spots have the sizes around {points}"
         if wide_wider and not narrow_wider:
             return "blended", f"{found}, those of points are {points}: it is wider one way"
         if not self.members[index]:
@@ -94,7 +100,9 @@ def sharpest_population(shapes: Sequence[SpotShape]) -> Population | None:
     if middle is None:
         middle = sizes[precise][np.argmin(sizes[precise].sum(axis=1))]
     away = (sizes - middle) / std
-    members = np.hypot(*away.T) < tuned.SAME_SIZE_SIGMAS
+    distance = np.hypot(*away.T)
+    members = distance < tuned.SAME_SIZE_SIGMAS
+    around = ~members & (distance < 2 * tuned.SAME_SIZE_SIGMAS)
     narrow, wide = middle.tolist()
     return Population(
         shapes,
@@ -104,6 +112,7 @@ def sharpest_population(shapes: Sequence[SpotShape]) -> Population | None:
         away > tuned.SAME_SIZE_SIGMAS,
         _confused(sizes.mean(axis=1), std.mean(axis=1), float(middle.mean()), precise, members),
         _is_mixed(sizes[precise], std[precise], middle),
+        int((precise & members).sum()) > int((precise & around).sum()),
     )
 
 
