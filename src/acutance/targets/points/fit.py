@@ -151,21 +151,29 @@ def _likely_pads(
     posterior: Posterior,
     noise: PointNoise,
 ) -> float | None:
-    """The side of pads that make the pixels clearly likelier, if there is one."""
+    """The side of pads that make the pixels likelier, if there is one.
+
+    A square of two pixels is hardly a pad: what it explains, a PSF that the prior does not foresee
+    explains as well. Pads have to be likelier than that, too.
+    """
     if blocks.own_data.shape[0] < tuned.MIN_TIED_SOURCES:
         return None
     problem = _linear_problem(stamps, state, background, math.sqrt(posterior.variance))
     gains = log_evidence_of_pads(
         problem,
-        [pads_image(stamps, state.places, state.model.blur, one) for one in tuned.PAD_SIDES_PX],
+        [
+            pads_image(stamps, state.places, state.model.blur, one)
+            for one in (tuned.NO_PAD_PX, *tuned.PAD_SIDES_PX)
+        ],
         _pad_contrast(first),
         noise.weight(state.light),
         prior,
         posterior,
         noise.correlation.inflation,
     )
-    best = int(np.argmax(gains))
-    return tuned.PAD_SIDES_PX[best] if gains[best] > tuned.PAD_LOG_EVIDENCE else None
+    best = int(np.argmax(gains[1:]))
+    needed = max(0.0, float(gains[0])) + tuned.PAD_LOG_EVIDENCE
+    return tuned.PAD_SIDES_PX[best] if gains[1 + best] > needed else None
 
 
 def _pad_contrast(first: FirstFit) -> float:
