@@ -179,7 +179,7 @@ NO_PAD_PX: Final = 2.0
 defocused and of sharpened optics the latter are likelier in 30 of 30 images without pads."""
 PAD_CONTRAST: Final = 0.03
 """Prior standard deviation of their contrast over the peak of the brightest source."""
-PAD_LOG_EVIDENCE: Final = 0.0
+PAD_LOG_EVIDENCE: Final = 0.5
 """Gain of log evidence from which on pads are part of the model."""
 
 # Prior of the point spread function --------------------------------------------------------------
