@@ -152,7 +152,7 @@ def sky(
     fluxes = _log_uniform(field.snr, field.stars, rng) * flux_of_snr
     galaxies = _galaxies(field, shape, flux_of_snr, rng)
     doubles, double_fluxes = _doubles(field, shape, flux_of_snr, rng)
-    sources = [
+    objects: list[Point | Galaxy] = [
         Point(row, col, flux)
         for (row, col), flux in zip(
             np.vstack([stars, doubles]).tolist(),
@@ -161,7 +161,7 @@ def sky(
         )
     ]
     image = np.full(shape, background)
-    for one in (*sources, *galaxies):
+    for one in (*objects, *galaxies):
         _add(image, sensor, one)
     image = noise.added_to(image, rng)
     rays = _add_cosmic_rays(image, field.cosmic_rays, std, rng)
@@ -180,7 +180,8 @@ def _places(
 
 
 def _log_uniform(limits: tuple[float, float], count: int, rng: np.random.Generator) -> Floats:
-    return np.asarray(np.exp(rng.uniform(*np.log(limits), count)))
+    low, high = (math.log(one) for one in limits)
+    return np.asarray(np.exp(rng.uniform(low, high, count)))
 
 
 def _galaxies(

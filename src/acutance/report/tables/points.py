@@ -9,7 +9,7 @@ from acutance.report.html import Table
 from acutance.report.labels import MISSING, format_number, word_estimate, write_fixed
 
 if TYPE_CHECKING:
-    from acutance.targets.points import PointsMeasurement
+    from acutance.targets.points import Pads, PointsMeasurement
     from acutance.targets.points.published import AlignedFit
     from acutance.targets.points.survey import SurveyErrors
 
@@ -47,7 +47,16 @@ def _sources_table(measurement: PointsMeasurement) -> Table:
         "Flux: the light of a source over all pixels. Misfit: residuals within three pixels, over "
         "the noise."
     )
-    return Table(SOURCE_COLUMNS, rows, "rrrrrrr", title="Sources", notes=(note,))
+    notes = (note,) if measurement.pads is None else (note, _pads_note(measurement.pads))
+    return Table(SOURCE_COLUMNS, rows, "rrrrrrr", title="Sources", notes=notes)
+
+
+def _pads_note(pads: Pads) -> str:
+    contrast = word_estimate(pads.contrast).value_and_std
+    return (
+        f"Pads of about {pads.side_px:g} px under the sources, {contrast} above their "
+        "surroundings, are part of the model: the pixels are likelier with them."
+    )
 
 
 def _rejected_table(measurement: PointsMeasurement) -> Table:

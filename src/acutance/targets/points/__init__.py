@@ -1,15 +1,17 @@
 """Point sources: arrays of convex mirrors, lamps, stars of the sky.
 
-In the order data take: `detect` (bright spots; `moments` gives their shapes), `selection` (which
-of them are measured), `stamps` (the pixels around each), `first_fit` (one Gaussian through a pixel
-for all), `fit` (the joint fit, with `per_source`, `noise`, `background`, `psf`, `psf_prior`,
-`airy`, `amplitudes`), `sources` (the numbers of each), `survey` (against surveyed places),
+In the order data take: `detect` (bright spots; `moments` gives their shapes), `population` (the
+points among objects of all sizes), `selection` (which of them are measured), `stamps` (the pixels
+around each), `first_fit` (one Gaussian through a pixel for all), `fit` (the joint fit, with
+`per_source`, `noise`, `background`, `psf`, `psf_prior`, `airy`, `amplitudes`, `pads`), `extent`
+(what is wider than the PSF), `sources` (the numbers of each), `survey` (against surveyed places),
 `checks`, `points_measurement` (the result), `points` (the public function); `published` (the
 Gaussian of the report of 2003), `options`, and `tuned` (every tuned number, and what set it).
 """
 
 from acutance.targets.points.checks import POINTS_CHECKS
 from acutance.targets.points.options import PointsOptions
+from acutance.targets.points.pads import Pads
 from acutance.targets.points.points import POINTS_METHODS, measure_points
 from acutance.targets.points.points_measurement import PointsDetails, PointsMeasurement
 from acutance.targets.points.published import AlignedFit
@@ -20,6 +22,7 @@ __all__ = [
     "POINTS_CHECKS",
     "POINTS_METHODS",
     "AlignedFit",
+    "Pads",
     "PointSource",
     "PointsDetails",
     "PointsMeasurement",

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.special import ndtr
@@ -41,6 +42,10 @@ class Pads(ShortRepr):
 
     side_px: float
     contrast: Estimate
+
+    def to_dict(self) -> dict[str, Any]:
+        """Side and contrast, for JSON."""
+        return {"side_px": self.side_px, "contrast": self.contrast.to_dict()}
 
 
 def pads_image(stamps: Stamps, places: Floats, blur: GaussianPixel2d, side_px: float) -> Floats:

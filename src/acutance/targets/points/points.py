@@ -60,7 +60,7 @@ def _fit_jointly(
     )  # fmt: skip
     return _measurement(
         "psf-fit", fit.model, region, options, sources, rejected, checks=checks,
-        noise_std=fit.noise, noise_gain=fit.gain,
+        noise_std=fit.noise, noise_gain=fit.gain, pads=fit.pads,
         details=PointsDetails(region.pixels, shown, fit=fit),
     )  # fmt: skip
 

@@ -13,6 +13,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.targets.measurement import Measurement
 from acutance.targets.points.detect import RejectedSpot
 from acutance.targets.points.fit import PointsFit
+from acutance.targets.points.pads import Pads
 from acutance.targets.points.published import AlignedFit, PublishedMirrors
 from acutance.targets.points.sources import PointSource, SourceStamp
 from acutance.targets.points.survey import SurveyErrors
@@ -61,6 +62,8 @@ class PointsMeasurement(Measurement):
         The Gaussian of the aligned samples (method "gaussian-2003").
     survey : SurveyErrors, optional
         Measured against surveyed places.
+    pads : Pads, optional
+        Mounts under the sources, where the pixels ask for them (method "psf-fit").
 
     Notes
     -----
@@ -75,6 +78,7 @@ class PointsMeasurement(Measurement):
     noise_gain: float | None = None
     aligned: AlignedFit | None = None
     survey: SurveyErrors | None = None
+    pads: Pads | None = None
 
     @property
     def positions(self) -> Floats:
@@ -90,6 +94,8 @@ class PointsMeasurement(Measurement):
         }
         if self.noise_gain is not None:
             document["noise"] = {"std": self.noise_std, "gain": self.noise_gain}
+        if self.pads is not None:
+            document["pads"] = self.pads.to_dict()
         if self.aligned is not None:
             document["aligned"] = self.aligned.to_dict()
         return document

@@ -43,8 +43,8 @@ class Population:
     mixed : bool
         Whether there are so many wider spots that this is a field of stars and galaxies.
     distinct : bool
-        Whether more spots have this size than sizes next to it: galaxies alone have a densest
-        size, too, but no gap around it.
+        Whether clearly more spots have this size than sizes next to it: galaxies alone have a
+        densest size, too, but no gap around it.
     """
 
     shapes: Sequence[SpotShape]
@@ -112,7 +112,7 @@ def sharpest_population(shapes: Sequence[SpotShape]) -> Population | None:
         away > tuned.SAME_SIZE_SIGMAS,
         _confused(sizes.mean(axis=1), std.mean(axis=1), float(middle.mean()), precise, members),
         _is_mixed(sizes[precise], std[precise], middle),
-        int((precise & members).sum()) > int((precise & around).sum()),
+        int((precise & members).sum()) >= int((precise & around).sum()) + tuned.MIN_POPULATION,
     )
 
 
