@@ -156,7 +156,9 @@ def _likely_pads(
     A square of two pixels is hardly a pad: what it explains, a PSF that the prior does not foresee
     explains as well. Pads have to be likelier than that, too.
     """
-    if blocks.own_data.shape[0] < tuned.MIN_TIED_SOURCES:
+    contrast_std = _pad_contrast(first)
+    quiet = posterior.variance < (contrast_std * tuned.PAD_MIN_NOISE) ** 2
+    if quiet or blocks.own_data.shape[0] < tuned.MIN_TIED_SOURCES:
         return None
     problem = _linear_problem(stamps, state, background, math.sqrt(posterior.variance))
     gains = log_evidence_of_pads(
@@ -165,7 +167,7 @@ def _likely_pads(
             pads_image(stamps, state.places, state.model.blur, one)
             for one in (tuned.NO_PAD_PX, *tuned.PAD_SIDES_PX)
         ],
-        _pad_contrast(first),
+        contrast_std,
         noise.weight(state.light),
         prior,
         posterior,

@@ -56,6 +56,7 @@ __all__ = [
     "OBSCURATIONS",
     "PAD_CONTRAST",
     "PAD_LOG_EVIDENCE",
+    "PAD_MIN_NOISE",
     "PAD_SIDES_PX",
     "PRECISE_SIZE",
     "PROCESSES",
@@ -179,8 +180,11 @@ NO_PAD_PX: Final = 2.0
 defocused and of sharpened optics the latter are likelier in 30 of 30 images without pads."""
 PAD_CONTRAST: Final = 0.03
 """Prior standard deviation of their contrast over the peak of the brightest source."""
+PAD_MIN_NOISE: Final = 0.033
+"""Noise over that contrast below which no pads are sought (a peak 1000 times the noise): what the
+prior of a PSF that diffracts or is out of focus lacks shows there, and looks like a pad."""
 PAD_LOG_EVIDENCE: Final = 0.5
-"""Gain of log evidence from which on pads are part of the model."""
+"""Gain of log evidence from which on pads are part of the model. Benchmark: benchmarks/pads.py."""
 
 # Prior of the point spread function --------------------------------------------------------------
 PROCESSES: Final = ((1.2, 0.6, 12), (0.7, 0.2, 13), (3.0, 1.2, 11))
