@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import Correlation, robust_scale
@@ -138,7 +137,7 @@ def fit_points(stamps: Stamps, first: FirstFit, *, robust: bool = True) -> Point
     posterior = averaged_posterior(blocks.normal, prior, noise.correlation.inflation, posterior)
     state = _updated(stamps, state, background, blocks, posterior)
     fit = _points_fit(stamps, state, background, blocks, posterior, noise)
-    return fit if side_px is None else replace(fit, pads=_pads(side_px, posterior))
+    return fit if side_px is None else replace(fit, pads=Pads.of(side_px, posterior))
 
 
 def _likely_pads(
@@ -181,11 +180,6 @@ def _likely_pads(
 def _pad_contrast(first: FirstFit) -> float:
     """Prior standard deviation of the contrast of pads, in image units."""
     return tuned.PAD_CONTRAST * float((first.fluxes * first.blur.peak).max())
-
-
-def _pads(side_px: float, posterior: Posterior) -> Pads:
-    std = float(np.sqrt(posterior.factor[-1] @ posterior.factor[-1]))
-    return Pads(side_px, Estimate(float(posterior.beta[-1]), std))
 
 
 @dataclass(frozen=True, eq=False)

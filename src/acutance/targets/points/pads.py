@@ -43,6 +43,12 @@ class Pads(ShortRepr):
     side_px: float
     contrast: Estimate
 
+    @classmethod
+    def of(cls, side_px: float, posterior: Posterior) -> Pads:
+        """Pads whose contrast is the last of a posterior's unknowns."""
+        std = float(np.sqrt(posterior.factor[-1] @ posterior.factor[-1]))
+        return cls(side_px, Estimate(float(posterior.beta[-1]), std))
+
     def to_dict(self) -> dict[str, Any]:
         """Side and contrast, for JSON."""
         return {"side_px": self.side_px, "contrast": self.contrast.to_dict()}
