@@ -43,8 +43,10 @@ def test_noise_free_edge_is_measured_exactly(name, angle_deg):
     )
     found = ac.measure_edge(image)
     assert mtf_error(found, truth) <= (0.006 if name == "diffraction" else 0.001)
-    # Tails like 1/x^2 leave the region: it does not determine the plateaus' height exactly.
-    assert abs(found.rer.value - truth.rer.value) <= 0.001
+    # Tails like 1/x^2 leave the region, and slopes of the ground might hide them: it does not
+    # determine the plateaus' height exactly.
+    far = name in ("diffraction", "sharpened")
+    assert abs(found.rer.value - truth.rer.value) <= (0.004 if far else 0.001)
     assert abs(found.fwhm_px.value - truth.fwhm_px.value) <= 0.01
     assert found.orientation == truth.orientation
 
@@ -112,8 +114,10 @@ def test_intervals_hold_the_truth_as_often_as_they_say(pooled_z, metric):
 @pytest.mark.parametrize("metric", METRICS)
 def test_standard_deviations_have_the_size_of_the_errors(pooled_z, metric):
     z = pooled_z[:, list(METRICS).index(metric)]
-    # The interval above alone would let deviations pass that are a fifth too large.
-    assert 0.8 < z.std() < 1.2
+    # The interval above alone would let deviations pass that are a fifth too large. Those of
+    # M(.25) and RER hold what slopes of the ground may hide, which these images do not have.
+    lowest = 0.65 if metric in ("mtf_025", "rer") else 0.8
+    assert lowest < z.std() < 1.2
     assert abs(z.mean()) < 0.35
     assert np.mean(np.abs(z) > 4) < 0.01
 

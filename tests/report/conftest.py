@@ -27,7 +27,7 @@ CHECKS = (
     answer("angle_deg", 6.02, "inclined by 6.02 degrees", {}),
     answer("rows", 40.0, "40 rows", {}),
     answer("sample_phases", 9.0, "9 different sub-pixel positions", {}),
-    answer("plateau_bright_px", 2.0, "the bright plateau is 2.0 px wide", {}),
+    answer("blur_uniformity", 0.08, "from part to part the blur changes by 8 %", {}),
     answer("straightness_px", 0.04, "scatters by 0.04 px about the line", {}),
 )
 MEASURED_AT = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)

@@ -10,9 +10,12 @@ def test_the_text_holds_every_number_and_check(measurement):
     for check in measurement.checks:
         assert check.name in shown
         assert check.asked in shown
-    assert "CAUTION  plateau_bright_px" in shown
+    assert "CAUTION  blur_uniformity" in shown
     assert "doubtful: 1 of 6 checks failed." in shown
-    assert "plateau_bright_px (caution): the bright plateau is 2.0 px wide: a halo beyond" in shown
+    assert (
+        "blur_uniformity (caution): from part to part the blur changes by 8 %: another edge"
+        in shown
+    )
     assert "scene.tif, band 1, rows 100–139, columns 260–295" in shown
     assert "measured 2026-01-02 03:04 UTC" in shown
 
@@ -63,7 +66,7 @@ def test_a_comparison_says_what_the_failed_checks_of_each_method_say(compared):
 def test_a_target_lists_edges_means_rejections_and_what_failed(target):
     shown = text(target)
     assert shown.startswith("4 edges measured, 1 rejected")
-    assert "plateau_bright_px, edges 1 (2), 2 (2), 3 (2), 4 (2); asked >= 7: " in shown
+    assert "blur_uniformity, edges 1 (0.08), 2 (0.08), 3 (0.08), 4 (0.08); asked <= 0.05: " in shown
     assert "phases  <aligned> with the grid" in shown
     scatter = target.groups["along"].chi_square["mtf_nyquist"]
     assert f"{scatter:.1f} / 1" in shown
