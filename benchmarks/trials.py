@@ -25,6 +25,7 @@ METRICS: dict[str, Callable[[Response], Estimate]] = {
     "RER": lambda response: response.rer,
     "FWHM": lambda response: response.fwhm_px,
 }
+TWO_SIDED_95 = 1.959964
 COMBINATIONS = [(o, p) for o in ("across", "along") for p in ("rising", "falling")]
 
 
@@ -69,6 +70,57 @@ def random_edge(
         regrid=None if shifts is None else ac.simulate.Regrid(*shifts.tolist()),
         rng=rng,
     )
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A measurement against the truth, by metric.
+
+    Attributes
+    ----------
+    error, z : list of float
+        Found less true, and this over the stated standard deviation.
+    word : str
+        Of the verdict.
+    curvature_per_px : float
+        Of the line that was found.
+    """
+
+    error: list[float]
+    z: list[float]
+    word: str
+    curvature_per_px: float
+
+
+def compare(image: np.ndarray, true: Response) -> Compared | None:
+    """Measure an edge and compare it with its true curves; nothing if it is refused."""
+    try:
+        found = ac.measure_edge(image)
+    except ac.AcutanceError:
+        return None
+    estimates = [metric(found.response) for metric in METRICS.values()]
+    error = [
+        estimate.value - metric(true).value
+        for estimate, metric in zip(estimates, METRICS.values(), strict=True)
+    ]
+    z = [miss / estimate.std for miss, estimate in zip(error, estimates, strict=True)]
+    return Compared(error, z, found.verdict.word, found.line.curvature_per_px)
+
+
+def bias(compared: Sequence[Compared]) -> np.ndarray:
+    """Mean error of every metric."""
+    return np.asarray(np.mean([one.error for one in compared], axis=0))
+
+
+def root_mean_square(compared: Sequence[Compared]) -> np.ndarray:
+    """Root mean square error of every metric."""
+    return np.asarray(np.sqrt(np.mean(np.square([one.error for one in compared]), axis=0)))
+
+
+def coverage(compared: Sequence[Compared]) -> np.ndarray:
+    """Per cent of the 95 % intervals that hold the truth, of every metric."""
+    inside = np.abs([one.z for one in compared]) < TWO_SIDED_95
+    return np.asarray(100 * np.mean(inside, axis=0))
 
 
 def command(description: str, draws: int) -> argparse.ArgumentParser:

@@ -10,7 +10,7 @@ from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.report.paper import BLUE, FAINT, INK, PALETTE, VERMILION, new_page
 from acutance.targets.straight import lsf_prior as prior
 from acutance.targets.straight.spline import combine, edge_and_line_weights
-from acutance.targets.straight.tuned import LOG_AMPLITUDE
+from acutance.targets.straight.tuned import FAMILY_LOG_AMPLITUDES, LOG_AMPLITUDE
 
 __all__ = ["measured_and_truth", "prior_directions", "what_truncation_does"]
 
@@ -66,28 +66,31 @@ def prior_directions() -> Figure:
     """Draws from the prior: how an LSF may differ from a Gaussian through a pixel, and how much."""
     blur = GaussianPixel(0.4)
     known = prior.directions(blur)
+    tail = prior.tail_spline()
     u = np.linspace(-6, 6, 601)
     cell, _, slopes = edge_and_line_weights(u)
     rng = np.random.default_rng(4)
-    names = ("shape", "detail", "halo", "tail")
-    figure = new_page(10.4, 4.0)
-    panels = figure.subplots(1, 4, sharey=True)
+    names = (*FAMILY_LOG_AMPLITUDES, "detail", "tail")
+    figure = new_page(10.4, 6.4)
+    panels = figure.subplots(2, 4, sharex=True, sharey=True)
     plain = blur.width_px * blur.lsf(u * blur.width_px)
-    for k, (axes, name) in enumerate(zip(panels, names, strict=True)):
-        own = np.flatnonzero(known.block == k + 2)
-        amplitude = float(np.exp(LOG_AMPLITUDE[k]))
-        for i in range(3):
-            if name == "tail":
-                drawn = known.esf[:, own] @ np.array([(i + 1) * amplitude])
-            else:
-                drawn = known.esf[:, own] @ (amplitude * rng.standard_normal(own.size))
-            axes.plot(u, combine(cell, slopes, drawn), color=PALETTE[i], lw=1.5)
-        axes.plot(u, 0.2 * plain, color=FAINT, lw=1, ls="--")
-        axes.set_ylim(-0.165, 0.215)
-        axes.set(title=f"{name}, {100 * amplitude:.1f} %", xlabel="distance, widths")
-    panels[0].set_ylabel("correction of the LSF, per width")
-    dashed = "dashed: a fifth of\nthe Gaussian\nthrough a pixel"
-    panels[0].text(-6, 0.21, dashed, color=FAINT, fontsize=8.5, va="top")
+    for k, (axes, name) in enumerate(zip(panels.flat, names, strict=True)):
+        own = np.flatnonzero(known.block == prior.FIRST_BLOCK + k)
+        start = float(np.exp(LOG_AMPLITUDE[k]))
+        amplitude = 1.0 if name in FAMILY_LOG_AMPLITUDES else 0.05
+        for color in PALETTE[:3]:
+            share = amplitude * rng.standard_normal(own.size)
+            drawn = known.esf[:, own] @ share + tail * (known.tail[own] @ share)
+            axes.plot(u, combine(cell, slopes, drawn), color=color, lw=1.5)
+        axes.plot(u, 0.1 * plain, color=FAINT, lw=1, ls="--")
+        axes.set_title(f"{name}, {amplitude:g} ({start:.2g})")
+    for axes in panels[1]:
+        axes.set_xlabel("distance, widths")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("correction of the LSF, per width")
+    dashed = "dashed: a tenth of\nthe Gaussian\nthrough a pixel"
+    panels[0, 0].text(0.02, 0.98, dashed, transform=panels[0, 0].transAxes, color=FAINT,
+                      fontsize=8.5, va="top")  # fmt: skip
     return figure
 
 
