@@ -1,6 +1,6 @@
 """Edges on ground that is not even: strips beside the edge, and slopes through it.
 
-A strip lies parallel to the edge, on either side, and is brighter or darker by a share of the
+A strip lies parallel to the edge, on one of its sides, and is brighter or darker by a share of the
 contrast; the sensor blurs its two borders as it blurs the edge. Regions of 56, 80 and 120 px
 across and 60 px along hold it or end in it. A slope runs through edge and region alike; its share
 is that of the whole region's width. Angles of 4 to 15 degrees to either side, both polarities.
@@ -39,6 +39,7 @@ SYSTEMS = {
 }
 STRIPS_PX = [(2, 12), (4, 10), (8, 14)]
 STRIP_SHARES = [0.02, 0.03, 0.05, -0.03]
+SIDES = {-1: "dark", 1: "bright"}
 HALF_WIDTHS_PX = [28, 40, 60]
 STRIP_SNR, STRIP_ROWS = 200.0, 60
 STRIP_METRICS = ("MTF(0.5)", "RER")
@@ -54,11 +55,12 @@ MAX_BIAS, MIN_COVERAGE = 0.010, 85.0
 
 @dataclass(frozen=True)
 class Strip:
-    """One edge with a strip beside it."""
+    """One edge with a strip beside it, on its dark (-1) or bright side (1)."""
 
     system: str
     strip_px: tuple[int, int]
     share: float
+    side: int
     half_width_px: int
     seed: tuple[int, ...]
 
@@ -78,7 +80,7 @@ def strip_edge(sensor: ac.Sensor, job: Strip, rng: np.random.Generator) -> tuple
     profile, distance_px, response = _random_edge(
         sensor, (STRIP_ROWS, 2 * job.half_width_px), (4.0, 15.0), rng
     )
-    near, far = (rng.choice([-1, 1]) * np.array(job.strip_px)).tolist()
+    near, far = (job.side * np.array(job.strip_px)).tolist()
     border = profile(distance_px - min(near, far)) - profile(distance_px - max(near, far))
     scene = profile(distance_px) + job.share * border
     return DARK + CONTRAST * (scene + rng.normal(0, 1 / STRIP_SNR, scene.shape)), response
@@ -157,40 +159,41 @@ def keeps_bar(results: Sequence[Compared | None]) -> bool:
 
 
 def strip_parts(draws: int, seed: int, processes: int) -> list[str]:
-    """Tables of the strips, by system and place and by half width."""
+    """Tables of the strips, by system, place and side, and by half width."""
     jobs = [
-        Strip(system, strip, share, half, (seed, 0, *place, draw))
-        for place, (system, strip, share, half) in _numbered(
-            SYSTEMS, STRIPS_PX, STRIP_SHARES, HALF_WIDTHS_PX
+        Strip(system, strip, share, side, half, (seed, 0, *place, draw))
+        for place, (system, strip, share, side, half) in _numbered(
+            SYSTEMS, STRIPS_PX, STRIP_SHARES, SIDES, HALF_WIDTHS_PX
         )
         for draw in range(draws)
     ]
     results = work_through(measured, jobs, processes, "strips")
+    select = partial(_chosen, jobs, results)
     kept, rows = [], []
-    for system in SYSTEMS:
-        for strip in STRIPS_PX:
-            for share in STRIP_SHARES:
-                own = _chosen(jobs, results, system=system, strip_px=strip, share=share)
-                kept.append(keeps_bar(own))
-                rows.append(
-                    [system, f"{strip[0]} to {strip[1]}", f"{100 * share:+.0f}",
-                     *numbers(own, STRIP_METRICS), "yes" if kept[-1] else "no"]
-                )  # fmt: skip
-    rows.append(["**all**", "", "", *numbers(results, STRIP_METRICS), ""])
+    for _, (system, strip, share, side) in _numbered(SYSTEMS, STRIPS_PX, STRIP_SHARES, SIDES):
+        own = select(system=system, strip_px=strip, share=share, side=side)
+        kept.append(keeps_bar(own))
+        rows.append(
+            [system, f"{strip[0]} to {strip[1]}", SIDES[side], f"{100 * share:+.0f}",
+             *numbers(own, STRIP_METRICS), "yes" if kept[-1] else "no"]
+        )  # fmt: skip
     by_width = [
-        [f"{half}", *numbers(_chosen(jobs, results, half_width_px=half), STRIP_METRICS)]
-        for half in HALF_WIDTHS_PX
+        [f"{half}", *numbers(select(half_width_px=half), STRIP_METRICS)] for half in HALF_WIDTHS_PX
     ]
+    by_width.append(["**all**", *numbers(results, STRIP_METRICS)])
     return [
         "## Strips beside the edge",
-        f"SNR {STRIP_SNR:.0f}; a row has {draws} edges of each half width "
-        f"({', '.join(str(half) for half in HALF_WIDTHS_PX)} px). Bar: the bias of both is "
+        f"SNR {STRIP_SNR:.0f}; half widths of the regions: "
+        f"{', '.join(str(half) for half in HALF_WIDTHS_PX)} px, {draws} edges of each a row.",
+        table(["half width / px", *head(STRIP_METRICS)], by_width),
+        "By system, place and side. Bar: the bias of both is "
         f"{MAX_BIAS:.3f} at most, or every verdict is doubtful or invalid and the intervals hold "
         f"the truth in {MIN_COVERAGE:.0f} %. {sum(kept)} of {len(kept)} rows keep it.",
-        table(["system", "strip / px", "share / %", *head(STRIP_METRICS), "bar"], rows, texts=2),
-        "By half width, all strips:",
-        table(["half width / px", *head(STRIP_METRICS)], by_width, texts=0),
-    ]
+        table(
+            ["system", "strip / px", "side", "share / %", *head(STRIP_METRICS), "bar"],
+            rows, texts=3,
+        ),
+    ]  # fmt: skip
 
 
 def slope_parts(draws: int, seed: int, processes: int) -> list[str]:
@@ -203,13 +206,15 @@ def slope_parts(draws: int, seed: int, processes: int) -> list[str]:
     results = work_through(measured, jobs, processes, "slopes")
     select = partial(_chosen, jobs, results)
     rows = [
+        [f"**all of {100 * share:.0f} %**", "", "",
+         *numbers([*select(share=share), *select(share=-share)], SLOPE_METRICS)]
+        for share in sorted({abs(share) for share in SLOPE_SHARES})
+    ]  # fmt: skip
+    rows += [
         [system, f"{100 * share:+.0f}", f"{size}",
          *numbers(select(system=system, share=share, size_px=size), SLOPE_METRICS)]
-        for system in SLOPE_SYSTEMS for share in SLOPE_SHARES for size in SLOPE_SIZES_PX
+        for _, (system, share, size) in _numbered(SLOPE_SYSTEMS, SLOPE_SHARES, SLOPE_SIZES_PX)
     ]  # fmt: skip
-    for share in sorted({abs(share) for share in SLOPE_SHARES}):
-        own = [*select(share=share), *select(share=-share)]
-        rows.append([f"**all of {100 * share:.0f} %**", "", "", *numbers(own, SLOPE_METRICS)])
     return [
         "## Slopes through the edge",
         f"SNR {SLOPE_SNR:.0f}, {draws} edges a row; share: change of the ground over the region's "
@@ -239,14 +244,14 @@ def _chosen(
 
 
 def main() -> None:
-    arguments = command(__doc__.partition("\n")[0], draws=6).parse_args()
-    given = arguments.draws, arguments.seed, arguments.processes
+    arguments = command(__doc__.partition("\n")[0], draws=4).parse_args()
+    seed, processes = arguments.seed, arguments.processes
     parts = [
         "Bias: mean error; RMS: root mean square. Metrics / %: per cent of the 95 % "
         "intervals that hold the truth. Good, usable, doubtful, invalid: per cent of the "
         "measurements with that verdict.",
-        *strip_parts(*given),
-        *slope_parts(*given),
+        *strip_parts(arguments.draws, seed, processes),
+        *slope_parts(3 * arguments.draws, seed, processes),
     ]
     publish("Edges on uneven ground", parts, arguments)
 

@@ -176,7 +176,7 @@ def checks() -> str:
     rows = []
     for check in ac.measure_edge(image).checks:
         limit = check.asked
-        if by_rows[check.name] != limit:
+        if by_rows.get(check.name, limit) != limit:
             limit += f" ({by_rows[check.name]} row by row)"
         rows.append([f"``{check.name}``", limit, check.question, check.message])
     head = ["check", "limit", "question", "what it finds on a simulated edge"]
