@@ -94,7 +94,10 @@ class Posterior:
     beta : (m,) array
         Posterior mean.
     factor : (m, m + k) array
-        Factor of the covariance of beta; the last k columns are the share of the amplitudes.
+        Factor of the covariance of beta: upper triangular, then k columns, the share of the
+        amplitudes.
+    prior_std : (m,) array
+        Standard deviations of the prior at the amplitudes of the factor, in data units.
     log_amplitude : (k,) array
     variance : float
         Noise variance for unit weight.
@@ -104,6 +107,7 @@ class Posterior:
 
     beta: Floats
     factor: Floats
+    prior_std: Floats
     log_amplitude: Floats
     variance: float
     freedom: float
@@ -151,7 +155,7 @@ def regress(
     factor[:, :m] = white.root
     factor[:, m:] = slopes.by_amplitude @ slopes.covariance_factor()
     factor *= white.sigma[:, None]
-    return Posterior(beta, factor, log_amplitude, variance, freedom)
+    return Posterior(beta, factor, white.sigma, log_amplitude, variance, freedom)
 
 
 @dataclass(frozen=True, eq=False)

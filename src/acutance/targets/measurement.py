@@ -19,6 +19,7 @@ from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.directions import HasDirections
 from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
 from acutance.targets.slices import OtfSlices
+from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows
 
 __all__ = ["Measurement"]
 
@@ -155,6 +156,20 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
         """All numbers of the one direction that was measured, by name."""
         return self.response.metrics()
 
+    @cached_property
+    def budget(self) -> tuple[BudgetTerm, ...]:
+        """The uncertainty budget: causes, their standard deviations and shares, by direction."""
+        if self.details is None and "record" in vars(self):
+            return self.record.budget
+        return self._budget()
+
+    def _budget(self) -> tuple[BudgetTerm, ...]:
+        """One row a direction, unless the kind separates the causes."""
+        rows = (
+            budget_rows(name, [("fit", self.directions[name])]) for name in self.measured_directions
+        )
+        return tuple(row for some in rows for row in some)
+
     def without_details(self) -> Self:
         """The same measurement without pixels and fits: light enough to be sent and kept.
 
@@ -207,6 +222,7 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
             "plane": self.slices.to_dict(),
             "checks": [check.to_dict() for check in self.checks],
             "verdict": {"word": self.verdict.word, "sentence": self.verdict.sentence},
+            "budget": [term.to_dict() for term in self.budget],
             "options": dict(self.options),
             "software": {"acutance": __version__},
             "measured_at": self.measured_at.isoformat(timespec="seconds"),

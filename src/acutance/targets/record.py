@@ -27,6 +27,7 @@ from acutance.raster.image import AlongTrack
 from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.directions import HasDirections
 from acutance.targets.slices import OtfSlices
+from acutance.targets.uncertainty_budget import BudgetTerm
 
 __all__ = ["SCHEMA", "ImageInfo", "Record", "RecordedDirection", "rounded", "strict_json"]
 
@@ -201,7 +202,7 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
             raise OptionError(f"the document lacks {', '.join(missing)}: it was cut or changed")
         record = cls(document)
         try:
-            _ = record.image, record.checks, record.directions
+            _ = record.image, record.checks, record.directions, record.budget
         except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
             raise OptionError(
                 f"the document cannot be read as a measurement ({error!r}): give one that "
@@ -279,6 +280,11 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
                 "the document holds no slices of the OTF (plane): write it again with this version"
             )
         return OtfSlices.from_dict(self.document["plane"])
+
+    @cached_property
+    def budget(self) -> tuple[BudgetTerm, ...]:
+        """The uncertainty budget; of older documents nothing."""
+        return tuple(map(BudgetTerm.from_dict, self.document.get("budget", ())))
 
     @property
     def snr(self) -> float:

@@ -99,7 +99,10 @@ def averaged_posterior(
     power, axes = np.linalg.eigh(covariance)
     factor = axes * np.sqrt(np.maximum(power, 0.0))
     share = _share_of_others(normal, prior, mode, noise)
-    return Posterior(mean, np.hstack([factor, share]), mode, likeliest.variance, likeliest.freedom)
+    return Posterior(
+        mean, np.hstack([factor, share]), likeliest.prior_std, mode, likeliest.variance,
+        likeliest.freedom,
+    )  # fmt: skip
 
 
 def _share_of_others(normal: Normal, prior: Prior, mode: Floats, noise: float) -> Floats:
@@ -185,7 +188,7 @@ def _at(mode: Floats, varied: int, other: int, log_amplitude: float) -> Floats:
 def _from(prior: Prior, variance: float, log_amplitude: Floats) -> Posterior:
     """A posterior without coefficients, as the first guess of amplitudes and noise."""
     nothing = np.zeros(prior.block.size)
-    return Posterior(nothing, nothing[:, None], log_amplitude, variance, 0.0)
+    return Posterior(nothing, nothing[:, None], nothing, log_amplitude, variance, 0.0)
 
 
 def _log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> float:

@@ -25,10 +25,12 @@ from acutance.targets.region import RegionPixels, RoiLike, read_region
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.edge_checks import check_edge, edge_snr, sample_phases
 from acutance.targets.straight.find_edges import Segment, find_segments
-from acutance.targets.straight.fit_edge import fit_edge
+from acutance.targets.straight.fit_edge import SplineEdge, fit_edge
+from acutance.targets.straight.lsf import of_stated_target
 from acutance.targets.straight.options import EdgeOptions
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published import PUBLISHED, PUBLISHED_OPTIONS
+from acutance.targets.straight.stated_target import stated_target
 from acutance.targets.straight.straight_measurement import StraightDetails, StraightMeasurement
 from acutance.targets.straight.trim import Extent, trim
 from acutance.targets.straight.tuned import MIN_PHASES
@@ -220,15 +222,18 @@ def _measurement(
 ) -> StraightMeasurement:
     """The measurement, its line in pixels of the whole image."""
     fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
+    # The checks compare curves with pixels: they read those of the image.
     data = CheckData.of(trimmed, fit)
+    stated = stated_target(options, fit.response.gsd_m)
     by_rows = method in PUBLISHED
     return StraightMeasurement(
         kind="edge",
         method=method,
-        transfer=fit.response,
+        transfer=of_stated_target(fit.response, stated),
         line=in_whole_image(fit.line, region),
         dark=fit.dark,
         bright=fit.bright,
+        stated=stated,
         snr=edge_snr(data),
         checks=Checks(lambda: check_edge(region, data, extent, options.limits, by_rows=by_rows)),
         image=region.info,
@@ -256,4 +261,5 @@ def in_whole_image(line: Line, region: RegionPixels) -> Line:
 def details_of(region: RegionPixels, trimmed: EdgePixels, fit: EdgeFit) -> StraightDetails:
     """The pixels of a fit by their distance along the normal."""
     used = np.isfinite(trimmed.image)
-    return StraightDetails(region.pixels, used, fit.distance_px, fit.value, fit.residual)
+    causes = fit.causes if isinstance(fit, SplineEdge) else None
+    return StraightDetails(region.pixels, used, fit.distance_px, fit.value, fit.residual, causes)

@@ -11,6 +11,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.noise import Correlation
+from acutance.targets.straight.error_causes import FitCauses
 from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.ground_steps import GroundSide
 from acutance.targets.straight.lsf import LsfModel, SplineResponse
@@ -39,6 +40,8 @@ class SplineEdge(EdgeFit):
         Share of the line spread function (LSF) in the 1/x^2 tail.
     ground : pair of GroundSide
         The ground before and behind the target.
+    causes : FitCauses
+        What the uncertainty of the curves consists of.
     """
 
     response: SplineResponse
@@ -49,6 +52,7 @@ class SplineEdge(EdgeFit):
     weights: Floats
     tail: float
     ground: tuple[GroundSide, GroundSide]
+    causes: FitCauses
 
 
 def fit_edge(trimmed: EdgePixels, *, robust: bool = True) -> SplineEdge:
@@ -113,6 +117,7 @@ def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
         line, response, dark, dark + height, s, (pixels.value - dark) / height,
         solution.residual / height, first_fit.blur, *solution.side_noise, solved.correlation,
         solved.outlier, model.tail / height, solved.ground,
+        solution.linear.causes(solution.posterior),
     )  # fmt: skip
 
 

@@ -19,6 +19,7 @@ from acutance.numerics.lorentz_tail import tail_esf
 from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import side_variances
 from acutance.targets.straight import lsf_prior
+from acutance.targets.straight.error_causes import FitCauses
 from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.gradients import plateau_trends
 from acutance.targets.straight.ground_steps import Ground, GroundSide
@@ -230,6 +231,20 @@ class Linear:
         return LsfModel(
             self.first_fit.blur, self.first_fit.height, esf @ beta, float(tail @ beta), latent
         )
+
+    def causes(self, posterior: Posterior) -> FitCauses:
+        """What the uncertainty of the LSF consists of."""
+        esf, tail, block = self.directions
+        n = 1 + block.size
+        # The dark level, the first unknown, is no part of the LSF.
+        design = np.zeros((esf.shape[0] + 1, n))
+        design[:-1, 1:], design[-1, 1:] = esf, tail
+        of_line = ("line", "line", "pulse_width", "background")
+        if self.derivatives == 3:
+            of_line = ("line", "line", "background")
+        background = posterior.beta.size - n - self.derivatives
+        group = ("background",) * background + of_line[: self.derivatives]
+        return FitCauses(design, posterior.factor[:n], posterior.prior_std[:n], group)
 
     def ground(self, posterior: Posterior) -> tuple[GroundSide, GroundSide]:
         """The ground before and behind the target, as shares of its first step's height."""

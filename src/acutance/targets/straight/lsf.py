@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,12 +27,14 @@ from acutance.targets.straight.spline import (
     transform,
     waves,
 )
+from acutance.targets.straight.stated_target import StatedTarget, with_stated_target
 from acutance.targets.straight.tuned import HALO_SHARE, TAIL_WIDTH
 
-__all__ = ["LsfModel", "SplineResponse", "with_uncertain_halo"]
+__all__ = ["LsfModel", "SplineResponse", "of_stated_target", "with_uncertain_halo"]
 
 _STEP_PX = 0.05
 _MIN_HALF_PX = 10.0
+AnyResponse = TypeVar("AnyResponse", bound=Response)
 _NEGLIGIBLE = 1e-9
 """Of a variance: what is left out of the light half of a measurement."""
 _Linear = tuple[Floats, SplineRows]
@@ -174,11 +176,14 @@ class SplineResponse(Response):
         Where the model's 50 % point lies.
     halo_share : float
         Standard deviation of a pulse's halo relative to itself; 0 for an edge.
+    stated : StatedTarget
+        What was stated of the target, which the curves allow for.
     """
 
     model: LsfModel
     middle_px: float
     halo_share: float = 0.0
+    stated: StatedTarget = StatedTarget()
 
     def packed(self) -> SplineResponse:
         """The same curves, with as many latent variables as their deviations depend on."""
@@ -187,8 +192,10 @@ class SplineResponse(Response):
         return _restored(narrow, *self._parts[1:])
 
     @property
-    def _parts(self) -> tuple[LsfModel, float, float, float | None, RerCentre]:
-        return self.model, self.middle_px, self.halo_share, self.gsd_m, self.rer_centre
+    def _parts(self) -> tuple[LsfModel, float, float, StatedTarget, float | None, RerCentre]:
+        return (
+            self.model, self.middle_px, self.halo_share, self.stated, self.gsd_m, self.rer_centre,
+        )  # fmt: skip
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         return _restored, self._parts
@@ -198,12 +205,14 @@ def _restored(
     model: LsfModel,
     middle_px: float,
     halo_share: float,
+    stated: StatedTarget,
     gsd_m: float | None,
     rer_centre: RerCentre,
 ) -> SplineResponse:
     response = model.response(middle_px)
     if halo_share > 0:
         response = with_uncertain_halo(response, halo_share)
+    response = of_stated_target(response, stated)
     return replace(response, gsd_m=gsd_m, rer_centre=rer_centre)
 
 
@@ -211,3 +220,9 @@ def with_uncertain_halo(response: SplineResponse, share: float = HALO_SHARE) -> 
     """The curves of a pulse, whose halo is uncertain by a share of itself; see `pulse_halo`."""
     esf, lsf, mtf = with_halo_error(response, share)
     return replace(response, esf=esf, lsf=lsf, mtf=mtf, halo_share=share)
+
+
+def of_stated_target(response: AnyResponse, stated: StatedTarget) -> AnyResponse:
+    """The curves of the sensor, where something is stated of its target; see `stated_target`."""
+    found = with_stated_target(response, stated)
+    return replace(found, stated=stated) if isinstance(found, SplineResponse) else found

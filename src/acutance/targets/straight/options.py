@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.curves import Estimate
 from acutance.curves.metrics import RerCentre
 from acutance.targets.check import Limits, require_limits
 from acutance.targets.options import require_types
@@ -17,6 +18,7 @@ from acutance.targets.straight.published import (
     SdsuPulseOptions,
 )
 from acutance.targets.straight.pulse_checks import PULSE_CHECKS
+from acutance.targets.straight.stated_target import require_stated
 
 __all__ = ["EdgeOptions", "MethodOptions", "PulseOptions"]
 
@@ -38,15 +40,24 @@ class EdgeOptions:
         Limits of checks to be asked instead of those of the table, by name.
     method_options : SdsuOptions, KompsatOptions, Iso12233Options or FermiOptions, optional
         Options of a published method.
+    target_softness_m, target_softness_px : Estimate or float, optional
+        Standard deviation of the Gaussian profile of the target's own border, with its own
+        standard deviation, in metres or pixels along the normal: the curves are those behind it.
+    level_uncertainty : float
+        Standard deviation of the true contrast of the target over the fitted one, as a share.
     """
 
     rer_centre: RerCentre | None = None
     robust: bool = True
     limits: Limits = field(default_factory=dict)
     method_options: MethodOptions | None = None
+    target_softness_m: Estimate | float | None = None
+    target_softness_px: Estimate | float | None = None
+    level_uncertainty: float = 0.0
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_stated(self)
         require_limits(self.limits, EDGE_CHECKS, "EdgeOptions")
 
     def to_dict(self) -> dict[str, Any]:
@@ -68,15 +79,24 @@ class PulseOptions:
         Limits of checks to be asked instead of those of the table, by name.
     method_options : SdsuPulseOptions, optional
         Options of the published method.
+    target_softness_m, target_softness_px : Estimate or float, optional
+        Standard deviation of the Gaussian profile of the target's own border, with its own
+        standard deviation, in metres or pixels along the normal: the curves are those behind it.
+    level_uncertainty : float
+        Standard deviation of the true contrast of the target over the fitted one, as a share.
     """
 
     rer_centre: RerCentre | None = None
     robust: bool = True
     limits: Limits = field(default_factory=dict)
     method_options: SdsuPulseOptions | None = None
+    target_softness_m: Estimate | float | None = None
+    target_softness_px: Estimate | float | None = None
+    level_uncertainty: float = 0.0
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_stated(self)
         require_limits(self.limits, PULSE_CHECKS, "PulseOptions")
 
     def to_dict(self) -> dict[str, Any]:
@@ -91,4 +111,14 @@ def _document(options: EdgeOptions | PulseOptions) -> dict[str, Any]:
         "robust": options.robust,
         "limits": dict(options.limits),
         "method_options": None if chosen is None else dict(vars(chosen)),
+        "target_softness_m": _stated(options.target_softness_m),
+        "target_softness_px": _stated(options.target_softness_px),
+        "level_uncertainty": options.level_uncertainty,
     }
+
+
+def _stated(number: Estimate | float | None) -> dict[str, float] | None:
+    """A stated number with its standard deviation."""
+    if number is None:
+        return None
+    return {"value": float(number), "std": number.std if isinstance(number, Estimate) else 0.0}

@@ -19,12 +19,13 @@ from acutance.targets.straight.edge import described, details_of, in_whole_image
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.find_pulse import find_pulse
 from acutance.targets.straight.fit_pulse import PulsePixels, fit_pulse
-from acutance.targets.straight.lsf import with_uncertain_halo
+from acutance.targets.straight.lsf import of_stated_target, with_uncertain_halo
 from acutance.targets.straight.options import PulseOptions
 from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
 from acutance.targets.straight.pulse_checks import check_pulse, pulse_snr
 from acutance.targets.straight.pulse_response import prf_fwhm
+from acutance.targets.straight.stated_target import stated_target
 from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.trim import Extent
 from acutance.targets.straight.tuned import MAX_CORRECTED_WIDTH
@@ -195,6 +196,7 @@ def _measurement(
     fit, width, height_ratio, prf_fwhm_px = found
     fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
     data = CheckData.of(trimmed, fit, width.value)
+    stated = stated_target(options, fit.response.gsd_m)
 
     def answers() -> tuple[Check, ...]:
         return check_pulse(
@@ -206,13 +208,14 @@ def _measurement(
     return StraightMeasurement(
         kind="pulse",
         method=method,
-        transfer=fit.response,
+        transfer=of_stated_target(fit.response, stated),
         line=in_whole_image(fit.line, region),
         dark=trimmed.sign * fit.dark,
         bright=trimmed.sign * fit.bright,
         width_px=width,
         prf_fwhm_px=prf_fwhm_px,
         stated_width_px=stated_px,
+        stated=stated,
         snr=pulse_snr(data),
         checks=Checks(answers),
         image=region.info,

@@ -8,19 +8,15 @@ and defocus (documentation, "Pulses"). Every LSF is therefore uncertain by a sha
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any, TypeVar
-
 import numpy as np
 
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats
+from acutance.targets.straight.error_causes import with_cause
 
 __all__ = ["halo", "with_halo_error"]
 
 _FROM_WIDTHS, _TO_WIDTHS = 1.0, 2.0
-
-Curve = TypeVar("Curve", Esf, Lsf, Mtf)
 
 
 def halo(lsf: Lsf, fwhm_px: float) -> Floats:
@@ -66,22 +62,7 @@ def with_halo_error(response: Response, share: float) -> tuple[Esf, Lsf, Mtf]:
     turn = np.exp(-2j * np.pi * mtf.freq_cpp * (s[0] - centre))
     moved = np.fft.rfft(change, cycles * cycle)[::cycles][: mtf.freq_cpp.size] * turn * step
     return (
-        _with_cause(esf, np.interp(esf.distance_px, s, lifted)),
-        _with_cause(lsf, change),
-        _with_cause(mtf, moved),
+        with_cause(esf, np.interp(esf.distance_px, s, lifted)),
+        with_cause(lsf, change),
+        with_cause(mtf, moved),
     )
-
-
-def _with_cause(curve: Curve, error: Floats) -> Curve:
-    """A curve with one more column of its factor, and one more latent variable."""
-    factor: Any
-    if isinstance(curve.factor, np.ndarray):
-        factor = np.column_stack([curve.factor, error])
-    else:
-        factor = curve.factor.with_column(error)
-    if curve.latent is None:
-        return replace(curve, factor=factor)
-    k, m = curve.latent.shape
-    latent = np.zeros((k + 1, m + 1))
-    latent[:k, :m], latent[k, m] = curve.latent, 1.0
-    return replace(curve, factor=factor, latent=latent)

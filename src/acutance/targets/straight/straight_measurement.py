@@ -13,6 +13,10 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Line
 from acutance.targets.measurement import Measurement
+from acutance.targets.straight.error_causes import FitCauses, caused_by
+from acutance.targets.straight.lsf import SplineResponse
+from acutance.targets.straight.stated_target import StatedTarget
+from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows
 
 __all__ = ["StraightDetails", "StraightMeasurement"]
 
@@ -33,6 +37,8 @@ class StraightDetails(ShortRepr):
         Their edge response, normalised to 0 (dark plateau) .. 1 (bright plateau).
     residual : (n,) array
         Value minus the fitted edge spread function (ESF), same scale.
+    causes : FitCauses, optional
+        What the uncertainty of the fit consists of; published methods do not separate it.
     """
 
     pixels: Floats
@@ -40,6 +46,7 @@ class StraightDetails(ShortRepr):
     distance_px: Floats
     value: Floats
     residual: Floats
+    causes: FitCauses | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -58,6 +65,8 @@ class StraightMeasurement(Measurement):
         Width of the pulse response function at half of its maximum, along the normal.
     stated_width_px : float, optional
         Width of a pulse as it was stated; ``None`` where it was guessed from the image.
+    stated : StatedTarget
+        What was stated of the target because no pixel shows it; the curves allow for it.
     """
 
     line: Line
@@ -66,6 +75,7 @@ class StraightMeasurement(Measurement):
     width_px: Estimate | None = None
     prf_fwhm_px: Estimate | None = None
     stated_width_px: float | None = None
+    stated: StatedTarget = StatedTarget()
 
     @property
     def normal_deg(self) -> float:
@@ -76,6 +86,25 @@ class StraightMeasurement(Measurement):
     def angle_deg(self) -> Estimate:
         """Acute angle between the edge and the nearer image axis."""
         return Estimate(self.line.angle_deg, self.line.angle_std_deg)
+
+    def _budget(self) -> tuple[BudgetTerm, ...]:
+        """Causes of the fit, then what was stated of the target."""
+        response, stated = self.response, self.stated.terms
+        causes = None if self.details is None else self.details.causes
+        own = response.esf.factor.shape[1] - len(stated)
+        unit = np.eye(own + len(stated))
+        if causes is None:
+            name = "fit" if isinstance(response, SplineResponse) else "row_scatter"
+            parts = {name: unit[:own, :own]}
+        else:
+            parts = causes.latents()
+            fitted = causes.design.shape[0]
+            if own > fitted:
+                parts["halo"] = unit[:own, fitted:own]
+        parts |= {name: unit[:, [own + i]] for i, name in enumerate(stated)}
+        return budget_rows(
+            self.orientation, ((name, caused_by(response, part)) for name, part in parts.items())
+        )
 
     def pulse_numbers(self) -> dict[str, Estimate]:
         """Widths of a pulse and of its response by name, with a GSD also in metres."""

@@ -1,0 +1,113 @@
+"""Common causes of error of the curves of one direction: one more of them, or one of them alone.
+
+The error of every curve is ``factor @ latent @ z``, with z standard normal and shared by the edge
+spread function (ESF), the line spread function (LSF) and the transfer function. A cause is one
+column of the factors, or some columns of the latent matrix.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from acutance.curves import Esf, Lsf, Mtf, Response
+from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
+
+__all__ = ["FitCauses", "caused_by", "with_cause"]
+
+Curve = TypeVar("Curve", Esf, Lsf, Mtf)
+
+
+def with_cause(curve: Curve, error: Any) -> Curve:
+    """A curve with one more cause: a column of its factor, and a latent variable.
+
+    Parameters
+    ----------
+    curve : Esf, Lsf or Mtf
+        With n places.
+    error : (n,) array
+        What one standard deviation of the cause adds to the curve.
+    """
+    factor: Any
+    if isinstance(curve.factor, np.ndarray):
+        factor = np.column_stack([curve.factor, error])
+    else:
+        factor = curve.factor.with_column(error)
+    if curve.latent is None:
+        return replace(curve, factor=factor)
+    k, m = curve.latent.shape
+    latent = np.zeros((k + 1, m + 1))
+    latent[:k, :m], latent[k, m] = curve.latent, 1.0
+    return replace(curve, factor=factor, latent=latent)
+
+
+def caused_by(response: Response, latent: Floats) -> Response:
+    """The same curves, whose errors are those of some causes alone.
+
+    Parameters
+    ----------
+    response : Response
+        Its curves have factors of k columns.
+    latent : (c, j) array
+        Factor of the covariance of the first c columns (c <= k); the others are exact.
+    """
+    columns = response.esf.factor.shape[1]
+    every = np.zeros((columns, latent.shape[1]))
+    every[: latent.shape[0]] = latent
+    esf, lsf, mtf = (
+        replace(curve, latent=every) for curve in (response.esf, response.lsf, response.mtf)
+    )
+    return Response(esf, lsf, mtf, response.gsd_m, response.rer_centre)
+
+
+@dataclass(frozen=True, eq=False)
+class FitCauses(ShortRepr):
+    """The covariance of a linear model, separated by its causes.
+
+    The unknowns stand in this order: the n of the LSF, then those held by a `group` each. The
+    factor of their covariance is upper triangular, so its first n columns are what remains open
+    when all others are known; each further one is what its unknown adds.
+
+    Parameters
+    ----------
+    design : (c, n) array
+        Columns of the curves' factors by the unknowns of the LSF.
+    factor : (n, m + k) array
+        Rows of the LSF of the factor of the covariance of all m unknowns; the last k columns are
+        the share of the prior's amplitudes.
+    prior_std : (n,) array
+        Prior standard deviations of the unknowns of the LSF.
+    group : tuple of str
+        Terms of the budget that the other m - n unknowns belong to.
+    """
+
+    design: Floats
+    factor: Floats
+    prior_std: Floats
+    group: tuple[str, ...]
+
+    def latents(self) -> dict[str, Floats]:
+        """Factors (c, j) of the covariance that each cause gives to the columns; they add up.
+
+        With all others known, the covariance of the whitened unknowns is C = R R^T. What the noise
+        propagates into it is C - C^2, and what the prior leaves undetermined is C^2: a
+        prior as wide as the data are vague would leave nothing.
+        """
+        n, m = self.prior_std.size, self.prior_std.size + len(self.group)
+        caused = self.design @ self.factor
+        open_columns = caused[:, :n]
+        root = self.factor[:, :n] / self.prior_std[:, None]
+        undetermined, axes = np.linalg.eigh(root.T @ root)
+        by_noise = np.sqrt(np.clip(1 - undetermined, 0.0, 1.0))
+        found = {
+            "pixel_noise": open_columns @ (axes * by_noise),
+            "prior_shape": open_columns @ root.T,
+        }
+        names = np.array(self.group)
+        for name in dict.fromkeys(self.group):
+            found[name] = caused[:, n:m][:, names == name]
+        found["prior_amplitudes"] = caused[:, m:]
+        return found

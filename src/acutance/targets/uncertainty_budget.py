@@ -1,0 +1,152 @@
+"""The uncertainty budget of a measurement: which causes make up its standard deviations.
+
+A row is one cause in one direction, with the standard deviation it gives to each main number and its
+share of the variance; the shares of a direction add up to one. The table follows the Guide to the
+expression of uncertainty in measurement (GUM, JCGM 100:2008): evaluation "A" is by statistics of
+the pixels, "B" by anything else, a prior or a statement.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
+
+from acutance.curves import Response
+from acutance.geometry.line import Orientation
+
+__all__ = ["MAIN_NUMBERS", "TERMS", "BudgetTerm", "TermWords", "budget_rows"]
+
+MAIN_NUMBERS = ("mtf_nyquist", "rer", "fwhm_px")
+_DIGITS = 4
+
+
+class TermWords(NamedTuple):
+    """What a term of a budget is.
+
+    Attributes
+    ----------
+    label : str
+    evaluation : {"A", "B"}
+        By statistics of the pixels, or otherwise.
+    found_by : str
+        How its standard deviation is found.
+    """
+
+    label: str
+    evaluation: Literal["A", "B"]
+    found_by: str
+
+
+TERMS = {
+    "pixel_noise": TermWords(
+        "noise of the pixels", "A",
+        "residuals of the fit, propagated with line, background and prior amplitudes held",
+    ),
+    "prior_shape": TermWords(
+        "shape left to the prior", "B",
+        "LSF and contrast as the prior allows them where the pixels do not determine them",
+    ),
+    "background": TermWords(
+        "background beside the target", "A",
+        "trends and steps of the plateaus, fitted with the LSF; of a pulse its height ratio, too",
+    ),
+    "line": TermWords("line", "A", "rotation and curvature, fitted with the LSF"),
+    "pulse_width": TermWords("width of the pulse", "A", "fitted with the LSF"),
+    "prior_amplitudes": TermWords(
+        "amplitudes of the prior", "A", "curvature of the log evidence (Laplace)"
+    ),
+    "halo": TermWords("halo of a pulse", "B", "a share of the halo, from simulated pulses"),
+    "target_softness": TermWords("softness of the target's border", "B", "stated"),
+    "level_uncertainty": TermWords("levels of the target", "B", "stated"),
+    "row_scatter": TermWords("scatter of the rows", "A", "draws of the rows, as published"),
+    "fit": TermWords(
+        "noise and prior together", "A", "covariance of the fit, whose causes are not separated"
+    ),
+}  # fmt: skip
+"""Every term by the name that budgets and documents have."""
+
+
+@dataclass(frozen=True)
+class BudgetTerm:
+    """One row of an uncertainty budget.
+
+    Parameters
+    ----------
+    direction : {"across", "along"}
+    name : str
+        A key of `TERMS`.
+    std : mapping of str to float
+        Standard deviation it gives to each of `MAIN_NUMBERS`; ``nan`` of a number that does not
+        exist.
+    share : mapping of str to float
+        Its part of the number's variance, 0 to 1.
+    """
+
+    direction: Orientation
+    name: str
+    std: Mapping[str, float]
+    share: Mapping[str, float]
+
+    @property
+    def words(self) -> TermWords:
+        """Label, evaluation and how it is found."""
+        return TERMS.get(self.name, TermWords(self.name.replace("_", " "), "B", ""))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The row for JSON, its numbers rounded to four digits."""
+        return {
+            "direction": self.direction,
+            "term": self.name,
+            "evaluation": self.words.evaluation,
+            "found_by": self.words.found_by,
+            "std": _rounded(self.std),
+            "share": _rounded(self.share),
+        }
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> BudgetTerm:
+        """The row that `to_dict` wrote."""
+        std, share = (_with_nan(document[name]) for name in ("std", "share"))
+        return cls(document["direction"], str(document["term"]), std, share)
+
+
+def budget_rows(
+    direction: Orientation, parts: Iterable[tuple[str, Response]]
+) -> tuple[BudgetTerm, ...]:
+    """The rows of one direction.
+
+    Parameters
+    ----------
+    direction : {"across", "along"}
+    parts : iterable of (str, Response)
+        Every term with the curves of the measurement, their covariance that of the term alone:
+        the covariances add up to that of the measurement.
+    """
+    found = [
+        (name, {number: getattr(part, number).std for number in MAIN_NUMBERS})
+        for name, part in parts
+    ]
+    variance = {number: sum(std[number] ** 2 for _, std in found) for number in MAIN_NUMBERS}
+    return tuple(
+        BudgetTerm(
+            direction, name, std,
+            {
+                number: std[number] ** 2 / variance[number] if variance[number] > 0 else math.nan
+                for number in MAIN_NUMBERS
+            },
+        )
+        for name, std in found
+    )  # fmt: skip
+
+
+def _rounded(numbers: Mapping[str, float]) -> dict[str, float | None]:
+    return {
+        name: float(f"{number:.{_DIGITS}g}") if math.isfinite(number) else None
+        for name, number in numbers.items()
+    }
+
+
+def _with_nan(numbers: Mapping[str, float | None]) -> dict[str, float]:
+    return {name: math.nan if one is None else float(one) for name, one in numbers.items()}
