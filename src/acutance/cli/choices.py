@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
+    from acutance.curves import Estimate
     from acutance.curves.metrics import RerCentre
 
-__all__ = ["choose_methods", "choose_rer_centre", "parse_limits"]
+__all__ = ["choose_methods", "choose_rer_centre", "parse_limits", "parse_share", "parse_stated"]
 
 RER_CENTRES: dict[str, RerCentre] = {"half": "half", "peak": "peak"}
 
@@ -71,3 +73,44 @@ def _parse_limit(text: str) -> tuple[str, float]:
     if math.isnan(value):
         raise OptionError(f"--limit {text}: write NAME=VALUE with a number, as in {name}=10")
     return name, value
+
+
+def parse_stated(option: str, text: str | None) -> Estimate | None:
+    """A stated number with its standard deviation: 0.05, 0.05+-0.02 or 0.05±0.02.
+
+    Raises
+    ------
+    OptionError
+        If it is neither.
+    """
+    if text is None:
+        return None
+    from acutance.curves import Estimate
+
+    try:
+        numbers = [float(part) for part in re.split(r"\+-|\+/-|±", text)]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (1, 2):
+        raise OptionError(
+            f"{option} {text}: write a number, or one with its standard deviation (0.05+-0.02)"
+        )
+    return Estimate(*numbers)
+
+
+def parse_share(option: str, text: str | None) -> float:
+    """A share, as a number (0.005) or in per cent (0.5%); 0 where none is given.
+
+    Raises
+    ------
+    OptionError
+        If it is neither.
+    """
+    if text is None:
+        return 0.0
+    try:
+        return float(text[:-1]) / 100 if text.endswith("%") else float(text)
+    except ValueError:
+        raise OptionError(
+            f"{option} {text}: write a share of the contrast (0.5% or 0.005)"
+        ) from None

@@ -16,6 +16,7 @@ from acutance.cli.options import (
     RerCentreOption,
     ResultOptions,
     RobustOption,
+    StatedOptions,
     method_option,
 )
 from acutance.errors import OptionError
@@ -23,7 +24,11 @@ from acutance.targets.kinds import KINDS
 
 __all__ = ["EXAMPLE", "edge"]
 
-EXAMPLE = "\b\nExample:\n  acutance edge scene.tif --roi 120,340,40,40 --gsd 0.7 --report edge.html"
+EXAMPLE = (
+    "\b\nExamples:\n"
+    "  acutance edge scene.tif --roi 120,340,40,40 --gsd 0.7 --report edge.html\n"
+    "  acutance edge scene.tif --roi 120,340,40,40 --gsd 0.7 --target-softness-m 0.05+-0.02"
+)
 KIND = KINDS["edge"]
 
 
@@ -39,6 +44,7 @@ def edge(
     ] = False,
     rer_centre: RerCentreOption = None,
     robust: RobustOption = True,
+    stated: StatedOptions,
     wanted: ResultOptions,
 ) -> None:
     """Measure MTF, RER and FWHM on a straight edge.
@@ -54,5 +60,5 @@ def edge(
         wanted,
         methods=choose_methods(method, compare, KIND.methods),
         measure_all=all_edges,
-        options={"rer_centre": choose_rer_centre(rer_centre), "robust": robust},
+        options={"rer_centre": choose_rer_centre(rer_centre), "robust": robust, **stated.fields},
     )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.choices import parse_limits
+from acutance.cli.choices import parse_limits, parse_share, parse_stated
 from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS, methods_text
 
@@ -28,6 +28,7 @@ __all__ = [
     "RerCentreOption",
     "ResultOptions",
     "RobustOption",
+    "StatedOptions",
     "method_option",
     "parse_gsd",
 ]
@@ -189,6 +190,42 @@ class ResultOptions:
     def limits(self) -> Mapping[str, float]:
         """The limits of ``--limit`` by the names of the checks."""
         return parse_limits(self.limit or ())
+
+
+@dataclass(frozen=True)
+class StatedOptions:
+    """What is stated of a straight target because no pixel shows it."""
+
+    target_softness_m: Annotated[
+        str | None,
+        typer.Option(
+            metavar="M[+-STD]",
+            help="Softness of the target's own border, as painted or laid: the standard deviation "
+            "of its Gaussian profile in metres, and its own (0.05+-0.02). The MTF is divided by "
+            "the border's.",
+        ),
+    ] = None
+    target_softness_px: Annotated[
+        str | None, typer.Option(metavar="PX[+-STD]", help="The same in pixels.")
+    ] = None
+    level_uncertainty: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SHARE",
+            help="Standard deviation of the target's true contrast over the fitted one (0.5%).",
+        ),
+    ] = None
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """Fields of the options of an edge or a pulse."""
+        metres, pixels = self.target_softness_m, self.target_softness_px
+        level = self.level_uncertainty
+        return {
+            "target_softness_m": parse_stated("--target-softness-m", metres),
+            "target_softness_px": parse_stated("--target-softness-px", pixels),
+            "level_uncertainty": parse_share("--level-uncertainty", level),
+        }
 
 
 def parse_gsd(text: str | None) -> float | Gsd | None:

@@ -17,6 +17,7 @@ from acutance.cli.options import (
     RerCentreOption,
     ResultOptions,
     RobustOption,
+    StatedOptions,
     method_option,
 )
 from acutance.errors import OptionError
@@ -56,6 +57,7 @@ def pulse(
     compare: CompareOption = None,
     rer_centre: RerCentreOption = None,
     robust: RobustOption = True,
+    stated: StatedOptions,
     wanted: ResultOptions,
 ) -> None:
     """Measure MTF, RER and FWHM on a pulse: a tarp on grass, a bridge, a painted stripe.
@@ -81,6 +83,6 @@ def pulse(
         pixels,
         wanted,
         methods=choose_methods(method, compare, KIND.methods),
-        options={"rer_centre": choose_rer_centre(rer_centre), "robust": robust},
+        options={"rer_centre": choose_rer_centre(rer_centre), "robust": robust, **stated.fields},
         arguments=stated_width,
     )

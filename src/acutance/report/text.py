@@ -18,6 +18,7 @@ from acutance.report.labels import (
 )
 from acutance.report.tables.measurement import numbers_table
 from acutance.report.tables.result import kind_tables, tables
+from acutance.report.tables.uncertainty_budget import uncertainty_line
 from acutance.targets import TargetResult
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ def text(result: Result) -> str:
     parts = [
         f"{describe_measurement(found)}\n  {describe_image(found)}",
         _table_text(numbers_table(found), drop_last=1),
+        *([f"  {causes}"] if (causes := uncertainty_line(found)) else []),
         *(_table_text(table) for table in kind_tables(found) if not table.page_only),
     ]
     if found.checks:

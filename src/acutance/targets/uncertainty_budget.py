@@ -1,9 +1,9 @@
 """The uncertainty budget of a measurement: which causes make up its standard deviations.
 
-A row is one cause in one direction, with the standard deviation it gives to each main number and its
-share of the variance; the shares of a direction add up to one. The table follows the Guide to the
-expression of uncertainty in measurement (GUM, JCGM 100:2008): evaluation "A" is by statistics of
-the pixels, "B" by anything else, a prior or a statement.
+A row is one cause in one direction, with the standard deviation it gives to each main number and
+its share of the variance; the shares of a direction add up to one. The table follows the Guide to
+the expression of uncertainty in measurement (GUM, JCGM 100:2008): evaluation "A" is by statistics
+of the pixels, "B" by anything else, a prior or a statement.
 """
 
 from __future__ import annotations

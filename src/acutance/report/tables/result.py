@@ -19,6 +19,7 @@ from acutance.report.tables.measurement import (
 from acutance.report.tables.points import points_tables
 from acutance.report.tables.star import star_tables
 from acutance.report.tables.target import target_tables
+from acutance.report.tables.uncertainty_budget import uncertainty_table
 from acutance.targets import TargetResult
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ KIND_TABLES: dict[str, Callable[[Any], tuple[Table, ...]]] = {
 
 
 def tables(result: Result) -> tuple[Table, ...]:
-    """The tables of any result: numbers, what the kind of target adds, checks, MTF, options.
+    """The tables of any result: numbers, what the kind adds, checks, uncertainties, MTF, options.
 
     Parameters
     ----------
@@ -60,6 +61,7 @@ def tables(result: Result) -> tuple[Table, ...]:
         numbers_table(found),
         *kind_tables(found),
         *checks,
+        uncertainty_table(found),
         mtf_table(found),
         options_table(found),
     )

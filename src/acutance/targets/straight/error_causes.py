@@ -57,10 +57,13 @@ def caused_by(response: Response, latent: Floats) -> Response:
     columns = response.esf.factor.shape[1]
     every = np.zeros((columns, latent.shape[1]))
     every[: latent.shape[0]] = latent
-    esf, lsf, mtf = (
-        replace(curve, latent=every) for curve in (response.esf, response.lsf, response.mtf)
+    return Response(
+        replace(response.esf, latent=every),
+        replace(response.lsf, latent=every),
+        replace(response.mtf, latent=every),
+        response.gsd_m,
+        response.rer_centre,
     )
-    return Response(esf, lsf, mtf, response.gsd_m, response.rer_centre)
 
 
 @dataclass(frozen=True, eq=False)

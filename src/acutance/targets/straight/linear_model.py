@@ -239,11 +239,10 @@ class Linear:
         # The dark level, the first unknown, is no part of the LSF.
         design = np.zeros((esf.shape[0] + 1, n))
         design[:-1, 1:], design[-1, 1:] = esf, tail
-        of_line = ("line", "line", "pulse_width", "background")
-        if self.derivatives == 3:
-            of_line = ("line", "line", "background")
         background = posterior.beta.size - n - self.derivatives
-        group = ("background",) * background + of_line[: self.derivatives]
+        width = ("pulse_width",) * (self.derivatives - 3)
+        height_ratio = ("background",) * (self.derivatives > 2)
+        group = ("background",) * background + ("line", "line", *width, *height_ratio)
         return FitCauses(design, posterior.factor[:n], posterior.prior_std[:n], group)
 
     def ground(self, posterior: Posterior) -> tuple[GroundSide, GroundSide]:

@@ -27,7 +27,7 @@ from acutance.targets.straight.spline import (
     transform,
     waves,
 )
-from acutance.targets.straight.stated_target import StatedTarget, with_stated_target
+from acutance.targets.straight.stated_target import NOTHING_STATED, StatedTarget, with_stated_target
 from acutance.targets.straight.tuned import HALO_SHARE, TAIL_WIDTH
 
 __all__ = ["LsfModel", "SplineResponse", "of_stated_target", "with_uncertain_halo"]
@@ -183,7 +183,7 @@ class SplineResponse(Response):
     model: LsfModel
     middle_px: float
     halo_share: float = 0.0
-    stated: StatedTarget = StatedTarget()
+    stated: StatedTarget = NOTHING_STATED
 
     def packed(self) -> SplineResponse:
         """The same curves, with as many latent variables as their deviations depend on."""

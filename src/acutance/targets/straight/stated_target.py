@@ -5,10 +5,10 @@ standard deviation sigma along the normal, so
 
     measured OTF = OTF of the sensor * exp(-2 pi^2 f^2 sigma^2)
 
-and the sensor's is the measured one divided by the border's. The edge and line spread functions (ESF, LSF)
-are sharpened by the same filter up to 1 cycle per pixel; beyond, where hardly any light of a pixel
-is left, the filter ends at 2 cycles per pixel. What enters is sigma^2: of a stated sigma +- s its
-mean is sigma^2 + s^2, and its variance 4 sigma^2 s^2 + 2 s^4.
+and the sensor's is the measured one divided by the border's. The edge and line spread functions
+(ESF, LSF) are sharpened by the same filter up to 1 cycle per pixel; beyond, where hardly any light
+of a pixel is left, the filter ends at 2 cycles per pixel. What enters is sigma^2: of a stated
+sigma +- s its mean is sigma^2 + s^2, and its variance 4 sigma^2 s^2 + 2 s^4.
 
 Levels that are wrong by a share of the contrast (a bidirectional reflectance that differs near the
 border, light scattered into one side) multiply the transfer function (OTF) but for zero frequency,
@@ -31,6 +31,7 @@ from acutance.targets.straight.error_causes import with_cause
 
 __all__ = [
     "MAX_SOFTNESS_PX",
+    "NOTHING_STATED",
     "StatedTarget",
     "require_stated",
     "stated_target",
@@ -86,6 +87,9 @@ class StatedTarget:
             return Estimate(0.0)
         sigma, std = self.softness_px.value, self.softness_px.std
         return Estimate(sigma**2 + std**2, math.sqrt(4 * sigma**2 * std**2 + 2 * std**4))
+
+
+NOTHING_STATED = StatedTarget()
 
 
 def require_stated(options: _Options) -> None:
@@ -209,7 +213,7 @@ def _filters(n: int, step_px: float, variance_px2: float) -> tuple[Floats, Float
 
 
 def _clamped(kernel: Floats) -> Floats:
-    """The convolution by a symmetric kernel, (n,), that sums to nothing, of a curve with level ends."""
+    """The convolution of a curve with level ends by a symmetric kernel, (n,), that sums to 0."""
     matrix = np.asarray(toeplitz(kernel))
     # What of the kernel lies beyond either end sees the end's value.
     beyond = -0.5 * kernel[0] - np.concatenate([[0.0], np.cumsum(kernel[1:])])

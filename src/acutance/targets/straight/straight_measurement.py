@@ -15,7 +15,7 @@ from acutance.geometry.line import Line
 from acutance.targets.measurement import Measurement
 from acutance.targets.straight.error_causes import FitCauses, caused_by
 from acutance.targets.straight.lsf import SplineResponse
-from acutance.targets.straight.stated_target import StatedTarget
+from acutance.targets.straight.stated_target import NOTHING_STATED, StatedTarget
 from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows
 
 __all__ = ["StraightDetails", "StraightMeasurement"]
@@ -75,7 +75,7 @@ class StraightMeasurement(Measurement):
     width_px: Estimate | None = None
     prf_fwhm_px: Estimate | None = None
     stated_width_px: float | None = None
-    stated: StatedTarget = StatedTarget()
+    stated: StatedTarget = NOTHING_STATED
 
     @property
     def normal_deg(self) -> float:
