@@ -222,3 +222,33 @@ def test_values_of_a_known_curve_are_linearised(acutance, edge_image, keeps_to_s
     both = acutance("edge", edge_image, "--gamma", "1.2", "--linearize", "sRGB")
     assert both.exit_code == 2
     assert "--gamma and --linearize both name a curve: give one of them" in both.stderr
+
+
+@pytest.mark.parametrize("softness", ["0.05+-0.02", "0.05±0.02", "0.05+/-0.02"])
+def test_statements_reach_the_measurement_and_its_budget(
+    acutance, edge_image, softness, keeps_to_schema
+):
+    stated = ("--target-softness-m", softness, "--level-uncertainty", "0.5%")
+    document = json.loads(acutance("edge", edge_image, "--json", *stated).stdout)
+    keeps_to_schema(document)
+    assert document["options"]["target_softness_m"] == {"value": 0.05, "std": 0.02}
+    assert document["options"]["level_uncertainty"] == pytest.approx(0.005)
+    names = [row["term"] for row in document["budget"]]
+    assert names[-2:] == ["target_softness", "level_uncertainty"]
+    plain = json.loads(acutance("edge", edge_image, "--json").stdout)
+    assert document["mtf_nyquist"]["value"] > plain["mtf_nyquist"]["value"]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        ("--target-softness-m", "soft"),
+        ("--target-softness-px", "0.1+-0.2+-0.3"),
+        ("--level-uncertainty", "half"),
+        ("--level-uncertainty", "%"),
+    ],
+)
+def test_statements_that_are_no_numbers_are_refused(acutance, edge_image, wrong):
+    result = acutance("edge", edge_image, *wrong)
+    assert result.exit_code == 2
+    assert " ".join(wrong) in result.stderr

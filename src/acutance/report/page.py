@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from acutance.report.comparison import Comparison, Result, as_result
@@ -271,8 +271,21 @@ def _command(measurement: Any, compared: Sequence[str] = ()) -> str | None:
     if measurement.stated_width_px is not None and measurement.width_px is not None:
         words += ["--width-px", format_number(measurement.stated_width_px, 8)]
         words += [] if measurement.width_px.std > 0 else ["--hold-width"]
+    words += _stated_words(measurement.options)
     words += ["--method", measurement.method]
     words += ["--compare", ",".join(dict.fromkeys(compared))] if compared else []
     if measurement.response.rer_centre != "half":
         words += ["--rer-centre", measurement.response.rer_centre]
     return shlex.join(words)
+
+
+def _stated_words(options: Mapping[str, Any]) -> list[str]:
+    """What was stated of a straight target, as options of a command."""
+    words = []
+    for unit in ("m", "px"):
+        stated = options.get(f"target_softness_{unit}")
+        if stated is not None:
+            value, std = (format_number(stated[name], 8) for name in ("value", "std"))
+            words += [f"--target-softness-{unit}", f"{value}+-{std}"]
+    level = options.get("level_uncertainty", 0.0)
+    return words + (["--level-uncertainty", format_number(level, 8)] if level > 0 else [])

@@ -3,8 +3,9 @@
 What the kinds share stands here: `kinds` (their names and methods), `region` (the pixels
 of a measurement), `options` (what callers choose), `check` and `check_table` (is the
 target good enough), `slices` (an OTF along some directions, with covariance), `measurement` and its
-light half, `record`, `directions` (what these two have in common), and `target_result` (several
-measurements of one target). The kinds, none of which imports another:
+light half, `record`, `directions` (what these two have in common), `uncertainty_budget` (what their
+deviations consist of), and `target_result` (several measurements of one target). The kinds, none of
+which imports another:
 
 - `straight`: edges and pulses, along their normals
 - `points`: mirrors, lamps, stars of the sky
@@ -27,10 +28,12 @@ if TYPE_CHECKING:
     from acutance.targets.record import ImageInfo, Record
     from acutance.targets.slices import OtfSlices
     from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
+    from acutance.targets.uncertainty_budget import BudgetTerm
 
 __all__ = [
     "KINDS",
     "QUESTIONS",
+    "BudgetTerm",
     "Check",
     "EdgeGroup",
     "ImageInfo",
@@ -47,6 +50,7 @@ __all__ = [
 # The modules are loaded when a name is first used: the names of the kinds cost no numpy.
 _HOMES = {
     "QUESTIONS": "check_table",
+    "BudgetTerm": "uncertainty_budget",
     "Check": "check",
     "EdgeGroup": "target_result",
     "ImageInfo": "record",

@@ -6,19 +6,18 @@ import math
 from typing import TYPE_CHECKING
 
 from acutance.report.html import Table
-from acutance.report.labels import MISSING, format_number, metric_words
+from acutance.report.labels import MISSING, format_number, measurement_metric_words
 from acutance.targets.uncertainty_budget import MAIN_NUMBERS, BudgetTerm
 
 if TYPE_CHECKING:
     from acutance.targets.measurement import Measurement
-    from acutance.targets.record import Record
 
 __all__ = ["uncertainty_line", "uncertainty_table"]
 
 _LEAST_SHARE = 0.01
 
 
-def uncertainty_table(result: Measurement | Record) -> Table:
+def uncertainty_table(result: Measurement) -> Table:
     """Every cause: how it was found, its standard deviation and its share of the variance."""
     directions = {term.direction for term in result.budget}
     rows = tuple(
@@ -30,7 +29,9 @@ def uncertainty_table(result: Measurement | Record) -> Table:
         for term in result.budget
     )  # fmt: skip
     numbers = (
-        part for name in MAIN_NUMBERS for part in (f"{metric_words(name).label}, std", "share")
+        part
+        for name in MAIN_NUMBERS
+        for part in (f"{measurement_metric_words(result, name).label}, std", "share")
     )
     columns = (
         *(("",) if len(directions) > 1 else ()), "Cause", "Type", "Found by", *numbers,
@@ -43,7 +44,7 @@ def uncertainty_table(result: Measurement | Record) -> Table:
     return Table(columns, rows, align, title="Uncertainty budget", notes=notes, page_only=True)
 
 
-def uncertainty_line(result: Measurement | Record) -> str:
+def uncertainty_line(result: Measurement) -> str:
     """The causes of the standard deviation of the MTF at Nyquist, the largest first."""
     name = MAIN_NUMBERS[0]
     terms = sorted(result.budget, key=lambda term: -term.share[name])
@@ -51,7 +52,7 @@ def uncertainty_line(result: Measurement | Record) -> str:
     if len({term.direction for term in terms}) != 1 or len(terms) < 2 or not large:
         return ""
     shares = (f"{term.words.label} {_percent(term.share[name])}" for term in large)
-    return f"std of {metric_words(name).label}: {', '.join(shares)}"
+    return f"std of {measurement_metric_words(result, name).label}: {', '.join(shares)}"
 
 
 def _cells(term: BudgetTerm, name: str) -> tuple[str, str]:

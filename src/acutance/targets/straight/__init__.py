@@ -7,6 +7,7 @@ curves, with `spline`, `spline_equations`, `lsf`, `lsf_prior` (learned by `learn
 `ground_steps`, `step_profile`), `edge` and `pulse` (the public functions, `many_edges` for all
 edges of a target), `edge_checks`, `pulse_checks`, `pixel_checks`, `structure_checks` and
 `ground_checks` (is the target good enough; `check_data` is their input).
+`error_causes`: what the uncertainty consists of; `stated_target`: what is stated of the target.
 `pulse_halo`, `pulse_response`, `pulse_spectrum`, `pulse_width`: for pulses only. `published`:
 the methods of the literature, biases included.
 """
