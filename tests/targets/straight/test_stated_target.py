@@ -36,8 +36,9 @@ def test_true_curves_behind_a_border_are_those_of_the_sensor(name, sigma_px):
     _, truth = ac.simulate.edge(SYSTEMS[name])
     found = with_stated_target(blurred.response, StatedTarget(ac.Estimate(sigma_px)))
     assert found.mtf.value == pytest.approx(truth.mtf.value, abs=1e-4)
+    # Zero stays where the blurred edge passes 50 %: a trail moves the sharper one by 0.005 px.
     inside = np.abs(found.esf.distance_px) < 4
-    assert found.esf.value[inside] == pytest.approx(truth.esf.value[inside], abs=3e-3)
+    assert found.esf.value[inside] == pytest.approx(truth.esf.value[inside], abs=6e-3)
     assert found.rer.value == pytest.approx(truth.rer.value, abs=2e-3)
     assert found.fwhm_px.value == pytest.approx(truth.fwhm_px.value, rel=0.012)
 
@@ -68,18 +69,18 @@ def test_the_deviations_are_those_of_the_statements():
 
 
 def test_intervals_hold_the_sensor_behind_borders_drawn_from_the_statement():
-    """Without the term they hold it in a third of the draws, with it twice in nearly all."""
+    """Without the term they hold it in less than half of the draws, with it twice in nearly all."""
     rng = np.random.default_rng(29)
-    softness = ac.Estimate(0.2, 0.06)
+    softness = ac.Estimate(0.2, 0.03)
     options = ac.EdgeOptions(target_softness_px=softness)
     names = ("mtf_nyquist", "rer", "fwhm_px")
     errors, alone = [], []
-    for i in range(300):
+    for i in range(320):
         sensor = list(SYSTEMS.values())[i % len(SYSTEMS)]
         sigma_px = abs(rng.normal(softness.value, softness.std))
         image, truth = softened(
             sensor, sigma_px, rng,
-            angle_deg=rng.uniform(4, 20), offset_px=rng.uniform(-0.5, 0.5), snr=150.0,
+            angle_deg=rng.uniform(4, 20), offset_px=rng.uniform(-0.5, 0.5), snr=300.0,
         )  # fmt: skip
         m = ac.measure_edge(image, options=options)
         errors.append([
@@ -92,7 +93,7 @@ def test_intervals_hold_the_sensor_behind_borders_drawn_from_the_statement():
     held = np.mean(np.abs(errors) < 1.96)
     assert 0.93 <= held <= 0.97
     # A term that is dropped, or counted twice, is seen by the same bounds.
-    assert np.mean(np.abs(errors / np.array(alone)) < 1.96) < 0.85
+    assert np.mean(np.abs(errors / np.array(alone)) < 1.96) < 0.7
     assert np.mean(np.abs(errors / np.sqrt(4 - 3 * np.array(alone) ** 2)) < 1.96) > 0.97
 
 
