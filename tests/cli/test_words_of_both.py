@@ -76,7 +76,7 @@ def test_every_measuring_command_knows_nodata(acutance, tmp_path, command):
     path = tmp_path / "empty.npy"
     np.save(path, np.full((60, 60), 7.0))
     result = acutance(command, path, "--nodata", 7)
-    assert result.exit_code == 2
+    assert result.exit_code == 4
     assert "hold data" in result.stderr, result.stderr
 
 

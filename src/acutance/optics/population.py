@@ -8,8 +8,8 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
 - "halo": light scattered over some pixels, 2 to 15 % of it;
 - "trail": charge left behind, on one side;
 - "smear": motion of .5 to 2.2 px during the exposure;
-- "sharpened": compensation on the ground by kernels of 3 to 15 taps, designed as Wiener filters
-  or set by hand;
+- "sharpened", "restored": compensation on the ground by kernels of 3 to 15 taps, designed as Wiener
+  filters or set by hand, of a Gaussian blur and of a telescope's;
 - "resampled": an interpolated product.
 """
 
@@ -89,15 +89,18 @@ def _smear(rng: np.random.Generator) -> list[Block]:
     return [*_plain(rng), Smear(rng.uniform(0.5, 2.2), "across")]
 
 
-def _processed(rng: np.random.Generator) -> list[Block]:
-    """What a product is made from: the image of a telescope, or one with a Gaussian blur."""
-    return _telescope(rng) if rng.random() < 0.6 else _plain(rng)
-
-
 def _sharpened(rng: np.random.Generator) -> list[Block]:
+    return [*_plain(rng), _kernel(rng)]
+
+
+def _restored(rng: np.random.Generator) -> list[Block]:
+    return [*_telescope(rng), _kernel(rng)]
+
+
+def _kernel(rng: np.random.Generator) -> Sharpening:
     if rng.random() < 0.4:
-        return [*_processed(rng), Sharpening.both_axes(rng.uniform(0.05, 0.8))]
-    return [*_processed(rng), _wiener_kernel(rng)]
+        return Sharpening.both_axes(rng.uniform(0.05, 0.8))
+    return _wiener_kernel(rng)
 
 
 def _wiener_kernel(rng: np.random.Generator) -> Sharpening:
@@ -115,9 +118,10 @@ def _wiener_kernel(rng: np.random.Generator) -> Sharpening:
 
 
 def _resampled(rng: np.random.Generator) -> list[Block]:
+    blocks = _telescope(rng) if rng.random() < 0.6 else _plain(rng)
     if rng.random() < 0.3:
-        return [*_processed(rng), Resampling("bilinear")]
-    return [*_processed(rng), Resampling("cubic", rng.uniform(-0.75, -0.3))]
+        return [*blocks, Resampling("bilinear")]
+    return [*blocks, Resampling("cubic", rng.uniform(-0.75, -0.3))]
 
 
 FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
@@ -126,6 +130,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "trail": _trail,
     "smear": _smear,
     "sharpened": _sharpened,
+    "restored": _restored,
     "resampled": _resampled,
 }
 """How to draw the blocks of a sensor of each family."""
