@@ -173,7 +173,8 @@ def main() -> None:
     parser.add_argument("--landscapes", type=int, default=90, help="of 400 x 400 px")
     arguments = parser.parse_args()
     seeds = [(arguments.seed, 0, number) for number in range(arguments.landscapes)]
-    every = sum(work_through(landscape_edges, seeds, arguments.processes, "landscapes"), [])
+    landscapes = work_through(landscape_edges, seeds, arguments.processes, "landscapes")
+    every = [one for findings in landscapes for one in findings]
     found = [one for one in every if not (one.refused or one.other)]
     wrong = [one for one in found if one.sigmas > WRONG]
     groups = [*ac.simulate.reference_systems(), *(f"{name} (drawn)" for name in FAMILIES)]

@@ -14,7 +14,7 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from acutance.errors import OptionError
-from acutance.targets.check_table import QUESTIONS, Sense, Severity
+from acutance.targets.check_table import QUESTIONS, Question, Sense, Severity
 
 __all__ = [
     "MAX_RATIO",
@@ -77,6 +77,14 @@ class Check:
     def asked(self) -> str:
         """The limit as text: ">= 50"."""
         return f"{self.sense} {self.limit:g}"
+
+    @property
+    def excess(self) -> float:
+        """How many times the value is beyond the limit; 0 of a check that passed."""
+        if self.passed:
+            return 0.0
+        over, under = (self.value, self.limit) if self.sense == "<=" else (self.limit, self.value)
+        return over / under if under > 0 else math.inf
 
     @property
     def question(self) -> str:
@@ -152,6 +160,7 @@ def answer(
     limits: Limits,
     *,
     default: float | None = None,
+    caution: float | None = None,
     advice: str | None = None,
 ) -> Check:
     """Ask one question of the table.
@@ -168,6 +177,8 @@ def answer(
         Limits the caller changed.
     default : float, optional
         The limit of a method to which that of the table does not apply.
+    caution : float, optional
+        Of a note: from where on it is a caution, where that of the table does not apply.
     advice : str, optional
         What to do, where it depends on the target and the table cannot hold it.
     """
@@ -176,7 +187,17 @@ def answer(
     passed = bool(value >= limit if asked.sense == ">=" else value <= limit)
     advice = asked.advice if advice is None else advice
     message = found if passed or not advice else f"{found}: {advice}"
-    return Check(name, float(value), asked.sense, limit, passed, message, asked.severity)
+    severity = _severity(asked, value, limit, asked.caution if caution is None else caution)
+    return Check(name, float(value), asked.sense, limit, passed, message, severity)
+
+
+def _severity(asked: Question, value: float, limit: float, caution: float | None) -> Severity:
+    """The severity of a question, which far beyond the limit of a note may be that of a caution."""
+    if caution is None:
+        return asked.severity
+    if asked.sense == ">=":
+        return "caution" if value < min(caution, limit) else asked.severity
+    return "caution" if value > max(caution, limit) else asked.severity
 
 
 def bounded_ratio(over: float, under: float) -> float:
@@ -192,11 +213,15 @@ def count_failed(checks: Sequence[Check]) -> str:
 
 
 def verdict_of(checks: Iterable[Check]) -> Verdict:
-    """The verdict: that of the gravest check that failed, with its message."""
+    """The verdict: that of the gravest check that failed, with its message.
+
+    Of several equally grave ones, that which is farthest beyond its limit.
+    """
     failed = [check for check in checks if not check.passed]
     if not failed:
         return Verdict("good", "every check passed")
-    gravest = max(failed, key=lambda check: list(_WORDS)[::-1].index(check.severity))
+    gravity = list(_WORDS)[::-1].index
+    gravest = max(failed, key=lambda check: (gravity(check.severity), check.excess))
     return Verdict(_WORDS[gravest.severity], gravest.message)
 
 

@@ -23,6 +23,7 @@ from acutance.targets.straight.pixel_checks import (
 )
 from acutance.targets.straight.step_profile import EDGE
 from acutance.targets.straight.structure_checks import (
+    asymmetric_lsf,
     asymmetric_wings,
     double_edge,
     edge_roughness,
@@ -46,6 +47,7 @@ __all__ = [
     "check_edge",
     "edge_snr",
     "enough_rows",
+    "lsf_narrow",
     "lsf_width",
     "phases",
     "plateau",
@@ -55,10 +57,11 @@ __all__ = [
 
 EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases", "rows",
-    "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px", "plateau_dark_px",
-    "plateau_bright_px", "saturation", "undeclared_fill", "quantisation", "nonlinearity",
-    "gradient", "correlated_noise", "structure", "one_sided_overshoot", "double_edge",
-    "asymmetric_wings", "profile", "outliers", "ground", "close_ground", "mirrored_ground",
+    "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px", "lsf_narrow_px",
+    "plateau_dark_px", "plateau_bright_px", "saturation", "undeclared_fill", "quantisation",
+    "nonlinearity", "gradient", "correlated_noise", "structure", "one_sided_overshoot", "double_edge",
+    "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground", "close_ground",
+    "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -90,6 +93,7 @@ def check_edge(
         blur_uniformity(data, limits),
         edge_roughness(data, limits),
         lsf_width(data, limits),
+        lsf_narrow(data, limits),
         plateau(limits, "dark", extent.dark_px),
         plateau(limits, "bright", extent.bright_px),
         saturation(region, data, limits),
@@ -101,6 +105,7 @@ def check_edge(
         structure(data, limits),
         one_sided_overshoot(data, limits),
         double_edge(data, limits),
+        asymmetric_lsf(data, limits),
         asymmetric_wings(data, limits),
         profile(data, limits, 0.0, own_misfit=by_rows),
         outliers(data, limits),
@@ -216,6 +221,13 @@ def lsf_width(data: CheckData, limits: Limits) -> Check:
     """
     value = data.fwhm_px
     return answer("lsf_width_px", value, f"the LSF is {value:.2f} px wide at half maximum", limits)
+
+
+def lsf_narrow(data: CheckData, limits: Limits) -> Check:
+    """Whether the LSF is as narrow as a camera's: borders of forests and clouds are softer."""
+    value = data.fwhm_px
+    found = f"the LSF is {value:.2f} px wide at half maximum"
+    return answer("lsf_narrow_px", value, found, limits)
 
 
 def plateau(limits: Limits, side: str, value: float) -> Check:

@@ -23,6 +23,7 @@ from acutance.targets.straight.tuned import (
 )
 
 __all__ = [
+    "asymmetric_lsf",
     "asymmetric_wings",
     "double_edge",
     "edge_roughness",
@@ -35,6 +36,8 @@ __all__ = [
 ]
 
 _FAR_WIDTHS = 2.5
+_CORE_WIDTHS = 2.0
+_MIDDLE_PX = 0.3
 _STEEP_WIDTHS, _NEAR_WIDTHS = 1.25, 4.0
 _REACH_PX = 40.0
 _BIN_PX = 1.0
@@ -42,7 +45,9 @@ _PART_PX = 5.0
 _MIN_PARTS, _MAX_PARTS = 4, 12
 _STEEP_SHARE = 0.3
 _BLOCK_PX = 4
-_MAX_OFFSET_PX = 0.25
+_MAX_OFFSET_PX = 0.15
+_MAX_ASYMMETRY = 0.05
+_NOTED_RER_STDS, _MAX_RER_STDS = 0.5, 2.5
 
 
 def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> Check:
@@ -165,6 +170,30 @@ def tolerable_px(data: CheckData, name: str) -> float:
     share = 0.5 * nyquist.std / max(nyquist.value, 1e-9)
     blur_px = math.sqrt(-math.log(max(1 - share, 0.1)) / 2) / (math.pi * NYQUIST_CPP)
     return max(limit_of(name, {}), min(blur_px, _MAX_OFFSET_PX))
+
+
+def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
+    """How far the ESF is from symmetric about its middle, within two widths of it.
+
+    The middle is where the ESF is the most symmetric. Light of a lens, a detector and a kernel is
+    symmetric along most directions; a strip of the ground along the border that is narrower than
+    the blur is not, and it moves the relative edge response (RER) about as much.
+    """
+    response = data.fit.response
+    esf = response.esf
+    apart = np.linspace(0.0, _CORE_WIDTHS * data.fwhm_px, 41)
+    middle = np.linspace(-_MIDDLE_PX, _MIDDLE_PX, 31)[:, None]
+    odd = np.interp(middle + apart, esf.distance_px, esf.value) - 1
+    odd += np.interp(middle - apart, esf.distance_px, esf.value)
+    best = int(np.argmin(np.sum(odd**2, axis=1)))
+    value = float(np.max(np.abs(odd[best])))
+    rer_std = min(response.rer.std, 1.0)
+    found = f"the ESF is asymmetric about its middle by {100 * value:.1f} % of the contrast"
+    return answer(
+        "asymmetric_lsf", value, found, limits,
+        default=max(limit_of("asymmetric_lsf", {}), _NOTED_RER_STDS * rer_std),
+        caution=max(_MAX_ASYMMETRY, _MAX_RER_STDS * rer_std),
+    )  # fmt: skip
 
 
 def asymmetric_wings(data: CheckData, limits: Limits) -> Check:
