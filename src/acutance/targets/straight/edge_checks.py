@@ -37,6 +37,8 @@ from acutance.targets.straight.trim import Extent
 from acutance.targets.straight.tuned import (
     CHANGE_SIGMAS,
     MAX_ANGLE_BY_ROWS_DEG,
+    MIN_CONTRAST_SNR,
+    MIN_TRUSTED_SNR,
     OUTLIER_SIGMAS,
 )
 
@@ -59,9 +61,9 @@ EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases", "rows",
     "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px", "lsf_narrow_px",
     "plateau_dark_px", "plateau_bright_px", "saturation", "undeclared_fill", "quantisation",
-    "nonlinearity", "gradient", "correlated_noise", "structure", "one_sided_overshoot", "double_edge",
-    "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground", "close_ground",
-    "mirrored_ground",
+    "nonlinearity", "gradient", "correlated_noise", "structure", "one_sided_overshoot",
+    "double_edge", "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground",
+    "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -124,7 +126,9 @@ def _contrast(data: CheckData, limits: Limits) -> Check:
     found = (
         f"bright minus dark is {ratio_in_words(value)} times the plateaus' mean standard deviation"
     )
-    return answer("contrast_snr", value, found, limits)
+    return answer(
+        "contrast_snr", value, found, limits, default=MIN_CONTRAST_SNR, caution=MIN_TRUSTED_SNR
+    )
 
 
 def angle(line: Line, limits: Limits, *, by_rows: bool) -> Check:

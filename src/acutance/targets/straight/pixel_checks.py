@@ -19,6 +19,8 @@ from acutance.targets.straight.tuned import (
     APERTURE_TAIL_PX,
     GRADIENT_SIGMAS,
     MAX_FINE_STEP,
+    MAX_NOISE_CORRELATION,
+    MAX_OUTLIER_SHARE,
     MIN_PILED_PIXELS,
     MIN_SIDE_PIXELS,
     NONLINEAR_LOG_ODDS,
@@ -161,7 +163,9 @@ def correlated_noise(data: CheckData, limits: Limits) -> Check:
         f"neighbouring pixels' noise correlates by {abs(noise.strongest):.2f} "
         f"({noise.significance:.0f} standard deviations)"
     )
-    return answer("correlated_noise", noise.significant, found, limits)
+    return answer(
+        "correlated_noise", noise.significant, found, limits, default=MAX_NOISE_CORRELATION
+    )
 
 
 def outliers(data: CheckData, limits: Limits) -> Check:
@@ -171,4 +175,4 @@ def outliers(data: CheckData, limits: Limits) -> Check:
         f"{100 * value:.2f} % of the pixels lie further than {OUTLIER_SIGMAS:g} standard "
         "deviations from the fit"
     )
-    return answer("outliers", value, found, limits)
+    return answer("outliers", value, found, limits, default=MAX_OUTLIER_SHARE)

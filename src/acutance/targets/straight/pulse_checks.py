@@ -40,7 +40,11 @@ from acutance.targets.straight.structure_checks import (
     uniformity,
 )
 from acutance.targets.straight.trim import Extent
-from acutance.targets.straight.tuned import STRUCTURE_SIGMAS
+from acutance.targets.straight.tuned import (
+    MIN_CONTRAST_SNR,
+    MIN_TRUSTED_SNR,
+    STRUCTURE_SIGMAS,
+)
 
 __all__ = ["PULSE_CHECKS", "check_pulse", "pulse_snr"]
 
@@ -129,7 +133,9 @@ def _contrast(data: CheckData, limits: Limits) -> Check:
         f"the pulse's peak stands {ratio_in_words(value)} standard deviations of the background "
         "above it"
     )
-    return answer("contrast_snr", value, found, limits)
+    return answer(
+        "contrast_snr", value, found, limits, default=MIN_CONTRAST_SNR, caution=MIN_TRUSTED_SNR
+    )
 
 
 def _nonlinearity(data: CheckData, limits: Limits, width_px: float, height_ratio: float) -> Check:

@@ -29,8 +29,11 @@ __all__ = [
     "MAX_ANGLE_BY_ROWS_DEG",
     "MAX_CORRECTED_WIDTH",
     "MAX_FINE_STEP",
+    "MAX_NOISE_CORRELATION",
+    "MAX_OUTLIER_SHARE",
     "MAX_TOLERANCE",
     "MIN_CONTRAST_SHARE",
+    "MIN_CONTRAST_SNR",
     "MIN_FITTED_HEIGHT",
     "MIN_PHASES",
     "MIN_PILED_PIXELS",
@@ -38,6 +41,7 @@ __all__ = [
     "MIN_SIDE_PIXELS",
     "MIN_SNR",
     "MIN_STRENGTH_SHARE",
+    "MIN_TRUSTED_SNR",
     "NEAR_GROUND_STEPS",
     "NEAR_TOLERANCE",
     "NONLINEAR_LOG_ODDS",
@@ -135,6 +139,14 @@ STRUCTURE_OUTLIER_SIGMAS: Final = 4.0
 NONLINEAR_LOG_ODDS: Final = 1.0
 """Natural logarithm of the odds of a curve over none (nonlinearity.py): of edges of 40 to 60 px at
 SNR 100 .2 % of linear ones lie beyond, and 94 % of those behind a gamma of 1.3."""
+MIN_CONTRAST_SNR: Final = 20.0
+MIN_TRUSTED_SNR: Final = 8.0
+MAX_NOISE_CORRELATION: Final = 0.9
+MAX_OUTLIER_SHARE: Final = 0.03
+"""Contrast over the plateaus' variation, correlation and outliers that straight targets may have:
+over 3300 edges of landscapes lower contrast and more correlation come with no more errors
+(benchmarks/verdicts.py), as the intervals allow for both; below an SNR of 8 what is taken for an
+edge in decimated scenes and clouds is structure (benchmarks/real_edges.py)."""
 MAX_ANGLE_BY_ROWS_DEG: Final = 30.0
 """Of methods that work row by row (KOMPSAT-3 draft 3d)."""
 MIN_PILED_PIXELS: Final = 20
