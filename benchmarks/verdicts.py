@@ -31,6 +31,8 @@ MIN_LENGTH_PX = 12.0
 MIN_CONTRAST_SHARE = 0.05
 OTHER_PX, OTHER_DEG = 2.0, 3.0
 """A fitted line farther than that from a border is another one."""
+TOUCHING_PX = 0.25
+"""A strip nearer than that touches the border."""
 FAR, WRONG = 3.0, 4.0
 """Errors in deviations."""
 JUDGED: Final = ("MTF(0.5)", "RER")
@@ -66,6 +68,15 @@ def is_other(edge: LandscapeEdge, found: ac.EdgeMeasurement) -> bool:
     return away_px > OTHER_PX or turn_deg > OTHER_DEG
 
 
+def neighbourhood(edge: LandscapeEdge) -> str:
+    """What disturbs an edge most; strips that touch the border apart from those that do not."""
+    kind = edge.kind(HALF_WIDTH_PX)
+    if kind not in ("rim", "gutter"):
+        return kind
+    nearest = min(one.near_px for one in edge.beside if one.kind == kind)
+    return f"{kind} {'at' if nearest < TOUCHING_PX else 'off'} the border"
+
+
 def landscape_edges(seed: tuple[int, ...]) -> list[Finding]:
     """All edges of one landscape; the last number of the seed chooses the family."""
     rng = np.random.default_rng(seed)
@@ -77,7 +88,7 @@ def landscape_edges(seed: tuple[int, ...]) -> list[Finding]:
     for edge in truth.edges:
         if edge.length_px < MIN_LENGTH_PX or edge.contrast < MIN_CONTRAST_SHARE * highest:
             continue
-        kind = edge.kind(HALF_WIDTH_PX)
+        kind = neighbourhood(edge)
         try:
             found = ac.measure_edge(image, roi=Region(edge.region(HALF_WIDTH_PX)))
         except ac.AcutanceError as error:
