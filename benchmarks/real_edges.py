@@ -8,6 +8,7 @@ decimated or averaged products), the strongest edge of every box of a grid is me
 
 from __future__ import annotations
 
+import argparse
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -191,7 +192,6 @@ def main() -> None:
     found = list(zip(EDGES, results, strict=True))
     paths = [arguments.folder / "scenes" / name for name in TRAPS]
     traps = work_through(of_trap, paths, arguments.processes, "traps")
-    arguments.folder = Path("FOLDER")
     head = ["edge", "by eye", "verdict", "MTF(0.5)", "RER", "FWHM / px", "SNR", "reason"]
     rows = [
         [name_of(edge), "good" if edge.good else "trap", finding.word, *finding.cells]
@@ -210,7 +210,8 @@ def main() -> None:
         f"Strongest edge in each of up to {MAX_BOXES} boxes of {BOX_PX} px.",
         table(["scene", *words], boxes),
     ]
-    publish("Verdicts on real edges", parts, arguments)
+    how = argparse.Namespace(processes=arguments.processes, out=arguments.out)
+    publish("Verdicts on real edges", parts, how)
 
 
 if __name__ == "__main__":

@@ -22,15 +22,12 @@ class Question:
 
     Parameters
     ----------
-    question : str
+    question, advice, source : str
+        What is asked; consequences if the limit is not kept, and what to do; where it comes from.
     sense : {">=", "<="}
         Whether the limit is a minimum or a maximum.
     limit : float
         The default limit.
-    advice : str
-        Consequences if the limit is not kept, and what to do.
-    source : str
-        Where the limit comes from.
     severity : {"note", "caution", "fail"}
         note: the intervals are wide, or a fact to know. caution: a bias that the intervals may not
         hold. fail: the numbers have no meaning.
@@ -56,8 +53,7 @@ _ANY_TARGET = {
     "contrast_snr": Question(
         "How large is the contrast, relative to the noise?", ">=", 50.0,
         "the intervals widen; choose a target of more contrast, or a longer one",
-        "KOMPSAT-3 draft 3c; pulse report 3.4 (20 for edges and pulses, whose intervals hold)",
-        "note",
+        "KOMPSAT-3 draft 3c; pulse report 3.4 (edges, pulses: 20, simulated)", "note",
     ),
     "saturation": Question(
         "Which share of the pixels is clipped at an end of the scale?", "<=", 0.001,
@@ -89,7 +85,7 @@ _STRAIGHT = {
         f"uniformity_{side}": Question(
             f"How uniform is the plateau {where}, contrast over variation?", ">=", 20.0,
             "the intervals allow for it; choose a more uniform background",
-            "the intervals allow for it; KOMPSAT-3 draft 3b asks for 50", "note",
+            "simulated (KOMPSAT-3 draft 3b: 50)", "note",
         )
         for side, where in _PLATEAUS.items()
     },
@@ -130,8 +126,7 @@ _STRAIGHT = {
     ),
     "lsf_narrow_px": Question(
         "Is the LSF as narrow as that of a camera?", "<=", 3.2,
-        "of 1000 sensors none has a wider one that resolves its pixels: the border is soft on the "
-        "ground, as those of forests, clouds and hedges are, or the image was enlarged",
+        "the border is soft on the ground (forest, cloud, hedge), or the image was enlarged",
     ),
     **{
         f"plateau_{side}_px": Question(
@@ -183,8 +178,8 @@ _STRAIGHT = {
     ),
     "asymmetric_lsf": Question(
         "How far is the ESF from symmetric about its middle?", "<=", 0.01,
-        "a strip along the border that is narrower than the blur does this (a rim, a gutter, a "
-        "wall), or a charge trail; compare edges of other targets and of the opposite direction",
+        "a strip along the border that is narrower than the blur (a rim, a gutter, a wall), or a "
+        "charge trail; compare edges of other targets and of the opposite direction",
         severity="note",
     ),
     "one_sided_overshoot": Question(
