@@ -44,11 +44,6 @@ class Question:
     caution: float | None = None
 
 
-_RESAMPLED = (
-    "a resampled product, textured background, or structure the fit does not follow; the intervals "
-    "allow for correlated noise, and the MTF is the product's"
-)
-
 _ANY_TARGET = {
     "contrast_snr": Question(
         "How large is the contrast, relative to the noise?", ">=", 50.0,
@@ -65,7 +60,9 @@ _ANY_TARGET = {
         "data (nan)", severity="note",
     ),
     "correlated_noise": Question(
-        "How much do neighbouring pixels' noise correlate?", "<=", 0.1, _RESAMPLED, severity="note",
+        "How much do neighbouring pixels' noise correlate?", "<=", 0.1,
+        "a resampled product, texture, or structure, which the intervals allow for",
+        severity="note",
     ),
     "outliers": Question(
         "Which share of the pixels lies far from the fit?", "<=", 0.02,
@@ -84,8 +81,7 @@ _STRAIGHT = {
     **{
         f"uniformity_{side}": Question(
             f"How uniform is the plateau {where}, contrast over variation?", ">=", 20.0,
-            "the intervals allow for it; choose a more uniform background",
-            "simulated (KOMPSAT-3 draft 3b: 50)", "note",
+            "the intervals allow for it", "simulated (KOMPSAT-3 draft 3b: 50)", "note",
         )
         for side, where in _PLATEAUS.items()
     },
@@ -164,8 +160,8 @@ _STRAIGHT = {
     ),
     "profile": Question(
         "How far do the pixels leave the fit in the same way all along the target?", "<=", 0.0005,
-        "lines parallel to it, a pulse that is not of one brightness, or ringing finer than the "
-        "fit follows; the intervals do not allow for it", severity="note", caution=0.02,
+        "parallel lines, an uneven pulse, or ringing finer than the fit follows: no interval "
+        "allows for it", severity="note", caution=0.02,
     ),
     "ground": Question(
         "How much does the ground beside the target differ from its level at the target?",
@@ -178,8 +174,7 @@ _STRAIGHT = {
     ),
     "asymmetric_lsf": Question(
         "How far is the ESF from symmetric about its middle?", "<=", 0.01,
-        "a strip along the border that is narrower than the blur (a rim, a gutter, a wall), or a "
-        "charge trail; compare edges of other targets and of the opposite direction",
+        "a rim or gutter narrower than the blur, or a charge trail; compare other edges",
         severity="note",
     ),
     "one_sided_overshoot": Question(
