@@ -144,7 +144,7 @@ def test_a_linearised_edge_gives_the_sensor_and_says_so():
     assert "gamma 2.2" in ac.report.page(found)
     plain = ac.measure_edge(values)
     assert plain.image.linearized is None
-    assert {check.name for check in plain.failed_checks} == {"nonlinearity"}
+    assert "nonlinearity" in {check.name for check in plain.failed_checks}
 
 
 def test_intervals_hold_where_the_dark_has_been_stretched():

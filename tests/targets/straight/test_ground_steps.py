@@ -25,7 +25,7 @@ def test_near_steps_of_an_edge_are_steps_of_its_spline():
     for side, outwards in ((0, -u), (1, u)):
         for k, place in enumerate(NEAR_GROUND_STEPS):
             step = combine(*edge_weights(u), ground.spline[:, side * count + k])
-            expected = np.where(outwards > place + 1, 1.0, 0.0)
+            expected = np.where(outwards > place, 1.0, 0.0)
             apart = (np.abs(outwards - place) > 1) & (np.abs(u) < HALF_SUPPORT - 1)
             assert np.abs(step - expected)[apart].max() < 0.02
     assert ground.side.tolist() == [0] * count + [1] * count

@@ -86,9 +86,7 @@ APERTURE_PX: Final = (1.0, 0.18)
 """Mean and standard deviation of the detector's aperture: fill factors are near one."""
 CURVATURE_STD_PER_PX: Final = 1e-3
 """Curvature of lines beyond that of the first fit (bend.py): radii of 1000 px and more."""
-NEAR_GROUND_STEPS: Final[Floats] = np.array(
-    [1.2, 1.6, 2, 2.5, 3, 3.5, 4, 4.75, 5.5, 6.25, 7]
-)
+NEAR_GROUND_STEPS: Final[Floats] = np.array([1.2, 1.6, 2, 2.5, 3, 3.5, 4, 4.75, 5.5, 6.25, 7])
 FAR_GROUND_STEPS: Final[Floats] = np.array([8.2, 10, 13, 17, 23])
 """Where the ground beside a target may have steps, in widths: from where the blur ends
 (ground_steps.py)."""
