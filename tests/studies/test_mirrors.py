@@ -60,11 +60,11 @@ def test_the_expected_deviations_are_those_of_measurements():
 def test_a_plan_shows_the_bias_of_a_resampled_product():
     """At SNR 80 the prior of apertures makes the FWHM of a cubic product 4 % too wide, always."""
     blocks = [optics.Gaussian(0.35), optics.Detector(), optics.Resampling("cubic")]
-    plan = plan_mirrors(MirrorPlanOptions(optics.Sensor(blocks, gsd_m=0.7), count=12, draws=6))
+    plan = plan_mirrors(MirrorPlanOptions(optics.Sensor(blocks, gsd_m=0.7), count=20, draws=6))
     name = "fwhm_px across"
     assert plan.scatter[name] > 2 * plan.std[name]
     assert 0.7 * plan.scatter[name] < plan.bias[name] <= plan.scatter[name]
-    assert abs(plan.bias["mtf_nyquist across"]) < plan.std["mtf_nyquist across"]
+    assert abs(plan.bias["mtf_nyquist across"]) < 1.5 * plan.std["mtf_nyquist across"]
     document = plan.to_dict()
     assert document["bias"][name] == plan.bias[name]
     assert document["refused"] == 0

@@ -183,9 +183,9 @@ PAD_CONTRAST: Final = 0.03
 PAD_MIN_NOISE: Final = 0.033
 """Noise over that contrast below which no pads are sought (a peak 1000 times the noise): what the
 prior of a PSF that diffracts or is out of focus lacks shows there, and looks like a pad."""
-PAD_LOG_EVIDENCE: Final = 2.0
-"""Gain of log evidence from which on pads are part of the model (benchmarks/pads.py). At .5 three of
-six images of a product resampled by cubic convolution had pads, and MTF at Nyquist was .03 high."""
+PAD_LOG_EVIDENCE: Final = 1.5
+"""Gain of log evidence from which on pads are part of the model (benchmarks/pads.py). At .5 three
+of six images of a product resampled by cubic convolution had pads, and MTF at Nyquist .03 high."""
 
 # Prior of the point spread function --------------------------------------------------------------
 PROCESSES: Final = ((1.2, 0.6, 12), (0.7, 0.2, 13), (3.0, 1.2, 11))
