@@ -48,6 +48,8 @@ def test_seams_of_a_pulse_end_with_it():
     assert np.abs(seams[:, (u < 0) | (u > 5)]).max() < 0.02
     assert seams[:, np.argmin(np.abs(u - 2.5))] == pytest.approx([1, 0.88, 0.12], abs=0.02)
     assert ground.spline.shape[1] == 0
+    # Of a pulse as narrow as the blur, seams are the LSF's.
+    assert 2 not in Ground.beside_pulse([-u, u - 1.8], 1.8).side
 
 
 def test_the_ground_of_a_solution_is_that_of_the_image():

@@ -34,8 +34,9 @@ from acutance.targets.straight.tuned import (
 
 __all__ = ["Ground", "GroundSide"]
 
-_SEAMS: Final = np.array([0.25, 0.5, 0.75])
-"""Where a pulse may be brighter or darker from there on, in units of its own width."""
+_MAX_SEAMS, _SEAM_WIDTHS = 3, 0.95
+"""A pulse may be brighter or darker from some places on, evenly spaced by as much or more: closer
+ones are the LSF's."""
 _FAR_SIGMAS = 7.0
 _ROOM = 1.0
 """How far the pixels have to reach beyond a step, in widths."""
@@ -93,17 +94,19 @@ class Ground:
             The pulse's own width, in widths of the blur.
         """
         beside = [_steps(distance, 0) for distance in outwards]
-        seams = _blurred(-outwards[0], width * _SEAMS) - _blurred(outwards[1], np.zeros(1))
+        count = min(max(int(width / _SEAM_WIDTHS) - 1, 0), _MAX_SEAMS)
+        places = width * np.arange(1, count + 1) / (count + 1)
+        seams = _blurred(-outwards[0], places) - _blurred(outwards[1], np.zeros(1))
         steps = [*beside, seams]
         scale = [_SCALE[: len(steps)] for steps in beside]
-        scale.append(np.full(_SEAMS.size, math.sqrt(width / (_SEAMS.size + 1))))
+        scale.append(np.full(count, math.sqrt(width / (count + 1))))
         none = np.zeros((CELLS + 3, 0))
         return cls(none, np.vstack(steps), np.concatenate(_numbers(steps)), np.concatenate(scale))
 
     @property
     def walks(self) -> int:
         """Number of sides, those of the target itself included."""
-        return int(self.side.max()) + 1
+        return int(self.side.max(initial=1)) + 1
 
 
 def _numbers(steps: Sequence[Floats]) -> list[NDArray[np.intp]]:
