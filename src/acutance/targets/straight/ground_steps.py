@@ -59,12 +59,15 @@ class Ground:
     scale : (j + k,) array
         Standard deviation of every step for a walk of unit variance per width: the root of its
         spacing.
+    walks : int
+        Number of walks: 2, of a pulse 3, its own being of no step where it is narrow.
     """
 
     spline: Floats
     columns: Floats
     side: NDArray[np.intp]
     scale: Floats
+    walks: int
 
     @classmethod
     def beside_edge(cls, outwards: Sequence[Floats]) -> Ground:
@@ -80,7 +83,7 @@ class Ground:
         far = [_steps(distance, near) for distance in outwards]
         side = [np.repeat([0, 1], near), *_numbers(far)]
         scale = [_SCALE[:near], _SCALE[:near], *(_SCALE[near : near + len(steps)] for steps in far)]
-        return cls(_edge_spline(), np.vstack(far), np.concatenate(side), np.concatenate(scale))
+        return cls(_edge_spline(), np.vstack(far), np.concatenate(side), np.concatenate(scale), 2)
 
     @classmethod
     def beside_pulse(cls, outwards: Sequence[Floats], width: float) -> Ground:
@@ -101,12 +104,8 @@ class Ground:
         scale = [_SCALE[: len(steps)] for steps in beside]
         scale.append(np.full(count, math.sqrt(width / (count + 1))))
         none = np.zeros((CELLS + 3, 0))
-        return cls(none, np.vstack(steps), np.concatenate(_numbers(steps)), np.concatenate(scale))
-
-    @property
-    def walks(self) -> int:
-        """Number of sides, those of the target itself included."""
-        return int(self.side.max(initial=1)) + 1
+        side = np.concatenate(_numbers(steps))
+        return cls(none, np.vstack(steps), side, np.concatenate(scale), 3)
 
 
 def _numbers(steps: Sequence[Floats]) -> list[NDArray[np.intp]]:
