@@ -169,7 +169,8 @@ def tolerable_px(data: CheckData, name: str) -> float:
     nyquist = data.fit.response.mtf_nyquist
     share = 0.5 * nyquist.std / max(nyquist.value, 1e-9)
     blur_px = math.sqrt(-math.log(max(1 - share, 0.1)) / 2) / (math.pi * NYQUIST_CPP)
-    return max(limit_of(name, {}), min(blur_px, _MAX_OFFSET_PX))
+    # Two digits are shown beside what was found.
+    return float(f"{max(limit_of(name, {}), min(blur_px, _MAX_OFFSET_PX)):.2g}")
 
 
 def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
