@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from acutance.numerics import marginal_likelihood
 from acutance.numerics.marginal_likelihood import Prior, log_evidence_slopes, regress, whiten
 from acutance.numerics.normal_equations import Normal
 
@@ -57,6 +58,14 @@ def test_mean_and_covariance_are_the_dense_formula(problem):
     assert np.allclose(found.sigma * found.mean, mean, rtol=1e-9)
     factor = found.sigma[:, None] * found.root
     assert np.allclose(factor @ factor.T, covariance, rtol=1e-9, atol=1e-12)
+
+
+def test_the_log_evidence_is_the_dense_one_up_to_a_constant(problem):
+    design, y, prior, normal = problem
+    points = [AMPLITUDE, prior.log_amplitude, np.array([0.5, -2.0]), np.array([-6.0, 1.0])]
+    dense = [log_evidence(design, y, prior, point) for point in points]
+    found = [marginal_likelihood.log_evidence(normal, prior, point, NOISE) for point in points]
+    assert np.ptp(np.subtract(found, dense)) < 1e-8 * np.ptp(dense)
 
 
 def test_gradient_and_hessian_of_the_log_evidence(problem):

@@ -13,7 +13,14 @@ if TYPE_CHECKING:
     from acutance.curves import Estimate
     from acutance.curves.metrics import RerCentre
 
-__all__ = ["choose_methods", "choose_rer_centre", "parse_limits", "parse_share", "parse_stated"]
+__all__ = [
+    "choose_methods",
+    "choose_rer_centre",
+    "parse_limits",
+    "parse_pair",
+    "parse_share",
+    "parse_stated",
+]
 
 RER_CENTRES: dict[str, RerCentre] = {"half": "half", "peak": "peak"}
 
@@ -73,6 +80,28 @@ def _parse_limit(text: str) -> tuple[str, float]:
     if math.isnan(value):
         raise OptionError(f"--limit {text}: write NAME=VALUE with a number, as in {name}=10")
     return name, value
+
+
+def parse_pair(option: str, text: str, words: str) -> tuple[float, float]:
+    """Two numbers with a comma between.
+
+    Parameters
+    ----------
+    option, text : str
+        Its name, and what was typed.
+    words : str
+        What to write, with an example.
+
+    Raises
+    ------
+    OptionError
+        If it is not two numbers.
+    """
+    try:
+        first, second = (float(part) for part in text.split(","))
+    except ValueError:
+        raise OptionError(f"{option} {text}: write {words}") from None
+    return first, second
 
 
 def parse_stated(option: str, text: str | None) -> Estimate | None:

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from acutance.cli.choices import parse_pair
 from acutance.cli.noise import NoiseOptions
 from acutance.cli.option_groups import with_groups
 from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
@@ -110,7 +111,8 @@ def landscape(
     """
     files = SimulatedFiles.of(out, sensor, truth_ending=".geojson")
     shape, system = parse_size(size), named_sensor(sensor)
-    shares, textures = beside.shares(clean), _parse_range(texture)
+    shares = beside.shares(clean)
+    textures = parse_pair("--texture", texture, "lowest and highest, as in 0.01,0.04")
 
     import numpy as np
 
@@ -142,11 +144,3 @@ def landscape(
     found = Counter(edge.kind(half_width) for edge in truth.edges)
     listed = ", ".join(f"{kind} {count}" for kind, count in found.most_common())
     typer.echo(f"{len(truth.edges)} edges, by what lies within {half_width:g} px: {listed}")
-
-
-def _parse_range(text: str) -> tuple[float, float]:
-    try:
-        low, high = (float(part) for part in text.split(","))
-    except ValueError as error:
-        raise OptionError(f"--texture {text}: write lowest and highest, as in 0.01,0.04") from error
-    return low, high

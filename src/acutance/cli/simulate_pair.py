@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from acutance.cli.choices import parse_pair
 from acutance.cli.output import check_output
 from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
 from acutance.cli.sensor import SensorName, named_sensor
@@ -62,7 +63,7 @@ def pair(
         raise OptionError("--out and --high name the same file: give two")
     if not 0 < gsd < math.inf:
         raise OptionError(f"--gsd {gsd:g}: the GSD has to be above 0 m")
-    rows, cols = _parse_shift(shift)
+    rows, cols = parse_pair("--shift", shift, "rows and columns, as in 0.4,-1.2")
     system, reference = named_sensor(sensor), named_sensor(high_sensor)
 
     import numpy as np
@@ -99,11 +100,3 @@ def pair(
     files.truth.deliver(json_text(document))
     across, along = (truth.response(axis).mtf_nyquist for axis in ("across", "along"))
     typer.echo(f"true MTF at Nyquist {across} across, {along} along")
-
-
-def _parse_shift(text: str) -> tuple[float, float]:
-    try:
-        rows, cols = (float(part) for part in text.split(","))
-    except ValueError as error:
-        raise OptionError(f"--shift {text}: write rows and columns, as in 0.4,-1.2") from error
-    return rows, cols

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from acutance.cli.choices import parse_pair
 from acutance.cli.measure import measure_target
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import (
@@ -20,8 +21,9 @@ from acutance.cli.options import (
 from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS
 
-__all__ = ["EXAMPLE", "WaveOption", "parse_place", "star"]
+__all__ = ["EXAMPLE", "WaveOption", "star"]
 
+_CENTRE_WORDS = "ROW,COL, as in --centre 63.5,64"
 EXAMPLE = (
     "\b\nExamples:\n"
     "  acutance star baotou.tif --cycles 36 --wave square --dark 212 --bright 1187 "
@@ -75,7 +77,7 @@ def star(
             "dark": dark,
             "bright": bright,
             "level_std": level_std,
-            "centre": None if centre is None else parse_place("--centre", centre),
+            "centre": None if centre is None else parse_pair("--centre", centre, _CENTRE_WORDS),
             "inner_px": inner,
             "robust": robust,
         },
@@ -91,18 +93,3 @@ def _parse_cycles(text: str) -> int | None:
         return int(text)
     except ValueError:
         raise OptionError(f"--cycles {text}: write a whole number, or count") from None
-
-
-def parse_place(option: str, text: str) -> tuple[float, float]:
-    """A place as ROW,COL.
-
-    Raises
-    ------
-    OptionError
-        If it is not two numbers.
-    """
-    try:
-        row, col = (float(part) for part in text.split(","))
-    except ValueError:
-        raise OptionError(f"{option} {text}: write ROW,COL, as in {option} 63.5,64") from None
-    return row, col

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import get_lapack_funcs
+from scipy.linalg import get_lapack_funcs, solve_triangular
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
@@ -25,6 +25,7 @@ __all__ = [
     "Posterior",
     "Prior",
     "Whitened",
+    "log_evidence",
     "log_evidence_slopes",
     "regress",
     "whiten",
@@ -251,6 +252,24 @@ class LogEvidence:
         """Factor of the covariance of the log amplitudes (Laplace), (k, k)."""
         power, axes = self._axes
         return np.asarray(axes / np.sqrt(np.maximum(power, self.min_curvature)))
+
+
+def log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> float:
+    """Log evidence at given amplitudes and noise variance, hyperprior included.
+
+    Up to a constant and the level of the noise, which those have in common that are compared at
+    one noise.
+    """
+    sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
+    precision = sigma[:, None] * normal.gram * (sigma / noise)
+    precision[np.diag_indices_from(precision)] += 1.0
+    lower = np.linalg.cholesky(precision)
+    left = normal.projection - normal.gram @ prior.mean
+    seen = solve_triangular(lower, sigma * left / noise, lower=True)
+    beyond = normal.data - float(prior.mean @ (normal.projection + left))
+    away = (log_amplitude - prior.log_amplitude) / prior.log_amplitude_std
+    misfit = beyond / noise - float(seen @ seen) + float(away @ away)
+    return -0.5 * misfit - float(np.log(np.diagonal(lower)).sum())
 
 
 def log_evidence_slopes(white: Whitened, prior: Prior, log_amplitude: Floats) -> LogEvidence:

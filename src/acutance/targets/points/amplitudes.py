@@ -19,6 +19,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.marginal_likelihood import (
     Posterior,
     Prior,
+    log_evidence,
     log_evidence_slopes,
     regress,
     whiten,
@@ -58,7 +59,7 @@ def posterior_log_evidence(
     """Log evidence at a posterior's amplitudes and noise, which may differ between posteriors."""
     noise = found.variance * inflation
     level = 0.5 * normal.count / inflation * math.log(noise)
-    return _log_evidence(normal, prior, found.log_amplitude, noise) - level
+    return log_evidence(normal, prior, found.log_amplitude, noise) - level
 
 
 def averaged_posterior(
@@ -81,7 +82,7 @@ def averaged_posterior(
     mode = likeliest.log_amplitude
     points = [mode, *(_at(mode, _HALO, _TAIL, a) for a in tuned.AMPLITUDE_GRID)]
     points += [_at(mode, _TAIL, _HALO, a) for a in tuned.AMPLITUDE_GRID]
-    likelihood = np.array([_log_evidence(normal, prior, point, noise) for point in points])
+    likelihood = np.array([log_evidence(normal, prior, point, noise) for point in points])
     weights = np.exp(likelihood - likelihood.max())
     weights[weights < _MIN_WEIGHT * weights.sum()] = 0.0
     weights /= weights.sum()
@@ -153,7 +154,7 @@ def likeliest_growth(
         0 where growth is not clearly likelier than none.
     """
 
-    def log_evidence(growth: float) -> float:
+    def of_growth(growth: float) -> float:
         blocks, weights = solved(growth)
         normal = blocks.normal
         precision = normal.gram / noise
@@ -165,9 +166,9 @@ def likeliest_growth(
         return 0.5 * (weights - misfit) - volume + blocks.log_volume
 
     ratios = np.array(tuned.BRIGHTEST_OVER_DARK)
-    values = np.array([log_evidence(ratio / brightest) for ratio in ratios.tolist()])
+    values = np.array([of_growth(ratio / brightest) for ratio in ratios.tolist()])
     best = int(np.argmax(values))
-    if values[best] < log_evidence(0.0) + tuned.GROWTH_LOG_EVIDENCE:
+    if values[best] < of_growth(0.0) + tuned.GROWTH_LOG_EVIDENCE:
         return 0.0
     place = float(np.clip(best, 1, ratios.size - 2))
     below, middle, above = values[int(place) - 1 : int(place) + 2].tolist()
@@ -189,15 +190,3 @@ def _from(prior: Prior, variance: float, log_amplitude: Floats) -> Posterior:
     """A posterior without coefficients, as the first guess of amplitudes and noise."""
     nothing = np.zeros(prior.block.size)
     return Posterior(nothing, nothing[:, None], nothing, log_amplitude, variance, 0.0)
-
-
-def _log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> float:
-    """Log evidence at given amplitudes and noise variance, hyperprior included."""
-    sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
-    precision = sigma[:, None] * normal.gram * (sigma / noise)
-    precision[np.diag_indices_from(precision)] += 1.0
-    lower = np.linalg.cholesky(precision)
-    seen = solve_triangular(lower, sigma * normal.projection / noise, lower=True)
-    away = (log_amplitude - prior.log_amplitude) / prior.log_amplitude_std
-    misfit = normal.data / noise - float(seen @ seen) + float(away @ away)
-    return -0.5 * misfit - float(np.log(np.diagonal(lower)).sum())

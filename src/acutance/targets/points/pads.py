@@ -14,11 +14,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtr
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
 from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.targets.points.amplitudes import likelier_posterior, posterior_log_evidence
@@ -66,16 +66,8 @@ def pads_image(stamps: Stamps, places: Floats, blur: GaussianPixel2d, side_px: f
 
 def _profile(distance: Floats, side_px: float, sigma_px: float) -> Floats:
     """A strip of unit height across, seen through a pixel and a Gaussian."""
-    outer, inner = 0.5 * (side_px + 1), 0.5 * abs(side_px - 1)
-    rises, falls = (outer, -outer), (inner, -inner)
-    value = sum(_ramp(distance + at, sigma_px) for at in rises)
-    return np.asarray(value - sum(_ramp(distance + at, sigma_px) for at in falls))
-
-
-def _ramp(distance: Floats, sigma_px: float) -> Floats:
-    """The ramp max(distance, 0) through a Gaussian."""
-    t = distance / sigma_px
-    return np.asarray(distance * ndtr(t) + sigma_px * np.exp(-0.5 * t * t) / math.sqrt(2 * math.pi))
+    blur = GaussianPixel(sigma_px)
+    return blur.esf(distance + 0.5 * side_px) - blur.esf(distance - 0.5 * side_px)
 
 
 def log_evidence_of_pads(

@@ -19,26 +19,24 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import GaussianPixel
-from acutance.numerics.marginal_likelihood import Prior, Whitened, log_evidence_slopes, whiten
+from acutance.numerics.marginal_likelihood import Prior, log_evidence, log_evidence_slopes, whiten
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.first_fit import fit_first
 from acutance.targets.straight.gradients import plateau_trends
 from acutance.targets.straight.lsf_parity import LOG_AMPLITUDE_STD, LOG_AMPLITUDES, parts
-from acutance.targets.straight.spline import combine, edge_and_line_weights, edge_weights
-from acutance.targets.straight.spline_equations import Stencil, accumulate
+from acutance.targets.straight.spline import combine, edge_and_line_weights
+from acutance.targets.straight.spline_equations import Stencil, accumulate, step_stencils
 from acutance.targets.straight.step_profile import Profile, pulse_profile
+from acutance.targets.straight.tuned import NOISE_FLOOR, TREND_LOG_AMPLITUDE
 
-__all__ = ["CURVATURE_STD", "NOISE_FLOOR", "CurvedModel", "Solved", "solve"]
+__all__ = ["CURVATURE_STD", "CurvedModel", "Solved", "solve"]
 
-NOISE_FLOOR: Final = 2e-4
-"""The smallest noise that is told from the arithmetic's, as a share of the contrast."""
 CURVATURE_STD: Final = 0.3
 """Prior of c: a gamma of 2.2 between 20 and 220 of 255 is .56, 1.3 between 50 and 200 .15."""
 _MAX_STEP_PX: Final = 0.3
 _AMPLITUDE_STEPS: Final = 12
 _SETTLED_AMPLITUDE: Final = 0.05
-_TREND_LOG_AMPLITUDE: Final = -2.5
 _APERTURE: Final = 3
 _APERTURE_STD_PX: Final = 0.3
 
@@ -104,10 +102,7 @@ class CurvedModel:
         t = first.line.tangent_distance(pixels.row, pixels.col)
         seen = first.profile.seen(first.blur, s)
         response, slope = first.profile.response(seen)
-        stencils = []
-        for distance, share in zip(first.profile.distances(s), first.profile.shares, strict=True):
-            cell, basis = edge_weights(distance / first.blur.width_px)
-            stencils.append((cell, share * basis))
+        stencils = step_stencils(first.profile, s, first.blur.width_px)
         trends = plateau_trends(first.profile.sides(seen, s), t)
         columns = [np.ones((1, s.size)), trends, (t * slope)[None]]
         if steps:
@@ -187,7 +182,7 @@ def solve(normal: Normal, linear: CurvedModel, free: NDArray[np.bool_], c: float
     mean[-1] = -c
     prior = Prior(
         linear.block[free].astype(float), linear.scale[free], mean[free],
-        np.append(LOG_AMPLITUDES, _TREND_LOG_AMPLITUDE), LOG_AMPLITUDE_STD, 1.0, NOISE_FLOOR,
+        np.append(LOG_AMPLITUDES, TREND_LOG_AMPLITUDE), LOG_AMPLITUDE_STD, 1.0, NOISE_FLOOR,
     )  # fmt: skip
     some = Normal(
         normal.gram[np.ix_(free, free)], normal.projection[free], normal.data, normal.count
@@ -203,14 +198,4 @@ def solve(normal: Normal, linear: CurvedModel, free: NDArray[np.bool_], c: float
     beta = np.zeros(free.size)
     beta[free] = white.sigma * white.mean
     last_std = float(white.sigma[-1] * math.sqrt(white.variances[-1]))
-    return Solved(beta, last_std, _log_evidence(some, prior, log_amplitude, white))
-
-
-def _log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, white: Whitened) -> float:
-    """Logarithm of the marginal likelihood, for weights that are inverse variances."""
-    mean, deviation = prior.mean, white.sigma * white.mean - prior.mean
-    left = normal.projection - normal.gram @ mean
-    misfit = normal.data - float(mean @ (normal.projection + left))
-    _, log_det = np.linalg.slogdet(white.covariance)
-    hyper = float(np.sum(((log_amplitude - prior.log_amplitude) / prior.log_amplitude_std) ** 2))
-    return 0.5 * (float(deviation @ left) - misfit + float(log_det) - hyper)
+    return Solved(beta, last_std, log_evidence(some, prior, log_amplitude, 1.0))

@@ -26,8 +26,8 @@ from acutance.targets.straight.ground_steps import Ground, GroundSide
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.rounding import Rounding, rounding_of
-from acutance.targets.straight.spline import CELLS, HALF_SUPPORT, combine, edge_weights
-from acutance.targets.straight.spline_equations import Stencil
+from acutance.targets.straight.spline import CELLS, HALF_SUPPORT, combine
+from acutance.targets.straight.spline_equations import Stencil, step_stencils
 from acutance.targets.straight.step_profile import Profile
 from acutance.targets.straight.tuned import (
     APERTURE_PX,
@@ -35,14 +35,13 @@ from acutance.targets.straight.tuned import (
     GROUND_LOG_AMPLITUDE,
     LOG_AMPLITUDE,
     LOG_AMPLITUDE_STD,
+    NOISE_FLOOR,
     TAIL_WIDTH,
     TREND_LOG_AMPLITUDE,
     TREND_LOG_AMPLITUDE_STD,
 )
 
 __all__ = ["Linear", "NoiseModel"]
-
-_NOISE_FLOOR = 2e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,10 +129,6 @@ class Linear:
         t = first_fit.line.tangent_distance(pixels.row, pixels.col)
         seen = profile.seen(first_fit.blur, s)
         mean, slope = profile.response(seen)
-        stencils = []
-        for distance, share in zip(profile.distances(s), profile.shares, strict=True):
-            cell, basis = edge_weights(distance / width)
-            stencils.append((cell, basis if share == 1 else share * basis))
         sides, is_edge = profile.sides(seen, s), len(profile.shares) == 1
         trends = plateau_trends(sides, t)
         beside = [away / width for _, away in sides]
@@ -158,7 +153,7 @@ class Linear:
             fixed.append(rounding.modes)
         return cls(
             first_fit, s, t, seen, mean, slope, residual,
-            stencils, np.vstack(fixed), derivatives,
+            step_stencils(profile, s, width), np.vstack(fixed), derivatives,
             directions, _design(directions, ground, len(further)),
             _prior(first_fit, directions, ground, len(trends), rounding, derivatives), rounding,
         )  # fmt: skip
@@ -182,7 +177,7 @@ class Linear:
         """
         sides = np.array(side_variances(self.first_residual * np.sqrt(outlier), self.mean))
         sides = np.maximum(sides, self.rounding.floor**2)
-        floor = (_NOISE_FLOOR * self.first_fit.height) ** 2
+        floor = (NOISE_FLOOR * self.first_fit.height) ** 2
         scale = float(0.5 * (sides[0] + sides[1])) + floor
         share = np.minimum(np.maximum(self.mean, 0.0), 1.0)
         relative = (sides[0] + floor + (sides[1] - sides[0]) * share) / scale
@@ -332,5 +327,5 @@ def _prior(
     return Prior(
         block, scale, mean, np.array([*LOG_AMPLITUDE, TREND_LOG_AMPLITUDE, *walks]),
         log_amplitude_std, first_fit.height,
-        max(_NOISE_FLOOR * first_fit.height, rounding.floor),
+        max(NOISE_FLOOR * first_fit.height, rounding.floor),
     )  # fmt: skip

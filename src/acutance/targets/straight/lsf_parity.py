@@ -17,15 +17,17 @@ from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.lorentz_tail import tail_lsf
 from acutance.numerics.process_modes import covariance_modes
+from acutance.targets.straight.lsf_prior import blur_directions
 from acutance.targets.straight.spline import CENTRES, esf_from_lsf, quasi_interpolant
+from acutance.targets.straight.tuned import DETAIL, TAIL_WIDTH
 
 __all__ = ["LOG_AMPLITUDES", "LOG_AMPLITUDE_STD", "Parts", "parts"]
 
-_PROCESSES: Final = ((1.2, 0.6), (0.7, 0.17), (3.0, 1.2))
-"""Extent and smoothness of shape, detail and halo, in widths: those of the estimator's prior."""
+_PROCESSES: Final = ((1.2, 0.6), DETAIL, (3.0, 1.2))
+"""Extent and smoothness of shape, detail and halo, in widths: broader than the estimator's prior,
+which has few odd directions."""
 _LOG_AMPLITUDES: Final = (-4.4, -2.5, -4.1)
 _TAIL_LOG_AMPLITUDE: Final = -4.0
-_TAIL_WIDTH: Final = 1.0
 LOG_AMPLITUDES: Final[Floats] = np.array([*_LOG_AMPLITUDES, *_LOG_AMPLITUDES, _TAIL_LOG_AMPLITUDE])
 """Of the blocks: three even processes, three odd ones, the tail; relative to the height."""
 LOG_AMPLITUDE_STD: Final = 1.2
@@ -55,11 +57,8 @@ class Parts:
 def parts(blur: GaussianPixel) -> Parts:
     """The directions about a Gaussian through a pixel, which come first."""
     fixed = _processes()
-    width = blur.width_px
-    lsf, by_place, by_sigma, by_aperture = blur.lsf_slopes(CENTRES * width)
-    shapes = np.stack([lsf, by_sigma, -by_place, by_aperture], axis=1)
     esf = fixed.esf.copy()
-    esf[:, :_FREE] = esf_from_lsf(quasi_interpolant(width * shapes))
+    esf[:, :_FREE] = blur_directions(blur)
     return Parts(esf, fixed.block, fixed.odd)
 
 
@@ -74,6 +73,6 @@ def _processes() -> Parts:
         is_odd = np.einsum("ij,ij->j", modes, modes[::-1]) < 0
         columns += [modes[:, ~is_odd], modes[:, is_odd]]
         blocks += [np.full((~is_odd).sum(), number), np.full(is_odd.sum(), number + 3)]
-    columns.append(quasi_interpolant(tail_lsf(CENTRES, _TAIL_WIDTH))[:, None])
+    columns.append(quasi_interpolant(tail_lsf(CENTRES, TAIL_WIDTH))[:, None])
     block = np.concatenate([*blocks, [6]])
     return Parts(esf_from_lsf(np.hstack(columns)), block, (block >= 3) & (block <= 5))

@@ -38,6 +38,7 @@ from acutance.targets.straight.tuned import DETAIL, FAMILY_LOG_AMPLITUDES, TAIL_
 __all__ = [
     "FIRST_BLOCK",
     "Directions",
+    "blur_directions",
     "directions",
     "tail_spline",
 ]
@@ -103,9 +104,14 @@ def directions(blur: GaussianPixel) -> Directions:
     tail alone.
     """
     fixed = _fixed()
+    everything = fixed.esf.copy()
+    everything[:, :4] = blur_directions(blur)
+    return Directions(everything, fixed.tail, fixed.block)
+
+
+def blur_directions(blur: GaussianPixel) -> Floats:
+    """ESF coefficients of level, width, place and aperture of a blur, (CELLS + 3, 4)."""
     width = blur.width_px
     lsf, by_place, by_sigma, by_aperture = blur.lsf_slopes(CENTRES * width)
     shapes = np.stack([lsf, by_sigma, -by_place, by_aperture], axis=1)
-    everything = fixed.esf.copy()
-    everything[:, :4] = esf_from_lsf(quasi_interpolant(width * shapes))
-    return Directions(everything, fixed.tail, fixed.block)
+    return esf_from_lsf(quasi_interpolant(width * shapes))

@@ -33,12 +33,12 @@ from acutance.numerics.noise import outlier_weights, side_variances
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.curved_model import (
     CURVATURE_STD,
-    NOISE_FLOOR,
     CurvedModel,
     solve,
 )
 from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.step_profile import Profile
+from acutance.targets.straight.tuned import NOISE_FLOOR
 
 __all__ = ["Curvature", "find_curvature", "gamma_of"]
 
@@ -101,17 +101,19 @@ def find_curvature(data: CheckData, profile: Profile) -> Curvature:
     profile : Profile
         The steps of the target.
     """
-    if len(profile.shares) == 1 and not (_is_lopsided(data) or _noise_differs(data)):
+    ratio = _noise_ratio(data)
+    unequal = ratio is not None and abs(ratio[0]) > _MIN_NOISE_SIGMAS * ratio[1]
+    if len(profile.shares) == 1 and not (unequal or _is_lopsided(data)):
         return NO_CURVATURE
     try:
-        shape = _shape(data, profile)
+        shape = _shape(data, profile, unequal=unequal)
     except TargetError:
         return NO_CURVATURE
     if shape is None:
         return NO_CURVATURE
     if len(profile.shares) > 1:
         return Curvature(shape.value, shape.std, shape.curved - np.logaddexp(shape.odd, shape.even))
-    return _with_noise(data, shape)
+    return _with_noise(data, shape, ratio)
 
 
 def gamma_of(curvature: float, curvature_std: float, dark: float, bright: float) -> str:
@@ -144,8 +146,12 @@ class _Shape:
     curved: float
 
 
-def _shape(data: CheckData, profile: Profile) -> _Shape | None:
-    """Compare an even LSF, one with an odd part, and a curve; of a pulse, any LSF and a curve."""
+def _shape(data: CheckData, profile: Profile, *, unequal: bool) -> _Shape | None:
+    """Compare an even LSF, one with an odd part, and a curve; of a pulse, any LSF and a curve.
+
+    Where the two sides have no `unequal` noise, a curve is looked for only if the first step to it
+    is longer than chance.
+    """
     linear = CurvedModel.about(data, profile, 0.0)
     everything = np.append(np.full(linear.odd.size, True), False)
     no_curve = (
@@ -162,7 +168,7 @@ def _shape(data: CheckData, profile: Profile) -> _Shape | None:
         if len(profile.shares) > 1:
             linear = CurvedModel.about(data, linear.profile_of(even.beta), 0.0, linear, even.beta)
     curved = solve(linear.normal(weight, u, 0.0), linear, curve, 0.0)
-    if abs(curved.beta[-1]) < _MIN_SIGMAS * curved.last_std and not _noise_differs(data):
+    if abs(curved.beta[-1]) < _MIN_SIGMAS * curved.last_std and not unequal:
         return None
     odd = solve(normal, linear, everything, 0.0)
     c = 0.0
@@ -202,12 +208,6 @@ def _is_lopsided(data: CheckData) -> bool:
     return abs(c) > _MIN_SIGMAS * data.noise * math.sqrt(max(float(covariance[-1, -1]), 0.0))
 
 
-def _noise_differs(data: CheckData) -> bool:
-    """Whether the two sides have unequal noise."""
-    ratio = _noise_ratio(data)
-    return ratio is not None and abs(ratio[0]) > _MIN_NOISE_SIGMAS * ratio[1]
-
-
 def _noise_ratio(data: CheckData) -> tuple[float, float] | None:
     """Logarithm of bright over dark noise variance, and its deviation; none without noise."""
     dark, bright = side_variances(data.residual, data.value - data.residual)
@@ -232,7 +232,7 @@ def _weights(data: CheckData) -> Floats:
     return outlier_weights(data.residual / np.sqrt(variance)) / variance
 
 
-def _with_noise(data: CheckData, shape: _Shape) -> Curvature:
+def _with_noise(data: CheckData, shape: _Shape, ratio: tuple[float, float] | None) -> Curvature:
     """Weigh the shape with what the noise of the two sides shows."""
     # An odd part that looks like a curve of c: of sensors it is smaller than of curves.
     rarer = _log_normal(shape.value, _LOW_ODD_STD) - _log_normal(shape.value, CURVATURE_STD)
@@ -242,7 +242,6 @@ def _with_noise(data: CheckData, shape: _Shape) -> Curvature:
         np.logaddexp(math.log(_PRIOR_ODD) + shape.odd, low_odd),
     )
     odds = shape.curved - float(linear)
-    ratio = _noise_ratio(data)
     if ratio is None:
         return Curvature(shape.value, shape.std, odds)
     found, std = ratio

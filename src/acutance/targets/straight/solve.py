@@ -179,9 +179,11 @@ def solve(
         again = _reweighted(standard, linear) if heavy else outlier
         found = correlation(_bounded(standard), *pixels.at, [linear.first_fit.line.normal])
         short = _are_short(solved, fit_width)
+        # The phase of rounding follows the wings, which the first fit does not have.
+        is_unphased = earlier is None and linear.rounding.floor > 0
         settled = (
             short
-            and not (linear.rounding.floor > 0 and earlier is None)
+            and not is_unphased
             # The derivative by the width is that of the first fit until there is an LSF.
             and not (fit_width and earlier is None)
             and np.max(np.abs(again - outlier)) < 0.05
@@ -190,17 +192,13 @@ def solve(
         )
         if settled:
             break
-        # The phase of rounding follows the wings, which the first fit does not have.
-        fitted = pixels.value - solved.residual
-        is_rounded = earlier is None and linear.rounding.floor > 0
         outlier, whiteness, earlier = again, found, solved
         roughness = solved.roughness
-        if not (short and _is_at_rest(solved)):
-            linear = Linear.about(
-                _updated(solved, fit_width), pixels, fit_width=fit_width, fitted=fitted
-            )
-        elif is_rounded:
-            linear = Linear.about(linear.first_fit, pixels, fit_width=fit_width, fitted=fitted)
+        has_moved = not (short and _is_at_rest(solved))
+        if has_moved or is_unphased:
+            about = _updated(solved, fit_width) if has_moved else linear.first_fit
+            fitted = pixels.value - solved.residual
+            linear = Linear.about(about, pixels, fit_width=fit_width, fitted=fitted)
     return Solved(solved, outlier, whiteness)
 
 

@@ -10,11 +10,30 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.normal_equations import Normal
-from acutance.targets.straight.spline import CELLS
+from acutance.targets.straight.spline import CELLS, edge_weights
+from acutance.targets.straight.step_profile import Profile
 
-__all__ = ["Stencil", "accumulate", "renewed"]
+__all__ = ["Stencil", "accumulate", "renewed", "step_stencils"]
 
 Stencil = tuple[NDArray[np.intp], Floats]
+
+
+def step_stencils(profile: Profile, s: Floats, width_px: float) -> list[Stencil]:
+    """Each pixel's place in the spline of the ESF, for every step of a profile.
+
+    Parameters
+    ----------
+    profile : Profile
+    s : (n,) array
+        Distances from the first step, px.
+    width_px : float
+        The unit of the spline.
+    """
+    found = []
+    for distance, share in zip(profile.distances(s), profile.shares, strict=True):
+        cell, basis = edge_weights(distance / width_px)
+        found.append((cell, basis if share == 1 else share * basis))
+    return found
 
 
 def accumulate(

@@ -44,6 +44,7 @@ __all__ = [
     "MIN_TRUSTED_SNR",
     "NEAR_GROUND_STEPS",
     "NEAR_TOLERANCE",
+    "NOISE_FLOOR",
     "NONLINEAR_LOG_ODDS",
     "OUTLIER_SIGMAS",
     "PLATEAU_TOLERANCE",
@@ -82,6 +83,8 @@ LOG_AMPLITUDE: Final[Floats] = np.array(
 LOG_AMPLITUDE_STD: Final = 2.0
 """Within a factor of 7 either way: narrower ones make Gaussian sensors pay for what they do not
 have (MTF at Nyquist, 40 px, SNR 100: RMS .0060 at 1.2, .0056 at 2)."""
+NOISE_FLOOR: Final = 2e-4
+"""The smallest noise that is told from the arithmetic's and the model's own."""
 APERTURE_PX: Final = (1.0, 0.18)
 """Mean and standard deviation of the detector's aperture: fill factors are near one."""
 CURVATURE_STD_PER_PX: Final = 1e-3
