@@ -21,20 +21,28 @@ SIDE_PX = 30_000
 CORNER = (14_970, 15_010)
 REGION_PX = 60
 
+# A fresh process's ru_maxrss begins with that of the process that started it; VmHWM does not.
+_REPORT = """
+from pathlib import Path
+status = Path("/proc/self/status")
+if status.exists():
+    (line,) = [one for one in status.read_text().splitlines() if one.startswith("VmHWM")]
+    print(line.split()[1])
+else:
+    import resource
+    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
 _MEASURE = """
-import resource, sys
+import sys
 import acutance as ac
 path, row, col, side = sys.argv[1], *map(int, sys.argv[2:])
 found = ac.measure_edge(ac.open_image(path), (row, col, side, side))
 assert all(number.std > 0 for number in (found.mtf_nyquist, found.rer, found.fwhm_px))
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
 _IMPORT = """
-import resource
 import numpy as np
 import acutance as ac
 ac.measure_edge, np.zeros((60, 60))
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
 
 
@@ -60,7 +68,7 @@ def write_scene(path: Path, seed: int, tiled: bool) -> None:
 
 def peak_mb(program: str, *arguments: str) -> float:
     """Largest resident set of a fresh process in MB."""
-    command_line = [sys.executable, "-c", program, *arguments]
+    command_line = [sys.executable, "-c", program + _REPORT, *arguments]
     answer = subprocess.run(command_line, check=True, capture_output=True, text=True)
     # Linux counts kibibytes, macOS bytes.
     unit = 1 if sys.platform == "darwin" else 1024

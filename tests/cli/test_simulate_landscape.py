@@ -1,6 +1,7 @@
 """``acutance simulate landscape``: an image, and its edges as regions that can be measured."""
 
 import json
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -68,6 +69,44 @@ def test_blur_in_the_corners(render):
         for document in (even, soft)
     ]
     assert all(one < before for before, one in zip(*nyquist, strict=True))
+
+
+def counted(document):
+    return Counter(one["properties"]["kind"] for one in document["features"])
+
+
+@pytest.mark.parametrize(
+    ("option", "kind"),
+    [
+        ("--rims", "rim"),
+        ("--gutters", "gutter"),
+        ("--shadows", "shadow"),
+        ("--side-roads", "road"),
+        ("--neighbours", "neighbour"),
+    ],
+)
+def test_what_is_asked_for_lies_beside_the_borders(render, option, kind):
+    others = [
+        word
+        for one in ("--rims", "--gutters", "--shadows", "--side-roads", "--neighbours")
+        for word in (one, 0.9 if one == option else 0)
+    ]
+    _, document, _, _ = render(*others, "--size", "500,500", "--seed", 3)
+    found = counted(document)
+    assert found[kind] >= 5
+    assert not ({"rim", "gutter", "shadow"} - {kind}) & set(found)
+
+
+def test_density_softness_and_slope(render):
+    common = ("--clean", "--texture", "0,0", "--size", "500,500", "--seed", 4)
+    flat, few, _, _ = render(*common, "--density", 20, "--soft", 0, "--slope", 0)
+    words = ("--density", 60, "--soft", 1, "--slope", 0.002)
+    steep, many, _, _ = render(*common, *words, name="steep.tif")
+    assert len(many["features"]) > 1.5 * len(few["features"])
+    softness = [[one["properties"]["softness_px"] for one in d["features"]] for d in (few, many)]
+    assert max(softness[0]) == 0 < np.median(softness[1])
+    rises = [np.median(np.abs(np.diff(image.read(), axis=1))) for image in (flat, steep)]
+    assert rises[0] < 0.01 < 0.1 < rises[1]
 
 
 @pytest.mark.parametrize(

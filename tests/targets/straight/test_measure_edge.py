@@ -1,5 +1,7 @@
 """The edge method from pixels to numbers: loose regions, bad input, all ways an edge can lie."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -252,6 +254,13 @@ class TestRefusals:
         assert within(m.mtf_nyquist, truth.mtf_nyquist)
         declared = ac.measure_edge(ac.Image.from_array(image.astype(np.float32), nodata=fill))
         assert declared.mtf_nyquist.value == pytest.approx(m.mtf_nyquist.value, abs=1e-4)
+
+    def test_a_constant_side_stated_to_be_data_is_named_where_it_is_refused(self):
+        image, _ = simulated(shape=(60, 60))
+        image[:, -12:] = -9999.0
+        stated = ac.Image.from_array(image.astype(np.float32), nodata=math.nan)
+        with pytest.raises(ac.PhaseError, match=r"no data.*--nodata -9999"):
+            ac.measure_edge(stated)
 
     def test_an_aligned_edge_without_noise_is_no_fill(self):
         image, _ = simulated(angle_deg=0.0, snr=None)
