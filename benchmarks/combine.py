@@ -1,7 +1,8 @@
 """How often the 95 % intervals of `acutance.combine` hold the truth, and which of its checks fail.
 
 Four edges near 6, 97, 30 and 62 degrees and two pulses of 3 px, 50 by 50 and 50 by 40 px each,
-SNR 50 or 100, are combined. Systems that the forms hold, and systems that they do not.
+SNR 50 or 100, are combined. Twelve systems, then sensors drawn from every family of
+`acutance.optics`: another one in every draw.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from trials import METRICS, command, publish, table, work_through
 import acutance as ac
 from acutance import optics
 from acutance.curves.grid import Floats
+from acutance.optics import FAMILIES, draw_sensor
 
 CONFIGURATION = (
     ("edge", 6.0, "across"),
@@ -45,7 +47,7 @@ class RotatedGaussian:
 
 
 def systems() -> dict[str, ac.Sensor]:
-    """Systems by name; the last three are held by no form."""
+    """Systems by name."""
     pixel, known = optics.Detector(), ac.simulate.reference_systems()
     return {
         "gaussian": known["gaussian"],
@@ -102,7 +104,8 @@ class Found:
 def combined(draw: Draw) -> Found | str:
     """Combine one draw; the message of the error if it was refused."""
     rng = np.random.default_rng(draw.seeds)
-    sensor = systems()[draw.system]
+    is_family = draw.system in FAMILIES
+    sensor = draw_sensor(draw.system, rng) if is_family else systems()[draw.system]
     try:
         result = ac.combine([_measured(sensor, rng, *one) for one in CONFIGURATION])
     except ac.AcutanceError as error:
@@ -158,18 +161,22 @@ def row(name: str, results: list[Found | str]) -> list[str]:
 
 def main() -> None:
     arguments = command(__doc__.partition("\n")[0], draws=60).parse_args()
-    names = list(systems())
+    names = [*systems(), *FAMILIES]
     jobs = [
         Draw(name, (arguments.seed, number, draw))
         for number, name in enumerate(names)
         for draw in range(arguments.draws)
     ]
     results = work_through(combined, jobs, arguments.processes, "combinations")
-    rows = [
-        row(name, [one for job, one in zip(jobs, results, strict=True) if job.system == name])
+    by_name = {
+        name: [one for job, one in zip(jobs, results, strict=True) if job.system == name]
         for name in names
+    }
+    rows = [row(name, found) for name, found in by_name.items()]
+    rows += [
+        row("all systems", [one for name in systems() for one in by_name[name]]),
+        row("all families", [one for name in FAMILIES for one in by_name[name]]),
     ]
-    rows.append(row("all", results))
     head = [
         "system", "draws", *METRICS, "std / %", "chi² ratio", "disagree / %", "no plain / %",
         "correction / %", "form of largest weight",
@@ -180,7 +187,7 @@ def main() -> None:
         "value. Chi² ratio: chi-square of the agreement over its expectation. Disagree, no "
         "plain: combinations whose checks `agreement` and `plain_sensor` failed. Correction: mean "
         "size of the correction of the parametric form. G: Gaussian and detector. The last "
-        "three systems are held by no form."
+        "seven rows are families of sensors, another one in every draw."
     )
     publish("Combination of edges and pulses", [text, table(head, rows)], arguments)
 

@@ -25,7 +25,7 @@ from acutance.report import (
 from acutance.report.figure import KIND_PANELS
 from acutance.report.tables.combined import PARAMETERS
 from acutance.report.tables.result import KIND_TABLES
-from acutance.targets.combine.sensor_forms import TERMS
+from acutance.targets.combine.sensor_forms import TERMS, SensorForm
 
 SENSOR = ac.Sensor([ac.optics.Gaussian(0.39), ac.optics.Detector()], gsd_m=0.7)
 
@@ -128,6 +128,7 @@ def test_every_kind_but_the_straight_ones_has_panels_and_tables():
 
 
 def test_every_parameter_of_a_combined_sensor_has_its_words():
-    found = [name for term in TERMS.values() for name in term.numbers(np.asarray(term.mean, float))]
+    forms = [SensorForm(("gaussian", name)) for name in TERMS]
+    found = [name for form in forms for name in form.numbers(form.mean)]
     assert len(found) >= len(TERMS)
     assert set(found) == set(PARAMETERS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -165,13 +166,20 @@ class Defocus:
         # By the angle on the disc's rim, in which the chord has no infinite slope at its ends.
         first = np.arccos(np.clip((end - centre) / radius, -1.0, 1.0))
         span = np.arccos(np.clip(-centre / radius, -1.0, 1.0)) - first
-        nodes, weights = np.polynomial.legendre.leggauss(32 + math.ceil(16 * abs(self.waves)))
+        nodes, weights = _legendre(32 + math.ceil(16 * abs(self.waves)))
         total = np.zeros(nu.shape)
         for node, weight in zip(nodes, weights, strict=True):
             theta = first + 0.5 * span * (node + 1)
             phase = 8 * math.pi * self.waves * nu * (centre + radius * np.cos(theta))
             total += 0.5 * weight * span * (radius * np.sin(theta)) ** 2 * np.cos(phase)
         return total
+
+
+@cache
+def _legendre(order: int) -> tuple[Floats, Floats]:
+    """Nodes and weights of the quadrature; orders are few, and they take long."""
+    nodes, weights = np.polynomial.legendre.leggauss(order)
+    return nodes, weights
 
 
 @dataclass(frozen=True)

@@ -98,13 +98,16 @@ class Resampling:
         return _cubic_transform(f, self.a)
 
 
+_LEGENDRE = np.polynomial.legendre.leggauss(12)
+
+
 def _cubic_transform(f: Floats, a: float) -> Floats:
     """Fourier transform of the cubic convolution kernel: closed form, quadrature near zero."""
     small = np.abs(f) < 0.1
     g = np.where(small, 1.0, f)
     keys = 3 * (np.sinc(g) ** 2 - np.sinc(2 * g))
     keys = keys + 2 * a * (3 * np.sinc(2 * g) ** 2 - 2 * np.sinc(2 * g) - np.sinc(4 * g))
-    nodes, weights = np.polynomial.legendre.leggauss(12)
+    nodes, weights = _LEGENDRE
     x = np.concatenate([0.5 * (nodes + 1), 0.5 * (nodes + 1) + 1])
     mass = np.tile(weights, 2) * interpolation_weight("cubic", x, a)
     low = np.where(small, f, 0.0)

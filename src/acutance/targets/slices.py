@@ -1,4 +1,8 @@
-"""Slices of a measured optical transfer function (OTF), with the covariance to combine them."""
+"""Slices of a measured optical transfer function (OTF), with the covariance to combine them.
+
+A measurement that draws on a prior is part data, part expectation. Several of one sensor share the
+expectation: so what the pixels alone say is kept beside the slices.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +19,7 @@ from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
+from acutance.targets.otf_likelihood import OtfLikelihood
 
 __all__ = ["SLICE_DIRECTIONS_DEG", "OtfSlices"]
 
@@ -46,12 +51,15 @@ class OtfSlices(ShortRepr):
         Direction by direction.
     factor : (m * n, k) complex array
         Factor of the covariance: the error is ``factor @ z``, z standard normal and real.
+    likelihood : OtfLikelihood, optional
+        What the pixels say, the prior apart; ``None`` where it is not known, or there is no prior.
     """
 
     normal_deg: Floats
     freq_cpp: Floats
     otf: Complexes
     factor: Complexes
+    likelihood: OtfLikelihood | None = None
 
     @classmethod
     def of_curve(cls, mtf: Mtf, normal_deg: float) -> OtfSlices:
@@ -84,7 +92,7 @@ class OtfSlices(ShortRepr):
         """Directions, frequencies, OTF and factor as lists."""
         factor = _triangular(self.factor)
         decimals = _decimals(factor)
-        return {
+        document = {
             "normal_deg": self.normal_deg.tolist(),
             "freq_cpp": np.round(self.freq_cpp, 6).tolist(),
             "otf_real": np.round(self.otf.real, 6).tolist(),
@@ -92,6 +100,9 @@ class OtfSlices(ShortRepr):
             "factor_real": np.round(factor.real, decimals).tolist(),
             "factor_imag": np.round(factor.imag, decimals).tolist(),
         }
+        if self.likelihood is not None:
+            document["likelihood"] = self.likelihood.to_dict()
+        return document
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> OtfSlices:
@@ -123,7 +134,12 @@ class OtfSlices(ShortRepr):
             )
         if not all(np.isfinite(part).all() for part in (normal, freq, otf, factor)):
             raise ValueError("numbers that are not finite")
-        return cls(normal, freq, otf, factor)
+        if "likelihood" not in document:
+            return cls(normal, freq, otf, factor)
+        likelihood = OtfLikelihood.from_dict(document["likelihood"])
+        if likelihood.root.shape[0] != otf.size:
+            raise ValueError(f"a likelihood of {likelihood.root.shape[0]} of {otf.size} values")
+        return cls(normal, freq, otf, factor, likelihood)
 
 
 def _complex(document: Mapping[str, Any], name: str) -> Complexes:

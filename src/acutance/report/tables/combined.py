@@ -27,10 +27,14 @@ PARAMETERS = {
     "trail_along_px": ("charge trail, along", "px"),
     "cutoff_cpp": ("cutoff of the aperture", "c/px"),
     "obscuration": ("obscuration of the aperture", ""),
+    "defocus_waves": ("defocus, at the rim", "waves"),
     "sharpening_across": ("sharpening kernel, across", ""),
     "sharpening_along": ("sharpening kernel, along", ""),
     "unsharp_gain": ("unsharp mask, gain", ""),
     "unsharp_sigma_px": ("unsharp mask, Gaussian", "px"),
+    **{f"tap_{k}": (f"kernel, tap {k}", "") for k in range(1, 5)},
+    "cubic_a": ("cubic convolution, a", ""),
+    "detector_fill": ("detector's width over the stated one", ""),
 }
 PART_COLUMNS = ("measurement", "method", "normal", "MTF at Nyquist", "combined", "chi²", "of", "p")
 

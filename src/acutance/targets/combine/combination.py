@@ -124,8 +124,9 @@ def _require_two(inputs: Sequence[MeasuredInput]) -> None:
 
 
 def _curve(one: MeasuredInput) -> OtfSamples:
-    u, v = one.slices.places
-    return OtfSamples(one.name, u, v, one.slices.otf, one.slices.factor)
+    slices = one.slices
+    u, v = slices.places
+    return OtfSamples(one.name, u, v, slices.otf, slices.factor, slices.likelihood)
 
 
 def _part(one: MeasuredInput, chi_square: ChiSquare, otf: Otf2d) -> CombinedPart:

@@ -56,9 +56,10 @@ class Correction(ShortRepr):
 
     def directions(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Change of the OTF for a unit of every direction, (n, m): exactly 0 at zero frequency."""
-        size = np.abs(self.form.otf(np.array(self.parameters), u_cpp, v_cpp))
+        p = np.array(self.parameters)
+        size = np.abs(self.form.otf(p, u_cpp, v_cpp))
         # Sharpening multiplies the blur by a gain: the blur is the detector's at most.
-        blurred = np.minimum(size, np.abs(self.form.detector_otf(u_cpp, v_cpp)))
+        blurred = np.minimum(size, np.abs(self.form.detector_otf(p, u_cpp, v_cpp)))
         reach = -math.e * size * np.log(np.maximum(blurred, 1e-30))
         even = self._kernel(u_cpp, v_cpp, 1.0) @ self._roots[0]
         odd = self._kernel(u_cpp, v_cpp, -1.0) @ self._roots[1]

@@ -1,4 +1,8 @@
-"""Optical transfer functions (OTF) of many measurements, their errors whitened."""
+"""Optical transfer functions (OTF) of many measurements, their errors whitened.
+
+Of a measurement whose prior is known its likelihood is used, else its posterior; of the errors of
+posteriors a part is taken to be common to all.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.special import gammaincc
 
 from acutance.curves.grid import Floats
+from acutance.targets.otf_likelihood import OtfLikelihood, stacked
 
 __all__ = ["ChiSquare", "OtfSamples", "WhitenedCurves"]
 
@@ -22,14 +27,10 @@ _MIN_STD = 5e-4
 """Error of an estimator without noise; it makes every covariance invertible."""
 
 _COMMON = 0.25
-"""Share of the variance of a measurement that is common to all of one sensor: the priors' error.
-
-Edges of a plain Gaussian, which the priors expect, scatter by 0.86 to 0.9 of the stated
-standard deviations (benchmarks/coverage.py): the rest is an allowance for other shapes of sensors,
-and a sensor has one shape. Over the twelve systems of benchmarks/combine.py, 95 % intervals of four
-edges and two pulses hold the truth in 93.6 % with it and in 89.3 % without; with 20 mirrors as
-well, in 91.2 and 84.8 %. Where errors are independent, standard deviations are too wide by up to a
-third.
+"""Share of the variance of a measurement without a known prior that is common to all of one sensor:
+the priors' error. Their errors scatter by 0.86 to 0.9 of the stated standard deviations where a
+sensor is as its prior expects: the rest is an allowance for other shapes, and a sensor has one.
+Where errors are independent, standard deviations are too wide by up to a third.
 """
 
 _LOW_CPP = 0.12
@@ -50,6 +51,8 @@ class OtfSamples:
     otf : (n,) complex array
     factor : (n, k) complex array
         Factor of the covariance: the error is ``factor @ z``, z standard normal and real.
+    likelihood : OtfLikelihood, optional
+        What the pixels alone say, where that is known.
     """
 
     name: str
@@ -57,6 +60,7 @@ class OtfSamples:
     v_cpp: Floats
     otf: Complexes
     factor: Complexes
+    likelihood: OtfLikelihood | None = None
 
     def centred(self) -> OtfSamples:
         """The same about the centroid: the slope of the phase at low frequencies."""
@@ -64,34 +68,56 @@ class OtfSamples:
         places = 2 * math.pi * np.stack([self.u_cpp, self.v_cpp], axis=1)
         moved = np.linalg.lstsq(places[near], -np.angle(self.otf[near]), rcond=1e-6)[0]
         turn = np.exp(1j * (places @ moved))
-        return replace(self, otf=self.otf * turn, factor=self.factor * turn[:, None])
+        likelihood = None if self.likelihood is None else self.likelihood.turned(turn)
+        otf, factor = self.otf * turn, self.factor * turn[:, None]
+        return replace(self, otf=otf, factor=factor, likelihood=likelihood)
+
+    @property
+    def size(self) -> int:
+        """Number of whitened values."""
+        return 2 * self.otf.size if self._seen is None else self._seen.offset.size
 
     @cached_property
-    def whitening(self) -> Floats:
-        """Matrix (2n, 2n) that gives the stacked real and imaginary errors unit variance."""
-        move = 2j * math.pi * _SHIFT_PX * self.otf[:, None]
-        shifts = move * np.stack([self.u_cpp, self.v_cpp], axis=1)
-        wide = _stacked(np.concatenate([self.factor, shifts], axis=1))
-        value, vector = np.linalg.eigh(wide @ wide.T + _MIN_STD**2 * np.eye(wide.shape[0]))
-        return np.asarray((vector / np.sqrt(value)) @ vector.T)
+    def whitened_otf(self) -> Floats:
+        """What the pixels say of the whitened OTF, (size,)."""
+        own = self.whitened(self.otf)
+        return own if self._seen is None else own + self._seen.offset
 
     @cached_property
     def whitened_factor(self) -> Floats:
-        """Factor (2n, 2n) of the covariance of the whitened errors: below 1 at the smallest errors.
+        """Factor of the covariance of the whitened errors, (size, size).
 
-        It is the symmetric factor of the errors, whitened: every column belongs to a frequency.
+        Of a likelihood they have unit variance. Of a posterior it is the symmetric factor of the
+        errors, whitened: every column belongs to a frequency, and the smallest errors are below 1.
         """
-        stacked = _stacked(self.factor)
-        value, vector = np.linalg.eigh(stacked @ stacked.T)
-        return np.asarray(self.whitening @ (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T)
+        if self._seen is not None:
+            return np.eye(self.size)
+        wide = stacked(self.factor)
+        value, vector = np.linalg.eigh(wide @ wide.T)
+        return np.asarray(self._whitening @ (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T)
 
     def whitened(self, values: Complexes) -> Floats:
-        """Values (n,) or (n, p), stacked and whitened."""
-        return np.asarray(self.whitening @ _stacked(values))
+        """Values (n,) or (n, p), whitened, (size, ...)."""
+        if self._seen is not None:
+            return self._seen.whitened(values)
+        return np.asarray(self._whitening @ stacked(values))
 
+    @cached_property
+    def _seen(self) -> OtfLikelihood | None:
+        return None if self.likelihood is None else self.likelihood.with_errors(self._shifts)
 
-def _stacked(values: Complexes) -> Floats:
-    return np.concatenate([values.real, values.imag], axis=0)
+    @cached_property
+    def _whitening(self) -> Floats:
+        """Matrix (2n, 2n) that gives the stacked real and imaginary errors unit variance."""
+        wide = stacked(np.concatenate([self.factor, self._shifts], axis=1))
+        value, vector = np.linalg.eigh(wide @ wide.T + _MIN_STD**2 * np.eye(wide.shape[0]))
+        return np.asarray((vector / np.sqrt(value)) @ vector.T)
+
+    @property
+    def _shifts(self) -> Complexes:
+        """Errors of the place of the image, which has no meaning."""
+        move = 2j * math.pi * _SHIFT_PX * self.otf[:, None]
+        return np.asarray(move * np.stack([self.u_cpp, self.v_cpp], axis=1))
 
 
 @dataclass(frozen=True)
@@ -154,7 +180,7 @@ class WhitenedCurves:
     @cached_property
     def values(self) -> Floats:
         """The OTFs, stacked and whitened."""
-        return self.of(np.concatenate([one.otf for one in self.curves]))
+        return np.concatenate([one.whitened_otf for one in self.curves])
 
     @cached_property
     def _ends(self) -> list[int]:
@@ -163,11 +189,12 @@ class WhitenedCurves:
     @property
     def parts(self) -> list[slice]:
         """The rows of each curve in whitened values."""
-        return [slice(2 * a, 2 * b) for a, b in pairwise(self._ends)]
+        ends = np.cumsum([0, *(one.size for one in self.curves)]).tolist()
+        return [slice(a, b) for a, b in pairwise(ends)]
 
     @cached_property
     def covariance(self) -> Floats:
-        """Covariance of the whitened errors, (2n, 2n)."""
+        """Covariance of the whitened errors, (size, size)."""
         total = self.shared.copy()
         for part, one in zip(self.parts, self.curves, strict=True):
             total[part, part] += one.whitened_factor @ one.whitened_factor.T
@@ -175,24 +202,26 @@ class WhitenedCurves:
 
     @cached_property
     def shared(self) -> Floats:
-        """Covariance of the whitened errors of different curves, (2n, 2n).
+        """Covariance of the whitened errors of different curves, (size, size).
 
-        Common are the errors of the real parts at one frequency, in all directions.
+        Common are the errors of the real parts of posteriors at one frequency, in all directions.
         """
         freq = np.round(np.hypot(self.u_cpp, self.v_cpp), 3)
         known, number = np.unique(freq, return_inverse=True)
-        rows, own = [], np.zeros((2 * freq.size, 2 * freq.size))
+        together = np.zeros((self.values.size, known.size))
+        own = np.zeros((self.values.size, self.values.size))
         for part, one, (a, b) in zip(self.parts, self.curves, pairwise(self._ends), strict=True):
+            if one.likelihood is not None:
+                continue
             places = number[a:b]
             same_freq = np.zeros((b - a, known.size))
             same_freq[np.arange(b - a), places] = 1 / np.sqrt(np.bincount(places)[places])
-            rows.append(one.whitened_factor[:, : b - a] @ same_freq)
-            own[part, part] = rows[-1] @ rows[-1].T
-        together = np.concatenate(rows)
+            together[part] = one.whitened_factor[:, : b - a] @ same_freq
+            own[part, part] = together[part] @ together[part].T
         return np.asarray(_COMMON * (together @ together.T - own))
 
     def of(self, values: Complexes) -> Floats:
-        """Values (n,) or (n, p) at all places, stacked and whitened curve by curve."""
+        """Values (n,) or (n, p) at all places, whitened curve by curve."""
         ends = pairwise(self._ends)
         parts = [one.whitened(values[a:b]) for one, (a, b) in zip(self.curves, ends, strict=True)]
         return np.concatenate(parts)

@@ -1,8 +1,9 @@
 """Parametric sensors over the plane of frequencies: Gaussian x detector x smear, halo, ...
 
-Each form is a product of terms; each term is centred, so that no form moves the image. Parameters
-are unbounded numbers of order 1 with a normal prior, as wide as the range of real sensors: it
-keeps a term that the data do not show from running away.
+The forms are those of `acutance.optics.FAMILIES`: what a telescope, its detector and the processing
+on the ground do. Each is a product of terms; each term is centred, so that no form moves the image.
+Parameters are unbounded numbers of order 1 with a normal prior, as wide as the range of real
+sensors: it keeps a term that the data do not show from running away.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +19,13 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.geometry.angles import wrap_axis
-from acutance.optics import Diffraction
+from acutance.optics import Defocus, Diffraction, Resampling
 
 __all__ = ["FORMS", "TERMS", "SensorForm", "Term"]
 
 Complexes = NDArray[np.complex128]
+Transfer = Callable[[Floats, Floats, Floats], NDArray[Any]]
+"""Optical transfer function (OTF), (n,), by parameters and frequencies in cycles per pixel."""
 
 _STEP = 1e-4
 
@@ -33,14 +37,14 @@ class Term:
     Parameters
     ----------
     otf : function of (parameters, u, v)
-        Optical transfer function (OTF), (n,), at frequencies in cycles per pixel, 1 at zero.
+        1 at zero frequency.
     mean, std : tuple of float
         Prior mean and standard deviation of the parameters.
     numbers : function of parameters
         The reported numbers, by name with the unit.
     """
 
-    otf: Callable[[Floats, Floats, Floats], NDArray[np.generic]]
+    otf: Transfer
     mean: tuple[float, ...]
     std: tuple[float, ...]
     numbers: Callable[[Floats], dict[str, float]]
@@ -151,6 +155,46 @@ def _diffraction_numbers(p: Floats) -> dict[str, float]:
     return {"cutoff_cpp": cutoff, "obscuration": obscuration}
 
 
+def _defocus(p: Floats, u: Floats, v: Floats) -> Floats:
+    cutoff, obscuration = _aperture(p)
+    return np.asarray(Defocus(_waves(p), cutoff, obscuration).otf(u, v))
+
+
+def _waves(p: Floats) -> float:
+    return math.tanh(p[2])
+
+
+def _defocus_numbers(p: Floats) -> dict[str, float]:
+    return {**_diffraction_numbers(p), "defocus_waves": abs(_waves(p))}
+
+
+def _kernel(p: Floats, u: Floats, v: Floats) -> Floats:
+    """An even kernel of nine taps, the same in both axes: its outer taps are -p[0], -p[1], ..."""
+    order = 2 * math.pi * np.arange(1, p.size + 1)
+
+    def gain(freq: Floats) -> Floats:
+        return np.asarray(1 + 2 * (1 - np.cos(np.outer(freq, order))) @ p)
+
+    return gain(u) * gain(v)
+
+
+def _kernel_numbers(p: Floats) -> dict[str, float]:
+    return {f"tap_{k}": -float(tap) for k, tap in enumerate(p, 1)}
+
+
+def _cubic(p: Floats) -> float:
+    """Parameter of a cubic convolution, -1 to 0."""
+    return -_logistic(p[0])
+
+
+def _interpolation(p: Floats, u: Floats, v: Floats) -> Floats:
+    return np.asarray(Resampling("cubic", _cubic(p)).otf(u, v))
+
+
+def _interpolation_numbers(p: Floats) -> dict[str, float]:
+    return {"cubic_a": _cubic(p)}
+
+
 TERMS: dict[str, Term] = {
     "gaussian": Term(
         _gaussian, (math.log(0.4), math.log(0.4), 0.0), (0.7, 0.7, 0.3), _gaussian_numbers
@@ -161,9 +205,17 @@ TERMS: dict[str, Term] = {
     "sharpening": Term(_sharpening, (0.4, 0.4), (0.4, 0.4), _sharpening_numbers),
     "unsharp": Term(_unsharp, (-1.0, 0.0), (1.0, 0.3), _unsharp_numbers),
     "diffraction": Term(_diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
+    "defocus": Term(_defocus, (math.log(1.3), -0.5, 0.25), (0.4, 1.0, 0.15), _defocus_numbers),
+    "kernel": Term(_kernel, (0.5, -0.1, 0.0, 0.0), (0.5, 0.2, 0.1, 0.05), _kernel_numbers),
+    "interpolation": Term(_interpolation, (0.0,), (0.6,), _interpolation_numbers),
 }
 """Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear and halo of a pixel or two, taps
-of up to a third, masks of a quarter to the whole of what is missing."""
+of up to a third, masks of a quarter to the whole of what is missing, a quarter of a wave of
+defocus, kernels as those of Wiener filters, cubic convolutions of -.35 to
+-.65."""
+
+_FILL_STD = 0.12
+"""Of the logarithm of a detector's width over the stated one: fill factors are near one."""
 
 
 @dataclass(frozen=True)
@@ -201,44 +253,50 @@ class SensorForm:
 
     @property
     def mean(self) -> Floats:
-        """Prior mean of all parameters, (p,)."""
-        return np.array([one for name in self.terms for one in TERMS[name].mean])
+        """Prior mean of all parameters, (p,): of the terms, then of the detector's fill."""
+        return np.array([*(one for name in self.terms for one in TERMS[name].mean), 0.0])
 
     @property
     def std(self) -> Floats:
         """Prior standard deviation of all parameters, (p,)."""
-        return np.array([one for name in self.terms for one in TERMS[name].std])
+        return np.array([*(one for name in self.terms for one in TERMS[name].std), _FILL_STD])
 
     def otf(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF (n,), exactly 1 at zero frequency."""
-        product = self.detector_otf(u_cpp, v_cpp).astype(complex)
-        for term, own in self._split(p):
-            product *= term.otf(own, u_cpp, v_cpp)
-        return np.asarray(product)
+        return _product([factor(own, u_cpp, v_cpp) for factor, own in self._factors(p)])
 
-    def detector_otf(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
+    def detector_otf(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Floats:
         """OTF of the detector alone, (n,)."""
-        across, along = self.detector_px
+        across, along = math.exp(p[-1]) * np.array(self.detector_px)
         return np.asarray(np.sinc(across * u_cpp) * np.sinc(along * v_cpp))
 
     def slopes(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Derivatives of the OTF by the parameters, (n, p), by central differences."""
-        steps = _STEP * np.eye(p.size)
-        sides = (
-            self.otf(p + step, u_cpp, v_cpp) - self.otf(p - step, u_cpp, v_cpp) for step in steps
-        )
-        return np.stack(list(sides), axis=1) / (2 * _STEP)
+        factors = self._factors(p)
+        values = [factor(own, u_cpp, v_cpp) for factor, own in factors]
+        columns = []
+        for i, (factor, own) in enumerate(factors):
+            others = _product(values[:i] + values[i + 1 :])
+            for step in _STEP * np.eye(own.size):
+                change = factor(own + step, u_cpp, v_cpp) - factor(own - step, u_cpp, v_cpp)
+                columns.append(others * change / (2 * _STEP))
+        return np.stack(columns, axis=1)
 
     def numbers(self, p: Floats) -> dict[str, float]:
         """The reported numbers, by name."""
         found: dict[str, float] = {}
         for term, own in self._split(p):
             found |= term.numbers(own)
-        return found
+        return {**found, "detector_fill": math.exp(p[-1])}
 
     def min_sigma_px(self, p: Floats) -> float:
         """Smallest standard deviation of the Gaussian: it limits the band."""
         return self.numbers(p)["sigma_minor_px"] if "gaussian" in self.terms else 0.0
+
+    def _factors(self, p: Floats) -> list[tuple[Transfer, Floats]]:
+        """The factors of the product, each with its parameters, in their order."""
+        terms = [(term.otf, own) for term, own in self._split(p)]
+        return [*terms, (self.detector_otf, p[-1:])]
 
     def _split(self, p: Floats) -> list[tuple[Term, Floats]]:
         found, start = [], 0
@@ -249,17 +307,31 @@ class SensorForm:
         return found
 
 
+def _product(values: list[NDArray[Any]]) -> Complexes:
+    return np.asarray(np.prod(values, axis=0), complex)
+
+
 FORMS: tuple[tuple[str, ...], ...] = (
     ("gaussian",),
     ("gaussian", "smear"),
     ("gaussian", "halo"),
     ("gaussian", "trail"),
     ("gaussian", "diffraction"),
+    ("gaussian", "defocus"),
     ("gaussian", "sharpening"),
     ("gaussian", "unsharp"),
+    ("gaussian", "kernel"),
+    ("gaussian", "interpolation"),
     ("gaussian", "smear", "halo"),
     ("gaussian", "smear", "trail"),
     ("gaussian", "halo", "trail"),
     ("gaussian", "smear", "sharpening"),
+    ("gaussian", "diffraction", "smear"),
+    ("gaussian", "diffraction", "halo"),
+    ("gaussian", "diffraction", "sharpening"),
+    ("gaussian", "diffraction", "unsharp"),
+    ("gaussian", "diffraction", "kernel"),
+    ("gaussian", "smear", "kernel"),
+    ("gaussian", "diffraction", "interpolation"),
 )
 """Forms that are tried, the simplest first."""

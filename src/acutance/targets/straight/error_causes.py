@@ -92,6 +92,14 @@ class FitCauses(ShortRepr):
     prior_std: Floats
     group: tuple[str, ...]
 
+    def prior_latent(self) -> Floats:
+        """Factor (c, n) of the covariance of the columns before the pixels were seen."""
+        return self.design * self.prior_std
+
+    def posterior_latent(self) -> Floats:
+        """Factor (c, m) of their covariance thereafter, the amplitudes of the prior being known."""
+        return self.design @ self.factor[:, : self.prior_std.size + len(self.group)]
+
     def latents(self) -> dict[str, Floats]:
         """Factors (c, j) of the covariance that each cause gives to the columns; they add up.
 

@@ -28,7 +28,7 @@ from acutance.targets.straight.spline import (
     waves,
 )
 from acutance.targets.straight.stated_target import NOTHING_STATED, StatedTarget, with_stated_target
-from acutance.targets.straight.tuned import HALO_SHARE, TAIL_WIDTH
+from acutance.targets.straight.tuned import APERTURE_PX, HALO_SHARE, TAIL_WIDTH
 
 __all__ = ["LsfModel", "SplineResponse", "of_stated_target", "with_uncertain_halo"]
 
@@ -85,6 +85,14 @@ class LsfModel:
         """
         esf, lsf = self._parts(s, blurred)
         return self._sum(*esf), self._sum(*lsf)
+
+    def expected_otf(self, freq_cpp: Floats) -> NDArray[np.complex128]:
+        """Mean of the prior of the optical transfer function (OTF), about the LSF's centroid.
+
+        Of the blur's own aperture nothing is known but that detectors are about a pixel wide.
+        """
+        expected = GaussianPixel(self.blur.sigma_px, APERTURE_PX[0]).otf(freq_cpp)
+        return np.asarray(expected * waves(freq_cpp * self.blur.width_px, -self._centroid())[0])
 
     def half_point(self) -> float:
         """Normal distance of the 50 % point."""

@@ -80,6 +80,10 @@ class StatedTarget:
         softness = ("target_softness",) if self.softness_px is not None else ()
         return softness + (("level_uncertainty",) if self.level_uncertainty > 0 else ())
 
+    def gain(self, freq_cpp: Floats) -> Floats:
+        """By how much the transfer function of the sensor exceeds that of the image, (n,)."""
+        return _gain(freq_cpp, self.variance_px2.value)
+
     @property
     def variance_px2(self) -> Estimate:
         """Variance of the borders' profile, pixels squared."""
@@ -169,7 +173,7 @@ def _without_border(response: AnyResponse, variance_px2: Estimate) -> AnyRespons
     v, std = variance_px2.value, variance_px2.std
     mtf = response.mtf
     power = 2 * np.pi**2 * mtf.freq_cpp**2
-    gain = np.exp(power * v)
+    gain = _gain(mtf.freq_cpp, v)
     otf = mtf.otf * gain
     sharper = replace(mtf, otf=otf, factor=mtf.factor * gain[:, None])
     return replace(
@@ -178,6 +182,11 @@ def _without_border(response: AnyResponse, variance_px2: Estimate) -> AnyRespons
         lsf=_sharpened(response.lsf, v, std),
         mtf=with_cause(sharper, power * otf * std),
     )
+
+
+def _gain(freq_cpp: Floats, variance_px2: float) -> Floats:
+    """What a border's transfer function is divided out by."""
+    return np.asarray(np.exp(2 * np.pi**2 * freq_cpp**2 * variance_px2))
 
 
 def _sharpened(curve: Curve, variance_px2: float, std: float) -> Curve:

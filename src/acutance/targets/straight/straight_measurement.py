@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,8 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Line
 from acutance.targets.measurement import Measurement
+from acutance.targets.otf_likelihood import OtfLikelihood
+from acutance.targets.slices import OtfSlices
 from acutance.targets.straight.error_causes import FitCauses, caused_by
 from acutance.targets.straight.lsf import SplineResponse
 from acutance.targets.straight.stated_target import NOTHING_STATED, StatedTarget
@@ -86,6 +89,32 @@ class StraightMeasurement(Measurement):
     def angle_deg(self) -> Estimate:
         """Acute angle between the edge and the nearer image axis."""
         return Estimate(self.line.angle_deg, self.line.angle_std_deg)
+
+    @cached_property
+    def slices(self) -> OtfSlices:
+        """The OTF along the normal, its covariance, and what the pixels alone say of it."""
+        if self.details is None and "record" in vars(self):
+            return self.record.slices
+        slices = OtfSlices.of_curve(self.mtf, self.normal_deg)
+        return replace(slices, likelihood=self._likelihood(slices.freq_cpp))
+
+    def _likelihood(self, freq_cpp: Floats) -> OtfLikelihood | None:
+        """What the pixels say of the OTF, the prior apart; published methods have no prior.
+
+        What is stated of the target, and a pulse's halo, are errors that the prior has no part in.
+        """
+        causes = None if self.details is None else self.details.causes
+        if causes is None or not isinstance(self.response, SplineResponse):
+            return None
+        mtf = self.mtf
+        places = np.searchsorted(mtf.freq_cpp, freq_cpp - 1e-9)
+        fitted, others = np.split(mtf.factor[places], [causes.design.shape[0]], axis=1)
+        expected = self.response.model.expected_otf(freq_cpp) * self.stated.gain(freq_cpp)
+        return OtfLikelihood.of_posterior(
+            mtf.otf[places] - expected,
+            fitted @ causes.posterior_latent(),
+            fitted @ causes.prior_latent(),
+        ).with_errors(others)
 
     def _budget(self) -> tuple[BudgetTerm, ...]:
         """Causes of the fit, then what was stated of the target."""
