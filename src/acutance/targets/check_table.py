@@ -61,8 +61,7 @@ _ANY_TARGET = {
     ),
     "correlated_noise": Question(
         "How much do neighbouring pixels' noise correlate?", "<=", 0.1,
-        "a resampled product, texture, or structure, which the intervals allow for",
-        severity="note",
+        "texture, resampling or structure, which the intervals allow for", severity="note",
     ),
     "outliers": Question(
         "Which share of the pixels lies far from the fit?", "<=", 0.02,
@@ -96,8 +95,7 @@ _STRAIGHT = {
     ),
     "sample_phases": Question(
         "How many sub-pixel phases do the samples have?", ">=", 3.0,
-        "with so few phases fine structure is not determined and the intervals are wider",
-        severity="note",
+        "with so few fine structure is not determined; the intervals are wider", severity="note",
     ),
     "rows": Question(
         "How many rows of the edge are used?", ">=", 20.0,
@@ -146,8 +144,7 @@ _STRAIGHT = {
     ),
     "gradient": Question(
         "How steep is the background far from the target, in units of aperture wings?", "<=", 1.0,
-        "the fit cannot separate a slope from a wide halo, and the intervals are wide; choose a "
-        "region with flat sides", severity="note",
+        "a slope cannot be told from a wide halo; choose a region with flat sides", severity="note",
     ),
     "structure": Question(
         "How much does the profile go up and down next to the edge?", "<=", 0.02,
@@ -174,8 +171,11 @@ _STRAIGHT = {
     ),
     "asymmetric_lsf": Question(
         "How far is the ESF from symmetric about its middle?", "<=", 0.01,
-        "a rim or gutter narrower than the blur, or a charge trail; compare other edges",
-        severity="note",
+        "a strip narrower than the blur, or a charge trail; compare other edges", severity="note",
+    ),
+    "rim": Question(
+        "How probable is a strip along the border that moves RER or MTF at Nyquist?", "<=", 0.1,
+        "a rim, gutter or kerb is then taken for the sensor's; compare other edges",
     ),
     "one_sided_overshoot": Question(
         "How much more does the profile overshoot on one side than on the other?", "<=", 0.03,

@@ -9,9 +9,16 @@ from functools import cached_property
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.noise import Correlation, correlation, robust_scale, side_variances
+from acutance.numerics.noise import (
+    Correlation,
+    correlation,
+    outlier_weights,
+    robust_scale,
+    side_variances,
+)
 from acutance.targets.check import MAX_RATIO
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
+from acutance.targets.straight.tuned import NOISE_FLOOR
 
 __all__ = ["MISFIT", "PLACES", "CheckData", "ratio_in_words"]
 
@@ -26,8 +33,10 @@ PLACES = {
 MISFIT = 3e-4
 """Residuals below this share of the contrast are the model's own, not noise."""
 
-_FAR_WIDTHS = 2.0
+_FAR_WIDTHS, _NEAR_WIDTHS = 2.0, 1.5
 _OUTLYING = 4.0
+_MEDIAN_SQUARE = 0.455
+"""Median of the square of a standard normal variable."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +107,22 @@ class CheckData:
         """
         dark, bright = side_variances(self.residual, self.value - self.residual)
         return math.sqrt(0.5 * (dark + bright))
+
+    def weights(self, inflation: float) -> Floats:
+        """Inverse variance of the pixels, (n,), for noise of a power `inflation` times white one's.
+
+        Outliers count for less, and all pixels where those near the target leave the fit by more
+        than their noise, as on a rough border.
+        """
+        fitted = self.value - self.residual
+        dark, bright = side_variances(self.residual, fitted)
+        variance = dark + (bright - dark) * np.clip(fitted, 0.0, 1.0) + NOISE_FLOOR**2
+        near = self.outside < _NEAR_WIDTHS * self.fwhm_px
+        if near.any():
+            excess = float(np.median(self.residual[near] ** 2 / variance[near])) / _MEDIAN_SQUARE
+            variance *= max(excess, 1.0)
+        variance *= inflation
+        return outlier_weights(self.residual / np.sqrt(variance)) / variance
 
     @cached_property
     def smoothness(self) -> float:

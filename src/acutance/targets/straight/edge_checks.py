@@ -12,7 +12,7 @@ from acutance.geometry.line import Line
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
 from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import PLACES, CheckData, ratio_in_words
-from acutance.targets.straight.ground_checks import ground_checks
+from acutance.targets.straight.ground_checks import ground_checks, rim
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,
     gradient,
@@ -63,7 +63,7 @@ EDGE_CHECKS = (
     "plateau_dark_px", "plateau_bright_px", "saturation", "undeclared_fill", "quantisation",
     "nonlinearity", "gradient", "correlated_noise", "structure", "one_sided_overshoot",
     "double_edge", "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground",
-    "close_ground", "mirrored_ground",
+    "close_ground", "mirrored_ground", "rim",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -112,6 +112,7 @@ def check_edge(
         profile(data, limits, 0.0, own_misfit=by_rows),
         outliers(data, limits),
         *ground_checks(data, limits, ("dark", "bright")),
+        *rim(data, limits),
     )
 
 

@@ -10,8 +10,10 @@ from acutance.targets.check import Check, Limits, answer
 from acutance.targets.straight.check_data import PLACES, CheckData
 from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.ground_steps import GroundSide
+from acutance.targets.straight.rim import find_rim
+from acutance.targets.straight.structure_checks import asymmetry
 
-__all__ = ["ground_checks"]
+__all__ = ["ground_checks", "rim"]
 
 _CLOSE_WIDTHS = 2.5
 _MIN_LEVEL = 0.003
@@ -34,6 +36,24 @@ def ground_checks(data: CheckData, limits: Limits, sides: tuple[str, str]) -> tu
         _ground(data.fit, limits, sides), _close(data.fit, limits, sides),
         _mirrored(data.fit, limits),
     )  # fmt: skip
+
+
+def rim(data: CheckData, limits: Limits) -> tuple[Check, ...]:
+    """How probable a strip along the border is that moves the numbers; nothing without a model."""
+    if not isinstance(data.fit, SplineEdge):
+        return ()
+    strip = find_rim(data, data.fit, asymmetry(data))
+    if strip is None:
+        found = "no strip along the border explains the profile better than a sensor alone"
+        return (answer("rim", 0.0, found, limits),)
+    kind = "brighter" if strip.height > 0 else "darker"
+    found = (
+        f"a strip {PLACES[strip.side]}, about {strip.width_px:g} px wide and "
+        f"{100 * abs(strip.height):.1f} ± {100 * strip.height_std:.1f} % of the contrast {kind} "
+        f"than it, may touch the border (probability {strip.probability:.2f}); behind it the "
+        f"sensor has an RER of {strip.rer:.3f}"
+    )
+    return (answer("rim", strip.probability, found, limits),)
 
 
 def _ground(fit: SplineEdge, limits: Limits, sides: tuple[str, str]) -> Check:

@@ -32,7 +32,7 @@ from acutance.targets.straight.tuned import (
     STRUCTURE_SIGMAS,
 )
 
-__all__ = ["Ground", "GroundSide"]
+__all__ = ["Ground", "GroundSide", "near_ground"]
 
 _MAX_SEAMS, _SEAM_WIDTHS = 3, 0.95
 """A pulse may be brighter or darker from some places on, evenly spaced by as much or more: closer
@@ -80,10 +80,11 @@ class Ground:
             widths.
         """
         near = NEAR_GROUND_STEPS.size
+        spline, near_side, near_scale = near_ground()
         far = [_steps(distance, near) for distance in outwards]
-        side = [np.repeat([0, 1], near), *_numbers(far)]
-        scale = [_SCALE[:near], _SCALE[:near], *(_SCALE[near : near + len(steps)] for steps in far)]
-        return cls(_edge_spline(), np.vstack(far), np.concatenate(side), np.concatenate(scale), 2)
+        side = [near_side, *_numbers(far)]
+        scale = [near_scale, *(_SCALE[near : near + len(steps)] for steps in far)]
+        return cls(spline, np.vstack(far), np.concatenate(side), np.concatenate(scale), 2)
 
     @classmethod
     def beside_pulse(cls, outwards: Sequence[Floats], width: float) -> Ground:
@@ -148,6 +149,21 @@ class GroundSide:
         """From the steps, (k,), and a factor of their covariance, (k, m)."""
         std = np.sqrt(np.sum(np.cumsum(factor, axis=0) ** 2, axis=1))
         return cls(_PLACES[: step.size] * width_px, step, np.cumsum(step), std)
+
+
+def near_ground() -> tuple[Floats, NDArray[np.intp], Floats]:
+    """The steps beside an edge within the spline's support: coefficients, side and scale of each.
+
+    Returns
+    -------
+    spline : (CELLS + 3, k) array
+    side : (k,) int array
+        0 before the edge, 1 behind it.
+    scale : (k,) array
+        As of `Ground`.
+    """
+    near = NEAR_GROUND_STEPS.size
+    return _edge_spline(), np.repeat([0, 1], near), np.tile(_SCALE[:near], 2)
 
 
 @cache

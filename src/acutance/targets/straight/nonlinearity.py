@@ -29,7 +29,7 @@ from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.numerics.noise import outlier_weights, side_variances
+from acutance.numerics.noise import side_variances
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.curved_model import (
     CURVATURE_STD,
@@ -49,7 +49,6 @@ _MIN_SIGMAS: Final = 1.2
 _MAX_STEPS: Final = 5
 _MAX_STEP: Final = 0.3
 _SETTLED_SIGMAS: Final = 0.2
-_NEAR_WIDTHS: Final = 1.5
 _LOPSIDED_WIDTHS: Final = 3.0
 _MIN_SIDE_PIXELS: Final = 24
 _HIGHER_ORDERS: Final = 0.1
@@ -158,7 +157,7 @@ def _shape(data: CheckData, profile: Profile, *, unequal: bool) -> _Shape | None
         everything & np.append(~linear.odd, False) if len(profile.shares) == 1 else everything
     )
     curve = np.append(no_curve[:-1], True)
-    weight = _weights(data)
+    weight = data.weights(data.smoothness)
     u = linear.mean
     # A second time about the fitted response, not about that of the first fit.
     for _ in range(2):
@@ -216,20 +215,6 @@ def _noise_ratio(data: CheckData) -> tuple[float, float] | None:
         return None
     chance = data.smoothness * (2 / sides[0] + 2 / sides[1])
     return math.log(bright / dark), math.hypot(_NOISE_STD, math.sqrt(chance))
-
-
-def _weights(data: CheckData) -> Floats:
-    """Inverse variance of the pixels, in shares of the contrast; outliers count for less."""
-    fitted = data.value - data.residual
-    dark, bright = side_variances(data.residual, fitted)
-    variance = dark + (bright - dark) * np.clip(fitted, 0.0, 1.0) + NOISE_FLOOR**2
-    # Where pixels leave the fit of the measurement by more than their noise, as on a rough border.
-    near = data.outside < _NEAR_WIDTHS * data.fwhm_px
-    excess = (
-        float(np.median(data.residual[near] ** 2 / variance[near])) / 0.455 if near.any() else 1.0
-    )
-    variance *= max(excess, 1.0) * data.smoothness
-    return outlier_weights(data.residual / np.sqrt(variance)) / variance
 
 
 def _with_noise(data: CheckData, shape: _Shape, ratio: tuple[float, float] | None) -> Curvature:

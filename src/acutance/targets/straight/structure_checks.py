@@ -25,6 +25,7 @@ from acutance.targets.straight.tuned import (
 __all__ = [
     "asymmetric_lsf",
     "asymmetric_wings",
+    "asymmetry",
     "double_edge",
     "edge_roughness",
     "one_sided_overshoot",
@@ -46,8 +47,8 @@ _MIN_PARTS, _MAX_PARTS = 4, 12
 _STEEP_SHARE = 0.3
 _BLOCK_PX = 4
 _MAX_OFFSET_PX = 0.15
-_MAX_ASYMMETRY = 0.05
-_NOTED_RER_STDS, _MAX_RER_STDS = 0.5, 2.5
+_MAX_ASYMMETRY = 0.08
+_NOTED_RER_STDS, _MAX_RER_STDS = 0.5, 3.0
 
 
 def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> Check:
@@ -173,6 +174,17 @@ def tolerable_px(data: CheckData, name: str) -> float:
     return float(f"{max(limit_of(name, {}), min(blur_px, _MAX_OFFSET_PX)):.2g}")
 
 
+def asymmetry(data: CheckData) -> float:
+    """Largest odd part of the ESF about the middle where it is smallest, within two widths."""
+    esf = data.fit.response.esf
+    apart = np.linspace(0.0, _CORE_WIDTHS * data.fwhm_px, 41)
+    middle = np.linspace(-_MIDDLE_PX, _MIDDLE_PX, 31)[:, None]
+    odd = np.interp(middle + apart, esf.distance_px, esf.value) - 1
+    odd += np.interp(middle - apart, esf.distance_px, esf.value)
+    best = int(np.argmin(np.sum(odd**2, axis=1)))
+    return float(np.max(np.abs(odd[best])))
+
+
 def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
     """How far the ESF is from symmetric about its middle, within two widths of it.
 
@@ -180,15 +192,8 @@ def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
     symmetric along most directions; a strip of the ground along the border that is narrower than
     the blur is not, and it moves the relative edge response (RER) about as much.
     """
-    response = data.fit.response
-    esf = response.esf
-    apart = np.linspace(0.0, _CORE_WIDTHS * data.fwhm_px, 41)
-    middle = np.linspace(-_MIDDLE_PX, _MIDDLE_PX, 31)[:, None]
-    odd = np.interp(middle + apart, esf.distance_px, esf.value) - 1
-    odd += np.interp(middle - apart, esf.distance_px, esf.value)
-    best = int(np.argmin(np.sum(odd**2, axis=1)))
-    value = float(np.max(np.abs(odd[best])))
-    rer_std = min(response.rer.std, 1.0)
+    value = asymmetry(data)
+    rer_std = min(data.fit.response.rer.std, 1.0)
     found = f"the ESF is asymmetric about its middle by {100 * value:.1f} % of the contrast"
     return answer(
         "asymmetric_lsf", value, found, limits,

@@ -51,10 +51,14 @@ __all__ = [
     "QUIET_SIDE",
     "QUIET_TRANSITION",
     "REPEATED_SIGMAS",
+    "RIM_ODDS",
+    "RIM_STD",
     "STRUCTURE_OUTLIER_SIGMAS",
     "STRUCTURE_SIGMAS",
     "TAIL_LOG_AMPLITUDE",
     "TAIL_WIDTH",
+    "TRAIL_LIKE_RIM_ODDS",
+    "TRAIL_LIKE_WIDTHS",
     "TREND_LOG_AMPLITUDE",
     "TREND_LOG_AMPLITUDE_STD",
 ]
@@ -140,6 +144,11 @@ STRUCTURE_OUTLIER_SIGMAS: Final = 4.0
 NONLINEAR_LOG_ODDS: Final = 1.0
 """Natural logarithm of the odds of a curve over none (nonlinearity.py): of edges of 40 to 60 px at
 SNR 100 .2 % of linear ones lie beyond, and 94 % of those behind a gamma of 1.3."""
+RIM_ODDS, TRAIL_LIKE_RIM_ODDS, TRAIL_LIKE_WIDTHS = 0.2, 0.01, 1.3
+RIM_STD: Final = 0.15
+"""Strips along an edge (rim.py): prior odds of one; of one narrower than so many widths that widens
+the edge, as charge trails do (of 93 edges behind a trail 5 are called doubtful, of others none);
+standard deviation of its height, in contrasts."""
 MIN_CONTRAST_SNR: Final = 20.0
 MIN_TRUSTED_SNR: Final = 8.0
 MAX_NOISE_CORRELATION: Final = 0.9

@@ -1,0 +1,360 @@
+"""A strip along the border of an edge: a rim, a gutter or a kerb that begins at the line.
+
+A strip of width w and height h, as a share of the contrast, adds to the image
+
+    h (ESF(s) - ESF(s - w))
+
+on the bright side, and its mirror image on the dark one, with ESF the edge spread function of the
+sensor. Narrower than the blur it looks like a part of the line spread function (LSF). A sensor of
+the prior's families beside uneven ground is compared with the same behind a strip, by their log
+evidence, over sides and widths; what counts is how far the strip moves the numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.numerics.gaussian_pixel import GaussianPixel
+from acutance.numerics.marginal_likelihood import (
+    Prior,
+    log_evidence,
+    log_evidence_slopes,
+    whiten,
+)
+from acutance.numerics.normal_equations import Normal
+from acutance.targets.straight.check_data import CheckData
+from acutance.targets.straight.fit_edge import SplineEdge
+from acutance.targets.straight.gradients import plateau_trends
+from acutance.targets.straight.ground_steps import near_ground
+from acutance.targets.straight.lsf import LsfModel
+from acutance.targets.straight.lsf_prior import (
+    FIRST_BLOCK,
+    Directions,
+    directions,
+    tail_spline,
+)
+from acutance.targets.straight.spline import (
+    CELLS,
+    CENTRES,
+    HALF_SUPPORT,
+    edge_weights,
+    esf_from_lsf,
+    quasi_interpolant,
+)
+from acutance.targets.straight.spline_equations import accumulate
+from acutance.targets.straight.step_profile import EDGE
+from acutance.targets.straight.tuned import (
+    APERTURE_PX,
+    GROUND_LOG_AMPLITUDE,
+    LOG_AMPLITUDE,
+    LOG_AMPLITUDE_STD,
+    NOISE_FLOOR,
+    RIM_ODDS,
+    RIM_STD,
+    TRAIL_LIKE_RIM_ODDS,
+    TRAIL_LIKE_WIDTHS,
+    TREND_LOG_AMPLITUDE,
+    TREND_LOG_AMPLITUDE_STD,
+)
+
+__all__ = ["Rim", "find_rim"]
+
+_WIDTHS_PX: Final = (0.5, 0.75, 1.0, 1.5, 2.0, 2.75, 3.5)
+_MOVED_STDS: Final = 2.0
+_MIN_ASYMMETRY_STDS, _MIN_GROUND_STDS = 0.3, 0.5
+"""Of the relative edge response (RER): where the ESF is more symmetric and the ground more even, a
+strip is not looked for."""
+_REACH_PX: Final = 4.0
+_NEGLIGIBLE: Final = 0.01
+_MIN_CHANCE: Final = 0.03
+_MAX_STEPS, _SETTLED = 10, 0.1
+
+
+@dataclass(frozen=True)
+class Rim:
+    """The strip along the border that explains the pixels best.
+
+    Parameters
+    ----------
+    probability : float
+        Of any strip that moves RER or MTF at Nyquist by more than two deviations.
+    side : {"dark", "bright"}
+    width_px : float
+    height, height_std : float
+        As shares of the contrast; negative where it is darker than the side it lies on.
+    rer : float
+        RER of the sensor behind that strip.
+    """
+
+    probability: float
+    side: str
+    width_px: float
+    height: float
+    height_std: float
+    rer: float
+
+
+def find_rim(data: CheckData, fit: SplineEdge, asymmetry: float) -> Rim | None:
+    """The strip that may lie along the border; none where the edge shows no sign of one.
+
+    Parameters
+    ----------
+    data : CheckData
+    fit : SplineEdge
+    asymmetry : float
+        How far the ESF is from symmetric about its middle.
+    """
+    if not _shows_signs(fit, asymmetry):
+        return None
+    model = _Model.of(data, fit)
+    found = _compared(model)
+    if found is None:
+        return None
+    chance = _chances(model, found)
+    best = int(np.argmax(chance))
+    likely = np.flatnonzero(chance > _NEGLIGIBLE).tolist()
+    moved = {k: _moved(fit, model.lsf(found.beta[k])) for k in likely}
+    if best not in moved:
+        return None
+    probability = sum(float(chance[k]) for k, (stds, _) in moved.items() if stds > _MOVED_STDS)
+    side, width_px = model.strips[best]
+    height, std = float(found.height[best]), float(found.height_std[best])
+    return Rim(probability, side, width_px, height, std, moved[best][1])
+
+
+def _shows_signs(fit: SplineEdge, asymmetry: float) -> bool:
+    """Whether asymmetry, or a level of the ground next to the edge, is worth a look."""
+    rer = fit.response.rer
+    if asymmetry > _MIN_ASYMMETRY_STDS * rer.std:
+        return True
+    levels = [
+        np.abs(side.level[side.distance_px <= _REACH_PX + fit.blur.width_px]) for side in fit.ground
+    ]
+    highest = max(float(np.max(level, initial=0.0)) for level in levels)
+    return highest * rer.value > _MIN_GROUND_STDS * rer.std
+
+
+def _moved(fit: SplineEdge, sensor: LsfModel) -> tuple[float, float]:
+    """How far RER or MTF at Nyquist of a sensor are from those of the fit; its RER."""
+    middle = sensor.half_point()
+    if not math.isfinite(middle):
+        return 0.0, math.nan
+    other = sensor.response(middle)
+    moved = max(
+        abs(there.value - here.value) / max(here.std, 1e-9)
+        for here, there in (
+            (fit.response.rer, other.rer),
+            (fit.response.mtf_nyquist, other.mtf_nyquist),
+        )
+    )
+    return moved, other.rer.value
+
+
+class _Found(NamedTuple):
+    """What every strip explains.
+
+    Attributes
+    ----------
+    gain : (k,) array
+        Log evidence with the strip over that without any.
+    height, height_std : (k,) arrays
+        As shares of the contrast.
+    beta : (k, m) array
+        The other unknowns, with the strip.
+    """
+
+    gain: Floats
+    height: Floats
+    height_std: Floats
+    beta: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class _Model:
+    """An edge behind a sensor of the prior, and strips along it.
+
+    Attributes
+    ----------
+    blur : GaussianPixel
+        The first fit, about which the model is made.
+    directions : Directions
+        Of the LSF: the unknowns after the level.
+    normal : Normal
+        The pixels' equations in the unknowns without a strip, in shares of the contrast.
+    crossed : (m, k) array
+        Products of those unknowns with the strips.
+    own, projection : (k,) arrays
+        Products of the strips with themselves, and with the pixels.
+    prior : Prior
+    strips : tuple of (side, width_px)
+        The k strips.
+    """
+
+    blur: GaussianPixel
+    directions: Directions
+    normal: Normal
+    crossed: Floats
+    own: Floats
+    projection: Floats
+    prior: Prior
+    strips: tuple[tuple[str, float], ...]
+
+    @classmethod
+    def of(cls, data: CheckData, fit: SplineEdge) -> _Model:
+        """The model of an edge's pixels within the support of the spline."""
+        blur, width = fit.blur, fit.blur.width_px
+        near = data.outside < HALF_SUPPORT * width
+        s = fit.distance_px[near]
+        seen = blur.esf_and_lsf(s)
+        trends = plateau_trends(EDGE.sides([seen], s), data.t[near])
+        sensor = directions(blur)
+        strips = tuple((name, px) for name in ("dark", "bright") for px in _WIDTHS_PX)
+        curves = sensor.esf + np.outer(tail_spline(), sensor.tail)
+        level, ground = np.ones((CELLS + 3, 1)), near_ground()[0]
+        design = np.hstack([level, curves, ground, _strip_splines(blur, strips)])
+        every = accumulate(
+            [edge_weights(s / width)], data.value[near] - seen[0],
+            data.weights(fit.correlation.inflation)[near], trends, float(s.size),
+        ).combined(design)  # fmt: skip
+        is_strip = np.zeros(every.projection.size, bool)
+        is_strip[design.shape[1] - len(strips) : design.shape[1]] = True
+        gram, projection, plain = every.gram, every.projection, ~is_strip
+        normal = replace(every, gram=gram[np.ix_(plain, plain)], projection=projection[plain])
+        return cls(
+            blur, sensor, normal, gram[np.ix_(plain, is_strip)], gram[is_strip, is_strip],
+            projection[is_strip], _prior(blur, sensor, len(trends)), strips,
+        )  # fmt: skip
+
+    def lsf(self, beta: Floats) -> LsfModel:
+        """The LSF of some unknowns."""
+        own = beta[1 : 1 + self.directions.block.size]
+        esf, tail = self.directions.esf @ own, float(self.directions.tail @ own)
+        return LsfModel(self.blur, 1.0, esf, tail, np.zeros((CELLS + 4, 1)))
+
+    @property
+    def outwards(self) -> Floats:
+        """1 for strips on the bright side, -1 for those on the dark one, (k,)."""
+        return np.array([1.0 if side == "bright" else -1.0 for side, _ in self.strips])
+
+    def odds(self, height: Floats) -> Floats:
+        """Prior odds of every strip of a height, (k,)."""
+        width_px = np.array([width for _, width in self.strips])
+        widens = (height * self.outwards < 0) & (width_px < TRAIL_LIKE_WIDTHS * self.blur.width_px)
+        return np.where(widens, TRAIL_LIKE_RIM_ODDS, RIM_ODDS) / len(self.strips)
+
+    def with_strip(self, k: int) -> tuple[Normal, Prior]:
+        """The equations and the prior with one strip, the last unknown."""
+        cross = self.crossed[:, k]
+        gram = np.block([[self.normal.gram, cross[:, None]], [cross[None], self.own[k]]])
+        projection = np.append(self.normal.projection, self.projection[k])
+        prior = replace(
+            self.prior,
+            block=np.append(self.prior.block, -1),
+            scale=np.append(self.prior.scale, RIM_STD),
+            mean=np.append(self.prior.mean, 0.0),
+        )
+        return replace(self.normal, gram=gram, projection=projection), prior
+
+    def strips_at(self, log_amplitude: Floats) -> _Found:
+        """What every strip explains at given amplitudes of the prior, in closed form."""
+        white = whiten(self.normal, self.prior, log_amplitude, 1.0)
+        beta = white.sigma * white.mean
+        seen = white.covariance @ (white.sigma[:, None] * self.crossed)
+        left = self.projection - beta @ self.crossed
+        power = self.own - np.sum(white.sigma[:, None] * self.crossed * seen, axis=0)
+        precision = 1 / RIM_STD**2 + power
+        height = left / precision
+        gain = 0.5 * (left * height - np.log(precision * RIM_STD**2))
+        moved = beta - (white.sigma[:, None] * seen * height).T
+        return _Found(gain, height, 1 / np.sqrt(precision), moved)
+
+
+def _chances(model: _Model, found: _Found) -> Floats:
+    """Posterior probability of every strip, (k,); what they lack to one is that of none."""
+    odds = found.gain + np.log(model.odds(found.height))
+    return np.asarray(np.exp(odds - np.logaddexp.reduce(np.append(odds, 0.0))))
+
+
+def _compared(model: _Model) -> _Found | None:
+    """What every strip explains, at the amplitudes of the prior that suit it; none if too little.
+
+    The amplitudes without a strip are those at which the LSF follows it as far as it can. Those of
+    the most likely strip of either kind (that steepens the edge, and that widens it) are tried for
+    all of them.
+    """
+    start = model.prior.log_amplitude
+    tried = [start, _settled(model.normal, model.prior, start)]
+    found = _best(model, tried)
+    if float(_chances(model, found).sum()) < _MIN_CHANCE:
+        return None
+    steepens = found.height * model.outwards > 0
+    for kind in (steepens, ~steepens):
+        if kind.any():
+            likely = int(np.argmax(np.where(kind, found.gain, -np.inf)))
+            tried.append(_settled(*model.with_strip(likely), tried[1]))
+    return _best(model, tried)
+
+
+def _best(model: _Model, tried: list[Floats]) -> _Found:
+    """What every strip explains at the best of some amplitudes."""
+    found = [model.strips_at(log_amplitude) for log_amplitude in tried]
+    plain = [log_evidence(model.normal, model.prior, one, 1.0) for one in tried]
+    gains = np.array([one.gain + own for one, own in zip(found, plain, strict=True)])
+    best = np.argmax(gains, axis=0)
+    own = (best, np.arange(best.size))
+    return _Found(
+        gains[own] - max(plain),
+        np.array([one.height for one in found])[own],
+        np.array([one.height_std for one in found])[own],
+        np.array([one.beta for one in found])[own],
+    )
+
+
+def _settled(normal: Normal, prior: Prior, log_amplitude: Floats) -> Floats:
+    """The amplitudes of the prior at the mode of the log evidence."""
+    for _ in range(_MAX_STEPS):
+        white = whiten(normal, prior, log_amplitude, 1.0)
+        step = log_evidence_slopes(white, prior, log_amplitude).step()
+        log_amplitude = log_amplitude + step
+        if float(np.abs(step).max()) < _SETTLED:
+            break
+    return log_amplitude
+
+
+def _prior(blur: GaussianPixel, sensor: Directions, trends: int) -> Prior:
+    """The prior of level, LSF, ground and trends: that of the reference estimator."""
+    trend, first_side = LOG_AMPLITUDE.size, LOG_AMPLITUDE.size + 1
+    _, side, ground_scale = near_ground()
+    block = np.concatenate([
+        [-1], np.maximum(sensor.block - FIRST_BLOCK, -1), first_side + side,
+        np.full(trends, trend),
+    ])  # fmt: skip
+    scale, mean = np.ones(block.size), np.zeros(block.size)
+    scale[block >= first_side] = ground_scale
+    aperture = 1 + int(np.flatnonzero(sensor.block == 1)[0])
+    scale[aperture] = APERTURE_PX[1]
+    mean[aperture] = APERTURE_PX[0] - blur.aperture_px
+    log_amplitude = [*LOG_AMPLITUDE, TREND_LOG_AMPLITUDE, *[GROUND_LOG_AMPLITUDE] * 2]
+    spread = np.full(len(log_amplitude), LOG_AMPLITUDE_STD)
+    spread[trend] = TREND_LOG_AMPLITUDE_STD
+    return Prior(block, scale, mean, np.array(log_amplitude), spread, 1.0, NOISE_FLOOR)
+
+
+def _strip_splines(blur: GaussianPixel, strips: tuple[tuple[str, float], ...]) -> Floats:
+    """Spline coefficients of strips of unit height, (CELLS + 3, k)."""
+    width = blur.width_px
+    outer = [px if side == "bright" else -px for side, px in strips]
+    lsf = np.stack([blur.lsf_slopes(CENTRES * width - place)[0] for place in [0.0, *outer]], axis=1)
+    border, *steps = esf_from_lsf(quasi_interpolant(width * lsf)).T
+    return np.stack(
+        [
+            border - step if side == "bright" else step - border
+            for (side, _), step in zip(strips, steps, strict=True)
+        ],
+        axis=1,
+    )
