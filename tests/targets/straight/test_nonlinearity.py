@@ -91,3 +91,25 @@ def test_the_gamma_of_a_curvature():
         bend = 4 * ((middle - dark) / (bright - dark) - 0.5)
         assert gamma_of(bend, 0.05, dark, bright).startswith(f"a gamma of {gamma:.2f} ± 0.")
     assert gamma_of(0.2, 0.05, -5.0, 100.0) == ""
+
+
+def shaded_pulse(seed, snr=100.0):
+    """A bright pulse with a shadow of 5 to 10 % of its height beside it."""
+    rng = np.random.default_rng((9, seed))
+    width_px, shade_px = float(rng.uniform(3, 8)), float(rng.uniform(2, 8))
+    image, truth = ac.simulate.pulse(
+        SYSTEMS[("gaussian", "diffraction", "halo", "defocused")[seed % 4]], width_px=width_px,
+        shape=(60, 60), noise=ac.simulate.Noise(read=0.0), dark=20.0, bright=220.0,
+        angle_deg=float(rng.uniform(4, 15)), rng=rng,
+    )  # fmt: skip
+    s = truth.line.normal_distance(*np.indices(image.shape)) - width_px
+    begins, ends = (
+        np.interp(s - place, truth.esf.distance_px, truth.esf.value) for place in (0.0, shade_px)
+    )
+    image = image - 200 * float(rng.uniform(0.05, 0.1)) * (begins - ends)
+    return image + rng.normal(0, 200 / snr, image.shape), width_px
+
+
+def test_a_shadow_beside_a_pulse_is_no_curve():
+    found = [ac.measure_pulse(image, width_px=px) for image, px in map(shaded_pulse, range(12))]
+    assert sum(not check(one).passed for one in found) <= 1

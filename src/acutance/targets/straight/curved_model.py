@@ -4,14 +4,16 @@ With u the linear image between the plateaus (0 dark, 1 bright), the values are
 
     v = u + c u (1 - u)
 
-and u is linear in the line spread function (LSF), the levels and the line. The model is linear
-about one u and one c, and solved anew where they have moved. Values are in shares of the contrast.
+and u is linear in the line spread function (LSF), the levels and, of a pulse, its width, its
+height ratio and the ground beside it. The model is linear about one u and one c, and solved anew
+where they have moved. All this depends on the distance from the line alone: pixels enter as their
+means in narrow bins of it. Values are in shares of the contrast.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -23,22 +25,58 @@ from acutance.numerics.marginal_likelihood import Prior, log_evidence, log_evide
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.first_fit import fit_first
-from acutance.targets.straight.gradients import plateau_trends
+from acutance.targets.straight.fit_edge import SplineEdge
+from acutance.targets.straight.ground_steps import Ground
 from acutance.targets.straight.lsf_parity import LOG_AMPLITUDE_STD, LOG_AMPLITUDES, parts
-from acutance.targets.straight.spline import combine, edge_and_line_weights
-from acutance.targets.straight.spline_equations import Stencil, accumulate, step_stencils
-from acutance.targets.straight.step_profile import Profile, pulse_profile
-from acutance.targets.straight.tuned import NOISE_FLOOR, TREND_LOG_AMPLITUDE
+from acutance.targets.straight.spline import combine, edge_and_line_weights, expand
+from acutance.targets.straight.spline_equations import step_stencils
+from acutance.targets.straight.step_profile import Profile, Sides, pulse_profile
+from acutance.targets.straight.tuned import (
+    GROUND_LOG_AMPLITUDE,
+    NOISE_FLOOR,
+    TREND_LOG_AMPLITUDE,
+)
 
-__all__ = ["CURVATURE_STD", "CurvedModel", "Solved", "solve"]
+__all__ = ["CURVATURE_STD", "CurvedModel", "MeanProfile", "Solved", "first_blur", "solve"]
 
 CURVATURE_STD: Final = 0.3
 """Prior of c: a gamma of 2.2 between 20 and 220 of 255 is .56, 1.3 between 50 and 200 .15."""
 _MAX_STEP_PX: Final = 0.3
 _AMPLITUDE_STEPS: Final = 12
-_SETTLED_AMPLITUDE: Final = 0.05
-_APERTURE: Final = 3
+_SETTLED_AMPLITUDE: Final = 0.15
+_PLACE, _APERTURE = 2, 3
 _APERTURE_STD_PX: Final = 0.3
+_NEAR_BIN, _FAR_BIN, _NEAR_WIDTHS = 0.06, 0.5, 3.0
+"""Bins within so many widths of a step, and beyond: the mean over the former differs from the value
+at their middle by 2e-4 at most."""
+
+
+class MeanProfile(NamedTuple):
+    """The pixels of a target, averaged in bins of their distance from it.
+
+    Attributes
+    ----------
+    s, value, weight : (n,) arrays
+        Mean distance from the first step, px, and mean value of the pixels of every bin; the
+        inverse variance of that mean.
+    """
+
+    s: Floats
+    value: Floats
+    weight: Floats
+
+    @classmethod
+    def of(cls, data: CheckData, width_px: float) -> MeanProfile:
+        """The means of the pixels in bins that follow a width, for noise as it is correlated."""
+        weight, s = data.weights(data.smoothness), data.fit.distance_px
+        near = data.outside < _NEAR_WIDTHS * width_px
+        size = width_px * np.where(near, _NEAR_BIN, _FAR_BIN)
+        # Near and far bins of one number are different bins.
+        number = 2 * np.floor((s - s.min()) / size).astype(np.intp) + near
+        _, number = np.unique(number, return_inverse=True)
+        total = np.bincount(number, weight)
+        mean_s, mean = (np.bincount(number, weight * one) / total for one in (s, data.value))
+        return cls(mean_s, mean, total)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,92 +85,98 @@ class CurvedModel:
 
     Attributes
     ----------
-    value : (n,) array
-        The pixels.
+    measured : MeanProfile
     blur : GaussianPixel
     profile : Profile
-        Of the first fit.
+        The steps of the target.
     mean : (n,) array
-        Response of the first fit.
-    stencils : pairs of arrays
-        For every step, each pixel's place in the ESF's spline.
-    columns : (q, n) array
-        Further regressors: level, trends of the plateaus, rotation, and a pulse's steps.
+        Response of the steps, blurred by the Gaussian through a pixel.
     design : (CELLS + 3, r) array
         Spline coefficients of the directions of the LSF.
+    rows : (r + q, n) array
+        Response of every bin to the unknowns other than the curvature: directions of the LSF,
+        level, slopes of the plateaus, ground beside a pulse, its width and height ratio.
     odd : (r + q,) bool array
         Which unknowns make the LSF odd.
     block, scale : (r + q + 1,) arrays
         Of the prior; the last unknown is the curvature.
+    walks : int
+        Number of random walks of the ground.
     """
 
-    value: Floats
+    measured: MeanProfile
     blur: GaussianPixel
     profile: Profile
     mean: Floats
-    stencils: list[Stencil]
-    columns: Floats
     design: Floats
+    rows: Floats
     odd: NDArray[np.bool_]
     block: NDArray[np.intp]
     scale: Floats
+    walks: int
 
     @classmethod
     def about(
         cls,
-        data: CheckData,
+        measured: MeanProfile,
+        blur: GaussianPixel,
         profile: Profile,
-        c: float,
         earlier: CurvedModel | None = None,
         beta: Floats | None = None,
     ) -> CurvedModel:
-        """The model of the pixels without a curvature c.
+        """The model of a profile.
 
         The derivatives by a pulse's width and height ratio are those of an `earlier` solution
         `beta`, if there is one: they depend on the LSF.
         """
-        fit, pixels = data.fit, data.trimmed.pixels
-        straight = _straightened(data.value, c)
-        steps = len(profile.shares) - 1
-        first = fit_first(
-            pixels.row, pixels.col, straight, fit.line, dark=0.0, bright=1.0,
-            sigma_px=data.trimmed.width_px, noise=data.noise, profile=profile,
-        )  # fmt: skip
-        s = first.line.normal_distance(pixels.row, pixels.col)
-        t = first.line.tangent_distance(pixels.row, pixels.col)
-        seen = first.profile.seen(first.blur, s)
-        response, slope = first.profile.response(seen)
-        stencils = step_stencils(first.profile, s, first.blur.width_px)
-        trends = plateau_trends(first.profile.sides(seen, s), t)
-        columns = [np.ones((1, s.size)), trends, (t * slope)[None]]
+        s, width = measured.s, blur.width_px
+        seen = profile.seen(blur, s)
+        sides = profile.sides(seen, s)
+        further = [np.ones((1, s.size)), _slopes(sides)]
+        steps, ground = len(profile.shares) - 1, None
         if steps:
+            beside = [away / width for _, away in sides]
+            ground = Ground.beside_pulse(beside, profile.positions_px[-1] / width)
             esf, lsf = seen[1]
             if earlier is not None and beta is not None:
-                esf, lsf = earlier.step(first.profile.distances(s)[1], beta)
-            columns.append(np.stack([-first.profile.shares[1] * lsf, -esf]))
-        further = np.vstack(columns)
-        lsf_parts = parts(first.blur)
-        blocks = LOG_AMPLITUDES.size
+                esf, lsf = earlier.step(profile.distances(s)[1], beta)
+            further += [ground.columns, np.stack([-profile.shares[1] * lsf, -esf])]
+        lsf_parts = parts(blur)
+        slopes, ground_first = LOG_AMPLITUDES.size, LOG_AMPLITUDES.size + 1
+        own = [] if ground is None else [ground_first + ground.side]
         block = np.concatenate(
-            [lsf_parts.block, [-1], np.full(len(trends), blocks), np.full(2 + 2 * steps, -1)]
+            [
+                lsf_parts.block,
+                [-1],
+                np.full(2 * len(sides), slopes),
+                *own,
+                np.full(1 + 2 * steps, -1),
+            ]
         )
         scale = np.ones(block.size)
-        scale[_APERTURE] = _APERTURE_STD_PX
-        scale[-1] = CURVATURE_STD
-        odd = np.append(lsf_parts.odd, np.full(len(further), False))
+        scale[_APERTURE], scale[-1] = _APERTURE_STD_PX, CURVATURE_STD
+        if ground is not None:
+            scale[block >= ground_first] = ground.scale
+        splines = [expand(*stencil) for stencil in step_stencils(profile, s, width)]
+        directions = lsf_parts.esf.T @ np.sum(splines, axis=0).T
+        rows = np.vstack([directions, *further])
+        odd = np.zeros(len(rows), bool)
+        odd[: lsf_parts.odd.size] = lsf_parts.odd
+        walks = 0 if ground is None else ground.walks
+        mean = profile.mean(blur, s)
         return cls(
-            data.value, first.blur, first.profile, first.dark + first.height * response, stencils,
-            further, lsf_parts.esf, odd, block, scale,
+            measured, blur, profile, mean, lsf_parts.esf, rows, odd, block, scale, walks
         )  # fmt: skip
 
-    def normal(self, weight: Floats, u: Floats, c: float) -> Normal:
+    def normal(self, u: Floats, c: float) -> Normal:
         """The equations of the unknowns about the linear image u, (n,), and a curvature c."""
         bend = u * (1 - u)
         slope = 1 + c * (1 - 2 * u)
-        stencils = [(cell, basis * slope) for cell, basis in self.stencils]
-        columns = np.vstack([self.columns * slope, bend])
-        left = self.value - u - c * bend + slope * (u - self.mean)
-        return accumulate(stencils, left, weight, columns, u.size).combined(self.design)
+        rows = np.vstack([self.rows * slope, bend])
+        left = self.measured.value - u - c * bend + slope * (u - self.mean)
+        weighted = rows * self.measured.weight
+        data = float(np.sum(self.measured.weight * left**2))
+        return Normal(weighted @ rows.T, weighted @ left, data, float(u.size))
 
     def step(self, s: Floats, beta: Floats) -> tuple[Floats, Floats]:
         """Response to a unit step and its derivative at distances s, (n,), of some unknowns."""
@@ -143,52 +187,96 @@ class CurvedModel:
         lsf = lsf + combine(cell, slopes, coefficients) / self.blur.width_px
         return esf, lsf
 
-    def profile_of(self, beta: Floats) -> Profile:
-        """The profile with a pulse's width and height ratio moved by some unknowns."""
+    def renewed(self, beta: Floats) -> CurvedModel:
+        """The model with derivatives by place, width and height ratio of some unknowns' LSF."""
         if len(self.profile.shares) == 1:
-            return self.profile
+            rows = self.rows.copy()
+            rows[_PLACE] = -self.step(self.measured.s, beta)[1]
+            return replace(self, rows=rows)
         wider, higher = np.clip(beta[-3:-1], -_MAX_STEP_PX, _MAX_STEP_PX).tolist()
         width_px, ratio = self.profile.positions_px[1], -self.profile.shares[1]
-        return pulse_profile(width_px + wider, ratio + higher)
+        profile = pulse_profile(width_px + wider, ratio + higher)
+        return CurvedModel.about(self.measured, self.blur, profile, self, beta)
 
     def response(self, beta: Floats) -> Floats:
         """The linear image of the unknowns, (n,)."""
-        r = self.design.shape[1]
-        image = self.mean + beta[r:-1] @ self.columns
-        coefficients = self.design @ beta[:r]
-        for cell, basis in self.stencils:
-            image += combine(cell, basis, coefficients)
-        return np.asarray(image)
+        return np.asarray(self.mean + beta[:-1] @ self.rows)
 
 
-def _straightened(value: Floats, c: float) -> Floats:
-    """The linear image of values of curvature c, (n,)."""
-    # Values far beyond the plateaus have no place on the parabola: its vertex stands for them.
-    root = np.sqrt(np.maximum((1 + c) ** 2 - 4 * c * value, 1e-4))
-    return np.asarray(2 * value / (1 + c + root))
+def first_blur(data: CheckData, profile: Profile) -> GaussianPixel:
+    """The Gaussian through a pixel that fits the target best."""
+    if isinstance(data.fit, SplineEdge):
+        return data.fit.blur
+    pixels = data.trimmed.pixels
+    return fit_first(
+        pixels.row, pixels.col, data.value, data.fit.line, dark=0.0, bright=1.0,
+        sigma_px=data.trimmed.width_px, noise=data.noise, profile=profile,
+    ).blur  # fmt: skip
 
 
-class Solved(NamedTuple):
-    """Some unknowns of a model: all their means (0 for the others), and the log evidence."""
+def _slopes(sides: Sides) -> Floats:
+    """A slope and its square on either side, (4, n), each 1 at the farthest pixel."""
+    modes = []
+    for share, outwards in sides:
+        away = np.maximum(outwards, 0.0)
+        away /= max(float(away.max()), 1e-9)
+        modes += [share * away, share * away**2]
+    return np.stack(modes)
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """Some unknowns of a model.
+
+    Attributes
+    ----------
+    beta : (m,) array
+        Their means, 0 for the unknowns left out.
+    last_std : float
+        Standard deviation of the curvature, if it is one of them.
+    log_amplitude : (k,) array
+        Amplitudes of the prior, with which the next solution begins.
+    normal : Normal
+        The equations of the unknowns that are not left out.
+    prior : Prior
+    """
 
     beta: Floats
     last_std: float
-    log_evidence: float
+    log_amplitude: Floats
+    normal: Normal
+    prior: Prior
+
+    @property
+    def log_evidence(self) -> float:
+        """Log evidence of the model, up to what all models of these pixels have in common."""
+        return log_evidence(self.normal, self.prior, self.log_amplitude, 1.0)
 
 
-def solve(normal: Normal, linear: CurvedModel, free: NDArray[np.bool_], c: float) -> Solved:
-    """Solve for the free unknowns, the last being added to c, and the prior's amplitudes."""
+def solve(
+    normal: Normal,
+    linear: CurvedModel,
+    free: NDArray[np.bool_],
+    c: float,
+    earlier: Solved | None = None,
+    most: int = _AMPLITUDE_STEPS,
+) -> Solved:
+    """Solve for the free unknowns, the last being added to c, and the prior's amplitudes.
+
+    Beginning with the amplitudes of an `earlier` solution, at `most` so many Newton steps.
+    """
     mean = np.zeros(free.size)
     mean[-1] = -c
+    amplitudes = [*LOG_AMPLITUDES, TREND_LOG_AMPLITUDE, *[GROUND_LOG_AMPLITUDE] * linear.walks]
     prior = Prior(
         linear.block[free].astype(float), linear.scale[free], mean[free],
-        np.append(LOG_AMPLITUDES, TREND_LOG_AMPLITUDE), LOG_AMPLITUDE_STD, 1.0, NOISE_FLOOR,
+        np.array(amplitudes), LOG_AMPLITUDE_STD, 1.0, NOISE_FLOOR,
     )  # fmt: skip
     some = Normal(
         normal.gram[np.ix_(free, free)], normal.projection[free], normal.data, normal.count
     )
-    log_amplitude = prior.log_amplitude
-    for _ in range(_AMPLITUDE_STEPS):
+    log_amplitude = prior.log_amplitude if earlier is None else earlier.log_amplitude
+    for _ in range(most):
         white = whiten(some, prior, log_amplitude, 1.0)
         step = log_evidence_slopes(white, prior, log_amplitude).step()
         log_amplitude = log_amplitude + step
@@ -198,4 +286,4 @@ def solve(normal: Normal, linear: CurvedModel, free: NDArray[np.bool_], c: float
     beta = np.zeros(free.size)
     beta[free] = white.sigma * white.mean
     last_std = float(white.sigma[-1] * math.sqrt(white.variances[-1]))
-    return Solved(beta, last_std, log_evidence(some, prior, log_amplitude, 1.0))
+    return Solved(beta, last_std, log_amplitude, some, prior)

@@ -34,6 +34,8 @@ from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.curved_model import (
     CURVATURE_STD,
     CurvedModel,
+    MeanProfile,
+    first_blur,
     solve,
 )
 from acutance.targets.straight.fit_edge import SplineEdge
@@ -151,34 +153,33 @@ def _shape(data: CheckData, profile: Profile, *, unequal: bool) -> _Shape | None
     Where the two sides have no `unequal` noise, a curve is looked for only if the first step to it
     is longer than chance.
     """
-    linear = CurvedModel.about(data, profile, 0.0)
+    blur = first_blur(data, profile)
+    measured = MeanProfile.of(data, blur.width_px)
+    linear = CurvedModel.about(measured, blur, profile)
     everything = np.append(np.full(linear.odd.size, True), False)
     no_curve = (
         everything & np.append(~linear.odd, False) if len(profile.shares) == 1 else everything
     )
     curve = np.append(no_curve[:-1], True)
-    weight = data.weights(data.smoothness)
-    u = linear.mean
+    even = solve(linear.normal(linear.mean, 0.0), linear, no_curve, 0.0)
     # A second time about the fitted response, not about that of the first fit.
-    for _ in range(2):
-        normal = linear.normal(weight, u, 0.0)
-        even = solve(normal, linear, no_curve, 0.0)
-        u = linear.response(even.beta)
-        if len(profile.shares) > 1:
-            linear = CurvedModel.about(data, linear.profile_of(even.beta), 0.0, linear, even.beta)
-    curved = solve(linear.normal(weight, u, 0.0), linear, curve, 0.0)
+    linear = linear.renewed(even.beta)
+    normal = linear.normal(linear.mean, 0.0)
+    even = solve(normal, linear, no_curve, 0.0, even)
+    u = linear.response(even.beta)
+    curved = solve(linear.normal(u, 0.0), linear, curve, 0.0, even)
     if abs(curved.beta[-1]) < _MIN_SIGMAS * curved.last_std and not unequal:
         return None
-    odd = solve(normal, linear, everything, 0.0)
+    odd = solve(normal, linear, everything, 0.0, even)
     c = 0.0
     for _ in range(_MAX_STEPS):
         step = float(curved.beta[-1])
         c = min(max(c + min(max(step, -_MAX_STEP), _MAX_STEP), -_MAX_CURVATURE), _MAX_CURVATURE)
         if abs(step) < _SETTLED_SIGMAS * curved.last_std:
             break
-        linear = CurvedModel.about(data, linear.profile_of(curved.beta), c, linear, curved.beta)
-        curved = solve(linear.normal(weight, u, c), linear, curve, c)
         u = linear.response(curved.beta)
+        linear = linear.renewed(curved.beta)
+        curved = solve(linear.normal(u, c), linear, curve, c, curved, most=2)
     if abs(c) >= _MAX_CURVATURE:
         return None
     # A parabola is the second order of a curve: the rest may cost a tenth of what it explains.
@@ -191,7 +192,7 @@ def _shape(data: CheckData, profile: Profile, *, unequal: bool) -> _Shape | None
 def _is_lopsided(data: CheckData) -> bool:
     """Whether an edge shows any c against a Gaussian through a pixel: what it lacks is even.
 
-    The whole comparison takes longer than the measurement, and most edges do not need it.
+    Most edges do not need the whole comparison.
     """
     if not isinstance(data.fit, SplineEdge):
         return True
