@@ -76,7 +76,7 @@ class MeanProfile(NamedTuple):
         _, number = np.unique(number, return_inverse=True)
         total = np.bincount(number, weight)
         mean_s, mean = (np.bincount(number, weight * one) / total for one in (s, data.value))
-        return cls(mean_s, mean, total)
+        return cls(mean_s, mean, np.asarray(total, float))
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,8 +100,8 @@ class CurvedModel:
         Which unknowns make the LSF odd.
     block, scale : (r + q + 1,) arrays
         Of the prior; the last unknown is the curvature.
-    walks : int
-        Number of random walks of the ground.
+    ground : Ground, optional
+        Beside a pulse: where its steps lie does not follow the width, which hardly moves.
     """
 
     measured: MeanProfile
@@ -113,7 +113,7 @@ class CurvedModel:
     odd: NDArray[np.bool_]
     block: NDArray[np.intp]
     scale: Floats
-    walks: int
+    ground: Ground | None
 
     @classmethod
     def about(
@@ -126,17 +126,19 @@ class CurvedModel:
     ) -> CurvedModel:
         """The model of a profile.
 
-        The derivatives by a pulse's width and height ratio are those of an `earlier` solution
-        `beta`, if there is one: they depend on the LSF.
+        The derivatives by a pulse's width and height ratio are those of an `earlier` model's
+        solution `beta`, if there is one: they depend on the LSF.
         """
         s, width = measured.s, blur.width_px
         seen = profile.seen(blur, s)
         sides = profile.sides(seen, s)
         further = [np.ones((1, s.size)), _slopes(sides)]
-        steps, ground = len(profile.shares) - 1, None
+        steps = len(profile.shares) - 1
+        ground = None if earlier is None else earlier.ground
         if steps:
-            beside = [away / width for _, away in sides]
-            ground = Ground.beside_pulse(beside, profile.positions_px[-1] / width)
+            if ground is None:
+                beside = [away / width for _, away in sides]
+                ground = Ground.beside_pulse(beside, profile.positions_px[-1] / width)
             esf, lsf = seen[1]
             if earlier is not None and beta is not None:
                 esf, lsf = earlier.step(profile.distances(s)[1], beta)
@@ -162,10 +164,9 @@ class CurvedModel:
         rows = np.vstack([directions, *further])
         odd = np.zeros(len(rows), bool)
         odd[: lsf_parts.odd.size] = lsf_parts.odd
-        walks = 0 if ground is None else ground.walks
         mean = profile.mean(blur, s)
         return cls(
-            measured, blur, profile, mean, lsf_parts.esf, rows, odd, block, scale, walks
+            measured, blur, profile, mean, lsf_parts.esf, rows, odd, block, scale, ground
         )  # fmt: skip
 
     def normal(self, u: Floats, c: float) -> Normal:
@@ -267,7 +268,8 @@ def solve(
     """
     mean = np.zeros(free.size)
     mean[-1] = -c
-    amplitudes = [*LOG_AMPLITUDES, TREND_LOG_AMPLITUDE, *[GROUND_LOG_AMPLITUDE] * linear.walks]
+    walks = 0 if linear.ground is None else linear.ground.walks
+    amplitudes = [*LOG_AMPLITUDES, TREND_LOG_AMPLITUDE, *[GROUND_LOG_AMPLITUDE] * walks]
     prior = Prior(
         linear.block[free].astype(float), linear.scale[free], mean[free],
         np.array(amplitudes), LOG_AMPLITUDE_STD, 1.0, NOISE_FLOOR,
