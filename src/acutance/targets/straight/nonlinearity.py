@@ -64,11 +64,12 @@ _LOW_ODD_STD: Final = 0.25
 curvature it looks like: .25 is coma of .02 waves rms or a trail of .18 px."""
 _WHITE, _PHOTONS = 0.6, 0.4
 """Of a sensor's noise on the two sides: equal, or growing with the light."""
-_TEXTURE_SNR: Final = 42.0
-"""Contrast over noise at which the noise is as likely the ground's, of any ratio: 15 % at 100."""
+_TEXTURE_SNR: Final = 60.0
+"""Contrast over noise at which the noise is as likely the ground's, of any ratio; its odds fall with
+the fourth power: 97 % at 26, as of paint on grass, 11 % at 100."""
 _NOISE_BEFORE: Final = 0.85
 """Share of curves that the noise goes through; else it is added behind, as by compression."""
-_TEXTURE_STD: Final = 1.0
+_TEXTURE_STD: Final = 1.5
 _NOISE_STD: Final = 0.05
 _GRID: Final[Floats] = np.linspace(-4.0, 4.0, 81)
 
@@ -232,7 +233,7 @@ def _with_noise(data: CheckData, shape: _Shape, ratio: tuple[float, float] | Non
         return Curvature(shape.value, shape.std, odds)
     found, std = ratio
     widest = _most_photons(data.fit.dark, data.fit.bright)
-    texture = 1 / (1 + (1 / (_TEXTURE_SNR * data.noise)) ** 2)
+    texture = 1 / (1 + (1 / (_TEXTURE_SNR * data.noise)) ** 4)
     c = np.clip(shape.value + shape.std * _GRID, -_MAX_CURVATURE, _MAX_CURVATURE)
     through = np.exp(-0.5 * _GRID**2) * _noise_density(
         found - 2 * np.log((1 - c) / (1 + c)), std, widest, texture

@@ -150,12 +150,12 @@ RIM_STD: Final = 0.15
 the edge, as charge trails do (of 93 edges behind a trail 5 are called doubtful, of others none);
 standard deviation of its height, in contrasts."""
 MIN_CONTRAST_SNR: Final = 20.0
-MIN_TRUSTED_SNR: Final = 8.0
+MIN_TRUSTED_SNR: Final = 10.0
 MAX_NOISE_CORRELATION: Final = 0.9
 MAX_OUTLIER_SHARE: Final = 0.03
 """Contrast over the plateaus' variation, correlation and outliers that straight targets may have:
 over 3300 edges of landscapes lower contrast and more correlation come with no more errors
-(benchmarks/verdicts.py), as the intervals allow for both; below an SNR of 8 what is taken for an
+(benchmarks/verdicts.py), as the intervals allow for both; below an SNR of 10 what is taken for an
 edge in decimated scenes and clouds is structure (benchmarks/real_edges.py)."""
 MAX_ANGLE_BY_ROWS_DEG: Final = 30.0
 """Of methods that work row by row (KOMPSAT-3 draft 3d)."""
