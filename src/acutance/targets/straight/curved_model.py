@@ -41,7 +41,7 @@ __all__ = ["CURVATURE_STD", "CurvedModel", "MeanProfile", "Solved", "first_blur"
 
 CURVATURE_STD: Final = 0.3
 """Prior of c: a gamma of 2.2 between 20 and 220 of 255 is .56, 1.3 between 50 and 200 .15."""
-_MAX_STEP_PX: Final = 0.3
+_MAX_STEP_PX, _SETTLED_PX = 0.3, 0.03
 _AMPLITUDE_STEPS: Final = 12
 _SETTLED_AMPLITUDE: Final = 0.15
 _PLACE, _APERTURE = 2, 3
@@ -189,11 +189,18 @@ class CurvedModel:
         return esf, lsf
 
     def renewed(self, beta: Floats) -> CurvedModel:
-        """The model with derivatives by place, width and height ratio of some unknowns' LSF."""
-        if len(self.profile.shares) == 1:
+        """The model about the place, width and height ratio of some unknowns, and their LSF."""
+        moved_px = float(np.clip(beta[_PLACE], -_MAX_STEP_PX, _MAX_STEP_PX))
+        lsf = self.step(self.measured.s, beta)[1]
+        if len(self.profile.shares) == 1 and abs(moved_px) < _SETTLED_PX:
             rows = self.rows.copy()
-            rows[_PLACE] = -self.step(self.measured.s, beta)[1]
+            rows[_PLACE] = -lsf
             return replace(self, rows=rows)
+        measured = self.measured._replace(s=self.measured.s - moved_px)
+        if len(self.profile.shares) == 1:
+            model = CurvedModel.about(measured, self.blur, self.profile)
+            model.rows[_PLACE] = -lsf
+            return model
         wider, higher = np.clip(beta[-3:-1], -_MAX_STEP_PX, _MAX_STEP_PX).tolist()
         width_px, ratio = self.profile.positions_px[1], -self.profile.shares[1]
         profile = pulse_profile(width_px + wider, ratio + higher)
