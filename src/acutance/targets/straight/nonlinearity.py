@@ -65,8 +65,8 @@ curvature it looks like: .25 is coma of .02 waves rms or a trail of .18 px."""
 _WHITE, _PHOTONS = 0.6, 0.4
 """Of a sensor's noise on the two sides: equal, or growing with the light."""
 _TEXTURE_SNR: Final = 60.0
-"""Contrast over noise at which the noise is as likely the ground's, of any ratio; its odds fall with
-the fourth power: 97 % at 26, as of paint on grass, 11 % at 100."""
+"""Contrast over noise at which the noise is as likely the ground's, of any ratio; its odds fall
+with the fourth power: 97 % at 26, as of paint on grass, 11 % at 100."""
 _NOISE_BEFORE: Final = 0.85
 """Share of curves that the noise goes through; else it is added behind, as by compression."""
 _TEXTURE_STD: Final = 1.5
