@@ -47,7 +47,8 @@ _MIN_PARTS, _MAX_PARTS = 4, 12
 _STEEP_SHARE = 0.3
 _BLOCK_PX = 4
 _MAX_OFFSET_PX = 0.15
-_MAX_ASYMMETRY = 0.08
+_MAX_ASYMMETRY, _ANY_ASYMMETRY = 0.08, 0.1
+"""Caution where a deviation of RER is small, and whatever it is."""
 _NOTED_RER_STDS, _MAX_RER_STDS = 0.5, 3.0
 
 
@@ -198,7 +199,7 @@ def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
     return answer(
         "asymmetric_lsf", value, found, limits,
         default=max(limit_of("asymmetric_lsf", {}), _NOTED_RER_STDS * rer_std),
-        caution=max(_MAX_ASYMMETRY, _MAX_RER_STDS * rer_std),
+        caution=min(max(_MAX_ASYMMETRY, _MAX_RER_STDS * rer_std), _ANY_ASYMMETRY),
     )  # fmt: skip
 
 
