@@ -1,7 +1,8 @@
 """Every real edge of a folder of images, with its numbers and its verdict.
 
 The folder and its files are described in its README; images are no part of this project. Each edge
-has a judgement by eye: good, or a trap (rims, a road or a line beside the edge). Regions are 12 to
+has a judgement by eye: good, or a trap (rims, a road or a line beside the edge, or a weak and
+asymmetric border that is too sharp or too soft for its sensor). Regions are 12 to
 20 px wide on either side where the ground allows it. Of scenes without a single good edge (clouds,
 decimated or averaged products), the strongest edge of every box of a grid is measured.
 """
@@ -78,7 +79,7 @@ EDGES = [
     *(RealEdge(S2_10M, (255, 504.5, 242.6, 463.3), 12, band) for band in (1, 2, 3, 4)),
     RealEdge(S2_10M, (282.8, 451, 271.8, 414.4), 12, 4),
     RealEdge(S2_10M, (475.3, 1.3, 440.6, 15.3), 12, 4),
-    RealEdge(S2_10M, (114.4, 190.6, 125.4, 157.7), 6, 4),
+    RealEdge(S2_10M, (114.4, 190.6, 125.4, 157.7), 6, 4, good=False),
     RealEdge(S2_10M, (145.3, 250.5, 125.7, 245.5), 12, 3),
     RealEdge(S2_20M, (126.5, 249.4, 121.6, 233.3), 10, 4),
     RealEdge(S2_20M, (205.1, 121.8, 219.5, 114.9), 10, 4),
@@ -93,8 +94,8 @@ EDGES = [
     RealEdge(MEMPHIS, (916, 570.4, 915.3, 554.7), 12),
     RealEdge(MATO_GROSSO, (168.3, 144.8, 148.4, 122.2), 12, good=False),
     RealEdge(MATO_GROSSO, (164.8, 99.3, 192.1, 121.2), 12),
-    RealEdge(MATO_GROSSO, (97.8, 137.7, 79.4, 114), 12),
-    RealEdge(MATO_GROSSO, (37.9, 75.1, 29.2, 69.9), 12),
+    RealEdge(MATO_GROSSO, (97.8, 137.7, 79.4, 114), 12, good=False),
+    RealEdge(MATO_GROSSO, (37.9, 75.1, 29.2, 69.9), 12, good=False),
     RealEdge(RUNWAY_04, (110.1, 61.7, 247.4, 101.6), 14, 2),
     RealEdge(RUNWAY_04, (102.7, 92.2, 240.8, 132.5), 14, 2),
     RealEdge(RUNWAY_04, (81.4, 160, 219, 199.4), 14, 2),

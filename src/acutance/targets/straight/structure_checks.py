@@ -16,6 +16,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.targets.check import Check, Limits, answer, bounded_ratio, limit_of
 from acutance.targets.straight.check_data import PLACES, CheckData
+from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.tuned import (
     REPEATED_SIGMAS,
     STRUCTURE_OUTLIER_SIGMAS,
@@ -49,6 +50,9 @@ _BLOCK_PX = 4
 _MAX_OFFSET_PX = 0.15
 _MAX_ASYMMETRY, _ANY_ASYMMETRY = 0.08, 0.1
 """Caution where a deviation of RER is small, and whatever it is."""
+_TEXTURED, _TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS = 3.0, 0.015, 1.0
+"""Noise power along the normal over that of white noise from which on it is the ground's texture
+(resampled products have 1 to 2.5), and the limits there."""
 _NOTED_RER_STDS, _MAX_RER_STDS = 0.5, 3.0
 
 
@@ -191,15 +195,20 @@ def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
 
     The middle is where the ESF is the most symmetric. Light of a lens, a detector and a kernel is
     symmetric along most directions; a strip of the ground along the border that is narrower than
-    the blur is not, and it moves the relative edge response (RER) about as much.
+    the blur is not, and it moves the relative edge response (RER) about as much. On textured ground
+    such strips are more frequent than sensors with charge trails.
     """
     value = asymmetry(data)
     rer_std = min(data.fit.response.rer.std, 1.0)
+    if isinstance(data.fit, SplineEdge) and data.fit.correlation.inflation > _TEXTURED:
+        caution = max(_TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS * rer_std)
+    else:
+        caution = max(_MAX_ASYMMETRY, _MAX_RER_STDS * rer_std)
     found = f"the ESF is asymmetric about its middle by {100 * value:.1f} % of the contrast"
     return answer(
         "asymmetric_lsf", value, found, limits,
         default=max(limit_of("asymmetric_lsf", {}), _NOTED_RER_STDS * rer_std),
-        caution=min(max(_MAX_ASYMMETRY, _MAX_RER_STDS * rer_std), _ANY_ASYMMETRY),
+        caution=min(caution, _ANY_ASYMMETRY),
     )  # fmt: skip
 
 
