@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -41,7 +42,7 @@ __all__ = ["CURVATURE_STD", "CurvedModel", "MeanProfile", "Solved", "first_blur"
 
 CURVATURE_STD: Final = 0.3
 """Prior of c: a gamma of 2.2 between 20 and 220 of 255 is .56, 1.3 between 50 and 200 .15."""
-_MAX_STEP_PX, _SETTLED_PX = 0.3, 0.03
+_MAX_STEP_PX, _SETTLED_PX = 0.3, 0.08
 _AMPLITUDE_STEPS: Final = 12
 _SETTLED_AMPLITUDE: Final = 0.15
 _PLACE, _APERTURE = 2, 3
@@ -255,7 +256,7 @@ class Solved:
     normal: Normal
     prior: Prior
 
-    @property
+    @cached_property
     def log_evidence(self) -> float:
         """Log evidence of the model, up to what all models of these pixels have in common."""
         return log_evidence(self.normal, self.prior, self.log_amplitude, 1.0)
