@@ -31,7 +31,7 @@ def worst(found, truth):
 def test_without_noise_both_slices_are_the_truth(name):
     image, truth = image_of(ac.simulate.reference_systems()[name])
     found = ac.measure_points(image, positions=truth.positions)
-    assert worst(found, truth) < (1e-4 if name == "gaussian" else 0.01)
+    assert worst(found, truth) < (1e-4 if name == "gaussian" else 0.015)
 
 
 def test_the_lsf_is_the_integral_of_a_leaning_psf_and_not_its_slice():

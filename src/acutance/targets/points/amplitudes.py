@@ -36,20 +36,19 @@ __all__ = [
     "posterior_log_evidence",
 ]
 
-# Places in SHAPE, DETAIL, HALO, TAIL, APERTURE, WINGS, AIRY.
-_HALO, _TAIL = 2, 3
+_HALO = list(tuned.FAMILY_LOG_AMPLITUDES).index("halo")
 _MIN_WEIGHT: Final = 0.003
 
 
 def likelier_posterior(
     normal: Normal, prior: Prior, variance: float, inflation: float, earlier: Posterior | None
 ) -> Posterior:
-    """The likelier one of two modes: that near an `earlier` one, and that with light far out.
+    """The likeliest one of some modes: that near an `earlier` one, and those of other starts.
 
     The parameters are those of `acutance.numerics.marginal_likelihood.regress`.
     """
-    starts = [_from(prior, variance, tuned.LIGHT_FAR_OUT), earlier]
-    found = [regress(normal, prior, variance, inflation, start) for start in starts]
+    starts = [_from(prior, variance, one) for one in tuned.LOG_AMPLITUDE_STARTS]
+    found = [regress(normal, prior, variance, inflation, start) for start in [*starts, earlier]]
     return max(found, key=lambda one: posterior_log_evidence(normal, prior, one, inflation))
 
 
@@ -80,8 +79,7 @@ def averaged_posterior(
     """
     noise = likeliest.variance * inflation
     mode = likeliest.log_amplitude
-    points = [mode, *(_at(mode, _HALO, _TAIL, a) for a in tuned.AMPLITUDE_GRID)]
-    points += [_at(mode, _TAIL, _HALO, a) for a in tuned.AMPLITUDE_GRID]
+    points = [mode, *(_at(mode, a) for a in tuned.HALO_GRID)]
     likelihood = np.array([log_evidence(normal, prior, point, noise) for point in points])
     weights = np.exp(likelihood - likelihood.max())
     weights[weights < _MIN_WEIGHT * weights.sum()] = 0.0
@@ -108,7 +106,7 @@ def averaged_posterior(
 
 def _share_of_others(normal: Normal, prior: Prior, mode: Floats, noise: float) -> Floats:
     """Factor of what the amplitudes but HALO's and TAIL's leave open, those held, (m, k - 2)."""
-    others = np.setdiff1d(np.arange(mode.size), [_HALO, _TAIL])
+    others = np.delete(np.arange(mode.size), _HALO)
     white = whiten(normal, prior, mode, noise)
     found = log_evidence_slopes(white, prior, mode)
     curvature, axes = np.linalg.eigh(-found.hessian[np.ix_(others, others)])
@@ -178,11 +176,10 @@ def likeliest_growth(
     return float(ratios[int(place)] * math.exp(step * shift)) / brightest
 
 
-def _at(mode: Floats, varied: int, other: int, log_amplitude: float) -> Floats:
-    """The mode with one amplitude of the wings set, and the other one small."""
+def _at(mode: Floats, log_amplitude: float) -> Floats:
+    """The mode with another amplitude of the halos."""
     point = mode.copy()
-    point[varied] = log_amplitude
-    point[other] = min(float(mode[other]), tuned.SMALL_LOG_AMPLITUDE)
+    point[_HALO] = log_amplitude
     return point
 
 
