@@ -28,7 +28,7 @@ PARITIES: Final[tuple[Parities, ...]] = ((1, 1), (-1, 1), (-1, -1))
 
 @dataclass(frozen=True, eq=False)
 class _Group:
-    """Directions of one family and one parity: quadrants of coefficients a grid, and tails."""
+    """Directions of one parity: quadrants of coefficients a grid, and tails."""
 
     across: Parity
     along: Parity
@@ -56,7 +56,7 @@ class Families:
     Parameters
     ----------
     groups : tuple
-        Directions by family and parity.
+        Directions by parity.
     block : (r,) int array
         Number of the family of every direction.
     """
@@ -116,14 +116,14 @@ def learned_families() -> Families:
     """The families as they were learned."""
     path = files("acutance.targets.points").joinpath("psf_families.npz")
     groups: list[_Group] = []
-    block: list[int] = []
+    block: list[NDArray[np.intp]] = []
     with path.open("rb") as file, np.load(file, allow_pickle=False) as learned:
-        for number, family in enumerate(FAMILY_LOG_AMPLITUDES):
-            for parities in PARITIES:
-                own = _groups_of(learned[entry_name(family, *parities)], *parities)
-                groups += own
-                block += [number] * sum(one.tail.size for one in own)
-    return Families(tuple(groups), np.array(block))
+        for parities in PARITIES:
+            rows = [learned[entry_name(family, *parities)] for family in FAMILY_LOG_AMPLITUDES]
+            own = _groups_of(np.vstack(rows), *parities)
+            groups += own
+            block += len(own) * [np.repeat(np.arange(len(rows)), [len(one) for one in rows])]
+    return Families(tuple(groups), np.concatenate(block))
 
 
 def _groups_of(directions: Floats, across: Parity, along: Parity) -> list[_Group]:
