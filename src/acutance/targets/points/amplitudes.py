@@ -2,8 +2,7 @@
 
 The marginal likelihood can have several modes: the same pixels may show the wings of an aperture,
 or none and a more crooked core. While the sources still move, the likeliest mode is followed; at
-the end the amplitudes of the wings are integrated over, so that what is not seen enters the
-uncertainty.
+the end the amplitude of halos is integrated over, so that what is not seen enters the uncertainty.
 """
 
 from __future__ import annotations
@@ -64,11 +63,11 @@ def posterior_log_evidence(
 def averaged_posterior(
     normal: Normal, prior: Prior, inflation: float, likeliest: Posterior
 ) -> Posterior:
-    """The posterior with the amplitudes of HALO and TAIL integrated over.
+    """The posterior with the amplitude of halos integrated over.
 
-    At the likeliest amplitudes alone, wings that the data neither show nor exclude would be taken
-    for absent. Either amplitude runs over a grid, each point weighted by its likelihood; what the
-    other amplitudes leave open enters to first order, those two held: the grid has their share.
+    At the likeliest amplitude alone, halos that the data neither show nor exclude would be taken
+    for absent. It runs over a grid, each point weighted by its likelihood; what the other
+    amplitudes leave open enters to first order, that one held: the grid has its share.
 
     Parameters
     ----------
@@ -105,7 +104,7 @@ def averaged_posterior(
 
 
 def _share_of_others(normal: Normal, prior: Prior, mode: Floats, noise: float) -> Floats:
-    """Factor of what the amplitudes but HALO's and TAIL's leave open, those held, (m, k - 2)."""
+    """Factor of what the amplitudes but that of halos leave open, it held, (m, k - 1)."""
     others = np.delete(np.arange(mode.size), _HALO)
     white = whiten(normal, prior, mode, noise)
     found = log_evidence_slopes(white, prior, mode)
