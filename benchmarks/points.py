@@ -6,7 +6,9 @@ Example: python benchmarks/points.py --draws 500 --processes 2
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from trials import METRICS, command, publish, table, work_through
@@ -16,13 +18,17 @@ import acutance as ac
 SNR = 80.0
 POSITION_SNR = 50.0
 GAUSSIANS = (0.35, 0.45, 0.6)
+FAMILY_SNRS = (80.0, 200.0)
 BAR = tuple(f"gaussian {sigma:g}" for sigma in GAUSSIANS)
 METHODS = ("psf-fit", "gaussian-2003")
 
 
 @dataclass(frozen=True)
 class Job:
-    """One image of 20 mirrors: a system, a method, an SNR and a seed (or a noise-free case)."""
+    """One image of 20 mirrors: a system, a method, an SNR and a seed (or a noise-free case).
+
+    The system is one of `systems`, or one of `families`: then the sensor is drawn by the seed.
+    """
 
     system: str
     snr: float | None = None
@@ -35,6 +41,23 @@ def systems() -> dict[str, ac.Sensor]:
     pixel = ac.optics.Detector()
     named = {f"gaussian {s:g}": ac.Sensor([ac.optics.Gaussian(s), pixel]) for s in GAUSSIANS}
     return named | ac.simulate.reference_systems()
+
+
+def _halo_of_five_percent(rng: np.random.Generator) -> ac.Sensor:
+    optics = ac.optics.Gaussian(rng.uniform(0.3, 0.5))
+    return ac.Sensor([optics, ac.optics.Halo(0.05, rng.uniform(1.5, 4.0)), ac.optics.Detector()])
+
+
+def _mtfc_product(rng: np.random.Generator) -> ac.Sensor:
+    optics = ac.optics.Gaussian(rng.uniform(0.4, 0.6))
+    kernel = ac.optics.Sharpening.both_axes(rng.uniform(0.1, 0.5))
+    return ac.Sensor([optics, ac.optics.Detector(), kernel])
+
+
+def families() -> dict[str, Callable[[np.random.Generator], ac.Sensor]]:
+    """The families of sensors, a halo of 5 % and products sharpened by 3 taps: how to draw one."""
+    drawn = {name: partial(ac.optics.draw_sensor, name) for name in ac.optics.FAMILIES}
+    return drawn | {"halo of 5 %": _halo_of_five_percent, "MTFC product": _mtfc_product}
 
 
 def exact_error(job: Job) -> tuple[float, float, float]:
@@ -52,10 +75,13 @@ def exact_error(job: Job) -> tuple[float, float, float]:
     return tuple(np.max(errors, axis=0).tolist())
 
 
-def noisy_errors(job: Job) -> tuple[list[tuple[float, float]], np.ndarray, np.ndarray] | None:
-    """Error and stated deviation of every metric in both directions, and of the places."""
+def noisy_errors(
+    job: Job,
+) -> tuple[list[tuple[float, float]], np.ndarray, np.ndarray, str] | None:
+    """Error and stated deviation of every metric in both directions and of the places; verdict."""
     rng = np.random.default_rng(job.seed)
-    sensor = systems()[job.system]
+    drawn = families().get(job.system)
+    sensor = systems()[job.system] if drawn is None else drawn(rng)
     layout = ac.simulate.mirror_columns((12.0, 12.0)) + rng.uniform(0, 1, (1, 2))
     image, truth = ac.simulate.points(sensor, positions=layout, snr=job.snr, rng=rng)
     try:
@@ -71,7 +97,7 @@ def noisy_errors(job: Job) -> tuple[list[tuple[float, float]], np.ndarray, np.nd
     nearest = np.argmin(np.hypot(*(found.positions[:, None] - layout).T), axis=0)
     places = found.positions - layout[nearest]
     std = np.array([(one.row.std, one.col.std) for one in found.sources])
-    return pairs, places - places.mean(axis=0), std
+    return pairs, places - places.mean(axis=0), std, found.verdict.word
 
 
 def main() -> None:
@@ -82,6 +108,7 @@ def main() -> None:
         "20 mirrors in two columns (steps of 1.25 by 10.2 px), positions given to a pixel.",
         _exact(names, arguments.processes),
         *_coverage(names, arguments),
+        _families(arguments),
         _published(names, arguments),
         _speed(),
     ]
@@ -147,6 +174,54 @@ def _coverage(names: list[str], arguments) -> list[str]:
         + table(("system", "RMS x SNR", "coverage", "rejected / %"), places),
         _positions(arguments),
     ]
+
+
+def _families(arguments) -> str:
+    draws = max(arguments.draws // 4, 2)
+    jobs = [
+        Job(name, snr, (arguments.seed, 55, i, j))
+        for i, name in enumerate(families())
+        for snr in FAMILY_SNRS
+        for j in range(draws)
+    ]
+    found = work_through(noisy_errors, jobs, arguments.processes, "families")
+    rows, pooled = [], []
+    for name in families():
+        for snr in FAMILY_SNRS:
+            own = [
+                e
+                for job, e in zip(jobs, found, strict=True)
+                if (job.system, job.snr) == (name, snr)
+            ]
+            kept = [e for e in own if e is not None]
+            pairs = np.array([e[0] for e in kept]).reshape(-1, len(METRICS), 2)
+            held = np.mean(np.abs(pairs[..., 0]) < 1.96 * pairs[..., 1], axis=0)
+            pooled.append(held)
+            good = np.mean([e[3] == "good" for e in kept])
+            rows.append(
+                (
+                    name,
+                    f"{snr:g}",
+                    str(len(kept)),
+                    *(f"{100 * h:.1f}" for h in held),
+                    *(f"{np.sqrt(np.mean(pairs[:, k, 0] ** 2)):.4f}" for k in range(len(METRICS))),
+                    f"{100 * good:.0f}",
+                )
+            )
+    held = (f"{100 * h:.1f}" for h in np.mean(pooled, axis=0))
+    rows.append(("**mean of all rows**", "", "", *held, *[""] * (len(METRICS) + 1)))
+    head = (
+        "sensors drawn from",
+        "SNR",
+        "draws",
+        *METRICS,
+        *(f"RMS {m}" for m in METRICS),
+        "good / %",
+    )
+    return (
+        "## Families of sensors: coverage of the 95 % intervals in per cent, both directions\n\n"
+        + table(head, rows)
+    )
 
 
 def _positions(arguments) -> str:

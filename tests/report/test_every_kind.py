@@ -3,6 +3,7 @@
 import html
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from acutance.report import (
     csv,
     document,
     draw,
+    figure_bytes,
     json_text,
     measurement_schema,
     notebook_html,
@@ -132,3 +134,10 @@ def test_every_parameter_of_a_combined_sensor_has_its_words():
     found = [name for form in forms for name in form.numbers(form.mean)]
     assert len(found) >= len(TERMS)
     assert set(found) == set(PARAMETERS)
+
+
+def test_a_source_darker_than_its_ground_is_drawn():
+    measured = mirrors()
+    first = replace(measured.sources[0], peak=-measured.sources[0].peak)
+    odd = replace(measured, sources=(first, *measured.sources[1:]))
+    figure_bytes(draw(odd), ".png")

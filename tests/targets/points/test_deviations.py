@@ -61,8 +61,11 @@ def test_errors_are_as_large_as_stated(errors, name, low, high):
 
 
 def test_places_are_as_exact_as_light_allows(errors):
-    """No method places a well sampled source of this width better than 0.80 / SNR px."""
-    assert 0.9 < np.std(errors["place_px"]) * SNR / 0.80 < 1.2
+    """No method places a well sampled source of this width better than 0.80 / SNR px.
+
+    All six together may lie a little off: a trail that is not seen would shift them.
+    """
+    assert 0.9 < np.std(errors["place_px"]) * SNR / 0.80 < 1.3
 
 
 def test_intervals_hold(errors):
@@ -70,10 +73,39 @@ def test_intervals_hold(errors):
     assert 0.92 < np.mean(np.abs(errors["place"]) < 1.96) < 0.98
 
 
+def test_intervals_hold_over_the_families_of_sensors():
+    """Two sensors of every family and of halos of 5 %: a prior without them is off twice as far."""
+    z = []
+    for number, family in enumerate([*ac.optics.FAMILIES, "halo 5 %"]):
+        for draw in range(2):
+            rng = np.random.default_rng([8, number, draw])
+            if family in ac.optics.FAMILIES:
+                sensor = ac.optics.draw_sensor(family, rng)
+            else:
+                halo = ac.optics.Halo(0.05, rng.uniform(1.5, 4.0))
+                sensor = ac.Sensor([ac.optics.Gaussian(0.4), halo, ac.optics.Detector()])
+            layout = ac.simulate.mirror_columns((12.0, 12.0)) + rng.uniform(0, 1, (1, 2))
+            image, truth = ac.simulate.points(sensor, positions=layout, snr=100.0, rng=rng)
+            found = ac.measure_points(image, positions=layout)
+            assert found.verdict.word == "good"
+            for name in ("across", "along"):
+                response, true = getattr(found, name), truth.response(name)
+                for seen, wanted in (
+                    (response.mtf_nyquist, true.mtf_nyquist),
+                    (response.mtf(0.25), true.mtf(0.25)),
+                    (response.rer, true.rer),
+                    (response.fwhm_px, true.fwhm_px),
+                ):
+                    z.append((seen.value - wanted.value) / seen.std)
+    assert np.mean(np.abs(z) < 1.96) > 0.9
+    assert 0.5 < np.sqrt(np.mean(np.square(z))) < 1.25
+
+
 def test_amplitudes_at_their_prior_mean_change_the_mtf_by_per_mille():
-    """The MTF at 0.25 c/px by SHAPE, DETAIL, HALO, TAIL, APERTURE, WINGS and AIRY."""
+    """The MTF at 0.25 c/px by the seven families, SHAPE, DETAIL and TAIL."""
     directions = PsfDirections(GaussianPixel2d(0.2, 0.0, 0.2))
     change = np.abs(directions.transform(np.array([0.25]), np.zeros(1))[0]) * directions.scale
-    power = [np.sum(change[directions.block == block] ** 2) for block in range(7)]
+    blocks = range(tuned.LOG_AMPLITUDE.size)
+    power = [np.sum(change[directions.block == block] ** 2) for block in blocks]
     found = 1000 * np.exp(tuned.LOG_AMPLITUDE) * np.sqrt(power)
-    assert found == pytest.approx([5.8, 6.8, 10.4, 0.42, 5.9, 2.7, 4.4], rel=0.4)
+    assert found == pytest.approx([24.0, 7.9, 1.0, 0.18, 2.0, 4.0, 0.76, 5.7, 2.2, 0.26], rel=0.2)

@@ -9,6 +9,9 @@ import pytest
 
 import acutance as ac
 from acutance.targets.points import PointsOptions
+from acutance.targets.points.first_fit import fit_first_gaussian
+from acutance.targets.points.fit import fit_points
+from acutance.targets.points.stamps import cut_stamps
 
 STARS = Path(__file__).parents[4] / "shared" / "data" / "15_tetra3_stars.tif"
 PIXEL = ac.optics.Detector()
@@ -31,7 +34,7 @@ def worst(found, truth):
 def test_without_noise_both_slices_are_the_truth(name):
     image, truth = image_of(ac.simulate.reference_systems()[name])
     found = ac.measure_points(image, positions=truth.positions)
-    assert worst(found, truth) < (1e-4 if name == "gaussian" else 0.01)
+    assert worst(found, truth) < (1e-4 if name == "gaussian" else 0.015)
 
 
 def test_the_lsf_is_the_integral_of_a_leaning_psf_and_not_its_slice():
@@ -181,3 +184,17 @@ def test_the_spokes_of_a_star_are_refused_as_points_in_words():
         ac.measure_points(image)
     # The published Gaussian knows no better, but what it leaves out is no traceback.
     assert ac.measure_points(image, method="gaussian-2003").failed_checks
+
+
+def test_a_psf_without_light_at_its_centre_is_refused():
+    """Rings around dark middles: the one PSF that explains them is no sensor's."""
+    places = np.array([[20.0, 20.0], [20.4, 45.3], [45.2, 20.7], [45.6, 45.1]])
+    row, col = np.indices((66, 66))
+    image = np.full((66, 66), 100.0)
+    for down, right in places:
+        far = np.hypot(row - down, col - right)
+        image += 900 * np.exp(-0.5 * ((far - 4) / 1.2) ** 2) - 800 * np.exp(-0.5 * far**2)
+    image += np.random.default_rng(1).normal(size=image.shape)
+    stamps = cut_stamps(image, places, 11.0)
+    with pytest.raises(np.linalg.LinAlgError, match="no light at its centre"):
+        fit_points(stamps, fit_first_gaussian(stamps, places))

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
-from acutance.targets.points.airy import Airy
 from acutance.targets.points.psf import PsfModel
 from acutance.targets.points.psf_prior import PsfDirections
 
@@ -51,11 +50,14 @@ def test_every_direction_is_the_transform_it_says():
     grid = np.arange(-20, 20, 0.2)
     x, y = (part.ravel() for part in np.meshgrid(grid, grid))
     columns = directions.evaluate(x, y)
-    processes = (directions.block >= 0) & (directions.block <= 2)
+    endless = np.zeros(directions.size, bool)
+    endless[-1] = True
+    endless[5:][: directions.families.tail.size] = directions.families.tail != 0
     for u, v in ((0.0, 0.0), (0.3, 0.2), (-0.5, 0.1)):
         sums = np.exp(-2j * np.pi * (u * x + v * y)) @ columns * 0.04
         transform = directions.transform(np.array([u]), np.array([v]))[0]
-        assert np.abs(sums - transform)[processes | (directions.block < 0)].max() < 1e-8
+        # Sums over cubic splines are exact but for the steps of their third derivatives.
+        assert np.abs(sums - transform)[~endless].max() < 2e-4
         # What falls like 1 / r^3 goes on beyond the square.
         assert np.abs(sums - transform).max() < 0.07
 
@@ -94,18 +96,7 @@ def test_the_otf_is_one_at_zero_and_knows_it():
     assert model.otf(u, v)[0] == 1
     assert not model.factor(u, v)[0].any()
     change = 1e-6
-    moved = PsfModel(directions, model.weights + change * model.latent[:, 40], model.latent)
+    moved = PsfModel(directions, model.weights + change * model.latent[:, 1], model.latent)
     assert (moved.otf(u, v) - model.otf(u, v))[1] / change == pytest.approx(
-        model.factor(u, v)[1, 40], rel=1e-4
+        model.factor(u, v)[1, 1], rel=1e-4
     )
-
-
-@pytest.mark.parametrize("hole", [0.0, 0.33])
-def test_the_airy_pattern_is_the_apertures(hole):
-    airy = Airy(1.2, hole)
-    grid = np.arange(-40, 40, 0.25)
-    x, y = (part.ravel() for part in np.meshgrid(grid, grid))
-    psf = airy.psf(x, y)
-    u = 0.3
-    sums = float(psf @ np.cos(2 * np.pi * u * x)) * 0.0625
-    assert sums == pytest.approx(airy.otf(np.array([u]), np.zeros(1))[0], abs=5e-4)

@@ -225,9 +225,12 @@ def _draw_gallery(page: FigureBase, measurement: PointsMeasurement) -> None:
 
 
 def _draw_stamp(axes: Axes, one: PointSource, stamp: SourceStamp, number: int) -> None:
+    # What is darker than its ground was no source, but it is shown all the same.
+    ground, height = one.background.value, abs(one.peak)
     axes.imshow(
         stamp.pixels, cmap="gray", interpolation="nearest",
-        vmin=one.background.value - 0.1 * one.peak, vmax=one.background.value + one.peak,
+        vmin=ground - (0.1 if one.peak > 0 else 1.0) * height,
+        vmax=ground + (1.0 if one.peak > 0 else 0.1) * height,
     )  # fmt: skip
     down, right = one.row.value - stamp.origin[0], one.col.value - stamp.origin[1]
     axes.plot(right, down, "+", color=ORANGE, markersize=7, markeredgewidth=1.0)

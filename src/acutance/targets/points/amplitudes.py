@@ -2,8 +2,7 @@
 
 The marginal likelihood can have several modes: the same pixels may show the wings of an aperture,
 or none and a more crooked core. While the sources still move, the likeliest mode is followed; at
-the end the amplitudes of the wings are integrated over, so that what is not seen enters the
-uncertainty.
+the end the amplitude of halos is integrated over, so that what is not seen enters the uncertainty.
 """
 
 from __future__ import annotations
@@ -36,20 +35,19 @@ __all__ = [
     "posterior_log_evidence",
 ]
 
-# Places in SHAPE, DETAIL, HALO, TAIL, APERTURE, WINGS, AIRY.
-_HALO, _TAIL = 2, 3
+_HALO = list(tuned.FAMILY_LOG_AMPLITUDES).index("halo")
 _MIN_WEIGHT: Final = 0.003
 
 
 def likelier_posterior(
     normal: Normal, prior: Prior, variance: float, inflation: float, earlier: Posterior | None
 ) -> Posterior:
-    """The likelier one of two modes: that near an `earlier` one, and that with light far out.
+    """The likeliest one of some modes: that near an `earlier` one, and those of other starts.
 
     The parameters are those of `acutance.numerics.marginal_likelihood.regress`.
     """
-    starts = [_from(prior, variance, tuned.LIGHT_FAR_OUT), earlier]
-    found = [regress(normal, prior, variance, inflation, start) for start in starts]
+    starts = [_from(prior, variance, one) for one in tuned.LOG_AMPLITUDE_STARTS]
+    found = [regress(normal, prior, variance, inflation, start) for start in [*starts, earlier]]
     return max(found, key=lambda one: posterior_log_evidence(normal, prior, one, inflation))
 
 
@@ -65,11 +63,11 @@ def posterior_log_evidence(
 def averaged_posterior(
     normal: Normal, prior: Prior, inflation: float, likeliest: Posterior
 ) -> Posterior:
-    """The posterior with the amplitudes of HALO and TAIL integrated over.
+    """The posterior with the amplitude of halos integrated over.
 
-    At the likeliest amplitudes alone, wings that the data neither show nor exclude would be taken
-    for absent. Either amplitude runs over a grid, each point weighted by its likelihood; what the
-    other amplitudes leave open enters to first order, those two held: the grid has their share.
+    At the likeliest amplitude alone, halos that the data neither show nor exclude would be taken
+    for absent. It runs over a grid, each point weighted by its likelihood; what the other
+    amplitudes leave open enters to first order, that one held: the grid has its share.
 
     Parameters
     ----------
@@ -80,8 +78,7 @@ def averaged_posterior(
     """
     noise = likeliest.variance * inflation
     mode = likeliest.log_amplitude
-    points = [mode, *(_at(mode, _HALO, _TAIL, a) for a in tuned.AMPLITUDE_GRID)]
-    points += [_at(mode, _TAIL, _HALO, a) for a in tuned.AMPLITUDE_GRID]
+    points = [mode, *(_at(mode, a) for a in tuned.HALO_GRID)]
     likelihood = np.array([log_evidence(normal, prior, point, noise) for point in points])
     weights = np.exp(likelihood - likelihood.max())
     weights[weights < _MIN_WEIGHT * weights.sum()] = 0.0
@@ -107,8 +104,8 @@ def averaged_posterior(
 
 
 def _share_of_others(normal: Normal, prior: Prior, mode: Floats, noise: float) -> Floats:
-    """Factor of what the amplitudes but HALO's and TAIL's leave open, those held, (m, k - 2)."""
-    others = np.setdiff1d(np.arange(mode.size), [_HALO, _TAIL])
+    """Factor of what the amplitudes but that of halos leave open, it held, (m, k - 1)."""
+    others = np.delete(np.arange(mode.size), _HALO)
     white = whiten(normal, prior, mode, noise)
     found = log_evidence_slopes(white, prior, mode)
     curvature, axes = np.linalg.eigh(-found.hessian[np.ix_(others, others)])
@@ -178,11 +175,10 @@ def likeliest_growth(
     return float(ratios[int(place)] * math.exp(step * shift)) / brightest
 
 
-def _at(mode: Floats, varied: int, other: int, log_amplitude: float) -> Floats:
-    """The mode with one amplitude of the wings set, and the other one small."""
+def _at(mode: Floats, log_amplitude: float) -> Floats:
+    """The mode with another amplitude of the halos."""
     point = mode.copy()
-    point[varied] = log_amplitude
-    point[other] = min(float(mode[other]), tuned.SMALL_LOG_AMPLITUDE)
+    point[_HALO] = log_amplitude
     return point
 
 

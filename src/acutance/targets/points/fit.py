@@ -26,7 +26,7 @@ from acutance.targets.points.amplitudes import (
 from acutance.targets.points.background import Background
 from acutance.targets.points.first_fit import FirstFit, own_columns
 from acutance.targets.points.noise import PointNoise, noise_around, noise_grows
-from acutance.targets.points.pads import Pads, log_evidence_of_pads, pads_image
+from acutance.targets.points.pads import Pads, PadsFound, find_pads, pads_image
 from acutance.targets.points.per_source import Blocks, SourceProblem
 from acutance.targets.points.psf import PsfModel
 from acutance.targets.points.psf_prior import PsfDirections
@@ -123,44 +123,46 @@ def fit_points(stamps: Stamps, first: FirstFit, *, robust: bool = True) -> Point
 
     Notes
     -----
-    Where no PSF explains the pixels, numpy's ``LinAlgError`` of the normal equations is raised.
+    Where no PSF explains the pixels, numpy's ``LinAlgError`` is raised: of the normal equations, or
+    because the PSF found has no light in all, or none at its centre.
     """
     background = Background.of(stamps, first)
     state = _first_state(stamps, first)
     settled = _settle(stamps, first, state, background, robust)
-    side_px = _likely_pads(stamps, first, background, *settled)
-    if side_px is not None:
-        image = pads_image(stamps, settled[0].places, first.blur, side_px)
+    pads = _pads_beside(stamps, first, *settled)
+    if pads is not None and pads.sure:
+        image = pads_image(stamps, settled[0].places, first.blur, pads.side_px)
         background = background.with_pads(image, _pad_contrast(first))
         settled = _settle(stamps, first, state, background, robust)
-    state, blocks, prior, posterior, noise = settled
+    state, _, blocks, prior, posterior, noise = settled
     posterior = averaged_posterior(blocks.normal, prior, noise.correlation.inflation, posterior)
+    if pads is not None and not pads.sure:
+        posterior = pads.averaged(posterior)
     state = _updated(stamps, state, background, blocks, posterior)
     fit = _points_fit(stamps, state, background, blocks, posterior, noise)
-    return fit if side_px is None else replace(fit, pads=Pads.of(side_px, posterior))
+    if not (fit.model.volume > 0 and (fit.peaks > 0).all()):
+        raise np.linalg.LinAlgError("the point spread function has no light at its centre")
+    if pads is None or not pads.likely:
+        return fit
+    return replace(fit, pads=Pads.of(pads.side_px, posterior if pads.sure else pads.posterior))
 
 
-def _likely_pads(
+def _pads_beside(
     stamps: Stamps,
     first: FirstFit,
-    background: Background,
     state: _State,
+    problem: SourceProblem,
     blocks: Blocks,
     prior: Prior,
     posterior: Posterior,
     noise: PointNoise,
-) -> float | None:
-    """The side of pads that make the pixels likelier, if there is one.
-
-    A square of two pixels is hardly a pad: what it explains, a PSF that the prior does not foresee
-    explains as well. Pads have to be likelier than that, too.
-    """
+) -> PadsFound | None:
+    """Pads under the sources, where the noise and the number of these allow to see them."""
     contrast_std = _pad_contrast(first)
     quiet = posterior.variance < (contrast_std * tuned.PAD_MIN_NOISE) ** 2
     if quiet or blocks.own_data.shape[0] < tuned.MIN_TIED_SOURCES:
         return None
-    problem = _linear_problem(stamps, state, background, math.sqrt(posterior.variance))
-    gains = log_evidence_of_pads(
+    return find_pads(
         problem,
         [
             pads_image(stamps, state.places, state.model.blur, one)
@@ -172,9 +174,6 @@ def _likely_pads(
         posterior,
         noise.correlation.inflation,
     )
-    best = int(np.argmax(gains[1:]))
-    needed = max(0.0, float(gains[0])) + tuned.PAD_LOG_EVIDENCE
-    return tuned.PAD_SIDES_PX[best] if gains[1 + best] > needed else None
 
 
 def _pad_contrast(first: FirstFit) -> float:
@@ -201,7 +200,7 @@ class _State:
 
 def _settle(
     stamps: Stamps, first: FirstFit, state: _State, background: Background, robust: bool
-) -> tuple[_State, Blocks, Prior, Posterior, PointNoise]:
+) -> tuple[_State, SourceProblem, Blocks, Prior, Posterior, PointNoise]:
     """Solve the linear problem again until nothing moves: the last one, and where it was posed.
 
     No least squares of fixed weights: every pass finds the prior's amplitudes by the marginal
@@ -240,7 +239,7 @@ def _settle(
         if chasing and passes > _MIN_PASSES and max(bend, floor) < before.rms:
             break
         floor, noise = max(min_floor, bend), found
-    return before, blocks, prior, posterior, noise
+    return before, problem, blocks, prior, posterior, noise
 
 
 def _first_bend(stamps: Stamps, first: FirstFit, peaks: Floats) -> float:

@@ -3,7 +3,8 @@
 The light of a pad has the same place as that of its source and nearly its width, so the two are
 told apart by little: the pad ends at its borders, the wings of a PSF do not. Whether pads of one
 common size and level are part of the model is decided by the marginal likelihood; where they are,
-what is not known of their level enters the deviations of the PSF.
+what is not known of their level enters the deviations of the PSF. Where it leaves them open, the
+PSF is that of both models, each with its probability.
 """
 
 from __future__ import annotations
@@ -11,9 +12,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
@@ -21,11 +23,13 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
 from acutance.numerics.marginal_likelihood import Posterior, Prior
+from acutance.numerics.normal_equations import Normal
+from acutance.targets.points import tuned
 from acutance.targets.points.amplitudes import likelier_posterior, posterior_log_evidence
 from acutance.targets.points.per_source import SourceProblem
 from acutance.targets.points.stamps import Stamps
 
-__all__ = ["Pads", "log_evidence_of_pads", "pads_image"]
+__all__ = ["Pads", "PadsFound", "find_pads", "pads_image"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +74,45 @@ def _profile(distance: Floats, side_px: float, sigma_px: float) -> Floats:
     return blur.esf(distance + 0.5 * side_px) - blur.esf(distance - 0.5 * side_px)
 
 
-def log_evidence_of_pads(
+class PadsFound(NamedTuple):
+    """Pads of the likeliest side, beside the fit without them.
+
+    Attributes
+    ----------
+    side_px : float
+    share : float
+        Probability of pads, 0 to 1.
+    posterior : Posterior
+        With pads: their contrast is the last unknown.
+    """
+
+    side_px: float
+    share: float
+    posterior: Posterior
+
+    @property
+    def likely(self) -> bool:
+        """Whether pads are likelier than none."""
+        return self.share > 0.5
+
+    @property
+    def sure(self) -> bool:
+        """Whether pads belong to the model."""
+        return self.share > tuned.SURE_OF_PADS
+
+    def averaged(self, without: Posterior) -> Posterior:
+        """The posterior where pads are open: of both models, each with its probability."""
+        away = self.posterior.beta[:-1] - without.beta
+        doubt = math.sqrt(self.share * (1 - self.share))
+        factor = [
+            math.sqrt(1 - self.share) * without.factor,
+            math.sqrt(self.share) * self.posterior.factor[:-1],
+            doubt * away[:, None],
+        ]
+        return replace(without, beta=without.beta + self.share * away, factor=np.hstack(factor))
+
+
+def find_pads(
     problem: SourceProblem,
     images: Sequence[Floats],
     contrast_std: float,
@@ -78,15 +120,19 @@ def log_evidence_of_pads(
     prior: Prior,
     found: Posterior,
     inflation: float,
-) -> Floats:
-    """How much likelier the pixels are with pads than without, as logarithms.
+) -> PadsFound | None:
+    """The pads that make the pixels likelier, if there are any.
+
+    A square of `tuned.NO_PAD_PX` is hardly a pad: what it explains, a PSF that the prior does not
+    foresee explains as well. Pads have to be likelier than that, too.
 
     Parameters
     ----------
     problem : SourceProblem
         That of the fit without pads.
     images : sequence of (n,) arrays
-        As `pads_image` gives them for some sides.
+        As `pads_image` gives them for `tuned.NO_PAD_PX`, then for every one of
+        `tuned.PAD_SIDES_PX`.
     contrast_std : float
         Prior standard deviation of the contrast, in image units.
     weight : (n,) array
@@ -100,11 +146,24 @@ def log_evidence_of_pads(
         scale=np.append(prior.scale, contrast_std),
         mean=np.append(prior.mean, 0.0),
     )
-    without = posterior_log_evidence(problem.eliminated(weight).normal, prior, found, inflation)
-    gains = []
-    for image in images:
-        wider = replace(problem, shared=np.hstack([problem.shared, image[:, None]]))
-        normal = wider.eliminated(weight).normal
-        tried = likelier_posterior(normal, more, found.variance, inflation, None)
-        gains.append(posterior_log_evidence(normal, more, tried, inflation) - without)
-    return np.array(gains)
+    wider = replace(problem, shared=np.column_stack([problem.shared, *images]))
+    every = wider.eliminated(weight).normal
+    own = np.arange(problem.shared.shape[1])
+    without = posterior_log_evidence(_part(every, own), prior, found, inflation)
+    gains, tried = [], []
+    for number in range(len(images)):
+        normal = _part(every, np.append(own, own.size + number))
+        tried.append(likelier_posterior(normal, more, found.variance, inflation, None))
+        gains.append(posterior_log_evidence(normal, more, tried[-1], inflation) - without)
+    best = 1 + int(np.argmax(gains[1:]))
+    gain = gains[best] - max(0.0, gains[0])
+    if gain < tuned.PAD_OPEN_LOG_EVIDENCE:
+        return None
+    share = 1 / (1 + math.exp(min(tuned.PAD_LOG_EVIDENCE - gain, 700.0)))
+    return PadsFound(tuned.PAD_SIDES_PX[best - 1], share, tried[best])
+
+
+def _part(normal: Normal, columns: NDArray[np.intp]) -> Normal:
+    """The normal equations of some of the coefficients."""
+    gram = normal.gram[np.ix_(columns, columns)]
+    return Normal(gram, normal.projection[columns], normal.data, normal.count)

@@ -17,7 +17,7 @@ from acutance.targets.points.psf_prior import PsfDirections
 __all__ = ["PsfModel"]
 
 Complexes = NDArray[np.complex128]
-_CONDENSED = 40
+_CONDENSED = 56
 _FREQ_CPP: Floats = np.linspace(0.0, 1.0, 21)
 _ANGLES_RAD: Floats = np.radians(np.arange(0.0, 180.0, 15.0))
 

@@ -4,15 +4,12 @@ The PSF is the mean blur, a Gaussian through a pixel with a free ellipse, plus w
 with an amplitude that the data decide (`amplitudes`):
 
 - APERTURE: another width of the detector's aperture across and along;
-- WINGS: the blur twice and four times as wide (scatter; less light there, if negative);
-- AIRY: the image behind an aperture as narrow as the blur, with its rings and wings: clear, and
-  with a third of its diameter obscured;
-- SHAPE: smooth differences near the peak (sharpening, asymmetry, smear);
-- DETAIL: fine structure of the peak (a hard aperture, little optical blur);
-- HALO: broad differences out to many widths (stray light, halo, charge trails);
+- the families of sensors (`psf_families`): the principal directions in which telescopes, halos,
+  trails, smear, sharpened, restored and resampled products depart from the mean;
+- SHAPE, DETAIL: smooth differences near the peak and its fine structure, for what no family has;
 - TAIL: light falling like 1 / r^3 without end, as behind an aperture that diffracts.
 
-SHAPE, DETAIL and HALO are Gaussian processes as the prior of an LSF has them. A
+SHAPE and DETAIL are Gaussian processes as the prior of an LSF has them. A
 process has covariance ``exp(-(u^2 + u'^2) / 2 L^2) exp(-(u - u')^2 / 2 l^2)`` in either
 direction, in units of the blur's width. By Mehler's formula its eigenfunctions are Hermite
 functions, with variances that fall by a constant factor from order to order: every direction has
@@ -30,16 +27,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.numerics.gaussian_pixel_2d import (
-    WIDE_WIDTHS,
-    Gaussian2d,
-    GaussianPixel2d,
-    PixelSlopes,
-)
+from acutance.numerics.gaussian_pixel_2d import WIDE_WIDTHS, GaussianPixel2d, PixelSlopes
 from acutance.numerics.lorentz_tail import tail_otf, tail_psf
 from acutance.numerics.process_modes import mehler
 from acutance.targets.points import tuned
-from acutance.targets.points.airy import Airy
+from acutance.targets.points.psf_families import Families, learned_families
 
 __all__ = ["PsfDirections"]
 
@@ -87,7 +79,6 @@ class _Process:
 
 _PROCESSES: Final = tuple(_Process(*one) for one in tuned.PROCESSES)
 _BLURRED: Final = 5
-_EXPLICIT: Final = 9
 _GAUGE_STEP: Final = 0.3
 _GAUGE_REACH: Final = 4.5
 
@@ -115,9 +106,9 @@ def _hermite_slopes(values: Floats) -> Floats:
 class PsfDirections:
     """The directions in which the PSF may differ from a mean `blur`.
 
-    First the three elements of Sigma, the two apertures, the wings and the Airy patterns, then the
-    modes of the processes, then the tail. From each the share is taken out that a change of flux
-    or of place would explain: every source has its own flux and place.
+    First the three elements of Sigma and the two apertures, then the families, the modes of the
+    processes, and the tail. From each the share is taken out that a change of flux or of place
+    would explain: every source has its own flux and place.
     """
 
     blur: GaussianPixel2d
@@ -126,47 +117,45 @@ class PsfDirections:
         # The tables all follow from the blur.
         return PsfDirections, (self.blur,)
 
-    @cached_property
-    def _patterns(self) -> tuple[GaussianPixel2d | Gaussian2d | Airy, ...]:
-        """What has a form of its own and one weight: wings, and apertures that diffract."""
-        blur, sigma_px = self.blur, (self.blur.xx * self.blur.yy) ** 0.25
-        airy = (Airy.as_narrow_as(sigma_px, hole, blur.aperture_px) for hole in tuned.OBSCURATIONS)
-        return (blur.widened(WIDE_WIDTHS), blur.broadened(tuned.BROAD_WIDTHS), *airy)
-
-    def _explicit(self, x: Floats, y: Floats, slopes: PixelSlopes) -> tuple[Floats, ...]:
-        """The directions that are no process and no tail, before the gauge."""
-        return (*slopes[3:], *(one.psf(x, y) for one in self._patterns))
+    @property
+    def families(self) -> Families:
+        """The directions learned from optics, in units of the blur's widths."""
+        return learned_families()
 
     @property
     def size(self) -> int:
         """Number of directions."""
-        return _EXPLICIT + sum(process.sizes.size for process in _PROCESSES) + 1
+        return self.block.size
 
     @cached_property
     def block(self) -> NDArray[np.intp]:
         """Which amplitude determines each direction; -1 for those with a scale of their own."""
-        counts = [
-            3,
-            2,
-            2,
-            len(tuned.OBSCURATIONS),
-            *(process.sizes.size for process in _PROCESSES),
-            1,
-        ]
-        return np.repeat([-1, 4, 5, 6, 0, 1, 2, 3], counts)
+        last = len(tuned.FAMILY_LOG_AMPLITUDES)
+        counts = [3, 2, *(process.sizes.size for process in _PROCESSES), 1]
+        rest = np.repeat([-1, -1, last, last + 1, last + 2], counts)
+        return np.concatenate([rest[:_BLURRED], self.families.block, rest[_BLURRED:]])
 
     @cached_property
     def scale(self) -> Floats:
         """Prior standard deviation of each direction, relative to its block's amplitude."""
         scale = np.ones(self.size)
         scale[:3] = self.half_width_px**2
-        scale[3:5] = self.blur.aperture_px
+        scale[3:_BLURRED] = tuned.APERTURE_STD * self.blur.aperture_px
         return scale
+
+    @cached_property
+    def _first_mode(self) -> int:
+        """Number of the first mode of the processes."""
+        return _BLURRED + self.families.tail.size
 
     @property
     def half_width_px(self) -> float:
         """Half width of the tail: the mean width of the blur."""
-        return math.sqrt(math.prod(self.blur.widths_px))
+        return math.sqrt(self._area)
+
+    @property
+    def _area(self) -> float:
+        return math.prod(self.blur.widths_px)
 
     def evaluate(self, x: Floats, y: Floats) -> Floats:
         """Every direction at places (x, y) in pixels, (n, size)."""
@@ -175,39 +164,61 @@ class PsfDirections:
     def with_mean(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
         """Every direction at places (x, y), (n, size), and the mean blur there, (n,)."""
         slopes = self.blur.slopes(x, y)
-        columns = self._raw(x, y, self._explicit(x, y, slopes)).T
-        columns -= self._gauge.T @ np.stack(slopes[:3])
-        return columns.T, slopes.psf
+        columns = self._raw(x, y, slopes)
+        columns -= np.stack(slopes[:3], axis=1) @ self._gauge
+        return columns, slopes.psf
 
     def sum(self, x: Floats, y: Floats, weights: Floats) -> Floats:
         """Mean blur plus ``evaluate(x, y) @ weights``, (n,)."""
         if not weights.any():
             return self.blur.psf(x, y)
         slopes = self.blur.slopes(x, y)
-        gauge = self._gauge @ weights
-        psf = slopes.psf - gauge @ np.stack(slopes[:3])
-        for weight, part in zip(weights.tolist(), self._explicit(x, y, slopes), strict=False):
+        psf = slopes.psf - (self._gauge @ weights) @ np.stack(slopes[:3])
+        for weight, part in zip(weights.tolist(), slopes[3:], strict=False):
             psf += weight * part
+        psf += self._of_families(x, y, weights, ((0, 0),))[0]
         for table, (scale_x, scale_y) in self._mixtures(weights):
             order = table.shape[0] - 1
             along = table @ hermite(y / scale_y, order)
             psf += np.einsum("ij,ij->j", hermite(x / scale_x, order), along)
-        return np.asarray(psf + weights[-1] * tail_psf(np.hypot(x, y), self.half_width_px))
+        tail = self._tail_weight(weights)
+        return np.asarray(psf + tail * tail_psf(np.hypot(x, y), self.half_width_px))
 
-    def _raw(self, x: Floats, y: Floats, explicit: tuple[Floats, ...]) -> Floats:
-        columns = np.empty((self.size, x.size))
-        for i, column in enumerate(explicit):
-            columns[i] = column
-        first = _EXPLICIT
+    def _tail_weight(self, weights: Floats) -> float:
+        own = weights[_BLURRED : self._first_mode]
+        return float(weights[-1] + self.families.tail @ own)
+
+    def _of_families(
+        self, x: Floats, y: Floats, weights: Floats, slopes: tuple[tuple[int, int], ...]
+    ) -> list[Floats]:
+        """What the families add, without tails, or its derivatives by x and y."""
+        wide, high = self.blur.widths_px
+        own = weights[_BLURRED : self._first_mode]
+        sums = self.families.sums(x / wide, y / high, own, slopes)
+        return [
+            one / (self._area * wide**across * high**along)
+            for one, (across, along) in zip(sums, slopes, strict=True)
+        ]
+
+    def _raw(self, x: Floats, y: Floats, slopes: PixelSlopes) -> Floats:
+        columns = np.empty((x.size, self.size))
+        columns[:, :_BLURRED] = np.stack(slopes[3:], axis=1)
+        wide, high = self.blur.widths_px
+        tail = tail_psf(np.hypot(x, y), self.half_width_px)
+        learned = columns[:, _BLURRED : self._first_mode]
+        learned[:] = self.families.values(x / wide, y / high)
+        learned /= self._area
+        learned += tail[:, None] * self.families.tail
+        first = self._first_mode
         for process, (scale_x, scale_y) in self._scaled():
             across, along = hermite(x / scale_x, process.order), hermite(y / scale_y, process.order)
             order_x, order_y = process.orders
-            own = columns[first : first + order_x.size]
-            np.multiply(across[order_x], along[order_y], out=own)
-            own *= (process.sizes / math.prod(self.blur.widths_px))[:, None]
+            own = columns[:, first : first + order_x.size]
+            np.multiply(across[order_x].T, along[order_y].T, out=own)
+            own *= process.sizes / self._area
             first += order_x.size
-        columns[-1] = tail_psf(np.hypot(x, y), self.half_width_px)
-        return columns.T
+        columns[:, -1] = tail
+        return columns
 
     def _scaled(self) -> list[tuple[_Process, tuple[float, float]]]:
         """The processes with the scales of their modes across and along, in pixels."""
@@ -216,7 +227,7 @@ class PsfDirections:
 
     def _mixtures(self, weights: Floats) -> list[tuple[Floats, tuple[float, float]]]:
         """For every process, weights of the products of Hermite functions, and their scales."""
-        first, area = _EXPLICIT, math.prod(self.blur.widths_px)
+        first, area = self._first_mode, self._area
         found = []
         for process, scales in self._scaled():
             i, j = process.orders
@@ -234,24 +245,19 @@ class PsfDirections:
         gauge = self._gauge @ weights
         step = 1e-4
         shifted = [self.blur.slopes(x + step, y), self.blur.slopes(x, y + step)]
-        free = weights[:_BLURRED]
 
-        def explicit(at: tuple[Floats, ...]) -> Floats:
+        def blurred(at: tuple[Floats, ...]) -> Floats:
             whole = at[0] * (1 - gauge[0]) - gauge[1] * at[1] - gauge[2] * at[2]
-            for weight, column in zip(free.tolist(), at[3:], strict=True):
+            for weight, column in zip(weights[:_BLURRED].tolist(), at[3:], strict=True):
                 whole = whole + weight * column
             return np.asarray(whole)
 
-        psf = explicit(slopes)
-        by_x, by_y = ((explicit(one) - psf) / step for one in shifted)
-        for weight, other in zip(
-            weights[_BLURRED:_EXPLICIT].tolist(),
-            (one.slopes(x, y)[:3] for one in self._patterns),
-            strict=True,
-        ):
-            psf, by_x, by_y = (
-                whole + weight * part for whole, part in zip((psf, by_x, by_y), other, strict=True)
-            )
+        psf = blurred(slopes)
+        by_x, by_y = ((blurred(one) - psf) / step for one in shifted)
+        learned = self._of_families(x, y, weights, ((0, 0), (1, 0), (0, 1)))
+        psf, by_x, by_y = (
+            part + more for part, more in zip((psf, by_x, by_y), learned, strict=True)
+        )
         for table, (scale_x, scale_y) in self._mixtures(weights):
             across = hermite(x / scale_x, table.shape[0])
             along = hermite(y / scale_y, table.shape[0])
@@ -262,7 +268,7 @@ class PsfDirections:
                 by_y
                 + np.einsum("ij,ij->j", table.T @ across[:-1], _hermite_slopes(along)) / scale_y
             )
-        tail = weights[-1] * tail_psf(np.hypot(x, y), self.half_width_px)
+        tail = self._tail_weight(weights) * tail_psf(np.hypot(x, y), self.half_width_px)
         bend = -3 * tail / (x * x + y * y + self.half_width_px**2)
         return psf + tail, by_x + bend * x, by_y + bend * y
 
@@ -274,38 +280,43 @@ class PsfDirections:
         x, y = (grid.ravel() for grid in np.meshgrid(steps * wide, steps * high))
         return x, y, self.blur.slopes(x, y)
 
-    @cached_property
-    def _gauge(self) -> Floats:
-        """Shares of the blur, and of its slopes by x and y, in every direction: (3, size).
+    def _shares(self, columns: Floats) -> Floats:
+        """Shares of the blur, and of its slopes by x and y, in columns on the raster, (3, m).
 
         What least squares on a dense raster of pixels under white noise would find.
         """
-        x, y, slopes = self._raster
-        own = np.stack(slopes[:3], axis=1)
-        raw = self._raw(x, y, self._explicit(x, y, slopes))
-        return np.asarray(np.linalg.solve(own.T @ own, own.T @ raw))
+        own = np.stack(self._raster[2][:3], axis=1)
+        return np.asarray(np.linalg.solve(own.T @ own, own.T @ columns))
+
+    @cached_property
+    def _gauge(self) -> Floats:
+        """Shares of the blur, and of its slopes by x and y, in every direction: (3, size)."""
+        return self._shares(self._raw(*self._raster))
 
     @property
     def wings_share(self) -> float:
-        """How much of the blur least squares finds in the nearer wings."""
-        return float(self._gauge[0, _BLURRED])
+        """How much of the blur least squares finds in the wings of the first fit."""
+        x, y, _ = self._raster
+        return float(self._shares(self.blur.widened(WIDE_WIDTHS).psf(x, y)[:, None])[0, 0])
 
     def transform(self, u: Floats, v: Floats) -> Complexes:
         """Fourier transform of every direction at frequencies in cycles per pixel, (n, size)."""
         columns = np.empty((u.size, self.size), complex)
         columns[:, :_BLURRED] = self.blur.otf_slopes(u, v)
-        for i, one in enumerate(self._patterns, start=_BLURRED):
-            columns[:, i] = one.otf(u, v)
-        first = _EXPLICIT
+        wide, high = self.blur.widths_px
+        tail = tail_otf(np.hypot(u, v), self.half_width_px)
+        first = self._first_mode
+        columns[:, _BLURRED:first] = self.families.transform(u * wide, v * high)
+        columns[:, _BLURRED:first] += tail[:, None] * self.families.tail
         for process, (scale_x, scale_y) in self._scaled():
             across = hermite(2 * np.pi * scale_x * u, process.order)
             along = hermite(2 * np.pi * scale_y * v, process.order)
             order_x, order_y = process.orders
-            size = 2 * np.pi * scale_x * scale_y / math.prod(self.blur.widths_px)
+            size = 2 * np.pi * scale_x * scale_y / self._area
             turns = (-1j) ** ((order_x + order_y) % 4) * process.sizes * size
             columns[:, first : first + order_x.size] = (across[order_x] * along[order_y]).T * turns
             first += order_x.size
-        columns[:, -1] = tail_otf(np.hypot(u, v), self.half_width_px)
+        columns[:, -1] = tail
         own = self.blur.otf(u, v)
         gauge = self._gauge
         columns -= own[:, None] * gauge[0]

@@ -15,12 +15,11 @@ import numpy as np
 from acutance.curves.grid import Floats
 
 __all__ = [
-    "AMPLITUDE_GRID",
+    "APERTURE_STD",
     "BEND",
     "BRIGHTEST_OVER_DARK",
     "BRIGHT_SHARE",
     "BROAD_PX2",
-    "BROAD_WIDTHS",
     "CONFUSED_SIGMAS",
     "COVERED_ELSE_PX",
     "COVERED_PX",
@@ -28,12 +27,14 @@ __all__ = [
     "DETERMINED_POWER",
     "EXTENDED_RATIO",
     "EXTENT_TOLERANCE",
+    "FAMILY_LOG_AMPLITUDES",
     "GROWTH_LOG_EVIDENCE",
-    "LIGHT_FAR_OUT",
+    "HALO_GRID",
     "LIT_PX",
     "LOBE_PX",
     "LOBE_SHARE",
     "LOG_AMPLITUDE",
+    "LOG_AMPLITUDE_STARTS",
     "LOG_AMPLITUDE_STD",
     "MAX_CONFUSED",
     "MAX_LEVERAGE",
@@ -53,10 +54,10 @@ __all__ = [
     "NEGLIGIBLE_BEND",
     "NOISE_FLOOR",
     "NO_PAD_PX",
-    "OBSCURATIONS",
     "PAD_CONTRAST",
     "PAD_LOG_EVIDENCE",
     "PAD_MIN_NOISE",
+    "PAD_OPEN_LOG_EVIDENCE",
     "PAD_SIDES_PX",
     "PRECISE_SIZE",
     "PROCESSES",
@@ -67,8 +68,8 @@ __all__ = [
     "SHARP_TOLERANCE",
     "SIGNIFICANT_GROWTH",
     "SIZE_TOLERANCE",
-    "SMALL_LOG_AMPLITUDE",
     "STANDS_OUT",
+    "SURE_OF_PADS",
     "TIMES_USUAL",
     "UNLIKE_SHARE",
     "WIDE_RATIO",
@@ -184,34 +185,48 @@ PAD_MIN_NOISE: Final = 0.033
 """Noise over that contrast below which no pads are sought (a peak 1000 times the noise): what the
 prior of a PSF that diffracts or is out of focus lacks shows there, and looks like a pad."""
 PAD_LOG_EVIDENCE: Final = 1.5
-"""Gain of log evidence from which on pads are part of the model (benchmarks/pads.py). At .5 three
-of six images of a product resampled by cubic convolution had pads, and MTF at Nyquist .03 high."""
+PAD_OPEN_LOG_EVIDENCE: Final = 0.4
+SURE_OF_PADS: Final = 0.95
+"""Gain of log evidence at which pads are as likely as none, from which on they are thought of, and
+the probability from which on they are part of the model: of 70 images of all families without
+pads, .4 was reached in ten, 2.5 in three, all of them sharpened."""
 
 # Prior of the point spread function --------------------------------------------------------------
-PROCESSES: Final = ((1.2, 0.6, 12), (0.7, 0.2, 13), (3.0, 1.2, 11))
-"""Extent and smoothness in widths of the blur, and the largest order of the modes, of SHAPE,
-DETAIL and HALO; extent and smoothness are those of an LSF's processes."""
-BROAD_WIDTHS: Final = 4.0
-"""Width of the second, broader wings, over that of the blur: with the first alone (twice as wide) a
-halo was taken for a tail without end. At twice 3 deviations with a halo, at half 0.8."""
-OBSCURATIONS: Final = (0.0, 0.33)
-"""Diameters of the central obscurations of the Airy patterns, over the aperture's."""
-LOG_AMPLITUDE: Final[Floats] = np.array([-5.0, -4.0, -4.6, -4.5, -3.0, -3.5, -2.5])
-LOG_AMPLITUDE_STD: Final = 2.5
-"""Amplitudes of SHAPE, DETAIL, HALO, TAIL, APERTURE, WINGS and AIRY relative to the source's flux
-(of APERTURE, relative to the pixel), within a factor 12 either way: wings of some per cent must
-not be more surprising than none. Benchmark: intervals hold 96 % over eleven systems. Amplitudes
-three times as large widen the FWHM's deviation of six mirrors by a quarter, and it is too wide
-already; their deviation at twice 0.8 deviations, at half 0.7."""
-LIGHT_FAR_OUT: Final[Floats] = np.array([-3.5, -4.0, -6.0, -4.5, -3.0, -2.0, -0.3])
-"""Log amplitudes of the second place from which the likeliest ones are sought: wings and rings. At
-half 0.5 deviations and 18 % more with a halo."""
-AMPLITUDE_GRID: Final = (-6.0, -5.2, -4.4, -3.6, -2.8, -2.0, -1.2)
-"""Log amplitudes of HALO and of TAIL that are integrated over. At twice 0.2 deviations, which grow
-by 11 %; at half they shrink by 18 %."""
-SMALL_LOG_AMPLITUDE: Final = -4.5
-"""Upper limit of the one amplitude while the other one runs over the grid. At twice and half
-none."""
+FAMILY_LOG_AMPLITUDES: Final = {
+    "telescope": -0.5,
+    "halo": 0.0,
+    "trail": -3.0,
+    "smear": -3.0,
+    "sharpened": -3.0,
+    "restored": -3.0,
+    "resampled": -3.0,
+}
+"""Expected amplitude of every family relative to that of its own population: light of every sensor
+goes through an aperture and much of it is scattered, few have the other causes. Halos expected a
+factor e^.5 smaller: of 20 mirrors behind a halo of 5 % at SNR 80, 87 % of the intervals of RER hold
+for 90 %, and the RMS errors of Gaussians are 2 to 5 % smaller."""
+PROCESSES: Final = ((1.2, 0.6, 5), (0.7, 0.2, 6))
+"""Extent and smoothness in widths of the blur, and the largest order of the modes, of SHAPE and
+DETAIL; extent and smoothness are those of an LSF's processes. Orders up to 8 and 9, twice the
+directions, change nothing beyond the third digit, with noise and without."""
+APERTURE_STD: Final = 0.06
+"""Prior standard deviation of the detector's aperture, beyond what the families have of it. At
+three times that the FWHM of Gaussians scatters twice as much."""
+LOG_AMPLITUDE: Final[Floats] = np.array([*FAMILY_LOG_AMPLITUDES.values(), -5.0, -5.0, -5.0])
+LOG_AMPLITUDE_STD: Final = 2.0
+"""Amplitudes of the families, SHAPE, DETAIL and TAIL relative to the source's flux, within a factor
+7 either way, as those of edges. Those of SHAPE and DETAIL a factor e larger change nothing."""
+LOG_AMPLITUDE_STARTS: Final[Floats] = np.array(
+    [
+        [0.0, 0.0, -3.0, -3.0, -2.0, -2.0, -3.0, -5.0, -5.0, -4.5],
+        [-0.5, -0.5, -3.0, 0.3, -3.0, -3.0, -3.0, -5.0, -5.0, -5.0],
+    ]
+)
+"""From where the likeliest amplitudes are sought: light far out, and motion. Without the second,
+smear of a narrow blur was taken for other things: FWHM wrong by up to ten deviations."""
+HALO_GRID: Final = (-2.4, -1.6, -0.8, 0.0, 0.8)
+"""Log amplitudes of the halos that are integrated over: at the likeliest one alone, halos that the
+pixels neither show nor exclude were taken for absent; from -4 on, 80 % of those intervals hold."""
 
 # Iteration ---------------------------------------------------------------------------------------
 BEND: Final = 3.0

@@ -1,0 +1,143 @@
+"""How point spread functions of the families of sensors depart from a Gaussian through a pixel.
+
+The principal directions that `learn_psf` found, as functions: in the plane, and its transform. They
+are sums of splines (`psf_spline`) in units of the width of the first fit, and of a tail.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+from importlib.resources import files
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.targets.points.psf_spline import GRIDS, Parity, SplineGrid, whole
+from acutance.targets.points.tuned import FAMILY_LOG_AMPLITUDES
+
+__all__ = ["PARITIES", "Families", "Parities", "entry_name", "learned_families"]
+
+Complexes = NDArray[np.complex128]
+Parities = tuple[Parity, Parity]
+PARITIES: Final[tuple[Parities, ...]] = ((1, 1), (-1, 1), (-1, -1))
+"""Across and along. Directions even across and odd along are transposes of the second kind."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Directions of one parity: quadrants of coefficients a grid, and tails."""
+
+    across: Parity
+    along: Parity
+    quadrants: tuple[Floats, ...]
+    tail: Floats
+
+    def transform(self, f: Floats, g: Floats) -> Complexes:
+        """Transform at frequencies in cycles per width, without the tail, (n, r)."""
+        count = self.tail.size
+        found = np.zeros((f.size, count))
+        for grid, quadrant in zip(GRIDS, self.quadrants, strict=True):
+            along = grid.waves(g, self.along) @ quadrant.transpose(1, 0, 2).reshape(
+                grid.reach + 1, -1
+            )
+            along = along.reshape(f.size, count, grid.reach + 1)
+            found += np.einsum("nrk,nk->nr", along, grid.waves(f, self.across))
+        turns = (self.across < 0) + (self.along < 0)
+        return np.asarray(found * (-1j) ** turns)
+
+
+@dataclass(frozen=True, eq=False)
+class Families:
+    """The directions of all families.
+
+    Parameters
+    ----------
+    groups : tuple
+        Directions by parity.
+    block : (r,) int array
+        Number of the family of every direction.
+    """
+
+    groups: tuple[_Group, ...]
+    block: NDArray[np.intp]
+
+    @cached_property
+    def tail(self) -> Floats:
+        """Share of every direction in the tail, (r,)."""
+        return np.concatenate([one.tail for one in self.groups])
+
+    @cached_property
+    def coefficients(self) -> tuple[Floats, ...]:
+        """Coefficients on either whole grid, (size * size, r)."""
+        found = []
+        for number, grid in enumerate(GRIDS):
+            every = [whole(one.quadrants[number], one.across, one.along) for one in self.groups]
+            found.append(np.concatenate(every).reshape(-1, grid.size**2).T.copy())
+        return tuple(found)
+
+    def values(self, u: Floats, v: Floats) -> Floats:
+        """Every direction at places in widths, without its tail, per square width, (n, r)."""
+        found = np.zeros((u.size, self.tail.size))
+        for grid, coefficients in zip(GRIDS, self.coefficients, strict=True):
+            near = _inside(grid, u, v)
+            found[near] += grid.rows(u[near], v[near]) @ coefficients
+        return found
+
+    def sums(
+        self, u: Floats, v: Floats, weights: Floats, slopes: tuple[tuple[int, int], ...]
+    ) -> list[Floats]:
+        """``values(u, v) @ weights``, or its derivatives of the given orders by u and v, (n,)."""
+        found = [np.zeros(u.size) for _ in slopes]
+        for grid, coefficients in zip(GRIDS, self.coefficients, strict=True):
+            near, mixed = _inside(grid, u, v), coefficients @ weights
+            for total, slope in zip(found, slopes, strict=True):
+                total[near] += grid.rows(u[near], v[near], slope) @ mixed
+        return found
+
+    def transform(self, f: Floats, g: Floats) -> Complexes:
+        """Transform of every direction without its tail at frequencies per width, (n, r)."""
+        return np.hstack([one.transform(f, g) for one in self.groups])
+
+
+def _inside(grid: SplineGrid, u: Floats, v: Floats) -> NDArray[np.intp]:
+    return np.flatnonzero((np.abs(u) < grid.half_support) & (np.abs(v) < grid.half_support))
+
+
+def entry_name(family: str, across: Parity, along: Parity) -> str:
+    """Name of a family's directions of given parities in the file of what was learned."""
+    return f"{family} {across:+d}{along:+d}"
+
+
+@cache
+def learned_families() -> Families:
+    """The families as they were learned."""
+    path = files("acutance.targets.points").joinpath("psf_families.npz")
+    groups: list[_Group] = []
+    block: list[NDArray[np.intp]] = []
+    with path.open("rb") as file, np.load(file, allow_pickle=False) as learned:
+        for parities in PARITIES:
+            rows = [learned[entry_name(family, *parities)] for family in FAMILY_LOG_AMPLITUDES]
+            own = _groups_of(np.vstack(rows), *parities)
+            groups += own
+            block += len(own) * [np.repeat(np.arange(len(rows)), [len(one) for one in rows])]
+    return Families(tuple(groups), np.concatenate(block))
+
+
+def _groups_of(directions: Floats, across: Parity, along: Parity) -> list[_Group]:
+    """Directions of given parities, (r, m), and their transposes if these have others."""
+    if not len(directions):
+        return []
+    ends = np.cumsum([(grid.reach + 1) ** 2 for grid in GRIDS])
+    *flat, tail = np.split(directions.astype(float), ends, axis=1)
+    quadrants = tuple(
+        one.reshape(-1, grid.reach + 1, grid.reach + 1)
+        for one, grid in zip(flat, GRIDS, strict=True)
+    )
+    found = [_Group(across, along, quadrants, tail[:, 0])]
+    if across != along:
+        turned = tuple(one.transpose(0, 2, 1) for one in quadrants)
+        found.append(_Group(along, across, turned, tail[:, 0]))
+    return found
