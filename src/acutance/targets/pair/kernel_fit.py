@@ -21,17 +21,19 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
+from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.pair import tuned
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.kernel_covariance import KernelCovariance
-from acutance.targets.pair.noise import WHITE, Whitening, noise_gram, whitening_of
+from acutance.targets.pair.kernel_prior import KernelPrior, kernel_prior
+from acutance.targets.pair.noise import WHITE, HighNoise, Whitening, noise_gram, whitening_of
+from acutance.targets.pair.reference_otf import ReferenceOtf
 from acutance.targets.pair.tile import PairTile, TapGrid, Tiles, blurred, blurred_far, core
 
-__all__ = ["Kernel", "KernelFit", "fit_kernel", "kernel_prior", "square_root", "without_noise"]
+__all__ = ["Kernel", "KernelFit", "fit_kernel", "square_root", "without_noise"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +74,12 @@ class KernelFit:
         Of the coefficients of the basis; the first is the gain.
     covariance : KernelCovariance
         The posterior's, and what the reference's noise and the scatter of regions add.
+    prior : KernelPrior
     whitening : Whitening
     noise : float
         Robust standard deviation of the residuals, before whitening.
-    noise_high : float
-        Standard deviation of the reference's noise that was allowed for.
+    high_noise : HighNoise
+        The reference's noise that was allowed for.
     used : int
         Low pixels with more than a twentieth of their weight.
     left_out : int
@@ -89,9 +92,10 @@ class KernelFit:
     basis: KernelBasis
     posterior: Posterior
     covariance: KernelCovariance
+    prior: KernelPrior
     whitening: Whitening
     noise: float
-    noise_high: float
+    high_noise: HighNoise
     used: int
     left_out: int
     robust: bool
@@ -116,8 +120,9 @@ def fit_kernel(
     grid: TapGrid,
     gaussian: GaussianFit,
     *,
+    reference: ReferenceOtf | None = None,
     processes: int = 3,
-    noise_high: float = 0.0,
+    high_noise: HighNoise = HighNoise(0.0, 0.0),
     robust: bool = True,
 ) -> KernelFit:
     """Fit the kernel freely about its parametric form.
@@ -128,10 +133,12 @@ def fit_kernel(
     grid : TapGrid
     gaussian : GaussianFit
         The parametric fit.
+    reference : ReferenceOtf, optional
+        The high image's own transfer, where it is known.
     processes : int, optional
         How many of the basis' processes.
-    noise_high : float, optional
-        Standard deviation of the reference's noise in a sample.
+    high_noise : HighNoise, optional
+        The reference's noise in a sample.
     robust : bool, optional
         Leave out what fits badly.
 
@@ -141,10 +148,10 @@ def fit_kernel(
         If the noise of the high image cannot be taken off.
     """
     basis = KernelBasis(grid, gaussian.down, gaussian.across, processes)
-    prior = kernel_prior(basis, gaussian.gain)
+    prior = kernel_prior(basis, gaussian.gain, reference)
     first = _Residuals(tiles, grid, Kernel.of(basis, prior.mean), WHITE, gaussian.noise, robust)
     normals = first.normals(basis).values()
-    rough = _regressed(basis, prior, normals, gaussian.noise, noise_high, WHITE, None)
+    rough = _regressed(basis, prior, normals, gaussian.noise, high_noise, WHITE, None)
     kernel = Kernel.of(basis, rough.beta)
     noise = _Residuals(tiles, grid, kernel, WHITE, 0.0, robust).scale()
     coloured = _Residuals(tiles, grid, kernel, WHITE, noise, robust)
@@ -153,30 +160,17 @@ def fit_kernel(
     white = replace(coloured, whitening=whitening, white_noise=white_noise)
     regions = white.normals(basis)
     posterior = _regressed(
-        basis, prior, regions.values(), gaussian.noise, noise_high, whitening, rough
+        basis, prior, regions.values(), gaussian.noise, high_noise, whitening, rough
     )
     used, left_out = white.counts()
     return KernelFit(
         grid=grid, basis=basis, posterior=posterior,
-        covariance=_covariance(basis, posterior, list(regions.values()), noise_high, whitening),
-        whitening=whitening, noise=noise, noise_high=noise_high, used=used, left_out=left_out,
-        robust=robust,
+        covariance=_covariance(
+            basis, prior, posterior, list(regions.values()), high_noise, whitening
+        ),
+        prior=prior, whitening=whitening, noise=noise, high_noise=high_noise, used=used,
+        left_out=left_out, robust=robust,
     )  # fmt: skip
-
-
-def kernel_prior(basis: KernelBasis, gain: float) -> Prior:
-    """Prior of the coefficients about the parametric kernel of a gain."""
-    mean = np.zeros(basis.size)
-    mean[0] = gain
-    return Prior(
-        block=np.asarray(basis.blocks, float),
-        scale=basis.scale,
-        mean=mean,
-        log_amplitude=basis.log_amplitude,
-        log_amplitude_std=tuned.LOG_AMPLITUDE_STD,
-        height=abs(gain),
-        noise_floor=1e-3,
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,40 +303,41 @@ def without_noise(normal: Normal, products: Floats, beta: Floats) -> Normal:
 
 def _regressed(
     basis: KernelBasis,
-    prior: Prior,
+    prior: KernelPrior,
     regions: Iterable[Normal],
     noise: float,
-    noise_high: float,
+    high_noise: HighNoise,
     whitening: Whitening,
     earlier: Posterior | None,
 ) -> Posterior:
     """The posterior that all regions give together, the reference's noise taken off."""
     normal = _sum(list(regions))
-    if noise_high > 0:
-        products = noise_high**2 * noise_gram(basis.taps(), basis.grid, whitening)
+    if high_noise.power > 0:
+        products = high_noise.power * noise_gram(basis.taps(), basis.grid, whitening)
         normal = without_noise(normal, products, prior.mean if earlier is None else earlier.beta)
     floor = 1e-5 * float(np.sqrt(normal.data / max(normal.count, 1.0)))
-    return regress(normal, replace(prior, noise_floor=floor), noise**2, 1.0, earlier)
+    return prior.posterior(normal, noise**2, noise_floor=floor, earlier=earlier)
 
 
 def _covariance(
     basis: KernelBasis,
+    prior: KernelPrior,
     posterior: Posterior,
     regions: Sequence[Normal],
-    noise_high: float,
+    high_noise: HighNoise,
     whitening: Whitening,
 ) -> KernelCovariance:
     """How noise, and single regions, move the coefficients."""
-    beta, k = posterior.beta, basis.size
-    # Conditional covariance: what the amplitudes add is no answer to the residuals.
-    response = posterior.factor[:, :k] @ posterior.factor[:, :k].T / posterior.variance
-    products = noise_high**2 * noise_gram(basis.taps(), basis.grid, whitening)
+    beta = posterior.beta
+    response = prior.response(posterior, posterior.variance)
+    unit = noise_gram(basis.taps(), basis.grid, whitening)
+    products = high_noise.power * unit
     scores = [one.projection - (one.gram - one.count * products) @ beta for one in regions]
     total = _sum(regions)
     moves = response @ np.stack(scores, axis=1)
     return KernelCovariance(
         posterior=posterior.factor,
-        reference_noise=tuned.NOISE_POWER_STD * response @ (total.count * products @ beta),
+        reference_noise=high_noise.power_std * response @ (total.count * unit @ beta),
         scatter=moves - moves.mean(axis=1, keepdims=True),
         white=np.sqrt(posterior.variance) * response @ square_root(total.gram),
     )

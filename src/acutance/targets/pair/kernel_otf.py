@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
@@ -15,29 +14,13 @@ from acutance.targets.pair import tuned
 from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.kernel_covariance import KernelCovariance
 from acutance.targets.pair.kernel_fit import KernelFit
+from acutance.targets.pair.reference_otf import ReferenceOtf
 from acutance.targets.pair.tile import Complexes
 
-__all__ = ["KernelOtf", "ReferenceOtf"]
+__all__ = ["KernelOtf"]
 
 _FREQ_CPP: Floats = np.asarray(np.arange(1, 20) / 20)
 _PLANE_NODES = 33
-
-
-class ReferenceOtf(Protocol):
-    """The reference's own OTF, at frequencies in cycles per pixel of the LOW image."""
-
-    @property
-    def only_direction(self) -> str | None:
-        """The single direction it was measured in, in words; ``None`` where it is known in all."""
-        ...
-
-    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """OTF, (n,), 1 at zero frequency."""
-        ...
-
-    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Factor of its covariance, (n, k), 0 at zero frequency."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import RegionError
 from acutance.raster import Box, Fill, Image, Region
 from acutance.targets.pair.grid import PairGrid
-from acutance.targets.pair.noise import fine_noise
+from acutance.targets.pair.noise import HighNoise
 from acutance.targets.pair.tile import FAR_PX, PAD_PX, PairTile, TapAxis, TapGrid, first_of_cell
 from acutance.targets.region import read_data
 
@@ -144,20 +144,18 @@ class PairTiles:
         yield from (self._read(box) for box in self.boxes[::step])
 
     @cached_property
-    def high_noise(self) -> float:
-        """Standard deviation of the noise in the samples the kernel acts on."""
-        found = []
+    def high_noise(self) -> HighNoise:
+        """The noise in the samples the kernel acts on: of the tile with the median one."""
         step = max(1, len(self.boxes) // 16)
-        for box in self.boxes[::step]:
-            window = self._high_box(box)
-            found.append(fine_noise(read_data(self.high, window)[0]))
-        raw = float(np.median([one for one in found if one > 0] or [0.0]))
+        windows = [self._high_box(box) for box in self.boxes[::step]]
+        found = [HighNoise.of_samples(read_data(self.high, window)[0]) for window in windows]
+        found = sorted(one for one in found if one.power > 0) or [HighNoise(0.0, 0.0)]
         stretch = 1.0
         for axis in (self.grid.down, self.grid.across):
             if not axis.is_native:
                 stretch *= axis.per_px / axis.ratio
         # Interpolated samples share the noise of fewer pixels, or average that of more.
-        return raw * float(np.sqrt(stretch))
+        return found[len(found) // 2].times(stretch)
 
     def fills(self) -> list[Fill | None]:
         """Undeclared fill of the low image's tiles, and of the high image's next to them."""

@@ -23,10 +23,10 @@ from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
 from acutance.numerics.noise import Correlation, correlation
+from acutance.numerics.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
 from acutance.targets.periodic.bars_ends import OtfTable, end_effect, light_of_neighbours
 from acutance.targets.periodic.bars_pixels import GroupPixels, group_columns
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
-from acutance.targets.periodic.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
     Regression,

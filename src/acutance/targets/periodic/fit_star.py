@@ -21,8 +21,8 @@ from acutance.errors import NoStarError
 from acutance.geometry.star_geometry import SiemensStar
 from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
 from acutance.numerics.noise import Correlation, correlation
+from acutance.numerics.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
-from acutance.targets.periodic.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
     Regression,

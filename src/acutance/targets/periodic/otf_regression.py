@@ -11,8 +11,8 @@ from acutance.curves.grid import Floats
 from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
+from acutance.numerics.otf_modes import MEAN_MODES, ProcessModes
 from acutance.targets.periodic.otf_model import FittedOtf
-from acutance.targets.periodic.otf_modes import MEAN_MODES, ProcessModes
 from acutance.targets.periodic.tuned import (
     FREE_LEVEL_LOG_AMPLITUDE,
     LOG_AMPLITUDE,
