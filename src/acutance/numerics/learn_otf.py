@@ -36,7 +36,7 @@ _MEAN_STEPS: Final = 25
 _SETTLED_PX: Final = 1e-3
 _LEFT: Final = 3e-4
 """What the states may leave of an OTF, relative to coefficients of one."""
-_NEGLIGIBLE: Final = 3e-4
+_NEGLIGIBLE: Final = 1e-3
 """Share of the mean square of a family's first direction below which directions are left out."""
 
 
@@ -61,12 +61,7 @@ def departure(sensor: Sensor, *, turned: bool = False, signs: tuple[int, int] = 
         if abs(moved.width_px - mean.width_px) < _SETTLED_PX:
             break
         mean = moved
-    # What the free modes can do is left out of the states as well as of the OTF.
-    basis = np.linalg.qr(free)[0]
-    left, states = wanted - free @ fitted, _states()
-    seen = states - basis @ (basis.T @ states)
-    gram = seen.T @ seen + _LEFT**2 * np.eye(seen.shape[1])
-    return np.asarray(np.linalg.solve(gram, seen.T @ left))
+    return np.asarray(_fit_of_states() @ (wanted - free @ fitted))
 
 
 def principal_directions(departures: Floats, negligible: float = _NEGLIGIBLE) -> Floats:
@@ -137,6 +132,14 @@ def _nodes() -> Floats:
 def _states() -> Floats:
     """The states at the nodes, (2 n, r)."""
     return _stacked(ProcessModes(1.0).otf_modes(*_nodes()))
+
+
+@cache
+def _fit_of_states() -> Floats:
+    """Coefficients of the states for values at the nodes, (r, 2 n): least squares with a ridge."""
+    states = _states()
+    gram = states.T @ states + _LEFT**2 * np.eye(states.shape[1])
+    return np.asarray(np.linalg.solve(gram, states.T))
 
 
 def _stacked(values: Complexes) -> Floats:

@@ -21,6 +21,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
+from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
@@ -28,8 +29,15 @@ from acutance.targets.pair import tuned
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.kernel_covariance import KernelCovariance
-from acutance.targets.pair.kernel_prior import KernelPrior, kernel_prior
-from acutance.targets.pair.noise import WHITE, HighNoise, Whitening, noise_gram, whitening_of
+from acutance.targets.pair.kernel_prior import kernel_prior
+from acutance.targets.pair.noise import (
+    NO_NOISE,
+    WHITE,
+    HighNoise,
+    Whitening,
+    noise_gram,
+    whitening_of,
+)
 from acutance.targets.pair.reference_otf import ReferenceOtf
 from acutance.targets.pair.tile import PairTile, TapGrid, Tiles, blurred, blurred_far, core
 
@@ -74,7 +82,7 @@ class KernelFit:
         Of the coefficients of the basis; the first is the gain.
     covariance : KernelCovariance
         The posterior's, and what the reference's noise and the scatter of regions add.
-    prior : KernelPrior
+    prior : CombinedPrior
     whitening : Whitening
     noise : float
         Robust standard deviation of the residuals, before whitening.
@@ -92,7 +100,7 @@ class KernelFit:
     basis: KernelBasis
     posterior: Posterior
     covariance: KernelCovariance
-    prior: KernelPrior
+    prior: CombinedPrior
     whitening: Whitening
     noise: float
     high_noise: HighNoise
@@ -122,7 +130,7 @@ def fit_kernel(
     *,
     reference: ReferenceOtf | None = None,
     processes: int = 3,
-    high_noise: HighNoise = HighNoise(0.0, 0.0),
+    high_noise: HighNoise = NO_NOISE,
     robust: bool = True,
 ) -> KernelFit:
     """Fit the kernel freely about its parametric form.
@@ -303,7 +311,7 @@ def without_noise(normal: Normal, products: Floats, beta: Floats) -> Normal:
 
 def _regressed(
     basis: KernelBasis,
-    prior: KernelPrior,
+    prior: CombinedPrior,
     regions: Iterable[Normal],
     noise: float,
     high_noise: HighNoise,
@@ -321,7 +329,7 @@ def _regressed(
 
 def _covariance(
     basis: KernelBasis,
-    prior: KernelPrior,
+    prior: CombinedPrior,
     posterior: Posterior,
     regions: Sequence[Normal],
     high_noise: HighNoise,

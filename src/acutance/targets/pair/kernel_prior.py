@@ -9,15 +9,14 @@ combinations of the basis' own functions. Either have amplitudes that the data d
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
-from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
-from acutance.numerics.normal_equations import Normal
+from acutance.numerics.marginal_likelihood import Prior
 from acutance.numerics.otf_families import family_directions
 from acutance.numerics.otf_modes import ProcessModes
 from acutance.targets.pair import tuned
@@ -25,7 +24,7 @@ from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.reference_otf import ReferenceOtf
 from acutance.targets.pair.tile import Complexes
 
-__all__ = ["KernelPrior", "kernel_prior"]
+__all__ = ["kernel_prior"]
 
 _STEP_CPP: Final = 0.04
 _HIGHEST_CPP: Final = 1.5
@@ -37,64 +36,7 @@ _MIN_REFERENCE: Final = 0.1
 """Transfer of the reference by which directions are divided at least."""
 
 
-@dataclass(frozen=True, eq=False)
-class KernelPrior:
-    """Prior of the basis' k coefficients as sums of m others that are independent.
-
-    Parameters
-    ----------
-    prior : Prior
-        Of the independent coefficients.
-    combination : (k, m) array
-        The basis' coefficients for every independent one.
-    """
-
-    prior: Prior
-    combination: Floats
-
-    @property
-    def mean(self) -> Floats:
-        """Prior mean of the basis' coefficients, (k,)."""
-        return np.asarray(self.combination @ self.prior.mean)
-
-    def posterior(
-        self,
-        normal: Normal,
-        variance: float,
-        inflation: float = 1.0,
-        *,
-        noise_floor: float | None = None,
-        earlier: Posterior | None = None,
-    ) -> Posterior:
-        """The basis' coefficients as the data determine them.
-
-        The first m columns of the factor are those at fixed amplitudes.
-
-        Parameters
-        ----------
-        normal : Normal
-            In the basis' coefficients.
-        variance, inflation, earlier
-            As in `acutance.numerics.marginal_likelihood.regress`.
-        noise_floor : float, optional
-            The smallest noise the arithmetic allows for.
-        """
-        prior = self.prior if noise_floor is None else replace(self.prior, noise_floor=noise_floor)
-        found = regress(normal.combined(self.combination), prior, variance, inflation, earlier)
-        return replace(
-            found, beta=self.combination @ found.beta, factor=self.combination @ found.factor
-        )
-
-    def response(self, posterior: Posterior, noise: float) -> Floats:
-        """Change of the basis' coefficients with the normal equations' right side, (k, k).
-
-        At fixed amplitudes: what these add is no answer to the residuals.
-        """
-        at_amplitudes = posterior.factor[:, : self.combination.shape[1]]
-        return np.asarray(at_amplitudes @ at_amplitudes.T / noise)
-
-
-def kernel_prior(basis: KernelBasis, gain: float, reference: ReferenceOtf | None) -> KernelPrior:
+def kernel_prior(basis: KernelBasis, gain: float, reference: ReferenceOtf | None) -> CombinedPrior:
     """Prior of the coefficients about the parametric kernel of a gain.
 
     Parameters
@@ -119,7 +61,7 @@ def kernel_prior(basis: KernelBasis, gain: float, reference: ReferenceOtf | None
         height=abs(gain),
         noise_floor=1e-3,
     )
-    return KernelPrior(prior, np.hstack([np.eye(basis.size), families]))
+    return CombinedPrior(prior, np.hstack([np.eye(basis.size), families]))
 
 
 def _family_coefficients(basis: KernelBasis, reference: ReferenceOtf | None) -> Floats:

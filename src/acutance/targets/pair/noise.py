@@ -19,7 +19,7 @@ from acutance.numerics.noise import Correlation, correlation
 from acutance.targets.pair import tuned
 from acutance.targets.pair.tile import PAD_PX, TapGrid, core
 
-__all__ = ["HighNoise", "Whitening", "noise_gram", "whitening_of"]
+__all__ = ["NO_NOISE", "HighNoise", "Whitening", "noise_gram", "whitening_of"]
 
 LAGS: Final = tuple(
     (down, right)
@@ -146,7 +146,7 @@ class HighNoise(NamedTuple):
         powers = [_block_powers(fine, order) for order in (_ORDER, _LOW_ORDER)]
         usable = np.isfinite(powers[0]) & np.isfinite(powers[1])
         if not usable.any():
-            return cls(0.0, 0.0)
+            return NO_NOISE
         high, low = (part[usable] for part in powers)
         bound = float(np.quantile(high, tuned.QUIET_SHARE))
         texture = float(np.clip(np.mean((low - high)[high <= bound]), 0.0, bound))
@@ -161,6 +161,9 @@ class HighNoise(NamedTuple):
     def std(self) -> float:
         """Standard deviation of the noise."""
         return math.sqrt(self.power)
+
+
+NO_NOISE: Final = HighNoise(0.0, 0.0)
 
 
 def _block_powers(fine: Floats, order: int) -> Floats:

@@ -15,7 +15,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import RegionError
 from acutance.raster import Box, Fill, Image, Region
 from acutance.targets.pair.grid import PairGrid
-from acutance.targets.pair.noise import HighNoise
+from acutance.targets.pair.noise import NO_NOISE, HighNoise
 from acutance.targets.pair.tile import FAR_PX, PAD_PX, PairTile, TapAxis, TapGrid, first_of_cell
 from acutance.targets.region import read_data
 
@@ -149,7 +149,7 @@ class PairTiles:
         step = max(1, len(self.boxes) // 16)
         windows = [self._high_box(box) for box in self.boxes[::step]]
         found = [HighNoise.of_samples(read_data(self.high, window)[0]) for window in windows]
-        found = sorted(one for one in found if one.power > 0) or [HighNoise(0.0, 0.0)]
+        found = sorted(one for one in found if one.power > 0) or [NO_NOISE]
         stretch = 1.0
         for axis in (self.grid.down, self.grid.across):
             if not axis.is_native:

@@ -73,9 +73,9 @@ SHORT_REACH_PX: Final = 4.5
 """Reach elsewhere, and for registration: CORE and FLANK fit into it, HALO is left out."""
 
 LONG_REACH_ROOM_PX: Final = 32
-"""Side from which a region has room for the long reach. At 32 a quarter of its pixels is lost, which
-costs less than a halo beyond the reach: without it M(.25) of 15 systems with 2 to 15 % of scattered
-light is .015 too low, and its intervals hold the truth in 19 %."""
+"""Side from which a region has room for the long reach. At 32 a quarter of its pixels is lost,
+which costs less than a halo beyond the reach: without it M(.25) of systems with 2 to 15 % of
+scattered light is .015 too low, and its intervals hold the truth in 19 %."""
 
 HALO_REACH_PX: Final = 5.75
 """Reach from which HALO is fitted: with less, it cannot be separated from the tail."""
