@@ -1,9 +1,10 @@
 """Learn from optics how two-dimensional transfer functions depart from a Gaussian through a pixel.
 
-Sensors of every family (`acutance.optics.FAMILIES`) are drawn at random, turned by quarters and
-mirrored. What the mean's own modes leave of a sensor's optical transfer function (OTF), in the
-states of `otf_modes`, is its departure. The principal directions of a family's departures, each
-with the root of its mean square, are what `otf_families` reads.
+Sensors of every family (`acutance.optics.FAMILIES`) are drawn at random, and each is taken in all
+eight positions that turns by a quarter and mirrors give it. What the mean's own modes leave of a
+sensor's optical transfer function (OTF), in the states of `otf_modes`, is its departure. The
+principal directions of a family's departures, each with the root of its mean square, are what
+`otf_families` reads.
 
 Frequencies are counted in cycles per width of the mean, so the states are the same for all
 sensors.
@@ -14,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import cache
+from itertools import product
 from pathlib import Path
 from typing import Final
 
@@ -95,11 +97,9 @@ def learn_families(
     found = {}
     for number, family in enumerate(families):
         rng = np.random.default_rng((seed, number))
-        drawn = []
-        for _ in range(sensors_per_family):
-            sensor, (right, down) = draw_sensor(family, rng), rng.choice([-1, 1], 2).tolist()
-            turned = bool(rng.integers(2))
-            drawn.append(departure(sensor, turned=turned, signs=(right, down)))
+        sensors = [draw_sensor(family, rng) for _ in range(sensors_per_family)]
+        every = product(sensors, (False, True), (1, -1), (1, -1))
+        drawn = [departure(one, turned=turned, signs=(x, y)) for one, turned, x, y in every]
         found[family] = principal_directions(np.array(drawn))
     return found
 

@@ -17,8 +17,8 @@ from acutance.targets.pair.tile import Complexes
 
 __all__ = ["KernelCovariance"]
 
-_FACTORS = ("posterior", "scatter", "white")
-_STEPS = {"posterior": 4e-4, "scatter": 8e-4, "white": 8e-4}
+_FACTORS = ("posterior", "scatter", "white", "beyond")
+_STEPS = {"posterior": 4e-4, "scatter": 8e-4, "white": 8e-4, "beyond": 4e-3}
 """What entries of packed factors are rounded to, relative to a typical deviation of the OTF. There
 are a hundred or two of them to a deviation, which they change by some thousandths, below 0.1 cycles
 per pixel by some hundredths."""
@@ -38,6 +38,8 @@ class KernelCovariance(ShortRepr):
         What the residuals of every region would move the coefficients by, about the mean of all.
     white : (k, k) array
         Of the covariance that white residuals would give.
+    beyond : (k, q) array
+        Of what light from beyond the image does, whose ground is not known.
     size : (k,) array, optional
         Where the factors were rounded, how much the OTF changes with every coefficient.
     steps : mapping of str to float, optional
@@ -48,6 +50,7 @@ class KernelCovariance(ShortRepr):
     reference_noise: Floats
     scatter: Floats
     white: Floats
+    beyond: Floats
     size: Floats | None = None
     steps: Mapping[str, float] | None = None
 

@@ -13,7 +13,7 @@ form (`acutance.numerics.marginal_likelihood`). Three things keep it true:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -39,7 +39,15 @@ from acutance.targets.pair.noise import (
     whitening_of,
 )
 from acutance.targets.pair.reference_otf import ReferenceOtf
-from acutance.targets.pair.tile import PairTile, TapGrid, Tiles, blurred, blurred_far, core
+from acutance.targets.pair.tile import (
+    PairTile,
+    TapGrid,
+    Tiles,
+    blurred,
+    blurred_far,
+    core,
+    correlated,
+)
 
 __all__ = ["Kernel", "KernelFit", "fit_kernel", "square_root", "without_noise"]
 
@@ -68,6 +76,12 @@ class Kernel:
         """The low pixels it makes of the reference, (h, w)."""
         near = blurred(tile, grid, self.taps)
         return near + blurred_far(tile, self.far) if self.far.any() else near
+
+    def light_from_beyond(self, tile: PairTile) -> Floats:
+        """What it makes of the ground beyond the image, which is guessed, (h, w)."""
+        if tile.beyond is None:
+            return np.zeros(tile.low.shape)
+        return correlated(tile.beyond, self.far)
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +172,7 @@ def fit_kernel(
     basis = KernelBasis(grid, gaussian.down, gaussian.across, processes)
     prior = kernel_prior(basis, gaussian.gain, reference)
     first = _Residuals(tiles, grid, Kernel.of(basis, prior.mean), WHITE, gaussian.noise, robust)
-    normals = first.normals(basis).values()
+    normals, _ = first.normals(basis)
     rough = _regressed(basis, prior, normals, gaussian.noise, high_noise, WHITE, None)
     kernel = Kernel.of(basis, rough.beta)
     noise = _Residuals(tiles, grid, kernel, WHITE, 0.0, robust).scale()
@@ -166,15 +180,13 @@ def fit_kernel(
     whitening = whitening_of(coloured.fields())
     white_noise = replace(coloured, whitening=whitening).scale()
     white = replace(coloured, whitening=whitening, white_noise=white_noise)
-    regions = white.normals(basis)
-    posterior = _regressed(
-        basis, prior, regions.values(), gaussian.noise, high_noise, whitening, rough
-    )
+    regions, beyond = white.normals(basis)
+    posterior = _regressed(basis, prior, regions, gaussian.noise, high_noise, whitening, rough)
     used, left_out = white.counts()
     return KernelFit(
         grid=grid, basis=basis, posterior=posterior,
         covariance=_covariance(
-            basis, prior, posterior, list(regions.values()), high_noise, whitening
+            basis, prior, posterior, regions, beyond, high_noise, whitening
         ),
         prior=prior, whitening=whitening, noise=noise, high_noise=high_noise, used=used,
         left_out=left_out, robust=robust,
@@ -216,8 +228,12 @@ class _Residuals:
         every = np.concatenate(whitened) if whitened else np.zeros(0)
         return robust_scale(every) if every.size else 0.0
 
-    def normals(self, basis: KernelBasis) -> Mapping[int, Normal]:
-        """Normal equations of every region, tile means left out."""
+    def normals(self, basis: KernelBasis) -> tuple[list[Normal], Floats]:
+        """Normal equations of every region, tile means left out.
+
+        Also, (k, regions), what their right sides change by if the ground beyond the image is
+        another.
+        """
         found: dict[int, Normal] = {}
         for tile in self.tiles():
             rest = self._residual(tile.low - self.kernel.low_pixels(tile, self.grid))
@@ -226,7 +242,8 @@ class _Residuals:
             if usable.sum() < 8:
                 continue
             y = self.whitening(np.where(np.isfinite(rest), tile.low, np.nan))[usable]
-            columns = self.whitening(basis.columns(tile))[usable]
+            fields = np.dstack([basis.columns(tile), self.kernel.light_from_beyond(tile)])
+            columns = self.whitening(fields)[usable]
             scale = self.white_noise or self.noise
             weight = np.ones(y.size)
             if self.robust and scale > 0:
@@ -237,7 +254,8 @@ class _Residuals:
                 part = _centred(columns[own], y[own], weight[own])
                 before = found.get(region)
                 found[region] = part if before is None else _sum([before, part])
-        return found
+        beyond = [one.gram[:-1, -1] for one in found.values()]
+        return [_without_last(one) for one in found.values()], np.stack(beyond, axis=1)
 
     def counts(self) -> tuple[int, int]:
         """Low pixels used and left out."""
@@ -259,6 +277,10 @@ def _centred(columns: Floats, y: Floats, weight: Floats) -> Normal:
     columns = columns - weight @ columns / total
     pulled = columns * weight[:, None]
     return Normal(pulled.T @ columns, pulled.T @ y, float(weight @ y**2), max(total - 1, 0.0))
+
+
+def _without_last(normal: Normal) -> Normal:
+    return replace(normal, gram=normal.gram[:-1, :-1], projection=normal.projection[:-1])
 
 
 def _finite(field: Floats) -> Floats:
@@ -312,14 +334,14 @@ def without_noise(normal: Normal, products: Floats, beta: Floats) -> Normal:
 def _regressed(
     basis: KernelBasis,
     prior: CombinedPrior,
-    regions: Iterable[Normal],
+    regions: Sequence[Normal],
     noise: float,
     high_noise: HighNoise,
     whitening: Whitening,
     earlier: Posterior | None,
 ) -> Posterior:
     """The posterior that all regions give together, the reference's noise taken off."""
-    normal = _sum(list(regions))
+    normal = _sum(regions)
     if high_noise.power > 0:
         products = high_noise.power * noise_gram(basis.taps(), basis.grid, whitening)
         normal = without_noise(normal, products, prior.mean if earlier is None else earlier.beta)
@@ -332,6 +354,7 @@ def _covariance(
     prior: CombinedPrior,
     posterior: Posterior,
     regions: Sequence[Normal],
+    beyond: Floats,
     high_noise: HighNoise,
     whitening: Whitening,
 ) -> KernelCovariance:
@@ -348,4 +371,15 @@ def _covariance(
         reference_noise=high_noise.power_std * response @ (total.count * unit @ beta),
         scatter=moves - moves.mean(axis=1, keepdims=True),
         white=np.sqrt(posterior.variance) * response @ square_root(total.gram),
+        beyond=_beyond_factor(response @ beyond),
     )
+
+
+def _beyond_factor(moves: Floats) -> Floats:
+    """Factor of the covariance by light from beyond the image, from moves (k, regions).
+
+    What it does to all regions together is no accident: ground next to a bright border is darker
+    in the mean, so that the tail comes out too small.
+    """
+    together = moves.sum(axis=1, keepdims=True)
+    return np.hstack([together, moves - together / moves.shape[1]])

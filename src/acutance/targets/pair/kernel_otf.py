@@ -40,6 +40,8 @@ class KernelOtf(ShortRepr):
         The reference's Nyquist frequencies along the rows and down the columns of pixels, in cycles
         per low pixel.
     reference : ReferenceOtf, optional
+    term : str, optional
+        The one cause whose covariance counts; all unless given.
     """
 
     basis: KernelBasis
@@ -48,6 +50,7 @@ class KernelOtf(ShortRepr):
     band_across_cpp: float
     band_along_cpp: float
     reference: ReferenceOtf | None = None
+    term: str | None = None
 
     @classmethod
     def of_fit(
@@ -70,13 +73,32 @@ class KernelOtf(ShortRepr):
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Factor of its covariance, (n, m)."""
+        parts = self._factors(u_cpp, v_cpp)
+        return np.hstack([part for name, part in parts.items() if self.term in (None, name)])
+
+    def _factors(self, u_cpp: Floats, v_cpp: Floats) -> dict[str, Complexes]:
+        """Factor of the covariance by every cause: the rows of the uncertainty budget."""
         quotient, slopes = self._quotient(u_cpp, v_cpp)
-        posterior = self._inflation(slopes)[:, None] * (slopes @ self.covariance.posterior)
-        factor = np.column_stack([posterior, slopes @ self.covariance.reference_noise])
+        found = {
+            "fit": self._inflation(slopes)[:, None] * (slopes @ self.covariance.posterior),
+            "reference_noise": (slopes @ self.covariance.reference_noise)[:, None],
+            "light_from_beyond": slopes @ self.covariance.beyond,
+        }
         if self.reference is None:
-            return factor
-        own = quotient[:, None] * self.reference.factor(u_cpp, v_cpp)
-        return np.column_stack([factor * self.reference.otf(u_cpp, v_cpp)[:, None], own])
+            return found
+        own = self.reference.otf(u_cpp, v_cpp)[:, None]
+        times = {name: np.asarray(factor * own) for name, factor in found.items()}
+        factor = quotient[:, None] * self.reference.factor(u_cpp, v_cpp)
+        return {**times, "reference_mtf": np.asarray(factor)}
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """The causes whose covariances add up to that of the OTF."""
+        return tuple(self._factors(np.zeros(1), np.zeros(1)))
+
+    def by(self, term: str) -> KernelOtf:
+        """The same OTF with the covariance of one cause alone."""
+        return replace(self, term=term)
 
     @cached_property
     def inflation(self) -> float:

@@ -309,6 +309,7 @@ def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianF
             reference_noise=np.zeros(basis.size),
             scatter=moves - moves.mean(axis=1, keepdims=True),
             white=np.sqrt(noise) * response @ square_root(normal.gram),
+            beyond=fit.covariance.beyond,
         ),
     )  # fmt: skip
 
