@@ -207,9 +207,9 @@ def _require_within_taps(found: GaussianFit, taps: TapGrid) -> None:
         if not places[0] <= -axis.shift_px <= places[-1]:
             raise TargetError(
                 f"the parametric fit moved the low image by {axis.shift_px:.1f} pixels along its "
-                f"{name}, while the high image's samples were taken around a shift of "
-                f"{-float(places.mean()):.1f}: the images have too little in common to be "
-                "registered; choose a region with more structure, or state the ratio"
+                f"{name}, off the high image's samples, which were taken {places[0]:.1f} to "
+                f"{places[-1]:.1f} pixels from its own: the two have too little in common to be "
+                "registered; choose a region with more structure"
             )
 
 
