@@ -55,10 +55,12 @@ class CombinedPrior:
         ----------
         normal : Normal
             In the model's coefficients.
-        variance, inflation, earlier
+        variance, inflation
             As in `acutance.numerics.marginal_likelihood.regress`.
         noise_floor : float, optional
             The smallest noise the arithmetic allows for, instead of the prior's.
+        earlier : Posterior, optional
+            Solution of nearly the same problem: its amplitudes are the first guess.
         """
         prior = self.prior if noise_floor is None else replace(self.prior, noise_floor=noise_floor)
         found = regress(normal.combined(self.combination), prior, variance, inflation, earlier)
