@@ -372,7 +372,7 @@ def _covariance(
     moves = response @ np.stack(scores, axis=1)
     return KernelCovariance(
         posterior=posterior.factor,
-        reference_noise=high_noise.power_std * response @ (total.count * unit @ beta),
+        reference_noise=high_noise.power_std * response @ (total.count * unit @ beta)[:, None],
         scatter=moves - moves.mean(axis=1, keepdims=True),
         white=np.sqrt(posterior.variance) * response @ square_root(total.gram),
         beyond=_beyond_factor(response @ beyond),

@@ -81,7 +81,7 @@ class KernelOtf(ShortRepr):
         quotient, slopes = self._quotient(u_cpp, v_cpp)
         found = {
             "fit": self._inflation(slopes)[:, None] * (slopes @ self.covariance.posterior),
-            "reference_noise": (slopes @ self.covariance.reference_noise)[:, None],
+            "reference_noise": slopes @ self.covariance.reference_noise,
             "light_from_beyond": slopes @ self.covariance.beyond,
         }
         if self.reference is None:

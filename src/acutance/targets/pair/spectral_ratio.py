@@ -306,7 +306,7 @@ def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianF
         fit, posterior=posterior, whitening=WHITE,
         covariance=KernelCovariance(
             posterior=posterior.factor,
-            reference_noise=np.zeros(basis.size),
+            reference_noise=np.zeros((basis.size, 1)),
             scatter=moves - moves.mean(axis=1, keepdims=True),
             white=np.sqrt(noise) * response @ square_root(normal.gram),
             beyond=fit.covariance.beyond,
