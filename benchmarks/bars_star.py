@@ -7,6 +7,9 @@ intervals that hold the truth, over those frequencies. Stars: curves across, alo
 over directions. Bars: the curve along their normal, and the plain readings of every group for
 comparison. Levels stated: dark and bright are known from patches of 100 pixels each, and as
 uncertain.
+
+Families: a sensor drawn at random for every target, from broad ranges of optics, motion, charge
+and processing; coverage of MTF(.5), MTF(.25), RER and FWHM by the same intervals.
 """
 
 from __future__ import annotations
@@ -15,9 +18,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from trials import command, publish, table, work_through
+from trials import METRICS, TWO_SIDED_95, command, publish, table, work_through
 
 import acutance as ac
+from acutance.optics import FAMILIES, draw_sensor
+from acutance.simulate import StarTruth
 from acutance.targets.periodic import BarsOptions, StarOptions, measure_bars, measure_star
 
 FREQ = np.arange(10, 51, 2) / 100
@@ -66,11 +71,10 @@ def levels(case: StarCase | BarsCase, rng: np.random.Generator) -> dict[str, Any
     return {"dark": dark, "bright": bright, "level_std": PATCH_STD * float(np.sqrt(2))}
 
 
-def star_trial(job: tuple[StarCase, str, int, int]) -> tuple[np.ndarray, np.ndarray]:
-    """Errors and standard deviations of the curves of a random star, (1 or 3, n) each."""
-    case, name, seed, number = job
-    sensor = ac.simulate.reference_systems()[name]
-    rng = np.random.default_rng([seed, number, len(name), case.cycles])
+def random_star(
+    case: StarCase, sensor: ac.Sensor, rng: np.random.Generator, number: int
+) -> tuple[ac.StarMeasurement, StarTruth]:
+    """Measure a star of random centre and turn; the truth is that of the image."""
     side = 2 * round(case.radius_px + 12)
     wave = ("sine", "square")[number % 2]
     image, truth = ac.simulate.star(
@@ -79,9 +83,29 @@ def star_trial(job: tuple[StarCase, str, int, int]) -> tuple[np.ndarray, np.ndar
         centre=tuple((side / 2 + rng.uniform(-2, 2, 2)).tolist()),
         dark=DARK, bright=BRIGHT, snr=SNR, rng=rng,
     )  # fmt: skip
-    found = measure_star(
-        image, cycles=case.cycles, options=StarOptions(wave=wave, **levels(case, rng))
-    )
+    options = StarOptions(wave=wave, **levels(case, rng))
+    return measure_star(image, cycles=case.cycles, options=options), truth
+
+
+def random_bars(
+    case: BarsCase, sensor: ac.Sensor, rng: np.random.Generator, number: int
+) -> ac.BarsMeasurement:
+    """Measure groups of bars of random periods, tilt and size."""
+    image, _ = ac.simulate.bars(
+        sensor, periods_px=[p * rng.uniform(0.96, 1.04) for p in case.periods_px],
+        count=int(rng.integers(3, 7)), length_px=float(rng.uniform(20, 32)),
+        angle_deg=float(rng.uniform(-12, 12)), orientation=("across", "along")[number % 2],
+        dark=DARK, bright=BRIGHT, snr=SNR, rng=rng,
+    )  # fmt: skip
+    return measure_bars(image, options=BarsOptions(**levels(case, rng)))
+
+
+def star_trial(job: tuple[StarCase, str, int, int]) -> tuple[np.ndarray, np.ndarray]:
+    """Errors and standard deviations of the curves of a random star, (1 or 3, n) each."""
+    case, name, seed, number = job
+    sensor = ac.simulate.reference_systems()[name]
+    rng = np.random.default_rng([seed, number, len(name), case.cycles])
+    found, truth = random_star(case, sensor, rng, number)
     truths, curves = [truth.mtf_mean(FREQ, found.directions_deg)], [found.mean_mtf]
     # A fan of less than half a turn holds no spokes for some directions.
     if case.sweep_deg >= 180:
@@ -102,13 +126,7 @@ def bars_trial(job: tuple[BarsCase, str, int, int]) -> Trial:
     case, name, seed, number = job
     sensor = ac.simulate.reference_systems()[name]
     rng = np.random.default_rng([seed, number, len(name), len(case.periods_px)])
-    image, _ = ac.simulate.bars(
-        sensor, periods_px=[p * rng.uniform(0.96, 1.04) for p in case.periods_px],
-        count=int(rng.integers(3, 7)), length_px=float(rng.uniform(20, 32)),
-        angle_deg=float(rng.uniform(-12, 12)), orientation=("across", "along")[number % 2],
-        dark=DARK, bright=BRIGHT, snr=SNR, rng=rng,
-    )  # fmt: skip
-    found = measure_bars(image, options=BarsOptions(**levels(case, rng)))
+    found = random_bars(case, sensor, rng, number)
 
     def truth(freq: float) -> float:
         angle = np.radians(found.directions_deg[0])
@@ -121,6 +139,26 @@ def bars_trial(job: tuple[BarsCase, str, int, int]) -> Trial:
         for one in found.groups
     ]
     return errors, np.array([[found.normal_response.mtf(f).std for f in FREQ]]), np.array(plain)
+
+
+def family_trial(job: tuple[StarCase | BarsCase, str, int, int]) -> np.ndarray:
+    """Errors and standard deviations of the numbers of a random sensor, (1 or 2, numbers, 2)."""
+    case, family, seed, number = job
+    rng = np.random.default_rng([seed, number, *family.encode()])
+    sensor = draw_sensor(family, rng)
+    if isinstance(case, StarCase):
+        found, _ = random_star(case, sensor, rng, number)
+        pairs = [(found.across, sensor.response_along(0.0))]
+        pairs += [(found.along, sensor.response_along(90.0))]
+    else:
+        bars = random_bars(case, sensor, rng, number)
+        pairs = [(bars.normal_response, sensor.response_along(bars.directions_deg[0]))]
+    return np.array(
+        [
+            [(read(found).value - read(true).value, read(found).std) for read in METRICS.values()]
+            for found, true in pairs
+        ]
+    )
 
 
 def row_of(name: str, errors: np.ndarray, stds: np.ndarray) -> list[str]:
@@ -171,9 +209,28 @@ def bars_table(case: BarsCase, draws: int, seed: int, processes: int) -> str:
     return f"## Bars: {case.name}\n\n{table(head, rows)}"
 
 
+def family_table(case: StarCase | BarsCase, draws: int, seed: int, processes: int) -> str:
+    """All families of sensors of one kind of target."""
+    jobs = [(case, name, seed, number) for name in FAMILIES for number in range(draws)]
+    results = work_through(family_trial, jobs, processes, f"families: {case.name}")
+    rows = []
+    for name, own in [
+        *((name, results[i * draws : (i + 1) * draws]) for i, name in enumerate(FAMILIES)),
+        ("all", results),
+    ]:
+        error, std = np.moveaxis(np.concatenate(own), -1, 0)
+        held = 100 * np.mean(np.abs(error) < TWO_SIDED_95 * std, axis=0)
+        rms = np.sqrt(np.mean(error**2, axis=0))
+        rows.append([name, *(f"{h:.0f}, {r:.4f}" for h, r in zip(held, rms, strict=True))])
+    kind = "Star" if isinstance(case, StarCase) else "Bars"
+    head = ("family", *(f"{name}: held %, RMS" for name in METRICS))
+    return f"## {kind}, families of sensors: {case.name}\n\n{table(head, rows)}"
+
+
 if __name__ == "__main__":
     arguments = command(__doc__ or "", draws=60).parse_args()
     given = (arguments.draws, arguments.seed, arguments.processes)
     parts = [star_table(case, *given) for case in STARS]
     parts += [bars_table(case, *given) for case in BARS]
+    parts += [family_table(case, *given) for case in (STARS[0], BARS[1])]
     publish("Bars and stars", [str(__doc__), *parts], arguments)

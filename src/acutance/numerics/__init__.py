@@ -4,6 +4,8 @@
 - noise: its level, its outliers, its correlation; robust scales.
 - gaussian_pixel, gaussian_pixel_2d: a Gaussian seen through a pixel, with its derivatives.
 - process_modes, lorentz_tail: the corrections that a prior allows.
+- otf_modes, otf_families (learned by learn_otf), combined_prior: those of a transfer function in
+  two dimensions, and directions in them that sensors of a family take.
 - clipping: pixels at the end of the scale.
 - lookup: cubic interpolation of tables; one_thread: linear algebra of many small matrices.
 """

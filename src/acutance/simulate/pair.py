@@ -24,9 +24,10 @@ from acutance.simulate.noise import Noise, noise_of_snr
 
 __all__ = ["PairGround", "PairTruth", "pair", "pair_ground"]
 
-MARGIN_PX = 8
+MARGIN_PX = 32
 """Ground rendered beyond the low image on every side: light scattered further comes back from
-the other side."""
+the other side. That of a telescope falls like 1 / r^3, and from 8 px away, at SNR 400, it made
+MTF(.25) and RER .002 too high."""
 
 MAX_SAMPLES = 40_000_000
 

@@ -58,6 +58,15 @@ TERMS = {
         "amplitudes of the prior", "A", "curvature of the log evidence (Laplace)"
     ),
     "halo": TermWords("halo of a pulse", "B", "a share of the halo, from simulated pulses"),
+    "reference_noise": TermWords(
+        "noise of the reference", "B",
+        "its power, estimated from quiet blocks, with what may be texture of the ground",
+    ),
+    "reference_mtf": TermWords("MTF of the reference", "B", "as it was stated or measured"),
+    "light_from_beyond": TermWords(
+        "light from beyond the image", "B",
+        "two guesses of the ground there: the border repeated, and mirrored",
+    ),
     "target_softness": TermWords("softness of the target's border", "B", "stated"),
     "level_uncertainty": TermWords("levels of the target", "B", "stated"),
     "row_scatter": TermWords("scatter of the rows", "A", "draws of the rows, as published"),

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from acutance.numerics.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
 from acutance.optics import Detector, Exponential, Gaussian, Sensor, Smear
 from acutance.simulate import star
-from acutance.targets.periodic.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
 from acutance.targets.periodic.star_waves import StarTable
 
 CENTRE = (40.3, 39.6)

@@ -95,14 +95,24 @@ class PairAxis:
         stop = max(min(math.ceil(places[-1]) + lobes + 1, self.high_size), start + 1)
         return start, stop - start
 
-    def weights(self, first: int, count: int) -> Floats | NDArray[np.intp]:
+    def leaves_image(self, first: int, count: int) -> bool:
+        """Whether some of the samples lie beyond the image."""
+        places = self.places(first, count)
+        return bool(places[0] < -0.5 or places[-1] > self.high_size - 0.5)
+
+    def weights(
+        self, first: int, count: int, *, mirrored: bool = False
+    ) -> Floats | NDArray[np.intp]:
         """How samples follow from the pixels of `window`: indices, or a matrix (samples, pixels).
 
-        Beyond the image the outermost pixel is repeated. Samples between pixels, or fewer than
-        pixels, are band-limited: a sinc of ten lobes under a Kaiser window.
+        Beyond the image the outermost pixel is repeated, or the image mirrored. Samples between
+        pixels, or fewer than pixels, are band-limited: a sinc of ten lobes under a Kaiser window.
         """
         start, size = self.window(first, count)
         places = self.places(first, count) - start
+        if mirrored:
+            places = np.abs(places)
+            places = np.minimum(places, 2 * (size - 1) - places)
         if self.is_native:
             return np.clip(np.round(places).astype(np.intp), 0, size - 1)
         reach = _SINC_LOBES * self._stretch

@@ -17,8 +17,9 @@ from acutance.targets.pair.tile import Complexes
 
 __all__ = ["KernelCovariance"]
 
-_FACTORS = ("posterior", "scatter", "white")
-_STEPS = {"posterior": 4e-4, "scatter": 8e-4, "white": 8e-4}
+_STEPS = {
+    "posterior": 4e-4, "scatter": 1.6e-3, "white": 2e-3, "beyond": 2e-2, "reference_noise": 1e-2,
+}  # fmt: skip
 """What entries of packed factors are rounded to, relative to a typical deviation of the OTF. There
 are a hundred or two of them to a deviation, which they change by some thousandths, below 0.1 cycles
 per pixel by some hundredths."""
@@ -32,12 +33,14 @@ class KernelCovariance(ShortRepr):
     ----------
     posterior : (k, m) array
         Of the posterior.
-    reference_noise : (k,) array
+    reference_noise : (k, 1) array
         Change of the coefficients for one standard deviation of the reference's noise power.
     scatter : (k, regions) array
         What the residuals of every region would move the coefficients by, about the mean of all.
     white : (k, k) array
         Of the covariance that white residuals would give.
+    beyond : (k, q) array
+        Of what light from beyond the image does, whose ground is not known.
     size : (k,) array, optional
         Where the factors were rounded, how much the OTF changes with every coefficient.
     steps : mapping of str to float, optional
@@ -48,6 +51,7 @@ class KernelCovariance(ShortRepr):
     reference_noise: Floats
     scatter: Floats
     white: Floats
+    beyond: Floats
     size: Floats | None = None
     steps: Mapping[str, float] | None = None
 
@@ -77,8 +81,9 @@ class KernelCovariance(ShortRepr):
             Derivatives by the coefficients of the OTF all over its plane.
         """
         size = np.sqrt(np.mean(np.abs(slopes) ** 2, axis=0))
-        size = np.where(size > 0, size, 1.0)
-        factors = {name: _triangular(getattr(self, name)) for name in _FACTORS}
+        # Whole powers of two need a byte each.
+        size = 2.0 ** np.rint(np.log2(np.where(size > 0, size, 1.0)))
+        factors = {name: _triangular(getattr(self, name)) for name in _STEPS}
         steps = {
             name: _STEPS[name] * (math.sqrt(float(np.mean(_power(slopes @ factor)))) or 1.0)
             for name, factor in factors.items()
@@ -98,9 +103,12 @@ class KernelCovariance(ShortRepr):
             # Byte by byte: those of one weight follow each other.
             planes = np.ascontiguousarray(multiples.reshape(-1, 1).view(np.uint8).T)
             state[name] = multiples.shape, lzma.compress(planes.tobytes())
+        state["size"] = np.log2(self.size).astype("<i1")
         return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
+        if state["size"] is not None:
+            state["size"] = 2.0 ** state["size"].astype(float)
         for name, step in (state["steps"] or {}).items():
             shape, stored = state[name]
             planes = np.frombuffer(lzma.decompress(stored), np.uint8).reshape(4, -1)

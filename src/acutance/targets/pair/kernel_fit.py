@@ -13,25 +13,47 @@ form (`acutance.numerics.marginal_likelihood`). Three things keep it true:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
+from acutance.numerics.combined_prior import CombinedPrior
+from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.pair import tuned
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.kernel_covariance import KernelCovariance
-from acutance.targets.pair.noise import WHITE, Whitening, noise_gram, whitening_of
-from acutance.targets.pair.tile import PairTile, TapGrid, Tiles, blurred, blurred_far, core
+from acutance.targets.pair.kernel_prior import kernel_prior
+from acutance.targets.pair.noise import (
+    NO_NOISE,
+    WHITE,
+    HighNoise,
+    Whitening,
+    noise_gram,
+    whitening_of,
+)
+from acutance.targets.pair.reference_otf import ReferenceOtf
+from acutance.targets.pair.tile import (
+    PairTile,
+    TapGrid,
+    Tiles,
+    blurred,
+    blurred_far,
+    core,
+    correlated,
+)
 
-__all__ = ["Kernel", "KernelFit", "fit_kernel", "kernel_prior", "square_root", "without_noise"]
+__all__ = ["Kernel", "KernelFit", "fit_kernel", "square_root", "without_noise"]
+
+
+_BANDS: Final = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +81,12 @@ class Kernel:
         near = blurred(tile, grid, self.taps)
         return near + blurred_far(tile, self.far) if self.far.any() else near
 
+    def light_from_beyond(self, tile: PairTile) -> Floats:
+        """What it makes of the ground beyond the image, which is guessed, (h, w)."""
+        if tile.beyond is None:
+            return np.zeros(tile.low.shape)
+        return correlated(tile.beyond, self.far)
+
 
 @dataclass(frozen=True, eq=False)
 class KernelFit:
@@ -72,11 +100,12 @@ class KernelFit:
         Of the coefficients of the basis; the first is the gain.
     covariance : KernelCovariance
         The posterior's, and what the reference's noise and the scatter of regions add.
+    prior : CombinedPrior
     whitening : Whitening
     noise : float
         Robust standard deviation of the residuals, before whitening.
-    noise_high : float
-        Standard deviation of the reference's noise that was allowed for.
+    high_noise : HighNoise
+        The reference's noise that was allowed for.
     used : int
         Low pixels with more than a twentieth of their weight.
     left_out : int
@@ -89,9 +118,10 @@ class KernelFit:
     basis: KernelBasis
     posterior: Posterior
     covariance: KernelCovariance
+    prior: CombinedPrior
     whitening: Whitening
     noise: float
-    noise_high: float
+    high_noise: HighNoise
     used: int
     left_out: int
     robust: bool
@@ -116,8 +146,9 @@ def fit_kernel(
     grid: TapGrid,
     gaussian: GaussianFit,
     *,
+    reference: ReferenceOtf | None = None,
     processes: int = 3,
-    noise_high: float = 0.0,
+    high_noise: HighNoise = NO_NOISE,
     robust: bool = True,
 ) -> KernelFit:
     """Fit the kernel freely about its parametric form.
@@ -128,10 +159,12 @@ def fit_kernel(
     grid : TapGrid
     gaussian : GaussianFit
         The parametric fit.
+    reference : ReferenceOtf, optional
+        The high image's own transfer, where it is known.
     processes : int, optional
         How many of the basis' processes.
-    noise_high : float, optional
-        Standard deviation of the reference's noise in a sample.
+    high_noise : HighNoise, optional
+        The reference's noise in a sample.
     robust : bool, optional
         Leave out what fits badly.
 
@@ -141,42 +174,27 @@ def fit_kernel(
         If the noise of the high image cannot be taken off.
     """
     basis = KernelBasis(grid, gaussian.down, gaussian.across, processes)
-    prior = kernel_prior(basis, gaussian.gain)
+    prior = kernel_prior(basis, gaussian.gain, reference)
     first = _Residuals(tiles, grid, Kernel.of(basis, prior.mean), WHITE, gaussian.noise, robust)
-    normals = first.normals(basis).values()
-    rough = _regressed(basis, prior, normals, gaussian.noise, noise_high, WHITE, None)
+    normals, _ = first.normals(basis)
+    rough = _regressed(basis, prior, normals, gaussian.noise, high_noise, WHITE, None)
     kernel = Kernel.of(basis, rough.beta)
     noise = _Residuals(tiles, grid, kernel, WHITE, 0.0, robust).scale()
     coloured = _Residuals(tiles, grid, kernel, WHITE, noise, robust)
     whitening = whitening_of(coloured.fields())
     white_noise = replace(coloured, whitening=whitening).scale()
     white = replace(coloured, whitening=whitening, white_noise=white_noise)
-    regions = white.normals(basis)
-    posterior = _regressed(
-        basis, prior, regions.values(), gaussian.noise, noise_high, whitening, rough
-    )
+    regions, beyond = white.normals(basis)
+    posterior = _regressed(basis, prior, regions, gaussian.noise, high_noise, whitening, rough)
     used, left_out = white.counts()
     return KernelFit(
         grid=grid, basis=basis, posterior=posterior,
-        covariance=_covariance(basis, posterior, list(regions.values()), noise_high, whitening),
-        whitening=whitening, noise=noise, noise_high=noise_high, used=used, left_out=left_out,
-        robust=robust,
+        covariance=_covariance(
+            basis, prior, posterior, regions, beyond, high_noise, whitening
+        ),
+        prior=prior, whitening=whitening, noise=noise, high_noise=high_noise, used=used,
+        left_out=left_out, robust=robust,
     )  # fmt: skip
-
-
-def kernel_prior(basis: KernelBasis, gain: float) -> Prior:
-    """Prior of the coefficients about the parametric kernel of a gain."""
-    mean = np.zeros(basis.size)
-    mean[0] = gain
-    return Prior(
-        block=np.asarray(basis.blocks, float),
-        scale=basis.scale,
-        mean=mean,
-        log_amplitude=basis.log_amplitude,
-        log_amplitude_std=tuned.LOG_AMPLITUDE_STD,
-        height=abs(gain),
-        noise_floor=1e-3,
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,8 +232,12 @@ class _Residuals:
         every = np.concatenate(whitened) if whitened else np.zeros(0)
         return robust_scale(every) if every.size else 0.0
 
-    def normals(self, basis: KernelBasis) -> Mapping[int, Normal]:
-        """Normal equations of every region, tile means left out."""
+    def normals(self, basis: KernelBasis) -> tuple[list[Normal], Floats]:
+        """Normal equations of every region, tile means left out.
+
+        Also, (k, regions), what their right sides change by if the ground beyond the image is
+        another.
+        """
         found: dict[int, Normal] = {}
         for tile in self.tiles():
             rest = self._residual(tile.low - self.kernel.low_pixels(tile, self.grid))
@@ -224,7 +246,8 @@ class _Residuals:
             if usable.sum() < 8:
                 continue
             y = self.whitening(np.where(np.isfinite(rest), tile.low, np.nan))[usable]
-            columns = self.whitening(basis.columns(tile))[usable]
+            fields = np.dstack([basis.columns(tile), self.kernel.light_from_beyond(tile)])
+            columns = self.whitening(fields)[usable]
             scale = self.white_noise or self.noise
             weight = np.ones(y.size)
             if self.robust and scale > 0:
@@ -235,7 +258,8 @@ class _Residuals:
                 part = _centred(columns[own], y[own], weight[own])
                 before = found.get(region)
                 found[region] = part if before is None else _sum([before, part])
-        return found
+        beyond = [one.gram[:-1, -1] for one in found.values()]
+        return [_without_last(one) for one in found.values()], np.stack(beyond, axis=1)
 
     def counts(self) -> tuple[int, int]:
         """Low pixels used and left out."""
@@ -257,6 +281,10 @@ def _centred(columns: Floats, y: Floats, weight: Floats) -> Normal:
     columns = columns - weight @ columns / total
     pulled = columns * weight[:, None]
     return Normal(pulled.T @ columns, pulled.T @ y, float(weight @ y**2), max(total - 1, 0.0))
+
+
+def _without_last(normal: Normal) -> Normal:
+    return replace(normal, gram=normal.gram[:-1, :-1], projection=normal.projection[:-1])
 
 
 def _finite(field: Floats) -> Floats:
@@ -309,40 +337,55 @@ def without_noise(normal: Normal, products: Floats, beta: Floats) -> Normal:
 
 def _regressed(
     basis: KernelBasis,
-    prior: Prior,
-    regions: Iterable[Normal],
+    prior: CombinedPrior,
+    regions: Sequence[Normal],
     noise: float,
-    noise_high: float,
+    high_noise: HighNoise,
     whitening: Whitening,
     earlier: Posterior | None,
 ) -> Posterior:
     """The posterior that all regions give together, the reference's noise taken off."""
-    normal = _sum(list(regions))
-    if noise_high > 0:
-        products = noise_high**2 * noise_gram(basis.taps(), basis.grid, whitening)
+    normal = _sum(regions)
+    if high_noise.power > 0:
+        products = high_noise.power * noise_gram(basis.taps(), basis.grid, whitening)
         normal = without_noise(normal, products, prior.mean if earlier is None else earlier.beta)
     floor = 1e-5 * float(np.sqrt(normal.data / max(normal.count, 1.0)))
-    return regress(normal, replace(prior, noise_floor=floor), noise**2, 1.0, earlier)
+    return prior.posterior(normal, noise**2, noise_floor=floor, earlier=earlier)
 
 
 def _covariance(
     basis: KernelBasis,
+    prior: CombinedPrior,
     posterior: Posterior,
     regions: Sequence[Normal],
-    noise_high: float,
+    beyond: Floats,
+    high_noise: HighNoise,
     whitening: Whitening,
 ) -> KernelCovariance:
     """How noise, and single regions, move the coefficients."""
-    beta, k = posterior.beta, basis.size
-    # Conditional covariance: what the amplitudes add is no answer to the residuals.
-    response = posterior.factor[:, :k] @ posterior.factor[:, :k].T / posterior.variance
-    products = noise_high**2 * noise_gram(basis.taps(), basis.grid, whitening)
+    beta = posterior.beta
+    response = prior.response(posterior, posterior.variance)
+    unit = noise_gram(basis.taps(), basis.grid, whitening)
+    products = high_noise.power * unit
     scores = [one.projection - (one.gram - one.count * products) @ beta for one in regions]
     total = _sum(regions)
     moves = response @ np.stack(scores, axis=1)
     return KernelCovariance(
         posterior=posterior.factor,
-        reference_noise=tuned.NOISE_POWER_STD * response @ (total.count * products @ beta),
+        reference_noise=high_noise.power_std * response @ (total.count * unit @ beta)[:, None],
         scatter=moves - moves.mean(axis=1, keepdims=True),
         white=np.sqrt(posterior.variance) * response @ square_root(total.gram),
+        beyond=_beyond_factor(response @ beyond),
     )
+
+
+def _beyond_factor(moves: Floats) -> Floats:
+    """Factor (k, 5) of the covariance by light from beyond the image, from moves (k, regions).
+
+    What it does to all regions together is no accident: ground next to a bright border is darker
+    in the mean, so that the tail comes out too small. The rest scatters between bands of regions.
+    """
+    parts = np.array_split(moves, _BANDS, axis=1)
+    bands = np.stack([part.sum(axis=1) for part in parts], axis=1)
+    together = bands.sum(axis=1, keepdims=True)
+    return np.hstack([together, bands - together / _BANDS])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
@@ -15,29 +14,13 @@ from acutance.targets.pair import tuned
 from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.kernel_covariance import KernelCovariance
 from acutance.targets.pair.kernel_fit import KernelFit
+from acutance.targets.pair.reference_otf import ReferenceOtf
 from acutance.targets.pair.tile import Complexes
 
-__all__ = ["KernelOtf", "ReferenceOtf"]
+__all__ = ["KernelOtf"]
 
 _FREQ_CPP: Floats = np.asarray(np.arange(1, 20) / 20)
 _PLANE_NODES = 33
-
-
-class ReferenceOtf(Protocol):
-    """The reference's own OTF, at frequencies in cycles per pixel of the LOW image."""
-
-    @property
-    def only_direction(self) -> str | None:
-        """The single direction it was measured in, in words; ``None`` where it is known in all."""
-        ...
-
-    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """OTF, (n,), 1 at zero frequency."""
-        ...
-
-    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Factor of its covariance, (n, k), 0 at zero frequency."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +40,8 @@ class KernelOtf(ShortRepr):
         The reference's Nyquist frequencies along the rows and down the columns of pixels, in cycles
         per low pixel.
     reference : ReferenceOtf, optional
+    term : str, optional
+        The one cause whose covariance counts; all unless given.
     """
 
     basis: KernelBasis
@@ -65,6 +50,7 @@ class KernelOtf(ShortRepr):
     band_across_cpp: float
     band_along_cpp: float
     reference: ReferenceOtf | None = None
+    term: str | None = None
 
     @classmethod
     def of_fit(
@@ -87,13 +73,32 @@ class KernelOtf(ShortRepr):
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Factor of its covariance, (n, m)."""
+        parts = self._factors(u_cpp, v_cpp)
+        return np.hstack([part for name, part in parts.items() if self.term in (None, name)])
+
+    def _factors(self, u_cpp: Floats, v_cpp: Floats) -> dict[str, Complexes]:
+        """Factor of the covariance by every cause: the rows of the uncertainty budget."""
         quotient, slopes = self._quotient(u_cpp, v_cpp)
-        posterior = self._inflation(slopes)[:, None] * (slopes @ self.covariance.posterior)
-        factor = np.column_stack([posterior, slopes @ self.covariance.reference_noise])
+        found = {
+            "fit": self._inflation(slopes)[:, None] * (slopes @ self.covariance.posterior),
+            "reference_noise": slopes @ self.covariance.reference_noise,
+            "light_from_beyond": slopes @ self.covariance.beyond,
+        }
         if self.reference is None:
-            return factor
-        own = quotient[:, None] * self.reference.factor(u_cpp, v_cpp)
-        return np.column_stack([factor * self.reference.otf(u_cpp, v_cpp)[:, None], own])
+            return found
+        own = self.reference.otf(u_cpp, v_cpp)[:, None]
+        times = {name: np.asarray(factor * own) for name, factor in found.items()}
+        factor = quotient[:, None] * self.reference.factor(u_cpp, v_cpp)
+        return {**times, "reference_mtf": np.asarray(factor)}
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """The causes whose covariances add up to that of the OTF."""
+        return tuple(self._factors(np.zeros(1), np.zeros(1)))
+
+    def by(self, term: str) -> KernelOtf:
+        """The same OTF with the covariance of one cause alone."""
+        return replace(self, term=term)
 
     @cached_property
     def inflation(self) -> float:

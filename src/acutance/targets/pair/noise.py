@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from acutance.numerics.noise import Correlation, correlation
 from acutance.targets.pair import tuned
 from acutance.targets.pair.tile import PAD_PX, TapGrid, core
 
-__all__ = ["Whitening", "fine_noise", "noise_gram", "whitening_of"]
+__all__ = ["NO_NOISE", "HighNoise", "Whitening", "noise_gram", "whitening_of"]
 
 LAGS: Final = tuple(
     (down, right)
@@ -33,6 +33,7 @@ _GAP_PX = 2
 NO_CORRELATION: Final = Correlation(1.0, 0.0, 0.0)
 _RIDGE = 1e-6
 _ORDER = 6
+_LOW_ORDER = 3
 _BLOCK = 24
 
 
@@ -114,23 +115,68 @@ def _correlation(fields: list[Floats]) -> Correlation:
     )
 
 
-def fine_noise(fine: Floats) -> float:
-    """Standard deviation of the reference's noise, from the quietest quarter of its blocks.
+class HighNoise(NamedTuple):
+    """The reference's noise in a sample.
 
-    Sixth differences along both axes see only what is next to Nyquist both ways, where a sensor
-    passes least of the scene; what is left of its texture counts as noise.
+    Attributes
+    ----------
+    power : float
+        Its variance.
+    power_std : float
+        Standard deviation of that.
     """
-    both = np.diff(np.diff(fine, _ORDER, axis=0), _ORDER, axis=1)
-    height, width = (size // _BLOCK for size in both.shape)
-    if height * width == 0:
-        return 0.0
-    blocks = both[: height * _BLOCK, : width * _BLOCK]
+
+    power: float
+    power_std: float
+
+    @classmethod
+    def of_std(cls, std: float) -> HighNoise:
+        """Noise of a standard deviation that was stated."""
+        return cls(std**2, tuned.NOISE_POWER_STD * std**2)
+
+    @classmethod
+    def of_samples(cls, fine: Floats) -> HighNoise:
+        """Noise of a reference's samples, from the quietest quarter of its blocks.
+
+        Sixth differences along both axes see only what is next to Nyquist both ways, where a sensor
+        passes least of the scene. Noise has the same power in third differences, which reach to
+        lower frequencies, and texture about twice as much: by so much as they have more, what is
+        next to Nyquist may be texture. Half of that is taken for it.
+        """
+        powers = [_block_powers(fine, order) for order in (_ORDER, _LOW_ORDER)]
+        usable = np.isfinite(powers[0]) & np.isfinite(powers[1])
+        if not usable.any():
+            return NO_NOISE
+        high, low = (part[usable] for part in powers)
+        bound = float(np.quantile(high, tuned.QUIET_SHARE))
+        texture = float(np.clip(np.mean((low - high)[high <= bound]), 0.0, bound))
+        power = bound - 0.5 * texture
+        return cls(power, math.hypot(tuned.NOISE_POWER_STD * power, 0.5 * texture))
+
+    def times(self, factor: float) -> HighNoise:
+        """The noise with its power multiplied."""
+        return HighNoise(factor * self.power, factor * self.power_std)
+
+    @property
+    def std(self) -> float:
+        """Standard deviation of the noise."""
+        return math.sqrt(self.power)
+
+
+NO_NOISE: Final = HighNoise(0.0, 0.0)
+
+
+def _block_powers(fine: Floats, order: int) -> Floats:
+    """Power of differences along both axes in every block, that of white noise of variance 1."""
+    both = np.diff(np.diff(fine, order, axis=0), order, axis=1)
+    height, width = ((size - 2 * _ORDER) // _BLOCK for size in fine.shape)
+    if min(height, width) < 1:
+        return np.zeros(0)
+    start = (_ORDER - order) // 2
+    blocks = both[start : start + height * _BLOCK, start : start + width * _BLOCK]
     blocks = blocks.reshape(height, _BLOCK, width, _BLOCK).transpose(0, 2, 1, 3)
     powers = np.mean(blocks.reshape(height * width, -1) ** 2, axis=1)
-    usable = powers[np.isfinite(powers)]
-    if usable.size == 0:
-        return 0.0
-    return math.sqrt(float(np.quantile(usable, tuned.QUIET_SHARE))) / math.comb(2 * _ORDER, _ORDER)
+    return np.asarray(powers / math.comb(2 * order, order) ** 2)
 
 
 def noise_gram(taps: Floats, grid: TapGrid, whitening: Whitening) -> Floats:

@@ -26,8 +26,9 @@ from acutance.targets.pair.checks import check_pair
 from acutance.targets.pair.gaussian_fit import GaussianFit, fit_gaussian
 from acutance.targets.pair.grid import PairGrid, pair_grid
 from acutance.targets.pair.kernel_fit import KernelFit, fit_kernel
-from acutance.targets.pair.kernel_otf import KernelOtf, ReferenceOtf
+from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import fit_regions
+from acutance.targets.pair.noise import HighNoise
 from acutance.targets.pair.options import BiresolutionOptions
 from acutance.targets.pair.pair_measurement import (
     BiresolutionMeasurement,
@@ -35,10 +36,11 @@ from acutance.targets.pair.pair_measurement import (
     PairDetails,
 )
 from acutance.targets.pair.reference import ReferenceLike, reference_otf
+from acutance.targets.pair.reference_otf import ReferenceOtf
 from acutance.targets.pair.register import Registration, registered_tiles
 from acutance.targets.pair.screen import ScreenedTiles, screened
 from acutance.targets.pair.spectral_ratio import PairSpectra, fit_spectra, pair_spectra
-from acutance.targets.pair.tile import core
+from acutance.targets.pair.tile import TapGrid, core
 from acutance.targets.pair.tiles import PairTiles
 from acutance.targets.region import RoiLike, chosen_region, image_info
 
@@ -101,7 +103,7 @@ def measure_biresolution(
     reference = _reference(reference_mtf, coarse, fine, grid)
     tiles, match = registered_tiles(coarse, fine, grid, _as_region(roi, coarse), chosen)
     ground, gaussian = _gaussian(tiles, match, chosen)
-    pixel_fit = _pixel_fit(tiles, ground, gaussian, chosen)
+    pixel_fit = _pixel_fit(tiles, ground, gaussian, reference, chosen)
     spectra = _spectra(tiles, ground, pixel_fit, gaussian)
     fit = pixel_fit if method == "kernel-fit" else fit_spectra(spectra, pixel_fit, gaussian)
     model = KernelOtf.of_fit(
@@ -133,7 +135,7 @@ def measure_biresolution(
         left_out=pixel_fit.left_out,
         share_read=tiles.share_read,
         residual_std=pixel_fit.noise,
-        high_noise=pixel_fit.noise_high,
+        high_noise=pixel_fit.high_noise.std,
         coherence=None if spectra is None else Coherence.of(spectra),
         local=local,
         reference_known=reference is not None,
@@ -194,17 +196,37 @@ def _gaussian(
             + (", brighter where that is darker" if found.gain < 0 else "")
             + ": bands, dates or places differ too much for a measurement; choose a similar band"
         )
+    _require_within_taps(found, tiles.taps)
     return ground, found
 
 
+def _require_within_taps(found: GaussianFit, taps: TapGrid) -> None:
+    """Refuse a fit that moved the kernel off the samples it acts on."""
+    for axis, name in ((found.down, "rows"), (found.across, "columns")):
+        places = (taps.down if name == "rows" else taps.across).places_px
+        if not places[0] <= -axis.shift_px <= places[-1]:
+            raise TargetError(
+                f"the parametric fit moved the low image by {axis.shift_px:.1f} pixels along its "
+                f"{name}, off the high image's samples, which were taken {places[0]:.1f} to "
+                f"{places[-1]:.1f} pixels from its own: the two have too little in common to be "
+                "registered; choose a region with more structure"
+            )
+
+
 def _pixel_fit(
-    tiles: PairTiles, ground: ScreenedTiles, gaussian: GaussianFit, options: BiresolutionOptions
+    tiles: PairTiles,
+    ground: ScreenedTiles,
+    gaussian: GaussianFit,
+    reference: ReferenceOtf | None,
+    options: BiresolutionOptions,
 ) -> KernelFit:
     """The free kernel that fits the pixels."""
+    stated = options.noise_high
     found = fit_kernel(
         ground, tiles.taps, gaussian,
+        reference=reference,
         processes=3 if tiles.reach_px > tuned.HALO_REACH_PX else 2,
-        noise_high=tiles.high_noise if options.noise_high is None else options.noise_high,
+        high_noise=tiles.high_noise if stated is None else HighNoise.of_std(stated),
         robust=options.robust,
     )  # fmt: skip
     return replace(found, left_out=found.left_out + ground.left_out)

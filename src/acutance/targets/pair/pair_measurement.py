@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from acutance.curves import Estimate
+from acutance.curves import Estimate, Otf2d
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Orientation
@@ -16,9 +16,11 @@ from acutance.targets.measurement import Measurement
 from acutance.targets.pair.gaussian_fit import GaussianFit, GaussianStep
 from acutance.targets.pair.grid import PairGrid
 from acutance.targets.pair.kernel_fit import KernelFit
+from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit, ResidualMap
 from acutance.targets.pair.spectral_ratio import PairSpectra
 from acutance.targets.record import ImageInfo, rounded
+from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows
 
 __all__ = ["BiresolutionMeasurement", "Coherence", "PairDetails"]
 
@@ -159,6 +161,20 @@ class BiresolutionMeasurement(Measurement):
     def _axis(self, direction: Orientation) -> Literal["columns", "rows"]:
         """The axis of the pixels that lies across or along track."""
         return "columns" if (direction == "across") == (self.image.along_track == "y") else "rows"
+
+    def _budget(self) -> tuple[BudgetTerm, ...]:
+        """Rows of the pixels, of the reference's noise and own MTF, and of light from beyond."""
+        if not (isinstance(self.transfer, Otf2d) and isinstance(self.transfer.model, KernelOtf)):
+            return super()._budget()
+        model, gsd_m = self.transfer.model, self.transfer.gsd_m
+        causes = {term: Otf2d(model.by(term), gsd_m) for term in model.terms}
+        return tuple(
+            row
+            for name in self.measured_directions
+            for row in budget_rows(
+                name, [(term, one.response(self.axes_deg[name])) for term, one in causes.items()]
+            )
+        )
 
     def target_document(self) -> dict[str, Any]:
         """Geometry, registration, radiometry, iterations, coherence and the map, for JSON."""

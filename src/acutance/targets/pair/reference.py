@@ -17,7 +17,7 @@ from acutance.geometry.angles import axis_difference, wrap_axis
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.raster import Gsd
 from acutance.targets.measurement import Measurement
-from acutance.targets.pair.kernel_otf import ReferenceOtf
+from acutance.targets.pair.reference_otf import ReferenceOtf
 from acutance.targets.record import Record, RecordedDirection
 from acutance.targets.target_result import TargetResult
 

@@ -19,12 +19,11 @@ from scipy.ndimage import uniform_filter
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.numerics.marginal_likelihood import regress
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.pair import tuned
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.kernel_covariance import KernelCovariance
-from acutance.targets.pair.kernel_fit import KernelFit, kernel_prior, square_root
+from acutance.targets.pair.kernel_fit import KernelFit, square_root
 from acutance.targets.pair.noise import WHITE
 from acutance.targets.pair.tile import PAD_PX, Complexes, PairTile, TapAxis, TapGrid, first_of_cell
 
@@ -282,7 +281,7 @@ def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianF
     # Of a single frequency; half of the noise is in phase.
     precision = 2 * spectra.windows / spectra.noise.ravel()[chosen]
     clean = np.maximum(
-        high - _noise_power(spectra, fit.noise_high, basis.grid) * _flattening(u, v) ** 2,
+        high - _noise_power(spectra, fit.high_noise.power, basis.grid) * _flattening(u, v) ** 2,
         tuned.MAX_NOISE_SHARE * high,
     )
     design = basis.transfer(u, v) * basis.centring(u, v)[:, None]
@@ -294,10 +293,9 @@ def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianF
         float(precision @ (np.abs(cross) ** 2 / clean)),
         2.0 * u.size,
     )
-    posterior = regress(normal, kernel_prior(basis, gaussian.gain), 1.0, tuned.OVERLAP)
-    k = basis.size
+    posterior = fit.prior.posterior(normal, 1.0, tuned.OVERLAP)
     noise = tuned.OVERLAP * posterior.variance
-    response = posterior.factor[:, :k] @ posterior.factor[:, :k].T / noise
+    response = fit.prior.response(posterior, noise)
     fitted = design @ posterior.beta * (clean / high)
     rest = [
         part.ravel()[chosen] - power.ravel()[chosen] * fitted
@@ -308,15 +306,16 @@ def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianF
         fit, posterior=posterior, whitening=WHITE,
         covariance=KernelCovariance(
             posterior=posterior.factor,
-            reference_noise=np.zeros(k),
+            reference_noise=np.zeros((basis.size, 1)),
             scatter=moves - moves.mean(axis=1, keepdims=True),
             white=np.sqrt(noise) * response @ square_root(normal.gram),
+            beyond=fit.covariance.beyond,
         ),
     )  # fmt: skip
 
 
-def _noise_power(spectra: PairSpectra, noise: float, grid: TapGrid) -> float:
+def _noise_power(spectra: PairSpectra, power: float, grid: TapGrid) -> float:
     """Power of the reference's noise in a window's spectrum."""
     samples = spectra.size_px**2 * grid.down.per_px * grid.across.per_px
     hann = (3 / 8) ** 2
-    return noise**2 * samples * hann / (grid.down.per_px * grid.across.per_px) ** 2
+    return power * samples * hann / (grid.down.per_px * grid.across.per_px) ** 2

@@ -31,6 +31,7 @@ __all__ = [
     "blurred",
     "blurred_far",
     "core",
+    "correlated",
     "far_taps",
     "filtered",
     "filtered_across",
@@ -112,6 +113,9 @@ class PairTile:
         Samples of the reference; those of low pixel (0, 0) begin at its corner. No NaN.
     wide : (h + 2 FAR_PX, w + 2 FAR_PX) array
         The reference's means over the low pixels and those around them. No NaN.
+    beyond : array or None
+        By how much these differ if the image is mirrored at its border instead of its outermost
+        pixel repeated: an error as large as that of either. ``None`` far from the border.
     place : (int, int)
         Row and column of the first pixel in the low image.
     regions : (h, w) int array
@@ -121,6 +125,7 @@ class PairTile:
     low: Floats
     fine: Floats
     wide: Floats
+    beyond: Floats | None
     place: tuple[int, int]
     regions: NDArray[np.intp]
 
@@ -169,16 +174,16 @@ def core(field: NDArray[Scalar]) -> NDArray[Scalar]:
 
 def blurred(tile: PairTile, grid: TapGrid, taps: Floats) -> Floats:
     """The low pixels a kernel, given by all its taps, makes of the reference: (h, w)."""
-    whole = _correlated(tile.fine, taps)
+    whole = correlated(tile.fine, taps)
     return np.asarray(whole[:: grid.down.per_px, :: grid.across.per_px])
 
 
 def blurred_far(tile: PairTile, weights: Floats) -> Floats:
     """The low pixels that weights of whole low pixels make of the reference: (h, w)."""
-    return _correlated(tile.wide, weights)
+    return correlated(tile.wide, weights)
 
 
-def _correlated(field: Floats, weights: Floats) -> Floats:
+def correlated(field: Floats, weights: Floats) -> Floats:
     """Sums over a field wherever all the weights lie inside it."""
     # To load it takes half a second and 50 MB, whatever is measured afterwards.
     from scipy.signal import fftconvolve

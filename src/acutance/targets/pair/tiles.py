@@ -15,7 +15,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import RegionError
 from acutance.raster import Box, Fill, Image, Region
 from acutance.targets.pair.grid import PairGrid
-from acutance.targets.pair.noise import fine_noise
+from acutance.targets.pair.noise import NO_NOISE, HighNoise
 from acutance.targets.pair.tile import FAR_PX, PAD_PX, PairTile, TapAxis, TapGrid, first_of_cell
 from acutance.targets.region import read_data
 
@@ -144,20 +144,18 @@ class PairTiles:
         yield from (self._read(box) for box in self.boxes[::step])
 
     @cached_property
-    def high_noise(self) -> float:
-        """Standard deviation of the noise in the samples the kernel acts on."""
-        found = []
+    def high_noise(self) -> HighNoise:
+        """The noise in the samples the kernel acts on: of the tile with the median one."""
         step = max(1, len(self.boxes) // 16)
-        for box in self.boxes[::step]:
-            window = self._high_box(box)
-            found.append(fine_noise(read_data(self.high, window)[0]))
-        raw = float(np.median([one for one in found if one > 0] or [0.0]))
+        windows = [self._high_box(box) for box in self.boxes[::step]]
+        found = [HighNoise.of_samples(read_data(self.high, window)[0]) for window in windows]
+        found = sorted(one for one in found if one.power > 0) or [NO_NOISE]
         stretch = 1.0
         for axis in (self.grid.down, self.grid.across):
             if not axis.is_native:
                 stretch *= axis.per_px / axis.ratio
         # Interpolated samples share the noise of fewer pixels, or average that of more.
-        return raw * float(np.sqrt(stretch))
+        return found[len(found) // 2].times(stretch)
 
     def fills(self) -> list[Fill | None]:
         """Undeclared fill of the low image's tiles, and of the high image's next to them."""
@@ -190,10 +188,16 @@ class PairTiles:
         near = slice(top, top + height), slice(left, left + width)
         fine = np.ascontiguousarray(samples[near])
         low[_spoiled(missing[near], taps, padded.shape)] = np.nan
-        shape = [(count // axis.per_px, axis.per_px) for (_, count), axis in
-                 zip((rows, cols), (taps.down, taps.across), strict=True)]  # fmt: skip
-        wide = samples.reshape(*shape[0], *shape[1]).mean(axis=(1, 3))
-        return PairTile(low, fine, wide, (padded.row, padded.col), self._labels(padded))
+        wide, beyond = self._means(samples), None
+        if self.grid.down.leaves_image(*rows) or self.grid.across.leaves_image(*cols):
+            beyond = self._means(self._samples(rows, cols, mirrored=True)[0]) - wide
+        return PairTile(low, fine, wide, beyond, (padded.row, padded.col), self._labels(padded))
+
+    def _means(self, samples: Floats) -> Floats:
+        """Means of samples over low pixels."""
+        per_px = self.taps.down.per_px, self.taps.across.per_px
+        rows, cols = (size // per for size, per in zip(samples.shape, per_px, strict=True))
+        return np.asarray(samples.reshape(rows, per_px[0], cols, per_px[1]).mean(axis=(1, 3)))
 
     def _read_low(self, box: Box) -> Floats:
         """Low pixels, NaN beyond the image, the region and the reference's cover."""
@@ -213,7 +217,7 @@ class PairTiles:
         return values
 
     def _samples(
-        self, rows: tuple[int, int], cols: tuple[int, int]
+        self, rows: tuple[int, int], cols: tuple[int, int], *, mirrored: bool = False
     ) -> tuple[Floats, NDArray[np.bool_]]:
         """Reference samples of a window, holes filled with its mean, and where the holes are."""
         (row, height), (col, width) = self.grid.down.window(*rows), self.grid.across.window(*cols)
@@ -222,7 +226,8 @@ class PairTiles:
         if missing.any():
             known = values[~missing]
             values = np.where(missing, known.mean() if known.size else 0.0, values)
-        down, across = self.grid.down.weights(*rows), self.grid.across.weights(*cols)
+        down = self.grid.down.weights(*rows, mirrored=mirrored)
+        across = self.grid.across.weights(*cols, mirrored=mirrored)
         holes = missing.astype(float)
         if down.ndim == 1:
             values, holes = values[down.astype(np.intp)], holes[down.astype(np.intp)]

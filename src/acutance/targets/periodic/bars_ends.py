@@ -15,7 +15,7 @@ from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.otf2d import OtfModel
 from acutance.geometry.bar_group import Bars
-from acutance.targets.periodic.otf_modes import Complexes
+from acutance.numerics.otf_modes import Complexes
 
 __all__ = ["OtfTable", "end_effect", "light_of_neighbours"]
 

@@ -14,7 +14,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.lookup import CubicLookup
-from acutance.targets.periodic.otf_modes import (
+from acutance.numerics.otf_modes import (
     HIGHEST_CPP,
     Complexes,
     MeanOtf,

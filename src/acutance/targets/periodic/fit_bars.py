@@ -21,12 +21,13 @@ from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
-from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
+from acutance.numerics.combined_prior import CombinedPrior
+from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import Correlation, correlation
+from acutance.numerics.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
 from acutance.targets.periodic.bars_ends import OtfTable, end_effect, light_of_neighbours
 from acutance.targets.periodic.bars_pixels import GroupPixels, group_columns
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
-from acutance.targets.periodic.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
     Regression,
@@ -264,7 +265,7 @@ def _regression(
         level = math.copysign(levels.bright - levels.dark, contrast)
         normal = with_level(normal, row, level, levels.std, variance * inflation)
     prior = _prior(pixels, stated, mean, states, contrast, level_stated=levels is not None)
-    posterior = regress(normal, prior, variance, inflation, earlier)
+    posterior = prior.posterior(normal, variance, inflation, earlier=earlier)
     otf = FittedOtf(mean, posterior.beta[first:], posterior.factor[first:])
     return Regression(posterior, otf, value - design @ posterior.beta)
 
@@ -298,7 +299,7 @@ def _prior(
     contrast: float,
     *,
     level_stated: bool,
-) -> Prior:
+) -> CombinedPrior:
     """Levels are free; places, periods and directions are those stated, to a part of a period.
 
     Their coefficients are the distances from the current to the fitted groups.

@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import NoStarError
 from acutance.geometry.star_geometry import SiemensStar
-from acutance.numerics.marginal_likelihood import Posterior, Prior, regress
+from acutance.numerics.combined_prior import CombinedPrior
+from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import Correlation, correlation
+from acutance.numerics.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
-from acutance.targets.periodic.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
     Regression,
@@ -289,12 +290,12 @@ def _regression(
         )
         normal = with_level(normal, row, stated, std, variance * inflation)
     prior = _prior(table.mean, level, level_stated=levels is not None)
-    posterior = regress(normal, prior, variance, inflation, earlier)
+    posterior = prior.posterior(normal, variance, inflation, earlier=earlier)
     otf = FittedOtf(table.mean, posterior.beta[_FIRST:], posterior.factor[_FIRST:])
     return Regression(posterior, otf, value - design @ posterior.beta)
 
 
-def _prior(mean: MeanOtf, level: float, *, level_stated: bool) -> Prior:
+def _prior(mean: MeanOtf, level: float, *, level_stated: bool) -> CombinedPrior:
     """Background, phase and the mean's own modes are free; the apertures are about one pixel."""
     own_scale = np.append(np.full(_BACKGROUND, _BACKGROUND_STD), _PHASE_STD_RAD / level)
     return otf_prior(

@@ -9,7 +9,7 @@ import numpy as np
 
 from acutance.curves import OtfModel
 from acutance.curves.grid import Floats
-from acutance.targets.periodic.otf_modes import (
+from acutance.numerics.otf_modes import (
     HIGHEST_CPP,
     MEAN_MODES,
     Complexes,

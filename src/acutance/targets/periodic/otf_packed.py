@@ -16,8 +16,8 @@ from typing import Final
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.otf_modes import HIGHEST_CPP, Complexes, MeanOtf
 from acutance.targets.periodic.otf_model import FittedOtf, all_modes
-from acutance.targets.periodic.otf_modes import HIGHEST_CPP, Complexes, MeanOtf
 
 __all__ = ["PackedOtf"]
 

@@ -8,12 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
+from acutance.numerics.otf_families import family_directions
+from acutance.numerics.otf_modes import MEAN_MODES, ProcessModes
 from acutance.targets.periodic.otf_model import FittedOtf
-from acutance.targets.periodic.otf_modes import MEAN_MODES, ProcessModes
 from acutance.targets.periodic.tuned import (
+    FAMILY_LOG_AMPLITUDE,
+    FAMILY_LOG_AMPLITUDE_STD,
     FREE_LEVEL_LOG_AMPLITUDE,
     LOG_AMPLITUDE,
     LOG_AMPLITUDE_STD,
@@ -76,8 +80,8 @@ def otf_prior(
     noise_floor: float,
     *,
     level_stated: bool,
-) -> Prior:
-    """Prior of a target's own coefficients, of the mean's modes, and of the processes.
+) -> CombinedPrior:
+    """Prior of a target's own coefficients, of the mean's modes, of processes and families.
 
     Parameters
     ----------
@@ -89,7 +93,7 @@ def otf_prior(
     mean_scale : (8,) array
         Standard deviations of the mean's modes, relative to `height`.
     states : ProcessModes or None
-        The processes; None for the mean alone.
+        The states of processes and families; None for the mean alone.
     height : float
         Height of the target, in data units.
     noise_floor : float
@@ -97,13 +101,30 @@ def otf_prior(
     level_stated : bool
         Whether levels of wide patches show how much light is scattered far.
     """
-    blocks = np.empty(0, np.intp) if states is None else states.blocks()
     own = np.full(own_scale.size + MEAN_MODES, -1)
-    scale = np.concatenate([own_scale, mean_scale, np.ones(blocks.size)])
-    mean = np.zeros(scale.size)
-    mean[: own_mean.size] = own_mean
+    families = None if states is None else family_directions()
+    blocks, combination = own, np.eye(own.size)
     amplitude = LOG_AMPLITUDE if level_stated else LOG_AMPLITUDE + FREE_LEVEL_LOG_AMPLITUDE
-    return Prior(
-        np.concatenate([own, blocks]), scale, mean, amplitude, LOG_AMPLITUDE_STD, height,
+    stds = np.repeat(
+        [LOG_AMPLITUDE_STD, FAMILY_LOG_AMPLITUDE_STD], [amplitude.size, FAMILY_LOG_AMPLITUDE.size]
+    )
+    if states is not None and families is not None:
+        blocks = np.concatenate([own, states.blocks(), amplitude.size + families.family])
+        combination = _with_families(own.size, families.states)
+    scale = np.ones(blocks.size)
+    scale[: own.size] = np.append(own_scale, mean_scale)
+    mean = np.zeros(blocks.size)
+    mean[: own_mean.size] = own_mean
+    prior = Prior(
+        blocks, scale, mean, np.append(amplitude, FAMILY_LOG_AMPLITUDE), stds, height,
         noise_floor * height,
     )  # fmt: skip
+    return CombinedPrior(prior, combination)
+
+
+def _with_families(own: int, directions: Floats) -> Floats:
+    """Coefficients of a target's own, of the states and of the families, in those two alone."""
+    states, families = directions.shape
+    combination = np.eye(own + states, own + states + families)
+    combination[own:, own + states :] = directions
+    return combination

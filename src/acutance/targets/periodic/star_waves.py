@@ -24,7 +24,7 @@ from scipy.special import jv
 
 from acutance.curves.grid import Floats
 from acutance.numerics.lookup import CubicLookup
-from acutance.targets.periodic.otf_modes import (
+from acutance.numerics.otf_modes import (
     HIGHEST_CPP,
     MEAN_MODES,
     Complexes,
