@@ -20,10 +20,14 @@ __all__ = [
     "DETAIL",
     "DETAIL_LOG_AMPLITUDE",
     "FAMILY_LOG_AMPLITUDES",
+    "FAMILY_WEIGHTS",
     "FAR_GROUND_STEPS",
     "GRADIENT_SIGMAS",
     "GROUND_LOG_AMPLITUDE",
     "HALO_SHARE",
+    "KERNEL_FLOOR",
+    "KERNEL_LOG_WIDTH",
+    "KERNEL_SCALES",
     "LOG_AMPLITUDE",
     "LOG_AMPLITUDE_STD",
     "MAX_ANGLE_BY_ROWS_DEG",
@@ -83,6 +87,15 @@ LOG_AMPLITUDE: Final[Floats] = np.array(
 LOG_AMPLITUDE_STD: Final = 2.0
 """Within a factor of 7 either way: narrower ones make Gaussian sensors pay for what they do not
 have (MTF at Nyquist, 40 px, SNR 100: RMS .0060 at 1.2, .0056 at 2)."""
+FAMILY_WEIGHTS: Final = {"telescope": 3.0}
+"""How often sensors of a family are expected, those of the others once (sensor_density.py)."""
+KERNEL_SCALES: Final = (0.2, 0.7)
+"""Size of the kernels of the density of sensors relative to its family: that of a sensor like those
+that were drawn, and of one unlike them."""
+KERNEL_LOG_WIDTH: Final = 0.12
+"""Standard deviation of the logarithm of the width: sensors of other blur say less."""
+KERNEL_FLOOR: Final = 1e-3
+"""Least standard deviation of a coordinate of a family: families of one cause vary in few."""
 NOISE_FLOOR: Final = 2e-4
 """The smallest noise that is told from the arithmetic's and the model's own."""
 APERTURE_PX: Final = (1.0, 0.18)
