@@ -2,7 +2,8 @@
 
 The passes before know the families of sensors by their principal directions, as if departures were
 normally distributed about none. Here the prior is the density of the sensors themselves
-(`sensor_density`). All other unknowns keep the prior, and the amplitudes, of those passes.
+(`sensor_density`), and the normal one for a sensor like none of them. All other unknowns keep the
+prior, and the amplitudes, of those passes.
 """
 
 from __future__ import annotations
@@ -10,15 +11,18 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from acutance.curves.grid import Floats
 from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight import lsf_prior
+from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.linear_model import Linear
 from acutance.targets.straight.sensor_density import SensorsSeen, drawn_sensors
-from acutance.targets.straight.spline import CELLS, SIZE, esf_from_lsf
+from acutance.targets.straight.spline import CELL, CELLS, SIZE, esf_from_lsf
+from acutance.targets.straight.tuned import KERNEL_FLOOR
 
 __all__ = ["AmongSensors", "among_sensors"]
 
@@ -78,8 +82,8 @@ def among_sensors(
     sensor = np.zeros(std.size, bool)
     sensor[_FIRST : _FIRST + q] = True
     beta, covariance, seen = _solved(
-        information, projection + prior_mean / std**2, std, sensor, first_fit.height,
-        first_fit.blur.width_px,
+        information, projection + prior_mean / std**2, std, sensor, first_fit,
+        _normal_prior(linear, posterior),
     )  # fmt: skip
     found = Posterior(
         beta, _upper_factor(covariance), std, posterior.log_amplitude, posterior.variance,
@@ -118,26 +122,39 @@ def _with_sensors(linear: Linear) -> Linear:
     return replace(linear, directions=directions, design=design, prior=prior)
 
 
+def _normal_prior(linear: Linear, posterior: Posterior) -> Floats:
+    """Covariance of the coordinates of departures by the prior of the passes before, (q, q)."""
+    esf, tail, block = linear.directions
+    lsf = np.diff(esf, axis=0)[2 : 2 + SIZE] / CELL
+    free = np.linalg.qr(lsf[:, : _FIRST - 2])[0]
+    own = slice(_FIRST - 1, block.size)
+    left = lsf[:, own] - free @ (free.T @ lsf[:, own])
+    columns = drawn_sensors().basis.T @ np.vstack([left, tail[own]])
+    columns *= posterior.prior_std[1:][own] / linear.first_fit.height
+    return np.asarray(columns @ columns.T + KERNEL_FLOOR**2 * np.eye(columns.shape[0]))
+
+
 def _solved(
     information: Floats,
     projection: Floats,
     std: Floats,
-    sensor: Floats,
-    height: float,
-    width_px: float,
+    sensor: NDArray[np.bool_],
+    first_fit: FirstFit,
+    normal: Floats,
 ) -> tuple[Floats, Floats, SensorsSeen]:
     """Mean and covariance of all unknowns, and what is seen of the sensor.
 
     The other unknowns are integrated out; then they follow the coordinates linearly.
     """
-    other = ~sensor
+    other, height = ~sensor, first_fit.height
     precision = information[np.ix_(other, other)] + np.diag(std[other] ** -2.0)
     between = information[np.ix_(other, sensor)]
     factor = cho_factor(precision)
     follow, start = cho_solve(factor, between), cho_solve(factor, projection[other])
     own = information[np.ix_(sensor, sensor)] - between.T @ follow
     pull = projection[sensor] - between.T @ start
-    seen = drawn_sensors().seen(height**2 * own, height * pull, width_px)
+    width_px = first_fit.blur.width_px
+    seen = drawn_sensors().seen(height**2 * own, height * pull, width_px, normal)
     mean, spread = height * seen.mean, height**2 * seen.covariance
     beta, covariance = np.empty(std.size), np.empty((std.size, std.size))
     beta[sensor], beta[other] = mean, start - follow @ mean

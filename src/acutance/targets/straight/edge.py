@@ -264,6 +264,4 @@ def details_of(region: RegionPixels, trimmed: EdgePixels, fit: EdgeFit) -> Strai
     details = StraightDetails(region.pixels, used, fit.distance_px, fit.value, fit.residual)
     if not isinstance(fit, SplineEdge):
         return details
-    return replace(
-        details, causes=fit.causes, pixels_alone=fit.pixels_alone, families=fit.families
-    )
+    return replace(details, causes=fit.causes, pixels_alone=fit.pixels_alone, families=fit.families)

@@ -21,12 +21,12 @@ C. M. Bishop, Pattern Recognition and Machine Learning, 2006, section 2.3.3).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.targets.straight.tuned import (
@@ -34,14 +34,15 @@ from acutance.targets.straight.tuned import (
     KERNEL_FLOOR,
     KERNEL_LOG_WIDTH,
     KERNEL_SCALES,
+    OTHER_WEIGHT,
 )
 
 __all__ = ["SensorFamily", "Sensors", "SensorsSeen", "drawn_sensors"]
 
 _REACH = 3.0
 """Sensors whose blur differs by more, in units of `KERNEL_LOG_WIDTH`, have no part."""
-_NEGLIGIBLE = 1e-4
-"""Weight of a kernel relative to the largest, below which it is left out."""
+_NEGLIGIBLE = -9.0
+"""Logarithm of the weight relative to the largest, below which a kernel is left out."""
 _UNTOLD = 1e-2
 """Information of combinations that pixels do not tell: coordinates are below one."""
 
@@ -84,7 +85,7 @@ class SensorsSeen:
     mean : (q,) array
     covariance : (q, q) array
     share : dict of str to float
-        Probability of every family.
+        Probability of every family, and that it is another sensor.
     """
 
     mean: Floats
@@ -106,7 +107,9 @@ class Sensors:
     basis: Floats
     families: tuple[SensorFamily, ...]
 
-    def seen(self, information: Floats, projection: Floats, width_px: float) -> SensorsSeen:
+    def seen(
+        self, information: Floats, projection: Floats, width_px: float, other: Floats
+    ) -> SensorsSeen:
         """The posterior of the coordinates.
 
         Parameters
@@ -117,41 +120,40 @@ class Sensors:
             The same times its mean.
         width_px : float
             Width of the blur.
+        other : (q, q) array
+            Covariance of the coordinates of sensors like none that was drawn, about none.
         """
-        size, axes = np.linalg.eigh(information)
-        told = size > _UNTOLD
-        combinations = axes[:, told] * np.sqrt(size[told])
-        values = (combinations / size[told]).T @ projection
-        parts = [
-            _Kernels.seen(centres, log_weight, scale**2 * family.covariance, combinations, off)
-            for family in self.families
-            for centres, log_weight in [family.about(width_px)]
-            for off in [values - centres @ combinations]
-            for scale in KERNEL_SCALES
-        ]
-        largest = max(float(one.log_weight.max(initial=-math.inf)) for one in parts)
-        weights = [np.exp(one.log_weight - largest) for one in parts]
-        kept = [weight > _NEGLIGIBLE for weight in weights]
-        weights = [weight[k] for weight, k in zip(weights, kept, strict=True)]
-        sums = np.array([float(weight.sum()) for weight in weights])
-        means = np.concatenate([one.means(k) for one, k in zip(parts, kept, strict=True)])
-        weight = np.concatenate(weights) / sums.sum()
-        mean = weight @ means
-        off = means - mean
-        covariance = (off * weight[:, None]).T @ off
-        for share, one in zip(sums / sums.sum(), parts, strict=True):
-            covariance += share * one.covariance
-        by_family = sums.reshape(len(self.families), -1).sum(axis=1) / sums.sum()
-        names = [one.name for one in self.families]
-        return SensorsSeen(mean, covariance, dict(zip(names, by_family.tolist(), strict=True)))
+        combinations, values = _told(information, projection)
+        kernels = []
+        for family in self.families:
+            centres, log_weight = family.about(width_px)
+            off = values - centres @ combinations
+            for scale in KERNEL_SCALES:
+                covariance = scale**2 * family.covariance
+                kernels.append(
+                    _Kernels.of(family.name, centres, log_weight, off, covariance, combinations)
+                )
+        nothing, weight = np.zeros((1, other.shape[0])), np.log([OTHER_WEIGHT])
+        kernels.append(_Kernels.of("other", nothing, weight, values[None], other, combinations))
+        return _mixture(kernels)
+
+
+def _told(information: Floats, projection: Floats) -> tuple[Floats, Floats]:
+    """Independent combinations (q, r) of the coordinates that pixels tell, and their values."""
+    size, axes = np.linalg.eigh(information)
+    told = size > _UNTOLD
+    combinations = axes[:, told] * np.sqrt(size[told])
+    return combinations, (combinations / size[told]).T @ projection
 
 
 @dataclass(frozen=True, eq=False)
 class _Kernels:
-    """The kernels of one family and one scale, after the pixels were seen.
+    """Kernels of one family and one covariance, after the pixels were seen.
 
     Attributes
     ----------
+    name : str
+        The family.
     centres : (n, q) array
     off : (n, r) array
         What the pixels say, minus what the centres do.
@@ -160,6 +162,7 @@ class _Kernels:
     covariance : (q, q) array
     """
 
+    name: str
     centres: Floats
     off: Floats
     log_weight: Floats
@@ -167,26 +170,48 @@ class _Kernels:
     covariance: Floats
 
     @classmethod
-    def seen(
+    def of(
         cls,
+        name: str,
         centres: Floats,
         log_weight: Floats,
+        off: Floats,
         covariance: Floats,
         combinations: Floats,
-        off: Floats,
     ) -> _Kernels:
+        """From kernels before, what the pixels say minus what they do, and the combinations."""
         common = covariance @ combinations
         lower = np.linalg.cholesky(np.eye(off.shape[1]) + combinations.T @ common)
         whitening = np.linalg.inv(lower)
         standard = off @ whitening.T
-        log_weight = log_weight - 0.5 * np.einsum("ij,ij->i", standard, standard)
-        log_weight += float(np.log(np.diagonal(whitening)).sum())
+        weight = log_weight - 0.5 * np.einsum("ij,ij->i", standard, standard)
+        weight += float(np.log(np.diagonal(whitening)).sum())
         half = common @ whitening.T
-        return cls(centres, off, log_weight, half @ whitening, covariance - half @ half.T)
+        return cls(name, centres, off, weight, half @ whitening, covariance - half @ half.T)
 
-    def means(self, kept: NDArray[np.bool_]) -> Floats:
-        """Means of some kernels, (m, q)."""
-        return np.asarray(self.centres[kept] + self.off[kept] @ self.gain.T)
+    def weighted(self, largest: float) -> tuple[Floats, Floats]:
+        """Weights (m,) relative to the largest, and means (m, q), of those that matter."""
+        kept = self.log_weight > largest + _NEGLIGIBLE
+        means = self.centres[kept] + self.off[kept] @ self.gain.T
+        return np.exp(self.log_weight[kept] - largest), means
+
+
+def _mixture(kernels: Sequence[_Kernels]) -> SensorsSeen:
+    """Mean and covariance of all kernels together: their own, and how their means differ."""
+    largest = max(float(one.log_weight.max(initial=-math.inf)) for one in kernels)
+    kept = [one.weighted(largest) for one in kernels]
+    shares = np.array([float(weight.sum()) for weight, _ in kept])
+    whole = float(shares.sum())
+    weight = np.concatenate([weight for weight, _ in kept]) / whole
+    means = np.concatenate([means for _, means in kept])
+    mean = weight @ means
+    away = means - mean
+    covariance = (away * weight[:, None]).T @ away
+    found: dict[str, float] = {}
+    for one, share in zip(kernels, (shares / whole).tolist(), strict=True):
+        covariance += share * one.covariance
+        found[one.name] = found.get(one.name, 0.0) + share
+    return SensorsSeen(mean, covariance, found)
 
 
 @cache

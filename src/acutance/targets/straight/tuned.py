@@ -50,6 +50,7 @@ __all__ = [
     "NEAR_TOLERANCE",
     "NOISE_FLOOR",
     "NONLINEAR_LOG_ODDS",
+    "OTHER_WEIGHT",
     "OUTLIER_SIGMAS",
     "PLATEAU_TOLERANCE",
     "QUIET_SIDE",
@@ -89,6 +90,8 @@ LOG_AMPLITUDE_STD: Final = 2.0
 have (MTF at Nyquist, 40 px, SNR 100: RMS .0060 at 1.2, .0056 at 2)."""
 FAMILY_WEIGHTS: Final = {"telescope": 3.0}
 """How often sensors of a family are expected, those of the others once (sensor_density.py)."""
+OTHER_WEIGHT: Final = 0.05
+"""How often a sensor is like none of the families: those are counted in units of one family."""
 KERNEL_SCALES: Final = (0.2, 0.7)
 """Size of the kernels of the density of sensors relative to its family: that of a sensor like those
 that were drawn, and of one unlike them."""
