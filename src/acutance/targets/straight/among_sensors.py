@@ -3,7 +3,8 @@
 The passes before know the families of sensors by their principal directions, as if departures were
 normally distributed about none. Here the prior is the density of the sensors themselves
 (`sensor_density`), and the normal one for a sensor like none of them. All other unknowns keep the
-prior, and the amplitudes, of those passes.
+prior, and the amplitudes, of those passes. Where the coordinates of the density cannot follow the
+pixels (two edges within one blur, images of hardly any noise), the pass before is the last.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.linear_model import Linear
 from acutance.targets.straight.sensor_density import SensorsSeen, drawn_sensors
 from acutance.targets.straight.spline import CELL, CELLS, SIZE, esf_from_lsf
-from acutance.targets.straight.tuned import KERNEL_FLOOR
+from acutance.targets.straight.tuned import KERNEL_FLOOR, MAX_SENSOR_MISFIT
 
 __all__ = ["AmongSensors", "among_sensors"]
 
@@ -69,11 +70,11 @@ def among_sensors(
     inflation : float
         Factor on the noise variance for correlated noise.
     """
-    first_fit = linear.first_fit
+    noise = posterior.variance * inflation
+    before = normal.combined(linear.design)
     own = _with_sensors(linear)
     r, q = linear.directions.block.size, drawn_sensors().basis.shape[1]
     equations = normal.combined(own.design)
-    noise = posterior.variance * inflation
     information, projection = equations.gram / noise, equations.projection / noise
     std = np.concatenate([
         posterior.prior_std[:_FIRST], np.full(q, np.inf), posterior.prior_std[1 + r :]
@@ -82,14 +83,21 @@ def among_sensors(
     sensor = np.zeros(std.size, bool)
     sensor[_FIRST : _FIRST + q] = True
     beta, covariance, seen = _solved(
-        information, projection + prior_mean / std**2, std, sensor, first_fit,
+        information, projection + prior_mean / std**2, std, sensor, linear.first_fit,
         _normal_prior(linear, posterior),
     )  # fmt: skip
+    if _misfit(equations, beta) - _misfit(before, posterior.beta) > MAX_SENSOR_MISFIT * noise:
+        return AmongSensors(linear, posterior, before.gram / noise, {"other": 1.0})
     found = Posterior(
         beta, _upper_factor(covariance), std, posterior.log_amplitude, posterior.variance,
         freedom=float(np.sum(covariance * information)),
     )  # fmt: skip
     return AmongSensors(own, found, information, seen.share)
+
+
+def _misfit(equations: Normal, beta: Floats) -> float:
+    """Sum of squares that a solution leaves of the pixels, up to what all leave."""
+    return float(beta @ (equations.gram @ beta - 2 * equations.projection))
 
 
 def _with_sensors(linear: Linear) -> Linear:

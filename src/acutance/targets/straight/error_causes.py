@@ -78,8 +78,9 @@ class FitCauses(ShortRepr):
     ----------
     design : (c, n) array
         Columns of the curves' factors by the unknowns of the LSF.
-    factor : (n, m) array
-        Rows of the LSF of the factor of the covariance of all m unknowns.
+    factor : (n, m + k) array
+        Rows of the LSF of the factor of the covariance of all m unknowns; the last k columns are
+        the share of the prior's amplitudes.
     information : (n, n) array
         What the pixels say of the unknowns of the LSF where all others are known.
     group : tuple of str
@@ -108,7 +109,7 @@ class FitCauses(ShortRepr):
         open_columns = caused[:, :n] @ axes
         found = {
             "pixel_noise": open_columns * np.sqrt(determined),
-            "prior_shape": open_columns * np.sqrt(1 - determined),
+            "prior_shape": np.hstack([open_columns * np.sqrt(1 - determined), caused[:, m:]]),
         }
         names = np.array(self.group)
         for name in dict.fromkeys(self.group):

@@ -35,6 +35,7 @@ __all__ = [
     "MAX_FINE_STEP",
     "MAX_NOISE_CORRELATION",
     "MAX_OUTLIER_SHARE",
+    "MAX_SENSOR_MISFIT",
     "MAX_TOLERANCE",
     "MIN_CONTRAST_SHARE",
     "MIN_CONTRAST_SNR",
@@ -90,6 +91,9 @@ LOG_AMPLITUDE_STD: Final = 2.0
 have (MTF at Nyquist, 40 px, SNR 100: RMS .0060 at 1.2, .0056 at 2)."""
 FAMILY_WEIGHTS: Final = {"telescope": 3.0}
 """How often sensors of a family are expected, those of the others once (sensor_density.py)."""
+MAX_SENSOR_MISFIT: Final = 20.0
+"""Chi-square by which the density of sensors may follow the pixels less than the normal prior,
+which has some five more degrees of freedom."""
 OTHER_WEIGHT: Final = 0.05
 """How often a sensor is like none of the families: those are counted in units of one family."""
 KERNEL_SCALES: Final = (0.2, 0.7)
