@@ -12,7 +12,7 @@ from acutance.report import page, text
 from acutance.targets.uncertainty_budget import MAIN_NUMBERS, TERMS
 
 SENSOR = ac.simulate.reference_systems()["diffraction"]
-FITTED = ["pixel_noise", "prior_shape", "background", "line", "prior_amplitudes"]
+FITTED = ["pixel_noise", "prior_shape", "background", "line"]
 
 
 def edge(snr=100.0, seed=1, method="spline", orientation="across", **options):

@@ -77,6 +77,10 @@ class OtfLikelihood(ShortRepr):
         damped = (axes / np.sqrt(1 + size)) @ axes.T
         return OtfLikelihood(_unstacked(stacked(self.root) @ damped), damped @ self.offset)
 
+    def about(self, away: Complexes) -> OtfLikelihood:
+        """The same likelihood, of the OTF about one that differs by `away`, (n,)."""
+        return OtfLikelihood(self.root, self.offset - self.whitened(away))
+
     def turned(self, turn: Complexes) -> OtfLikelihood:
         """The likelihood of the OTF times a phasor (n,) at every place."""
         return OtfLikelihood(self.root * turn[:, None], self.offset)

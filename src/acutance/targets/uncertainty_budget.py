@@ -42,7 +42,7 @@ class TermWords(NamedTuple):
 TERMS = {
     "pixel_noise": TermWords(
         "noise of the pixels", "A",
-        "residuals of the fit, propagated with line, background and prior amplitudes held",
+        "residuals of the fit, propagated with line and background held",
     ),
     "prior_shape": TermWords(
         "shape left to the prior", "B",
@@ -54,9 +54,6 @@ TERMS = {
     ),
     "line": TermWords("line", "A", "rotation and curvature, fitted with the LSF"),
     "pulse_width": TermWords("width of the pulse", "A", "fitted with the LSF"),
-    "prior_amplitudes": TermWords(
-        "amplitudes of the prior", "A", "curvature of the log evidence (Laplace)"
-    ),
     "halo": TermWords("halo of a pulse", "B", "a share of the halo, from simulated pulses"),
     "reference_noise": TermWords(
         "noise of the reference", "B",

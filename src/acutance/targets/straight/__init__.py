@@ -3,11 +3,13 @@
 In the order data take: `find_edges`, `find_pulse` (where is a target), `trim` (which pixels are
 usable; `pixels` holds them), `first_fit` (a Gaussian through a pixel; `bend`: on a curved line),
 `fit_edge` and `fit_pulse` (the reference estimator: `solve` finds the line, `linear_model` the
-curves, with `spline`, `spline_equations`, `lsf`, `lsf_prior` (learned by `learn_lsf`), `gradients`,
-`ground_steps`, `step_profile`), `edge` and `pulse` (the public functions, `many_edges` for all
-edges of a target), `edge_checks`, `pulse_checks`, `pixel_checks`, `structure_checks` and
+curves, with `spline`, `spline_equations`, `lsf`, `lsf_prior`, `gradients`, `ground_steps`,
+`step_profile`; the last pass is `among_sensors`, its prior `sensor_density`; `learn_lsf` learned
+both priors), `edge` and `pulse` (the public functions, `many_edges` for all edges of a target),
+`edge_checks`, `pulse_checks`, `pixel_checks`, `structure_checks` and
 `ground_checks` (is the target good enough; `check_data` is their input).
-`error_causes`: what the uncertainty consists of; `stated_target`: what is stated of the target.
+`error_causes`: what the uncertainty consists of; `pixels_alone`: what pixels say, the prior apart;
+`stated_target`: what is stated of the target.
 `pulse_halo`, `pulse_response`, `pulse_spectrum`, `pulse_width`: for pulses only. `published`:
 the methods of the literature, biases included.
 """

@@ -261,5 +261,7 @@ def in_whole_image(line: Line, region: RegionPixels) -> Line:
 def details_of(region: RegionPixels, trimmed: EdgePixels, fit: EdgeFit) -> StraightDetails:
     """The pixels of a fit by their distance along the normal."""
     used = np.isfinite(trimmed.image)
-    causes = fit.causes if isinstance(fit, SplineEdge) else None
-    return StraightDetails(region.pixels, used, fit.distance_px, fit.value, fit.residual, causes)
+    details = StraightDetails(region.pixels, used, fit.distance_px, fit.value, fit.residual)
+    if not isinstance(fit, SplineEdge):
+        return details
+    return replace(details, causes=fit.causes, pixels_alone=fit.pixels_alone, families=fit.families)

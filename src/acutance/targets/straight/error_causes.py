@@ -81,44 +81,37 @@ class FitCauses(ShortRepr):
     factor : (n, m + k) array
         Rows of the LSF of the factor of the covariance of all m unknowns; the last k columns are
         the share of the prior's amplitudes.
-    prior_std : (n,) array
-        Prior standard deviations of the unknowns of the LSF.
+    information : (n, n) array
+        What the pixels say of the unknowns of the LSF where all others are known.
     group : tuple of str
         Terms of the budget that the other m - n unknowns belong to.
     """
 
     design: Floats
     factor: Floats
-    prior_std: Floats
+    information: Floats
     group: tuple[str, ...]
-
-    def prior_latent(self) -> Floats:
-        """Factor (c, n) of the covariance of the columns before the pixels were seen."""
-        return self.design * self.prior_std
-
-    def posterior_latent(self) -> Floats:
-        """Factor (c, m) of their covariance thereafter, the amplitudes of the prior being known."""
-        return self.design @ self.factor[:, : self.prior_std.size + len(self.group)]
 
     def latents(self) -> dict[str, Floats]:
         """Factors (c, j) of the covariance that each cause gives to the columns; they add up.
 
-        With all others known, the covariance of the whitened unknowns is C = R R^T. What the noise
-        propagates into it is C - C^2, and what the prior leaves undetermined is C^2: a
-        prior as wide as the data are vague would leave nothing.
+        With all others known, the covariance of the unknowns is C = R R^T, and the pixels'
+        information about them J. What the noise propagates into the posterior mean is C J C, as
+        its derivative by the pixels is C times theirs; what the prior leaves undetermined is the
+        rest: a prior as wide as the data are vague would leave nothing.
         """
-        n, m = self.prior_std.size, self.prior_std.size + len(self.group)
+        n = self.information.shape[0]
+        m = n + len(self.group)
         caused = self.design @ self.factor
-        open_columns = caused[:, :n]
-        root = self.factor[:, :n] / self.prior_std[:, None]
-        undetermined, axes = np.linalg.eigh(root.T @ root)
-        by_noise = np.sqrt(np.clip(1 - undetermined, 0.0, 1.0))
+        open_root = self.factor[:, :n]
+        determined, axes = np.linalg.eigh(open_root.T @ self.information @ open_root)
+        determined = np.clip(determined, 0.0, 1.0)
+        open_columns = caused[:, :n] @ axes
         found = {
-            "pixel_noise": open_columns @ (axes * by_noise),
-            "prior_shape": open_columns @ root.T,
+            "pixel_noise": open_columns * np.sqrt(determined),
+            "prior_shape": np.hstack([open_columns * np.sqrt(1 - determined), caused[:, m:]]),
         }
         names = np.array(self.group)
         for name in dict.fromkeys(self.group):
             found[name] = caused[:, n:m][:, names == name]
-        found["prior_amplitudes"] = caused[:, m:]
         return found

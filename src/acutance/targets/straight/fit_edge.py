@@ -16,6 +16,7 @@ from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.ground_steps import GroundSide
 from acutance.targets.straight.lsf import LsfModel, SplineResponse
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels, Pixels
+from acutance.targets.straight.pixels_alone import PixelsAlone
 from acutance.targets.straight.solve import Solved, solve
 from acutance.targets.straight.tuned import MIN_FITTED_HEIGHT
 
@@ -42,6 +43,10 @@ class SplineEdge(EdgeFit):
         The ground before and behind the target.
     causes : FitCauses
         What the uncertainty of the curves consists of.
+    pixels_alone : PixelsAlone
+        What the pixels say of the curves, the prior apart.
+    families : dict of str to float
+        Probability of every family of sensors.
     """
 
     response: SplineResponse
@@ -53,6 +58,8 @@ class SplineEdge(EdgeFit):
     tail: float
     ground: tuple[GroundSide, GroundSide]
     causes: FitCauses
+    pixels_alone: PixelsAlone
+    families: dict[str, float]
 
 
 def fit_edge(trimmed: EdgePixels, *, robust: bool = True) -> SplineEdge:
@@ -117,7 +124,7 @@ def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
         line, response, dark, dark + height, s, (pixels.value - dark) / height,
         solution.residual / height, first_fit.blur, *solution.side_noise, solved.correlation,
         solved.outlier, model.tail / height, solved.ground,
-        solution.linear.causes(solution.posterior),
+        solved.causes, solved.pixels_alone, solved.seen.share,
     )  # fmt: skip
 
 

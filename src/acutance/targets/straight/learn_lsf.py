@@ -3,12 +3,14 @@
 Sensors of every family (`acutance.optics.FAMILIES`) are drawn at random. Each is fitted as the
 first fit of an edge would be, and what is left of its LSF, in the spline of `lsf_prior` and the
 tail, is its departure. The principal directions of a family's departures, each with the root of
-its mean square, are the family's part of the prior.
+its mean square, are the family's part of the normal prior (`lsf_prior`); the departures themselves,
+in coordinates common to all families, are the density of sensors (`sensor_density`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,13 +18,38 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.geometry.line import Line
 from acutance.numerics.lorentz_tail import tail_lsf
-from acutance.optics import FAMILIES, Sensor, draw_sensor
+from acutance.optics import FAMILIES, Detector, Gaussian, Sensor, draw_sensor
 from acutance.targets.straight.first_fit import fit_first
 from acutance.targets.straight.spline import CENTRES, quasi_interpolant
 from acutance.targets.straight.tuned import TAIL_WIDTH
 
-__all__ = ["departure", "learn", "principal_directions", "write"]
+__all__ = [
+    "DENSITY_COUNTS",
+    "Departure",
+    "departure",
+    "draw_density",
+    "learn",
+    "principal_directions",
+    "write",
+    "write_density",
+]
 
+DENSITY_COUNTS = {
+    "telescope": 2000,
+    "halo": 1000,
+    "trail": 700,
+    "smear": 500,
+    "sharpened": 800,
+    "restored": 1000,
+    "resampled": 1000,
+    "plain": 400,
+}
+"""Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
+detector, nothing else."""
+_COORDINATES = 28
+"""Of all departures no more than .0003 of the light, root mean square, lies outside of these."""
+
+_SMALLEST = 1e-3
 _REACH_PX, _STEP_PX = 9.0, 0.1
 _NOISE = 0.01
 """Noise, relative to the height, at which the first fit weighs its expectations."""
@@ -32,7 +59,24 @@ _NEGLIGIBLE_ELSEWHERE = 5e-3
 about what an edge of 100 px at SNR 100 can tell."""
 
 
-def departure(sensor: Sensor, normal_deg: float = 0.0) -> Floats:
+@dataclass(frozen=True, eq=False)
+class Departure:
+    """What a Gaussian through a pixel leaves of a sensor's LSF.
+
+    Attributes
+    ----------
+    coefficients : (SIZE + 1,) array
+        Of the LSF's spline, in which place, level and width of the Gaussian have no part, and the
+        share of light in the 1/s^2 tail.
+    width_px : float
+        Width of the Gaussian through its pixel.
+    """
+
+    coefficients: Floats
+    width_px: float
+
+
+def departure(sensor: Sensor, normal_deg: float = 0.0) -> Departure:
     """What a Gaussian through a pixel leaves of a sensor's LSF.
 
     Parameters
@@ -40,12 +84,6 @@ def departure(sensor: Sensor, normal_deg: float = 0.0) -> Floats:
     sensor : Sensor
     normal_deg : float, optional
         Direction of the edge's normal.
-
-    Returns
-    -------
-    (SIZE + 1,) array
-        Coefficients of the LSF's spline, in which place, level and width of the Gaussian have no
-        part, and the share of light in the 1/s^2 tail.
     """
     profile = sensor.profile(normal_deg)
     s = np.arange(-_REACH_PX, _REACH_PX + _STEP_PX, _STEP_PX)
@@ -62,7 +100,7 @@ def departure(sensor: Sensor, normal_deg: float = 0.0) -> Floats:
     lsf, by_place, by_sigma, _ = fit.blur.lsf_slopes(places)
     free = np.linalg.qr(quasi_interpolant(np.stack([lsf, by_place, by_sigma], axis=1)))[0]
     left = quasi_interpolant(seen - width * fit.height * lsf)
-    return np.append(left - free @ (free.T @ left), tail)
+    return Departure(np.append(left - free @ (free.T @ left), tail), width)
 
 
 def principal_directions(departures: Floats, negligible: float) -> Floats:
@@ -79,12 +117,16 @@ def principal_directions(departures: Floats, negligible: float) -> Floats:
     (SIZE + 1, r) array
         Columns times their standard normal variables give a random departure.
     """
-    mirrored = departures.copy()
-    mirrored[:, :-1] = departures[:, -2::-1]
-    both = np.concatenate([departures, mirrored])
+    both = np.concatenate([departures, _mirrored(departures)])
     power, axes = np.linalg.eigh(both.T @ both / len(both))
     kept = power > negligible * power[-1]
     return np.asarray(axes[:, kept] * np.sqrt(power[kept]))
+
+
+def _mirrored(departures: Floats) -> Floats:
+    mirrored = departures.copy()
+    mirrored[..., :-1] = departures[..., -2::-1]
+    return mirrored
 
 
 def learn(
@@ -94,7 +136,9 @@ def learn(
     found = {}
     for number, family in enumerate(families):
         rng = np.random.default_rng((seed, number))
-        drawn = [departure(draw_sensor(family, rng)) for _ in range(sensors_per_family)]
+        drawn = [
+            departure(draw_sensor(family, rng)).coefficients for _ in range(sensors_per_family)
+        ]
         negligible = _NEGLIGIBLE.get(family, _NEGLIGIBLE_ELSEWHERE)
         found[family] = principal_directions(np.array(drawn), negligible)
     return found
@@ -103,3 +147,42 @@ def learn(
 def write(path: Path, directions: dict[str, Floats]) -> None:
     """Keep the directions of all families in a file that `lsf_prior` reads."""
     np.savez(path, allow_pickle=False, **{name: d.astype("<f4") for name, d in directions.items()})
+
+
+def draw_density(counts: Mapping[str, int], seed: int) -> dict[str, Floats]:
+    """The density of sensors: a basis of departures, and the sensors of every family in it.
+
+    Returns
+    -------
+    dict of str to array
+        "basis", (SIZE + 1, q); by family (n, q + 1): coordinates, and the logarithm of the width
+        by which they are ordered. Every other sensor is mirrored.
+    """
+    drawn, widths = {}, {}
+    for number, (family, count) in enumerate(counts.items()):
+        rng = np.random.default_rng((seed, number))
+        found = [departure(_drawn(family, rng)) for _ in range(count)]
+        rows = np.array([one.coefficients for one in found])
+        rows[1::2] = _mirrored(rows[1::2])
+        order = np.argsort([one.width_px for one in found])
+        drawn[family], widths[family] = rows[order], np.log([found[k].width_px for k in order])
+    # Small departures are as interesting as large ones.
+    even = [
+        rows / max(float(np.linalg.norm(rows, axis=1).mean()), _SMALLEST) for rows in drawn.values()
+    ]
+    basis = np.linalg.svd(np.concatenate(even), full_matrices=False)[2][:_COORDINATES].T
+    columns = {name: np.column_stack([rows @ basis, widths[name]]) for name, rows in drawn.items()}
+    return {"basis": basis, **columns}
+
+
+def _drawn(family: str, rng: np.random.Generator) -> Sensor:
+    if family != "plain":
+        return draw_sensor(family, rng)
+    return Sensor([Gaussian(rng.uniform(0.15, 1.1)), Detector(rng.uniform(0.85, 1.0))])
+
+
+def write_density(path: Path, density: dict[str, Floats]) -> None:
+    """Keep the density of sensors in a file that `sensor_density` reads."""
+    halves = {name: rows.astype("<f2") for name, rows in density.items() if name != "basis"}
+    basis = density["basis"].astype("<f4")
+    np.savez_compressed(path, allow_pickle=False, basis=basis, **halves)

@@ -227,18 +227,24 @@ class Linear:
             self.first_fit.blur, self.first_fit.height, esf @ beta, float(tail @ beta), latent
         )
 
-    def causes(self, posterior: Posterior) -> FitCauses:
-        """What the uncertainty of the LSF consists of."""
+    @property
+    def lsf_columns(self) -> Floats:
+        """Spline and tail of the LSF by its unknowns, (CELLS + 4, n); the first is the dark level,
+        which is no part of it."""
         esf, tail, block = self.directions
-        n = 1 + block.size
-        # The dark level, the first unknown, is no part of the LSF.
-        design = np.zeros((esf.shape[0] + 1, n))
+        design = np.zeros((esf.shape[0] + 1, 1 + block.size))
         design[:-1, 1:], design[-1, 1:] = esf, tail
+        return design
+
+    def causes(self, posterior: Posterior, information: Floats) -> FitCauses:
+        """What the uncertainty of the LSF consists of, given what pixels say of all unknowns."""
+        design = self.lsf_columns
+        n = design.shape[1]
         background = posterior.beta.size - n - self.derivatives
         width = ("pulse_width",) * (self.derivatives - 3)
         height_ratio = ("background",) * (self.derivatives > 2)
         group = ("background",) * background + ("line", "line", *width, *height_ratio)
-        return FitCauses(design, posterior.factor[:n], posterior.prior_std[:n], group)
+        return FitCauses(design, posterior.factor[:n], information[:n, :n], group)
 
     def ground(self, posterior: Posterior) -> tuple[GroundSide, GroundSide]:
         """The ground before and behind the target, as shares of its first step's height."""

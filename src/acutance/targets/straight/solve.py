@@ -5,7 +5,7 @@ normal distance and R the response to a unit step (`step_profile`). R is that of
 (`first_fit`) plus a free spline and a tail (`spline`, `lsf_prior`), whose amplitudes the data
 determine (`marginal_likelihood`). The line's direction and, of a pulse, its width and its height
 ratio are further unknowns of the same linear model (`linear_model`), solved again where they have
-moved.
+moved. In the last pass the LSF is one of the sensors that optics make (`among_sensors`).
 """
 
 from __future__ import annotations
@@ -20,11 +20,14 @@ from acutance.errors import NoEdgeError
 from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
+from acutance.targets.straight.among_sensors import AmongSensors, among_sensors
+from acutance.targets.straight.error_causes import FitCauses
 from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.ground_steps import GroundSide
 from acutance.targets.straight.linear_model import Linear
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
+from acutance.targets.straight.pixels_alone import PixelsAlone
 from acutance.targets.straight.spline_equations import accumulate, renewed
 from acutance.targets.straight.step_profile import Profile
 
@@ -49,7 +52,11 @@ class Solved:
     Attributes
     ----------
     solution : Solution
-        The last pass.
+        The last pass, among sensors.
+    normal_pass : Solution
+        The one before, whose prior is normal.
+    seen : AmongSensors
+        What the last pass found.
     outlier : (n,) array
         Weight of every pixel, 1 where it is no outlier.
     correlation : Correlation
@@ -57,8 +64,30 @@ class Solved:
     """
 
     solution: Solution
+    normal_pass: Solution
+    seen: AmongSensors
     outlier: Floats
     correlation: Correlation
+
+    @property
+    def causes(self) -> FitCauses:
+        """What the uncertainty of the LSF consists of."""
+        return self.solution.linear.causes(self.solution.posterior, self.seen.information)
+
+    @property
+    def pixels_alone(self) -> PixelsAlone:
+        """What the pixels say of the LSF, the prior apart."""
+        first = self.normal_pass
+        columns = first.linear.lsf_columns
+        n = columns.shape[1]
+        posterior = first.posterior
+        model = self.model
+        own = columns @ posterior.beta[:n]
+        return PixelsAlone(
+            own - np.append(model.spline, model.tail),
+            columns @ posterior.factor[:n, : posterior.beta.size],
+            columns * posterior.prior_std[:n],
+        )
 
     @property
     def first_fit(self) -> FirstFit:
@@ -90,8 +119,10 @@ class Solution:
     linear : Linear
     weight : (n,) array
         Weights of the pixels.
+    columns : (q, n) array
+        Regressors other than the spline.
     normal : Normal
-        Their equations.
+        The equations of the pixels.
     posterior : Posterior
         Of the unknowns.
     residual, noise : (n,) arrays
@@ -105,6 +136,7 @@ class Solution:
 
     linear: Linear
     weight: Floats
+    columns: Floats
     normal: Normal
     posterior: Posterior
     residual: Floats
@@ -199,7 +231,15 @@ def solve(
             about = _updated(solved, fit_width) if has_moved else linear.first_fit
             fitted = pixels.value - solved.residual
             linear = Linear.about(about, pixels, fit_width=fit_width, fitted=fitted)
-    return Solved(solved, outlier, whiteness)
+    seen = among_sensors(solved.linear, solved.normal, solved.posterior, whiteness.inflation)
+    return Solved(_seen_again(solved, seen), solved, seen, outlier, whiteness)
+
+
+def _seen_again(solved: Solution, seen: AmongSensors) -> Solution:
+    """The last pass, with its own unknowns."""
+    linear, posterior = seen.linear, seen.posterior
+    residual = linear.first_residual - linear.image(solved.columns, posterior.beta)
+    return replace(solved, linear=linear, posterior=posterior, residual=residual)
 
 
 def _are_short(solved: Solution, fit_width: bool) -> bool:
@@ -271,7 +311,7 @@ def _pass(
     standard, steep = _bounded(residual / std), linear.steepness
     dark, bright = np.sqrt(posterior.variance * noise.sides).tolist()
     return Solution(
-        linear, weight, normal, posterior, residual, std, (dark, bright),
+        linear, weight, columns, normal, posterior, residual, std, (dark, bright),
         _edge_roughness(standard, np.where(np.abs(standard) < _OUTLYING, steep, 0.0), roughness),
     )  # fmt: skip
 

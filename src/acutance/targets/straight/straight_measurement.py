@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -18,6 +19,7 @@ from acutance.targets.otf_likelihood import OtfLikelihood
 from acutance.targets.slices import OtfSlices
 from acutance.targets.straight.error_causes import FitCauses, caused_by
 from acutance.targets.straight.lsf import SplineResponse
+from acutance.targets.straight.pixels_alone import PixelsAlone
 from acutance.targets.straight.stated_target import NOTHING_STATED, StatedTarget
 from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows
 
@@ -42,6 +44,10 @@ class StraightDetails(ShortRepr):
         Value minus the fitted edge spread function (ESF), same scale.
     causes : FitCauses, optional
         What the uncertainty of the fit consists of; published methods do not separate it.
+    pixels_alone : PixelsAlone, optional
+        What the pixels say, the prior apart; published methods have no prior.
+    families : mapping of str to float, optional
+        Probability of every family of sensors (`acutance.optics.FAMILIES`, and "plain").
     """
 
     pixels: Floats
@@ -50,6 +56,8 @@ class StraightDetails(ShortRepr):
     value: Floats
     residual: Floats
     causes: FitCauses | None = None
+    pixels_alone: PixelsAlone | None = None
+    families: Mapping[str, float] | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -103,18 +111,15 @@ class StraightMeasurement(Measurement):
 
         What is stated of the target, and a pulse's halo, are errors that the prior has no part in.
         """
-        causes = None if self.details is None else self.details.causes
-        if causes is None or not isinstance(self.response, SplineResponse):
+        alone = None if self.details is None else self.details.pixels_alone
+        if alone is None or not isinstance(self.response, SplineResponse):
             return None
         mtf = self.mtf
         places = np.searchsorted(mtf.freq_cpp, freq_cpp - 1e-9)
-        fitted, others = np.split(mtf.factor[places], [causes.design.shape[0]], axis=1)
+        fitted, others = np.split(mtf.factor[places], [alone.away.size], axis=1)
         expected = self.response.model.expected_otf(freq_cpp) * self.stated.gain(freq_cpp)
-        return OtfLikelihood.of_posterior(
-            mtf.otf[places] - expected,
-            fitted @ causes.posterior_latent(),
-            fitted @ causes.prior_latent(),
-        ).with_errors(others)
+        found: OtfLikelihood = alone.likelihood(fitted, mtf.otf[places] - expected)
+        return found.with_errors(others)
 
     def _budget(self) -> tuple[BudgetTerm, ...]:
         """Causes of the fit, then what was stated of the target."""

@@ -20,10 +20,14 @@ __all__ = [
     "DETAIL",
     "DETAIL_LOG_AMPLITUDE",
     "FAMILY_LOG_AMPLITUDES",
+    "FAMILY_WEIGHTS",
     "FAR_GROUND_STEPS",
     "GRADIENT_SIGMAS",
     "GROUND_LOG_AMPLITUDE",
     "HALO_SHARE",
+    "KERNEL_FLOOR",
+    "KERNEL_LOG_WIDTH",
+    "KERNEL_SCALES",
     "LOG_AMPLITUDE",
     "LOG_AMPLITUDE_STD",
     "MAX_ANGLE_BY_ROWS_DEG",
@@ -31,6 +35,7 @@ __all__ = [
     "MAX_FINE_STEP",
     "MAX_NOISE_CORRELATION",
     "MAX_OUTLIER_SHARE",
+    "MAX_SENSOR_MISFIT",
     "MAX_TOLERANCE",
     "MIN_CONTRAST_SHARE",
     "MIN_CONTRAST_SNR",
@@ -46,6 +51,7 @@ __all__ = [
     "NEAR_TOLERANCE",
     "NOISE_FLOOR",
     "NONLINEAR_LOG_ODDS",
+    "OTHER_WEIGHT",
     "OUTLIER_SIGMAS",
     "PLATEAU_TOLERANCE",
     "QUIET_SIDE",
@@ -87,6 +93,20 @@ LOG_AMPLITUDE: Final[Floats] = np.array(
 LOG_AMPLITUDE_STD: Final = 2.0
 """Within a factor of 7 either way: narrower ones make Gaussian sensors pay for what they do not
 have (MTF at Nyquist, 40 px, SNR 100: RMS .0060 at 1.2, .0056 at 2)."""
+FAMILY_WEIGHTS: Final = {"telescope": 3.0}
+"""How often sensors of a family are expected, those of the others once (sensor_density.py)."""
+MAX_SENSOR_MISFIT: Final = 20.0
+"""Chi-square by which the density of sensors may follow the pixels less than the normal prior,
+which has some five more degrees of freedom."""
+OTHER_WEIGHT: Final = 0.05
+"""How often a sensor is like none of the families: those are counted in units of one family."""
+KERNEL_SCALES: Final = (0.2, 0.7)
+"""Size of the kernels of the density of sensors relative to its family: that of a sensor like those
+that were drawn, and of one unlike them."""
+KERNEL_LOG_WIDTH: Final = 0.12
+"""Standard deviation of the logarithm of the width: sensors of other blur say less."""
+KERNEL_FLOOR: Final = 1e-3
+"""Least standard deviation of a coordinate of a family: families of one cause vary in few."""
 NOISE_FLOOR: Final = 2e-4
 """The smallest noise that is told from the arithmetic's and the model's own."""
 APERTURE_PX: Final = (1.0, 0.18)
