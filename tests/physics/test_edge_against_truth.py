@@ -157,7 +157,8 @@ def test_standard_deviation_falls_with_the_noise():
         SYSTEMS["gaussian"], shape=(40, 40), snr=200, rng=np.random.default_rng(6)
     )
     stds = [ac.measure_edge(one).mtf_nyquist.std for one in (image, quieter)]
-    assert 2.0 < stds[0] / stds[1] < 5.0
+    # At the lower one more kinds of sensors are possible, too.
+    assert 2.0 < stds[0] / stds[1] < 6.0
 
 
 def test_asymmetric_system_keeps_its_phase():

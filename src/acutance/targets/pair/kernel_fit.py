@@ -349,7 +349,8 @@ def _regressed(
     if high_noise.power > 0:
         products = high_noise.power * noise_gram(basis.taps(), basis.grid, whitening)
         normal = without_noise(normal, products, prior.mean if earlier is None else earlier.beta)
-    floor = 1e-5 * float(np.sqrt(normal.data / max(normal.count, 1.0)))
+    # Less leaves equations of smooth scenes without a solution.
+    floor = 5e-4 * float(np.sqrt(normal.data / max(normal.count, 1.0)))
     return prior.posterior(normal, noise**2, noise_floor=floor, earlier=earlier)
 
 

@@ -156,21 +156,21 @@ def draw_density(counts: Mapping[str, int], seed: int) -> dict[str, Floats]:
     -------
     dict of str to array
         "basis", (SIZE + 1, q); by family (n, q + 1): coordinates, and the logarithm of the width
-        by which they are ordered. Every other sensor is mirrored.
+        by which they are ordered. Directions of the basis are even or odd.
     """
     drawn, widths = {}, {}
     for number, (family, count) in enumerate(counts.items()):
         rng = np.random.default_rng((seed, number))
         found = [departure(_drawn(family, rng)) for _ in range(count)]
         rows = np.array([one.coefficients for one in found])
-        rows[1::2] = _mirrored(rows[1::2])
         order = np.argsort([one.width_px for one in found])
         drawn[family], widths[family] = rows[order], np.log([found[k].width_px for k in order])
     # Small departures are as interesting as large ones.
     even = [
         rows / max(float(np.linalg.norm(rows, axis=1).mean()), _SMALLEST) for rows in drawn.values()
     ]
-    basis = np.linalg.svd(np.concatenate(even), full_matrices=False)[2][:_COORDINATES].T
+    both = np.concatenate([*even, *map(_mirrored, even)])
+    basis = np.linalg.svd(both, full_matrices=False)[2][:_COORDINATES].T
     columns = {name: np.column_stack([rows @ basis, widths[name]]) for name, rows in drawn.items()}
     return {"basis": basis, **columns}
 

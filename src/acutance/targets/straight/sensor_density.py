@@ -221,12 +221,29 @@ def drawn_sensors() -> Sensors:
     with path.open("rb") as file, np.load(file, allow_pickle=False) as kept:
         basis = kept["basis"].astype(float)
         names = [name for name in kept.files if name != "basis"]
-        families = tuple(_family(name, kept[name].astype(float)) for name in names)
+        families = tuple(_family(name, kept[name].astype(float), _parity(basis)) for name in names)
     return Sensors(basis, families)
 
 
-def _family(name: str, rows: Floats) -> SensorFamily:
-    """Coordinates of every sensor, (n, q), and the logarithm of its width in the last column."""
-    coordinates = rows[:, :-1]
-    covariance = np.cov(coordinates.T) + KERNEL_FLOOR**2 * np.eye(coordinates.shape[1])
-    return SensorFamily(name, coordinates, rows[:, -1], covariance)
+def _parity(basis: Floats) -> Floats:
+    """1 for even directions, -1 for odd ones, (q,)."""
+    spline = basis[:-1]
+    return np.asarray(np.sign(np.sum(spline * spline[::-1], axis=0) + basis[-1] ** 2))
+
+
+def _family(name: str, rows: Floats, parity: Floats) -> SensorFamily:
+    """From coordinates of every sensor, (n, q), and the logarithm of its width in the last column.
+
+    Edges are seen from either side, so mirror images of sensors that are not even count as often.
+    """
+    coordinates, log_width = rows[:, :-1], rows[:, -1]
+    odd = coordinates[:, parity < 0]
+    if float(np.sqrt(np.mean(np.sum(odd**2, axis=1)))) > KERNEL_FLOOR:
+        coordinates = np.repeat(coordinates, 2, axis=0)
+        coordinates[1::2] *= parity
+        log_width = np.repeat(log_width, 2)
+    else:
+        coordinates = np.where(parity < 0, 0.0, coordinates)
+    about = coordinates - coordinates.mean(axis=0)
+    covariance = about.T @ about / len(about) + KERNEL_FLOOR**2 * np.eye(parity.size)
+    return SensorFamily(name, coordinates, log_width, covariance)
