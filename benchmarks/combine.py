@@ -27,6 +27,7 @@ CONFIGURATION = (
     ("pulse", -8.0, "across"),
     ("pulse", 5.0, "along"),
 )
+FAMILY = "family: "
 DIRECTIONS_DEG = {"across": 0.0, "along": 90.0, "45 deg": 45.0}
 
 
@@ -104,8 +105,9 @@ class Found:
 def combined(draw: Draw) -> Found | str:
     """Combine one draw; the message of the error if it was refused."""
     rng = np.random.default_rng(draw.seeds)
-    is_family = draw.system in FAMILIES
-    sensor = draw_sensor(draw.system, rng) if is_family else systems()[draw.system]
+    family = draw.system.removeprefix(FAMILY)
+    is_family = family != draw.system
+    sensor = draw_sensor(family, rng) if is_family else systems()[draw.system]
     try:
         result = ac.combine([_measured(sensor, rng, *one) for one in CONFIGURATION])
     except ac.AcutanceError as error:
@@ -161,7 +163,8 @@ def row(name: str, results: list[Found | str]) -> list[str]:
 
 def main() -> None:
     arguments = command(__doc__.partition("\n")[0], draws=60).parse_args()
-    names = [*systems(), *FAMILIES]
+    families = [FAMILY + name for name in FAMILIES]
+    names = [*systems(), *families]
     jobs = [
         Draw(name, (arguments.seed, number, draw))
         for number, name in enumerate(names)
@@ -175,7 +178,7 @@ def main() -> None:
     rows = [row(name, found) for name, found in by_name.items()]
     rows += [
         row("all systems", [one for name in systems() for one in by_name[name]]),
-        row("all families", [one for name in FAMILIES for one in by_name[name]]),
+        row("all families", [one for name in families for one in by_name[name]]),
     ]
     head = [
         "system", "draws", *METRICS, "std / %", "chi² ratio", "disagree / %", "no plain / %",
