@@ -71,8 +71,8 @@ def prior_directions() -> Figure:
     cell, _, slopes = edge_and_line_weights(u)
     rng = np.random.default_rng(4)
     names = (*FAMILY_LOG_AMPLITUDES, "detail", "tail")
-    figure = new_page(10.4, 6.4)
-    panels = figure.subplots(2, 4, sharex=True, sharey=True)
+    figure = new_page(10.4, 8.4)
+    panels = figure.subplots(3, 3, sharex=True, sharey=True)
     plain = blur.width_px * blur.lsf(u * blur.width_px)
     for k, (axes, name) in enumerate(zip(panels.flat, names, strict=True)):
         own = np.flatnonzero(known.block == prior.FIRST_BLOCK + k)
@@ -84,7 +84,7 @@ def prior_directions() -> Figure:
             axes.plot(u, combine(cell, slopes, drawn), color=color, lw=1.5)
         axes.plot(u, 0.1 * plain, color=FAINT, lw=1, ls="--")
         axes.set_title(f"{name}, {amplitude:g} ({start:.2g})")
-    for axes in panels[1]:
+    for axes in panels[-1]:
         axes.set_xlabel("distance, widths")
     for axes in panels[:, 0]:
         axes.set_ylabel("correction of the LSF, per width")
