@@ -1,7 +1,7 @@
 """What the pixels of one measurement say of an optical transfer function (OTF), its prior apart.
 
 A measurement is a posterior: of mean m and covariance C, where its prior had m0 and C0. What its
-pixels say of the OTF f, the likelihood L, is the posterior over the prior:
+pixels say of the OTF f, the likelihood L, is the posterior over the prior::
 
     -2 ln L(f) = (f - m)^T C^-1 (f - m) - (f - m0)^T C0^-1 (f - m0) + const
                = |R^T (f - m) - b|^2 + const,
