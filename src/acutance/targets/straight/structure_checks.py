@@ -204,10 +204,11 @@ def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
         caution = max(_TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS * rer_std)
     else:
         caution = max(_MAX_ASYMMETRY, _MAX_RER_STDS * rer_std)
+    noted = max(limit_of("asymmetric_lsf", {}), _NOTED_RER_STDS * rer_std)
     found = f"the ESF is asymmetric about its middle by {100 * value:.1f} % of the contrast"
     return answer(
         "asymmetric_lsf", value, found, limits,
-        default=max(limit_of("asymmetric_lsf", {}), _NOTED_RER_STDS * rer_std),
+        default=float(f"{noted:.2g}"),
         caution=min(caution, _ANY_ASYMMETRY),
     )  # fmt: skip
 
