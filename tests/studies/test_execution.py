@@ -1,6 +1,7 @@
 """Independent tasks in this process and in others: every result once, whatever happens."""
 
 import os
+import time
 
 import pytest
 
@@ -14,6 +15,8 @@ def square(task):
 def fails_at_seven(task):
     if task == 7:
         raise ValueError("seven")
+    # Long enough for this process to hear of the error on a busy machine.
+    time.sleep(0.002)
     return task
 
 
