@@ -7,8 +7,9 @@ import pytest
 
 import acutance as ac
 from acutance import optics, simulate
+from acutance.numerics.stacked import stacked
 from acutance.targets import OtfSlices
-from acutance.targets.otf_likelihood import OtfLikelihood, stacked
+from acutance.targets.otf_likelihood import OtfLikelihood
 
 RNG = np.random.default_rng(3)
 PLACES, SHAPES, PIXELS, NOISE = 4, 5, 40, 2.0

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from acutance.cli.choices import numbers_of
 from acutance.cli.measure import measure_target
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import (
@@ -89,10 +90,7 @@ def parse_group(text: str) -> Bars:
     """
     from acutance.geometry.bar_group import Bars
 
-    try:
-        numbers = [float(part) for part in text.split(",")]
-    except ValueError:
-        numbers = []
+    numbers = numbers_of(text)
     if len(numbers) != _PARTS or not numbers[4].is_integer():
         raise OptionError(
             f"--group {text}: write ROW,COL,ANGLE,PERIOD,COUNT,LENGTH, as in --group "

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = [
     "choose_methods",
     "choose_rer_centre",
+    "numbers_of",
     "parse_limits",
     "parse_pair",
     "parse_share",
@@ -82,6 +83,14 @@ def _parse_limit(text: str) -> tuple[str, float]:
     return name, value
 
 
+def numbers_of(text: str, separator: str = ",") -> list[float]:
+    """Numbers between separators, a regular expression; none if a part is no number."""
+    try:
+        return [float(part) for part in re.split(separator, text)]
+    except ValueError:
+        return []
+
+
 def parse_pair(option: str, text: str, words: str) -> tuple[float, float]:
     """Two numbers with a comma between.
 
@@ -97,11 +106,10 @@ def parse_pair(option: str, text: str, words: str) -> tuple[float, float]:
     OptionError
         If it is not two numbers.
     """
-    try:
-        first, second = (float(part) for part in text.split(","))
-    except ValueError:
-        raise OptionError(f"{option} {text}: write {words}") from None
-    return first, second
+    numbers = numbers_of(text)
+    if len(numbers) != 2:
+        raise OptionError(f"{option} {text}: write {words}")
+    return numbers[0], numbers[1]
 
 
 def parse_stated(option: str, text: str | None) -> Estimate | None:
@@ -116,10 +124,7 @@ def parse_stated(option: str, text: str | None) -> Estimate | None:
         return None
     from acutance.curves import Estimate
 
-    try:
-        numbers = [float(part) for part in re.split(r"\+-|\+/-|±", text)]
-    except ValueError:
-        numbers = []
+    numbers = numbers_of(text, r"\+-|\+/-|±")
     if len(numbers) not in (1, 2):
         raise OptionError(
             f"{option} {text}: write a number, or one with its standard deviation (0.05+-0.02)"

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from acutance.cli.choices import numbers_of
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import GsdOption, ResultOptions, parse_gsd
 from acutance.cli.results import Outputs, Shown
@@ -74,10 +75,7 @@ def _read(name: str) -> Any:
 
 
 def _parse_detector(text: str) -> tuple[float, float]:
-    try:
-        widths = [float(part) for part in text.split(",")]
-    except ValueError:
-        widths = []
+    widths = numbers_of(text)
     if len(widths) not in (1, 2):
         raise OptionError(
             f"--detector {text}: write one width in pixels (1), or those across and along (1,0.9)"

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.choices import parse_limits, parse_share, parse_stated
+from acutance.cli.choices import numbers_of, parse_limits, parse_share, parse_stated
 from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS, methods_text
 
@@ -238,10 +238,7 @@ def parse_gsd(text: str | None) -> float | Gsd | None:
     """
     if text is None:
         return None
-    try:
-        numbers: Sequence[float] = [float(part) for part in text.split(",")]
-    except ValueError:
-        numbers = ()
+    numbers = numbers_of(text)
     if len(numbers) not in (1, 2):
         raise OptionError(
             f"--gsd {text} is not a distance: write metres (0.7), or those between rows and "

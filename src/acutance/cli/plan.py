@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from acutance.cli.choices import numbers_of
 from acutance.cli.options import JsonOption
 from acutance.cli.output import check_optional
 from acutance.cli.sensor import SensorName, named_sensor
@@ -134,10 +135,10 @@ def _widths(width_px: str | None, width_m: str | None, sensor: Sensor) -> tuple[
 
 
 def _numbers(option: str, text: str) -> tuple[float, ...]:
-    try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError as error:
-        raise OptionError(f"{option} {text}: write numbers with commas, as in 20,40") from error
+    numbers = tuple(numbers_of(text))
+    if not numbers:
+        raise OptionError(f"{option} {text}: write numbers with commas, as in 20,40")
+    return numbers
 
 
 def _whole_numbers(option: str, text: str) -> tuple[int, ...]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from acutance.cli.choices import numbers_of
 from acutance.cli.noise import NoiseOptions
 from acutance.cli.option_groups import with_groups
 from acutance.cli.output import OutputFile, check_output
@@ -204,10 +205,9 @@ def bars(
 ) -> None:
     """Render groups of bars below one another."""
     files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor)
-    try:
-        distances = tuple(float(part) for part in periods.split(","))
-    except ValueError as error:
-        raise OptionError(f"--periods {periods}: write numbers, as in 8,6,4") from error
+    distances = tuple(numbers_of(periods))
+    if not distances:
+        raise OptionError(f"--periods {periods}: write numbers, as in 8,6,4")
 
     import numpy as np
 

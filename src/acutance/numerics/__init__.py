@@ -7,5 +7,6 @@
 - otf_modes, otf_families (learned by learn_otf), combined_prior: those of a transfer function in
   two dimensions, and directions in them that sensors of a family take.
 - clipping: pixels at the end of the scale.
+- stacked: complex values as real ones.
 - lookup: cubic interpolation of tables; one_thread: linear algebra of many small matrices.
 """

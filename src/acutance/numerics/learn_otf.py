@@ -22,7 +22,8 @@ from typing import Final
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.otf_modes import Complexes, MeanOtf, ProcessModes
+from acutance.numerics.otf_modes import MeanOtf, ProcessModes
+from acutance.numerics.stacked import stacked
 from acutance.optics import FAMILIES, Sensor, draw_sensor
 
 __all__ = ["departure", "learn_families", "principal_directions", "write_families"]
@@ -57,7 +58,7 @@ def departure(sensor: Sensor, *, turned: bool = False, signs: tuple[int, int] = 
     for _ in range(_MEAN_STEPS):
         u, v = _nodes() / mean.width_px
         otf = sensor.otf(signs[0] * (v if turned else u), signs[1] * (u if turned else v))
-        wanted, free = _stacked(np.asarray(otf)), _stacked(mean.modes(u, v)[:, :_FREE])
+        wanted, free = stacked(np.asarray(otf)), stacked(mean.modes(u, v)[:, :_FREE])
         fitted = np.linalg.lstsq(free, wanted, rcond=None)[0]
         moved = _widened(mean, fitted[1:4] / fitted[0])
         if abs(moved.width_px - mean.width_px) < _SETTLED_PX:
@@ -131,7 +132,7 @@ def _nodes() -> Floats:
 @cache
 def _states() -> Floats:
     """The states at the nodes, (2 n, r)."""
-    return _stacked(ProcessModes(1.0).otf_modes(*_nodes()))
+    return stacked(ProcessModes(1.0).otf_modes(*_nodes()))
 
 
 @cache
@@ -140,8 +141,3 @@ def _fit_of_states() -> Floats:
     states = _states()
     gram = states.T @ states + _LEFT**2 * np.eye(states.shape[1])
     return np.asarray(np.linalg.solve(gram, states.T))
-
-
-def _stacked(values: Complexes) -> Floats:
-    """Real parts over imaginary parts."""
-    return np.concatenate([values.real, values.imag])

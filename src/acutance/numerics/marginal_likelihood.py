@@ -25,6 +25,7 @@ __all__ = [
     "Posterior",
     "Prior",
     "Whitened",
+    "likeliest_amplitudes",
     "log_evidence",
     "log_evidence_slopes",
     "regress",
@@ -144,8 +145,7 @@ def regress(
         step = slopes.step()
         beta = white.sigma * white.mean
         freedom = beta.size - white.undetermined
-        misfit = normal.data + float(beta @ (normal.gram @ beta - 2 * normal.projection))
-        updated = max(misfit / max(normal.count - freedom, 1.0), floor)
+        updated = max(normal.misfit(beta) / max(normal.count - freedom, 1.0), floor)
         settled = abs(updated / variance - 1) < _SETTLED_NOISE
         variance, log_amplitude = updated, log_amplitude + step
         if settled and float(np.abs(step).max()) < _SETTLED_AMPLITUDE:
@@ -157,6 +157,28 @@ def regress(
     factor[:, m:] = slopes.by_amplitude @ slopes.covariance_factor()
     factor *= white.sigma[:, None]
     return Posterior(beta, factor, white.sigma, log_amplitude, variance, freedom)
+
+
+def likeliest_amplitudes(
+    normal: Normal,
+    prior: Prior,
+    log_amplitude: Floats,
+    noise: float,
+    *,
+    tolerance: float = _SETTLED_AMPLITUDE,
+    most: int = _MAX_STEPS,
+) -> Floats:
+    """Log amplitudes at the mode of the log evidence, the noise variance being known, (k,).
+
+    From a first guess, by at `most` so many Newton steps, until one is shorter than `tolerance`.
+    """
+    for _ in range(most):
+        white = whiten(normal, prior, log_amplitude, noise)
+        step = log_evidence_slopes(white, prior, log_amplitude).step()
+        log_amplitude = log_amplitude + step
+        if float(np.abs(step).max()) < tolerance:
+            break
+    return log_amplitude
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,6 +32,10 @@ class Normal:
     data: float
     count: float
 
+    def misfit(self, beta: Floats) -> float:
+        """Weighted sum of squares that coefficients (m,) leave: sum of w (y - a beta)^2."""
+        return self.data + float(beta @ (self.gram @ beta - 2 * self.projection))
+
     def combined(self, directions: Floats) -> Normal:
         """The equations if the first p unknowns are combinations (p, r) of r others."""
         p, r = directions.shape

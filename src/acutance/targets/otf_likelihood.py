@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.numerics.stacked import stacked, unstacked
 
-__all__ = ["OtfLikelihood", "stacked"]
+__all__ = ["OtfLikelihood"]
 
 Complexes = NDArray[np.complex128]
 
@@ -68,14 +69,14 @@ class OtfLikelihood(ShortRepr):
         size, axes = np.linalg.eigh(_inverse(factor) - prior)
         seen = size > _NOTHING
         root = axes[:, seen] * np.sqrt(size[seen])
-        return cls(_unstacked(root), (root / size[seen]).T @ (prior @ stacked(away)))
+        return cls(unstacked(root), (root / size[seen]).T @ (prior @ stacked(away)))
 
     def with_errors(self, factor: Complexes) -> OtfLikelihood:
         """The likelihood if there were further errors ``factor @ z``, factor (n, j)."""
         seen = self.whitened(factor)
         size, axes = np.linalg.eigh(seen @ seen.T)
         damped = (axes / np.sqrt(1 + size)) @ axes.T
-        return OtfLikelihood(_unstacked(stacked(self.root) @ damped), damped @ self.offset)
+        return OtfLikelihood(unstacked(stacked(self.root) @ damped), damped @ self.offset)
 
     def about(self, away: Complexes) -> OtfLikelihood:
         """The same likelihood, of the OTF about one that differs by `away`, (n,)."""
@@ -92,7 +93,7 @@ class OtfLikelihood(ShortRepr):
     def to_dict(self) -> dict[str, Any]:
         """Root and offset as lists."""
         lower, turn = _triangular(stacked(self.root))
-        root = _unstacked(lower)
+        root = unstacked(lower)
         return {
             "root_real": _rounded(root.real),
             "root_imag": _rounded(root.imag),
@@ -116,16 +117,6 @@ class OtfLikelihood(ShortRepr):
         if not all(np.isfinite(part).all() for part in (real, imag, offset)):
             raise ValueError("numbers that are not finite")
         return cls(real + 1j * imag, offset)
-
-
-def stacked(values: Complexes) -> Floats:
-    """Real parts (n, ...), then imaginary parts, (2 n, ...)."""
-    return np.concatenate([values.real, values.imag], axis=0)
-
-
-def _unstacked(values: Floats) -> Complexes:
-    n = len(values) // 2
-    return np.asarray(values[:n] + 1j * values[n:])
 
 
 def _inverse(factor: Complexes) -> Floats:

@@ -19,6 +19,7 @@ from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
+from acutance.numerics.stacked import stacked, unstacked
 from acutance.targets.otf_likelihood import OtfLikelihood
 
 __all__ = ["SLICE_DIRECTIONS_DEG", "OtfSlices"]
@@ -154,10 +155,7 @@ def _places(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
 
 def _triangular(factor: Complexes) -> Complexes:
     """Another factor of the same covariance, with zeros above its diagonal: a shorter text."""
-    n = factor.shape[0]
-    stacked = np.concatenate([factor.real, factor.imag])
-    lower = np.asarray(np.linalg.qr(stacked.T, mode="r")).T
-    return np.asarray(lower[:n] + 1j * lower[n:])
+    return unstacked(np.asarray(np.linalg.qr(stacked(factor).T, mode="r")).T)
 
 
 def _decimals(factor: Complexes) -> int:
@@ -170,11 +168,8 @@ def _decimals(factor: Complexes) -> int:
 
 def _narrowed(factor: Complexes) -> Complexes:
     """The same covariance with as few columns as it needs."""
-    n = factor.shape[0]
-    stacked = np.concatenate([factor.real, factor.imag])
-    if stacked.size == 0:
+    if factor.size == 0:
         return factor
-    left, size, _ = np.linalg.svd(stacked, full_matrices=False)
+    left, size, _ = np.linalg.svd(stacked(factor), full_matrices=False)
     kept = size > min(_MIN_STD, float(size[0]))
-    narrow = left[:, kept] * size[kept]
-    return np.asarray(narrow[:n] + 1j * narrow[n:])
+    return unstacked(left[:, kept] * size[kept])

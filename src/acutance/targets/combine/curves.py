@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from scipy.special import gammaincc
 
 from acutance.curves.grid import Floats
-from acutance.targets.otf_likelihood import OtfLikelihood, stacked
+from acutance.numerics.stacked import stacked
+from acutance.targets.otf_likelihood import OtfLikelihood
 
 __all__ = ["ChiSquare", "OtfSamples", "WhitenedCurves"]
 

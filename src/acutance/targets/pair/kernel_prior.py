@@ -19,10 +19,10 @@ from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.numerics.marginal_likelihood import Prior
 from acutance.numerics.otf_families import family_directions
 from acutance.numerics.otf_modes import ProcessModes
+from acutance.numerics.stacked import stacked
 from acutance.targets.pair import tuned
 from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.reference_otf import ReferenceOtf
-from acutance.targets.pair.tile import Complexes
 
 __all__ = ["kernel_prior"]
 
@@ -71,9 +71,9 @@ def _family_coefficients(basis: KernelBasis, reference: ReferenceOtf | None) -> 
     size = np.maximum(np.abs(own), _MIN_REFERENCE)
     states = ProcessModes(_low_width_px(basis, reference)).otf_modes(u, v)
     wanted = states @ family_directions().states * (np.conj(own) / size**2)[:, None]
-    functions = _stacked(basis.transfer(u, v) * basis.centring(u, v)[:, None])
+    functions = stacked(basis.transfer(u, v) * basis.centring(u, v)[:, None])
     gram = functions.T @ functions + _LEFT**2 * np.eye(basis.size)
-    return np.asarray(np.linalg.solve(gram, functions.T @ _stacked(wanted)))
+    return np.asarray(np.linalg.solve(gram, functions.T @ stacked(wanted)))
 
 
 def _nodes(basis: KernelBasis) -> tuple[Floats, Floats]:
@@ -99,8 +99,3 @@ def _low_width_px(basis: KernelBasis, reference: ReferenceOtf | None) -> float:
         transfer = math.sqrt(float(np.abs(both[0] * both[1])[0]))
         variance += max(-math.log(transfer) / (2 * math.pi**2 * 0.05**2), 0.0)
     return FWHM_OF_SIGMA * math.sqrt(max(variance, 1 / 12))
-
-
-def _stacked(values: Complexes) -> Floats:
-    """Real parts over imaginary parts."""
-    return np.concatenate([values.real, values.imag])

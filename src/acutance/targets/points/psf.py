@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
+from acutance.numerics.stacked import stacked
 from acutance.targets.points.psf_prior import PsfDirections
 
 __all__ = ["PsfModel"]
@@ -47,7 +48,7 @@ class PsfModel(ShortRepr):
         """
         freq, angle = np.meshgrid(_FREQ_CPP, _ANGLES_RAD)
         factor = self.factor((freq * np.cos(angle)).ravel(), (freq * np.sin(angle)).ravel())
-        axes = np.linalg.svd(np.concatenate([factor.real, factor.imag]), full_matrices=False)[2]
+        axes = np.linalg.svd(stacked(factor), full_matrices=False)[2]
         latent = np.asarray(self.latent @ axes[:_CONDENSED].T)
         return replace(self, latent=latent.astype(np.float16))
 

@@ -10,6 +10,7 @@ pixels (two edges within one blur, images of hardly any noise), the pass before 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +56,7 @@ class AmongSensors:
 
 
 def among_sensors(
-    linear: Linear, normal: Normal, posterior: Posterior, inflation: float
+    linear: Linear, normal: Normal, before: Normal, posterior: Posterior, inflation: float
 ) -> AmongSensors:
     """Solve again, with the density of sensors as the prior of the LSF.
 
@@ -65,13 +66,14 @@ def among_sensors(
         The linear model of the passes before.
     normal : Normal
         Its equations, of spline and regressors.
+    before : Normal
+        The same in its unknowns.
     posterior : Posterior
         Its solution.
     inflation : float
         Factor on the noise variance for correlated noise.
     """
     noise = posterior.variance * inflation
-    before = normal.combined(linear.design)
     own = _with_sensors(linear)
     r, q = linear.directions.block.size, drawn_sensors().basis.shape[1]
     equations = normal.combined(own.design)
@@ -86,7 +88,7 @@ def among_sensors(
         information, projection + prior_mean / std**2, std, sensor, linear.first_fit,
         _normal_prior(linear, posterior),
     )  # fmt: skip
-    if _misfit(equations, beta) - _misfit(before, posterior.beta) > MAX_SENSOR_MISFIT * noise:
+    if equations.misfit(beta) - before.misfit(posterior.beta) > MAX_SENSOR_MISFIT * noise:
         return AmongSensors(linear, posterior, before.gram / noise, {"other": 1.0})
     found = Posterior(
         beta, _upper_factor(covariance), std, posterior.log_amplitude, posterior.variance,
@@ -95,15 +97,17 @@ def among_sensors(
     return AmongSensors(own, found, information, seen.share)
 
 
-def _misfit(equations: Normal, beta: Floats) -> float:
-    """Sum of squares that a solution leaves of the pixels, up to what all leave."""
-    return float(beta @ (equations.gram @ beta - 2 * equations.projection))
+@cache
+def _sensor_columns() -> tuple[Floats, Floats, Floats]:
+    """Of unit coordinates: spline without the tail, the tail, and the spline with it."""
+    basis = drawn_sensors().basis
+    esf, tail = esf_from_lsf(basis[:SIZE]), basis[SIZE]
+    return esf, tail, esf + np.outer(lsf_prior.tail_spline(), tail)
 
 
 def _with_sensors(linear: Linear) -> Linear:
     """The linear model whose directions of the LSF are those of the density."""
-    basis = drawn_sensors().basis
-    esf, tail = esf_from_lsf(basis[:SIZE]), basis[SIZE]
+    esf, tail, spline = _sensor_columns()
     block = np.concatenate([linear.directions.block[: _FIRST - 1], np.full(tail.size, _DENSITY)])
     kept = slice(0, _FIRST - 1)
     directions = lsf_prior.Directions(
@@ -112,7 +116,7 @@ def _with_sensors(linear: Linear) -> Linear:
         block,
     )
     columns = np.zeros((linear.design.shape[0], tail.size))
-    columns[: CELLS + 3] = esf + np.outer(lsf_prior.tail_spline(), tail)
+    columns[: CELLS + 3] = spline
     columns[CELLS + 3] = tail
     after = 1 + linear.directions.block.size
     design = np.hstack([linear.design[:, :_FIRST], columns, linear.design[:, after:]])

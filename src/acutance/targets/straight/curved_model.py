@@ -22,7 +22,12 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import GaussianPixel
-from acutance.numerics.marginal_likelihood import Prior, log_evidence, log_evidence_slopes, whiten
+from acutance.numerics.marginal_likelihood import (
+    Prior,
+    likeliest_amplitudes,
+    log_evidence,
+    whiten,
+)
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.first_fit import fit_first
@@ -285,13 +290,10 @@ def solve(
     some = Normal(
         normal.gram[np.ix_(free, free)], normal.projection[free], normal.data, normal.count
     )
-    log_amplitude = prior.log_amplitude if earlier is None else earlier.log_amplitude
-    for _ in range(most):
-        white = whiten(some, prior, log_amplitude, 1.0)
-        step = log_evidence_slopes(white, prior, log_amplitude).step()
-        log_amplitude = log_amplitude + step
-        if float(np.abs(step).max()) < _SETTLED_AMPLITUDE:
-            break
+    log_amplitude = likeliest_amplitudes(
+        some, prior, prior.log_amplitude if earlier is None else earlier.log_amplitude, 1.0,
+        tolerance=_SETTLED_AMPLITUDE, most=most,
+    )  # fmt: skip
     white = whiten(some, prior, log_amplitude, 1.0)
     beta = np.zeros(free.size)
     beta[free] = white.sigma * white.mean

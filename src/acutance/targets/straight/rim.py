@@ -22,8 +22,8 @@ from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.marginal_likelihood import (
     Prior,
+    likeliest_amplitudes,
     log_evidence,
-    log_evidence_slopes,
     whiten,
 )
 from acutance.numerics.normal_equations import Normal
@@ -316,14 +316,10 @@ def _best(model: _Model, tried: list[Floats]) -> _Found:
 
 
 def _settled(normal: Normal, prior: Prior, log_amplitude: Floats) -> Floats:
-    """The amplitudes of the prior at the mode of the log evidence."""
-    for _ in range(_MAX_STEPS):
-        white = whiten(normal, prior, log_amplitude, 1.0)
-        step = log_evidence_slopes(white, prior, log_amplitude).step()
-        log_amplitude = log_amplitude + step
-        if float(np.abs(step).max()) < _SETTLED:
-            break
-    return log_amplitude
+    """The likeliest amplitudes of the prior, the noise being one."""
+    return likeliest_amplitudes(
+        normal, prior, log_amplitude, 1.0, tolerance=_SETTLED, most=_MAX_STEPS
+    )
 
 
 def _prior(blur: GaussianPixel, sensor: Directions, trends: int) -> Prior:

@@ -122,7 +122,9 @@ class Solution:
     columns : (q, n) array
         Regressors other than the spline.
     normal : Normal
-        The equations of the pixels.
+        The equations of the pixels, of spline and regressors.
+    equations : Normal
+        The same in the unknowns.
     posterior : Posterior
         Of the unknowns.
     residual, noise : (n,) arrays
@@ -138,6 +140,7 @@ class Solution:
     weight: Floats
     columns: Floats
     normal: Normal
+    equations: Normal
     posterior: Posterior
     residual: Floats
     noise: Floats
@@ -231,7 +234,9 @@ def solve(
             about = _updated(solved, fit_width) if has_moved else linear.first_fit
             fitted = pixels.value - solved.residual
             linear = Linear.about(about, pixels, fit_width=fit_width, fitted=fitted)
-    seen = among_sensors(solved.linear, solved.normal, solved.posterior, whiteness.inflation)
+    seen = among_sensors(
+        solved.linear, solved.normal, solved.equations, solved.posterior, whiteness.inflation
+    )
     return Solved(_seen_again(solved, seen), solved, seen, outlier, whiteness)
 
 
@@ -302,8 +307,9 @@ def _pass(
     weight = outlier / noise.relative
     columns = linear.columns(None if earlier is None else earlier.model)
     normal = _equations(linear, weight, columns, float(np.add.reduce(outlier)), earlier)
+    equations = normal.combined(linear.design)
     posterior = regress(
-        normal.combined(linear.design), linear.prior, noise.scale, inflation,
+        equations, linear.prior, noise.scale, inflation,
         None if earlier is None else earlier.posterior,
     )  # fmt: skip
     residual = linear.first_residual - linear.image(columns, posterior.beta)
@@ -311,7 +317,7 @@ def _pass(
     standard, steep = _bounded(residual / std), linear.steepness
     dark, bright = np.sqrt(posterior.variance * noise.sides).tolist()
     return Solution(
-        linear, weight, columns, normal, posterior, residual, std, (dark, bright),
+        linear, weight, columns, normal, equations, posterior, residual, std, (dark, bright),
         _edge_roughness(standard, np.where(np.abs(standard) < _OUTLYING, steep, 0.0), roughness),
     )  # fmt: skip
 
