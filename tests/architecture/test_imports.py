@@ -43,6 +43,7 @@ LIBRARIES = {
     "markupsafe": {"report"},
     "typer": {"cli"},
     "rich": {"cli"},
+    "numba": {"numerics"},
     "threadpoolctl": {"numerics"},
 }
 

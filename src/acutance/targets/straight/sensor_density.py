@@ -21,14 +21,15 @@ C. M. Bishop, Pattern Recognition and Machine Learning, 2006, section 2.3.3).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib.resources import files
 
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.targets.straight.kernel_sums import kernel_moments, kernel_weights
 from acutance.targets.straight.tuned import (
     FAMILY_WEIGHTS,
     KERNEL_FLOOR,
@@ -41,10 +42,8 @@ __all__ = ["SensorFamily", "Sensors", "SensorsSeen", "drawn_sensors"]
 
 _REACH = 3.0
 """Sensors whose blur differs by more, in units of `KERNEL_LOG_WIDTH`, have no part."""
-_NEGLIGIBLE = -9.0
-"""Logarithm of the weight relative to the largest, below which a kernel is left out."""
 _UNTOLD = 1e-2
-"""Information of combinations that pixels do not tell: coordinates are below one."""
+"""Information of combinations that pixels do not tell, whose prior variance is one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,94 +122,123 @@ class Sensors:
         other : (q, q) array
             Covariance of the coordinates of sensors like none that was drawn, about none.
         """
-        combinations, values = _told(information, projection)
-        kernels = []
+        combinations, values = _told(information, projection, self.spread + other)
+        # Kernels of every family and size, and the one about none.
+        covariance = np.concatenate([self.kernel_covariances, other[None]])
+        half = covariance @ combinations
+        lower = np.linalg.cholesky(np.eye(values.size) + combinations.T @ half)
+        whitening = np.linalg.inv(lower)
+        axes, told = whitening @ combinations.T, whitening @ values
+        log_density = np.log(np.diagonal(whitening, axis1=1, axis2=2)).sum(axis=1)
+        last = math.log(OTHER_WEIGHT) + float(log_density[-1]) - 0.5 * float(told[-1] @ told[-1])
+        largest, weighed = last, []
+        for k, name, centres, log_weight in self._kernels(width_px):
+            found, largest = kernel_weights(
+                centres, log_weight + log_density[k], axes[k], told[k], largest
+            )
+            weighed.append((k, name, centres, found))
+        moments = [
+            (k, name, *kernel_moments(centres, found, largest))
+            for k, name, centres, found in weighed
+        ]
+        q = other.shape[0]
+        moments.append((-1, "other", math.exp(last - largest), np.zeros(q), np.zeros((q, q))))
+        half = half @ whitening.transpose(0, 2, 1)
+        parts = [
+            _Part.of(name, weight, centre, spread, covariance[k], half[k], axes[k], told[k])
+            for k, name, weight, centre, spread in moments
+            if weight > 0
+        ]
+        return _mixture(parts)
+
+    @cached_property
+    def kernel_covariances(self) -> Floats:
+        """Of the kernels of every family, and of every size of them, (k, q, q)."""
+        return np.array([
+            scale**2 * family.covariance for family in self.families for scale in KERNEL_SCALES
+        ])  # fmt: skip
+
+    @cached_property
+    def spread(self) -> Floats:
+        """Second moment of the coordinates of all sensors, (q, q)."""
+        every = np.concatenate([family.coordinates for family in self.families])
+        return np.asarray(every.T @ every / len(every))
+
+    def _kernels(self, width_px: float) -> Iterator[tuple[int, str, Floats, Floats]]:
+        """Number, family, centres and log weights of the kernels of one covariance."""
+        number = 0
         for family in self.families:
             centres, log_weight = family.about(width_px)
-            off = values - centres @ combinations
-            for scale in KERNEL_SCALES:
-                covariance = scale**2 * family.covariance
-                kernels.append(
-                    _Kernels.of(family.name, centres, log_weight, off, covariance, combinations)
-                )
-        nothing, weight = np.zeros((1, other.shape[0])), np.log([OTHER_WEIGHT])
-        kernels.append(_Kernels.of("other", nothing, weight, values[None], other, combinations))
-        return _mixture(kernels)
+            for _ in KERNEL_SCALES:
+                yield number, family.name, centres, log_weight
+                number += 1
 
 
-def _told(information: Floats, projection: Floats) -> tuple[Floats, Floats]:
-    """Independent combinations (q, r) of the coordinates that pixels tell, and their values."""
-    size, axes = np.linalg.eigh(information)
-    told = size > _UNTOLD
-    combinations = axes[:, told] * np.sqrt(size[told])
-    return combinations, (combinations / size[told]).T @ projection
+def _told(information: Floats, projection: Floats, spread: Floats) -> tuple[Floats, Floats]:
+    """Independent combinations (q, r) of the coordinates that pixels tell, and their values.
+
+    Those told best are first. In coordinates whose covariance `spread` is one the information is
+    diagonal.
+    """
+    lower = np.linalg.cholesky(spread)
+    size, axes = np.linalg.eigh(lower.T @ information @ lower)
+    told = np.flatnonzero(size > _UNTOLD)[::-1]
+    scale = np.sqrt(size[told])
+    values = (axes[:, told] / scale).T @ (lower.T @ projection)
+    return np.linalg.solve(lower.T, axes[:, told] * scale), values
 
 
 @dataclass(frozen=True, eq=False)
-class _Kernels:
-    """Kernels of one family and one covariance, after the pixels were seen.
+class _Part:
+    """A part of the mixture: kernels of one covariance, after the pixels were seen.
 
     Attributes
     ----------
     name : str
         The family.
-    centres : (n, q) array
-    off : (n, r) array
-        What the pixels say, minus what the centres do.
-    log_weight : (n,) array
-    gain : (q, r) array
+    weight : float
+    mean : (q,) array
     covariance : (q, q) array
+        Of the kernels, and of their centres about the mean.
     """
 
     name: str
-    centres: Floats
-    off: Floats
-    log_weight: Floats
-    gain: Floats
+    weight: float
+    mean: Floats
     covariance: Floats
 
     @classmethod
     def of(
         cls,
         name: str,
-        centres: Floats,
-        log_weight: Floats,
-        off: Floats,
+        weight: float,
+        centre: Floats,
+        spread: Floats,
         covariance: Floats,
-        combinations: Floats,
-    ) -> _Kernels:
-        """From kernels before, what the pixels say minus what they do, and the combinations."""
-        common = covariance @ combinations
-        lower = np.linalg.cholesky(np.eye(off.shape[1]) + combinations.T @ common)
-        whitening = np.linalg.inv(lower)
-        standard = off @ whitening.T
-        weight = log_weight - 0.5 * np.einsum("ij,ij->i", standard, standard)
-        weight += float(np.log(np.diagonal(whitening)).sum())
-        half = common @ whitening.T
-        return cls(name, centres, off, weight, half @ whitening, covariance - half @ half.T)
-
-    def weighted(self, largest: float) -> tuple[Floats, Floats]:
-        """Weights (m,) relative to the largest, and means (m, q), of those that matter."""
-        kept = self.log_weight > largest + _NEGLIGIBLE
-        means = self.centres[kept] + self.off[kept] @ self.gain.T
-        return np.exp(self.log_weight[kept] - largest), means
+        half: Floats,
+        axes: Floats,
+        told: Floats,
+    ) -> _Part:
+        """From the kernels before, their centres' mean and spread, and what the pixels say."""
+        kept = np.eye(centre.size) - half @ axes
+        return cls(
+            name, weight, kept @ centre + half @ told,
+            covariance - half @ half.T + kept @ spread @ kept.T,
+        )  # fmt: skip
 
 
-def _mixture(kernels: Sequence[_Kernels]) -> SensorsSeen:
-    """Mean and covariance of all kernels together: their own, and how their means differ."""
-    largest = max(float(one.log_weight.max(initial=-math.inf)) for one in kernels)
-    kept = [one.weighted(largest) for one in kernels]
-    shares = np.array([float(weight.sum()) for weight, _ in kept])
-    whole = float(shares.sum())
-    weight = np.concatenate([weight for weight, _ in kept]) / whole
-    means = np.concatenate([means for _, means in kept])
+def _mixture(parts: Sequence[_Part]) -> SensorsSeen:
+    """Mean and covariance of all parts together: their own, and how their means differ."""
+    weight = np.array([part.weight for part in parts])
+    weight /= weight.sum()
+    means = np.array([part.mean for part in parts])
     mean = weight @ means
     away = means - mean
     covariance = (away * weight[:, None]).T @ away
     found: dict[str, float] = {}
-    for one, share in zip(kernels, (shares / whole).tolist(), strict=True):
-        covariance += share * one.covariance
-        found[one.name] = found.get(one.name, 0.0) + share
+    for part, share in zip(parts, weight.tolist(), strict=True):
+        covariance += share * part.covariance
+        found[part.name] = found.get(part.name, 0.0) + share
     return SensorsSeen(mean, covariance, found)
 
 

@@ -1,0 +1,30 @@
+"""Loops over pixels and samples, compiled to machine code.
+
+A chain of array operations reads and writes every intermediate array; a loop that does the same
+work for one pixel after another keeps them in registers. Such loops are compiled by numba when
+they are first called, and kept in a folder of the user's, so that other processes load them:
+the first call of a fresh installation takes some seconds longer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+
+__all__ = ["compiled"]
+
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+def compiled(function: _F) -> _F:
+    """A function of numbers and arrays, compiled for the types it is called with.
+
+    Sums may be taken in another order than written (they are vectorised), so results may differ
+    between processors in the last digits. Division by zero gives infinities, as in numpy.
+    """
+    loop = numba.njit(
+        function, cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract"}
+    )
+    return cast(_F, loop)
