@@ -59,7 +59,10 @@ PACKAGES = (
 CALLS = (
     "measure_edge",
     "measure_edges",
+    "each_edge",
     "measure_pulse",
+    "measure_pulses",
+    "each_pulse",
     "measure_points",
     "measure_bars",
     "measure_star",

@@ -21,6 +21,7 @@ FLOORS = (
     "geometry",
     "optics",
     "curves",
+    "execution",
     "errors",
 )
 

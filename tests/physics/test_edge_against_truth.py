@@ -1,7 +1,7 @@
 """The reference edge method against simulated truth: exact without noise, honest with it.
 
 Every statistical claim has a fixed seed and a bound that a broken estimator fails. Full runs of
-the same comparisons: benchmarks/accuracy.py and benchmarks/coverage.py.
+the same comparisons: benchmarks/accuracy.py and benchmarks/interval_coverage.py.
 """
 
 import math

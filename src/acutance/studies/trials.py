@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from acutance.errors import OptionError
-from acutance.studies.execution import run_tasks
+from acutance.execution import run_tasks
 from acutance.studies.journal import Journal, journal_key
 
 __all__ = ["Execution", "Measure", "Record", "run_trials", "trial_rng"]

@@ -24,10 +24,11 @@ class Rejected:
 
     Attributes
     ----------
-    stage : {"fit", "contrast"}
+    stage : {"image", "region", "options", "fit", "contrast"}
     reason : str
     values : dict
-        Where it lies in pixels of the whole image (``row``, ``col``), and its ``normal_deg``.
+        Where it lies: in pixels of the whole image (``row``, ``col``) with its ``normal_deg``, or
+        the number of the region (``place``), its file (``path``) and the ``roi`` itself.
     """
 
     stage: str

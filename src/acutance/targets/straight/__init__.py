@@ -5,7 +5,8 @@ usable; `pixels` holds them), `first_fit` (a Gaussian through a pixel; `bend`: o
 `fit_edge` and `fit_pulse` (the reference estimator: `solve` finds the line, `linear_model` the
 curves, with `spline`, `spline_equations`, `lsf`, `lsf_prior`, `gradients`, `ground_steps`,
 `step_profile`; the last pass is `among_sensors`, its prior `sensor_density`; `learn_lsf` learned
-both priors), `edge` and `pulse` (the public functions, `many_edges` for all edges of a target),
+both priors), `edge` and `pulse` (the public functions; `many_edges`, `many_pulses` for all edges
+of a target and for many regions),
 `edge_checks`, `pulse_checks`, `pixel_checks`, `structure_checks` and
 `ground_checks` (is the target good enough; `check_data` is their input).
 `error_causes`: what the uncertainty consists of; `pixels_alone`: what pixels say, the prior apart;
@@ -15,7 +16,8 @@ the methods of the literature, biases included.
 """
 
 from acutance.targets.straight.edge import METHODS, measure_edge
-from acutance.targets.straight.many_edges import measure_edges
+from acutance.targets.straight.many_edges import each_edge, measure_edges
+from acutance.targets.straight.many_pulses import each_pulse, measure_pulses
 from acutance.targets.straight.options import EdgeOptions, PulseOptions
 from acutance.targets.straight.pulse import PULSE_METHODS, measure_pulse
 from acutance.targets.straight.straight_measurement import StraightDetails, StraightMeasurement
@@ -27,7 +29,10 @@ __all__ = [
     "PulseOptions",
     "StraightDetails",
     "StraightMeasurement",
+    "each_edge",
+    "each_pulse",
     "measure_edge",
     "measure_edges",
     "measure_pulse",
+    "measure_pulses",
 ]

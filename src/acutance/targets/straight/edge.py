@@ -42,6 +42,7 @@ __all__ = [
     "in_whole_image",
     "measure_edge",
     "measure_segment",
+    "require_method",
     "require_phases",
 ]
 
@@ -141,14 +142,21 @@ def measure_segment(
     region: RegionPixels, segment: Segment, method: str, options: EdgeOptions
 ) -> StraightMeasurement:
     """Measure one segment that was found in a region; see `measure_edge`."""
-    estimate = _method(method)
+    estimate = require_method(method)
     trimmed, extent = trim(region.pixels, segment)
     require_phases(trimmed, trimmed.line, limit_of("sample_phases", options.limits))
     fit = estimate(trimmed, options)
     return _measurement(region, trimmed, extent, fit, method, options)
 
 
-def _method(name: str) -> Callable[[EdgePixels, EdgeOptions], EdgeFit]:
+def require_method(name: str) -> Callable[[EdgePixels, EdgeOptions], EdgeFit]:
+    """The edge method of a name.
+
+    Raises
+    ------
+    OptionError
+        If there is none.
+    """
     if name not in METHODS:
         raise OptionError(f"there is no edge method {name!r}: choose one of {', '.join(METHODS)}")
     return METHODS[name]

@@ -1,33 +1,62 @@
-"""Every usable edge of a target, grouped across and along, with the means and their consistency."""
+"""Many edges: every usable one of a target, grouped across and along, or those of given regions."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
-from acutance.errors import TargetError
+from acutance.errors import OptionError, TargetError
 from acutance.geometry.angles import direction_difference
 from acutance.geometry.line import Line
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
+from acutance.targets.in_turn import ImageRegions, are_many, in_turn
 from acutance.targets.options import chosen_options
-from acutance.targets.region import RoiLike, read_region
-from acutance.targets.straight.edge import in_whole_image, measure_segment
+from acutance.targets.record import Record
+from acutance.targets.region import RegionPixels, RoiLike, read_region
+from acutance.targets.straight.edge import (
+    in_whole_image,
+    measure_edge,
+    measure_segment,
+    require_method,
+)
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.options import EdgeOptions
 from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.tuned import MIN_CONTRAST_SHARE, MIN_STRENGTH_SHARE
 from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
 
-__all__ = ["combine_edges", "measure_edges"]
+__all__ = ["combine_edges", "each_edge", "measure_edges"]
 
 
-@one_thread
+@overload
+def measure_edges(
+    image: Image | ArrayLike | ImageRegions,
+    roi: Iterable[RoiLike],
+    *,
+    gsd_m: float | Gsd | None = None,
+    method: str = "spline",
+    options: EdgeOptions | None = None,
+    workers: int = 1,
+) -> tuple[Record | Rejected, ...]: ...
+@overload
+def measure_edges(
+    image: list[tuple[Image, RoiLike]],
+    roi: None = None,
+    *,
+    gsd_m: float | Gsd | None = None,
+    method: str = "spline",
+    options: EdgeOptions | None = None,
+    workers: int = 1,
+) -> tuple[Record | Rejected, ...]: ...
+@overload
 def measure_edges(
     image: Image | ArrayLike,
     roi: RoiLike = None,
@@ -35,22 +64,109 @@ def measure_edges(
     gsd_m: float | Gsd | None = None,
     method: str = "spline",
     options: EdgeOptions | None = None,
-) -> TargetResult[StraightMeasurement]:
-    """Measure every usable edge of a target: four of a 2 x 2 checkerboard, the sides of a tarp.
+) -> TargetResult[StraightMeasurement]: ...
+def measure_edges(
+    image: Any,
+    roi: Any = None,
+    *,
+    gsd_m: float | Gsd | None = None,
+    method: str = "spline",
+    options: EdgeOptions | None = None,
+    workers: int = 1,
+) -> TargetResult[StraightMeasurement] | tuple[Record | Rejected, ...]:
+    """Measure many edges: all of one target, or the one of each of many given regions.
 
-    Edges with less than four fifths of the strongest contrast are left out: they are the
-    target's border with its surroundings, or not of the target.
+    Of one region every usable edge is measured: four of a 2 x 2 checkerboard, the sides of a tarp.
+    Edges with less than four fifths of the strongest contrast are left out: they are the target's
+    border with its surroundings, or not of the target.
+
+    Of a list of regions the strongest edge of each is measured, as `acutance.measure_edge` does.
+    `acutance.each_edge` gives the same results one by one.
 
     Parameters
     ----------
-    image, roi, gsd_m, method, options
+    image : Image, (rows, cols) array_like, or list of pairs
+        One image; or a list of pairs (image, region) of several.
+    roi : region, or list of regions
         As in `acutance.measure_edge`.
+    gsd_m, method, options
+        As in `acutance.measure_edge`.
+    workers : int, optional
+        Of many regions: processes that measure them, see `acutance.each_edge`.
 
     Returns
     -------
-    TargetResult
+    TargetResult or tuple of Record and Rejected
+        Of many regions a `Record` for each, with all numbers, deviations, checks and the verdict,
+        in their order; a region that cannot be measured is a `Rejected` in its place.
+
+    Examples
+    --------
+    >>> regions = [(120, 340, 40, 40), (500, 812, 60, 60)]
+    >>> for found in ac.measure_edges(image, regions, workers=2):  # doctest: +SKIP
+    ...     print(found.summary() if isinstance(found, ac.Record) else found.reason)
     """
-    region = read_region(image, roi, gsd_m)
+    if are_many(image, roi):
+        return tuple(
+            each_edge(image, roi, gsd_m=gsd_m, method=method, options=options, workers=workers)
+        )
+    if workers != 1:
+        raise OptionError(
+            f"workers is {workers}, and one region is measured in this process: leave it out, or "
+            "give a list of regions"
+        )
+    return _edges_of_target(read_region(image, roi, gsd_m), method, options)
+
+
+def each_edge(
+    image: Image | ArrayLike | ImageRegions,
+    regions: Iterable[RoiLike] | None = None,
+    *,
+    gsd_m: float | Gsd | None = None,
+    method: str = "spline",
+    options: EdgeOptions | None = None,
+    workers: int = 1,
+) -> Iterator[Record | Rejected]:
+    """Measure the strongest edge of each of many regions, and hand out one result after the other.
+
+    Regions are taken as they are needed, and few results wait: memory stays flat, however many
+    there are. For the pixels and the fit of one of them call `acutance.measure_edge`: its numbers
+    are the same.
+
+    Parameters
+    ----------
+    image : Image, (rows, cols) array_like, or iterable of pairs
+        One image; or, without `regions`, pairs (image, region) of several.
+    regions : iterable of regions, optional
+        As in `acutance.measure_edge`.
+    gsd_m, method, options
+        As in `acutance.measure_edge`.
+    workers : int, optional
+        Processes, each on one core. With more than one, a script has to guard its own start by
+        ``if __name__ == "__main__"``, and images in memory are kept in temporary files meanwhile.
+
+    Yields
+    ------
+    Record or Rejected
+        In the order of the regions. A `Rejected` has a stage ("image", "region", "options" or
+        "fit"), the reason, and as values the number of the region, its file and itself.
+
+    Raises
+    ------
+    OptionError
+        If the method, the options or the number of workers mean nothing.
+    """
+    require_method(method)
+    chosen = chosen_options(options, EdgeOptions)
+    measure = partial(measure_edge, gsd_m=gsd_m, method=method, options=chosen)
+    return in_turn(measure, image, regions, workers=workers)
+
+
+@one_thread
+def _edges_of_target(
+    region: RegionPixels, method: str, options: EdgeOptions | None
+) -> TargetResult[StraightMeasurement]:
+    """Every usable edge of a region."""
     chosen = chosen_options(options, EdgeOptions)
     measured: list[StraightMeasurement] = []
     rejected: list[Rejected] = []

@@ -30,7 +30,7 @@ from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.trim import Extent
 from acutance.targets.straight.tuned import MAX_CORRECTED_WIDTH
 
-__all__ = ["PULSE_METHODS", "measure_pulse"]
+__all__ = ["PULSE_METHODS", "measure_pulse", "require_pulse_method"]
 
 
 _Fitted = tuple[EdgeFit, Estimate, Estimate, Estimate]
@@ -109,7 +109,7 @@ def measure_pulse(
         If there is no pulse, it is aligned with the grid, or too little of it is there.
     """
     chosen = chosen_options(options, PulseOptions)
-    estimate = _method(method)
+    estimate = require_pulse_method(method)
     region = read_region(image, roi, gsd_m)
     stated_px = _stated_width(region, width_px, width_m)
     free = fit_width or stated_px is None
@@ -154,7 +154,14 @@ def _is_far(found_px: float, stated_px: float) -> bool:
     return abs(found_px / stated_px - 1) > MAX_CORRECTED_WIDTH
 
 
-def _method(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted]:
+def require_pulse_method(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted]:
+    """The pulse method of a name.
+
+    Raises
+    ------
+    OptionError
+        If there is none.
+    """
     if name not in PULSE_METHODS:
         known = ", ".join(PULSE_METHODS)
         raise OptionError(f"there is no pulse method {name!r}: choose one of {known}")

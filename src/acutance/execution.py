@@ -6,14 +6,16 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
+from itertools import islice
 from multiprocessing import get_context, parent_process
 from multiprocessing.synchronize import Event
 from typing import TypeVar
 
-__all__ = ["run_tasks"]
+__all__ = ["results_in_turn", "run_tasks"]
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -21,6 +23,8 @@ Result = TypeVar("Result")
 _LIBRARIES = ("OPENBLAS", "OMP", "MKL")
 _CHUNKS_PER_WORKER = 8
 _MAX_CHUNK = 16
+_WAITING_PER_WORKER = 4
+"""Chunks that are handed out before the first of them is waited for."""
 
 
 def run_tasks(
@@ -63,15 +67,7 @@ def _run_in_processes(
 ) -> None:
     size = max(1, min(_MAX_CHUNK, len(tasks) // (_CHUNKS_PER_WORKER * workers)))
     starts = range(0, len(tasks), size)
-    # Fresh processes read the number of threads when they load the libraries.
-    context = get_context("spawn")
-    stop = context.Event()
-    with (
-        _one_thread_each(),
-        ProcessPoolExecutor(
-            workers, mp_context=context, initializer=_obey_parent, initargs=(stop,)
-        ) as pool,
-    ):
+    with _processes(workers) as (pool, stop):
         started: dict[Future[list[Result]], int] = {}
         kept: set[int] = set()
 
@@ -96,6 +92,60 @@ def _run_in_processes(
             for future in started:
                 if not future.cancelled() and future.exception() is None:
                     keep_all(future)
+            raise
+
+
+@contextmanager
+def _processes(workers: int) -> Iterator[tuple[ProcessPoolExecutor, Event]]:
+    """A pool of processes on one core each, and what tells them to begin no further task."""
+    # Fresh processes read the number of threads when they load the libraries.
+    context = get_context("spawn")
+    stop = context.Event()
+    with (
+        _one_thread_each(),
+        ProcessPoolExecutor(
+            workers, mp_context=context, initializer=_obey_parent, initargs=(stop,)
+        ) as pool,
+    ):
+        yield pool, stop
+
+
+def results_in_turn(
+    work: Callable[[Task], Result], tasks: Iterable[Task], *, workers: int = 1
+) -> Iterator[Result]:
+    """The result of every task, in the order of the tasks, as soon as it is there.
+
+    Tasks are taken as they are needed, and few results wait: memory stays flat however many there
+    are. An exception of a task, or Ctrl-C, ends the run, and so does closing the generator.
+
+    Parameters
+    ----------
+    work : function of a task
+        As of `run_tasks`.
+    tasks : iterable
+    workers : int, optional
+        As of `run_tasks`.
+    """
+    if workers < 2:
+        yield from map(work, tasks)
+        return
+    todo = iter(tasks)
+    waiting: deque[Future[list[Result]]] = deque()
+    with _processes(workers) as (pool, stop):
+        try:
+            while True:
+                with _interrupts_held_back():
+                    while len(waiting) < _WAITING_PER_WORKER * workers:
+                        chunk = list(islice(todo, _MAX_CHUNK))
+                        if not chunk:
+                            break
+                        waiting.append(pool.submit(_work_through, work, chunk))
+                if not waiting:
+                    return
+                yield from waiting.popleft().result()
+        except BaseException:
+            stop.set()
+            pool.shutdown(cancel_futures=True)
             raise
 
 

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from acutance.studies.execution import run_tasks
+from acutance.execution import results_in_turn, run_tasks
 
 
 def square(task):
@@ -55,3 +55,32 @@ def test_an_error_ends_the_run_and_keeps_what_was_finished(workers):
     assert 7 not in found
     assert 0 in found or workers == 2
     assert len(found) < 1900
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_results_come_in_the_order_of_the_tasks(workers):
+    found = list(results_in_turn(square, range(100), workers=workers))
+    assert [value for value, _ in found] == [task**2 for task in range(100)]
+    assert len({process for _, process in found}) == workers
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_an_error_comes_after_the_results_before_it(workers):
+    results = results_in_turn(fails_at_seven, [1, 2, 3], workers=workers)
+    assert list(results) == [1, 2, 3]
+    with pytest.raises(ValueError, match="seven"):
+        list(results_in_turn(fails_at_seven, [1, 7, 3], workers=workers))
+
+
+def test_tasks_are_taken_as_they_are_needed_and_a_run_can_be_left():
+    taken = []
+
+    def tasks():
+        for task in range(100_000):
+            taken.append(task)
+            yield task
+
+    results = results_in_turn(square, tasks(), workers=2)
+    assert next(results)[0] == 0
+    results.close()
+    assert len(taken) < 1000

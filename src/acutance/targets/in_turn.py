@@ -1,0 +1,146 @@
+"""Many given regions, of one image or of several: each is measured, or rejected in its place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
+from acutance.execution import results_in_turn
+from acutance.raster import Box, Image
+from acutance.raster.disk_copy import disk_copy
+from acutance.targets.measurement import Measurement
+from acutance.targets.record import Record
+from acutance.targets.region import RoiLike
+from acutance.targets.target_result import Rejected
+
+__all__ = ["ImageRegions", "are_many", "in_turn"]
+
+Measure = Callable[[Image, RoiLike], Measurement]
+ImageRegions = Iterable[tuple[Image | ArrayLike, RoiLike]]
+"""Pairs of an image and a region of it."""
+
+
+def in_turn(
+    measure: Measure,
+    image: Image | ArrayLike | ImageRegions,
+    regions: Iterable[RoiLike] | None = None,
+    *,
+    workers: int = 1,
+) -> Iterator[Record | Rejected]:
+    """Measure regions one after the other, or on several processes; results in their order.
+
+    Regions are taken as they are needed, and few results wait: memory stays flat however many
+    there are.
+
+    Parameters
+    ----------
+    measure : function of (image, region)
+        At the top of a module, or a ``functools.partial`` of one.
+    image : Image, (rows, cols) array_like or pairs
+        Of all regions; or, without `regions`, pairs of an image and a region.
+    regions : iterable of regions, optional
+    workers : int, optional
+        Processes. With more than one, a script has to guard its own start by
+        ``if __name__ == "__main__"``, and images in memory are kept in temporary files meanwhile.
+
+    Yields
+    ------
+    Record or Rejected
+        What cannot be measured is rejected with stage ("image", "region", "options" or
+        "fit"), reason and place. It ends no run.
+
+    Raises
+    ------
+    OptionError
+        If there is no worker.
+    """
+    if workers < 1:
+        raise OptionError(f"workers is {workers}: give the number of processes, 1 or more")
+    pairs = image if regions is None else _of_one(image, regions)
+    return _results(measure, _numbered(pairs), workers)
+
+
+def _results(
+    measure: Measure, pairs: Iterator[tuple[int, Any, Any]], workers: int
+) -> Iterator[Record | Rejected]:
+    with ExitStack() as stack:
+        if workers > 1:
+            folder = Path(stack.enter_context(TemporaryDirectory(prefix="acutance-")))
+            pairs = _on_disk(pairs, folder)
+        yield from results_in_turn(partial(_record, measure), pairs, workers=workers)
+
+
+def are_many(image: Any, roi: Any) -> bool:
+    """Whether what stands for one region are many, or what stands for an image are pairs."""
+    if roi is None:
+        return _are_pairs(image)
+    if isinstance(roi, np.ndarray):
+        return roi.ndim == 2
+    if isinstance(roi, list | tuple):
+        return not any(np.isscalar(one) for one in roi)
+    return isinstance(roi, Iterator)
+
+
+def _are_pairs(image: Any) -> bool:
+    """Whether something is no image but pairs of an image and a region."""
+    if isinstance(image, Iterator):
+        return True
+    if not isinstance(image, list | tuple) or not image:
+        return False
+    first = image[0]
+    return isinstance(first, tuple) and len(first) == 2 and isinstance(first[0], Image | np.ndarray)
+
+
+def _of_one(image: Any, regions: Iterable[Any]) -> Iterator[tuple[Any, Any]]:
+    source = image if isinstance(image, Image) else Image.from_array(image)
+    return ((source, roi) for roi in regions)
+
+
+def _numbered(pairs: Any) -> Iterator[tuple[int, Any, Any]]:
+    return ((place, image, roi) for place, (image, roi) in enumerate(pairs))
+
+
+def _on_disk(pairs: Iterator[tuple[int, Any, Any]], folder: Path) -> Iterator[tuple[int, Any, Any]]:
+    """The same regions, of images that other processes can read."""
+    original, kept = None, None
+    for place, image, roi in pairs:
+        if kept is None or image is not original:
+            try:
+                source = image if isinstance(image, Image) else Image.from_array(image)
+                original, kept = image, disk_copy(source, folder)
+            except ImageError:
+                # The process that is to measure it says so.
+                original, kept = image, image
+        yield place, kept, roi
+
+
+def _record(measure: Measure, numbered: tuple[int, Any, Any]) -> Record | Rejected:
+    """The record of one region, or why there is none."""
+    place, image, roi = numbered
+    try:
+        return measure(image, roi).record
+    except AcutanceError as error:
+        return Rejected(_stage(error), str(error), _where(place, image, roi))
+
+
+def _stage(error: AcutanceError) -> str:
+    kinds = (("image", ImageError), ("region", RegionError), ("options", OptionError))
+    return next((stage for stage, kind in kinds if isinstance(error, kind)), "fit")
+
+
+def _where(place: int, image: Any, roi: Any) -> dict[str, Any]:
+    """Which region of which image."""
+    found: dict[str, Any] = {"place": place, "path": getattr(image, "path", None)}
+    if isinstance(roi, Box):
+        found["roi"] = list(roi.as_tuple())
+    elif isinstance(roi, tuple | list):
+        found["roi"] = list(roi)
+    return found

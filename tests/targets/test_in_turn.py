@@ -1,0 +1,141 @@
+"""Many regions: each as if it were measured alone, in its place, whatever the others are."""
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance import simulate
+from acutance.targets.in_turn import are_many
+
+SENSOR = simulate.reference_systems()["gaussian"]
+GOOD, SMALL, OUTSIDE, EMPTY = (0, 0, 40, 40), (0, 0, 4, 40), (30, 60, 40, 40), (0, 80, 40, 40)
+REGIONS = [GOOD, SMALL, (0, 40, 40, 40), OUTSIDE, EMPTY]
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """Two edges side by side, then ground without any."""
+    rng = np.random.default_rng(5)
+    tiles = [
+        simulate.edge(SENSOR, angle_deg=angle, shape=(40, 40), snr=100, rng=rng)[0]
+        for angle in (6, 11)
+    ]
+    return np.hstack([*tiles, rng.normal(200, 10, (40, 40))])
+
+
+def without_time(record):
+    return {key: value for key, value in record.to_dict().items() if key != "measured_at"}
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_every_region_is_measured_as_alone_or_rejected_in_its_place(scene, workers):
+    image = ac.Image.from_array(scene, gsd_m=0.5)
+    found = ac.measure_edges(image, REGIONS, workers=workers)
+    assert [type(one).__name__ for one in found] == [
+        "Record", "Rejected", "Record", "Rejected", "Rejected",
+    ]  # fmt: skip
+    for place in (0, 2):
+        alone = ac.measure_edge(image, REGIONS[place])
+        assert without_time(found[place]) == without_time(alone.record)
+        assert found[place].verdict == alone.verdict
+    assert [one.stage for one in found if isinstance(one, ac.Rejected)] == [
+        "region", "region", "fit",
+    ]  # fmt: skip
+    assert found[3].values == {"place": 3, "path": None, "roi": list(OUTSIDE)}
+
+
+def test_regions_of_several_images_and_of_files(scene, tmp_path):
+    path = tmp_path / "scene.npy"
+    np.save(path, scene)
+    pairs = [(scene, GOOD), (ac.open_image(path), (0, 40, 40, 40)), (scene[:, :40], None)]
+    for workers in (1, 2):
+        one, other, whole = ac.measure_edges(pairs, workers=workers)
+        assert one.image.path is None
+        assert other.image.path == str(path)
+        assert one.across.mtf_nyquist == whole.across.mtf_nyquist
+        assert one.across.mtf_nyquist != other.across.mtf_nyquist
+
+
+def test_an_image_that_cannot_be_read_spoils_no_other(scene, tmp_path):
+    path = tmp_path / "gone.npy"
+    np.save(path, scene)
+    gone = ac.open_image(path)
+    path.unlink()
+    lost, found = ac.measure_edges([(gone, GOOD), (scene, GOOD)])
+    assert lost.stage == "image"
+    assert lost.values["path"] == str(path)
+    assert isinstance(found, ac.Record)
+
+
+def test_regions_are_taken_as_they_are_needed(scene):
+    taken = []
+
+    def regions():
+        for place in range(1000):
+            taken.append(place)
+            yield GOOD
+
+    results = ac.each_edge(scene, regions())
+    first, second = next(results), next(results)
+    assert first.across.rer == second.across.rer
+    assert len(taken) <= 3
+
+
+def test_pulses_of_many_regions():
+    rng = np.random.default_rng(3)
+    tiles = [
+        simulate.pulse(SENSOR, angle_deg=7, width_px=3.0, shape=(40, 36), snr=100, rng=rng)[0]
+        for _ in range(2)
+    ]
+    image = np.hstack(tiles)
+    regions = [(0, 0, 40, 36), (0, 36, 40, 36), (0, 0, 5, 36)]
+    *found, small = ac.measure_pulses(image, regions, width_px=3.05)
+    for one, roi in zip(found, regions, strict=False):
+        alone = ac.measure_pulse(image, roi, width_px=3.05)
+        assert without_time(one) == without_time(alone.record)
+    assert small.stage == "region"
+
+
+def test_nothing_to_measure_is_no_error(scene):
+    assert ac.measure_edges(scene, []) == ()
+    assert ac.measure_edges([(scene, None)])[0].kind == "edge"
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda image: ac.measure_edges(image, REGIONS, method="spleen"),
+        lambda image: ac.measure_pulses(image, REGIONS, method="spleen"),
+        lambda image: ac.measure_edges(image, REGIONS, options=ac.PulseOptions()),
+        lambda image: ac.measure_edges(image, REGIONS, workers=0),
+        lambda image: ac.measure_edges(image, GOOD, workers=2),
+    ],
+)
+def test_options_that_mean_nothing_are_refused_before_anything_is_measured(scene, call):
+    with pytest.raises(ac.OptionError):
+        call(scene)
+
+
+@pytest.mark.parametrize(
+    ("roi", "many"),
+    [
+        (None, False),
+        (GOOD, False),
+        (list(GOOD), False),
+        ((1, 2, 3), False),
+        (ac.Box(*GOOD), False),
+        ("0,0,4,4", False),
+        (np.array(GOOD), False),
+        ([GOOD], True),
+        ([], True),
+        (np.array([GOOD]), True),
+        (iter([GOOD]), True),
+        ([None, ac.Box(*GOOD)], True),
+    ],
+)
+def test_one_region_is_told_from_many(roi, many):
+    assert are_many(np.zeros((50, 50)), roi) is many
+
+
+def test_nested_lists_are_an_image():
+    assert not are_many([[1.0, 2.0], [3.0, 4.0]], None)
