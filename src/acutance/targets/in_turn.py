@@ -51,9 +51,9 @@ def in_turn(
         Processes. With more than one, a script has to guard its own start by
         ``if __name__ == "__main__"``, and images in memory are kept in temporary files meanwhile.
 
-    Yields
-    ------
-    Record or Rejected
+    Returns
+    -------
+    iterator of Record and Rejected
         What cannot be measured is rejected with stage ("image", "region", "options" or
         "fit"), reason and place. It ends no run.
 

@@ -1,6 +1,7 @@
 """Sums over the kernels of a density (`sensor_density`): their weights, and moments of centres.
 
 Loops over thousands of kernels; of most, the first few combinations tell that they have no part.
+Kernels stand in groups of one covariance: those of a family, at one size.
 """
 
 from __future__ import annotations
@@ -11,74 +12,99 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 
-__all__ = ["NEGLIGIBLE", "kernel_moments", "kernel_weights"]
+__all__ = ["kernel_moments", "kernel_weights"]
 
-NEGLIGIBLE = 9.0
+_NEGLIGIBLE = 9.0
 """Kernels whose log weight is less than the largest by this are left out."""
 
 
 @compiled
 def kernel_weights(
-    centres: Floats, log_before: Floats, axes: Floats, values: Floats, largest: float
+    centres: Floats,
+    log_before: Floats,
+    members: NDArray[np.intp],
+    axes: Floats,
+    told: Floats,
+    log_density: Floats,
+    largest: float,
 ) -> tuple[Floats, float]:
-    """Logarithm of the weight of kernels that differ in their centres alone.
+    """Logarithm of the weight of every kernel after the pixels are seen.
 
     Parameters
     ----------
     centres : (n, q) array
     log_before : (n,) array
-        Logarithm of their weight before the pixels are seen.
-    axes : (r, q) array
+        Logarithm of the weight of a centre before.
+    members : (g, 2) int array
+        First centre of every group, and the one after its last.
+    axes : (g, r, q) array
         Independent combinations of the coordinates, those first that the pixels tell best, in
-        units of their standard deviation under one kernel.
-    values : (r,) array
+        units of their standard deviation under a kernel of the group.
+    told : (g, r) array
         What the pixels say of them.
+    log_density : (g,) array
+        Logarithm of what all kernels of a group have in common.
     largest : float
-        The largest logarithm so far.
+        A lower bound of the largest logarithm.
 
     Returns
     -------
-    log_weight : (n,) array
-        Minus infinity for negligible ones.
+    log_weight : (g, m) array
+        Of the m or less centres of a group; minus infinity for negligible ones.
     largest : float
-        The largest logarithm now.
     """
-    n, q = centres.shape
-    found = np.empty(n)
-    for k in range(n):
-        weight = log_before[k]
-        for j in range(values.size):
-            off = values[j]
-            for i in range(q):
-                off -= axes[j, i] * centres[k, i]
-            weight -= 0.5 * off * off
-            if weight < largest - NEGLIGIBLE:
-                weight = -np.inf
-                break
-        found[k] = weight
-        largest = max(largest, weight)
+    groups, combinations, q = axes.shape
+    found = np.full((groups, np.max(members[:, 1] - members[:, 0])), -np.inf)
+    for g in range(groups):
+        first, last = members[g]
+        for k in range(first, last):
+            weight = log_before[k] + log_density[g]
+            for j in range(combinations):
+                off = told[g, j]
+                for i in range(q):
+                    off -= axes[g, j, i] * centres[k, i]
+                weight -= 0.5 * off * off
+                if weight < largest - _NEGLIGIBLE:
+                    break
+            else:
+                found[g, k - first] = weight
+                largest = max(largest, weight)
     return found, largest
 
 
 @compiled
 def kernel_moments(
-    centres: Floats, log_weight: NDArray[np.float64], largest: float
-) -> tuple[float, Floats, Floats]:
-    """Total weight, relative to the largest, mean (q,) and covariance (q, q) of the centres."""
-    n, q = centres.shape
-    total, mean, square = 0.0, np.zeros(q), np.zeros((q, q))
-    for k in range(n):
-        if log_weight[k] > largest - NEGLIGIBLE:
-            weight = np.exp(log_weight[k] - largest)
-            total += weight
+    centres: Floats, members: NDArray[np.intp], log_weight: Floats, largest: float
+) -> tuple[Floats, Floats, Floats]:
+    """Of every group the weight relative to the largest, and mean and covariance of its centres.
+
+    Parameters
+    ----------
+    centres, members, log_weight, largest
+        As of `kernel_weights`.
+
+    Returns
+    -------
+    (g,), (g, q) and (g, q, q) arrays
+    """
+    groups, q = members.shape[0], centres.shape[1]
+    total, mean, spread = np.zeros(groups), np.zeros((groups, q)), np.zeros((groups, q, q))
+    for g in range(groups):
+        first, last = members[g]
+        for k in range(first, last):
+            if log_weight[g, k - first] < largest - _NEGLIGIBLE:
+                continue
+            weight = np.exp(log_weight[g, k - first] - largest)
+            total[g] += weight
             for i in range(q):
                 own = weight * centres[k, i]
-                mean[i] += own
-                for j in range(q):
-                    square[i, j] += own * centres[k, j]
-    if total > 0:
-        mean /= total
-        for i in range(q):
-            for j in range(q):
-                square[i, j] = square[i, j] / total - mean[i] * mean[j]
-    return total, mean, square
+                mean[g, i] += own
+                for j in range(i + 1):
+                    spread[g, i, j] += own * centres[k, j]
+        if total[g] > 0:
+            mean[g] /= total[g]
+            for i in range(q):
+                for j in range(i + 1):
+                    spread[g, i, j] = spread[g, i, j] / total[g] - mean[g, i] * mean[g, j]
+                    spread[g, j, i] = spread[g, i, j]
+    return total, mean, spread

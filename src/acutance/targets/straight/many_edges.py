@@ -145,9 +145,9 @@ def each_edge(
         Processes, each on one core. With more than one, a script has to guard its own start by
         ``if __name__ == "__main__"``, and images in memory are kept in temporary files meanwhile.
 
-    Yields
-    ------
-    Record or Rejected
+    Returns
+    -------
+    iterator of Record and Rejected
         In the order of the regions. A `Rejected` has a stage ("image", "region", "options" or
         "fit"), the reason, and as values the number of the region, its file and itself.
 

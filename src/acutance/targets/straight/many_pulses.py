@@ -78,9 +78,9 @@ def each_pulse(
     workers : int, optional
         As in `acutance.each_edge`.
 
-    Yields
-    ------
-    Record or Rejected
+    Returns
+    -------
+    iterator of Record and Rejected
         As of `acutance.each_edge`.
 
     Raises

@@ -21,12 +21,14 @@ C. M. Bishop, Pattern Recognition and Machine Learning, 2006, section 2.3.3).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.resources import files
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.targets.straight.kernel_sums import kernel_moments, kernel_weights
@@ -42,6 +44,7 @@ __all__ = ["SensorFamily", "Sensors", "SensorsSeen", "drawn_sensors"]
 
 _REACH = 3.0
 """Sensors whose blur differs by more, in units of `KERNEL_LOG_WIDTH`, have no part."""
+_SIZES = len(KERNEL_SCALES)
 _UNTOLD = 1e-2
 """Information of combinations that pixels do not tell, whose prior variance is one."""
 
@@ -65,14 +68,6 @@ class SensorFamily:
     coordinates: Floats
     log_width: Floats
     covariance: Floats
-
-    def about(self, width_px: float) -> tuple[Floats, Floats]:
-        """Sensors of about that blur, (m, q), and the logarithm of their weight, (m,)."""
-        centre, reach = math.log(width_px), _REACH * KERNEL_LOG_WIDTH
-        first, last = np.searchsorted(self.log_width, (centre - reach, centre + reach))
-        away = (self.log_width[first:last] - centre) / KERNEL_LOG_WIDTH
-        weight = math.log(FAMILY_WEIGHTS.get(self.name, 1.0) / self.log_width.size)
-        return self.coordinates[first:last], weight - 0.5 * away**2
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,37 +118,19 @@ class Sensors:
             Covariance of the coordinates of sensors like none that was drawn, about none.
         """
         combinations, values = _told(information, projection, self.spread + other)
-        # Kernels of every family and size, and the one about none.
-        covariance = np.concatenate([self.kernel_covariances, other[None]])
-        half = covariance @ combinations
-        lower = np.linalg.cholesky(np.eye(values.size) + combinations.T @ half)
-        whitening = np.linalg.inv(lower)
-        axes, told = whitening @ combinations.T, whitening @ values
-        log_density = np.log(np.diagonal(whitening, axis1=1, axis2=2)).sum(axis=1)
-        last = math.log(OTHER_WEIGHT) + float(log_density[-1]) - 0.5 * float(told[-1] @ told[-1])
-        largest, weighed = last, []
-        for k, name, centres, log_weight in self._kernels(width_px):
-            found, largest = kernel_weights(
-                centres, log_weight + log_density[k], axes[k], told[k], largest
-            )
-            weighed.append((k, name, centres, found))
-        moments = [
-            (k, name, *kernel_moments(centres, found, largest))
-            for k, name, centres, found in weighed
-        ]
-        q = other.shape[0]
-        moments.append((-1, "other", math.exp(last - largest), np.zeros(q), np.zeros((q, q))))
-        half = half @ whitening.transpose(0, 2, 1)
-        parts = [
-            _Part.of(name, weight, centre, spread, covariance[k], half[k], axes[k], told[k])
-            for k, name, weight, centre, spread in moments
-            if weight > 0
-        ]
-        return _mixture(parts)
+        kernels = _Kernels.of(
+            np.concatenate([self.kernel_covariances, other[None]]), combinations, values
+        )
+        return _mixture(self.group_names, self._seen_groups(kernels, width_px), kernels)
+
+    @cached_property
+    def group_names(self) -> tuple[str, ...]:
+        """Family of every group of kernels, the one about none at the end."""
+        return (*np.repeat([family.name for family in self.families], _SIZES).tolist(), "other")
 
     @cached_property
     def kernel_covariances(self) -> Floats:
-        """Of the kernels of every family, and of every size of them, (k, q, q)."""
+        """Of the kernels of every group but the last, (g - 1, q, q)."""
         return np.array([
             scale**2 * family.covariance for family in self.families for scale in KERNEL_SCALES
         ])  # fmt: skip
@@ -161,17 +138,51 @@ class Sensors:
     @cached_property
     def spread(self) -> Floats:
         """Second moment of the coordinates of all sensors, (q, q)."""
-        every = np.concatenate([family.coordinates for family in self.families])
-        return np.asarray(every.T @ every / len(every))
+        return np.asarray(self._centres.T @ self._centres / len(self._centres))
 
-    def _kernels(self, width_px: float) -> Iterator[tuple[int, str, Floats, Floats]]:
-        """Number, family, centres and log weights of the kernels of one covariance."""
-        number = 0
+    @cached_property
+    def _centres(self) -> Floats:
+        return np.concatenate([family.coordinates for family in self.families])
+
+    @cached_property
+    def _log_width(self) -> Floats:
+        return np.concatenate([family.log_width for family in self.families])
+
+    @cached_property
+    def _log_share(self) -> Floats:
+        """Logarithm of the weight of every sensor among all, (n,)."""
+        return np.concatenate([
+            np.full(family.log_width.size, math.log(weight / family.log_width.size))
+            for family in self.families
+            for weight in (FAMILY_WEIGHTS.get(family.name, 1.0),)
+        ])  # fmt: skip
+
+    def _about(self, width_px: float) -> tuple[NDArray[np.intp], Floats]:
+        """Sensors of about that blur: first and last of every group, and all log weights."""
+        away = (self._log_width - math.log(width_px)) / KERNEL_LOG_WIDTH
+        start, members = 0, []
         for family in self.families:
-            centres, log_weight = family.about(width_px)
-            for _ in KERNEL_SCALES:
-                yield number, family.name, centres, log_weight
-                number += 1
+            own = away[start : start + family.log_width.size]
+            members += [start + np.searchsorted(own, (-_REACH, _REACH))] * _SIZES
+            start += own.size
+        return np.array(members, np.intp), self._log_share - 0.5 * away**2
+
+    def _seen_groups(self, kernels: _Kernels, width_px: float) -> _Groups:
+        """Weight, mean and spread of the centres of every group, the one about none at the end."""
+        members, log_before = self._about(width_px)
+        last = kernels.told[-1]
+        other = math.log(OTHER_WEIGHT) + float(kernels.log_density[-1] - 0.5 * (last @ last))
+        log_weight, largest = kernel_weights(
+            self._centres, log_before, members, kernels.axes[:-1], kernels.told[:-1],
+            kernels.log_density[:-1], other,
+        )  # fmt: skip
+        weight, mean, spread = kernel_moments(self._centres, members, log_weight, largest)
+        none = np.zeros_like(mean[:1])
+        return _Groups(
+            np.append(weight, math.exp(other - largest)),
+            np.concatenate([mean, none]),
+            np.concatenate([spread, np.zeros_like(spread[:1])]),
+        )
 
 
 def _told(information: Floats, projection: Floats, spread: Floats) -> tuple[Floats, Floats]:
@@ -188,58 +199,64 @@ def _told(information: Floats, projection: Floats, spread: Floats) -> tuple[Floa
     return np.linalg.solve(lower.T, axes[:, told] * scale), values
 
 
-@dataclass(frozen=True, eq=False)
-class _Part:
-    """A part of the mixture: kernels of one covariance, after the pixels were seen.
+class _Kernels(NamedTuple):
+    """What the pixels say of the kernels of g groups.
 
     Attributes
     ----------
-    name : str
-        The family.
-    weight : float
-    mean : (q,) array
-    covariance : (q, q) array
-        Of the kernels, and of their centres about the mean.
+    covariance : (g, q, q) array
+        Of a kernel before.
+    root : (g, q, r) array
+        ``root @ root.T`` is what the pixels take from it.
+    axes : (g, r, q) array
+        Independent combinations of the coordinates, of unit variance under a kernel.
+    told : (g, r) array
+        What the pixels say of them.
+    log_density : (g,) array
+        Logarithm of the density of a kernel that is where the pixels say.
     """
 
-    name: str
-    weight: float
-    mean: Floats
     covariance: Floats
+    root: Floats
+    axes: Floats
+    told: Floats
+    log_density: Floats
 
     @classmethod
-    def of(
-        cls,
-        name: str,
-        weight: float,
-        centre: Floats,
-        spread: Floats,
-        covariance: Floats,
-        half: Floats,
-        axes: Floats,
-        told: Floats,
-    ) -> _Part:
-        """From the kernels before, their centres' mean and spread, and what the pixels say."""
-        kept = np.eye(centre.size) - half @ axes
-        return cls(
-            name, weight, kept @ centre + half @ told,
-            covariance - half @ half.T + kept @ spread @ kept.T,
-        )  # fmt: skip
+    def of(cls, covariance: Floats, combinations: Floats, values: Floats) -> _Kernels:
+        """From the covariances, the combinations (q, r) that pixels tell, and their values."""
+        half = covariance @ combinations
+        lower = np.linalg.cholesky(np.eye(values.size) + combinations.T @ half)
+        whitening = np.linalg.inv(lower)
+        log_density = np.log(np.diagonal(whitening, axis1=1, axis2=2)).sum(axis=1)
+        root = half @ whitening.transpose(0, 2, 1)
+        return cls(covariance, root, whitening @ combinations.T, whitening @ values, log_density)
 
 
-def _mixture(parts: Sequence[_Part]) -> SensorsSeen:
-    """Mean and covariance of all parts together: their own, and how their means differ."""
-    weight = np.array([part.weight for part in parts])
-    weight /= weight.sum()
-    means = np.array([part.mean for part in parts])
-    mean = weight @ means
+class _Groups(NamedTuple):
+    """Weight (g,), and mean (g, q) and spread (g, q, q) of the centres, of groups of kernels."""
+
+    weight: Floats
+    centre: Floats
+    spread: Floats
+
+
+def _mixture(names: Sequence[str], groups: _Groups, kernels: _Kernels) -> SensorsSeen:
+    """Mean and covariance of all kernels together: their own, and how their means differ."""
+    some = np.flatnonzero(groups.weight)
+    weight, centre, spread = (part[some] for part in groups)
+    covariance, root, axes, told, _ = (part[some] for part in kernels)
+    share = weight / weight.sum()
+    left = np.eye(centre.shape[1]) - root @ axes
+    means = (left @ centre[..., None] + root @ told[..., None])[..., 0]
+    own = covariance - root @ root.transpose(0, 2, 1) + left @ spread @ left.transpose(0, 2, 1)
+    mean = share @ means
     away = means - mean
-    covariance = (away * weight[:, None]).T @ away
     found: dict[str, float] = {}
-    for part, share in zip(parts, weight.tolist(), strict=True):
-        covariance += share * part.covariance
-        found[part.name] = found.get(part.name, 0.0) + share
-    return SensorsSeen(mean, covariance, found)
+    for group, one in zip(some.tolist(), share.tolist(), strict=True):
+        found[names[group]] = found.get(names[group], 0.0) + one
+    whole = np.tensordot(share, own, 1) + (away * share[:, None]).T @ away
+    return SensorsSeen(mean, whole, found)
 
 
 @cache

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.spline import CELLS, edge_weights
 from acutance.targets.straight.step_profile import Profile
@@ -58,7 +59,7 @@ def accumulate(
     projection = np.zeros(m + q)
     for i, (cell, basis) in enumerate(stencils):
         weighted, rows = basis * weight, np.vstack([basis, y, columns])
-        sums = _sums_by_cell(cell, weighted, rows)
+        sums = _sums_by_cell(cell, weighted, np.ascontiguousarray(rows.T))
         for a in range(4):
             _add_own(gram, a, sums[:, a, a:4].T)
             projection[a : a + CELLS] += sums[:, a, 4]
@@ -95,7 +96,7 @@ def renewed(
     weighted = columns[-changed:] * weight
     rows = np.zeros((changed, normal.projection.size))
     for cell, basis in stencils:
-        sums = _sums_by_cell(cell, basis, weighted)
+        sums = _sums_by_cell(cell, basis, np.ascontiguousarray(weighted.T))
         for a in range(4):
             rows[:, a : a + CELLS] += sums[:, a].T
     rows[:, CELLS + 3 :] = weighted @ columns.T
@@ -104,39 +105,27 @@ def renewed(
     return replace(normal, gram=gram, projection=projection)
 
 
+@compiled
 def _sums_by_cell(cell: NDArray[np.intp], left: Floats, right: Floats) -> Floats:
-    """Products of the rows of `left` and `right`, summed over each cell's pixels.
+    """Products of the rows of `left` and the columns of `right`, summed over each cell's pixels.
 
     Parameters
     ----------
     cell : (n,) int array
-    left, right : (j, n) and (k, n) arrays
+    left, right : (j, n) and (n, k) arrays
 
     Returns
     -------
     (CELLS, j, k) array
     """
-    order = np.argsort(cell.astype(np.int16), kind="stable")
-    stops = np.add.accumulate(np.bincount(cell, minlength=CELLS))
-    sums = np.empty((CELLS, left.shape[0], right.shape[0]))
-    # The outermost cells hold all that lies beyond the support, often half of the pixels.
-    for end, own in ((0, order[: stops[0]]), (-1, order[stops[-2] :])):
-        sums[end] = left.take(own, axis=1) @ right.take(own, axis=1).T
-    # The others hold about as many each: one stack of small products, filled up with nothing.
-    starts, stops = stops[:-2, None], stops[1:-1, None]
-    places = starts + np.arange(int((stops - starts).max()))
-    own = order.take(places, mode="clip")
-    some = left.take(own, axis=1) * (places < stops)
-    np.matmul(some.transpose(1, 0, 2), right.take(own, axis=1).transpose(1, 2, 0), out=sums[1:-1])
+    sums = np.zeros((CELLS, left.shape[0], right.shape[1]))
+    for i in range(cell.size):
+        own = sums[cell[i]]
+        for a in range(left.shape[0]):
+            factor = left[a, i]
+            for b in range(right.shape[1]):
+                own[a, b] += factor * right[i, b]
     return sums
-
-
-def _first_of_each(place: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Where in sorted places each of them comes first."""
-    starts = np.empty(place.size, bool)
-    starts[0] = True
-    np.not_equal(place[1:], place[:-1], out=starts[1:])
-    return starts.nonzero()[0]
 
 
 def _add_own(gram: Floats, a: int, sums: Floats) -> None:
@@ -150,17 +139,12 @@ def _add_own(gram: Floats, a: int, sums: Floats) -> None:
         diagonal += products if a < b else 0.5 * products
 
 
+@compiled
 def _add_pair(
     gram: Floats, cell: NDArray[np.intp], weighted: Floats, other: NDArray[np.intp], basis: Floats
 ) -> None:
     """Products of two steps' splines, one way: its transpose is the other."""
-    m = CELLS + 3
-    offsets = (np.arange(4)[:, None] * m + np.arange(4)).reshape(16, 1)
-    place = cell * m + other
-    order = np.argsort(place.astype(np.int16), kind="stable")
-    place = place[order]
-    starts = _first_of_each(place)
-    products = weighted.take(order, axis=1)[:, None] * basis.take(order, axis=1)
-    sums = np.add.reduceat(products.reshape(16, -1), starts, axis=1)
-    found = np.bincount((place[starts] + offsets).reshape(-1), sums.reshape(-1), m * m)
-    gram[:m, :m] += found.reshape(m, m)
+    for i in range(cell.size):
+        for a in range(4):
+            for b in range(4):
+                gram[cell[i] + a, other[i] + b] += weighted[a, i] * basis[b, i]
