@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from acutance.geometry import Line
     from acutance.optics import Sensor
     from acutance.raster import Box, Gsd, Image, Region, open_image, sites
+    from acutance.scan import ScanOptions, SceneEdges, SceneMeasurement, scan_scene
     from acutance.targets import (
         Check,
         ImageInfo,
@@ -101,6 +102,9 @@ _HOMES = {
     "Region": "acutance.raster",
     "Rejected": "acutance.targets",
     "Response": "acutance.curves",
+    "ScanOptions": "acutance.scan",
+    "SceneEdges": "acutance.scan",
+    "SceneMeasurement": "acutance.scan",
     "Sensor": "acutance.optics",
     "StarMeasurement": "acutance.targets.periodic",
     "StarOptions": "acutance.targets.periodic",
@@ -119,6 +123,7 @@ _HOMES = {
     "measure_pulses": "acutance.targets.straight",
     "measure_star": "acutance.targets.periodic",
     "open_image": "acutance.raster",
+    "scan_scene": "acutance.scan",
     "sites": "acutance.raster",
 }
 _MODULES = ("optics", "report", "simulate")
@@ -160,6 +165,9 @@ __all__ = [
     "RegionError",
     "Rejected",
     "Response",
+    "ScanOptions",
+    "SceneEdges",
+    "SceneMeasurement",
     "Sensor",
     "StarMeasurement",
     "StarOptions",
@@ -183,6 +191,7 @@ __all__ = [
     "open_image",
     "optics",
     "report",
+    "scan_scene",
     "simulate",
     "sites",
 ]

@@ -14,6 +14,7 @@ FLOORS = (
     "cli",
     "report",
     "studies",
+    "scan",
     "targets",
     "simulate",
     "raster",
@@ -37,7 +38,7 @@ FORBIDDEN = {
 # Libraries, and the floors that may use them.
 LIBRARIES = {
     "numpy": set(FLOORS) - {"errors"},
-    "scipy": {"targets", "simulate", "raster", "numerics", "optics"},
+    "scipy": {"scan", "targets", "simulate", "raster", "numerics", "optics"},
     "rasterio": {"raster"},
     "matplotlib": {"report"},
     "jinja2": {"report"},

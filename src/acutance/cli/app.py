@@ -20,6 +20,7 @@ from acutance.cli import (
     plan_mirrors,
     points,
     pulse,
+    scan,
     simulate,
     sites,
     star,
@@ -110,11 +111,12 @@ for _name, _module, _words in (
     ("bars", bars, "Measure groups of bars."),
     ("star", star, "Measure a Siemens star, full or a fan."),
     ("combine", combine, "Combine measurements of one sensor."),
+    ("scan", scan, "Measure a sensor from all edges of a scene."),
     ("sites", sites, "List the edge targets that --site knows."),
     ("study", study, "Run a study of targets and estimators."),
     ("demo", demo, "Measure a simulated campaign by every method."),
 ):
-    _measures = _name in KINDS or _name == "combine"
+    _measures = _name in KINDS or _name in ("combine", "scan")
     _epilog = f"{EXIT_CODES}\n\n{_module.EXAMPLE}" if _measures else _module.EXAMPLE
     app.command(_name, epilog=_epilog, short_help=_words)(getattr(_module, _name))
 app.add_typer(simulate.app, name="simulate")

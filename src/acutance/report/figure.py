@@ -13,6 +13,7 @@ from acutance.report.figures.comparison import comparison_figure
 from acutance.report.figures.curves import curve_panels
 from acutance.report.figures.panel import Panel
 from acutance.report.figures.points import points_panels
+from acutance.report.figures.scene import scene_panels
 from acutance.report.figures.star import star_panels
 from acutance.report.figures.straight import straight_panels
 from acutance.report.figures.target import target_figure
@@ -44,6 +45,7 @@ KIND_PANELS: dict[str, Callable[[Any], tuple[Panel, ...]]] = {
     "biresolution": biresolution_panels,
     "combined": combined_panels,
     "points": points_panels,
+    "scene": scene_panels,
     "star": star_panels,
 }
 """What each kind of target draws after its curves; edges and pulses draw all by themselves."""

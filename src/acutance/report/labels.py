@@ -56,6 +56,7 @@ KIND_WORDS = {
     "bars": "Groups of bars",
     "star": "Siemens star",
     "combined": "Measurements combined",
+    "scene": "Edges of a scene",
 }
 _COUNTED = {"sources": "sources", "groups": "groups", "parts": "measurements"}
 """What kinds consist of, by the names of their fields."""
@@ -64,6 +65,7 @@ _METHOD_WORDS = {
     "psf-fit": "one fit of all sources",
     "kernel-fit": "fit of the blur between them",
     "least-squares": "one sensor fitted to all",
+    "population": "one sensor under all objects",
 }
 
 

@@ -23,8 +23,9 @@ from acutance.targets.kinds import KINDS, Kind
 
 if TYPE_CHECKING:
     from acutance.targets.check import Check, Verdict
-    from acutance.targets.check_table import QUESTIONS, Question
+    from acutance.targets.check_table import QUESTIONS
     from acutance.targets.measurement import Measurement
+    from acutance.targets.question import Question
     from acutance.targets.record import ImageInfo, Record
     from acutance.targets.slices import OtfSlices
     from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
@@ -56,7 +57,7 @@ _HOMES = {
     "ImageInfo": "record",
     "Measurement": "measurement",
     "OtfSlices": "slices",
-    "Question": "check_table",
+    "Question": "question",
     "Record": "record",
     "Rejected": "target_result",
     "TargetResult": "target_result",

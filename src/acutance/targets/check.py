@@ -14,7 +14,8 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from acutance.errors import OptionError
-from acutance.targets.check_table import QUESTIONS, Question, Sense, Severity
+from acutance.targets.check_table import QUESTIONS
+from acutance.targets.question import Question, Sense, Severity
 
 __all__ = [
     "MAX_RATIO",

@@ -7,42 +7,9 @@ source were set by simulation: documentation, "Edges", "Pulses", "Points" and so
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from acutance.targets.question import Question
 
-__all__ = ["QUESTIONS", "Question", "Sense", "Severity"]
-
-Sense = Literal[">=", "<="]
-Severity = Literal["note", "caution", "fail"]
-
-
-@dataclass(frozen=True)
-class Question:
-    """One question.
-
-    Parameters
-    ----------
-    question, advice, source : str
-        What is asked; consequences if the limit is not kept, and what to do; where it comes from.
-    sense : {">=", "<="}
-        Whether the limit is a minimum or a maximum.
-    limit : float
-        The default limit.
-    severity : {"note", "caution", "fail"}
-        note: the intervals are wide, or a fact to know. caution: a bias that the intervals may not
-        hold. fail: the numbers have no meaning.
-    caution : float, optional
-        Of a note: the value beyond which it is a caution.
-    """
-
-    question: str
-    sense: Sense
-    limit: float
-    advice: str
-    source: str = ""
-    severity: Severity = "caution"
-    caution: float | None = None
-
+__all__ = ["QUESTIONS"]
 
 _ANY_TARGET = {
     "contrast_snr": Question(
@@ -394,7 +361,33 @@ _COMBINED = {
     ),
 }  # fmt: skip
 
+_SCENE = {
+    "edges_used": Question(
+        "How many edges of the scene are used?", ">=", 30.0,
+        "the intervals widen, and few of the objects may be ideal; scan a larger part",
+        severity="note",
+    ),
+    "scene_directions": Question(
+        "In how many directions, of 15 degrees each, are there edges?", ">=", 4.0,
+        "rotation and asymmetry follow from the prior alone", severity="note",
+    ),
+    "ideal_share": Question(
+        "Which share of the objects is as sharp as the sensor can show?", ">=", 0.15,
+        "few objects show the sensor itself, and what they hide widens the intervals; scan "
+        "built-up areas, or several scenes",
+    ),
+    "strange_share": Question(
+        "Which share of the edges is neither ideal nor soft?", "<=", 0.15,
+        "the sensor may change over the scene, or rims, shadows and processing make edges that no "
+        "one sensor explains",
+    ),
+    "scene_settled": Question(
+        "Did the fit of sensor and objects fail to settle?", "<=", 0.0,
+        "the edges do not separate the sensor from its objects", severity="fail",
+    ),
+}  # fmt: skip
+
 QUESTIONS: dict[str, Question] = {
-    **_ANY_TARGET, **_STRAIGHT, **_POINTS, **_PERIODIC, **_PAIR, **_COMBINED,
+    **_ANY_TARGET, **_STRAIGHT, **_POINTS, **_PERIODIC, **_PAIR, **_COMBINED, **_SCENE,
 }  # fmt: skip
 """All questions by name; each kind of target asks some of them."""

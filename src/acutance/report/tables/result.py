@@ -17,6 +17,7 @@ from acutance.report.tables.measurement import (
     options_table,
 )
 from acutance.report.tables.points import points_tables
+from acutance.report.tables.scene import scene_tables
 from acutance.report.tables.star import star_tables
 from acutance.report.tables.target import target_tables
 from acutance.report.tables.uncertainty_budget import uncertainty_table
@@ -33,6 +34,7 @@ KIND_TABLES: dict[str, Callable[[Any], tuple[Table, ...]]] = {
     "biresolution": biresolution_tables,
     "combined": combined_tables,
     "points": points_tables,
+    "scene": scene_tables,
     "star": star_tables,
 }
 """What each kind of target tabulates besides the numbers that every measurement has."""

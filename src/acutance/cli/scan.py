@@ -1,0 +1,87 @@
+"""``acutance scan``: measure a sensor from all straight edges of a scene."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from acutance.cli.option_groups import with_groups
+from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions
+from acutance.cli.output import OutputFile, check_optional
+from acutance.cli.results import Outputs, Shown
+from acutance.cli.study import progress_bar
+from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.raster import Image
+    from acutance.scan import SceneEdges
+
+__all__ = ["EXAMPLE", "scan"]
+
+EXAMPLE = (
+    "\b\nExamples:\n"
+    "  acutance scan scene.tif --report scan.html --edges edges.geojson\n"
+    "  acutance scan scene.tif --roi 0,0,4000,4000 --workers 2 --json"
+)
+
+
+@with_groups
+def scan(
+    *,
+    image: ImageArgument,
+    pixels: PixelOptions,
+    edges: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Write every edge that was found, used or not: .csv, or .geojson (longitude and "
+            "latitude where the image has a CRS, else columns and rows).",
+        ),
+    ] = None,
+    min_length: Annotated[
+        float, typer.Option(metavar="PX", help="Shorter edges are left out.")
+    ] = 15.0,
+    workers: Annotated[
+        int | None, typer.Option(metavar="N", help="Processes; one a core without it.")
+    ] = None,
+    wanted: ResultOptions,
+) -> None:
+    """Measure a sensor from all straight edges of a scene: roofs, fields, roads, coasts.
+
+    Every edge is found and measured; what they share is the sensor, and how soft the objects are
+    is estimated with it.
+    """
+    kept = (image, pixels.roi, pixels.linearize)
+    outputs = Outputs.checked(wanted, kept)
+    table = check_optional("--edges", edges, (".csv", ".geojson"), keep=kept)
+    opened, regions = pixels.open(image)
+    if len(regions) > 1:
+        raise OptionError(
+            f"--roi names {len(regions)} regions, and a scene is one: give one of them"
+        )
+    (region,) = regions.values()
+
+    from acutance.scan import ScanOptions, scan_scene
+
+    options = ScanOptions(min_length_px=min_length, limits=wanted.limits)
+    with progress_bar(f"scan {Path(image).name}") as progress:
+        found = scan_scene(
+            opened, region, options=options, workers=workers or os.cpu_count() or 1,
+            progress=progress,
+        )  # fmt: skip
+    if table is not None:
+        _write_edges(table, found.edges, opened)
+    outputs.deliver(Shown(found))
+
+
+def _write_edges(table: OutputFile, edges: SceneEdges, image: Image) -> None:
+    if table.ending == ".csv":
+        table.deliver(edges.to_csv())
+        return
+    from acutance.report import json_text
+
+    to_lonlat = None if image.geolocation is None else image.geolocation.to_lonlat
+    table.deliver(json_text(edges.to_geojson(to_lonlat)))

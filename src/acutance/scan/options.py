@@ -1,0 +1,72 @@
+"""Options of a scan, and the limits of its checks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from acutance.errors import OptionError
+from acutance.scan.checks import SCENE_CHECKS
+from acutance.targets.check import Limits, require_limits
+from acutance.targets.options import require_types
+
+__all__ = ["ScanOptions"]
+
+_RANGES = {
+    "min_length_px": (8.0, 200.0),
+    "max_length_px": (16.0, 400.0),
+    "half_width_px": (8.0, 60.0),
+    "min_gradient_sigmas": (3.0, 100.0),
+    "window_px": (128, 8192),
+}
+
+
+@dataclass(frozen=True)
+class ScanOptions:
+    """Options of a scan.
+
+    Parameters
+    ----------
+    min_length_px : float
+        Shorter edges are left out.
+    max_length_px : float
+        Longer edges are cut into pieces, each measured by itself: objects are seldom ideal, or
+        straight, all along.
+    half_width_px : float
+        How far the region of an edge reaches to either side; what does not belong is trimmed.
+    min_gradient_sigmas : float
+        Least gradient of an edge, in units of its noise on quiet ground.
+    window_px : int
+        Side of the windows in which an image is read.
+    limits : mapping of str to float
+        Limits of checks to be asked instead of those of the table, by name.
+
+    Raises
+    ------
+    OptionError
+        If a number makes no sense.
+    """
+
+    min_length_px: float = 15.0
+    max_length_px: float = 64.0
+    half_width_px: float = 20.0
+    min_gradient_sigmas: float = 6.0
+    window_px: int = 1024
+    limits: Limits = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        require_types(self)
+        require_limits(self.limits, SCENE_CHECKS, "ScanOptions")
+        for name, (low, high) in _RANGES.items():
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise OptionError(f"{name} is {value:g}: give {low:g} to {high:g}")
+        if self.max_length_px < 1.5 * self.min_length_px:
+            raise OptionError(
+                f"max_length_px is {self.max_length_px:g} and min_length_px "
+                f"{self.min_length_px:g}: pieces have to be longer by half than the shortest edge"
+            )
+
+    def to_dict(self) -> dict[str, Any]:
+        """All options by name, for JSON."""
+        return {**{name: getattr(self, name) for name in _RANGES}, "limits": dict(self.limits)}

@@ -1,0 +1,243 @@
+"""Measure a sensor from all straight edges of a scene."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from acutance.curves import Estimate, Otf2d
+from acutance.curves.grid import Floats
+from acutance.errors import NoEdgeError, OptionError
+from acutance.execution import results_in_turn
+from acutance.geometry.angles import axis_difference
+from acutance.numerics.one_thread import one_thread
+from acutance.numerics.stacked import stacked
+from acutance.raster import Box, Gsd, Image, Region, open_image
+from acutance.raster.disk_copy import disk_copy
+from acutance.scan.checks import check_scene
+from acutance.scan.options import ScanOptions
+from acutance.scan.population import PARTS, EdgeLikelihoods
+from acutance.scan.scene_edges import SceneEdges
+from acutance.scan.scene_measurement import SceneMeasurement
+from acutance.scan.sensor_fit import SensorFit, fit_sensor
+from acutance.scan.window_edges import UsedEdge, WindowEdges, scan_window
+from acutance.scan.windows import windows
+from acutance.targets.options import chosen_options
+from acutance.targets.region import RoiLike, chosen_region, image_info
+
+__all__ = ["scan_scene"]
+
+Progress = Callable[[int, int], None]
+
+_BIN_DEG = 7.5
+"""A sensor changes along the normal by no more than .0005 within half of it."""
+_MIN_EDGES = 8
+_NEAR_EDGES = 8
+_MIN_GAP_DEG = 20.0
+_SHARP = ((0.1, 0.3), (0.3, 0.6), (0.5, 0.9))
+"""Quantiles, the sharpest first, between which edges are a first guess of the sensor: where most
+objects are ideal the middle ones, where most are soft the sharp ones."""
+
+
+def scan_scene(
+    image: Image | ArrayLike | str | os.PathLike[str],
+    roi: RoiLike = None,
+    *,
+    gsd_m: float | Gsd | None = None,
+    options: ScanOptions | None = None,
+    workers: int = 1,
+    progress: Progress | None = None,
+) -> SceneMeasurement:
+    """Measure a sensor from all straight edges of a scene.
+
+    Every straight or gently curved edge that stands out is found and measured like a target
+    (`acutance.measure_edge`). What all good ones share is the sensor; how soft their objects are
+    is estimated with it, so that fields with blurred borders do not pass for a blurred sensor.
+
+    Parameters
+    ----------
+    image : Image, (rows, cols) array_like or path
+        An image of any size: it is read in windows.
+    roi : Region, Box, (row, col, height, width) or None
+        Part of the image; of a polygon its bounding box.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres, instead of the image's own.
+    options : ScanOptions, optional
+    workers : int, optional
+        Processes, each with its own windows. With more than one, a script has to guard its own
+        start by ``if __name__ == "__main__"``.
+    progress : function of (windows done, windows in all), optional
+
+    Returns
+    -------
+    SceneMeasurement
+        Across and along track with standard deviations, the mean over the scene; every edge; the
+        shares of ideal and soft objects.
+
+    Raises
+    ------
+    ImageError, RegionError
+        If there are no pixels to scan.
+    NoEdgeError
+        If too few edges can be used, or all have one direction.
+    OptionError
+        If an option or the number of workers means nothing.
+
+    Examples
+    --------
+    >>> scene = ac.scan_scene("scene.tif", workers=2)  # doctest: +SKIP
+    >>> print(scene.across.mtf_nyquist, scene.along.mtf_nyquist)  # doctest: +SKIP
+    >>> scene.edges.row[scene.edges.used]  # doctest: +SKIP
+    """
+    if workers < 1:
+        raise OptionError(f"workers is {workers}: give the number of processes, 1 or more")
+    chosen = chosen_options(options, ScanOptions)
+    source, box = _scene(image, roi)
+    found = _all_windows(source, box, Gsd.given(gsd_m), chosen, workers, progress)
+    edges = SceneEdges.of_rows([row for window in found for row in window.rows])
+    used = [edge for window in found for edge in window.used]
+    fit = _fit(used, edges)
+    return _measurement(source, box, Gsd.given(gsd_m), chosen, edges, fit)
+
+
+def _scene(image: Image | ArrayLike | str | os.PathLike[str], roi: RoiLike) -> tuple[Image, Box]:
+    """The image, and the part of it to be scanned."""
+    if isinstance(image, str | os.PathLike):
+        image = open_image(image)
+    source = image if isinstance(image, Image) else Image.from_array(image)
+    where = Box.whole(source.shape) if roi is None else chosen_region(roi)
+    if isinstance(where, Region):
+        return source, where.box(source.shape)
+    where.require_inside(source.shape)
+    return source, where
+
+
+def _all_windows(
+    image: Image,
+    box: Box,
+    gsd: Gsd | None,
+    options: ScanOptions,
+    workers: int,
+    progress: Progress | None,
+) -> list[WindowEdges]:
+    """The edges of all windows, in their order."""
+    parts = list(windows(box, options.window_px, image.shape))
+    found: list[WindowEdges] = []
+    with ExitStack() as stack:
+        used = min(workers, len(parts))
+        if used > 1:
+            folder = stack.enter_context(TemporaryDirectory(prefix="acutance-"))
+            image = disk_copy(image, Path(folder))
+        scan = partial(scan_window, image, gsd, options)
+        for window in results_in_turn(scan, parts, workers=used):
+            found.append(window)
+            if progress is not None:
+                progress(len(found), len(parts))
+    return found
+
+
+@one_thread
+def _fit(used: Sequence[UsedEdge], edges: SceneEdges) -> SensorFit:
+    """The sensor and the objects.
+
+    Raises
+    ------
+    NoEdgeError
+        If there are too few edges, or all have one direction.
+    """
+    if len(used) < _MIN_EDGES:
+        raise NoEdgeError(
+            f"{edges.size} straight edges were found, and {len(used)} of them can be used, where "
+            f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}scan a larger part of the "
+            "image, or measure single edges"
+        )
+    axis_deg = np.array([(one.normal_deg + 90.0) % 180.0 - 90.0 for one in used])
+    _, number = np.unique(np.floor((axis_deg + 90.0) / _BIN_DEG), return_inverse=True)
+    normal_deg = np.array([axis_deg[number == b].mean() for b in range(int(number.max()) + 1)])
+    gap = max(axis_difference(float(a), float(b)) for a in normal_deg for b in normal_deg)
+    if gap < _MIN_GAP_DEG:
+        raise NoEdgeError(
+            f"all {len(used)} edges that can be used have nearly one direction, normals within "
+            f"{gap:.0f} degrees: two that differ by {_MIN_GAP_DEG:g} are needed; scan a larger "
+            "part of the image, or measure them with measure_edges"
+        )
+    guesses = [_sensor_of(used, normal_deg, quantiles) for quantiles in _SHARP]
+    return fit_sensor(_likelihoods(used, number), normal_deg, guesses)
+
+
+def _common_reason(edges: SceneEdges) -> str:
+    """The most frequent word of why edges are left out."""
+    unused = edges.verdict[~edges.used]
+    if unused.size == 0:
+        return ""
+    words, counts = np.unique(unused, return_counts=True)
+    return f"most others are {words[int(np.argmax(counts))]}; "
+
+
+def _likelihoods(used: Sequence[UsedEdge], number: NDArray[np.intp]) -> EdgeLikelihoods:
+    """Likelihoods of all edges in one stack; of opposite normals the transfer is conjugate."""
+    freq = used[0].freq_cpp
+    ranks = np.array([one.likelihood.offset.size for one in used])
+    root = np.zeros((len(used), 2 * freq.size, int(ranks.max())))
+    value = np.zeros((len(used), int(ranks.max())))
+    for i, (one, rank) in enumerate(zip(used, ranks, strict=True)):
+        conjugate = abs(one.normal_deg) > 90.0
+        own = one.likelihood.root.conj() if conjugate else one.likelihood.root
+        otf = one.otf.conj() if conjugate else one.otf
+        root[i, :, :rank] = stacked(own)
+        value[i, :rank] = stacked(own).T @ stacked(otf) + one.likelihood.offset
+    return EdgeLikelihoods(freq, root, value, ranks.astype(float), number)
+
+
+def _sensor_of(
+    used: Sequence[UsedEdge], normal_deg: Floats, quantiles: tuple[float, float]
+) -> Floats:
+    """The mean of the edges of about every direction between quantiles of sharpness, (b, 2 k)."""
+    modulus = np.array([np.abs(one.otf) for one in used])
+    sharpness = modulus[:, : modulus.shape[1] // 2].sum(axis=1)
+    own_deg = np.array([one.normal_deg for one in used])
+    guesses = []
+    for one in normal_deg:
+        away = np.abs((own_deg - one + 90.0) % 180.0 - 90.0)
+        near = np.argsort(away)[: max(_NEAR_EDGES, int(np.sum(away < _BIN_DEG)))]
+        order = near[np.argsort(-sharpness[near])]
+        first, last = (int(share * near.size) for share in quantiles)
+        mean = modulus[order[first : max(last, first + 1)]].mean(axis=0)
+        guesses.append(np.concatenate([mean, np.zeros(mean.size)]))
+    return np.array(guesses)
+
+
+def _measurement(
+    image: Image,
+    box: Box,
+    gsd: Gsd | None,
+    options: ScanOptions,
+    edges: SceneEdges,
+    fit: SensorFit,
+) -> SceneMeasurement:
+    gsd = gsd or image.gsd(box.row + box.height / 2, box.col + box.width / 2)
+    member = fit.member
+    known = edges.with_objects(member.softness_px, member.part[:, 0])
+    return SceneMeasurement(
+        kind="scene",
+        method="population",
+        transfer=Otf2d(fit.otf, None if gsd is None else (gsd.row_m, gsd.col_m)),
+        snr=float(np.median(edges.snr[edges.used])),
+        checks=check_scene(edges, fit, options.limits),
+        image=image_info(image, box, gsd),
+        options=options.to_dict(),
+        edges=known,
+        objects={
+            name: Estimate(float(value), float(std), 0.0)
+            for name, value, std in zip(PARTS, fit.share, fit.share_std, strict=True)
+        },
+        normal_deg_bins=tuple(fit.normal_deg.tolist()),
+        details=fit,
+    )

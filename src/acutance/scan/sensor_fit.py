@@ -1,0 +1,165 @@
+"""The sensor of a scene: one optical transfer function (OTF) over the plane, under all edges.
+
+Expectation and maximisation by turns: what every edge is, given the sensor (`population`); the
+sensor, given that, as the combination of all directions (`acutance.targets.combine`). The last
+turn takes the information that is left when what the edges are is integrated out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
+from acutance.numerics.stacked import stacked, unstacked
+from acutance.scan.population import (
+    EdgeLikelihoods,
+    Membership,
+    expected_information,
+    fit_shares,
+    observed_information,
+    share_std,
+)
+from acutance.targets.combine.curves import OtfSamples
+from acutance.targets.combine.fit import CombinedFit, combine_curves
+from acutance.targets.combine.sensor_forms import FORMS
+from acutance.targets.combine.weighted_forms import CombinedOtf
+from acutance.targets.otf_likelihood import OtfLikelihood
+
+__all__ = ["SensorFit", "fit_sensor"]
+
+_START: Final[Floats] = np.array([0.6, 0.08, 0.08, 0.08, 0.08, 0.08])
+_SETTLED: Final = 3e-4
+_MAX_TURNS: Final = 12
+_COMMON_STD, _COMMON_CPP = 3e-3, 0.15
+"""Error of the transfer function that all edges of a sensor have in common, and over which
+frequencies: what the prior of an edge's line spread function does not allow for does not average
+out (benchmarks/scenes.py: errors of .000 to .004 at Nyquist, by the shape of the sensor)."""
+_UNSEEN: Final = 1.0
+"""Information of combinations that edges do not show: the OTF is between 0 and 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class SensorFit:
+    """The sensor and the objects of a scene.
+
+    Attributes
+    ----------
+    combined : CombinedFit
+        The sensor, fitted to all directions.
+    normal_deg : (b,) array
+        Mean direction of every bin.
+    share, share_std : (6,) arrays
+        Of `population.PARTS`.
+    member : Membership
+        What every edge is.
+    turns : int
+    settled : bool
+    """
+
+    combined: CombinedFit
+    normal_deg: Floats
+    share: Floats
+    share_std: Floats
+    member: Membership
+    turns: int
+    settled: bool
+
+    @property
+    def otf(self) -> CombinedOtf:
+        """The sensor. Its edges are one measurement: there is nothing it could disagree with."""
+        return CombinedOtf(self.combined.otf.forms, 1.0)
+
+
+def fit_sensor(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]) -> SensorFit:
+    """Fit the sensor of a scene.
+
+    Parameters
+    ----------
+    edges : EdgeLikelihoods
+    normal_deg : (b,) array
+        Mean direction of every bin.
+    guesses : sequence of (b, 2 k) arrays
+        First guesses of the OTF in every direction, real parts first: the likeliest counts.
+    """
+    otf = max(guesses, key=lambda one: fit_shares(edges, one, _START)[1].log_likelihood)
+    share, forms = _START, FORMS
+    turns, settled = 0, False
+    while turns < _MAX_TURNS and not settled:
+        turns += 1
+        share, member = fit_shares(edges, otf, share)
+        information, projection = expected_information(edges, member)
+        curves = [
+            _samples(normal_deg[[b]], edges.freq_cpp, otf[b], own, pull - own @ otf[b])
+            for b, (own, pull) in enumerate(zip(information, projection, strict=True))
+        ]
+        combined = combine_curves(curves, forms=forms).otf
+        # Forms without any weight have none in the next turn, either.
+        forms = tuple({form.form.terms: None for form in combined.forms})
+        updated = _along(combined, normal_deg, edges.freq_cpp)
+        settled = float(np.abs(updated - otf)[:, _in_band(edges.freq_cpp)].max()) < _SETTLED
+        otf = updated
+    share, member = fit_shares(edges, otf, share)
+    left, gradient = observed_information(edges, otf, member, share)
+    samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left, gradient)
+    return SensorFit(
+        combine_curves([samples]), normal_deg, share, share_std(member, share), member, turns,
+        settled,
+    )  # fmt: skip
+
+
+def _in_band(freq_cpp: Floats) -> NDArray[np.bool_]:
+    """Which of the real and imaginary parts lie below Nyquist."""
+    return np.tile(freq_cpp <= NYQUIST_CPP, 2)
+
+
+def _along(sensor: CombinedOtf, normal_deg: Floats, freq_cpp: Floats) -> Floats:
+    """The OTF in every direction, (b, 2 k)."""
+    angle = np.radians(normal_deg)
+    return np.array([
+        stacked(sensor.otf(freq_cpp * np.cos(one), freq_cpp * np.sin(one))) for one in angle
+    ])  # fmt: skip
+
+
+def _samples(
+    normal_deg: Floats, freq_cpp: Floats, otf: Floats, information: Floats, pull: Floats
+) -> OtfSamples:
+    """A likelihood about an OTF: its information, and its gradient there.
+
+    Parameters
+    ----------
+    normal_deg : (b,) array
+    freq_cpp : (k,) array
+    otf, pull : (b * 2 k,) arrays
+        Direction by direction, of each the real parts first.
+    information : (b * 2 k, b * 2 k) array
+    """
+    angle = np.radians(normal_deg)
+    order = _real_first(normal_deg.size, freq_cpp.size)
+    size, axes = np.linalg.eigh(information[np.ix_(order, order)])
+    seen = size > _UNSEEN
+    root = axes[:, seen] * np.sqrt(size[seen])
+    likelihood = OtfLikelihood(unstacked(root), (root / size[seen]).T @ pull[order])
+    likelihood = likelihood.with_errors(_common_errors(normal_deg.size, freq_cpp))
+    u, v = np.outer(np.cos(angle), freq_cpp).ravel(), np.outer(np.sin(angle), freq_cpp).ravel()
+    values = unstacked(otf[order])
+    return OtfSamples("edges", u, v, values, np.zeros((values.size, 1), complex), likelihood)
+
+
+def _common_errors(bins: int, freq_cpp: Floats) -> NDArray[np.complex128]:
+    """Factor of the errors that all edges have in common, the same in all directions."""
+    away = (freq_cpp[:, None] - freq_cpp) / _COMMON_CPP
+    size, axes = np.linalg.eigh(np.exp(-0.5 * away**2))
+    root = np.tile(_COMMON_STD * axes * np.sqrt(np.maximum(size, 0.0)), (bins, 1))
+    return np.hstack([root, 1j * root])
+
+
+def _real_first(bins: int, frequencies: int) -> Floats:
+    """Where all real parts stand, then all imaginary ones."""
+    places = np.arange(bins * 2 * frequencies).reshape(bins, 2, frequencies)
+    return np.asarray(places.transpose(1, 0, 2).ravel())

@@ -1,0 +1,158 @@
+"""The edges of one window of an image: found, measured, judged."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.errors import TargetError
+from acutance.numerics.one_thread import one_thread
+from acutance.raster import Box, Gsd, Image
+from acutance.scan.edge_points import edge_points, gradient
+from acutance.scan.options import ScanOptions
+from acutance.scan.pieces import pieces, region_box
+from acutance.scan.segments import find_segments
+from acutance.scan.windows import Window
+from acutance.targets.otf_likelihood import OtfLikelihood
+from acutance.targets.region import RegionPixels, read_data
+from acutance.targets.straight import StraightMeasurement
+from acutance.targets.straight.edge import measure_segment
+from acutance.targets.straight.find_edges import Segment
+from acutance.targets.straight.options import EdgeOptions
+
+__all__ = ["UsedEdge", "WindowEdges", "scan_window"]
+
+_MIN_SIDE_PX = 16
+_USED = ("good", "usable")
+_EDGE_OPTIONS = EdgeOptions()
+
+
+@dataclass(frozen=True, eq=False)
+class UsedEdge:
+    """What an edge says of the sensor along its normal.
+
+    Attributes
+    ----------
+    normal_deg : float
+    freq_cpp : (k,) array
+    otf : (k,) complex array
+        As measured.
+    likelihood : OtfLikelihood
+        Of the pixels alone, about it.
+    """
+
+    normal_deg: float
+    freq_cpp: Floats
+    otf: Any
+    likelihood: OtfLikelihood
+
+
+@dataclass(frozen=True, eq=False)
+class WindowEdges:
+    """The edges of a window.
+
+    Attributes
+    ----------
+    rows : list of dict
+        Columns of `SceneEdges` of every edge.
+    used : list of UsedEdge
+        Those that are used, in the same order.
+    """
+
+    rows: list[dict[str, Any]]
+    used: list[UsedEdge]
+
+
+@one_thread
+def scan_window(image: Image, gsd: Gsd | None, options: ScanOptions, window: Window) -> WindowEdges:
+    """Find and measure the edges of one window.
+
+    Parameters
+    ----------
+    image : Image
+    gsd : Gsd, optional
+        Instead of the image's own.
+    options : ScanOptions
+    window : Window
+    """
+    rows: list[dict[str, Any]] = []
+    used: list[UsedEdge] = []
+    if min(window.whole.shape) < _MIN_SIDE_PX:
+        return WindowEdges(rows, used)
+    pixels, _ = read_data(image, window.whole)
+    for segment in _segments(pixels, window, options):
+        region, own = _region(image, gsd, pixels, window.whole, segment, options)
+        row = _place(segment, window.whole)
+        try:
+            found = measure_segment(region, own, "spline", _EDGE_OPTIONS)
+        except TargetError as error:
+            rows.append(row | {"reason": str(error)})
+            continue
+        likelihood = found.slices.likelihood
+        is_used = found.verdict.word in _USED and likelihood is not None
+        rows.append(row | _numbers(found) | {"used": is_used})
+        if is_used and likelihood is not None:
+            slices = found.slices
+            used.append(UsedEdge(found.normal_deg, slices.freq_cpp, slices.otf, likelihood))
+    return WindowEdges(rows, used)
+
+
+def _segments(pixels: Floats, window: Window, options: ScanOptions) -> Iterator[Segment]:
+    """Pieces of edges in the core of a window, in its pixels."""
+    slope = gradient(pixels)
+    points = edge_points(slope, options.min_gradient_sigmas)
+    core, whole = window.core, window.whole
+    own = Box(core.row - whole.row, core.col - whole.col, core.height, core.width)
+    for segment in find_segments(points, whole.shape, options.min_length_px):
+        yield from pieces(segment, own, options.min_length_px, options.max_length_px)
+
+
+def _region(
+    image: Image,
+    gsd: Gsd | None,
+    pixels: Floats,
+    whole: Box,
+    segment: Segment,
+    options: ScanOptions,
+) -> tuple[RegionPixels, Segment]:
+    """The pixels about a piece, and the piece in their coordinates."""
+    box = region_box(segment, options.half_width_px, Box.whole(whole.shape))
+    at = Box(whole.row + box.row, whole.col + box.col, box.height, box.width)
+    own_gsd = gsd or image.gsd(at.row + at.height / 2, at.col + at.width / 2)
+    region = RegionPixels(pixels[box.slices], at, image.saturation_level, own_gsd, image)
+    line = segment.line
+    moved = replace(line, row=line.row - box.row, col=line.col - box.col)
+    return region, replace(segment, line=moved)
+
+
+def _place(segment: Segment, whole: Box) -> dict[str, Any]:
+    """Where an edge was found, in pixels of the image."""
+    line = segment.line
+    return {
+        "row": line.row + whole.row,
+        "col": line.col + whole.col,
+        "normal_deg": line.normal_deg,
+        "length_px": segment.stop_px - segment.start_px,
+    }
+
+
+def _numbers(found: StraightMeasurement) -> dict[str, Any]:
+    """Columns of an edge that was measured."""
+    verdict = found.verdict
+    columns: dict[str, Any] = {
+        "row": found.line.row,
+        "col": found.line.col,
+        "normal_deg": found.normal_deg,
+        "length_px": found.line.length_px,
+        "snr": found.snr,
+        "verdict": verdict.word,
+        "reason": "" if verdict.word in _USED else verdict.sentence,
+    }
+    for name in ("mtf_nyquist", "rer", "fwhm_px"):
+        number = getattr(found, name)
+        columns |= {name: number.value, f"{name}_std": number.std}
+    return {key: np.nan if value is None else value for key, value in columns.items()}

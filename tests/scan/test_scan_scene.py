@@ -1,0 +1,144 @@
+"""Whole scenes: the sensor comes out, whatever the objects are; what cannot be told is said."""
+
+import json
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance import simulate
+from acutance.simulate import LandscapeOptions
+
+CLEAN = {
+    "roofs": 0.0, "roads": 0.0, "discs": 0.0, "rims": 0.0, "gutters": 0.0, "shadows": 0.0,
+    "side_roads": 0.0, "neighbours": 0.0, "texture": (0.0, 0.0), "slope_per_px": 0.0,
+    "curved": 0.0, "density_per_mpx": 60,
+}  # fmt: skip
+SENSOR = simulate.reference_systems()["gaussian"]
+
+
+def landscape(soft, size=600, seed=3):
+    options = LandscapeOptions(soft=soft, softness_px=(0.15, 2.0), **CLEAN)
+    return simulate.landscape(
+        SENSOR, shape=(size, size), snr=100, options=options, rng=np.random.default_rng(seed)
+    )
+
+
+@pytest.fixture(scope="module")
+def ideal():
+    image, truth = landscape(0.0)
+    return image, truth, ac.scan_scene(image, gsd_m=2.0)
+
+
+def test_the_sensor_is_measured(ideal):
+    _, truth, scene = ideal
+    for direction in (scene.across, scene.along):
+        true = SENSOR.response(0.0) if hasattr(SENSOR, "response") else None
+        expected = float(np.abs(SENSOR.otf(np.array([0.5]), np.array([0.0])))[0])
+        number = direction.mtf_nyquist
+        assert abs(number.value - expected) < 3 * number.std
+        assert number.std < 0.006
+        assert true is None or true.mtf_nyquist.value == pytest.approx(expected, abs=1e-3)
+    assert scene.kind == "scene"
+    assert scene.objects["ideal"].value > 0.95
+    assert scene.verdict.word in ("good", "usable")
+
+
+def test_nearly_all_edges_are_found_and_used(ideal):
+    _, truth, scene = ideal
+    long = [edge for edge in truth.edges if edge.length_px >= 20 and edge.snr >= 20]
+    found = 0
+    for edge in long:
+        away = edge.line.normal_distance(scene.edges.row, scene.edges.col)
+        along = edge.line.tangent_distance(scene.edges.row, scene.edges.col)
+        found += bool(np.any((np.abs(away) < 1.5) & (np.abs(along) < 0.5 * edge.length_px)))
+    assert found >= 0.98 * len(long)
+    assert scene.edges.used.mean() > 0.9
+
+
+def test_soft_objects_do_not_pass_for_a_soft_sensor():
+    image, _ = landscape(0.6, 800)
+    scene = ac.scan_scene(image)
+    expected = float(np.abs(SENSOR.otf(np.array([0.5]), np.array([0.0])))[0])
+    median = float(np.median(scene.edges.mtf_nyquist[scene.edges.used]))
+    assert median < expected - 0.02
+    for direction in (scene.across, scene.along):
+        number = direction.mtf_nyquist
+        assert abs(number.value - expected) < max(3 * number.std, 0.01)
+    share = scene.objects["ideal"]
+    assert share.value == pytest.approx(0.45, abs=0.2)
+    soft = scene.edges.softness_px[scene.edges.used & (scene.edges.ideal < 0.01)]
+    assert np.median(soft) > 0.4
+
+
+def test_windows_change_little(ideal):
+    image, _, scene = ideal
+    parts = ac.scan_scene(image, options=ac.ScanOptions(window_px=256), workers=2)
+    assert parts.edges.size >= scene.edges.size
+    for name in ("across", "along"):
+        one, other = getattr(scene, name).mtf_nyquist, getattr(parts, name).mtf_nyquist
+        assert abs(one.value - other.value) < 2 * one.std
+
+
+def test_a_part_of_an_image_is_scanned(ideal):
+    image, _, _ = ideal
+    seen = []
+    part = ac.scan_scene(
+        image, (100, 50, 450, 500), progress=lambda done, total: seen.append((done, total))
+    )
+    assert seen == [(1, 1)]
+    assert part.edges.row.min() >= 90
+    assert part.edges.col.max() <= 560
+    assert part.image.roi == (100, 50, 450, 500)
+
+
+def test_documents_tables_and_figures(ideal, tmp_path):
+    _, _, scene = ideal
+    document = json.loads(json.dumps(scene.to_dict()))
+    assert document["edges"]["used"] == int(scene.edges.used.sum())
+    assert ac.Record.from_dict(document).across.mtf_nyquist.value == pytest.approx(
+        scene.across.mtf_nyquist.value
+    )
+    lines = scene.edges.to_csv().splitlines()
+    assert len(lines) == scene.edges.size + 1
+    assert lines[0].startswith("row,col,normal_deg")
+    features = scene.edges.to_geojson()["features"]
+    (x0, y0), (x1, y1) = features[0]["geometry"]["coordinates"]
+    assert np.hypot(x1 - x0, y1 - y0) == pytest.approx(scene.edges.length_px[0], rel=1e-6)
+    assert "Edges of the scene" in ac.report.text(scene)
+    assert len(ac.report.draw(scene).axes) > 5
+    assert "Sharpness of the edges" in ac.report.page(scene)
+
+
+def test_a_scene_is_combined_with_a_target(ideal):
+    _, _, scene = ideal
+    rng = np.random.default_rng(1)
+    edge = ac.measure_edge(
+        simulate.edge(SENSOR, angle_deg=8, shape=(60, 60), snr=100, rng=rng)[0], gsd_m=2.0
+    )
+    both = ac.combine([scene, edge])
+    assert abs(both.across.mtf_nyquist.value - scene.across.mtf_nyquist.value) < 0.01
+
+
+def test_too_few_edges_are_an_error_that_says_how_many():
+    rng = np.random.default_rng(0)
+    with pytest.raises(ac.NoEdgeError, match="0 straight edges were found"):
+        ac.scan_scene(rng.normal(100, 1, (200, 200)))
+    one, _ = simulate.edge(SENSOR, angle_deg=8, shape=(200, 200), snr=100, rng=rng)
+    with pytest.raises(ac.NoEdgeError, match="at least 8 are needed"):
+        ac.scan_scene(one)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda image: ac.scan_scene(image, workers=0),
+        lambda image: ac.ScanOptions(min_length_px=1.0),
+        lambda image: ac.ScanOptions(min_length_px=60.0, max_length_px=64.0),
+        lambda image: ac.ScanOptions(limits={"unknown": 1.0}),
+        lambda image: ac.scan_scene(image, options=ac.EdgeOptions()),
+    ],
+)
+def test_options_that_mean_nothing_are_refused(call):
+    with pytest.raises(ac.OptionError):
+        call(np.zeros((50, 50)))
