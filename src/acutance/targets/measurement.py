@@ -19,7 +19,7 @@ from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.directions import HasDirections
 from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
 from acutance.targets.slices import OtfSlices
-from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows
+from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_stds
 
 __all__ = ["Measurement"]
 
@@ -166,7 +166,8 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
     def _budget(self) -> tuple[BudgetTerm, ...]:
         """One row a direction, unless the kind separates the causes."""
         rows = (
-            budget_rows(name, [("fit", self.directions[name])]) for name in self.measured_directions
+            budget_rows(name, {"fit": main_stds(self.directions[name])})
+            for name in self.measured_directions
         )
         return tuple(row for some in rows for row in some)
 

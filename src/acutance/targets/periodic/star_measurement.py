@@ -124,7 +124,8 @@ class StarMeasurement(Measurement):
     @property
     def mean_mtf50_cpp(self) -> Estimate:
         """Frequency at which the mean MTF falls to one half."""
-        return mtf_crossing(self.mean_mtf, 0.5)
+        found = mtf_crossing(self.mean_mtf, 0.5)
+        return Estimate(found.value, float(np.linalg.norm(found.row)), found.lowest)
 
     @property
     def centre(self) -> tuple[Estimate, Estimate]:
