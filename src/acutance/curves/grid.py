@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -19,6 +19,7 @@ __all__ = [
     "Rows",
     "as_places",
     "crossing",
+    "listed",
     "sample",
     "slope",
 ]
@@ -44,13 +45,17 @@ DISTANCE_PX = _regular(-200, 200, 0.05)
 
 
 class Rows(Protocol):
-    """A matrix (n, k) that makes its rows on demand: most of a factor is never read."""
+    """A matrix (n, k) of few numbers, most of which is never written out."""
 
     @property
     def shape(self) -> tuple[int, int]:
         """Rows and columns of the whole matrix."""
 
-    def __getitem__(self, rows: slice, /) -> Floats: ...
+    def __getitem__(self, rows: slice, /) -> Rows: ...
+
+    def __matmul__(self, matrix: Floats, /) -> Floats: ...
+
+    def __rmatmul__(self, vector: Floats, /) -> Floats: ...
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats: ...
 
@@ -151,7 +156,7 @@ def sample(grid: Floats, values: NDArray[Any] | Rows, at: float | Floats) -> Any
         return found if len(values.shape) == 2 else found[..., 0]
     window, t, _ = _cell(grid, at)
     weights, near = _cubic_weights(t), values[window]
-    return np.array(weights) @ near if near.ndim == 2 else _sum(weights, near)
+    return np.array(weights) @ near if len(values.shape) == 2 else _sum(weights, near)
 
 
 def slope(grid: Floats, values: Floats, at: float) -> float:
@@ -167,7 +172,7 @@ def slope(grid: Floats, values: Floats, at: float) -> float:
     return float(_sum(weights, values[window])) / step
 
 
-def _sum(weights: tuple[float, float, float, float], values: NDArray[Any]) -> Any:
+def _sum(weights: tuple[float, float, float, float], values: Any) -> Any:
     """Weighted sum of four numbers: plain ones are faster than arrays of them."""
     (a, b, c, d), (p, q, r, s) = weights, values.tolist()
     return a * p + b * q + c * r + d * s
@@ -196,3 +201,10 @@ def crossing(grid: Floats, values: Floats, level: float, start: float, direction
     residual = float(sample(grid, values, guess)) - level
     refined = guess - residual / steepness
     return refined if min(x0, x1) <= refined <= max(x0, x1) else guess
+
+
+def listed(columns: Mapping[str, Floats]) -> dict[str, list[float]]:
+    """Columns of a curve, the places first, as lists: places without the errors of their sums."""
+    first = next(iter(columns))
+    exact = {name: column.tolist() for name, column in columns.items() if name != first}
+    return {first: np.round(columns[first], 6).tolist(), **exact}

@@ -104,7 +104,7 @@ def mtf_crossing(mtf: Mtf, level: float) -> Reading:
     place = crossing(mtf.freq_cpp, mtf.value, level, 0.0)
     if math.isnan(place):
         return UNDEFINED
-    row = mtf.value_and_row(place)[1] / -slope(mtf.freq_cpp, mtf.value, place)
+    row = mtf.row(place) / -slope(mtf.freq_cpp, mtf.value, place)
     return Reading(place, row, lowest=0.0)
 
 

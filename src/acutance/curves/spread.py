@@ -11,7 +11,7 @@ import numpy as np
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
-from acutance.curves.grid import Floats, Places, Rows, as_places, crossing, sample, slope
+from acutance.curves.grid import Floats, Places, Rows, as_places, crossing, listed, sample, slope
 from acutance.curves.reading import UNDEFINED, Reading
 from acutance.curves.short_repr import ShortRepr
 
@@ -58,7 +58,7 @@ class _SpreadCurve(ShortRepr):
     @cached_property
     def covariance_factor(self) -> Floats:
         """All of the covariance's factor, (n, m): its square is the curve's covariance."""
-        return self._caused(np.asarray(self.factor))
+        return np.asarray(self.factor) if self.latent is None else self.factor @ self.latent
 
     def row(self, distance_px: float) -> Floats:
         """The row of `factor` at any distance, (k,)."""
@@ -74,10 +74,7 @@ class _SpreadCurve(ShortRepr):
 
     def gradient(self, distance_px: float | Floats) -> Floats:
         """The row of `covariance_factor` at any distance, (m,); at an array of them (..., m)."""
-        return self._caused(sample(self.distance_px, self.factor, distance_px))
-
-    def _caused(self, rows: Floats) -> Floats:
-        """Rows of the covariance's factor, (..., m), of rows of `factor`."""
+        rows: Floats = sample(self.distance_px, self.factor, distance_px)
         return rows if self.latent is None else rows @ self.latent
 
     @overload
@@ -113,20 +110,21 @@ class _SpreadCurve(ShortRepr):
 
     def every(self, step: int) -> Self:
         """The curve at every few of its places, from the first on."""
+        own = slice(None, None, step)
         return replace(
             self,
-            distance_px=self.distance_px[::step],
-            value=self.value[::step],
-            factor=self.factor[::step],
+            distance_px=self.distance_px[own],
+            value=self.value[own],
+            factor=self.factor[own],
         )
+
+    def arrays(self) -> dict[str, Floats]:
+        """Distances, values and standard deviations by name, (n,) each."""
+        return {"distance_px": self.distance_px, "value": self.value, "std": self.std}
 
     def to_dict(self) -> dict[str, list[float]]:
         """Distances, values and standard deviations as lists."""
-        return {
-            "distance_px": np.round(self.distance_px, 6).tolist(),
-            "value": self.value.tolist(),
-            "std": self.std.tolist(),
-        }
+        return listed(self.arrays())
 
 
 class Esf(_SpreadCurve):

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, overload
+from typing import Any, Self, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
-from acutance.curves.grid import Floats, Places, as_places, sample
+from acutance.curves.grid import Floats, Places, as_places, listed, sample
 from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["Mtf", "phasor"]
@@ -77,7 +77,16 @@ class Mtf(ShortRepr):
         """All of the covariance's factor of the OTF itself, (n, m)."""
         if self.latent is None:
             return self.factor
-        return np.asarray(self.factor.real @ self.latent + 1j * (self.factor.imag @ self.latent))
+        found = np.empty((self.factor.shape[0], self.latent.shape[1]), complex)
+        found.real, found.imag = self.factor.real @ self.latent, self.factor.imag @ self.latent
+        return found
+
+    def near(self, freq_cpp: Floats) -> Self:
+        """The curve at the places of its grid that frequencies (n,) have."""
+        own = self.freq_cpp.searchsorted(freq_cpp - 1e-9)
+        return replace(
+            self, freq_cpp=self.freq_cpp[own], otf=self.otf[own], factor=self.factor[own]
+        )
 
     @property
     def value(self) -> Floats:
@@ -103,6 +112,10 @@ class Mtf(ShortRepr):
         """The MTF at one frequency, and what the columns of `factor` add to it, (k,)."""
         otf, turned = self._read(freq_cpp)
         return float(_modulus(otf, turned, self.latent)[0]), turned.real
+
+    def row(self, freq_cpp: float) -> Floats:
+        """What the columns of `factor` add to the MTF at one frequency, (k,)."""
+        return self._read(freq_cpp)[1].real
 
     def gradient(self, freq_cpp: float | Floats) -> Floats:
         """The row of `covariance_factor` at any frequency, (m,); at an array of them (..., m)."""
@@ -149,14 +162,18 @@ class Mtf(ShortRepr):
         first, last = self.freq_cpp[[0, -1]]
         return f"freq_cpp {first:g} to {last:g}, {self.freq_cpp.size} places"
 
+    def arrays(self) -> dict[str, Floats]:
+        """Frequencies, values, standard deviations and phase by name, (n,) each."""
+        return {
+            "freq_cpp": self.freq_cpp,
+            "value": self.value,
+            "std": self.std,
+            "phase_rad": self.phase_rad,
+        }
+
     def to_dict(self) -> dict[str, list[float]]:
         """Frequencies, values, standard deviations and phase as lists."""
-        return {
-            "freq_cpp": np.round(self.freq_cpp, 6).tolist(),
-            "value": self.value.tolist(),
-            "std": self.std.tolist(),
-            "phase_rad": self.phase_rad.tolist(),
-        }
+        return listed(self.arrays())
 
 
 def _turned(otf: Complexes, factor: Complexes) -> Complexes:
