@@ -73,9 +73,9 @@ class OtfLikelihood(ShortRepr):
 
     def with_errors(self, factor: Complexes) -> OtfLikelihood:
         """The likelihood if there were further errors ``factor @ z``, factor (n, j)."""
-        if factor.shape[1] == 0:
-            return self
         seen = self.whitened(factor)
+        if seen.size == 0:
+            return self
         size, axes = np.linalg.eigh(seen @ seen.T)
         damped = (axes / np.sqrt(1 + size)) @ axes.T
         return OtfLikelihood(unstacked(stacked(self.root) @ damped), damped @ self.offset)
