@@ -7,7 +7,6 @@ import pytest
 from scipy.special import erf, ndtr, ndtri
 
 from acutance.curves import MAIN_NUMBERS, Esf, Lsf, Mtf, Response, metrics
-from acutance.curves.reading import Reading
 
 SIGMA = 0.6
 DISTANCE = np.arange(-200, 201) * 0.05
@@ -104,11 +103,6 @@ def test_rer_at_the_peak_of_an_asymmetric_lsf_differs() -> None:
 TRAIL_PX = 0.9
 
 
-def std_of(reading: Reading) -> float:
-    """Its standard deviation, for independent latent variables."""
-    return float(np.linalg.norm(reading.row))
-
-
 def trailing_edge(factor: np.ndarray) -> tuple[Esf, Lsf]:
     """An LSF that rises at once and decays as exp(-x / L), whose ESF passes 50 % at 0."""
     begun = -TRAIL_PX * math.log(2) < DISTANCE
@@ -129,14 +123,14 @@ def test_rer_has_the_uncertainty_of_its_own_half_point() -> None:
     ratio = math.exp(-0.5 / TRAIL_PX) - math.exp(0.5 / TRAIL_PX)
     expected = std * math.sqrt(2 + ratio**2)
     assert expected > 1.25 * std * math.sqrt(2)
-    assert std_of(metrics.rer(*trailing_edge(factor))) == pytest.approx(expected, rel=1e-3)
+    assert metrics.rer(*trailing_edge(factor)).estimate().std == pytest.approx(expected, rel=1e-3)
 
 
 def test_an_error_of_the_edges_place_is_none_of_rer() -> None:
     lsf = trailing_edge(np.zeros((DISTANCE.size, 0)))[1].value
     moved = 0.01 * lsf[:, None]
     tilt = abs(math.exp(-0.5 / TRAIL_PX) - math.exp(0.5 / TRAIL_PX)) / (2 * TRAIL_PX)
-    assert std_of(metrics.rer(*trailing_edge(moved))) < 1e-3 * 0.01 * tilt
+    assert metrics.rer(*trailing_edge(moved)).estimate().std < 1e-3 * 0.01 * tilt
 
 
 def test_metrics_that_cannot_be_negative_say_so() -> None:

@@ -32,6 +32,11 @@ class Reading(NamedTuple):
     row: Floats
     lowest: float | None = None
 
+    def estimate(self) -> Estimate:
+        """With its standard deviation, where the latent variables are independent."""
+        (found,) = estimates([self], self.row[None], None)
+        return found
+
 
 UNDEFINED = Reading(math.nan, np.array([math.nan]))
 """Of a number that does not exist."""
