@@ -41,6 +41,7 @@ PACKAGES = (
     "studies",
     "curves",
     "curves.metrics",
+    "curves.reading",
     "geometry",
     "geometry.angles",
     "targets.kinds",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import erf, ndtr, ndtri
 
-from acutance.curves import Esf, Lsf, Mtf, Response, metrics
+from acutance.curves import MAIN_NUMBERS, Esf, Lsf, Mtf, Response, metrics
 
 SIGMA = 0.6
 DISTANCE = np.arange(-200, 201) * 0.05
@@ -123,14 +123,14 @@ def test_rer_has_the_uncertainty_of_its_own_half_point() -> None:
     ratio = math.exp(-0.5 / TRAIL_PX) - math.exp(0.5 / TRAIL_PX)
     expected = std * math.sqrt(2 + ratio**2)
     assert expected > 1.25 * std * math.sqrt(2)
-    assert metrics.rer(*trailing_edge(factor)).std == pytest.approx(expected, rel=1e-3)
+    assert metrics.rer(*trailing_edge(factor)).estimate().std == pytest.approx(expected, rel=1e-3)
 
 
 def test_an_error_of_the_edges_place_is_none_of_rer() -> None:
     lsf = trailing_edge(np.zeros((DISTANCE.size, 0)))[1].value
     moved = 0.01 * lsf[:, None]
     tilt = abs(math.exp(-0.5 / TRAIL_PX) - math.exp(0.5 / TRAIL_PX)) / (2 * TRAIL_PX)
-    assert metrics.rer(*trailing_edge(moved)).std < 1e-3 * 0.01 * tilt
+    assert metrics.rer(*trailing_edge(moved)).estimate().std < 1e-3 * 0.01 * tilt
 
 
 def test_metrics_that_cannot_be_negative_say_so() -> None:
@@ -152,6 +152,28 @@ def test_overshoot_and_giqe_h_of_a_sharpened_edge() -> None:
     assert metrics.overshoot(esf).value == pytest.approx(0.1, abs=1e-3)
     assert metrics.undershoot(esf).value == pytest.approx(0.1, abs=1e-3)
     assert metrics.giqe_h(esf).value == pytest.approx(1.1, abs=1e-3)
+
+
+def test_giqe_h_takes_no_rounding_of_a_plateau_for_a_fall() -> None:
+    # Beyond 2 px nothing is uncertain, and numbers differ in their last digits alone.
+    rise = np.minimum(ndtr(DISTANCE / 0.8), 0.98)
+    rise -= np.where(np.arange(DISTANCE.size) % 7 == 0, 2e-16, 0.0)
+    esf = Esf(DISTANCE, rise, np.zeros((DISTANCE.size, 1)))
+    assert metrics.giqe_h(esf).value == pytest.approx(ndtr(1.25 / 0.8), abs=1e-3)
+
+
+def test_a_curve_at_every_other_place_is_the_same_curve() -> None:
+    esf = gaussian_response(factor_std=0.01).esf
+    thinned = esf.every(2)
+    assert np.array_equal(thinned.distance_px, esf.distance_px[::2])
+    assert np.array_equal(thinned.value, esf.value[::2])
+    assert np.array_equal(thinned.std, esf.std[::2])
+
+
+def test_rows_give_the_deviations_of_the_main_numbers() -> None:
+    r = gaussian_response(factor_std=0.01)
+    stds = [getattr(r, name).std for name in MAIN_NUMBERS]
+    assert np.abs(r.main_rows[:, 0]) * 0.01 == pytest.approx(stds)
 
 
 def test_noise_in_quadrature_does_not_raise_the_mtf() -> None:

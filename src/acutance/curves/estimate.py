@@ -14,6 +14,7 @@ from acutance.errors import OptionError
 __all__ = ["Estimate", "normal_quantile"]
 
 _MAX_DIGITS = 6
+_STANDARD_NORMAL = NormalDist()
 
 
 def normal_quantile(level: float) -> float:
@@ -26,7 +27,7 @@ def normal_quantile(level: float) -> float:
     """
     if not (isinstance(level, Real) and 0 <= level < 1):
         raise OptionError(f"level is {level!r}: give a probability between 0 and 1, such as 0.95")
-    return NormalDist().inv_cdf(0.5 + level / 2)
+    return _STANDARD_NORMAL.inv_cdf(0.5 + level / 2)
 
 
 @dataclass(frozen=True, eq=False)

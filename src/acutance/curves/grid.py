@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -19,6 +19,7 @@ __all__ = [
     "Rows",
     "as_places",
     "crossing",
+    "listed",
     "sample",
     "slope",
 ]
@@ -44,13 +45,17 @@ DISTANCE_PX = _regular(-200, 200, 0.05)
 
 
 class Rows(Protocol):
-    """A matrix (n, k) that makes its rows on demand: most of a factor is never read."""
+    """A matrix (n, k) of few numbers, most of which is never written out."""
 
     @property
     def shape(self) -> tuple[int, int]:
         """Rows and columns of the whole matrix."""
 
-    def __getitem__(self, rows: slice, /) -> Floats: ...
+    def __getitem__(self, rows: slice, /) -> Rows: ...
+
+    def __matmul__(self, matrix: Floats, /) -> Floats: ...
+
+    def __rmatmul__(self, vector: Floats, /) -> Floats: ...
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats: ...
 
@@ -116,10 +121,10 @@ def _cells(grid: Floats, at: Floats) -> tuple[NDArray[np.intp], Floats]:
     return first[..., None] + np.arange(4), position - first
 
 
-def _cubic_weights(t: Any) -> Any:
-    """Weights (4, ...) of Lagrange's cubic through the points 0, 1, 2 and 3, at `t`."""
+def _cubic_weights(t: Any) -> tuple[Any, Any, Any, Any]:
+    """Weights of Lagrange's cubic through the points 0, 1, 2 and 3, at `t`."""
     a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
-    return np.array([-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0])
+    return -b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0
 
 
 def sample(grid: Floats, values: NDArray[Any] | Rows, at: float | Floats) -> Any:
@@ -131,7 +136,6 @@ def sample(grid: Floats, values: NDArray[Any] | Rows, at: float | Floats) -> Any
     ----------
     grid : (n,) array
     values : (n,) or (n, k) array, or Rows
-        Rows can be read at one place only.
     at : float or array
 
     Returns
@@ -148,25 +152,30 @@ def sample(grid: Floats, values: NDArray[Any] | Rows, at: float | Floats) -> Any
         cells, places = _cells(grid, at)
         columns = np.asarray(values)
         columns = columns if columns.ndim == 2 else columns[:, None]
-        found = np.einsum("i...,...ij->...j", _cubic_weights(places), columns[cells])
+        found = np.einsum("i...,...ij->...j", np.array(_cubic_weights(places)), columns[cells])
         return found if len(values.shape) == 2 else found[..., 0]
     window, t, _ = _cell(grid, at)
-    return _cubic_weights(t) @ values[window]
+    weights, near = _cubic_weights(t), values[window]
+    return np.array(weights) @ near if len(values.shape) == 2 else _sum(weights, near)
 
 
 def slope(grid: Floats, values: Floats, at: float) -> float:
     """Derivative of the interpolated curve at one place."""
     window, t, step = _cell(grid, at)
     a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
-    weights = np.array(
-        [
-            -(c * d + b * d + b * c) / 6.0,
-            (c * d + a * d + a * c) / 2.0,
-            -(b * d + a * d + a * b) / 2.0,
-            (b * c + a * c + a * b) / 6.0,
-        ]
+    weights = (
+        -(c * d + b * d + b * c) / 6.0,
+        (c * d + a * d + a * c) / 2.0,
+        -(b * d + a * d + a * b) / 2.0,
+        (b * c + a * c + a * b) / 6.0,
     )
-    return float(weights @ values[window]) / step
+    return float(_sum(weights, values[window])) / step
+
+
+def _sum(weights: tuple[float, float, float, float], values: Any) -> Any:
+    """Weighted sum of four numbers: plain ones are faster than arrays of them."""
+    (a, b, c, d), (p, q, r, s) = weights, values.tolist()
+    return a * p + b * q + c * r + d * s
 
 
 def crossing(grid: Floats, values: Floats, level: float, start: float, direction: int = 1) -> float:
@@ -175,20 +184,27 @@ def crossing(grid: Floats, values: Floats, level: float, start: float, direction
     Returns ``nan`` when it never does.
     """
     origin = int(grid.searchsorted(start))
-    side = values[origin:] if direction > 0 else values[: origin + 1][::-1]
-    places = grid[origin:] if direction > 0 else grid[: origin + 1][::-1]
-    if side.size < 2:
+    if direction < 0:
+        origin = min(origin, grid.size - 1)
+    above = values[origin::direction] > level
+    if above.size < 2:
         return math.nan
-    above = side > level
-    changes = (above[1:] != above[:-1]).nonzero()[0]
-    if changes.size == 0:
+    change = int((above != above[0]).argmax())
+    if change == 0:
         return math.nan
-    i = int(changes[0])
-    x0, x1 = float(places[i]), float(places[i + 1])
-    y0, y1 = float(side[i]) - level, float(side[i + 1]) - level
+    last = origin + direction * change
+    x0, x1 = grid.item(last - direction), grid.item(last)
+    y0, y1 = values.item(last - direction) - level, values.item(last) - level
     guess = x0 + (x1 - x0) * y0 / (y0 - y1)
     steepness = (y1 - y0) / (x1 - x0)
     # One step on the cubic removes what the chord leaves.
     residual = float(sample(grid, values, guess)) - level
     refined = guess - residual / steepness
     return refined if min(x0, x1) <= refined <= max(x0, x1) else guess
+
+
+def listed(columns: Mapping[str, Floats]) -> dict[str, list[float]]:
+    """Columns of a curve, the places first, as lists: places without the errors of their sums."""
+    first = next(iter(columns))
+    exact = {name: column.tolist() for name, column in columns.items() if name != first}
+    return {first: np.round(columns[first], 6).tolist(), **exact}

@@ -12,12 +12,13 @@ import numpy as np
 from acutance.curves import metrics
 from acutance.curves.estimate import Estimate
 from acutance.curves.grid import Floats
+from acutance.curves.reading import Reading, estimates, stacked
 from acutance.curves.rounded_rows import RoundedRows, principal_axes
 from acutance.curves.short_repr import ShortRepr
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf, phasor
 
-__all__ = ["METRICS", "HasResponse", "PackedResponse", "Response"]
+__all__ = ["MAIN_NUMBERS", "METRICS", "HasResponse", "PackedResponse", "Response"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,19 +42,56 @@ class Response(ShortRepr):
     rer_centre: metrics.RerCentre = "half"
 
     @cached_property
+    def _main_readings(self) -> tuple[Reading, ...]:
+        return (
+            metrics.mtf_at(self.mtf, metrics.NYQUIST_CPP),
+            metrics.rer(self.esf, self.lsf, self.rer_centre),
+            metrics.full_width(self.lsf),
+        )
+
+    @cached_property
+    def main_rows(self) -> Floats:
+        """What a unit of each latent variable adds to `MAIN_NUMBERS`, (3, k)."""
+        return stacked(self._main_readings, self.esf.factor.shape[1])
+
+    @cached_property
+    def _main(self) -> dict[str, Estimate]:
+        """`MAIN_NUMBERS`, their deviations by one product of matrices."""
+        found = estimates(self._main_readings, self.main_rows, self.esf.latent)
+        return dict(zip(MAIN_NUMBERS, found, strict=True))
+
+    @cached_property
+    def _further(self) -> dict[str, Estimate]:
+        """All other numbers in pixels, in the same way."""
+        esf, mtf = self.esf, self.mtf
+        readings = (
+            metrics.mtf_crossing(mtf, 0.5),
+            metrics.mtf_crossing(mtf, 0.3),
+            metrics.mtf_area(mtf),
+            metrics.edge_slope(esf),
+            metrics.half_extent(esf, "dark"),
+            metrics.half_extent(esf, "bright"),
+            metrics.overshoot(esf),
+            metrics.undershoot(esf),
+            metrics.giqe_h(esf),
+        )
+        found = estimates(readings, stacked(readings, esf.factor.shape[1]), esf.latent)
+        return dict(zip(_FURTHER_NUMBERS, found, strict=True))
+
+    @cached_property
     def mtf_nyquist(self) -> Estimate:
         """MTF at 0.5 cycles per pixel."""
-        return self.mtf(metrics.NYQUIST_CPP)
+        return self._main["mtf_nyquist"]
 
     @cached_property
     def rer(self) -> Estimate:
         """Relative edge response, about the centre `rer_centre`."""
-        return metrics.rer(self.esf, self.lsf, self.rer_centre)
+        return self._main["rer"]
 
     @cached_property
     def fwhm_px(self) -> Estimate:
         """Full width of the LSF at half of its maximum, in pixels."""
-        return metrics.full_width(self.lsf)
+        return self._main["fwhm_px"]
 
     @cached_property
     def fwhm_m(self) -> Estimate | None:
@@ -63,47 +101,47 @@ class Response(ShortRepr):
     @cached_property
     def mtf50_cpp(self) -> Estimate:
         """Lowest frequency where the MTF falls to 0.5."""
-        return metrics.mtf_crossing(self.mtf, 0.5)
+        return self._further["mtf50_cpp"]
 
     @cached_property
     def mtf30_cpp(self) -> Estimate:
         """Lowest frequency where the MTF falls to 0.3."""
-        return metrics.mtf_crossing(self.mtf, 0.3)
+        return self._further["mtf30_cpp"]
 
     @cached_property
     def mtf_area(self) -> Estimate:
         """Area under the MTF from 0 to Nyquist (cycles per pixel)."""
-        return metrics.mtf_area(self.mtf)
+        return self._further["mtf_area"]
 
     @cached_property
     def edge_slope_per_px(self) -> Estimate:
         """Mean slope of the ESF between 40 and 60 %."""
-        return metrics.edge_slope(self.esf)
+        return self._further["edge_slope_per_px"]
 
     @cached_property
     def half_extent_dark_px(self) -> Estimate:
         """Distance from the 5 to the 50 % point."""
-        return metrics.half_extent(self.esf, "dark")
+        return self._further["half_extent_dark_px"]
 
     @cached_property
     def half_extent_bright_px(self) -> Estimate:
         """Distance from the 50 to the 95 % point."""
-        return metrics.half_extent(self.esf, "bright")
+        return self._further["half_extent_bright_px"]
 
     @cached_property
     def overshoot(self) -> Estimate:
         """Largest excess of the ESF over the bright plateau."""
-        return metrics.overshoot(self.esf)
+        return self._further["overshoot"]
 
     @cached_property
     def undershoot(self) -> Estimate:
         """Largest shortfall of the ESF under the dark plateau."""
-        return metrics.undershoot(self.esf)
+        return self._further["undershoot"]
 
     @cached_property
     def giqe_h(self) -> Estimate:
         """Edge height overshoot H of GIQE 4."""
-        return metrics.giqe_h(self.esf)
+        return self._further["giqe_h"]
 
     def summary(self) -> str:
         """The three main numbers."""
@@ -280,11 +318,8 @@ class HasResponse(ShortRepr):
         return self.response.summary()
 
 
-METRICS = (
-    "mtf_nyquist",
-    "rer",
-    "fwhm_px",
-    "fwhm_m",
+MAIN_NUMBERS = ("mtf_nyquist", "rer", "fwhm_px")
+_FURTHER_NUMBERS = (
     "mtf50_cpp",
     "mtf30_cpp",
     "mtf_area",
@@ -295,3 +330,4 @@ METRICS = (
     "undershoot",
     "giqe_h",
 )
+METRICS = (*MAIN_NUMBERS, "fwhm_m", *_FURTHER_NUMBERS)

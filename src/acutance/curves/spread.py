@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, overload
+from typing import Any, Self, overload
 
 import numpy as np
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
-from acutance.curves.grid import Floats, Places, Rows, as_places, sample
+from acutance.curves.grid import Floats, Places, Rows, as_places, crossing, listed, sample, slope
+from acutance.curves.reading import UNDEFINED, Reading
 from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["Esf", "Lsf"]
@@ -51,21 +53,29 @@ class _SpreadCurve(ShortRepr):
     @cached_property
     def std(self) -> Floats:
         """Standard deviation at every distance, (n,)."""
-        factor = self.covariance_factor
-        return np.asarray(np.sqrt(np.einsum("ij,ij->i", factor, factor)))
+        return _lengths(self.covariance_factor)
 
     @cached_property
     def covariance_factor(self) -> Floats:
         """All of the covariance's factor, (n, m): its square is the curve's covariance."""
-        factor = np.asarray(self.factor)
-        return factor if self.latent is None else factor @ self.latent
+        return np.asarray(self.factor) if self.latent is None else self.factor @ self.latent
+
+    def row(self, distance_px: float) -> Floats:
+        """The row of `factor` at any distance, (k,)."""
+        found: Floats = sample(self.distance_px, self.factor, distance_px)
+        return found
+
+    def passing(self, level: float, start_px: float, direction: int = 1) -> Reading:
+        """Where it first passes `level`, going from `start_px` in `direction` (+1 or -1)."""
+        place = crossing(self.distance_px, self.value, level, start_px, direction)
+        if math.isnan(place):
+            return UNDEFINED
+        return Reading(place, self.row(place) / -slope(self.distance_px, self.value, place))
 
     def gradient(self, distance_px: float | Floats) -> Floats:
         """The row of `covariance_factor` at any distance, (m,); at an array of them (..., m)."""
-        if isinstance(distance_px, np.ndarray):
-            return np.asarray(sample(self.distance_px, self.covariance_factor, distance_px))
-        row: Floats = sample(self.distance_px, self.factor, distance_px)
-        return row if self.latent is None else row @ self.latent
+        rows: Floats = sample(self.distance_px, self.factor, distance_px)
+        return rows if self.latent is None else rows @ self.latent
 
     @overload
     def __call__(self, distance_px: float) -> Estimate: ...
@@ -90,8 +100,7 @@ class _SpreadCurve(ShortRepr):
             If it holds anything but numbers, or one lies outside the curve.
         """
         at = as_places(distance_px, "distance_px")
-        gradient = self.gradient(at)
-        std = np.sqrt(np.einsum("...j,...j->...", gradient, gradient))
+        std = _lengths(self.gradient(at))
         return estimates_of(sample(self.distance_px, self.value, at), std)
 
     def summary(self) -> str:
@@ -99,18 +108,41 @@ class _SpreadCurve(ShortRepr):
         first, last = self.distance_px[[0, -1]]
         return f"distance_px {first:g} to {last:g}, {self.distance_px.size} places"
 
+    def every(self, step: int) -> Self:
+        """The curve at every few of its places, from the first on."""
+        own = slice(None, None, step)
+        return replace(
+            self,
+            distance_px=self.distance_px[own],
+            value=self.value[own],
+            factor=self.factor[own],
+        )
+
+    def arrays(self) -> dict[str, Floats]:
+        """Distances, values and standard deviations by name, (n,) each."""
+        return {"distance_px": self.distance_px, "value": self.value, "std": self.std}
+
     def to_dict(self) -> dict[str, list[float]]:
         """Distances, values and standard deviations as lists."""
-        return {
-            "distance_px": np.round(self.distance_px, 6).tolist(),
-            "value": self.value.tolist(),
-            "std": self.std.tolist(),
-        }
+        return listed(self.arrays())
 
 
 class Esf(_SpreadCurve):
     """Edge spread function: 0 on the dark plateau, 1 on the bright one (no unit)."""
 
+    @cached_property
+    def half_point(self) -> Reading:
+        """Where it passes 50 % in its steep part."""
+        steepest = int((self.value[1:] - self.value[:-1]).argmax())
+        below = (self.value[: steepest + 2] < 0.5).nonzero()[0]
+        # From a place on the dark side the next crossing is that of the steep part.
+        return self.passing(0.5, self.distance_px.item(below[-1] if below.size else 0))
+
 
 class Lsf(_SpreadCurve):
     """Line spread function, the derivative of the ESF along the normal (1/px), area 1."""
+
+
+def _lengths(rows: Floats) -> Floats:
+    """Lengths of the rows of a covariance's factor: standard deviations."""
+    return np.asarray(np.sqrt(np.einsum("...j,...j->...", rows, rows)))

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, overload
+from typing import Any, Self, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
-from acutance.curves.grid import Floats, Places, as_places, sample
+from acutance.curves.grid import Floats, Places, as_places, listed, sample
 from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["Mtf", "phasor"]
 
 Complexes = NDArray[np.complex128]
+
+_SMALLEST = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +55,17 @@ class Mtf(ShortRepr):
     @cached_property
     def _modulus(self) -> tuple[Floats, Floats]:
         """The MTF, (n,), and the factor of its covariance, (n, m)."""
-        return _modulus(self.otf, self.factor, self.latent)
+        return _modulus(self.otf, self._turned, self.latent)
+
+    @cached_property
+    def _turned(self) -> Complexes:
+        """`factor` relative to the direction of the OTF, (n, k)."""
+        return _turned(self.otf, self.factor)
+
+    @property
+    def rows(self) -> Floats:
+        """What the columns of `factor` add to the MTF itself, (n, k)."""
+        return self._turned.real
 
     @property
     def covariance_factor(self) -> Floats:
@@ -65,7 +77,16 @@ class Mtf(ShortRepr):
         """All of the covariance's factor of the OTF itself, (n, m)."""
         if self.latent is None:
             return self.factor
-        return np.asarray(self.factor.real @ self.latent + 1j * (self.factor.imag @ self.latent))
+        found = np.empty((self.factor.shape[0], self.latent.shape[1]), complex)
+        found.real, found.imag = self.factor.real @ self.latent, self.factor.imag @ self.latent
+        return found
+
+    def near(self, freq_cpp: Floats) -> Self:
+        """The curve at the places of its grid that frequencies (n,) have."""
+        own = self.freq_cpp.searchsorted(freq_cpp - 1e-9)
+        return replace(
+            self, freq_cpp=self.freq_cpp[own], otf=self.otf[own], factor=self.factor[own]
+        )
 
     @property
     def value(self) -> Floats:
@@ -87,9 +108,18 @@ class Mtf(ShortRepr):
         along = self.covariance_factor
         return np.asarray(np.sqrt(np.einsum("ij,ij->i", along, along)))
 
+    def value_and_row(self, freq_cpp: float) -> tuple[float, Floats]:
+        """The MTF at one frequency, and what the columns of `factor` add to it, (k,)."""
+        otf, turned = self._read(freq_cpp)
+        return float(_modulus(otf, turned, self.latent)[0]), turned.real
+
+    def row(self, freq_cpp: float) -> Floats:
+        """What the columns of `factor` add to the MTF at one frequency, (k,)."""
+        return self._read(freq_cpp)[1].real
+
     def gradient(self, freq_cpp: float | Floats) -> Floats:
         """The row of `covariance_factor` at any frequency, (m,); at an array of them (..., m)."""
-        return self._at(freq_cpp)[1]
+        return _modulus(*self._read(freq_cpp), self.latent)[1]
 
     @overload
     def __call__(self, freq_cpp: float) -> Estimate: ...
@@ -113,16 +143,14 @@ class Mtf(ShortRepr):
         OptionError
             If it holds anything but numbers, or one lies outside the curve.
         """
-        value, along = self._at(as_places(freq_cpp, "freq_cpp"))
+        value, along = _modulus(*self._read(as_places(freq_cpp, "freq_cpp")), self.latent)
         std = np.sqrt(np.einsum("...j,...j->...", along, along))
         return estimates_of(value, std, lowest=0.0)
 
-    def _at(self, freq_cpp: float | Floats) -> tuple[Floats, Floats]:
-        return _modulus(
-            sample(self.freq_cpp, self.otf, freq_cpp),
-            sample(self.freq_cpp, self.factor, freq_cpp),
-            self.latent,
-        )
+    def _read(self, freq_cpp: float | Floats) -> tuple[Complexes, Complexes]:
+        """The OTF at any frequencies, (...), and its factor relative to it, (..., k)."""
+        otf = np.asarray(sample(self.freq_cpp, self.otf, freq_cpp))
+        return otf, _turned(otf, sample(self.freq_cpp, self.factor, freq_cpp))
 
     @cached_property
     def phase_rad(self) -> Floats:
@@ -134,25 +162,36 @@ class Mtf(ShortRepr):
         first, last = self.freq_cpp[[0, -1]]
         return f"freq_cpp {first:g} to {last:g}, {self.freq_cpp.size} places"
 
-    def to_dict(self) -> dict[str, list[float]]:
-        """Frequencies, values, standard deviations and phase as lists."""
+    def arrays(self) -> dict[str, Floats]:
+        """Frequencies, values, standard deviations and phase by name, (n,) each."""
         return {
-            "freq_cpp": np.round(self.freq_cpp, 6).tolist(),
-            "value": self.value.tolist(),
-            "std": self.std.tolist(),
-            "phase_rad": self.phase_rad.tolist(),
+            "freq_cpp": self.freq_cpp,
+            "value": self.value,
+            "std": self.std,
+            "phase_rad": self.phase_rad,
         }
 
+    def to_dict(self) -> dict[str, list[float]]:
+        """Frequencies, values, standard deviations and phase as lists."""
+        return listed(self.arrays())
 
-def _modulus(otf: Complexes, factor: Complexes, latent: Floats | None) -> tuple[Floats, Floats]:
-    """MTF (...) and factor of its covariance (..., m), of an OTF (...) and its factor (..., k).
+
+def _turned(otf: Complexes, factor: Complexes) -> Complexes:
+    """The factor (..., k) of an OTF (...), divided by the phasor of the OTF.
+
+    Its real parts are errors along the OTF, which lengthen it; the imaginary ones turn it.
+    """
+    return np.asarray(np.conj(phasor(otf))[..., None] * factor)
+
+
+def _modulus(otf: Complexes, turned: Complexes, latent: Floats | None) -> tuple[Floats, Floats]:
+    """MTF (...) and factor of its covariance (..., m), of an OTF (...) and its turned factor.
 
     The error of a modulus is that of the OTF's part in phase with itself.
     """
-    modulus = np.abs(otf)
-    turned = np.conj(phasor(otf))[..., None] * factor
-    parts = np.stack([turned.real, turned.imag])
+    parts = np.array([turned.real, turned.imag])
     along, quadrature = parts if latent is None else parts @ latent
+    modulus = np.abs(otf)
     power = modulus**2 - np.einsum("...j,...j->...", quadrature, quadrature)
     return np.asarray(np.sqrt(np.maximum(power, 0.0))), along
 
@@ -161,5 +200,5 @@ def phasor(otf: Complexes) -> Complexes:
     """Direction of an OTF in the complex plane, (...); 1 where the OTF is 0."""
     modulus = np.abs(otf)
     # Below the smallest normal number a modulus has lost its digits: to divide by it overflows.
-    known = modulus >= np.finfo(float).tiny
-    return np.asarray(np.where(known, otf, 1.0) / np.where(known, modulus, 1.0))
+    unit = np.ones(otf.shape, complex)
+    return np.divide(otf, modulus, out=unit, where=modulus >= _SMALLEST)

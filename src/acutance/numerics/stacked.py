@@ -20,4 +20,6 @@ def stacked(values: Complexes) -> Floats:
 def unstacked(values: Floats) -> Complexes:
     """Complex values (n, ...) of stacked ones, (2 n, ...)."""
     n = len(values) // 2
-    return np.asarray(values[:n] + 1j * values[n:])
+    found = np.empty((n, *values.shape[1:]), complex)
+    found.real, found.imag = values[:n], values[n:]
+    return found

@@ -11,7 +11,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from acutance.curves import Estimate, HasResponse, Mtf, Otf2d, Response
+from acutance.curves import Esf, Estimate, HasResponse, Lsf, Mtf, Otf2d, Response
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import is_nearer_columns
 from acutance.geometry.line import Orientation
@@ -19,7 +19,7 @@ from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.directions import HasDirections
 from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
 from acutance.targets.slices import OtfSlices
-from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows
+from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_stds
 
 __all__ = ["Measurement"]
 
@@ -78,7 +78,7 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
         """Whether the curves are a sensor's MTF over another's, and not its own."""
         return False
 
-    @property
+    @cached_property
     def orientation(self) -> Orientation:
         """Which direction the numbers belong to, across or along track."""
         if self.normal_deg is None:
@@ -166,7 +166,8 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
     def _budget(self) -> tuple[BudgetTerm, ...]:
         """One row a direction, unless the kind separates the causes."""
         rows = (
-            budget_rows(name, [("fit", self.directions[name])]) for name in self.measured_directions
+            budget_rows(name, {"fit": main_stds(self.directions[name])})
+            for name in self.measured_directions
         )
         return tuple(row for some in rows for row in some)
 
@@ -185,7 +186,10 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
 
     def __getstate__(self) -> dict[str, Any]:
         # The record of a copy, or of its light half, is that of the original to the last digit.
-        return {**super().__getstate__(), "record": self.record}
+        return {**super().__getstate__(), "record": self.record.to_bytes()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state, record=Record.from_bytes(state["record"]))
 
     @cached_property
     def record(self) -> Record:
@@ -249,15 +253,15 @@ def _direction_document(response: Response) -> dict[str, Any]:
         **{name: number.to_dict() for name, number in response.metrics().items()},
         "rer_centre": response.rer_centre,
         "gsd_m": response.gsd_m,
-        "mtf": _curve_document(response.mtf.to_dict(), 1),
-        "lsf": _curve_document(response.lsf.to_dict(), _STEPS),
-        "esf": _curve_document(response.esf.to_dict(), _STEPS),
+        "mtf": _curve_document(response.mtf),
+        "lsf": _curve_document(response.lsf.every(_STEPS)),
+        "esf": _curve_document(response.esf.every(_STEPS)),
     }
 
 
-def _curve_document(curve: Mapping[str, list[float]], steps: int) -> dict[str, list[float]]:
-    """A curve at every few of its places, with the digits its deviation deserves."""
+def _curve_document(curve: Mtf | Esf | Lsf) -> dict[str, list[float]]:
+    """The columns of a curve, with the digits its deviation deserves."""
     return {
-        key: rounded(values[::steps], 3) if key == "std" else np.round(values[::steps], 5).tolist()
-        for key, values in curve.items()
+        name: rounded(column, 3) if name == "std" else np.round(column, 5).tolist()
+        for name, column in curve.arrays().items()
     }

@@ -74,6 +74,8 @@ class OtfLikelihood(ShortRepr):
     def with_errors(self, factor: Complexes) -> OtfLikelihood:
         """The likelihood if there were further errors ``factor @ z``, factor (n, j)."""
         seen = self.whitened(factor)
+        if seen.size == 0:
+            return self
         size, axes = np.linalg.eigh(seen @ seen.T)
         damped = (axes / np.sqrt(1 + size)) @ axes.T
         return OtfLikelihood(unstacked(stacked(self.root) @ damped), damped @ self.offset)

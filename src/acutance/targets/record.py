@@ -9,6 +9,8 @@ from __future__ import annotations
 import json
 import lzma
 import math
+import pickle
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -35,6 +37,8 @@ SCHEMA = "acutance/measurement/1"
 
 _REQUIRED = ("schema", "kind", "method", "image", "snr", "checks", "options", "measured_at")
 _SQUARE = 1e-9
+_MAX_QUICK = 15_000
+"""Bytes of a pickled record, compressed quickly; one that is larger is compressed well."""
 
 
 @dataclass(frozen=True)
@@ -225,7 +229,11 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         return cls.from_dict(json.loads(lzma.decompress(stored)))
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]:
-        return Record.from_bytes, (self.to_bytes(),)
+        # Thousands of edges cross processes: LZMA would take longer than to measure them.
+        packed = zlib.compress(pickle.dumps(self.document, pickle.HIGHEST_PROTOCOL), 1)
+        if len(packed) > _MAX_QUICK:
+            return Record.from_bytes, (self.to_bytes(),)
+        return _unpacked, (packed,)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Record):
@@ -309,12 +317,19 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         return f"{self.kind} by {self.method}, {', '.join(named)}, {count_failed(self.checks)}"
 
 
+def _unpacked(packed: bytes) -> Record:
+    return Record(pickle.loads(zlib.decompress(packed)))
+
+
 def rounded(values: ArrayLike, digits: int = 6) -> list[Any]:
     """Numbers of a curve as lists, with so many significant digits: a document has no more."""
     array = np.asarray(values, float)
-    finite = np.where(np.isfinite(array) & (array != 0), np.abs(array), 1.0)
-    scale = 10.0 ** (digits - 1 - np.floor(np.log10(finite)))
-    listed: list[Any] = (np.round(array * scale) / scale).tolist()
+    size = np.abs(array)
+    scale = np.where((size > 0) & (size < np.inf), size, 1.0)
+    np.log10(scale, out=scale)
+    np.subtract(digits - 1, np.floor(scale, out=scale), out=scale)
+    np.power(10.0, scale, out=scale)
+    listed: list[Any] = (np.rint(array * scale) / scale).tolist()
     return listed
 
 

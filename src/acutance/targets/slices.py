@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from statistics import median
 from typing import Any
 
 import numpy as np
@@ -66,9 +67,8 @@ class OtfSlices(ShortRepr):
     def of_curve(cls, mtf: Mtf, normal_deg: float) -> OtfSlices:
         """The slice along the normal of an edge or a pulse."""
         # The grid of a curve has steps of 0.01 c/px and holds these frequencies.
-        places = np.searchsorted(mtf.freq_cpp, _FREQ_CPP - 1e-9)
-        factor = _narrowed(mtf.otf_factor[places])
-        return cls(np.array([normal_deg]), _FREQ_CPP, mtf.otf[places], factor)
+        own = mtf.near(_FREQ_CPP)
+        return cls(np.array([normal_deg]), _FREQ_CPP, own.otf, _narrowed(own.otf_factor))
 
     @classmethod
     def of_otf2d(
@@ -154,22 +154,28 @@ def _places(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
 
 
 def _triangular(factor: Complexes) -> Complexes:
-    """Another factor of the same covariance, with zeros above its diagonal: a shorter text."""
-    return unstacked(np.asarray(np.linalg.qr(stacked(factor).T, mode="r")).T)
+    """Another factor of the same covariance, a shorter text: with zeros above its diagonal.
+
+    Its diagonal is positive, so that there is but one.
+    """
+    lower = np.asarray(np.linalg.qr(stacked(factor).T, mode="r")).T
+    return unstacked(lower * np.copysign(1.0, lower.diagonal()))
 
 
 def _decimals(factor: Complexes) -> int:
     """Decimals with which the columns of a factor together err by little, 4 at least."""
-    std = np.sqrt(np.einsum("ij,ij->i", factor.real, factor.real))
-    allowed = _ROUNDING * float(np.median(std)) if std.size else 0.0
+    std = np.sqrt(np.einsum("ij,ij->i", factor.real, factor.real)).tolist()
+    allowed = _ROUNDING * median(std) if std else 0.0
     step = allowed * math.sqrt(12 / max(factor.shape[1], 1))
-    return int(np.clip(-math.floor(math.log10(step)), 4, 6)) if step > 0 else 6
+    return min(max(-math.floor(math.log10(step)), 4), 6) if step > 0 else 6
 
 
 def _narrowed(factor: Complexes) -> Complexes:
     """The same covariance with as few columns as it needs."""
     if factor.size == 0:
         return factor
-    left, size, _ = np.linalg.svd(stacked(factor), full_matrices=False)
-    kept = size > min(_MIN_STD, float(size[0]))
-    return unstacked(left[:, kept] * size[kept])
+    wide = stacked(factor)
+    variance, axes = np.linalg.eigh(wide @ wide.T)
+    size = np.sqrt(np.maximum(variance, 0.0))
+    kept = size > min(_MIN_STD, size[-1])
+    return unstacked(axes[:, kept] * size[kept])

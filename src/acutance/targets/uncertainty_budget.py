@@ -9,16 +9,15 @@ of the pixels, "B" by anything else, a prior or a statement.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
-from acutance.curves import Response
+from acutance.curves import MAIN_NUMBERS, Response
 from acutance.geometry.line import Orientation
 
-__all__ = ["MAIN_NUMBERS", "TERMS", "BudgetTerm", "TermWords", "budget_rows"]
+__all__ = ["MAIN_NUMBERS", "TERMS", "BudgetTerm", "TermWords", "budget_rows", "main_stds"]
 
-MAIN_NUMBERS = ("mtf_nyquist", "rer", "fwhm_px")
 _DIGITS = 4
 
 
@@ -119,22 +118,18 @@ class BudgetTerm:
 
 
 def budget_rows(
-    direction: Orientation, parts: Iterable[tuple[str, Response]]
+    direction: Orientation, stds: Mapping[str, Mapping[str, float]]
 ) -> tuple[BudgetTerm, ...]:
     """The rows of one direction.
 
     Parameters
     ----------
     direction : {"across", "along"}
-    parts : iterable of (str, Response)
-        Every term with the curves of the measurement, their covariance that of the term alone:
-        the covariances add up to that of the measurement.
+    stds : mapping of str to mapping of str to float
+        By term the standard deviation it gives to each of `MAIN_NUMBERS`. The terms are
+        independent: their variances add up to that of the number.
     """
-    found = [
-        (name, {number: getattr(part, number).std for number in MAIN_NUMBERS})
-        for name, part in parts
-    ]
-    variance = {number: sum(std[number] ** 2 for _, std in found) for number in MAIN_NUMBERS}
+    variance = {number: sum(std[number] ** 2 for std in stds.values()) for number in MAIN_NUMBERS}
     return tuple(
         BudgetTerm(
             direction, name, std,
@@ -143,8 +138,13 @@ def budget_rows(
                 for number in MAIN_NUMBERS
             },
         )
-        for name, std in found
+        for name, std in stds.items()
     )  # fmt: skip
+
+
+def main_stds(response: Response) -> dict[str, float]:
+    """Standard deviations of `MAIN_NUMBERS` of some curves."""
+    return {number: getattr(response, number).std for number in MAIN_NUMBERS}
 
 
 def _rounded(numbers: Mapping[str, float]) -> dict[str, float | None]:

@@ -9,6 +9,7 @@ from acutance.targets.straight.spline import (
     CENTRES,
     HALF_SUPPORT,
     SIZE,
+    SplineRows,
     combine,
     edge_and_line_weights,
     edge_weights,
@@ -79,6 +80,22 @@ def test_spread_is_the_dense_form_of_combine():
     wider = expand(cell, weights, further=2)
     assert np.array_equal(wider[:, :-2], dense)
     assert not wider[:, -2:].any()
+
+
+@pytest.mark.parametrize("own", [slice(None), slice(7, 11), slice(None, None, 3)])
+def test_products_of_rows_are_those_of_the_whole_matrix(own):
+    rng = np.random.default_rng(6)
+    cell, weights = edge_weights(U)
+    rows = SplineRows(cell, weights, rng.standard_normal((U.size, 2)), further=1)
+    rows = rows.with_column(rng.standard_normal(U.size))[own]
+    whole = np.asarray(rows)
+    assert whole.shape == rows.shape == (U[own].size, CELLS + 5)
+    expected = expand(cell[own], weights[:, own], further=2)
+    assert np.array_equal(whole[:, :-3], expected[:, :-3])
+    matrix = rng.standard_normal((rows.shape[1], 3))
+    assert np.max(np.abs(rows @ matrix - whole @ matrix)) < 1e-13
+    vector = rng.standard_normal(rows.shape[0])
+    assert np.max(np.abs(vector @ rows - vector @ whole)) < 1e-12
 
 
 def test_esf_from_lsf_takes_columns():

@@ -20,7 +20,7 @@ from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit, ResidualMap
 from acutance.targets.pair.spectral_ratio import PairSpectra
 from acutance.targets.record import ImageInfo, rounded
-from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows
+from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_stds
 
 __all__ = ["BiresolutionMeasurement", "Coherence", "PairDetails"]
 
@@ -171,10 +171,10 @@ class BiresolutionMeasurement(Measurement):
         return tuple(
             row
             for name in self.measured_directions
-            for row in budget_rows(
-                name, [(term, one.response(self.axes_deg[name])) for term, one in causes.items()]
-            )
-        )
+            for row in budget_rows(name, {
+                term: main_stds(one.response(self.axes_deg[name])) for term, one in causes.items()
+            })
+        )  # fmt: skip
 
     def target_document(self) -> dict[str, Any]:
         """Geometry, registration, radiometry, iterations, coherence and the map, for JSON."""

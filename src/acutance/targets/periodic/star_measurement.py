@@ -124,7 +124,7 @@ class StarMeasurement(Measurement):
     @property
     def mean_mtf50_cpp(self) -> Estimate:
         """Frequency at which the mean MTF falls to one half."""
-        return mtf_crossing(self.mean_mtf, 0.5)
+        return mtf_crossing(self.mean_mtf, 0.5).estimate()
 
     @property
     def centre(self) -> tuple[Estimate, Estimate]:

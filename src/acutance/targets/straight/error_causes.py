@@ -1,8 +1,8 @@
-"""Common causes of error of the curves of one direction: one more of them, or one of them alone.
+"""Common causes of error of the curves of one direction: one more of them, or the share of each.
 
 The error of every curve is ``factor @ latent @ z``, with z standard normal and shared by the edge
 spread function (ESF), the line spread function (LSF) and the transfer function. A cause is one
-column of the factors, or some columns of the latent matrix.
+column of the factors, or part of the covariance of the latent variables.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from acutance.curves import Esf, Lsf, Mtf, Response
+from acutance.curves import Esf, Lsf, Mtf
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 
-__all__ = ["FitCauses", "caused_by", "with_cause"]
+__all__ = ["FitCauses", "with_cause"]
 
 Curve = TypeVar("Curve", Esf, Lsf, Mtf)
 
@@ -42,28 +42,6 @@ def with_cause(curve: Curve, error: Any) -> Curve:
     latent = np.zeros((k + 1, m + 1))
     latent[:k, :m], latent[k, m] = curve.latent, 1.0
     return replace(curve, factor=factor, latent=latent)
-
-
-def caused_by(response: Response, latent: Floats) -> Response:
-    """The same curves, whose errors are those of some causes alone.
-
-    Parameters
-    ----------
-    response : Response
-        Its curves have factors of k columns.
-    latent : (c, j) array
-        Factor of the covariance of the first c columns (c <= k); the others are exact.
-    """
-    columns = response.esf.factor.shape[1]
-    every = np.zeros((columns, latent.shape[1]))
-    every[: latent.shape[0]] = latent
-    return Response(
-        replace(response.esf, latent=every),
-        replace(response.lsf, latent=every),
-        replace(response.mtf, latent=every),
-        response.gsd_m,
-        response.rer_centre,
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,26 +70,33 @@ class FitCauses(ShortRepr):
     information: Floats
     group: tuple[str, ...]
 
-    def latents(self) -> dict[str, Floats]:
-        """Factors (c, j) of the covariance that each cause gives to the columns; they add up.
+    def variances(self, rows: Floats) -> dict[str, Floats]:
+        """Variances that each cause gives to some numbers, (q,) by term; they add up.
 
         With all others known, the covariance of the unknowns is C = R R^T, and the pixels'
         information about them J. What the noise propagates into the posterior mean is C J C, as
         its derivative by the pixels is C times theirs; what the prior leaves undetermined is the
         rest: a prior as wide as the data are vague would leave nothing.
+
+        Parameters
+        ----------
+        rows : (q, c) array
+            What the columns of the curves' factors add to the numbers.
         """
         n = self.information.shape[0]
         m = n + len(self.group)
-        caused = self.design @ self.factor
         open_root = self.factor[:, :n]
         determined, axes = np.linalg.eigh(open_root.T @ self.information @ open_root)
-        determined = np.clip(determined, 0.0, 1.0)
-        open_columns = caused[:, :n] @ axes
-        found = {
-            "pixel_noise": open_columns * np.sqrt(determined),
-            "prior_shape": np.hstack([open_columns * np.sqrt(1 - determined), caused[:, m:]]),
-        }
+        determined = np.minimum(np.maximum(determined, 0.0), 1.0)
+        caused = rows @ self.design @ self.factor
+        left_open = (caused[:, :n] @ axes) ** 2
+        squares = caused**2
         names = np.array(self.group)
-        for name in dict.fromkeys(self.group):
-            found[name] = caused[:, n:m][:, names == name]
-        return found
+        return {
+            "pixel_noise": left_open @ determined,
+            "prior_shape": left_open @ (1 - determined) + squares[:, m:].sum(axis=1),
+            **{
+                name: squares[:, n:m][:, names == name].sum(axis=1)
+                for name in dict.fromkeys(self.group)
+            },
+        }

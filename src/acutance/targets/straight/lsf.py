@@ -232,5 +232,7 @@ def with_uncertain_halo(response: SplineResponse, share: float = HALO_SHARE) -> 
 
 def of_stated_target(response: AnyResponse, stated: StatedTarget) -> AnyResponse:
     """The curves of the sensor, where something is stated of its target; see `stated_target`."""
+    if not stated.terms:
+        return response
     found = with_stated_target(response, stated)
     return replace(found, stated=stated) if isinstance(found, SplineResponse) else found

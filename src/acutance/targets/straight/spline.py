@@ -16,12 +16,13 @@ the support. The Fourier transform of the LSF, the optical transfer function (OT
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 
 __all__ = [
     "CELL",
@@ -48,18 +49,28 @@ SIZE: Final = CELLS - 2
 """Number of LSF coefficients; the ESF has CELLS + 3."""
 CENTRES: Final[Floats] = np.asarray(-HALF_SUPPORT + CELL * (np.arange(SIZE) + 1.5))
 """Where the quadratic B-splines are centred, (SIZE,)."""
+_FIRST_CENTRE, _LAST_CENTRE = CENTRES.item(0), CENTRES.item(-1)
 _FOUR: Final = np.arange(4)[:, None]
 
 
-def _cells(u: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Cell number and place within the cell (0..1) of every distance, clipped to the support."""
-    position = (u + HALF_SUPPORT) * (1 / CELL)
-    np.minimum(np.maximum(position, 0.0, out=position), CELLS, out=position)
-    cell = position.astype(np.intp)
-    np.minimum(cell, CELLS - 1, out=cell)
+@compiled
+def _place(u: float) -> tuple[int, float]:
+    """Cell number and place within the cell (0..1) of a distance, clipped to the support."""
+    position = min(max((u + HALF_SUPPORT) * (1 / CELL), 0.0), float(CELLS))
+    cell = min(int(position), CELLS - 1)
     return cell, position - cell
 
 
+@compiled
+def _cubics(t: float) -> tuple[float, float, float, float]:
+    """The four cubic B-splines at a place of a cell."""
+    rest, square = 1.0 - t, t * t
+    first, last = rest * rest * rest / 6, square * t / 6
+    second = square * (0.5 * t - 1.0) + 2 / 3
+    return first, second, 1.0 - first - second - last, last
+
+
+@compiled
 def edge_weights(u: Floats) -> tuple[NDArray[np.intp], Floats]:
     """The four cubic B-splines that are not 0 at each distance.
 
@@ -75,31 +86,25 @@ def edge_weights(u: Floats) -> tuple[NDArray[np.intp], Floats]:
     weights : (4, n) array
         ESF(u) = sum_a weights[a] * e[cell + a].
     """
-    cell, t = _cells(u)
-    return cell, _cubics(t)
+    cell, weights = np.empty(u.size, np.intp), np.empty((4, u.size))
+    for i in range(u.size):
+        cell[i], t = _place(u[i])
+        weights[0, i], weights[1, i], weights[2, i], weights[3, i] = _cubics(t)
+    return cell, weights
 
 
+@compiled
 def edge_and_line_weights(u: Floats) -> tuple[NDArray[np.intp], Floats, Floats]:
     """`edge_weights` and their derivative: LSF(u) = sum_a slopes[a] * e[cell + a]."""
-    cell, t = _cells(u)
-    slopes = np.empty((4, t.size))
-    rest, scaled = 1.0 - t, t * (1 / CELL)
-    np.multiply(rest, (-0.5 / CELL) * rest, out=slopes[0])
-    np.multiply(t, 0.5 * scaled, out=slopes[3])
-    np.multiply(scaled, 1.5 * t - 2.0, out=slopes[1])
-    np.subtract(-slopes[0], slopes[1] + slopes[3], out=slopes[2])
-    return cell, _cubics(t), slopes
-
-
-def _cubics(t: Floats) -> Floats:
-    """The four cubic B-splines at places t (0..1) of a cell, (4, n)."""
-    weights = np.empty((4, t.size))
-    rest, square = 1.0 - t, t * t
-    np.multiply(rest * rest, rest * (1 / 6), out=weights[0])
-    np.multiply(square, t * (1 / 6), out=weights[3])
-    np.add(square * (0.5 * t - 1.0), 2 / 3, out=weights[1])
-    np.subtract(1.0 - weights[0], weights[1] + weights[3], out=weights[2])
-    return weights
+    cell, weights, slopes = np.empty(u.size, np.intp), np.empty((4, u.size)), np.empty((4, u.size))
+    for i in range(u.size):
+        cell[i], t = _place(u[i])
+        weights[0, i], weights[1, i], weights[2, i], weights[3, i] = _cubics(t)
+        rest = 1.0 - t
+        first, second, last = -0.5 * rest * rest, t * (1.5 * t - 2.0), 0.5 * t * t
+        slopes[0, i], slopes[1, i] = first / CELL, second / CELL
+        slopes[2, i], slopes[3, i] = -(first + second + last) / CELL, last / CELL
+    return cell, weights, slopes
 
 
 def expand(cell: NDArray[np.intp], weights: Floats, further: int = 0) -> Floats:
@@ -129,18 +134,27 @@ class SplineRows:
     dense: Floats
     further: int
 
+    # numpy then leaves products with its own arrays to the methods below.
+    __array_ufunc__: ClassVar[None] = None
+
     @property
     def shape(self) -> tuple[int, int]:
         """Rows and columns of the whole matrix."""
         return self.cell.size, CELLS + 3 + self.further
 
-    def __getitem__(self, rows: slice) -> Floats:
-        some = expand(self.cell[rows], self.weights[:, rows], self.further)
-        some[:, -self.dense.shape[1] :] += self.dense[rows]
-        return some
+    def __getitem__(self, rows: slice) -> SplineRows:
+        return SplineRows(self.cell[rows], self.weights[:, rows], self.dense[rows], self.further)
+
+    def __matmul__(self, matrix: Floats) -> Floats:
+        return _times(self.cell, self.weights, self.dense, matrix)
+
+    def __rmatmul__(self, vector: Floats) -> Floats:
+        return _weighted(vector, self.cell, self.weights, self.dense, self.shape[1])
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats:
-        return np.asarray(self[:], dtype)
+        matrix = expand(self.cell, self.weights, self.further)
+        matrix[:, -self.dense.shape[1] :] += self.dense
+        return np.asarray(matrix, dtype)
 
     def with_column(self, column: Floats) -> SplineRows:
         """The matrix with one more column, (n,), at its end."""
@@ -148,12 +162,49 @@ class SplineRows:
         return SplineRows(self.cell, self.weights, dense, self.further + 1)
 
 
+@compiled
+def _times(cell: NDArray[np.intp], weights: Floats, dense: Floats, matrix: Floats) -> Floats:
+    """``SplineRows @ matrix`` of a matrix (k, m), (n, m)."""
+    n, q = dense.shape
+    k, m = matrix.shape
+    found = np.empty((n, m))
+    for i in range(n):
+        p, r, s, t = weights[0, i], weights[1, i], weights[2, i], weights[3, i]
+        first = cell[i]
+        for j in range(m):
+            found[i, j] = (
+                p * matrix[first, j] + r * matrix[first + 1, j]
+                + s * matrix[first + 2, j] + t * matrix[first + 3, j]
+            )  # fmt: skip
+        for a in range(q):
+            for j in range(m):
+                found[i, j] += dense[i, a] * matrix[k - q + a, j]
+    return found
+
+
+@compiled
+def _weighted(
+    vector: Floats, cell: NDArray[np.intp], weights: Floats, dense: Floats, columns: int
+) -> Floats:
+    """``vector @ SplineRows`` of a vector (n,), (columns,)."""
+    n, q = dense.shape
+    found = np.zeros(columns)
+    for i in range(n):
+        for a in range(4):
+            found[cell[i] + a] += vector[i] * weights[a, i]
+        for a in range(q):
+            found[columns - q + a] += vector[i] * dense[i, a]
+    return found
+
+
+@compiled
 def combine(cell: NDArray[np.intp], weights: Floats, coefficients: Floats) -> Floats:
     """The spline of `coefficients` (CELLS + 3,): ``expand(cell, weights) @ coefficients``."""
-    value = weights[0] * coefficients[cell]
-    for a in range(1, 4):
-        value += weights[a] * coefficients[cell + a]
-    return np.asarray(value)
+    value = np.zeros(cell.size)
+    for i in range(cell.size):
+        for a in range(4):
+            value[i] += weights[a, i] * coefficients[cell[i] + a]
+    return value
 
 
 def esf_from_lsf(coefficients: Floats) -> Floats:
@@ -184,6 +235,7 @@ def waves(freq: Floats, *places: float) -> NDArray[np.complex128]:
     return turned
 
 
+@compiled
 def transform(
     freq: Floats, about: float = 0.0, scale: float = 1.0, further: int = 0
 ) -> NDArray[np.complex128]:
@@ -202,19 +254,18 @@ def transform(
     further : int, optional
         Number of columns to leave room for.
     """
-    columns = np.zeros((CELLS + 3 + further, freq.size), complex)
-    turns = columns[3 : 3 + SIZE]
-    turn, first, last = waves(freq, CELL, CENTRES.item(0) - about, CENTRES.item(-1) - about)
-    smooth = np.sinc(freq * CELL)
-    smooth *= scale * smooth * smooth
-    # Coefficient e_m lifts the LSF's c_(m - 3) and lowers c_(m - 2), one cell further on; the
-    # last one only lifts.
-    np.multiply(smooth * (1 - turn), first, out=turns[0])
-    # Doubling: coefficients m .. 2m - 1 are the first m, moved by m cells.
-    done = 1
-    while done < SIZE:
-        more = min(done, SIZE - done)
-        np.multiply(turns[:more], turn, out=turns[done : done + more])
-        turn, done = turn * turn, done + more
-    np.multiply(smooth, last, out=turns[-1])
+    columns = np.zeros((CELLS + 3 + further, freq.size), np.complex128)
+    turn = np.empty(freq.size, np.complex128)
+    for i in range(freq.size):
+        turn[i] = np.exp(-2j * np.pi * freq[i] * CELL)
+        first = np.exp(-2j * np.pi * freq[i] * (_FIRST_CENTRE - about))
+        last = np.exp(-2j * np.pi * freq[i] * (_LAST_CENTRE - about))
+        smooth = scale * np.sinc(freq[i] * CELL) ** 3
+        # Coefficient e_m lifts the LSF's c_(m - 3) and lowers c_(m - 2), one cell further on; the
+        # last one only lifts.
+        columns[3, i] = smooth * (1 - turn[i]) * first
+        columns[2 + SIZE, i] = smooth * last
+    for m in range(4, 2 + SIZE):
+        for i in range(freq.size):
+            columns[m, i] = columns[m - 1, i] * turn[i]
     return columns.T

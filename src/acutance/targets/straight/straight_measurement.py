@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from acutance.curves import Estimate
+from acutance.curves import MAIN_NUMBERS, Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Line
 from acutance.targets.measurement import Measurement
 from acutance.targets.otf_likelihood import OtfLikelihood
 from acutance.targets.slices import OtfSlices
-from acutance.targets.straight.error_causes import FitCauses, caused_by
+from acutance.targets.straight.error_causes import FitCauses
 from acutance.targets.straight.lsf import SplineResponse
 from acutance.targets.straight.pixels_alone import PixelsAlone
 from acutance.targets.straight.stated_target import NOTHING_STATED, StatedTarget
@@ -123,22 +123,28 @@ class StraightMeasurement(Measurement):
 
     def _budget(self) -> tuple[BudgetTerm, ...]:
         """Causes of the fit, then what was stated of the target."""
-        response, stated = self.response, self.stated.terms
-        causes = None if self.details is None else self.details.causes
-        own = response.esf.factor.shape[1] - len(stated)
-        unit = np.eye(own + len(stated))
-        if causes is None:
-            name = "fit" if isinstance(response, SplineResponse) else "row_scatter"
-            parts = {name: unit[:own, :own]}
-        else:
-            parts = causes.latents()
-            fitted = causes.design.shape[0]
-            if own > fitted:
-                parts["halo"] = unit[:own, fitted:own]
-        parts |= {name: unit[:, [own + i]] for i, name in enumerate(stated)}
+        terms, rows = self.stated.terms, self.response.main_rows
+        own, stated = np.split(rows, [rows.shape[1] - len(terms)], axis=1)
+        variances = self._own_variances(own) | dict(zip(terms, stated.T**2, strict=True))
         return budget_rows(
-            self.orientation, ((name, caused_by(response, part)) for name, part in parts.items())
+            self.orientation,
+            {
+                name: dict(zip(MAIN_NUMBERS, np.sqrt(found).tolist(), strict=True))
+                for name, found in variances.items()
+            },
         )
+
+    def _own_variances(self, rows: Floats) -> dict[str, Floats]:
+        """What fit and halo give to the main numbers of these rows, (3,) by term."""
+        causes: FitCauses | None = None if self.details is None else self.details.causes
+        if causes is None:
+            latent = self.response.esf.latent
+            errors = rows if latent is None else rows @ latent[: rows.shape[1]]
+            name = "fit" if isinstance(self.response, SplineResponse) else "row_scatter"
+            return {name: np.einsum("ij,ij->i", errors, errors)}
+        fitted, halo = np.split(rows, [causes.design.shape[0]], axis=1)
+        halos = {"halo": halo[:, 0] ** 2} if halo.size else {}
+        return causes.variances(fitted) | halos
 
     def pulse_numbers(self) -> dict[str, Estimate]:
         """Widths of a pulse and of its response by name, with a GSD also in metres."""

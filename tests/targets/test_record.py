@@ -1,0 +1,52 @@
+"""A record in bytes: stored small, sent between processes quickly."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance.targets import OtfSlices, Record
+
+
+@pytest.fixture(scope="module")
+def record():
+    sensor = ac.simulate.reference_systems()["asymmetric"]
+    image, _ = ac.simulate.edge(sensor, angle_deg=6, snr=100, rng=np.random.default_rng(1))
+    return ac.measure_edge(image, gsd_m=0.7).record
+
+
+def with_waste(record, numbers):
+    """The record with a field of so many numbers that cannot be compressed."""
+    waste = np.random.default_rng(2).standard_normal(numbers).tolist()
+    return Record.from_dict({**record.to_dict(), "waste": waste})
+
+
+@pytest.mark.parametrize("numbers", [0, 2000])
+def test_a_pickled_record_is_the_record(record, numbers):
+    sent = with_waste(record, numbers)
+    assert pickle.loads(pickle.dumps(sent)) == sent
+    assert pickle.loads(pickle.dumps(sent)).to_dict() == sent.to_dict()
+
+
+def test_it_takes_15_kilobytes_pickled_and_less_stored(record):
+    assert len(record.to_bytes()) < len(pickle.dumps(record)) <= 15_000
+    assert Record.from_bytes(record.to_bytes()) == record
+
+
+def test_what_does_not_fit_quickly_is_compressed_as_it_is_stored(record):
+    large = with_waste(record, 2000)
+    assert large.to_bytes() in pickle.dumps(large)
+
+
+def test_a_covariance_has_one_document():
+    rng = np.random.default_rng(3)
+    freq = np.arange(1, 17) * 0.05
+    factor = 0.01 * (rng.standard_normal((16, 6)) + 1j * rng.standard_normal((16, 6)))
+    turn = np.linalg.qr(rng.standard_normal((6, 6)))[0]
+    one, other = (
+        OtfSlices(np.zeros(1), freq, np.exp(-freq) + 0j, found).to_dict()
+        for found in (factor, factor @ turn)
+    )
+    for part in ("factor_real", "factor_imag"):
+        assert np.array(one[part]) == pytest.approx(np.array(other[part]), abs=1.1e-4)
