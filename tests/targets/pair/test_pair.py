@@ -197,7 +197,7 @@ class TestFamilies:
         m = measured("halo", 3.0)
         rows = [row for row in m.budget if row.direction == "across"]
         assert [row.name for row in rows] == [
-            "fit", "reference_noise", "light_from_beyond", "reference_mtf",
+            "fit", "reference_noise", "light_from_beyond", "kernel_shape", "reference_mtf",
         ]  # fmt: skip
         assert sum(row.share["rer"] for row in rows) == pytest.approx(1.0)
         assert np.hypot.reduce([row.std["mtf_nyquist"] for row in rows]) == pytest.approx(

@@ -10,6 +10,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.curves.transfer import phasor
 from acutance.targets.pair import tuned
 from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.kernel_covariance import KernelCovariance
@@ -21,6 +22,8 @@ __all__ = ["KernelOtf"]
 
 _FREQ_CPP: Floats = np.asarray(np.arange(1, 20) / 20)
 _PLANE_NODES = 33
+_STEP_CPP, _HIGHEST_CPP, _ANGLES = 0.05, 1.5, 12
+_SHAPE_CPP: Floats = np.asarray(np.arange(0.0, 1.65, 0.15))
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +86,7 @@ class KernelOtf(ShortRepr):
             "fit": self._inflation(slopes)[:, None] * (slopes @ self.covariance.posterior),
             "reference_noise": slopes @ self.covariance.reference_noise,
             "light_from_beyond": slopes @ self.covariance.beyond,
+            "kernel_shape": self._of_shape(quotient, np.hypot(u_cpp, v_cpp)),
         }
         if self.reference is None:
             return found
@@ -125,6 +129,29 @@ class KernelOtf(ShortRepr):
         quotient = transfer @ self.beta / total
         slopes = (transfer - quotient[:, None] * self._at_zero) / total
         return quotient * centring, slopes * centring[:, None]
+
+    def _of_shape(self, quotient: Complexes, freq_cpp: Floats) -> Complexes:
+        """Factor (n, m) of what the basis cannot follow: a share of what it follows near by."""
+        known, departure = self._departure
+        size = tuned.SHAPE_SHARE * np.interp(freq_cpp, known, departure)
+        near = np.exp(-0.5 * ((freq_cpp[:, None] - _SHAPE_CPP) / tuned.SHAPE_LENGTH_CPP) ** 2)
+        near /= np.linalg.norm(near, axis=1, keepdims=True)
+        return np.asarray((phasor(quotient) * size)[:, None] * near)
+
+    @cached_property
+    def _departure(self) -> tuple[Floats, Floats]:
+        """How far the kernel's OTF departs from the parametric one, by frequency; 0 at zero."""
+        freq = np.arange(0.0, min(self.band_cpp, _HIGHEST_CPP) + _STEP_CPP, _STEP_CPP)
+        angle = np.pi * np.arange(_ANGLES) / _ANGLES
+        u, v = (np.outer(freq, wave(angle)).ravel() for wave in (np.cos, np.sin))
+        parametric = np.zeros(self.beta.size)
+        parametric[0] = 1.0
+        away = self._quotient(u, v)[0] - replace(self, beta=parametric)._quotient(u, v)[0]
+        power = np.mean(np.abs(away.reshape(freq.size, -1)) ** 2, axis=1)
+        near = np.exp(-0.5 * ((freq[:, None] - freq) / tuned.SHAPE_LENGTH_CPP) ** 2)
+        found = np.sqrt(near @ power / near.sum(axis=1))
+        # An OTF is one at zero frequency, whatever its shape.
+        return freq, found * np.minimum(freq / freq[1], 1.0)
 
     @cached_property
     def _at_zero(self) -> Floats:
