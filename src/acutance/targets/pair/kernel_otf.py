@@ -10,7 +10,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.curves.transfer import phasor
+from acutance.numerics.shape_error import ShapeError
 from acutance.targets.pair import tuned
 from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.kernel_covariance import KernelCovariance
@@ -22,8 +22,7 @@ __all__ = ["KernelOtf"]
 
 _FREQ_CPP: Floats = np.asarray(np.arange(1, 20) / 20)
 _PLANE_NODES = 33
-_STEP_CPP, _HIGHEST_CPP, _ANGLES = 0.05, 1.5, 12
-_SHAPE_CPP: Floats = np.asarray(np.arange(0.0, 1.65, 0.15))
+_HIGHEST_CPP = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,27 +130,23 @@ class KernelOtf(ShortRepr):
         return quotient * centring, slopes * centring[:, None]
 
     def _of_shape(self, quotient: Complexes, freq_cpp: Floats) -> Complexes:
-        """Factor (n, m) of what the basis cannot follow: a share of what it follows near by."""
-        known, departure = self._departure
-        size = tuned.SHAPE_SHARE * np.interp(freq_cpp, known, departure)
-        near = np.exp(-0.5 * ((freq_cpp[:, None] - _SHAPE_CPP) / tuned.SHAPE_LENGTH_CPP) ** 2)
-        near /= np.linalg.norm(near, axis=1, keepdims=True)
-        return np.asarray((phasor(quotient) * size)[:, None] * near)
+        """Factor (n, m) of what the basis cannot follow.
+
+        Its last column is the light beyond the taps, which the tail takes from them.
+        """
+        beyond = 1 - np.exp(-0.5 * (2 * math.pi * freq_cpp * self.basis.reach_px) ** 2)
+        light = self.beta[-1] * float(self.basis.far_tail.sum()) / float(self._at_zero @ self.beta)
+        far = tuned.FAR_SHARE * light * beyond * quotient
+        return np.column_stack([self._shape_error.factor(freq_cpp, quotient), far])
 
     @cached_property
-    def _departure(self) -> tuple[Floats, Floats]:
-        """How far the kernel's OTF departs from the parametric one, by frequency; 0 at zero."""
-        freq = np.arange(0.0, min(self.band_cpp, _HIGHEST_CPP) + _STEP_CPP, _STEP_CPP)
-        angle = np.pi * np.arange(_ANGLES) / _ANGLES
-        u, v = (np.outer(freq, wave(angle)).ravel() for wave in (np.cos, np.sin))
-        parametric = np.zeros(self.beta.size)
-        parametric[0] = 1.0
-        away = self._quotient(u, v)[0] - replace(self, beta=parametric)._quotient(u, v)[0]
-        power = np.mean(np.abs(away.reshape(freq.size, -1)) ** 2, axis=1)
-        near = np.exp(-0.5 * ((freq[:, None] - freq) / tuned.SHAPE_LENGTH_CPP) ** 2)
-        found = np.sqrt(near @ power / near.sum(axis=1))
-        # An OTF is one at zero frequency, whatever its shape.
-        return freq, found * np.minimum(freq / freq[1], 1.0)
+    def _shape_error(self) -> ShapeError:
+        parametric = replace(self, beta=np.eye(self.beta.size)[0])
+
+        def departure(u: Floats, v: Floats) -> Complexes:
+            return np.asarray(self._quotient(u, v)[0] - parametric._quotient(u, v)[0])
+
+        return ShapeError.of(departure, min(self.band_cpp, _HIGHEST_CPP), tuned.SHAPE_SHARE)
 
     @cached_property
     def _at_zero(self) -> Floats:

@@ -16,6 +16,8 @@ from acutance.numerics.otf_modes import (
     MeanOtf,
     ProcessModes,
 )
+from acutance.numerics.shape_error import ShapeError
+from acutance.targets.periodic.tuned import SHAPE_SHARE
 
 __all__ = ["FittedOtf", "all_modes", "level_row"]
 
@@ -59,7 +61,18 @@ class FittedOtf:
         modes = self._modes(u_cpp, v_cpp)
         otf = modes @ self.beta / self.level
         # The level is the OTF at zero frequency, where it is 1 without error.
-        return np.asarray((modes - np.outer(otf, self._at_zero)) @ self.beta_factor / self.level)
+        fitted = (modes - np.outer(otf, self._at_zero)) @ self.beta_factor / self.level
+        shape = self._shape_error.factor(np.hypot(u_cpp, v_cpp), otf)
+        return np.hstack([fitted, shape])
+
+    @cached_property
+    def _shape_error(self) -> ShapeError:
+        states = np.where(np.arange(self.beta.size) < MEAN_MODES, 0.0, self.beta)
+
+        def departure(u: Floats, v: Floats) -> Complexes:
+            return np.asarray(self._modes(u, v) @ states / self.level)
+
+        return ShapeError.of(departure, HIGHEST_CPP, SHAPE_SHARE)
 
     @cached_property
     def level(self) -> float:
