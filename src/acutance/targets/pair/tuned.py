@@ -124,11 +124,11 @@ OVERLAP: Final = 4.0
 """Neighbouring frequencies and windows share their pixels: a tapered window holds a quarter as many
 independent numbers as frequencies, and half overlapping windows as many as there are pixels."""
 
-SHAPE_SHARE: Final = 0.04
+SHAPE_SHARE: Final = 0.06
 """What the basis cannot follow of a departure from the parametric kernel, relative to it. Without
 noise the transfer of sensors drawn from all families is wrong by .02 to .09 of it, that of wide
 halos by .2; no pixel shows it."""
 
-FAR_SHARE: Final = 0.45
+FAR_SHARE: Final = 0.4
 """Standard deviation of the light beyond the taps over what the tail says of it: behind a telescope
 it is true, of halos of 4 to 5 px it is .8 too much."""

@@ -77,7 +77,7 @@ BARS_NOISE_FLOOR: Final = 1e-3
 STAR_NOISE_FLOOR: Final = 2e-4
 """The smallest noise, relative to the contrast: the models' residual of images without noise."""
 
-SHAPE_SHARE: Final = 0.0
+SHAPE_SHARE: Final = 0.05
 """What the states cannot follow of a departure from the mean, relative to it."""
 
 STAR_FINEST_CPP: Final = 1.3
