@@ -36,8 +36,8 @@ __all__ = ["OtfLikelihood"]
 Complexes = NDArray[np.complex128]
 
 _EXACT = 1e-3
-"""How exact models of a spectrum are: no pixels determine it better. Chi-square of the true OTF over
-its freedom is .8 then, over all families of sensors (benchmarks/combine.py)."""
+"""How exact models of a spectrum are: no pixels determine it better. Chi-square of the true OTF
+over its freedom is .8 then, over all families of sensors (benchmarks/combine.py)."""
 _NOTHING = 1.0
 """Precision of what the pixels do not show: an OTF is between 0 and 1, or little more."""
 _STEPS = 3

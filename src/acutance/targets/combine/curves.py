@@ -72,7 +72,7 @@ class OtfSamples:
         otf, factor = self.otf * turn, self.factor * turn[:, None]
         likelihood = None
         if self.likelihood is not None:
-            likelihood = self.likelihood.turned(turn).near(otf, -1j * places)
+            likelihood = self.likelihood.turned(turn).near(otf, np.asarray(-1j * places))
         return replace(self, otf=otf, factor=factor, likelihood=likelihood)
 
     @property

@@ -117,7 +117,8 @@ class StraightMeasurement(Measurement):
         mtf = self.mtf
         places = np.searchsorted(mtf.freq_cpp, freq_cpp - 1e-9)
         others = mtf.factor[places][:, alone.columns.shape[0] :]
-        return alone.likelihood(freq_cpp, self.stated.gain(freq_cpp)).with_errors(others)
+        found: OtfLikelihood = alone.likelihood(freq_cpp, self.stated.gain(freq_cpp))
+        return found.with_errors(others)
 
     def _budget(self) -> tuple[BudgetTerm, ...]:
         """Causes of the fit, then what was stated of the target."""
