@@ -117,9 +117,12 @@ def test_it_is_nearer_to_the_truth_than_a_normal_prior(monkeypatch):
         image, truth = simulate.edge(
             optics.Sensor(SENSORS[name]), angle_deg=8, shape=(50, 50), snr=300, rng=rng
         )
-        found = ac.measure_edge(image)
-PLACEHOLDER
         true = truth.response.mtf(0.25).value
-        errors.append((abs(found.mtf.otf[25]) - true, abs(normal) - true))
+        found = ac.measure_edge(image).mtf(0.25).value
+        with monkeypatch.context() as patch:
+            # No density follows the pixels that well: the pass before is the last.
+            patch.setattr(among_sensors, "MAX_SENSOR_MISFIT", -np.inf)
+            normal = ac.measure_edge(image).mtf(0.25).value
+        errors.append((found - true, normal - true))
     new, old = np.sqrt(np.mean(np.square(errors), axis=0))
     assert new < 0.9 * old
