@@ -17,7 +17,6 @@ from acutance.numerics.otf_modes import (
     ProcessModes,
 )
 from acutance.numerics.shape_error import ShapeError
-from acutance.targets.periodic.tuned import SHAPE_SHARE
 
 __all__ = ["FittedOtf", "all_modes", "level_row"]
 
@@ -35,11 +34,14 @@ class FittedOtf:
         frequency is the level.
     beta_factor : (m, k) array
         Factor of the covariance of beta.
+    shape_error : ShapeError, optional
+        Of a shape that the modes do not follow, as the pixels show it.
     """
 
     mean: MeanOtf
     beta: Floats
     beta_factor: Floats
+    shape_error: ShapeError | None = None
 
     @property
     def band_cpp(self) -> float:
@@ -62,17 +64,9 @@ class FittedOtf:
         otf = modes @ self.beta / self.level
         # The level is the OTF at zero frequency, where it is 1 without error.
         fitted = (modes - np.outer(otf, self._at_zero)) @ self.beta_factor / self.level
-        shape = self._shape_error.factor(np.hypot(u_cpp, v_cpp), otf)
-        return np.hstack([fitted, shape])
-
-    @cached_property
-    def _shape_error(self) -> ShapeError:
-        states = np.where(np.arange(self.beta.size) < MEAN_MODES, 0.0, self.beta)
-
-        def departure(u: Floats, v: Floats) -> Complexes:
-            return np.asarray(self._modes(u, v) @ states / self.level)
-
-        return ShapeError.of(departure, HIGHEST_CPP, SHAPE_SHARE)
+        if self.shape_error is None:
+            return np.asarray(fitted)
+        return np.hstack([fitted, self.shape_error.factor(np.hypot(u_cpp, v_cpp), otf)])
 
     @cached_property
     def level(self) -> float:

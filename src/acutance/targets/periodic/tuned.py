@@ -31,7 +31,6 @@ __all__ = [
     "QUIET_SNR",
     "ROUNDNESS_STD",
     "SCATTERED_STD",
-    "SHAPE_SHARE",
     "STANDS_OUT",
     "STAR_FINEST_CPP",
     "STAR_NOISE_FLOOR",
@@ -76,9 +75,6 @@ SCATTERED_STD: Final = 1.0
 BARS_NOISE_FLOOR: Final = 1e-3
 STAR_NOISE_FLOOR: Final = 2e-4
 """The smallest noise, relative to the contrast: the models' residual of images without noise."""
-
-SHAPE_SHARE: Final = 0.05
-"""What the states cannot follow of a departure from the mean, relative to it."""
 
 STAR_FINEST_CPP: Final = 1.3
 """Pixels of finer spokes than this are left out: the printed centre may end there."""
