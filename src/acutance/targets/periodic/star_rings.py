@@ -19,7 +19,7 @@ _CHANCE = 1.5
 _ALONG_AXES = 2.0
 """Error along rows and columns, over its root mean square in all directions: filters act there."""
 _NEAR_CPP = 0.07
-_TURNS = np.arange(0, 18, 2)
+_TURNS = np.arange(2, 18, 2)
 """Even angular orders: transfer has the same modulus in opposite directions."""
 _MIN_PIXELS = 34
 _MIN_SINGULAR = 0.1
@@ -105,30 +105,49 @@ def shape_error(
         Amplitude of the spokes before the sensor.
     inner_px, outer_px : float
     """
-    rows, cols = np.nonzero(np.isfinite(residual))
-    radius, angle = star.polar(rows.astype(float), cols.astype(float))
-    phase, value = star.cycles * angle + star.alpha_rad, residual[rows, cols]
-    found, excess, freedom = [], 0.0, 0
-    for low in np.arange(inner_px, outer_px - 0.5, 1.0):
-        here = (radius >= low) & (radius < low + 1)
-        if np.count_nonzero(here) < _MIN_PIXELS:
-            continue
-        waves = np.multiply.outer(angle[here], _TURNS[1:])
-        around = np.hstack([np.ones((len(waves), 1)), np.cos(waves), np.sin(waves)])
-        design = np.cos(phase[here])[:, None] * around
-        left, size, right = np.linalg.svd(design, full_matrices=False)
-        kept = size > _MIN_SINGULAR * size[0]
-        seen = (left.T @ value[here])[kept]
-        excess, freedom = excess + float(seen @ seen) / noise**2 - seen.size, freedom + seen.size
-        spokes = right[kept].T @ (seen / size[kept])
-        chance = noise**2 * np.sum((right[kept] / size[kept, None]) ** 2, axis=0)
-        power = np.where(np.arange(spokes.size) == 0, 1.0, 0.5) @ (spokes**2 - chance)
-        found.append((star.cycles / (2 * math.pi * float(np.mean(radius[here]))), power))
-    if not found or excess < _CHANCE * math.sqrt(2 * freedom):
+    rings = _residual_rings(residual, star, inner_px, outer_px)
+    if not rings:
         return None
-    freq, power = np.array(found).T
+    freq = np.array([star.freq_cpp(radius) for radius, _, _ in rings])
+    found = [_spoke_power(value / noise, angle, star) for _, angle, value in rings]
+    power, excess, freedom = (np.array(column) for column in zip(*found, strict=True))
+    if np.sum(excess) < _CHANCE * math.sqrt(2 * np.sum(freedom)):
+        return None
     places = np.arange(0.0, freq.max() + _NEAR_CPP, _NEAR_CPP)
     near = np.exp(-0.5 * ((places[:, None] - freq) / _NEAR_CPP) ** 2) + np.finfo(float).tiny
-    error = _ALONG_AXES * np.sqrt(np.maximum(near @ power / near.sum(axis=1), 0.0)) / level
-    error[0] = 0.0
-    return ShapeError(places, error)
+    mean_power = np.maximum(near @ power / near.sum(axis=1), 0.0)
+    std = _ALONG_AXES * noise / level * np.sqrt(mean_power)
+    std[0] = 0.0
+    return ShapeError(places, std)
+
+
+def _residual_rings(
+    residual: Floats, star: SiemensStar, inner_px: float, outer_px: float
+) -> list[tuple[float, Floats, Floats]]:
+    """Radius, directions and residuals of every ring that has enough pixels."""
+    rows, cols = np.nonzero(np.isfinite(residual))
+    radius, angle = star.polar(rows.astype(float), cols.astype(float))
+    value, found = residual[rows, cols], []
+    for low in np.arange(inner_px, outer_px - 0.5, 1.0):
+        here = (radius >= low) & (radius < low + 1)
+        if np.count_nonzero(here) >= _MIN_PIXELS:
+            found.append((float(np.mean(radius[here])), angle[here], value[here]))
+    return found
+
+
+def _spoke_power(standard: Floats, angle: Floats, star: SiemensStar) -> tuple[float, float, int]:
+    """Mean power of the spokes in a ring's standardised residuals, noise taken off.
+
+    Also chi-square of the spokes less its expectation, and that.
+    """
+    turns = np.multiply.outer(angle, _TURNS)
+    around = np.hstack([np.ones((angle.size, 1)), np.cos(turns), np.sin(turns)])
+    spokes = np.cos(star.cycles * angle + star.alpha_rad)
+    left, size, right = np.linalg.svd(spokes[:, None] * around, full_matrices=False)
+    kept = size > _MIN_SINGULAR * size[0]
+    seen, back = (left.T @ standard)[kept], right[kept].T / size[kept]
+    # Mean squares of one, and of sines and cosines, over directions.
+    weight = np.full(around.shape[1], 0.5)
+    weight[0] = 1.0
+    power = weight @ ((back @ seen) ** 2 - np.sum(back**2, axis=1))
+    return float(power), float(seen @ seen) - seen.size, seen.size
