@@ -1,0 +1,94 @@
+"""Loops over the pixels of a region around a straight target.
+
+Arrays of the region's shape hold each pixel's value, its distance from the target's line along the
+normal, s, and its distance along the line, t. Pixels that must not be used are NaN.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.geometry.line import Line
+from acutance.numerics.compiled import compiled
+
+__all__ = ["clear_reach", "line_distances", "local_mean", "pixels_along", "values_beside"]
+
+
+def line_distances(shape: tuple[int, ...], line: Line) -> tuple[Floats, Floats]:
+    """Distance of every pixel from a line, along its normal and along it, (rows, cols) each."""
+    row, col = np.arange(float(shape[0]))[:, None], np.arange(float(shape[1]))
+    return line.normal_distance(row, col), line.tangent_distance(row, col)
+
+
+@compiled
+def pixels_along(
+    image: Floats, s: Floats, t: Floats, start_px: float, stop_px: float, reach_px: float
+) -> Floats:
+    """Row, column, value and s of the pixels near a stretch of the line, (4, n)."""
+    found, n = np.empty((4, image.size)), 0
+    for row in range(image.shape[0]):
+        for col in range(image.shape[1]):
+            if (
+                abs(s[row, col]) < reach_px
+                and start_px < t[row, col] < stop_px
+                and np.isfinite(image[row, col])
+            ):
+                found[0, n], found[1, n] = row, col
+                found[2, n], found[3, n] = image[row, col], s[row, col]
+                n += 1
+    return found[:, :n].copy()
+
+
+@compiled
+def local_mean(image: Floats) -> Floats:
+    """Mean of the usable ones of the 3 x 3 pixels around every usable pixel, (rows, cols)."""
+    rows, cols = image.shape
+    total, known = np.zeros((rows + 2, cols + 2)), np.zeros((rows + 2, cols + 2))
+    for row in range(rows):
+        for col in range(cols):
+            usable = np.isfinite(image[row, col])
+            known[row + 1, col + 1] = 1.0 if usable else 0.0
+            total[row + 1, col + 1] = image[row, col] if usable else 0.0
+    total, known = _sums_of_three(total), _sums_of_three(known)
+    mean = np.empty((rows, cols))
+    for row in range(rows):
+        for col in range(cols):
+            own = total[row, col] / known[row, col]
+            mean[row, col] = own if np.isfinite(image[row, col]) else np.nan
+    return mean
+
+
+@compiled
+def _sums_of_three(padded: Floats) -> Floats:
+    """Sums over 3 x 3 places, (rows - 2, cols - 2)."""
+    rows, cols = padded.shape[0] - 2, padded.shape[1] - 2
+    total = np.empty((rows, cols))
+    for row in range(rows):
+        for col in range(cols):
+            above = padded[row, col] + padded[row, col + 1] + padded[row, col + 2]
+            level = padded[row + 1, col] + padded[row + 1, col + 1] + padded[row + 1, col + 2]
+            below = padded[row + 2, col] + padded[row + 2, col + 1] + padded[row + 2, col + 2]
+            total[row, col] = above + level + below
+    return total
+
+
+@compiled
+def values_beside(
+    values: Floats, s: Floats, t: Floats, last_step_px: float, near_px: float, far_px: float,
+    half_length_px: float,
+) -> Floats:  # fmt: skip
+    """Values of the usable pixels within two distances from a target's ends, (n,)."""
+    found, n = np.empty(values.size), 0
+    for row in range(values.shape[0]):
+        for col in range(values.shape[1]):
+            outside = max(-s[row, col], s[row, col] - last_step_px)
+            if (
+                near_px < outside < far_px
+                and abs(t[row, col]) < half_length_px
+                and np.isfinite(values[row, col])
+            ):
+                found[n] = values[row, col]
+                n += 1
+    return found[:n].copy()
