@@ -6,14 +6,21 @@ normal, s, and its distance along the line, t. Pixels that must not be used are 
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
-from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.geometry.line import Line
 from acutance.numerics.compiled import compiled
 
-__all__ = ["clear_reach", "line_distances", "local_mean", "pixels_along", "values_beside"]
+__all__ = [
+    "line_distances",
+    "local_mean",
+    "pixels_along",
+    "reach_of_rows",
+    "values_beside",
+]
 
 
 def line_distances(shape: tuple[int, ...], line: Line) -> tuple[Floats, Floats]:
@@ -92,3 +99,64 @@ def values_beside(
                 found[n] = values[row, col]
                 n += 1
     return found[:n].copy()
+
+
+@compiled
+def reach_of_rows(
+    mean: Floats, s: Floats, t: Floats, last_step_px: float, far_px: float,
+    tolerance: float, near_px: float, near_tolerance: float,
+) -> tuple[int, Floats, Floats, bool]:  # fmt: skip
+    """How far the pixels and the uniform plateaus of every row reach, on both sides of a target.
+
+    Parameters
+    ----------
+    mean : (rows, cols) array
+        Local mean of what a fit leaves; NaN of pixels that must not be used.
+    s, t : (rows, cols) arrays
+    last_step_px : float
+        Distance of the target's last step from its first.
+    far_px : float
+        Pixels further out do not count.
+    tolerance, near_tolerance : float
+        A pixel is structure if its mean exceeds the first; up to `near_px` from the target's ends
+        the second.
+    near_px : float
+
+    Returns
+    -------
+    first : int
+        Where the first row begins along the line. Rows are one pixel long.
+    last : (2, n) array
+        How far out the last pixel of every row lies, on the dark and on the bright side.
+    stop : (2, n) array
+        A pixel less than its first structure, infinite without any; within the target a structure
+        pixel spoils its row on both sides.
+    any_structure : bool
+    """
+    usable = np.isfinite(mean)
+    low, high = np.inf, -np.inf
+    for row in range(mean.shape[0]):
+        for col in range(mean.shape[1]):
+            if usable[row, col]:
+                low, high = min(low, t[row, col]), max(high, t[row, col])
+    first = math.floor(low)
+    count = int(high - first) + 1
+    last, stop = np.zeros((2, count)), np.full((2, count), np.inf)
+    any_structure = False
+    for row in range(mean.shape[0]):
+        for col in range(mean.shape[1]):
+            if not usable[row, col]:
+                continue
+            place = int(t[row, col] - first)
+            dark, bright = -s[row, col], s[row, col] - last_step_px
+            outside = max(dark, bright)
+            if 0 < outside < far_px:
+                side = 0 if dark > 0 else 1
+                last[side, place] = max(last[side, place], outside)
+            if abs(mean[row, col]) > (near_tolerance if outside < near_px else tolerance):
+                any_structure = True
+                if dark > -0.5 - last_step_px:
+                    stop[0, place] = min(stop[0, place], max(dark - 1.0, 0.0))
+                if bright > -0.5 - last_step_px:
+                    stop[1, place] = min(stop[1, place], max(bright - 1.0, 0.0))
+    return first, last, stop, any_structure
