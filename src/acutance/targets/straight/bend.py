@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.noise import robust_scale
+from acutance.numerics.compiled import compiled
+from acutance.numerics.noise import median, robust_scale
 from acutance.targets.straight.first_fit import FirstFit, fit_first
 
 __all__ = ["bent"]
@@ -66,15 +69,30 @@ def _curvature(
     parts = int(extent / _PART_PX)
     if parts < _MIN_PARTS:
         return 0.0, np.inf, 1.0
-    part = np.minimum(((t - first) * (parts / extent)).astype(np.intp), parts - 1)
-    power = np.bincount(part, slope * slope, parts)
-    offset = -np.bincount(part, slope * residual, parts) / np.maximum(power, 1e-9)
-    place = first + (np.arange(parts) + 0.5) * (extent / parts)
-    known = (power > 0.3 * np.median(power)) & (np.abs(offset) < _MAX_OFFSET_PX)
+    power, offset = _part_offsets(t - first, slope, residual, extent / parts, parts)
+    known = (power > 0.3 * median(power)) & (np.abs(offset) < _MAX_OFFSET_PX)
     if np.count_nonzero(known) < _MIN_PARTS:
         return 0.0, np.inf, 1.0
-    shapes = np.stack([np.ones(parts), place, 0.5 * place**2], axis=1)[known]
-    inverse = np.linalg.pinv(shapes)
-    left = offset[known] - shapes @ (inverse @ offset[known])
-    std = max(robust_scale(left), 1e-6) * float(np.linalg.norm(inverse[2]))
-    return float(inverse[2] @ offset[known]), std, 0.5 * extent
+    half_px, offset = 0.5 * extent, offset[known]
+    place = (first + (known.nonzero()[0] + 0.5) * (extent / parts)) / half_px
+    shapes = np.stack([np.ones(place.size), place, 0.5 * place * place])
+    inverse = np.linalg.solve(shapes @ shapes.T, shapes)
+    left = offset - (inverse @ offset) @ shapes
+    bow = inverse[2] / half_px**2
+    return float(bow @ offset), max(robust_scale(left), 1e-6) * math.sqrt(bow @ bow), half_px
+
+
+@compiled
+def _part_offsets(
+    t: Floats, slope: Floats, residual: Floats, part_px: float, parts: int
+) -> tuple[Floats, Floats]:
+    """Power of the slope in every part of a target, and the part's offset by least squares.
+
+    `t` begins at the first part's end.
+    """
+    power, product = np.zeros(parts), np.zeros(parts)
+    for k in range(t.size):
+        part = min(int(t[k] / part_px), parts - 1)
+        power[part] += slope[k] * slope[k]
+        product[part] -= slope[k] * residual[k]
+    return power, product / np.maximum(power, 1e-9)
