@@ -70,8 +70,7 @@ def _at(
     width_px = _guessed_width(s, value) if stated_px is None else stated_px
     reach = _REACH_PX
     plateaus = [
-        value[(outside > 0.5 * reach) & (outside < reach)]
-        for outside in (-s, s - width_px)
+        value[(outside > 0.5 * reach) & (outside < reach)] for outside in (-s, s - width_px)
     ]
     top = value[np.abs(s - 0.5 * width_px) < max(0.25 * width_px, 0.6)]
     if min(top.size, *(plateau.size for plateau in plateaus)) < _MIN_PIXELS:

@@ -16,6 +16,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled, inlined
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, blurred_step, gaussian_pixel_width
 from acutance.numerics.lorentz_tail import tail_step
+from acutance.numerics.scalar_product import scalar_product
 from acutance.targets.straight.tuned import TAIL_WIDTH
 
 __all__ = ["MIN_SIGMA_PX", "bounded_solution", "compared", "gauss_newton"]
@@ -62,20 +63,20 @@ def gauss_newton(
     """
     p, damping = start.copy(), _DAMPING
     residual, jacobian = compared(s, t, value, p)
-    cost = _product(residual, residual) + _product(weight, (p - expected) ** 2)
+    cost = scalar_product(residual, residual) + scalar_product(weight, (p - expected) ** 2)
     for _ in range(_MAX_STEPS):
         gram, gradient = _normal_equations(jacobian, residual, weight, expected - p, damping)
         step = bounded_solution(gram, gradient, *_step_bounds(p, lowest, highest))
         moved = _moved(p, step)
         # The cost falls by the product of gradient and step where neither damping nor a bound
         # changes the step: the last one is not tried.
-        gain, enough = _product(gradient, step), _SETTLED * cost + 1e-18 * p[1] ** 2 * s.size
+        gain, enough = scalar_product(gradient, step), _SETTLED * cost + 1e-18 * p[1] ** 2 * s.size
         if damping < 2 * _DAMPING and 0 <= gain <= enough:
             p = moved
             break
         new_residual, new_jacobian = compared(s, t, value, moved)
-        new_cost = _product(new_residual, new_residual)
-        new_cost += _product(weight, (moved - expected) ** 2)
+        new_cost = scalar_product(new_residual, new_residual)
+        new_cost += scalar_product(weight, (moved - expected) ** 2)
         if new_cost <= cost:
             p, cost, residual, jacobian = moved, new_cost, new_residual, new_jacobian
             damping *= 0.1
@@ -83,7 +84,7 @@ def gauss_newton(
             damping = max(damping, 1e-4) * 10
             if damping > _MAX_DAMPING:
                 break
-    return p, math.sqrt(_product(residual, residual) / max(s.size - p.size, 1))
+    return p, math.sqrt(scalar_product(residual, residual) / max(s.size - p.size, 1))
 
 
 @compiled
@@ -134,15 +135,6 @@ def _responses(distance: Floats, p: Floats) -> Floats:
 
 
 @compiled
-def _product(one: Floats, other: Floats) -> float:
-    """Scalar product of two vectors."""
-    total = 0.0
-    for k in range(one.size):
-        total += one[k] * other[k]
-    return total
-
-
-@compiled
 def _normal_equations(
     jacobian: Floats, residual: Floats, weight: Floats, missing: Floats, damping: float
 ) -> tuple[Floats, Floats]:
@@ -150,10 +142,10 @@ def _normal_equations(
     size = weight.size
     gram, gradient = np.empty((size, size)), np.empty(size)
     for i in range(size):
-        gradient[i] = _product(jacobian[i], residual) + weight[i] * missing[i]
+        gradient[i] = scalar_product(jacobian[i], residual) + weight[i] * missing[i]
         for j in range(i):
-            gram[i, j] = gram[j, i] = _product(jacobian[i], jacobian[j])
-        diagonal = _product(jacobian[i], jacobian[i]) + weight[i]
+            gram[i, j] = gram[j, i] = scalar_product(jacobian[i], jacobian[j])
+        diagonal = scalar_product(jacobian[i], jacobian[i]) + weight[i]
         # A parameter without effect stays.
         gram[i, i] = diagonal * (1 + damping) if diagonal > 0 else 1.0
     return gram, gradient
