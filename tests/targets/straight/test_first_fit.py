@@ -92,7 +92,7 @@ def test_penalties_pull_to_what_is_expected():
     far = np.full(7, 1e9)
     expected = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.3, 0.02])
     free, held = (
-        gauss_newton(s, s, -value, start, expected, weight, -far, far)[0]
+        gauss_newton(s, s, -value, start, expected, weight, -far, far, 0.0, 9.0)[0]
         for weight in (np.zeros(7), np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1e3, 1e3]))
     )
     assert free[6] == pytest.approx(0.1, abs=1e-3)

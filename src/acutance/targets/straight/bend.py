@@ -10,6 +10,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median, robust_scale
 from acutance.targets.straight.first_fit import FirstFit, fit_first
+from acutance.targets.straight.step_profile import blurred_profile
 
 __all__ = ["bent"]
 
@@ -60,21 +61,18 @@ def _curvature(
     The pixels of a part that lies an offset d towards the bright side are darker by d times the
     slope of the image.
     """
-    s = fit.line.normal_distance(row, col)
-    near = fit.profile.near(s, _NEAR_WIDTHS * fit.blur.width_px)
-    s, t = s[near], fit.line.tangent_distance(row, col)[near]
-    response, slope = fit.profile.response(fit.profile.seen(fit.blur, s))
-    residual = (value[near] - fit.dark) / fit.height - response
-    first, extent = float(t.min(initial=0.0)), float(np.ptp(t)) if t.size else 0.0
-    parts = int(extent / _PART_PX)
-    if parts < _MIN_PARTS:
+    first, part_px, power, offset = _part_offsets(
+        fit.line.normal_distance(row, col), fit.line.tangent_distance(row, col),
+        (value - fit.dark) / fit.height, fit.profile.steps, fit.blur.sigma_px,
+        fit.blur.aperture_px, _NEAR_WIDTHS * fit.blur.width_px,
+    )  # fmt: skip
+    if power.size < _MIN_PARTS:
         return 0.0, np.inf, 1.0
-    power, offset = _part_offsets(t - first, slope, residual, extent / parts, parts)
     known = (power > 0.3 * median(power)) & (np.abs(offset) < _MAX_OFFSET_PX)
     if np.count_nonzero(known) < _MIN_PARTS:
         return 0.0, np.inf, 1.0
-    half_px, offset = 0.5 * extent, offset[known]
-    place = (first + (known.nonzero()[0] + 0.5) * (extent / parts)) / half_px
+    half_px, offset = 0.5 * part_px * power.size, offset[known]
+    place = (first + (known.nonzero()[0] + 0.5) * part_px) / half_px
     shapes = np.stack([np.ones(place.size), place, 0.5 * place * place])
     inverse = np.linalg.solve(shapes @ shapes.T, shapes)
     left = offset - (inverse @ offset) @ shapes
@@ -84,15 +82,33 @@ def _curvature(
 
 @compiled
 def _part_offsets(
-    t: Floats, slope: Floats, residual: Floats, part_px: float, parts: int
-) -> tuple[Floats, Floats]:
-    """Power of the slope in every part of a target, and the part's offset by least squares.
+    s: Floats, t: Floats, value: Floats, steps: Floats, sigma: float, aperture: float,
+    reach_px: float,
+) -> tuple[float, float, Floats, Floats]:  # fmt: skip
+    """Offsets of the parts of a target by least squares, from the pixels near its steps.
 
-    `t` begins at the first part's end.
+    Returns
+    -------
+    first, part_px : float
+        Where the first part begins along the line, and how long the parts are.
+    power, offset : (parts,) arrays
+        Squared slopes of each part, and its offset.
     """
-    power, product = np.zeros(parts), np.zeros(parts)
+    near = np.abs(s) < reach_px
+    for k in range(1, steps.shape[1]):
+        near |= np.abs(s - steps[0, k]) < reach_px
+    s, t, value = s[near], t[near], value[near]
+    first, last = np.inf, -np.inf
     for k in range(t.size):
-        part = min(int(t[k] / part_px), parts - 1)
+        first, last = min(first, t[k]), max(last, t[k])
+    parts = int(max(last - first, 0.0) / _PART_PX)
+    power, product = np.zeros(parts), np.zeros(parts)
+    if parts == 0:
+        return 0.0, 0.0, power, product
+    part_px = (last - first) / parts
+    response, slope = blurred_profile(s, steps, sigma, aperture)
+    for k in range(s.size):
+        part = min(int((t[k] - first) / part_px), parts - 1)
         power[part] += slope[k] * slope[k]
-        product[part] -= slope[k] * residual[k]
-    return power, product / np.maximum(power, 1e-9)
+        product[part] -= slope[k] * (value[k] - response[k])
+    return first, part_px, power, product / np.maximum(power, 1e-9)

@@ -79,8 +79,7 @@ def fit_first(
     NoEdgeError
         If no step survives the fit.
     """
-    t = line.tangent_distance(row, col)
-    s = line.normal_distance(row, col)
+    s, t = line.normal_distance(row, col), line.tangent_distance(row, col)
     # A bad pixel counts with no more than a whole height.
     levels = (dark, bright, dark + (bright - dark) * sum(profile.shares))
     span = max(levels) - min(levels)
@@ -95,10 +94,11 @@ def fit_first(
         lowest[5] = highest[5] = p[5]
         lowest[7], highest[7] = (0.5 * p[7], 2.0 * p[7]) if fit_width else (p[7], p[7])
     for _ in range(4):
-        near = profile.outside(s - p[2] + t * p[3]) < reach
         # The priors of aperture and tail: two more data.
         weight[5:7] = (scale / APERTURE_PX[1]) ** 2, (scale / _TAIL_STD) ** 2
-        p, left = gauss_newton(s[near], t[near], value[near], p, expected, weight, lowest, highest)
+        p, left = gauss_newton(
+            s, t, value, p, expected, weight, lowest, highest, profile.positions_px[-1], reach
+        )
         blur, height = GaussianPixel(float(p[4]), float(p[5])), float(p[1])
         scale = max(left, 1e-6 * abs(height))
         wanted = _REACH_WIDTHS * blur.width_px

@@ -40,6 +40,8 @@ def gauss_newton(
     weight: Floats,
     lowest: Floats,
     highest: Floats,
+    last_step_px: float,
+    reach_px: float,
 ) -> tuple[Floats, float]:
     """Minimise the squared residuals and the penalties by damped Gauss-Newton.
 
@@ -54,6 +56,8 @@ def gauss_newton(
         A penalty is a weight times the squared difference from what is expected.
     lowest, highest : arrays like `start`
         Bounds of the parameters.
+    last_step_px, reach_px : float
+        Pixels beyond this reach from the first step, or from the last one, are left out.
 
     Returns
     -------
@@ -62,6 +66,9 @@ def gauss_newton(
         Standard deviation of the residuals; not finite if a pixel is not.
     """
     p, damping = start.copy(), _DAMPING
+    distance = s - p[2] + t * p[3]
+    near = (distance > -reach_px) & (distance < last_step_px + reach_px)
+    s, t, value = s[near], t[near], value[near]
     residual, jacobian = compared(s, t, value, p)
     cost = scalar_product(residual, residual) + scalar_product(weight, (p - expected) ** 2)
     for _ in range(_MAX_STEPS):

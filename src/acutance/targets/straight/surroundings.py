@@ -13,14 +13,21 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.geometry.line import Line
 from acutance.numerics.compiled import compiled
+from acutance.targets.straight.step_profile import blurred_profile
 
 __all__ = [
+    "best_run",
+    "bounded_residual",
     "line_distances",
     "local_mean",
     "pixels_along",
     "reach_of_rows",
     "values_beside",
 ]
+
+
+_WIDER = (1.0, 1.5, 2.0, 3.0, 4.0)
+"""Widths of plateaus that are tried, in units of the smallest one needed."""
 
 
 def line_distances(shape: tuple[int, ...], line: Line) -> tuple[Floats, Floats]:
@@ -46,6 +53,34 @@ def pixels_along(
                 found[2, n], found[3, n] = image[row, col], s[row, col]
                 n += 1
     return found[:, :n].copy()
+
+
+@compiled
+def bounded_residual(
+    image: Floats, s: Floats, dark: float, height: float, steps: Floats, sigma: float,
+    aperture: float,
+) -> Floats:  # fmt: skip
+    """What a blurred profile leaves of the pixels, in units of its height, within -1 .. 1.
+
+    One bad pixel is an outlier, and no structure of the plateaus.
+
+    Parameters
+    ----------
+    image, s : (rows, cols) arrays
+    dark, height : float
+    steps : (2, n) array
+        Positions and shares of the profile's steps.
+    sigma, aperture : float
+        The blur, pixels.
+    """
+    model = blurred_profile(s.reshape(-1), steps, sigma, aperture)[0].reshape(image.shape)
+    found = np.empty(image.shape)
+    for row in range(image.shape[0]):
+        for col in range(image.shape[1]):
+            residual = (image[row, col] - dark) / height - model[row, col]
+            residual = 1.0 if residual > 1.0 else residual
+            found[row, col] = -1.0 if residual < -1.0 else residual
+    return found
 
 
 @compiled
@@ -160,3 +195,22 @@ def reach_of_rows(
                 if bright > -0.5 - last_step_px:
                     stop[1, place] = min(stop[1, place], max(bright - 1.0, 0.0))
     return first, last, stop, any_structure
+
+
+@compiled
+def best_run(reach: Floats, need: float) -> tuple[int, int]:
+    """The best run of rows: long, with plateaus of at least `need` pixels.
+
+    A wider plateau shortens the run; twice the need is worth a third of the rows.
+    """
+    best, found = 0.0, (0, 0)
+    for wider in _WIDER:
+        start = 0
+        for stop in range(reach.size + 1):
+            if stop < reach.size and reach[stop] >= need * wider:
+                continue
+            worth = (stop - start) * (1 - 0.5**wider)
+            if worth > best:
+                best, found = worth, (start, stop)
+            start = stop + 1
+    return found

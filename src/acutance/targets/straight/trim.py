@@ -20,6 +20,8 @@ from acutance.targets.straight.find_edges import Segment
 from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.pixels import EdgePixels
 from acutance.targets.straight.surroundings import (
+    best_run,
+    bounded_residual,
     line_distances,
     local_mean,
     pixels_along,
@@ -41,8 +43,6 @@ _MAX_HALF_WIDTH_PX = 40.0
 _FAR_PX = 100.0
 _FIRST_REACH_PX = 7.0
 _REACH_WIDTHS = 2.5
-_WIDER: Floats = np.array([1.0, 1.5, 2.0, 3.0, 4.0])
-"""Widths of plateaus that are tried, in units of the smallest one needed."""
 
 
 @dataclass(frozen=True)
@@ -135,12 +135,13 @@ def select_usable(image: Floats, edge: FirstFit, half_length_px: float) -> Usabl
         If too few rows are usable.
     """
     s, t = line_distances(image.shape, edge.line)
-    residual = (image - edge.dark) / edge.height - edge.profile.mean(edge.blur, s)
-    # One bad pixel is an outlier, and no structure of the plateaus.
-    residual = np.minimum(np.maximum(residual, -1.0), 1.0)
+    residual = bounded_residual(
+        image, s, edge.dark, edge.height, edge.profile.steps, edge.blur.sigma_px,
+        edge.blur.aperture_px,
+    )  # fmt: skip
     need = 1.5 * edge.blur.width_px + 1.5
     first, reaches, whole = _reaches(edge, residual, s, t, half_length_px, need)
-    start, stop = _best_run(np.minimum(*reaches), need)
+    start, stop = best_run(np.minimum(*reaches), need)
     length = stop - start
     if length < MIN_ROWS:
         raise SupportError(
@@ -254,19 +255,3 @@ def _spoiled(stop: Floats, rows: int) -> Floats:
     padded = np.pad(stop, ((0, 0), (rows, rows)), constant_values=np.inf)
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * rows + 1, axis=1)
     return np.asarray(windows.min(axis=2))
-
-
-def _best_run(reach: Floats, need: float) -> tuple[int, int]:
-    """The best run of rows: long, with plateaus of at least `need` pixels.
-
-    A wider plateau shortens the run; twice the need is worth a third of the rows.
-    """
-    wide = np.zeros((_WIDER.size, reach.size + 2), np.int8)
-    wide[:, 1:-1] = reach >= need * _WIDER[:, None]
-    turns = wide[:, 1:] - wide[:, :-1]
-    plateau, starts = (turns > 0).nonzero()
-    stops = (turns < 0).nonzero()[1]
-    if starts.size == 0:
-        return 0, 0
-    best = int(np.argmax((stops - starts) * (1 - 0.5 ** _WIDER[plateau])))
-    return int(starts[best]), int(stops[best])
