@@ -110,7 +110,9 @@ def _at(
 def _guessed_width(s: Floats, value: Floats) -> float:
     """Distance from the rising side to where the profile has fallen half way back."""
     # Means of few pixels each: a bad pixel would look like the pulse.
-    value = np.clip(value, *np.quantile(value, (_SPOILED, 1 - _SPOILED)))
+    place = np.arange(value.size) / max(value.size - 1, 1)
+    low, high = np.interp((_SPOILED, 1 - _SPOILED), place, np.sort(value)).tolist()
+    value = np.minimum(np.maximum(value, low), high)
     bins = ((s + _REACH_PX) / _PROFILE_STEP_PX).astype(np.intp)
     inside = (bins >= 0) & (s < _MAX_WIDTH_PX)
     count = np.bincount(bins[inside])

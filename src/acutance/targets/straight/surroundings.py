@@ -21,6 +21,7 @@ __all__ = [
     "line_distances",
     "local_mean",
     "pixels_along",
+    "reach_before_structure",
     "reach_of_rows",
     "values_beside",
 ]
@@ -195,6 +196,27 @@ def reach_of_rows(
                 if bright > -0.5 - last_step_px:
                     stop[1, place] = min(stop[1, place], max(bright - 1.0, 0.0))
     return first, last, stop, any_structure
+
+
+@compiled
+def reach_before_structure(stop: Floats, width_px: float, need: float) -> Floats:
+    """How far the rows are clear of structure at known distances, (2, rows).
+
+    A row ends before the first structure of its own or of the rows next to it. Structure is blurred
+    too: where the reach exceeds what is needed, it ends a width of the blur before the structure of
+    any row that near.
+    """
+    reach = np.empty(stop.shape)
+    wide = math.ceil(width_px)
+    for side in range(stop.shape[0]):
+        for row in range(stop.shape[1]):
+            close, wary = np.inf, np.inf
+            for other in range(max(row - wide, 0), min(row + wide + 1, stop.shape[1])):
+                wary = min(wary, stop[side, other] - width_px)
+                if abs(other - row) <= 1:
+                    close = min(close, stop[side, other])
+            reach[side, row] = max(wary, min(close, need))
+    return reach
 
 
 @compiled

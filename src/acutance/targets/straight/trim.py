@@ -25,6 +25,7 @@ from acutance.targets.straight.surroundings import (
     line_distances,
     local_mean,
     pixels_along,
+    reach_before_structure,
     reach_of_rows,
     values_beside,
 )
@@ -222,9 +223,7 @@ def _reaches(
     """How far every row is clear, before the target's first and behind its last step, (2, n).
 
     Rows are one pixel long along the edge, from the first number; the reach of a row ends before
-    the first structure pixel of it or of the rows next to it, or at the last pixel. Structure is
-    blurred too: where the reach exceeds `need`, it ends a width of the blur before the structure.
-    The last result is whether there is none.
+    structure, or at the last pixel. The last result is whether there is no structure.
     """
     width, last_step = edge.blur.width_px, edge.profile.positions_px[-1]
     mean = local_mean(residual)
@@ -239,8 +238,8 @@ def _reaches(
     last = np.minimum(last + 0.5, _MAX_HALF_WIDTH_PX)
     if not structure:
         return first, last, True
-    close, wary = _spoiled(stop, 1), _spoiled(stop, math.ceil(width)) - width
-    return first, np.minimum(last, np.maximum(wary, np.minimum(close, need))), False
+    reach = reach_before_structure(stop, width, need)
+    return first, np.minimum(last, reach), False
 
 
 def _tolerance(plateaus: Floats) -> float:
@@ -248,10 +247,3 @@ def _tolerance(plateaus: Floats) -> float:
     noise = robust_scale(plateaus) if plateaus.size else 0.0
     # More than a fifth of the contrast is structure, however rough the plateaus are.
     return max(PLATEAU_TOLERANCE, min(_SIGNIFICANCE * noise, MAX_TOLERANCE))
-
-
-def _spoiled(stop: Floats, rows: int) -> Floats:
-    """The reach of every row, where a structure pixel also ends the `rows` next to its own."""
-    padded = np.pad(stop, ((0, 0), (rows, rows)), constant_values=np.inf)
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * rows + 1, axis=1)
-    return np.asarray(windows.min(axis=2))
