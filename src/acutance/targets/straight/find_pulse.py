@@ -110,8 +110,8 @@ def _at(
 def _guessed_width(s: Floats, value: Floats) -> float:
     """Distance from the rising side to where the profile has fallen half way back."""
     # Means of few pixels each: a bad pixel would look like the pulse.
-    place = np.arange(value.size) / max(value.size - 1, 1)
-    least, largest = np.interp((_SPOILED, 1 - _SPOILED), place, np.sort(value)).tolist()
+    share = np.arange(value.size) / max(value.size - 1, 1)
+    least, largest = np.interp((_SPOILED, 1 - _SPOILED), share, np.sort(value)).tolist()
     value = np.minimum(np.maximum(value, least), largest)
     bins = ((s + _REACH_PX) / _PROFILE_STEP_PX).astype(np.intp)
     inside = (bins >= 0) & (s < _MAX_WIDTH_PX)
@@ -130,9 +130,9 @@ def _guessed_width(s: Floats, value: Floats) -> float:
     plateau = median(level[grid < -1.0]) if (grid < -1.0).any() else float(level[0])
     # The first maximum behind the rising side, not the brightest place of the scene.
     falling = np.flatnonzero(np.diff(level[behind]) < 0)
-    crest = float(level[behind][int(falling[0])]) if falling.size else float(level.max())
+    top = float(level[behind][int(falling[0])]) if falling.size else float(level.max())
     place = grid[behind][int(falling[0])] if falling.size else 0.0
-    width = crossing(grid, level, 0.5 * (plateau + crest), float(place))
+    width = crossing(grid, level, 0.5 * (plateau + top), float(place))
     if not width > 0:
         raise NoEdgeError(
             f"no falling side of the pulse was found within {_MAX_WIDTH_PX:g} px: state its width, "

@@ -97,4 +97,4 @@ EDGE: Final = Profile((0.0,), (1.0,))
 
 def pulse_profile(width_px: float, height_ratio: float = 1.0) -> Profile:
     """A step up and one down after `width_px`; `height_ratio`: the second over the first."""
-    return Profile((0.0, width_px), (1.0, -height_ratio))
+    return Profile((0.0, float(width_px)), (1.0, -float(height_ratio)))

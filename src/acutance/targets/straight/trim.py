@@ -101,7 +101,7 @@ def near_line(image: Floats, line: Line) -> Floats:
     """An image without the pixels too far from a line to depend on the sensor, (rows, cols)."""
     rows, cols = image.shape
     if max(rows, cols) <= _FAR_PX:
-        return image
+        return np.ascontiguousarray(image)
     x, y = line.normal
     distance = np.add.outer(y * (np.arange(rows) - line.row), x * (np.arange(cols) - line.col))
     return np.where(np.abs(distance) < _FAR_PX, image, np.nan)
