@@ -136,7 +136,11 @@ def _usual_magnitudes(magnitude: Floats) -> tuple[float, float]:
 def _standing_out(gradient: Floats, least: float, strongest: float) -> Floats:
     """Votes of the pixels whose gradient exceeds the least, (5, n); none counts too much."""
     _, rows, cols = gradient.shape
-    votes, n = np.empty((5, rows * cols)), 0
+    count = 0
+    for i in range(rows):
+        for j in range(cols):
+            count += gradient[2, i, j] > least
+    votes, n = np.empty((5, count)), 0
     for i in range(rows):
         for j in range(cols):
             magnitude = gradient[2, i, j]
@@ -148,7 +152,7 @@ def _standing_out(gradient: Floats, least: float, strongest: float) -> Floats:
                 )
                 votes[4, n] = min(magnitude, strongest)
                 n += 1
-    return votes[:, :n].copy()
+    return votes
 
 
 def _strongest(votes: _Votes) -> tuple[Segment, NDArray[np.bool_]] | None:

@@ -42,18 +42,15 @@ def pixels_along(
     image: Floats, s: Floats, t: Floats, start_px: float, stop_px: float, reach_px: float
 ) -> Floats:
     """Row, column, value and s of the pixels near a stretch of the line, (4, n)."""
-    found, n = np.empty((4, image.size)), 0
+    near = (np.abs(s) < reach_px) & (t > start_px) & (t < stop_px) & np.isfinite(image)
+    found, n = np.empty((4, np.count_nonzero(near))), 0
     for row in range(image.shape[0]):
         for col in range(image.shape[1]):
-            if (
-                abs(s[row, col]) < reach_px
-                and start_px < t[row, col] < stop_px
-                and np.isfinite(image[row, col])
-            ):
+            if near[row, col]:
                 found[0, n], found[1, n] = row, col
                 found[2, n], found[3, n] = image[row, col], s[row, col]
                 n += 1
-    return found[:, :n].copy()
+    return found
 
 
 @compiled
