@@ -3,7 +3,7 @@
 A chain of array operations reads and writes every intermediate array; a loop that does the same
 work for one pixel after another keeps them in registers. Such loops are compiled by numba when
 they are first called, and kept in a folder of the user's, so that other processes load them:
-the first call of a fresh installation takes some seconds longer.
+the first call of a fresh installation takes some ten seconds longer.
 """
 
 from __future__ import annotations
@@ -13,9 +13,14 @@ from typing import Any, TypeVar, cast
 
 import numba
 
-__all__ = ["compiled"]
+__all__ = ["compiled", "inlined"]
 
 _F = TypeVar("_F", bound=Callable[..., Any])
+_OPTIONS: dict[str, Any] = {
+    "nogil": True,
+    "error_model": "numpy",
+    "fastmath": {"reassoc", "contract"},
+}
 
 
 def compiled(function: _F) -> _F:
@@ -24,7 +29,12 @@ def compiled(function: _F) -> _F:
     Sums may be taken in another order than written (they are vectorised), so results may differ
     between processors in the last digits. Division by zero gives infinities, as in numpy.
     """
-    loop = numba.njit(
-        function, cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract"}
-    )
-    return cast(_F, loop)
+    return cast(_F, numba.njit(function, cache=True, **_OPTIONS))
+
+
+def inlined(function: _F) -> _F:
+    """A short function of numbers that becomes part of the compiled loops that call it.
+
+    A loop that calls nothing is vectorised: the processor takes several pixels at once.
+    """
+    return cast(_F, numba.njit(function, forceinline=True, **_OPTIONS))

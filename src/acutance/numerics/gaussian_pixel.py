@@ -7,20 +7,28 @@ target and the mean of the prior of its LSF: the free spline is a correction of 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled, inlined
+from acutance.numerics.normal_distribution import normal_distribution
 
-__all__ = ["FWHM_OF_SIGMA", "GaussianPixel", "gaussian"]
+__all__ = ["FWHM_OF_SIGMA", "GaussianPixel", "blurred_step", "gaussian", "gaussian_pixel_width"]
 
+_Curves = Callable[[Floats, float, float], Floats]
 _PEAK = 1 / math.sqrt(2 * math.pi)
 _ROOT_TWELVE = math.sqrt(12)
 FWHM_OF_SIGMA: Final = 2.3548200450309493
 """Full width at half maximum (FWHM) of a Gaussian of unit standard deviation."""
+
+
+def gaussian_pixel_width(sigma_px: float, aperture_px: float) -> float:
+    """FWHM of the Gaussian with the variance of a Gaussian through a pixel."""
+    return FWHM_OF_SIGMA * math.hypot(sigma_px, aperture_px / _ROOT_TWELVE)
 
 
 def gaussian(z: Floats) -> Floats:
@@ -30,6 +38,52 @@ def gaussian(z: Floats) -> Floats:
     np.exp(power, out=power)
     power *= _PEAK
     return np.asarray(power)
+
+
+@inlined
+def blurred_step(s: float, sigma: float, aperture: float) -> tuple[float, float, float, float]:
+    """ESF of a Gaussian through a pixel and its derivatives by s (the LSF), sigma and aperture.
+
+    At one normal distance `s`, for compiled loops.
+    """
+    # The ends of the aperture as standard normal variables.
+    high, low = (s + 0.5 * aperture) / sigma, (s - 0.5 * aperture) / sigma
+    below_high, at_high = normal_distribution(high)
+    below_low, at_low = normal_distribution(low)
+    # The integral of the normal distribution between the ends.
+    esf = sigma / aperture * (high * below_high + at_high - (low * below_low + at_low))
+    by_aperture = (0.5 * (below_high + below_low) - esf) / aperture
+    return esf, (below_high - below_low) / aperture, (at_high - at_low) / aperture, by_aperture
+
+
+@inlined
+def _blurred_line(s: float, sigma: float, aperture: float) -> tuple[float, float, float, float]:
+    """LSF at one distance, and its derivatives by s, sigma and aperture."""
+    high, low = (s + 0.5 * aperture) / sigma, (s - 0.5 * aperture) / sigma
+    below_high, at_high = normal_distribution(high)
+    below_low, at_low = normal_distribution(low)
+    scale = 1 / (sigma * aperture)
+    lsf = (below_high - below_low) / aperture
+    by_aperture = 0.5 * (at_high + at_low) * scale - lsf / aperture
+    return lsf, (at_high - at_low) * scale, (low * at_low - high * at_high) * scale, by_aperture
+
+
+@compiled
+def _blurred_steps(s: Floats, sigma: float, aperture: float) -> Floats:
+    """`blurred_step` at many distances, (4, n)."""
+    found = np.empty((4, s.size))
+    for k in range(s.size):
+        found[0, k], found[1, k], found[2, k], found[3, k] = blurred_step(s[k], sigma, aperture)
+    return found
+
+
+@compiled
+def _blurred_lines(s: Floats, sigma: float, aperture: float) -> Floats:
+    """`_blurred_line` at many distances, (4, n)."""
+    found = np.empty((4, s.size))
+    for k in range(s.size):
+        found[0, k], found[1, k], found[2, k], found[3, k] = _blurred_line(s[k], sigma, aperture)
+    return found
 
 
 @dataclass(frozen=True)
@@ -42,7 +96,7 @@ class GaussianPixel:
     @property
     def width_px(self) -> float:
         """FWHM of the Gaussian with the same variance: the unit of distance of a fit."""
-        return FWHM_OF_SIGMA * math.hypot(self.sigma_px, self.aperture_px / _ROOT_TWELVE)
+        return gaussian_pixel_width(self.sigma_px, self.aperture_px)
 
     def lsf(self, s: Floats) -> Floats:
         """LSF at normal distances `s`, 1/px."""
@@ -54,14 +108,7 @@ class GaussianPixel:
 
     def esf_and_lsf(self, s: Floats) -> tuple[Floats, Floats]:
         """ESF and LSF at normal distances `s`."""
-        esf, lsf = np.asarray(s > 0, float), np.zeros(s.shape)
-        # Beyond nine standard deviations from the aperture's ends the ESF is 0 or 1.
-        near = np.abs(s) < 0.5 * self.aperture_px + 9.0 * self.sigma_px
-        ends = self._ends(s[near])
-        cdf = ndtr(ends)
-        esf[near] = self._ramp(ends, cdf, gaussian(ends))
-        lsf[near] = (cdf[0] - cdf[1]) / self.aperture_px
-        return esf, lsf
+        return self.esf_and_slopes(s)[:2]
 
     def otf(self, freq_cpp: Floats) -> Floats:
         """Transfer function at frequencies in cycles per pixel (real: the LSF is symmetric)."""
@@ -70,35 +117,15 @@ class GaussianPixel:
 
     def esf_and_slopes(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """ESF with its derivatives by s (the LSF), by sigma and by aperture, each like `s`."""
-        ends = self._ends(s)
-        cdf, pdf = ndtr(ends), gaussian(ends)
-        esf = self._ramp(ends, cdf, pdf)
-        lsf = (cdf[0] - cdf[1]) / self.aperture_px
-        by_sigma = (pdf[0] - pdf[1]) / self.aperture_px
-        by_aperture = (0.5 * (cdf[0] + cdf[1]) - esf) / self.aperture_px
-        return esf, lsf, by_sigma, by_aperture
+        return self._along(_blurred_steps, s)
 
     def lsf_slopes(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """LSF with its derivatives by s, by sigma and by aperture, each like `s`."""
-        ends = self._ends(s)
-        cdf, pdf = ndtr(ends), gaussian(ends)
-        scale = 1 / (self.sigma_px * self.aperture_px)
-        lsf = (cdf[0] - cdf[1]) / self.aperture_px
-        by_sigma = (ends[1] * pdf[1] - ends[0] * pdf[0]) * scale
-        by_aperture = 0.5 * (pdf[0] + pdf[1]) * scale - lsf / self.aperture_px
-        return lsf, (pdf[0] - pdf[1]) * scale, by_sigma, by_aperture
+        return self._along(_blurred_lines, s)
 
-    def _ends(self, s: Floats) -> Floats:
-        """The two ends of the aperture as standard normal variables, (2, n)."""
-        ends = np.empty((2, s.size))
-        half = 0.5 * self.aperture_px
-        np.add(s, half, out=ends[0])
-        np.subtract(s, half, out=ends[1])
-        ends *= 1 / self.sigma_px
-        return ends
-
-    def _ramp(self, ends: Floats, cdf: Floats, pdf: Floats) -> Floats:
-        """The ESF: the integral of the normal distribution between the ends."""
-        ramp = ends * cdf
-        ramp += pdf
-        return np.asarray((self.sigma_px / self.aperture_px) * (ramp[0] - ramp[1]))
+    def _along(self, curves: _Curves, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Four curves at the distances `s`, each of its shape."""
+        flat = np.ascontiguousarray(s, float).reshape(-1)
+        found = curves(flat, float(self.sigma_px), float(self.aperture_px))
+        one, two, three, four = found.reshape(4, *s.shape)
+        return one, two, three, four

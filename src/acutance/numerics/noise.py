@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
+from acutance.numerics.scalar_product import scalar_product
 
 __all__ = [
     "ALL_DIRECTIONS",
@@ -28,6 +30,7 @@ _LAGS = 2
 # Lags as rows down and columns to the right; the opposite ones have the same correlation.
 _NEAREST = ((0, 1), (1, 0))
 _FURTHER = ((1, 1), (1, -1), (0, 2), (2, 0))
+_ALL_LAGS: NDArray[np.intp] = np.array(_NEAREST + _FURTHER)
 _MIN_PAIRS = 20
 _FREQ_CPP: Floats = np.linspace(0.0, 0.5, 11)
 _SIGNIFICANT = 4.0
@@ -152,38 +155,46 @@ def correlation(
         Unit vectors (x, y) along which the power is taken: the normal of a straight target; of
         others the largest of several directions counts.
     """
-    height, width = int(rows.max()) + 1, int(cols.max()) + 1
-    field = np.zeros((height + _LAGS, width + 2 * _LAGS))
-    known = np.zeros_like(field)
-    place = rows * field.shape[1] + cols + _LAGS
-    field.reshape(-1)[place] = residual
-    known.reshape(-1)[place] = 1.0
+    sums, pairs = _lagged_products(
+        np.ascontiguousarray(residual, float),
+        np.ascontiguousarray(rows, np.intp),
+        np.ascontiguousarray(cols, np.intp),
+        _ALL_LAGS,
+    )
     power = float(residual @ residual) / residual.size
-    nearest = [_lagged(field, known, lag) for lag in _NEAREST]
+    rho = sums / (np.maximum(pairs, 1.0) * power)
     strongest, significance = 0.0, 0.0
-    for covariance, pairs in nearest:
-        rho = covariance / power
-        if pairs >= _MIN_PAIRS and abs(rho) * math.sqrt(pairs) > significance:
-            strongest, significance = rho, abs(rho) * math.sqrt(pairs)
+    for k, _ in enumerate(_NEAREST):
+        likely = abs(float(rho[k])) * math.sqrt(pairs[k])
+        if pairs[k] >= _MIN_PAIRS and likely > significance:
+            strongest, significance = float(rho[k]), likely
     if significance < _SIGNIFICANT:
         return Correlation(1.0, strongest, significance)
-    spectra = np.ones((len(directions), _FREQ_CPP.size))
-    further = [_lagged(field, known, lag) for lag in _FURTHER]
-    for (down, right), (covariance, pairs) in zip(
-        _NEAREST + _FURTHER, nearest + further, strict=True
-    ):
-        if pairs >= _MIN_PAIRS:
-            for spectrum, (x, y) in zip(spectra, directions, strict=True):
-                along_px = right * x + down * y
-                spectrum += 2 * covariance / power * np.cos(2 * np.pi * _FREQ_CPP * along_px)
-    return Correlation(max(float(spectra.max()), 1.0), strongest, significance)
+    known = pairs >= _MIN_PAIRS
+    down, right = _ALL_LAGS[known].T
+    x, y = np.array(directions).T[:, :, None]
+    along_px = right * x + down * y
+    waves = np.cos(2 * np.pi * _FREQ_CPP[:, None] * along_px[:, None])
+    return Correlation(max(float((1 + 2 * waves @ rho[known]).max()), 1.0), strongest, significance)
 
 
-def _lagged(field: Floats, known: Floats, lag: tuple[int, int]) -> tuple[float, float]:
-    """Mean product of the pixels a lag apart, and how many pairs there are."""
-    down, right = lag
-    height, width = field.shape[0] - _LAGS, field.shape[1] - 2 * _LAGS
-    here = (slice(0, height), slice(_LAGS, _LAGS + width))
-    there = (slice(down, down + height), slice(_LAGS + right, _LAGS + right + width))
-    pairs = float(np.vdot(known[here], known[there]))
-    return float(np.vdot(field[here], field[there])) / max(pairs, 1.0), pairs
+@compiled
+def _lagged_products(
+    residual: Floats, rows: NDArray[np.intp], cols: NDArray[np.intp], lags: NDArray[np.intp]
+) -> tuple[Floats, Floats]:
+    """Sum of the products of the pixels a lag apart, and how many pairs there are, (lags,) each."""
+    height, width = 0, 0
+    for k in range(rows.size):
+        height, width = max(height, rows[k] + 1), max(width, cols[k] + 1)
+    # Behind every row and below the last one unknown pixels: no lag leads to another known one.
+    stride = width + _LAGS
+    field, known = np.zeros((height + _LAGS) * stride), np.zeros((height + _LAGS) * stride)
+    for k in range(rows.size):
+        field[rows[k] * stride + cols[k]] = residual[k]
+        known[rows[k] * stride + cols[k]] = 1.0
+    sums, pairs = np.empty(len(lags)), np.empty(len(lags))
+    for k in range(len(lags)):
+        shift = lags[k, 0] * stride + lags[k, 1]
+        sums[k] = scalar_product(field[:-shift], field[shift:])
+        pairs[k] = scalar_product(known[:-shift], known[shift:])
+    return sums, pairs

@@ -6,12 +6,8 @@ import pytest
 from acutance.errors import NoEdgeError
 from acutance.geometry.line import Line
 from acutance.numerics.gaussian_pixel import GaussianPixel
-from acutance.targets.straight.first_fit import (
-    _EXPECTED,
-    _bounded_solution,
-    _Trial,
-    fit_first,
-)
+from acutance.targets.straight.first_fit import fit_first
+from acutance.targets.straight.first_fit_model import bounded_solution, compared, gauss_newton
 
 ROWS, COLS = (places.ravel().astype(float) for places in np.indices((40, 40)))
 LINE = Line(19.5, 19.5, 6.0)
@@ -83,31 +79,41 @@ def test_jacobian_is_the_derivative_of_the_model(steps):
     s, t = rng.uniform(-5, 5, 200), rng.uniform(-20, 20, 200)
     value = rng.standard_normal(200)
     p = np.array([3.0, 40.0, 0.1, 0.01, 0.6, 1.2, 0.15, *steps])
-    penalty = np.zeros(p.size)
-    jacobian = _Trial.of(s, t, value, p, penalty).jacobian(t)
+    _, jacobian = compared(s, t, value, p)
     for k, step in enumerate(1e-6 * np.eye(p.size)):
-        high, low = (_Trial.of(s, t, value, p + sign * step, penalty).residual for sign in (1, -1))
+        high, low = (compared(s, t, value, p + sign * step)[0] for sign in (1, -1))
         assert np.max(np.abs(jacobian[k] - (low - high) / 2e-6)) < 1e-5
 
 
-def test_penalties_count_in_the_cost():
+def test_penalties_pull_to_what_is_expected():
     s = np.linspace(-5, 5, 50)
-    p = _EXPECTED[:7] + np.array([0.0, 1.0, 0.0, 0.0, 0.5, 0.2, 0.1])
-    plain = _Trial.of(s, s, s, p, np.zeros(7)).cost
-    penalty = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 100.0, 1000.0])
-    assert _Trial.of(s, s, s, p, penalty).cost - plain == pytest.approx(4.0 + 10.0)
+    start = np.array([0.0, 1.0, 0.0, 0.0, 0.5, 1.0, 0.0])
+    value, _ = compared(s, s, np.zeros(50), start + np.array([0, 0, 0, 0, 0.1, 0.2, 0.1]))
+    far = np.full(7, 1e9)
+    expected = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.3, 0.02])
+    free, held = (
+        gauss_newton(s, s, -value, start, expected, weight, -far, far, 0.0, 9.0)[0]
+        for weight in (np.zeros(7), np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1e3, 1e3]))
+    )
+    assert free[6] == pytest.approx(0.1, abs=1e-3)
+    assert held[5:] == pytest.approx([1.3, 0.02], abs=1e-3)
 
 
-def test_bounded_solution_obeys_its_bounds_and_is_the_minimum_within_them():
+def test_pixels_without_a_value_hold_no_edge():
+    with pytest.raises(NoEdgeError, match="no straight target"):
+        fit(np.full(ROWS.size, np.nan), LINE)
+
+
+def testbounded_solution_obeys_its_bounds_and_is_the_minimum_within_them():
     rng = np.random.default_rng(16)
     for _ in range(20):
         root = rng.standard_normal((4, 4))
         gram, gradient = root @ root.T + np.eye(4), 3 * rng.standard_normal(4)
         low, high = np.full(4, -0.4), np.full(4, 0.6)
-        step = _bounded_solution(gram, gradient, low, high)
+        step = bounded_solution(gram, gradient, low, high)
         assert np.all((step >= low) & (step <= high))
         free = (step > low) & (step < high)
         assert (gradient - gram @ step)[free] == pytest.approx(np.zeros(free.sum()), abs=1e-9)
-    assert _bounded_solution(gram, gradient, low - 100, high + 100) == pytest.approx(
+    assert bounded_solution(gram, gradient, low - 100, high + 100) == pytest.approx(
         np.linalg.solve(gram, gradient)
     )

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.noise import robust_scale
+from acutance.numerics.compiled import compiled
+from acutance.numerics.noise import median, robust_scale
 from acutance.targets.straight.first_fit import FirstFit, fit_first
+from acutance.targets.straight.step_profile import blurred_profile
 
 __all__ = ["bent"]
 
@@ -57,24 +61,54 @@ def _curvature(
     The pixels of a part that lies an offset d towards the bright side are darker by d times the
     slope of the image.
     """
-    s = fit.line.normal_distance(row, col)
-    near = fit.profile.near(s, _NEAR_WIDTHS * fit.blur.width_px)
-    s, t = s[near], fit.line.tangent_distance(row, col)[near]
-    response, slope = fit.profile.response(fit.profile.seen(fit.blur, s))
-    residual = (value[near] - fit.dark) / fit.height - response
-    first, extent = float(t.min(initial=0.0)), float(np.ptp(t)) if t.size else 0.0
-    parts = int(extent / _PART_PX)
-    if parts < _MIN_PARTS:
+    first, part_px, power, offset = _part_offsets(
+        fit.line.normal_distance(row, col), fit.line.tangent_distance(row, col),
+        (value - fit.dark) / fit.height, fit.profile.steps, fit.blur.sigma_px,
+        fit.blur.aperture_px, _NEAR_WIDTHS * fit.blur.width_px,
+    )  # fmt: skip
+    if power.size < _MIN_PARTS:
         return 0.0, np.inf, 1.0
-    part = np.minimum(((t - first) * (parts / extent)).astype(np.intp), parts - 1)
-    power = np.bincount(part, slope * slope, parts)
-    offset = -np.bincount(part, slope * residual, parts) / np.maximum(power, 1e-9)
-    place = first + (np.arange(parts) + 0.5) * (extent / parts)
-    known = (power > 0.3 * np.median(power)) & (np.abs(offset) < _MAX_OFFSET_PX)
+    known = (power > 0.3 * median(power)) & (np.abs(offset) < _MAX_OFFSET_PX)
     if np.count_nonzero(known) < _MIN_PARTS:
         return 0.0, np.inf, 1.0
-    shapes = np.stack([np.ones(parts), place, 0.5 * place**2], axis=1)[known]
-    inverse = np.linalg.pinv(shapes)
-    left = offset[known] - shapes @ (inverse @ offset[known])
-    std = max(robust_scale(left), 1e-6) * float(np.linalg.norm(inverse[2]))
-    return float(inverse[2] @ offset[known]), std, 0.5 * extent
+    half_px, offset = 0.5 * part_px * power.size, offset[known]
+    place = (first + (known.nonzero()[0] + 0.5) * part_px) / half_px
+    shapes = np.stack([np.ones(place.size), place, 0.5 * place * place])
+    inverse = np.linalg.solve(shapes @ shapes.T, shapes)
+    left = offset - (inverse @ offset) @ shapes
+    bow = inverse[2] / half_px**2
+    return float(bow @ offset), max(robust_scale(left), 1e-6) * math.sqrt(bow @ bow), half_px
+
+
+@compiled
+def _part_offsets(
+    s: Floats, t: Floats, value: Floats, steps: Floats, sigma: float, aperture: float,
+    reach_px: float,
+) -> tuple[float, float, Floats, Floats]:  # fmt: skip
+    """Offsets of the parts of a target by least squares, from the pixels near its steps.
+
+    Returns
+    -------
+    first, part_px : float
+        Where the first part begins along the line, and how long the parts are.
+    power, offset : (parts,) arrays
+        Squared slopes of each part, and its offset.
+    """
+    near = np.abs(s) < reach_px
+    for k in range(1, steps.shape[1]):
+        near |= np.abs(s - steps[0, k]) < reach_px
+    s, t, value = s[near], t[near], value[near]
+    first, last = np.inf, -np.inf
+    for k in range(t.size):
+        first, last = min(first, t[k]), max(last, t[k])
+    parts = int(max(last - first, 0.0) / _PART_PX)
+    power, product = np.zeros(parts), np.zeros(parts)
+    if parts == 0:
+        return 0.0, 0.0, power, product
+    part_px = (last - first) / parts
+    response, slope = blurred_profile(s, steps, sigma, aperture)
+    for k in range(s.size):
+        part = min(int((t[k] - first) / part_px), parts - 1)
+        power[part] += slope[k] * slope[k]
+        product[part] -= slope[k] * (value[k] - response[k])
+    return first, part_px, power, product / np.maximum(power, 1e-9)

@@ -11,8 +11,8 @@ from acutance.targets.straight.bend import bent
 from acutance.targets.straight.find_edges import Segment, find_segments
 from acutance.targets.straight.first_fit import fit_first
 from acutance.targets.straight.fit_pulse import PulsePixels
-from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.step_profile import pulse_profile
+from acutance.targets.straight.surroundings import line_distances, pixels_along
 from acutance.targets.straight.trim import Extent, near_line, select_usable
 from acutance.targets.straight.tuned import MIN_SNR
 
@@ -63,17 +63,16 @@ def _at(
 ) -> tuple[PulsePixels, Extent]:
     """The pulse whose rising side is `segment`."""
     image = near_line(image, segment.line)
-    pixels = Pixels.of(image)
-    s = segment.line.normal_distance(pixels.row, pixels.col)
-    t = segment.line.tangent_distance(pixels.row, pixels.col)
-    along = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
-    width_px = _guessed_width(s[along], pixels.value[along]) if stated_px is None else stated_px
+    row, col, value, s = pixels_along(
+        image, *line_distances(image.shape, segment.line),
+        segment.start_px - 1, segment.stop_px + 1, np.inf,
+    )  # fmt: skip
+    width_px = _guessed_width(s, value) if stated_px is None else stated_px
     reach = _REACH_PX
     plateaus = [
-        pixels.value[along & (outside > 0.5 * reach) & (outside < reach)]
-        for outside in (-s, s - width_px)
+        value[(outside > 0.5 * reach) & (outside < reach)] for outside in (-s, s - width_px)
     ]
-    top = pixels.value[along & (np.abs(s - 0.5 * width_px) < max(0.25 * width_px, 0.6))]
+    top = value[np.abs(s - 0.5 * width_px) < max(0.25 * width_px, 0.6)]
     if min(top.size, *(plateau.size for plateau in plateaus)) < _MIN_PIXELS:
         raise SupportError(
             f"the plateaus of the pulse of {width_px:.2f} px have {plateaus[0].size} and "
@@ -89,20 +88,17 @@ def _at(
             "choose a region with one pulse, or state another width"
         )
     pulse = fit_first(
-        pixels.row[along], pixels.col[along], pixels.value[along], segment.line,
-        dark=left, bright=level, profile=pulse_profile(width_px, (level - right) / (level - left)),
-        fit_width=fit_width,
+        row, col, value, segment.line, dark=left, bright=level,
+        profile=pulse_profile(width_px, (level - right) / (level - left)), fit_width=fit_width,
     )  # fmt: skip
-    pulse = bent(
-        pixels.row[along], pixels.col[along], pixels.value[along], pulse, fit_width=fit_width
-    )
+    pulse = bent(row, col, value, pulse, fit_width=fit_width)
     if pulse.height < MIN_SNR * pulse.noise:
         raise NoEdgeError(
             f"the strongest pulse has a height of {pulse.height:.4g} in noise of "
             f"{pulse.noise:.3g}: an SNR of {pulse.height / pulse.noise:.1f} where at least "
             f"{MIN_SNR:g} is needed; choose a region with more contrast or less noise"
         )
-    usable = select_usable(image, pixels, pulse, 0.5 * (segment.stop_px - segment.start_px))
+    usable = select_usable(image, pulse, 0.5 * (segment.stop_px - segment.start_px))
     width, height_ratio = pulse.profile.positions_px[1], -pulse.profile.shares[1]
     trimmed = PulsePixels(
         usable.image, usable.line, pulse.dark, pulse.dark + pulse.height, pulse.blur.sigma_px,
@@ -114,7 +110,9 @@ def _at(
 def _guessed_width(s: Floats, value: Floats) -> float:
     """Distance from the rising side to where the profile has fallen half way back."""
     # Means of few pixels each: a bad pixel would look like the pulse.
-    value = np.clip(value, *np.quantile(value, (_SPOILED, 1 - _SPOILED)))
+    share = np.arange(value.size) / max(value.size - 1, 1)
+    least, largest = np.interp((_SPOILED, 1 - _SPOILED), share, np.sort(value)).tolist()
+    value = np.minimum(np.maximum(value, least), largest)
     bins = ((s + _REACH_PX) / _PROFILE_STEP_PX).astype(np.intp)
     inside = (bins >= 0) & (s < _MAX_WIDTH_PX)
     count = np.bincount(bins[inside])

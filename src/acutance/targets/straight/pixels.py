@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.geometry.line import Line
+from acutance.numerics.compiled import compiled
 from acutance.numerics.gaussian_pixel import GaussianPixel
 
 __all__ = ["EdgeFit", "EdgePixels", "Pixels"]
@@ -37,8 +38,23 @@ class Pixels:
     @classmethod
     def of(cls, image: Floats) -> Pixels:
         """The finite pixels of an image, in row-major order."""
-        rows, cols = np.isfinite(image).nonzero()
-        return cls((rows, cols), rows.astype(float), cols.astype(float), image[rows, cols])
+        rows, cols, (row, col, value) = _finite(np.ascontiguousarray(image, float))
+        return cls((rows, cols), row, col, value)
+
+
+@compiled
+def _finite(image: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats]:
+    """Rows and columns of the finite pixels; as coordinates, with their values, (3, n)."""
+    finite = np.isfinite(image)
+    count, n = np.count_nonzero(finite), 0
+    rows, cols, found = np.empty(count, np.intp), np.empty(count, np.intp), np.empty((3, count))
+    for row in range(image.shape[0]):
+        for col in range(image.shape[1]):
+            if finite[row, col]:
+                rows[n], cols[n] = row, col
+                found[0, n], found[1, n], found[2, n] = row, col, image[row, col]
+                n += 1
+    return rows, cols, found
 
 
 @dataclass(frozen=True, eq=False)

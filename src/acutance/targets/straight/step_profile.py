@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.numerics.gaussian_pixel import GaussianPixel
+from acutance.numerics.compiled import compiled
+from acutance.numerics.gaussian_pixel import GaussianPixel, blurred_step
 
-__all__ = ["EDGE", "Profile", "Sides", "pulse_profile"]
+__all__ = ["EDGE", "Profile", "Sides", "blurred_profile", "pulse_profile"]
 
 Sides = tuple[tuple[Floats, Floats], ...]
 """Of either plateau, its share in every pixel, and the pixel's distance outwards."""
@@ -52,12 +53,14 @@ class Profile:
             value, slope = value + share * esf, slope + share * lsf
         return value, slope
 
+    @property
+    def steps(self) -> Floats:
+        """Positions and shares of the steps, (2, steps): for compiled loops."""
+        return np.array((self.positions_px, self.shares))
+
     def mean(self, blur: GaussianPixel, s: Floats) -> Floats:
         """The profile, blurred by a Gaussian through a pixel, (n,)."""
-        value = blur.esf(s)
-        for position, share in zip(self.positions_px[1:], self.shares[1:], strict=True):
-            value += share * blur.esf(s - position)
-        return value
+        return self.response(self.seen(blur, s))[0]
 
     def sides(self, seen: list[tuple[Floats, Floats]], s: Floats) -> Sides:
         """The two outermost plateaus: their share in a pixel, its distance outwards."""
@@ -76,9 +79,22 @@ class Profile:
         return np.maximum(-s, s - self.positions_px[-1])
 
 
+@compiled
+def blurred_profile(s: Floats, steps: Floats, sigma: float, aperture: float) -> Floats:
+    """A profile blurred by a Gaussian through a pixel and its slope, (2, n), for compiled loops."""
+    found = np.zeros((2, s.size))
+    for step in range(steps.shape[1]):
+        position, share = steps[0, step], steps[1, step]
+        for k in range(s.size):
+            esf, lsf, _, _ = blurred_step(s[k] - position, sigma, aperture)
+            found[0, k] += share * esf
+            found[1, k] += share * lsf
+    return found
+
+
 EDGE: Final = Profile((0.0,), (1.0,))
 
 
 def pulse_profile(width_px: float, height_ratio: float = 1.0) -> Profile:
     """A step up and one down after `width_px`; `height_ratio`: the second over the first."""
-    return Profile((0.0, width_px), (1.0, -height_ratio))
+    return Profile((0.0, float(width_px)), (1.0, -float(height_ratio)))

@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, SupportError
@@ -19,7 +18,17 @@ from acutance.numerics.noise import median, robust_scale
 from acutance.targets.straight.bend import bent
 from acutance.targets.straight.find_edges import Segment
 from acutance.targets.straight.first_fit import FirstFit, fit_first
-from acutance.targets.straight.pixels import EdgePixels, Pixels
+from acutance.targets.straight.pixels import EdgePixels
+from acutance.targets.straight.surroundings import (
+    best_run,
+    bounded_residual,
+    line_distances,
+    local_mean,
+    pixels_along,
+    reach_before_structure,
+    reach_of_rows,
+    values_beside,
+)
 from acutance.targets.straight.tuned import (
     MAX_TOLERANCE,
     MIN_ROWS,
@@ -35,8 +44,6 @@ _MAX_HALF_WIDTH_PX = 40.0
 _FAR_PX = 100.0
 _FIRST_REACH_PX = 7.0
 _REACH_WIDTHS = 2.5
-_WIDER: Floats = np.array([1.0, 1.5, 2.0, 3.0, 4.0])
-"""Widths of plateaus that are tried, in units of the smallest one needed."""
 
 
 @dataclass(frozen=True)
@@ -81,9 +88,8 @@ def trim(image: Floats, segment: Segment) -> tuple[EdgePixels, Extent]:
         If it is too short, or a side has no plateau.
     """
     image = near_line(image, segment.line)
-    pixels = Pixels.of(image)
-    edge = _first_fit(pixels.row, pixels.col, pixels.value, segment)
-    usable = select_usable(image, pixels, edge, 0.5 * (segment.stop_px - segment.start_px))
+    edge = _first_fit(image, segment)
+    usable = select_usable(image, edge, 0.5 * (segment.stop_px - segment.start_px))
     trimmed = EdgePixels(
         usable.image, usable.line, edge.dark, edge.dark + edge.height,
         edge.blur.sigma_px, edge.noise, edge.blur,
@@ -95,7 +101,7 @@ def near_line(image: Floats, line: Line) -> Floats:
     """An image without the pixels too far from a line to depend on the sensor, (rows, cols)."""
     rows, cols = image.shape
     if max(rows, cols) <= _FAR_PX:
-        return image
+        return np.ascontiguousarray(image)
     x, y = line.normal
     distance = np.add.outer(y * (np.arange(rows) - line.row), x * (np.arange(cols) - line.col))
     return np.where(np.abs(distance) < _FAR_PX, image, np.nan)
@@ -110,16 +116,13 @@ class UsablePixels:
     extent: Extent
 
 
-def select_usable(
-    image: Floats, pixels: Pixels, edge: FirstFit, half_length_px: float
-) -> UsablePixels:
+def select_usable(image: Floats, edge: FirstFit, half_length_px: float) -> UsablePixels:
     """The longest and widest stretch of the target whose surroundings look like its plateaus.
 
     Parameters
     ----------
     image : (rows, cols) array
-    pixels : Pixels
-        The image's finite pixels.
+        NaN where a pixel must not be used.
     edge : FirstFit
         The first fit of the target: an edge or a pulse.
     half_length_px : float
@@ -132,55 +135,49 @@ def select_usable(
     SupportError
         If too few rows are usable.
     """
-    rows, cols = pixels.at
-    s = edge.line.normal_distance(pixels.row, pixels.col)
-    t = edge.line.tangent_distance(pixels.row, pixels.col)
-    residual = (pixels.value - edge.dark) / edge.height - edge.profile.mean(edge.blur, s)
-    # One bad pixel is an outlier, and no structure of the plateaus.
-    np.clip(residual, -1.0, 1.0, out=residual)
-    structure = _structure_mask(image.shape, rows, cols, residual, s, t, edge, half_length_px)
+    s, t = line_distances(image.shape, edge.line)
+    residual = bounded_residual(
+        image, s, edge.dark, edge.height, edge.profile.steps, edge.blur.sigma_px,
+        edge.blur.aperture_px,
+    )  # fmt: skip
     need = 1.5 * edge.blur.width_px + 1.5
-    first, bins, dark_reach, bright_reach = _reaches(edge, s, t, structure, need)
-    start, stop = _best_run(np.minimum(dark_reach, bright_reach), need)
+    first, reaches, whole = _reaches(edge, residual, s, t, half_length_px, need)
+    start, stop = best_run(np.minimum(*reaches), need)
     length = stop - start
     if length < MIN_ROWS:
         raise SupportError(
             f"only {length} rows of the target have at least {need:.1f} px of plateau on both "
             f"sides (at least {MIN_ROWS} are needed): choose a region with more of it"
         )
-    whole = not structure.any()
-    used = np.ones(s.size, bool)
+    used = np.isfinite(residual)
     if not whole:
         last = edge.profile.positions_px[-1]
-        used = (bins >= start) & (bins < stop)
-        used &= (-s < dark_reach[bins]) & (s - last < bright_reach[bins])
-        image = image.copy()
-        image[rows[~used], cols[~used]] = np.nan
+        place = (t - first).astype(np.intp)
+        used &= (place >= start) & (place < stop)
+        dark_reach, bright_reach = reaches[:, np.where(used, place, 0)]
+        used &= (-s < dark_reach) & (s - last < bright_reach)
+        image = np.where(used, image, np.nan)
     if not used.any():
         raise SupportError(
             f"no pixel of the target's {length} rows is usable: next to its line they hold no "
             "data; choose a region with fewer missing pixels"
         )
-    tenth = length // 10
-    dark_px, bright_px = (
-        float(np.sort(reach[start:stop])[tenth]) for reach in (dark_reach, bright_reach)
-    )
-    middle = first + 0.5 * (start + stop)
-    line = replace(edge.line.slid(middle), length_px=float(length))
+    dark_px, bright_px = np.sort(reaches[:, start:stop])[:, length // 10].tolist()
+    line = replace(edge.line.slid(first + 0.5 * (start + stop)), length_px=float(length))
     _require_contrast(edge, residual[used])
     extent = Extent(dark_px, bright_px, float(length), whole)
     return UsablePixels(image, line, extent)
 
 
-def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> FirstFit:
+def _first_fit(image: Floats, segment: Segment) -> FirstFit:
     """Fit the Gaussian through a pixel near the segment: nearer for a sharper edge."""
-    s = segment.line.normal_distance(row, col)
-    t = segment.line.tangent_distance(row, col)
-    along = (t > segment.start_px - 1) & (t < segment.stop_px + 1)
+    s, t = line_distances(image.shape, segment.line)
     reach, sigma_px = _FIRST_REACH_PX, 0.6
     for _ in range(3):
-        near = along & (np.abs(s) < reach)
-        dark, bright = value[near & (s < -0.5 * reach)], value[near & (s > 0.5 * reach)]
+        row, col, value, away = pixels_along(
+            image, s, t, segment.start_px - 1, segment.stop_px + 1, reach
+        )
+        dark, bright = value[away < -0.5 * reach], value[away > 0.5 * reach]
         if min(dark.size, bright.size) < MIN_ROWS:
             raise SupportError(
                 f"the strongest edge has {dark.size} usable pixels on its dark and {bright.size} "
@@ -194,10 +191,9 @@ def _first_fit(row: Floats, col: Floats, value: Floats, segment: Segment) -> Fir
                 "which is a line and not a step: choose a region with one bright and one dark side"
             )
         edge = fit_first(
-            row[near], col[near], value[near], segment.line,
-            dark=levels[0], bright=levels[1], sigma_px=sigma_px,
-        )  # fmt: skip
-        edge = bent(row[near], col[near], value[near], edge)
+            row, col, value, segment.line, dark=levels[0], bright=levels[1], sigma_px=sigma_px
+        )
+        edge = bent(row, col, value, edge)
         if edge.blur.width_px * _REACH_WIDTHS <= reach:
             break
         reach, sigma_px = 1.2 * _REACH_WIDTHS * edge.blur.width_px, edge.blur.sigma_px
@@ -221,94 +217,33 @@ def _require_contrast(edge: FirstFit, residual: Floats) -> None:
         )
 
 
-def _structure_mask(
-    shape: tuple[int, ...],
-    rows: NDArray[np.intp],
-    cols: NDArray[np.intp],
-    residual: Floats,
-    s: Floats,
-    t: Floats,
-    edge: FirstFit,
-    half_length_px: float,
-) -> NDArray[np.bool_]:
-    """Which pixels do not look like the plateau of their side, in the mean of 3 x 3 pixels."""
-    place = rows * shape[1] + cols
-    fields = np.zeros((2, *shape))
-    fields[0].reshape(-1)[place] = residual
-    fields[1].reshape(-1)[place] = 1.0
-    total, known = _box(fields)
-    smooth: Floats = (total / np.maximum(known, 1.0)).reshape(-1)[place]
-    width = edge.blur.width_px
-    outside = edge.profile.outside(s)
-    around = (np.abs(t) < half_length_px) & (outside > width)
-    around &= outside < _FIRST_REACH_PX + width
-    noise = robust_scale(smooth[around]) if around.any() else 0.0
-    # More than a fifth of the contrast is structure, however rough the plateaus are.
-    tolerance = max(PLATEAU_TOLERANCE, min(_SIGNIFICANCE * noise, MAX_TOLERANCE))
-    near = outside < 1.5 * width
-    return np.abs(smooth) > np.where(near, max(NEAR_TOLERANCE, tolerance), tolerance)
-
-
-def _box(values: Floats) -> Floats:
-    """Sums over 3 x 3 pixels of every image, (k, rows, cols), zero beyond it."""
-    images, rows, cols = values.shape
-    padded = np.zeros((images, rows + 2, cols + 2))
-    padded[:, 1:-1, 1:-1] = values
-    down = padded[:, :-2] + padded[:, 1:-1] + padded[:, 2:]
-    return np.asarray(down[..., :-2] + down[..., 1:-1] + down[..., 2:])
-
-
 def _reaches(
-    edge: FirstFit, s: Floats, t: Floats, structure: NDArray[np.bool_], need: float
-) -> tuple[float, NDArray[np.intp], Floats, Floats]:
-    """How far every row of the target is clear, before its first and behind its last step.
+    edge: FirstFit, residual: Floats, s: Floats, t: Floats, half_length_px: float, need: float
+) -> tuple[int, Floats, bool]:
+    """How far every row is clear, before the target's first and behind its last step, (2, n).
 
-    Rows are one pixel long along the edge; the reach of a row ends before the first structure pixel
-    of it or of the rows next to it, or at the last pixel. Structure is blurred too: where the reach
-    exceeds `need`, it ends a width of the blur before the structure.
+    Rows are one pixel long along the edge, from the first number; the reach of a row ends before
+    structure, or at the last pixel. The last result is whether there is no structure.
     """
-    first = math.floor(float(t.min()))
-    bins = (t - first).astype(np.intp)
-    count = int(bins.max()) + 1
-    reaches = []
-    nothing = not structure.any()
-    blur_px, last_step = edge.blur.width_px, edge.profile.positions_px[-1]
-    for outwards in (-s, s - last_step):
-        # A row whose only pixels lie further out has no plateau.
-        outside = (outwards > 0) & (outwards < _MAX_HALF_WIDTH_PX + 1)
-        last = np.zeros(count)
-        np.maximum.at(last, bins[outside], outwards[outside])
-        last = np.minimum(last + 0.5, _MAX_HALF_WIDTH_PX)
-        if nothing:
-            reaches.append(last)
-            continue
-        stop = np.full(count, np.inf)
-        # Within the target a structure pixel spoils its row on both sides.
-        wrong = structure & (outwards > -0.5 - last_step)
-        np.minimum.at(stop, bins[wrong], np.maximum(outwards[wrong] - 1.0, 0.0))
-        close = _spoiled(stop, 1)
-        wary = _spoiled(stop, math.ceil(blur_px)) - blur_px
-        reaches.append(np.minimum(last, np.maximum(wary, np.minimum(close, need))))
-    return float(first), bins, reaches[0], reaches[1]
+    width, last_step = edge.blur.width_px, edge.profile.positions_px[-1]
+    mean = local_mean(residual)
+    tolerance = _tolerance(
+        values_beside(mean, s, t, last_step, width, width + _FIRST_REACH_PX, half_length_px)
+    )
+    # A row whose only pixels lie further out has no plateau.
+    first, last, stop, structure = reach_of_rows(
+        mean, s, t, last_step, _MAX_HALF_WIDTH_PX + 1, tolerance, 1.5 * width,
+        max(NEAR_TOLERANCE, tolerance),
+    )  # fmt: skip
+    last = np.minimum(last + 0.5, _MAX_HALF_WIDTH_PX)
+    if not structure:
+        return first, last, True
+    reach = reach_before_structure(stop, width, need)
+    return first, np.minimum(last, reach), False
 
 
-def _spoiled(stop: Floats, rows: int) -> Floats:
-    """The reach of every row, where a structure pixel also ends the `rows` next to its own."""
-    padded = np.pad(stop, rows, constant_values=np.inf)
-    return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * rows + 1).min(axis=1))
-
-
-def _best_run(reach: Floats, need: float) -> tuple[int, int]:
-    """The best run of rows: long, with plateaus of at least `need` pixels.
-
-    A wider plateau shortens the run; twice the need is worth a third of the rows.
-    """
-    wide = np.zeros((_WIDER.size, reach.size + 2), np.int8)
-    wide[:, 1:-1] = reach >= need * _WIDER[:, None]
-    turns = wide[:, 1:] - wide[:, :-1]
-    plateau, starts = (turns > 0).nonzero()
-    stops = (turns < 0).nonzero()[1]
-    if starts.size == 0:
-        return 0, 0
-    best = int(np.argmax((stops - starts) * (1 - 0.5 ** _WIDER[plateau])))
-    return int(starts[best]), int(stops[best])
+def _tolerance(plateaus: Floats) -> float:
+    """How far local means, of which some are given, may lie from a uniform plateau."""
+    noise = robust_scale(plateaus) if plateaus.size else 0.0
+    # More than a fifth of the contrast is structure, however rough the plateaus are.
+    return max(PLATEAU_TOLERANCE, min(_SIGNIFICANCE * noise, MAX_TOLERANCE))
