@@ -31,14 +31,12 @@ def ideal():
 
 
 def test_the_sensor_is_measured(ideal):
-    _, truth, scene = ideal
+    _, _, scene = ideal
+    expected = float(np.abs(SENSOR.otf(np.array([0.5]), np.array([0.0])))[0])
     for direction in (scene.across, scene.along):
-        true = SENSOR.response(0.0) if hasattr(SENSOR, "response") else None
-        expected = float(np.abs(SENSOR.otf(np.array([0.5]), np.array([0.0])))[0])
         number = direction.mtf_nyquist
         assert abs(number.value - expected) < 3 * number.std
         assert number.std < 0.006
-        assert true is None or true.mtf_nyquist.value == pytest.approx(expected, abs=1e-3)
     assert scene.kind == "scene"
     assert scene.objects["ideal"].value > 0.95
     assert scene.verdict.word in ("good", "usable")
@@ -57,7 +55,7 @@ def test_nearly_all_edges_are_found_and_used(ideal):
 
 
 def test_soft_objects_do_not_pass_for_a_soft_sensor():
-    image, _ = landscape(0.6, 800)
+    image, _ = landscape(0.6, 1000, seed=4)
     scene = ac.scan_scene(image)
     expected = float(np.abs(SENSOR.otf(np.array([0.5]), np.array([0.0])))[0])
     median = float(np.median(scene.edges.mtf_nyquist[scene.edges.used]))
@@ -66,7 +64,7 @@ def test_soft_objects_do_not_pass_for_a_soft_sensor():
         number = direction.mtf_nyquist
         assert abs(number.value - expected) < max(3 * number.std, 0.01)
     share = scene.objects["ideal"]
-    assert share.value == pytest.approx(0.45, abs=0.2)
+    assert share.value == pytest.approx(0.37, abs=0.12)
     soft = scene.edges.softness_px[scene.edges.used & (scene.edges.ideal < 0.01)]
     assert np.median(soft) > 0.4
 

@@ -8,6 +8,8 @@ import pytest
 
 import acutance as ac
 from acutance.geometry.bar_group import Bars
+from acutance.scan import ScanOptions
+from acutance.scan.checks import SCENE_CHECKS
 from acutance.targets.check_table import QUESTIONS
 from acutance.targets.combine import CombineOptions
 from acutance.targets.combine.checks import COMBINE_CHECKS
@@ -37,6 +39,7 @@ CHECKS = {
     EdgeOptions: EDGE_CHECKS,
     PointsOptions: POINTS_CHECKS,
     PulseOptions: PULSE_CHECKS,
+    ScanOptions: SCENE_CHECKS,
     StarOptions: STAR_CHECKS,
 }
 METHOD_OPTIONS = (

@@ -49,15 +49,10 @@ _MIN_STD = 1e-6
 _RATIO = "MTF ratio low/high"
 
 KIND_WORDS = {
-    "edge": "Edge",
-    "pulse": "Pulse",
-    "points": "Point sources",
-    "biresolution": "Pair of images",
-    "bars": "Groups of bars",
-    "star": "Siemens star",
-    "combined": "Measurements combined",
+    "edge": "Edge", "pulse": "Pulse", "points": "Point sources", "biresolution": "Pair of images",
+    "bars": "Groups of bars", "star": "Siemens star", "combined": "Measurements combined",
     "scene": "Edges of a scene",
-}
+}  # fmt: skip
 _COUNTED = {"sources": "sources", "groups": "groups", "parts": "measurements"}
 """What kinds consist of, by the names of their fields."""
 _METHOD_WORDS = {

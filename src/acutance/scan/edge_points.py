@@ -29,7 +29,7 @@ _NOISE_GAIN = 0.1995
 """Noise of the smoothed gradient over that of white noise of the pixels: 1 / sqrt(8 pi) for a
 Gaussian of one pixel."""
 _ROUNDING = 1e-6
-"""Gradients below this share of the largest are the arithmetic's: images without noise have them."""
+"""Gradients below this share of the largest are the arithmetic's, in images without noise."""
 _MIN_SIGMAS = 6.0
 """Gradients of edge points, in units of their noise."""
 

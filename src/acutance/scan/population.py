@@ -19,7 +19,7 @@ B 44, 1982, 226).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -40,8 +40,9 @@ __all__ = [
     "share_std",
 ]
 
-SOFT_SCALES_PX: Final = (0.2, 0.4, 0.8, 1.6)
-"""Sizes of the half-normal distributions of softness."""
+SOFT_SCALES_PX: Final = (0.4, 0.8, 1.6)
+"""Sizes of the half-normal distributions of softness. A narrower one would be a sensor a little
+sharper, under objects that are all a little soft: no edges tell the two apart."""
 PARTS: Final = ("ideal", *(f"soft {scale:g} px" for scale in SOFT_SCALES_PX), "strange")
 """What an edge may be."""
 _SOFTNESS_PX: Final[Floats] = np.concatenate([
@@ -49,7 +50,7 @@ _SOFTNESS_PX: Final[Floats] = np.concatenate([
 ])  # fmt: skip
 _STRANGE: Final = 100.0
 """Variance of strange edges, in units of that of the pixels."""
-_PSEUDO_COUNTS: Final[Floats] = np.array([1.0, 0.2, 0.2, 0.2, 0.2, 0.2])
+_PSEUDO_COUNTS: Final[Floats] = np.array([1.0, 0.2, 0.2, 0.2, 0.2])
 """Edges that each part has before any is seen: some objects are ideal."""
 _SETTLED: Final = 1e-4
 _MAX_PASSES: Final = 200
@@ -71,6 +72,8 @@ class EdgeLikelihoods:
         Number of columns of each edge.
     bin : (n,) int array
         Bin of directions of each.
+    normal_deg : (n,) array
+        Its own direction, -90 to 90.
     """
 
     freq_cpp: Floats
@@ -78,6 +81,11 @@ class EdgeLikelihoods:
     value: Floats
     rank: Floats
     bin: NDArray[np.intp]
+    normal_deg: Floats
+
+    def turned(self, gain: Floats) -> EdgeLikelihoods:
+        """Likelihoods of the sensor along the bins, of edges that see `gain` (n, k) times that."""
+        return replace(self, root=self.root * np.hstack([gain, gain])[:, :, None])
 
     @property
     def blur(self) -> Floats:
@@ -105,7 +113,7 @@ class Membership(NamedTuple):
     ----------
     softness : (n, t) array
         Probability of every softness of the grid, of edges that are not strange.
-    part : (n, 6) array
+    part : (n, 5) array
         Probability of `PARTS`.
     log_likelihood : float
         Of all edges.
@@ -129,7 +137,7 @@ class Membership(NamedTuple):
 
 
 def _soft_density() -> Floats:
-    """Probability of every softness of the grid in every soft part, (4, t)."""
+    """Probability of every softness of the grid in every soft part, (3, t)."""
     width = np.gradient(_SOFTNESS_PX)
     width[0] *= 0.5
     density = np.exp(-0.5 * (_SOFTNESS_PX / np.array(SOFT_SCALES_PX)[:, None]) ** 2) * width
@@ -151,7 +159,7 @@ def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> tuple[Floa
 
 
 def memberships(edges: EdgeLikelihoods, power: Floats, share: Floats) -> Membership:
-    """What the edges are, given their log likelihoods (n, t) by softness and the shares (6,)."""
+    """What the edges are, given their log likelihoods (n, t) by softness and the shares (5,)."""
     density = _soft_density()
     soft = share[1:-1] @ density
     with np.errstate(divide="ignore"):
@@ -242,7 +250,7 @@ def _share_information(member: Membership, share: Floats) -> Floats:
 
 
 def share_std(member: Membership, share: Floats) -> Floats:
-    """Standard deviations of the shares, the sensor being known, (6,)."""
+    """Standard deviations of the shares, the sensor being known, (5,)."""
     free = np.linalg.svd(np.ones((1, share.size)))[2][1:]
     inverse = np.linalg.inv(free @ _share_information(member, share) @ free.T)
     return np.asarray(np.sqrt(np.diagonal(free.T @ inverse @ free)))

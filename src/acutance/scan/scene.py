@@ -18,7 +18,6 @@ from acutance.errors import NoEdgeError, OptionError
 from acutance.execution import results_in_turn
 from acutance.geometry.angles import axis_difference
 from acutance.numerics.one_thread import one_thread
-from acutance.numerics.stacked import stacked
 from acutance.raster import Box, Gsd, Image, Region, open_image
 from acutance.raster.disk_copy import disk_copy
 from acutance.scan.checks import check_scene
@@ -169,31 +168,29 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges) -> SensorFit:
             "part of the image, or measure them with measure_edges"
         )
     guesses = [_sensor_of(used, normal_deg, quantiles) for quantiles in _SHARP]
-    return fit_sensor(_likelihoods(used, number), normal_deg, guesses)
+    return fit_sensor(_likelihoods(used, number, axis_deg), normal_deg, guesses)
 
 
 def _common_reason(edges: SceneEdges) -> str:
     """The most frequent word of why edges are left out."""
-    unused = edges.verdict[~edges.used]
-    if unused.size == 0:
+    if edges.used.all():
         return ""
+    unused = edges.verdict[~edges.used]
     words, counts = np.unique(unused, return_counts=True)
     return f"most others are {words[int(np.argmax(counts))]}; "
 
 
-def _likelihoods(used: Sequence[UsedEdge], number: NDArray[np.intp]) -> EdgeLikelihoods:
-    """Likelihoods of all edges in one stack; of opposite normals the transfer is conjugate."""
+def _likelihoods(
+    used: Sequence[UsedEdge], number: NDArray[np.intp], axis_deg: Floats
+) -> EdgeLikelihoods:
+    """Likelihoods of all edges in one stack."""
     freq = used[0].freq_cpp
-    ranks = np.array([one.likelihood.offset.size for one in used])
+    ranks = np.array([one.value.size for one in used])
     root = np.zeros((len(used), 2 * freq.size, int(ranks.max())))
     value = np.zeros((len(used), int(ranks.max())))
     for i, (one, rank) in enumerate(zip(used, ranks, strict=True)):
-        conjugate = abs(one.normal_deg) > 90.0
-        own = one.likelihood.root.conj() if conjugate else one.likelihood.root
-        otf = one.otf.conj() if conjugate else one.otf
-        root[i, :, :rank] = stacked(own)
-        value[i, :rank] = stacked(own).T @ stacked(otf) + one.likelihood.offset
-    return EdgeLikelihoods(freq, root, value, ranks.astype(float), number)
+        root[i, :, :rank], value[i, :rank] = one.root, one.value
+    return EdgeLikelihoods(freq, root, value, ranks.astype(float), number, axis_deg)
 
 
 def _sensor_of(

@@ -71,7 +71,8 @@ class SceneEdges(ShortRepr):
             missing: Any = {"used": False, "verdict": "rejected", "reason": ""}.get(
                 one.name, np.nan
             )
-            columns[one.name] = np.array([row.get(one.name, missing) for row in rows])
+            kind = type(missing)
+            columns[one.name] = np.array([row.get(one.name, missing) for row in rows], kind)
         return cls(**columns)
 
     @property

@@ -33,13 +33,18 @@ from acutance.targets.otf_likelihood import OtfLikelihood
 
 __all__ = ["SensorFit", "fit_sensor"]
 
-_START: Final[Floats] = np.array([0.6, 0.08, 0.08, 0.08, 0.08, 0.08])
-_SETTLED: Final = 3e-4
+_START: Final[Floats] = np.array([0.6, 0.1, 0.1, 0.1, 0.1])
+_SETTLED: Final = 1e-3
 _MAX_TURNS: Final = 12
 _COMMON_STD, _COMMON_CPP = 3e-3, 0.15
 """Error of the transfer function that all edges of a sensor have in common, and over which
 frequencies: what the prior of an edge's line spread function does not allow for does not average
 out (benchmarks/scenes.py: errors of .000 to .004 at Nyquist, by the shape of the sensor)."""
+_GAINS: Final = (0.7, 1.4)
+"""Between these the sensor along an edge's normal is of that along its bin."""
+_LEAST: Final = 1e3
+"""Information of a direction whose edges are all strange: it has no part in a turn."""
+_EXACT: Final = 1e7
 _UNSEEN: Final = 1.0
 """Information of combinations that edges do not show: the OTF is between 0 and 1."""
 
@@ -54,7 +59,7 @@ class SensorFit:
         The sensor, fitted to all directions.
     normal_deg : (b,) array
         Mean direction of every bin.
-    share, share_std : (6,) arrays
+    share, share_std : (5,) arrays
         Of `population.PARTS`.
     member : Membership
         What every edge is.
@@ -88,29 +93,46 @@ def fit_sensor(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Flo
         First guesses of the OTF in every direction, real parts first: the likeliest counts.
     """
     otf = max(guesses, key=lambda one: fit_shares(edges, one, _START)[1].log_likelihood)
-    share, forms = _START, FORMS
+    share, forms, seen = _START, FORMS, edges
     turns, settled = 0, False
     while turns < _MAX_TURNS and not settled:
         turns += 1
-        share, member = fit_shares(edges, otf, share)
-        information, projection = expected_information(edges, member)
+        share, member = fit_shares(seen, otf, share)
+        information, projection = expected_information(seen, member)
         curves = [
             _samples(normal_deg[[b]], edges.freq_cpp, otf[b], own, pull - own @ otf[b])
             for b, (own, pull) in enumerate(zip(information, projection, strict=True))
+            if np.trace(own) > _LEAST
         ]
         combined = combine_curves(curves, forms=forms).otf
         # Forms without any weight have none in the next turn, either.
         forms = tuple({form.form.terms: None for form in combined.forms})
         updated = _along(combined, normal_deg, edges.freq_cpp)
         settled = float(np.abs(updated - otf)[:, _in_band(edges.freq_cpp)].max()) < _SETTLED
-        otf = updated
-    share, member = fit_shares(edges, otf, share)
-    left, gradient = observed_information(edges, otf, member, share)
+        otf, seen = updated, _along_bins(edges, normal_deg, combined)
+    share, member = fit_shares(seen, otf, share)
+    left, gradient = observed_information(seen, otf, member, share)
     samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left, gradient)
     return SensorFit(
         combine_curves([samples]), normal_deg, share, share_std(member, share), member, turns,
         settled,
     )  # fmt: skip
+
+
+def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:
+    """What the edges say of the sensor along their bins; along their own normals it differs."""
+    own, mean = (
+        _modulus_along(sensor, angle, edges.freq_cpp) for angle in (edges.normal_deg, normal_deg)
+    )
+    low, high = _GAINS
+    return edges.turned(np.clip(own / np.maximum(mean[edges.bin], 1e-3), low, high))
+
+
+def _modulus_along(sensor: CombinedOtf, normal_deg: Floats, freq_cpp: Floats) -> Floats:
+    """The MTF in every direction, (b, k)."""
+    angle = np.radians(normal_deg)
+    u, v = np.outer(np.cos(angle), freq_cpp).ravel(), np.outer(np.sin(angle), freq_cpp).ravel()
+    return np.asarray(np.abs(sensor.otf(u, v)).reshape(angle.size, freq_cpp.size))
 
 
 def _in_band(freq_cpp: Floats) -> NDArray[np.bool_]:
@@ -144,11 +166,15 @@ def _samples(
     size, axes = np.linalg.eigh(information[np.ix_(order, order)])
     seen = size > _UNSEEN
     root = axes[:, seen] * np.sqrt(size[seen])
-    likelihood = OtfLikelihood(unstacked(root), (root / size[seen]).T @ pull[order])
+    values = root.T @ otf[order] + (root / size[seen]).T @ pull[order]
+    # One more value: at zero frequency the OTF is 1, whatever light an image has.
+    root = np.column_stack([root, np.zeros(len(root))])
+    level = np.append(np.zeros(values.size), _EXACT)
+    likelihood = OtfLikelihood(unstacked(root), level, np.append(values, _EXACT))
     likelihood = likelihood.with_errors(_common_errors(normal_deg.size, freq_cpp))
     u, v = np.outer(np.cos(angle), freq_cpp).ravel(), np.outer(np.sin(angle), freq_cpp).ravel()
-    values = unstacked(otf[order])
-    return OtfSamples("edges", u, v, values, np.zeros((values.size, 1), complex), likelihood)
+    about = unstacked(otf[order])
+    return OtfSamples("edges", u, v, about, np.zeros((about.size, 1), complex), likelihood)
 
 
 def _common_errors(bins: int, freq_cpp: Floats) -> NDArray[np.complex128]:

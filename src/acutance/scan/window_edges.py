@@ -7,17 +7,18 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
 from acutance.numerics.one_thread import one_thread
+from acutance.numerics.stacked import stacked
 from acutance.raster import Box, Gsd, Image
 from acutance.scan.edge_points import edge_points, gradient
 from acutance.scan.options import ScanOptions
 from acutance.scan.pieces import pieces, region_box
 from acutance.scan.segments import find_segments
 from acutance.scan.windows import Window
-from acutance.targets.otf_likelihood import OtfLikelihood
 from acutance.targets.region import RegionPixels, read_data
 from acutance.targets.straight import StraightMeasurement
 from acutance.targets.straight.edge import measure_segment
@@ -41,14 +42,33 @@ class UsedEdge:
     freq_cpp : (k,) array
     otf : (k,) complex array
         As measured.
-    likelihood : OtfLikelihood
-        Of the pixels alone, about it.
+    root : (2 k, r) array
+    value : (r,) array
+        What the pixels alone say of the OTF f, real parts first: ``root.T @ f`` is `value` with
+        independent errors of one.
     """
 
     normal_deg: float
     freq_cpp: Floats
-    otf: Any
-    likelihood: OtfLikelihood
+    otf: NDArray[np.complex128]
+    root: Floats
+    value: Floats
+
+    @classmethod
+    def of(cls, found: StraightMeasurement) -> UsedEdge:
+        """From a measurement that is to be used; opposite normals have conjugate OTFs.
+
+        Where the edge lies is no property of the sensor.
+        """
+        slices = found.slices
+        assert slices.likelihood is not None
+        by_place = np.asarray(-2j * np.pi * slices.freq_cpp[:, None], complex)
+        likelihood = slices.likelihood.near(slices.otf, by_place)
+        root, value = likelihood.root, likelihood.values - likelihood.level
+        otf = slices.otf
+        if abs(found.normal_deg) > 90.0:
+            root, otf = root.conj(), otf.conj()
+        return cls(found.normal_deg, slices.freq_cpp, otf, stacked(root), value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,12 +112,10 @@ def scan_window(image: Image, gsd: Gsd | None, options: ScanOptions, window: Win
         except TargetError as error:
             rows.append(row | {"reason": str(error)})
             continue
-        likelihood = found.slices.likelihood
-        is_used = found.verdict.word in _USED and likelihood is not None
+        is_used = found.verdict.word in _USED
         rows.append(row | _numbers(found) | {"used": is_used})
-        if is_used and likelihood is not None:
-            slices = found.slices
-            used.append(UsedEdge(found.normal_deg, slices.freq_cpp, slices.otf, likelihood))
+        if is_used:
+            used.append(UsedEdge.of(found))
     return WindowEdges(rows, used)
 
 
