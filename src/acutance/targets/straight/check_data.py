@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.noise import (
     Correlation,
     correlation,
+    median,
     outlier_weights,
     robust_scale,
     side_variances,
@@ -100,29 +102,54 @@ class CheckData:
         return max(_FAR_WIDTHS * self.fwhm_px, 2.0)
 
     @cached_property
+    def plateaus(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Which pixels lie on the plateau before the target, and on that behind it."""
+        return self.before > self.far_px, self.behind > self.far_px
+
+    @cached_property
+    def fitted(self) -> Floats:
+        """The fitted image, (n,)."""
+        return self.value - self.residual
+
+    @cached_property
+    def variances(self) -> tuple[float, float]:
+        """Variance of the noise on the dark and on the bright side, outliers aside."""
+        return side_variances(self.residual, self.fitted)
+
+    @cached_property
     def noise(self) -> float:
         """Standard deviation of the noise, outliers aside: the fit's own estimate of it.
 
-        The root of the mean of the variances on the two plateaus, as `side_variances` finds them.
+        The root of the mean of the variances on the two sides.
         """
-        dark, bright = side_variances(self.residual, self.value - self.residual)
+        dark, bright = self.variances
         return math.sqrt(0.5 * (dark + bright))
 
-    def weights(self, inflation: float) -> Floats:
-        """Inverse variance of the pixels, (n,), for noise of a power `inflation` times white one's.
+    @cached_property
+    def weights(self) -> Floats:
+        """Inverse variance of the pixels, (n,), for noise that correlates along the normal.
 
         Outliers count for less, and all pixels where those near the target leave the fit by more
         than their noise, as on a rough border.
         """
-        fitted = self.value - self.residual
-        dark, bright = side_variances(self.residual, fitted)
-        variance = dark + (bright - dark) * np.clip(fitted, 0.0, 1.0) + NOISE_FLOOR**2
-        near = self.outside < _NEAR_WIDTHS * self.fwhm_px
-        if near.any():
-            excess = float(np.median(self.residual[near] ** 2 / variance[near])) / _MEDIAN_SQUARE
-            variance *= max(excess, 1.0)
-        variance *= inflation
-        return outlier_weights(self.residual / np.sqrt(variance)) / variance
+        dark, bright = self.variances
+        share = np.minimum(np.maximum(self.fitted, 0.0), 1.0)
+        variance = (dark + NOISE_FLOOR**2) + (bright - dark) * share
+        square = self.residual * self.residual / variance
+        near = square[self.outside < _NEAR_WIDTHS * self.fwhm_px]
+        excess = max(median(near) / _MEDIAN_SQUARE, 1.0) if near.size else 1.0
+        excess *= self.inflation
+        return outlier_weights(np.sqrt(square / excess)) / (variance * excess)
+
+    @property
+    def inflation(self) -> float:
+        """Power of the noise along the normal over that of white noise."""
+        return self.across.inflation
+
+    @cached_property
+    def across(self) -> Correlation:
+        """Correlation of the plateaus' noise, and its power along the normal."""
+        return self._correlation(self.fit.line.normal)
 
     @cached_property
     def smoothness(self) -> float:
@@ -131,10 +158,12 @@ class CheckData:
         The largest ratio of the plateaus' noise power to that of white noise of the same variance,
         along the normal times along the target.
         """
+        if not self.across.significant:
+            return 1.0
         x, y = self.fit.line.normal
-        return self.correlation((x, y)).inflation * self.correlation((-y, x)).inflation
+        return self.inflation * self._correlation((-y, x)).inflation
 
-    def correlation(self, direction: tuple[float, float]) -> Correlation:
+    def _correlation(self, direction: tuple[float, float]) -> Correlation:
         """Correlation of the plateaus' noise, and its power along a direction (x, y).
 
         On the plateaus alone, each about its own level: across the edge a method's own misfit

@@ -103,12 +103,19 @@ def nonlinearity(data: CheckData, limits: Limits, profile: Profile, sign: float 
     found = find_curvature(data, profile)
     if found.log_odds < NONLINEAR_LOG_ODDS:
         return answer("nonlinearity", 0.0, "the image's values are proportional to light", limits)
-    value = 0.25 * abs(found.value)
+    value, std = found.departure * abs(found.value), found.departure * found.std
+    if found.shoulder > 0:
+        words = (
+            f"from {100 * found.shoulder:.0f} % of the contrast on the values bend towards the "
+            f"bright level, as where a detector saturates softly, and leave a straight line of "
+            f"light by {100 * value:.1f} ± {100 * std:.1f} % of it"
+        )
+        return answer("nonlinearity", value, words, limits)
     curvature = sign * found.value
     levels = sorted((sign * data.fit.dark, sign * data.fit.bright))
     law = gamma_of(curvature, found.std, *levels)
     words = (
-        f"half way up the contrast the values lie {100 * value:.1f} ± {25 * found.std:.1f} % of it "
+        f"half way up the contrast the values lie {100 * value:.1f} ± {100 * std:.1f} % of it "
         f"{'above' if curvature > 0 else 'below'} a straight line of light"
     )
     if law:
@@ -158,7 +165,7 @@ def _slope_outwards(data: CheckData, from_px: float) -> tuple[float, float, floa
 
 def correlated_noise(data: CheckData, limits: Limits) -> Check:
     """Correlation of the noise between neighbouring pixels."""
-    noise = data.correlation(data.fit.line.normal)
+    noise = data.across
     found = (
         f"neighbouring pixels' noise correlates by {abs(noise.strongest):.2f} "
         f"({noise.significance:.0f} standard deviations)"

@@ -54,6 +54,9 @@ _TEXTURED, _TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS = 3.0, 0.015, 1.0
 """Noise power along the normal over that of white noise from which on it is the ground's texture
 (resampled products have 1 to 2.5), and the limits there."""
 _NOTED_RER_STDS, _MAX_RER_STDS = 0.5, 3.0
+_MAX_UNLIKE = 0.5
+"""Probability of a sensor like none that was drawn, from which on any noted asymmetry is a caution:
+of 600 clean edges one."""
 
 
 def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> Check:
@@ -196,16 +199,21 @@ def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
     The middle is where the ESF is the most symmetric. Light of a lens, a detector and a kernel is
     symmetric along most directions; a strip of the ground along the border that is narrower than
     the blur is not, and it moves the relative edge response (RER) about as much. On textured ground
-    such strips are more frequent than sensors with charge trails.
+    such strips are more frequent than sensors with charge trails. Where the LSF is like that of no
+    sensor drawn at random, trails among them, any asymmetry that is worth a note is the ground's.
     """
     value = asymmetry(data)
     rer_std = min(data.fit.response.rer.std, 1.0)
-    if isinstance(data.fit, SplineEdge) and data.fit.correlation.inflation > _TEXTURED:
-        caution = max(_TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS * rer_std)
-    else:
-        caution = max(_MAX_ASYMMETRY, _MAX_RER_STDS * rer_std)
     noted = max(limit_of("asymmetric_lsf", {}), _NOTED_RER_STDS * rer_std)
     found = f"the ESF is asymmetric about its middle by {100 * value:.1f} % of the contrast"
+    caution = max(_MAX_ASYMMETRY, _MAX_RER_STDS * rer_std)
+    if isinstance(data.fit, SplineEdge):
+        if data.fit.correlation.inflation > _TEXTURED:
+            caution = max(_TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS * rer_std)
+        unlike = data.fit.families.get("other", 0.0)
+        if unlike > _MAX_UNLIKE:
+            caution = noted
+            found += f", and the LSF like that of no sensor known (probability {unlike:.2f})"
     return answer(
         "asymmetric_lsf", value, found, limits,
         default=float(f"{noted:.2g}"),

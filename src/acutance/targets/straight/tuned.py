@@ -161,7 +161,7 @@ REPEATED_SIGMAS: Final = 5.0
 STRUCTURE_OUTLIER_SIGMAS: Final = 4.0
 """Structure, slopes and repeated residuals below so many deviations are chance: at these, 200 of
 200 clean simulated edges pass every check (tests of false targets)."""
-NONLINEAR_LOG_ODDS: Final = 1.15
+NONLINEAR_LOG_ODDS: Final = 0.8
 """Natural logarithm of the odds of a curve over none (nonlinearity.py): of edges of 40 to 60 px at
 SNR 100 none of even linear ones lies beyond, about 1 % of those with trails of .15 to .4 px, and 9
 of 10 of those behind a gamma of 1.3."""
