@@ -11,7 +11,6 @@ from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.fit_edge import fit_edge
 from acutance.targets.straight.rim import find_rim
-from acutance.targets.straight.structure_checks import asymmetry
 from acutance.targets.straight.trim import trim
 
 SYSTEMS = reference_systems()
@@ -41,8 +40,7 @@ def strip_of(image):
     """The strip that the search finds in an image."""
     trimmed, _ = trim(image, next(iter(find_segments(image, 1))))
     fit = fit_edge(trimmed)
-    data = CheckData.of(trimmed, fit)
-    return find_rim(data, fit, asymmetry(data))
+    return find_rim(CheckData.of(trimmed, fit), fit)
 
 
 def rim_check(measurement):

@@ -29,7 +29,7 @@ from acutance.targets.straight.check_data import MISFIT, CheckData
 from acutance.targets.straight.ground_steps import near_ground
 from acutance.targets.straight.tuned import NEAR_GROUND_STEPS
 
-__all__ = ["EVEN", "MirrorSum", "Weighed"]
+__all__ = ["EVEN", "EVERY", "USUAL", "MirrorSum", "Weighed"]
 
 _CELL: Final = 0.1
 _CELLS: Final = (1,) * 10 + (2,) * 5 + (4,) * 5
@@ -51,6 +51,8 @@ _ODD_STDS: Final = ((0.01, 0.02), (0.05, 0.08))
 
 EVEN: Final = len(_GROUND_WEIGHTS)
 """How many of the settings of the prior have an even LSF: the first ones."""
+EVERY, USUAL = slice(None), slice(1, 2)
+"""All settings; an even LSF beside ground as it often is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,11 +105,11 @@ class MirrorSum:
         """
         response = data.fit.response
         cell_px = _CELL * data.fwhm_px
-        s, weight = data.fit.distance_px - middle_px, data.weights
+        s, weight = data.fit.distance_px[data.near] - middle_px, data.weights[data.near]
         cell = np.minimum(np.abs(s) * (1 / cell_px), _BIN.size - 1).astype(np.intp)
         place = _BIN[cell] + (s > 0) * (_BINS + 1)
         information = _by_bin(place, weight)
-        left = _by_bin(place, weight * data.residual) / information
+        left = _by_bin(place, weight * data.residual[data.near]) / information
         places = middle_px + cell_px / _CELL * np.concatenate([-_CENTRES, _CENTRES])
         esf = np.interp(places, response.esf.distance_px, response.esf.value).reshape(2, -1)
         lsf = np.interp(places, response.lsf.distance_px, response.lsf.value).reshape(2, -1)
@@ -118,9 +120,9 @@ class MirrorSum:
             np.asarray(0.5 * np.add.reduce(lsf)),
         )
 
-    def weighed(self, curves: Floats) -> Weighed:
-        """Weigh the sum, and `curves` (k, n) that may be part of it."""
-        prior, log_weight = _priors()
+    def weighed(self, curves: Floats, settings: slice = EVERY) -> Weighed:
+        """Weigh the sum, and `curves` (k, n) that may be part of it, at some settings."""
+        prior, log_weight = (one[settings] for one in _priors())
         covariance = prior + np.diag(self.variance)
         covariance += _PLACE_STD_PX**2 * np.outer(self.lsf, self.lsf)
         lower = np.linalg.cholesky(covariance)

@@ -38,7 +38,7 @@ from acutance.targets.straight.curved_model import (
     first_blur,
     solve,
 )
-from acutance.targets.straight.mirror_sum import EVEN, MirrorSum, Weighed
+from acutance.targets.straight.mirror_sum import EVEN, USUAL, MirrorSum, Weighed
 from acutance.targets.straight.side_noise import SideNoise
 from acutance.targets.straight.step_profile import Profile
 
@@ -55,7 +55,10 @@ _MAX_FOLDS, _SETTLED_PX, _MIN_LOG_ODDS = 5, 0.02, -1.0
 """An edge is folded anew about the middle of the linear image, where a curve is not unlikely."""
 _MIN_IMPLIED: Final = 0.2
 """Curvature that the noise alone implies, from which on an edge is folded about its middle too."""
-_SHOULDER_STD: Final = 0.25
+_AMPLITUDE_STDS: Final[Floats] = np.array([CURVATURE_STD, 0.25, 0.25, 0.25])
+"""Prior of c and of every k."""
+_MIN_GAIN: Final = 0.1
+"""Of log likelihood, by shape and noise, below which the odds of a curve cannot become large."""
 _MIN_SIGMAS: Final = 1.2
 """Of c of a pulse in the first, linear step: below it no curve is looked for."""
 _HIGHER_ORDERS: Final = 0.1
@@ -146,12 +149,23 @@ def _of_edge(data: CheckData) -> Curvature:
     The linear image is odd about its own middle, which is not the 50 % point of the values.
     """
     noise = SideNoise.of(data)
+    if not _may_curve(MirrorSum.of(data), noise):
+        return NO_CURVATURE
     found = _settled(data, noise, 0.0)
     implied = 0.0 if noise is None else noise.curvature
     if abs(implied) < _MIN_IMPLIED:
         return found
     other = _settled(data, noise, _middle_px(data, Curvature(implied, 0.0, 0.0)))
     return max(found, other, key=lambda one: one.log_odds)
+
+
+def _may_curve(mirrored: MirrorSum, noise: SideNoise | None) -> bool:
+    """Whether shape and noise together may outweigh a linear sensor: those of most edges do not."""
+    weighed = mirrored.weighed(_bends(mirrored.half), USUAL)
+    precision = weighed.power[0] + _AMPLITUDE_STDS**-2.0
+    gain = weighed.pull[0] ** 2 / precision - np.log(precision * _AMPLITUDE_STDS**2)
+    most = 0.5 * float(gain.max()) + (0.0 if noise is None else noise.max_gain)
+    return most > _MIN_GAIN
 
 
 def _settled(data: CheckData, noise: SideNoise | None, middle_px: float) -> Curvature:
@@ -176,8 +190,7 @@ def _middle_px(data: CheckData, found: Curvature) -> float:
 def _folded(mirrored: MirrorSum, noise: SideNoise | None) -> Curvature:
     """The likelier of curve and shoulder behind a folded edge."""
     weighed = mirrored.weighed(_bends(mirrored.half))
-    std = np.append(CURVATURE_STD, np.full(_SHOULDERS.size, _SHOULDER_STD))
-    value, value_std, shape = _amplitudes(weighed, std)
+    value, value_std, shape = _amplitudes(weighed)
     # Shoulders bend one way.
     shape[1:] += math.log(2) + log_ndtr(value[1:] / value_std[1:])
     even, odd = np.logaddexp.reduceat(weighed.log_evidence, [0, EVEN])
@@ -231,16 +244,16 @@ def _densities(amplitude: Floats) -> Floats:
     return np.where(allowed, _NORMAL, _NEGLIGIBLE)
 
 
-def _amplitudes(weighed: Weighed, std: Floats) -> tuple[Floats, Floats, Floats]:
-    """Amplitudes of curves of a prior deviation behind an even LSF, their deviations, log evidence.
+def _amplitudes(weighed: Weighed) -> tuple[Floats, Floats, Floats]:
+    """Amplitudes of curve and shoulders behind an even LSF, their deviations, and log evidence.
 
     Amplitudes are those at the ground that suits the curve best; (k,) each.
     """
-    precision = weighed.power[:EVEN] + std**-2.0
+    precision = weighed.power[:EVEN] + _AMPLITUDE_STDS**-2.0
     mean = weighed.pull[:EVEN] / precision
-    gain = 0.5 * (weighed.pull[:EVEN] * mean - np.log(precision * std**2))
+    gain = 0.5 * (weighed.pull[:EVEN] * mean - np.log(precision * _AMPLITUDE_STDS**2))
     evidence = weighed.log_evidence[:EVEN, None] + gain
-    best = np.argmax(evidence, axis=0), np.arange(std.size)
+    best = np.argmax(evidence, axis=0), np.arange(precision.shape[1])
     return mean[best], precision[best] ** -0.5, np.logaddexp.reduce(evidence)
 
 

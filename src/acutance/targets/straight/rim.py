@@ -108,17 +108,15 @@ class Rim:
     rer: float
 
 
-def find_rim(data: CheckData, fit: SplineEdge, asymmetry: float) -> Rim | None:
+def find_rim(data: CheckData, fit: SplineEdge) -> Rim | None:
     """The strip that may lie along the border; none where the edge shows no sign of one.
 
     Parameters
     ----------
     data : CheckData
     fit : SplineEdge
-    asymmetry : float
-        How far the ESF is from symmetric about its middle.
     """
-    if not _shows_signs(fit, asymmetry) or fit.families.get("trail", 0.0) > _MAX_TRAIL:
+    if not _shows_signs(fit, data.asymmetry) or fit.families.get("trail", 0.0) > _MAX_TRAIL:
         return None
     model = _Model.of(data, fit)
     found = _compared(model)

@@ -73,6 +73,13 @@ class SideNoise:
         """The c of ``v = u + c u (1 - u)`` through which equal noise is as unequal."""
         return -math.tanh(0.25 * self.log_variance)
 
+    @property
+    def max_gain(self) -> float:
+        """Log likelihood of the characteristic that suits this noise best, over that of none."""
+        best = float(self._density(np.zeros(())))
+        without = float(self._density(np.array(self.log_variance)))
+        return max(math.log(_NOISE_BEFORE * best / without + 1 - _NOISE_BEFORE), 0.0)
+
     def likelihood(self, slope: Floats) -> Floats:
         """Likelihood of characteristics of a slope, bright over dark, over that of none."""
         through = self._density(self.log_variance - 2 * np.log(slope))
