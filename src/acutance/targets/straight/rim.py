@@ -221,9 +221,10 @@ class _Model:
         curves = sensor.esf + np.outer(tail_spline(), sensor.tail)
         level, ground = np.ones((CELLS + 3, 1)), near_ground()[0]
         design = np.hstack([level, curves, ground, _strip_splines(blur, strips)])
+        # The fit's own correlation of the noise, not that of the plateaus.
+        weight = data.weights[near] * (data.inflation / fit.correlation.inflation)
         every = accumulate(
-            [edge_weights(s / width)], data.value[near] - seen[0],
-            data.weights[near], trends, float(s.size),
+            [edge_weights(s / width)], data.value[near] - seen[0], weight, trends, float(s.size)
         ).combined(design)  # fmt: skip
         is_strip = np.zeros(every.projection.size, bool)
         is_strip[design.shape[1] - len(strips) : design.shape[1]] = True

@@ -27,10 +27,11 @@ _WHITE, _PHOTONS = 0.6, 0.4
 """Of a sensor's noise on the two sides: equal, or growing with the light."""
 _TEXTURE_SNR: Final = 60.0
 """Contrast over noise at which the noise is as likely the ground's, of any ratio; its odds fall
-with the fourth power: 97 % at 26, as of paint on grass, 11 % at 100."""
+with the fourth power: 97 % at 26, as of paint on grass, 11 % at 100. They grow with the square of
+the noise's power along the normal over that of white noise."""
 _NOISE_BEFORE: Final = 0.85
 """Share of curves that the noise goes through; else it is added behind, as by compression."""
-_TEXTURE_STD: Final = 1.5
+_TEXTURE_STD: Final = 2.5
 _NOISE_STD: Final = 0.05
 
 
@@ -63,9 +64,11 @@ class SideNoise:
         chance = data.smoothness * (2 / sides[0] + 2 / sides[1])
         low, high = data.fit.dark, data.fit.bright
         photons = math.log(high / low) if 0 < low < high else _MAX_LOG_RATIO
+        # Noise of a sensor hardly correlates, that of a resampled product a little.
+        odds = (_TEXTURE_SNR * data.noise) ** 4 * data.inflation**2
         return cls(
             math.log(bright / dark), math.hypot(_NOISE_STD, math.sqrt(chance)),
-            photons + _MORE_THAN_PHOTONS, 1 / (1 + (1 / (_TEXTURE_SNR * data.noise)) ** 4),
+            photons + _MORE_THAN_PHOTONS, odds / (1 + odds),
         )  # fmt: skip
 
     @property
