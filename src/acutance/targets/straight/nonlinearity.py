@@ -38,6 +38,7 @@ from acutance.targets.straight.curved_model import (
     first_blur,
     solve,
 )
+from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.mirror_sum import EVEN, USUAL, MirrorSum, Weighed
 from acutance.targets.straight.side_noise import SideNoise
 from acutance.targets.straight.step_profile import Profile
@@ -67,10 +68,11 @@ _MAX_STEP: Final = 0.3
 _SETTLED_SIGMAS: Final = 0.2
 _PRIOR_ODDS_OF_PULSES: Final = 1 / 3
 
-_LOG_LINEAR: Final[Floats] = np.log([0.5, 0.1, 0.1])
+_EVEN, _ODD, _LOW_ODD, _LOW_ODD_TRAIL = 0.5, 0.1, 0.1, 0.3
 _LOW_ODD_STD: Final = 0.25
-"""Of linear sensors: an even LSF, any odd part, one of low order that looks like a curve; the
-curvature it looks like: .25 is coma of .02 waves rms or a trail of .18 px."""
+"""Of linear sensors: an even LSF, any odd part, one of low order that looks like a curve, and one
+where the fit has found a charge trail; the curvature that a low one looks like: .25 is coma of .02
+waves rms or a trail of .18 px."""
 _PRIOR_SHOULDER: Final = 0.5
 """Of the characteristics that are not straight, those with a shoulder."""
 _GRID: Final[Floats] = np.linspace(-4.0, 4.0, 41)
@@ -151,12 +153,11 @@ def _of_edge(data: CheckData) -> Curvature:
     noise = SideNoise.of(data)
     if not _may_curve(MirrorSum.of(data), noise):
         return NO_CURVATURE
-    found = _settled(data, noise, 0.0)
-    implied = 0.0 if noise is None else noise.curvature
-    if abs(implied) < _MIN_IMPLIED:
-        return found
-    other = _settled(data, noise, _middle_px(data, Curvature(implied, 0.0, 0.0)))
-    return max(found, other, key=lambda one: one.log_odds)
+    starts = [0.0]
+    if noise is not None and abs(noise.curvature) > _MIN_IMPLIED:
+        starts.append(_middle_px(data, Curvature(noise.curvature, 0.0, 0.0)))
+    found = [_settled(data, noise, middle_px) for middle_px in starts]
+    return max(found, key=lambda one: one.log_odds)
 
 
 def _may_curve(mirrored: MirrorSum, noise: SideNoise | None) -> bool:
@@ -170,8 +171,9 @@ def _may_curve(mirrored: MirrorSum, noise: SideNoise | None) -> bool:
 
 def _settled(data: CheckData, noise: SideNoise | None, middle_px: float) -> Curvature:
     """What an edge shows that is folded about the middle of its linear image, from a first one."""
+    linear = _log_linear(data)
     for _ in range(_MAX_FOLDS):
-        found = _folded(MirrorSum.of(data, middle_px), noise)
+        found = _folded(MirrorSum.of(data, middle_px), noise, linear)
         moved_px = _middle_px(data, found) - middle_px
         if found.log_odds < _MIN_LOG_ODDS or abs(moved_px) < _SETTLED_PX:
             break
@@ -187,8 +189,14 @@ def _middle_px(data: CheckData, found: Curvature) -> float:
     return float(np.interp(half, esf.value[near], esf.distance_px[near]))
 
 
-def _folded(mirrored: MirrorSum, noise: SideNoise | None) -> Curvature:
-    """The likelier of curve and shoulder behind a folded edge."""
+def _log_linear(data: CheckData) -> Floats:
+    """Of linear sensors: an even LSF, any odd part, one that looks like a curve, (3,)."""
+    trail = data.fit.families.get("trail", 0.0) if isinstance(data.fit, SplineEdge) else 0.0
+    return np.asarray(np.log([_EVEN, _ODD, _LOW_ODD + _LOW_ODD_TRAIL * trail]))
+
+
+def _folded(mirrored: MirrorSum, noise: SideNoise | None, log_linear: Floats) -> Curvature:
+    """The likelier of curve and shoulder behind a folded edge, against linear sensors."""
     weighed = mirrored.weighed(_bends(mirrored.half))
     value, value_std, shape = _amplitudes(weighed)
     # Shoulders bend one way.
@@ -206,7 +214,7 @@ def _folded(mirrored: MirrorSum, noise: SideNoise | None) -> Curvature:
     curved = shape + np.log(total / allowed) + _log_prior()
     # An odd part that looks like a curve: of sensors it is smaller than of curves.
     rarer = _log_normal(float(value[0]), _LOW_ODD_STD) - _log_normal(float(value[0]), CURVATURE_STD)
-    linear = np.array([even, odd, shape[0] + rarer]) + _LOG_LINEAR
+    linear = np.array([even, odd, shape[0] + rarer]) + log_linear
     log_odds = float(np.logaddexp.reduce(curved) - np.logaddexp.reduce(linear))
     best = int(np.argmax(curved))
     own = density[best] / total[best]
