@@ -121,6 +121,22 @@ def test_asymmetry_is_graver_on_textured_ground():
     assert np.mean(severities[1.5]) >= 0.5
 
 
+def test_an_asymmetry_like_that_of_no_sensor_is_a_caution():
+    """What is wrong behind strips as wide as the blur, and no trail makes."""
+    wrong, warned = 0, 0
+    for seed in range(12):
+        image, truth = an_edge(SYSTEMS["wide"], seed, 1.6, 0.3, "dark", 120.0)
+        measured = ac.measure_edge(image)
+        if measured.details.families["other"] < 0.5 or sigmas(measured, truth) < 3:
+            continue
+        wrong += 1
+        check = next(one for one in measured.checks if one.name == "asymmetric_lsf")
+        warned += not check.passed and check.severity == "caution"
+        assert check.passed or "like that of no sensor known" in check.message
+    assert wrong >= 6
+    assert warned >= 0.8 * wrong
+
+
 def test_published_methods_do_not_ask():
     image, _ = an_edge(SYSTEMS["gaussian"], 1)
     names = {check.name for check in ac.measure_edge(image, method="iso12233").checks}
