@@ -42,7 +42,7 @@ _REACH_WIDTHS: Final = 4.0
 _COARSE: Final = 10
 _PART_PX, _MIN_PARTS, _MAX_PARTS = 5.0, 3, 12
 _MIDDLES_PX: Final[Floats] = np.linspace(-0.3, 0.3, 31)
-_APART_WIDTHS: Final[Floats] = np.linspace(0.0, 2.0, 41)
+_APART_WIDTHS: Final[Floats] = np.linspace(0.0, 2.0, 21)
 _MEDIAN_SQUARE = 0.455
 """Median of the square of a standard normal variable."""
 
