@@ -61,6 +61,10 @@ class CoarseEsf(NamedTuple):
     value: Floats
     factor: Floats
 
+    def nearest(self, place: int) -> int:
+        """The number of the place nearest to one of the whole curve."""
+        return min(round(place / _COARSE), self.value.size - 1)
+
 
 @dataclass(frozen=True, eq=False)
 class CheckData:

@@ -119,14 +119,15 @@ def one_sided_overshoot(data: CheckData, limits: Limits) -> Check:
     Sharpening overshoots equally on both sides. A bright rim of the bright side, or a dark line
     along the dark one, does on one.
     """
-    response = data.fit.response
-    over, under = response.overshoot, response.undershoot
-    std = math.hypot(over.std, under.std)
-    apart = abs(over.value - under.value)
-    value = apart if apart > STRUCTURE_SIGMAS * std else 0.0
-    side = "bright" if over.value > under.value else "dark"
-    found = f"the ESF overshoots by {100 * value:.1f} % of the contrast more {PLACES[side]}"
-    return answer("one_sided_overshoot", value, found, limits)
+    coarse, esf = data.coarse_esf, data.fit.response.esf.value
+    over, under = max(float(esf.max()) - 1, 0.0), max(-float(esf.min()), 0.0)
+    places = [coarse.nearest(int(place)) for place in (esf.argmax(), esf.argmin())]
+    std = float(np.linalg.norm(coarse.factor[places]))
+    apart = abs(over - under)
+    more = apart if apart > STRUCTURE_SIGMAS * std else 0.0
+    side = "bright" if over > under else "dark"
+    found = f"the ESF overshoots by {100 * more:.1f} % of the contrast more {PLACES[side]}"
+    return answer("one_sided_overshoot", more, found, limits)
 
 
 def double_edge(data: CheckData, limits: Limits) -> Check:
