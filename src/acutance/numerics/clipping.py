@@ -45,9 +45,12 @@ def piled_up_share(values: Floats) -> float:
     Clipping before writing leaves many pixels at the end and few next to it; noise has few at its
     end.
     """
-    _, counts = np.unique(values, return_counts=True)
-    if counts.size == 0:
+    if values.size == 0:
         return 0.0
-    last, before = int(counts[-1]), int(counts[-2]) if counts.size > 1 else 0
-    piled_up = last >= _MIN_PILED_UP and last > _MIN_EXCESS * before
-    return last / values.size if piled_up else 0.0
+    is_last = values == values.max()
+    last = int(np.count_nonzero(is_last))
+    if last < _MIN_PILED_UP:
+        return 0.0
+    others = values[~is_last]
+    before = int(np.count_nonzero(others == others.max())) if others.size else 0
+    return last / values.size if last > _MIN_EXCESS * before else 0.0

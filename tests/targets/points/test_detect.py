@@ -7,7 +7,9 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 from acutance import optics, simulate
+from acutance.errors import TargetError
 from acutance.targets.points.detect import find_spots, match_spots, sort_spots
+from acutance.targets.points.stamps import cut_stamps
 
 SENSOR = optics.Sensor([optics.Gaussian(0.45), optics.Detector()])
 PLACES = np.array(
@@ -105,3 +107,20 @@ def test_grass_under_a_source_makes_it_no_hot_pixel():
         _, reasons = sorted_by_reason(image + 25.0 * grass / grass.std())
         near = [np.abs(PLACES - place).max(axis=1).min() < 2 for place in reasons]
         assert not any(near), reasons
+
+
+def test_a_spot_whose_light_is_gone_is_no_division_by_zero(scene):
+    # Found by fuzz.py, seed 12, draw 652: clipping takes what stood above the background.
+    spots, residual, noise = find_spots(scene)
+    sorted_spots = sort_spots(
+        scene, np.minimum(residual, 0.0), spots,
+        saturation=None, noise=noise, min_snr=10.0, min_distance_px=4.0,
+    )  # fmt: skip
+    assert {one.reason for one in sorted_spots.rejected} == {"hot pixel"}
+    assert all("hold 0 % of the brightest" in one.message for one in sorted_spots.rejected)
+
+
+def test_a_source_without_a_pixel_is_refused(scene):
+    # Found by fuzz.py, seed 12, draws 287 and 1713.
+    with pytest.raises(TargetError, match=r"row 20\.3, column 20\.1 has no pixel of its own"):
+        cut_stamps(np.where(np.indices(scene.shape)[1] < 40, np.nan, scene), PLACES[:2], 8.0)

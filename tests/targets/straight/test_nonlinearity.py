@@ -1,5 +1,7 @@
 """Values that are not proportional to light, and sensors that only look so."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -40,12 +42,55 @@ def test_a_gamma_of_1_3_is_seen(name):
 
 
 def test_a_gamma_of_2_2_is_seen_and_named():
+    gammas = []
     for seed in range(6):
         found = ac.measure_edge(edge(SYSTEMS["diffraction"], seed, gamma=2.2))
         assert not check(found).passed
-        assert "above a straight line of light, as a gamma of 2." in check(found).message
+        named = re.search(
+            r"above a straight line .* a gamma of (.+) ± (.+) gives", check(found).message
+        )
+        gammas.append([float(number) for number in named.groups()])
         assert "--gamma" in check(found).message
         assert found.verdict.word == "doubtful"
+    value, std = np.array(gammas).T
+    assert np.all(np.abs(value - 2.2) < 2 * std)
+    assert np.mean(value) == pytest.approx(2.2, abs=0.25)
+
+
+def softly_saturated(sensor, seed, share, begins, snr=100.0):
+    """An edge whose values bend from a share of the contrast on, noise included."""
+    light = edge(sensor, seed, noise=ac.simulate.Noise(read=0.0), dark=0.0, bright=1.0)
+    light = light + np.random.default_rng((7, seed)).normal(0, 1 / snr, light.shape)
+    bent = light - share * np.maximum(light - begins, 0) ** 2 / (1 - begins)
+    return 40 + 160 * bent
+
+
+@pytest.mark.parametrize("begins", [0.55, 0.7, 0.85])
+def test_a_soft_shoulder_is_seen_and_named(begins):
+    names = ["gaussian", "wide", "diffraction", "halo", "sharpened", "defocused"]
+    found = [
+        check(ac.measure_edge(softly_saturated(SYSTEMS[names[seed % 6]], seed, 0.25, begins)))
+        for seed in range(12)
+    ]
+    assert np.mean([not one.passed for one in found]) >= 10 / 12
+    assert np.mean(["saturates softly" in one.message for one in found]) >= 7 / 12
+
+
+def test_a_shoulder_before_the_noise_is_warned_of_where_overshoots_bend():
+    for seed in range(4):
+        light = edge(
+            SYSTEMS["sharpened"], seed, noise=ac.simulate.Noise(read=0.0), dark=0.0, bright=1.0
+        )
+        bent = light - 0.25 * np.maximum(light - 0.7, 0) ** 2 / 0.3
+        noise = np.random.default_rng((8, seed)).normal(0, 0.01, light.shape)
+        measured = ac.measure_edge(40 + 160 * (bent + noise))
+        assert measured.verdict.word in ("doubtful", "invalid")
+
+
+@pytest.mark.parametrize("snr", [30.0, 500.0])
+def test_linear_sensors_pass_at_any_noise(snr):
+    alarms = [fired(SYSTEMS[name], range(20, 26), snr=snr) for name in SYSTEMS]
+    assert np.mean(alarms) <= 1 / 48
 
 
 @pytest.mark.parametrize(

@@ -349,7 +349,7 @@ def _own_fault(
     # Eight moduli of noise have this mean, and two of their standard deviations are taken off.
     neighbours = float(around.sum()) - abs(peak) - (8 * 0.80 - 2 * np.sqrt(8.0) * 0.60) * noise
     if whole and neighbours < tuned.MIN_NEIGHBOUR_SHARE * peak:
-        share = 100 * max(neighbours / peak, 0.0)
+        share = 100 * max(neighbours, 0.0) / peak if peak > 0 else 0.0
         return "hot pixel", f"its neighbours together hold {share:.0f} % of the brightest pixel"
     if np.any(clear[1:-1, 1:-1] >= limit):
         return "saturated", f"a pixel reached {limit:g}, the detector's limit"

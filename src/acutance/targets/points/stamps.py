@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
+from acutance.errors import TargetError
 from acutance.targets.points import tuned
 
 __all__ = ["Stamps", "cut_stamps"]
@@ -95,6 +96,11 @@ def cut_stamps(image: Floats, places: Floats, radius_px: float) -> Stamps:
     places : (n, 2) array
         Sources as (row, col).
     radius_px : float
+
+    Raises
+    ------
+    TargetError
+        If a source has no pixel of its own.
     """
     reach = np.arange(-int(radius_px) - 1, int(radius_px) + 2)
     down, right = (grid.ravel() for grid in np.meshgrid(reach, reach, indexing="ij"))
@@ -107,6 +113,7 @@ def cut_stamps(image: Floats, places: Floats, radius_px: float) -> Stamps:
     tree = cKDTree(places)
     kept = (tree.query(pixels)[1] == source) & np.isfinite(image[pixels[:, 0], pixels[:, 1]])
     pixels, source = pixels[kept], source[kept]
+    _require_pixels(places, np.bincount(source, minlength=len(places)), radius_px)
     lit = tree.query_ball_point(pixels, tuned.LIT_PX)
     counts = np.array([len(one) for one in lit], dtype=np.intp)
     pair_pixel = np.repeat(np.arange(counts.size), counts)
@@ -119,4 +126,15 @@ def cut_stamps(image: Floats, places: Floats, radius_px: float) -> Stamps:
         source,
         pair_pixel[others],
         pair_source[others],
+    )
+
+
+def _require_pixels(places: Floats, own: _Indices, radius_px: float) -> None:
+    """Refuse sources around which all pixels are missing or nearer to another one."""
+    if own.all():
+        return
+    row, col = places[int(np.argmin(own))].tolist()
+    raise TargetError(
+        f"the source at row {row:.1f}, column {col:.1f} has no pixel of its own: all within "
+        f"{radius_px:g} px of it are missing or nearer to another source; leave it out"
     )

@@ -8,7 +8,9 @@ curves, with `spline`, `spline_equations`, `lsf`, `lsf_prior`, `gradients`, `gro
 both priors), `edge` and `pulse` (the public functions; `many_edges`, `many_pulses` for all edges
 of a target and for many regions),
 `edge_checks`, `pulse_checks`, `pixel_checks`, `structure_checks` and
-`ground_checks` (is the target good enough; `check_data` is their input).
+`ground_checks` (is the target good enough; `check_data` is their input). What takes a model of its
+own: `rim` (a strip along the border), `nonlinearity` (a characteristic that curves: of edges
+`mirror_sum` and `side_noise`, of pulses `curved_model` with `lsf_parity`).
 `error_causes`: what the uncertainty consists of; `pixels_alone`: what pixels say, the prior apart;
 `stated_target`: what is stated of the target.
 `pulse_halo`, `pulse_response`, `pulse_spectrum`, `pulse_width`: for pulses only. `published`:

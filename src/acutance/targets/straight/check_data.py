@@ -5,20 +5,23 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.noise import (
     Correlation,
     correlation,
+    median,
     outlier_weights,
     robust_scale,
     side_variances,
 )
 from acutance.targets.check import MAX_RATIO
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
-from acutance.targets.straight.tuned import NOISE_FLOOR
+from acutance.targets.straight.tuned import NOISE_FLOOR, STRUCTURE_OUTLIER_SIGMAS
 
 __all__ = ["MISFIT", "PLACES", "CheckData", "ratio_in_words"]
 
@@ -35,8 +38,32 @@ MISFIT = 3e-4
 
 _FAR_WIDTHS, _NEAR_WIDTHS = 2.0, 1.5
 _OUTLYING = 4.0
+_REACH_WIDTHS: Final = 4.0
+_COARSE: Final = 10
+_PART_PX, _MIN_PARTS, _MAX_PARTS = 5.0, 3, 12
+_MIDDLES_PX: Final[Floats] = np.linspace(-0.3, 0.3, 31)
+_APART_WIDTHS: Final[Floats] = np.linspace(0.0, 2.0, 21)
 _MEDIAN_SQUARE = 0.455
 """Median of the square of a standard normal variable."""
+
+
+class CoarseEsf(NamedTuple):
+    """Some places of an edge spread function (ESF), half a pixel apart.
+
+    Attributes
+    ----------
+    distance_px, value : (n,) arrays
+    factor : (n, k) array
+        Of their covariance.
+    """
+
+    distance_px: Floats
+    value: Floats
+    factor: Floats
+
+    def nearest(self, place: int) -> int:
+        """The number of the place nearest to one of the whole curve."""
+        return min(round(place / _COARSE), self.value.size - 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,29 +127,54 @@ class CheckData:
         return max(_FAR_WIDTHS * self.fwhm_px, 2.0)
 
     @cached_property
+    def plateaus(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Which pixels lie on the plateau before the target, and on that behind it."""
+        return self.before > self.far_px, self.behind > self.far_px
+
+    @cached_property
+    def fitted(self) -> Floats:
+        """The fitted image, (n,)."""
+        return self.value - self.residual
+
+    @cached_property
+    def variances(self) -> tuple[float, float]:
+        """Variance of the noise on the dark and on the bright side, outliers aside."""
+        return side_variances(self.residual, self.fitted)
+
+    @cached_property
     def noise(self) -> float:
         """Standard deviation of the noise, outliers aside: the fit's own estimate of it.
 
-        The root of the mean of the variances on the two plateaus, as `side_variances` finds them.
+        The root of the mean of the variances on the two sides.
         """
-        dark, bright = side_variances(self.residual, self.value - self.residual)
+        dark, bright = self.variances
         return math.sqrt(0.5 * (dark + bright))
 
-    def weights(self, inflation: float) -> Floats:
-        """Inverse variance of the pixels, (n,), for noise of a power `inflation` times white one's.
+    @cached_property
+    def weights(self) -> Floats:
+        """Inverse variance of the pixels, (n,), for noise that correlates along the normal.
 
         Outliers count for less, and all pixels where those near the target leave the fit by more
         than their noise, as on a rough border.
         """
-        fitted = self.value - self.residual
-        dark, bright = side_variances(self.residual, fitted)
-        variance = dark + (bright - dark) * np.clip(fitted, 0.0, 1.0) + NOISE_FLOOR**2
-        near = self.outside < _NEAR_WIDTHS * self.fwhm_px
-        if near.any():
-            excess = float(np.median(self.residual[near] ** 2 / variance[near])) / _MEDIAN_SQUARE
-            variance *= max(excess, 1.0)
-        variance *= inflation
-        return outlier_weights(self.residual / np.sqrt(variance)) / variance
+        dark, bright = self.variances
+        share = np.minimum(np.maximum(self.fitted, 0.0), 1.0)
+        variance = (dark + NOISE_FLOOR**2) + (bright - dark) * share
+        square = self.residual * self.residual / variance
+        near = square[self.outside < _NEAR_WIDTHS * self.fwhm_px]
+        excess = max(median(near) / _MEDIAN_SQUARE, 1.0) if near.size else 1.0
+        excess *= self.inflation
+        return outlier_weights(np.sqrt(square / excess)) / (variance * excess)
+
+    @property
+    def inflation(self) -> float:
+        """Power of the noise along the normal over that of white noise."""
+        return self.across.inflation
+
+    @cached_property
+    def across(self) -> Correlation:
+        """Correlation of the plateaus' noise, and its power along the normal."""
+        return self._correlation(self.fit.line.normal)
 
     @cached_property
     def smoothness(self) -> float:
@@ -131,40 +183,94 @@ class CheckData:
         The largest ratio of the plateaus' noise power to that of white noise of the same variance,
         along the normal times along the target.
         """
+        if not self.across.significant:
+            return 1.0
         x, y = self.fit.line.normal
-        return self.correlation((x, y)).inflation * self.correlation((-y, x)).inflation
+        return self.inflation * self._correlation((-y, x)).inflation
 
-    def correlation(self, direction: tuple[float, float]) -> Correlation:
+    def _correlation(self, direction: tuple[float, float]) -> Correlation:
         """Correlation of the plateaus' noise, and its power along a direction (x, y).
 
         On the plateaus alone, each about its own level: across the edge a method's own misfit
         looks like correlation, and so does a level that a published method takes from few pixels.
         """
-        flat = self.outside > self.far_px
+        before, behind = (side.nonzero()[0] for side in self.plateaus)
+        flat = np.concatenate([before, behind])
         residual = self.residual[flat]
-        behind = self.behind[flat] > 0
-        for side in (behind, ~behind):
-            if side.any():
-                residual[side] -= np.mean(residual[side])
+        for side in (residual[: before.size], residual[before.size :]):
+            if side.size:
+                side -= np.add.reduce(side) / side.size
         noise = robust_scale(residual) if residual.size else 0.0
         if noise <= MISFIT:
             return Correlation(1.0, 0.0, 0.0)
         rows, cols = (at[flat] for at in self.trimmed.pixels.at)
-        bounded = np.clip(residual / noise, -_OUTLYING, _OUTLYING)
+        bounded = np.minimum(np.maximum(residual / noise, -_OUTLYING), _OUTLYING)
         return correlation(bounded, rows, cols, [direction])
 
     @cached_property
     def plateau_std(self) -> float:
         """Mean standard deviation of the two plateaus."""
-        sides = (self.value[side > self.far_px] for side in (self.before, self.behind))
+        sides = (self.value[side] for side in self.plateaus)
         stds = [_std(side) for side in sides if side.size > 1]
         return sum(stds) / len(stds) if stds else 0.0
 
     @cached_property
+    def near(self) -> NDArray[np.intp]:
+        """Which pixels lie within the reach of the blur from the first step."""
+        return (np.abs(self.before) < _REACH_WIDTHS * self.fwhm_px).nonzero()[0]
+
+    @cached_property
     def slope(self) -> Floats:
-        """How much every pixel changes when the first step moves by one pixel against s."""
+        """How much every near pixel changes when the first step moves by one pixel against s."""
         lsf = self.fit.response.lsf
-        return np.interp(-self.before, lsf.distance_px, lsf.value, left=0.0, right=0.0)
+        return np.interp(-self.before[self.near], lsf.distance_px, lsf.value)
+
+    @cached_property
+    def coarse_esf(self) -> CoarseEsf:
+        """Every tenth place of the ESF."""
+        esf, some = self.fit.response.esf, slice(None, None, _COARSE)
+        factor = np.asarray(esf.factor[some])
+        if esf.latent is not None:
+            factor = factor @ esf.latent
+        return CoarseEsf(esf.distance_px[some], esf.value[some], factor)
+
+    @cached_property
+    def blocks(self) -> NDArray[np.intp]:
+        """The block of 4 x 4 pixels in which every pixel lies, (n,)."""
+        rows, cols = (at >> 2 for at in self.trimmed.pixels.at)
+        return np.asarray(rows * (int(cols.max()) + 1) + cols)
+
+    @cached_property
+    def bounded(self) -> Floats:
+        """The residuals, outliers bounded, (n,)."""
+        most = STRUCTURE_OUTLIER_SIGMAS * self.noise
+        return np.minimum(np.maximum(self.residual, -most), most)
+
+    @cached_property
+    def along(self) -> tuple[NDArray[np.intp], int]:
+        """The part of the target's length in which every near pixel lies, and how many there are.
+
+        As many parts as there are 5 px of pixels next to the first step, 3 to 12, over the whole
+        length.
+        """
+        t = self.t[self.near]
+        steep = t[np.abs(self.before[self.near]) < 1]
+        extent_px = float(steep.max() - steep.min()) if steep.size else 0.0
+        parts = max(_MIN_PARTS, min(_MAX_PARTS, int(extent_px // _PART_PX)))
+        first, last = float(self.t.min()), float(self.t.max())
+        place = (t - first) * (parts / max(last - first, 1e-9))
+        return np.minimum(place.astype(np.intp), parts - 1), parts
+
+    @cached_property
+    def asymmetry(self) -> float:
+        """Largest odd part of the ESF about the middle where it is smallest, within two widths."""
+        esf = self.fit.response.esf
+        middle, apart = _MIDDLES_PX[:, None], _APART_WIDTHS * self.fwhm_px
+        places = np.concatenate([middle + apart, middle - apart], axis=1)
+        value = np.interp(places, esf.distance_px, esf.value).reshape(_MIDDLES_PX.size, 2, -1)
+        odd = np.add.reduce(value, axis=1) - 1
+        best = int(np.argmin(np.einsum("ij,ij->i", odd, odd)))
+        return float(np.max(np.abs(odd[best])))
 
 
 def _std(values: Floats) -> float:

@@ -1,11 +1,11 @@
-"""A straight target whose values curve: an LSF of even and odd parts, and a curvature.
+"""A pulse whose values curve: an LSF of even and odd parts, and a curvature.
 
 With u the linear image between the plateaus (0 dark, 1 bright), the values are
 
     v = u + c u (1 - u)
 
-and u is linear in the line spread function (LSF), the levels and, of a pulse, its width, its
-height ratio and the ground beside it. The model is linear about one u and one c, and solved anew
+and u is linear in the line spread function (LSF), the levels, the pulse's width, its height ratio
+and the ground beside it. The model is linear about one u and one c, and solved anew
 where they have moved. All this depends on the distance from the line alone: pixels enter as their
 means in narrow bins of it. Values are in shares of the contrast.
 """
@@ -13,7 +13,7 @@ means in narrow bins of it. Values are in shares of the contrast.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
 
@@ -47,10 +47,10 @@ __all__ = ["CURVATURE_STD", "CurvedModel", "MeanProfile", "Solved", "first_blur"
 
 CURVATURE_STD: Final = 0.3
 """Prior of c: a gamma of 2.2 between 20 and 220 of 255 is .56, 1.3 between 50 and 200 .15."""
-_MAX_STEP_PX, _SETTLED_PX = 0.3, 0.08
+_MAX_STEP_PX: Final = 0.3
 _AMPLITUDE_STEPS: Final = 12
 _SETTLED_AMPLITUDE: Final = 0.15
-_PLACE, _APERTURE = 2, 3
+_APERTURE: Final = 3
 _APERTURE_STD_PX: Final = 0.3
 _NEAR_BIN, _FAR_BIN, _NEAR_WIDTHS = 0.06, 0.5, 3.0
 """Bins within so many widths of a step, and beyond: the mean over the former differs from the value
@@ -74,7 +74,8 @@ class MeanProfile(NamedTuple):
     @classmethod
     def of(cls, data: CheckData, width_px: float) -> MeanProfile:
         """The means of the pixels in bins that follow a width, for noise as it is correlated."""
-        weight, s = data.weights(data.smoothness), data.fit.distance_px
+        weight = data.weights * (data.inflation / data.smoothness)
+        s = data.fit.distance_px
         near = data.outside < _NEAR_WIDTHS * width_px
         size = width_px * np.where(near, _NEAR_BIN, _FAR_BIN)
         # Near and far bins of one number are different bins.
@@ -87,7 +88,7 @@ class MeanProfile(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class CurvedModel:
-    """A straight target to first order about a Gaussian through a pixel, in shares of the contrast.
+    """A pulse to first order about a Gaussian through a pixel, in shares of the contrast.
 
     Attributes
     ----------
@@ -101,13 +102,11 @@ class CurvedModel:
         Spline coefficients of the directions of the LSF.
     rows : (r + q, n) array
         Response of every bin to the unknowns other than the curvature: directions of the LSF,
-        level, slopes of the plateaus, ground beside a pulse, its width and height ratio.
-    odd : (r + q,) bool array
-        Which unknowns make the LSF odd.
+        level, slopes of the plateaus, ground beside the pulse, its width and height ratio.
     block, scale : (r + q + 1,) arrays
         Of the prior; the last unknown is the curvature.
-    ground : Ground, optional
-        Beside a pulse: where its steps lie does not follow the width, which hardly moves.
+    ground : Ground
+        Where its steps lie does not follow the width, which hardly moves.
     """
 
     measured: MeanProfile
@@ -116,10 +115,9 @@ class CurvedModel:
     mean: Floats
     design: Floats
     rows: Floats
-    odd: NDArray[np.bool_]
     block: NDArray[np.intp]
     scale: Floats
-    ground: Ground | None
+    ground: Ground
 
     @classmethod
     def about(
@@ -138,42 +136,30 @@ class CurvedModel:
         s, width = measured.s, blur.width_px
         seen = profile.seen(blur, s)
         sides = profile.sides(seen, s)
-        further = [np.ones((1, s.size)), _slopes(sides)]
-        steps = len(profile.shares) - 1
-        ground = None if earlier is None else earlier.ground
-        if steps:
-            if ground is None:
-                beside = [away / width for _, away in sides]
-                ground = Ground.beside_pulse(beside, profile.positions_px[-1] / width)
+        if earlier is None or beta is None:
+            beside = [away / width for _, away in sides]
+            ground = Ground.beside_pulse(beside, profile.positions_px[-1] / width)
             esf, lsf = seen[1]
-            if earlier is not None and beta is not None:
-                esf, lsf = earlier.step(profile.distances(s)[1], beta)
-            further += [ground.columns, np.stack([-profile.shares[1] * lsf, -esf])]
+        else:
+            ground = earlier.ground
+            esf, lsf = earlier.step(profile.distances(s)[1], beta)
+        by_width, by_ratio = -profile.shares[1] * lsf, -esf
         lsf_parts = parts(blur)
         slopes, ground_first = LOG_AMPLITUDES.size, LOG_AMPLITUDES.size + 1
-        own = [] if ground is None else [ground_first + ground.side]
-        block = np.concatenate(
-            [
-                lsf_parts.block,
-                [-1],
-                np.full(2 * len(sides), slopes),
-                *own,
-                np.full(1 + 2 * steps, -1),
-            ]
-        )
+        block = np.concatenate([
+            lsf_parts.block, [-1], np.full(2 * len(sides), slopes), ground_first + ground.side,
+            [-1, -1, -1],
+        ])  # fmt: skip
         scale = np.ones(block.size)
         scale[_APERTURE], scale[-1] = _APERTURE_STD_PX, CURVATURE_STD
-        if ground is not None:
-            scale[block >= ground_first] = ground.scale
+        scale[block >= ground_first] = ground.scale
         splines = [expand(*stencil) for stencil in step_stencils(profile, s, width)]
-        directions = lsf_parts.esf.T @ np.sum(splines, axis=0).T
-        rows = np.vstack([directions, *further])
-        odd = np.zeros(len(rows), bool)
-        odd[: lsf_parts.odd.size] = lsf_parts.odd
+        rows = np.vstack([
+            lsf_parts.esf.T @ np.sum(splines, axis=0).T, np.ones(s.size), _slopes(sides),
+            ground.columns, by_width, by_ratio,
+        ])  # fmt: skip
         mean = profile.mean(blur, s)
-        return cls(
-            measured, blur, profile, mean, lsf_parts.esf, rows, odd, block, scale, ground
-        )  # fmt: skip
+        return cls(measured, blur, profile, mean, lsf_parts.esf, rows, block, scale, ground)
 
     def normal(self, u: Floats, c: float) -> Normal:
         """The equations of the unknowns about the linear image u, (n,), and a curvature c."""
@@ -195,18 +181,7 @@ class CurvedModel:
         return esf, lsf
 
     def renewed(self, beta: Floats) -> CurvedModel:
-        """The model about the place, width and height ratio of some unknowns, and their LSF."""
-        moved_px = float(np.clip(beta[_PLACE], -_MAX_STEP_PX, _MAX_STEP_PX))
-        lsf = self.step(self.measured.s, beta)[1]
-        if len(self.profile.shares) == 1 and abs(moved_px) < _SETTLED_PX:
-            rows = self.rows.copy()
-            rows[_PLACE] = -lsf
-            return replace(self, rows=rows)
-        measured = self.measured._replace(s=self.measured.s - moved_px)
-        if len(self.profile.shares) == 1:
-            model = CurvedModel.about(measured, self.blur, self.profile)
-            model.rows[_PLACE] = -lsf
-            return model
+        """The model about the width and height ratio of some unknowns, and their LSF."""
         wider, higher = np.clip(beta[-3:-1], -_MAX_STEP_PX, _MAX_STEP_PX).tolist()
         width_px, ratio = self.profile.positions_px[1], -self.profile.shares[1]
         profile = pulse_profile(width_px + wider, ratio + higher)
@@ -281,8 +256,8 @@ def solve(
     """
     mean = np.zeros(free.size)
     mean[-1] = -c
-    walks = 0 if linear.ground is None else linear.ground.walks
-    amplitudes = [*LOG_AMPLITUDES, TREND_LOG_AMPLITUDE, *[GROUND_LOG_AMPLITUDE] * walks]
+    walks = [GROUND_LOG_AMPLITUDE] * linear.ground.walks
+    amplitudes = [*LOG_AMPLITUDES, TREND_LOG_AMPLITUDE, *walks]
     prior = Prior(
         linear.block[free].astype(float), linear.scale[free], mean[free],
         np.array(amplitudes), LOG_AMPLITUDE_STD, 1.0, NOISE_FLOOR,

@@ -9,6 +9,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.geometry.line import Line
+from acutance.numerics.noise import median
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
 from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import PLACES, CheckData, ratio_in_words
@@ -39,7 +40,6 @@ from acutance.targets.straight.tuned import (
     MAX_ANGLE_BY_ROWS_DEG,
     MIN_CONTRAST_SNR,
     MIN_TRUSTED_SNR,
-    OUTLIER_SIGMAS,
 )
 
 __all__ = [
@@ -178,8 +178,9 @@ def blur_uniformity(data: CheckData, limits: Limits) -> Check:
     slope of the line spread function (LSF).
     """
     lsf = data.fit.response.lsf
-    bend = np.gradient(lsf.value, lsf.distance_px)
-    column = np.interp(-data.before, lsf.distance_px, bend, left=0.0, right=0.0)
+    step_px = float(lsf.distance_px[1] - lsf.distance_px[0])
+    bend = (lsf.value[2:] - lsf.value[:-2]) / (2 * step_px)
+    column = np.interp(-data.before[data.near], lsf.distance_px[1:-1], bend, left=0.0, right=0.0)
     value = _lost_at_nyquist(2 * _change_along(data, column))
     found = (
         f"from part to part of the edge its blur changes by {100 * value:.1f} % of the MTF at "
@@ -194,28 +195,28 @@ def _lost_at_nyquist(variance_px2: float) -> float:
 
 
 def _change_along(data: CheckData, column: Floats) -> float:
-    """Amount of `column` (n,) in the residuals of the parts of an edge, rms beyond their noise."""
-    steep = np.abs(data.before) < 1
-    extent_px = float(np.ptp(data.t[steep])) if steep.any() else 0.0
-    parts = max(3, min(12, int(extent_px // 5)))
-    first = float(data.t.min())
-    part = np.minimum(((data.t - first) * parts / max(np.ptp(data.t), 1e-9)).astype(int), parts - 1)
+    """Amount of a column in the residuals of the parts of an edge, rms beyond their noise.
+
+    The column has a value for every near pixel.
+    """
+    part, parts = data.along
     power = np.bincount(part, column * column, parts)
-    clipped = np.clip(data.residual, -OUTLIER_SIGMAS * data.noise, OUTLIER_SIGMAS * data.noise)
-    share = np.bincount(part, column * clipped, parts)
-    usable = power > 0.3 * np.median(power)
-    freedom = int(usable.sum()) - 1
+    share = np.bincount(part, column * data.bounded[data.near], parts)
+    usable = power > 0.3 * median(np.asarray(power, float))
+    freedom = int(np.count_nonzero(usable)) - 1
     if freedom < 1:
         # Pixels lie next to one part of the edge at most.
         return 0.0
-    amount = share[usable] / power[usable]
-    variance = data.noise**2 * data.smoothness / power[usable]
+    power = power[usable]
+    amount = share[usable] / power
+    variance = data.noise**2 * data.smoothness / power
     # The mean of all parts belongs to the fit and is no change along the edge.
-    amount -= np.average(amount, weights=power[usable])
-    chi_square = float(np.sum(amount**2 / np.maximum(variance, 1e-18)))
+    amount -= float(amount @ power) / float(np.add.reduce(power))
+    square = amount * amount
+    chi_square = float(np.add.reduce(square / np.maximum(variance, 1e-18)))
     if chi_square <= freedom + CHANGE_SIGMAS * math.sqrt(2 * freedom):
         return 0.0
-    return math.sqrt(max(float(np.mean(amount**2 - variance)), 0.0))
+    return math.sqrt(max(float(np.mean(square - variance)), 0.0))
 
 
 def lsf_width(data: CheckData, limits: Limits) -> Check:

@@ -11,7 +11,6 @@ from acutance.targets.straight.check_data import PLACES, CheckData
 from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.ground_steps import GroundSide
 from acutance.targets.straight.rim import find_rim
-from acutance.targets.straight.structure_checks import asymmetry
 
 __all__ = ["ground_checks", "rim"]
 
@@ -32,9 +31,10 @@ def ground_checks(data: CheckData, limits: Limits, sides: tuple[str, str]) -> tu
     """
     if not isinstance(data.fit, SplineEdge):
         return ()
+    spans = [_span(side) for side in data.fit.ground]
     return (
-        _ground(data.fit, limits, sides), _close(data.fit, limits, sides),
-        _mirrored(data.fit, limits),
+        _ground(spans, limits, sides), _close(data.fit, limits, sides),
+        _mirrored(data.fit, spans, limits),
     )  # fmt: skip
 
 
@@ -42,7 +42,7 @@ def rim(data: CheckData, limits: Limits) -> tuple[Check, ...]:
     """How probable a strip along the border is that moves the numbers; nothing without a model."""
     if not isinstance(data.fit, SplineEdge):
         return ()
-    strip = find_rim(data, data.fit, asymmetry(data))
+    strip = find_rim(data, data.fit)
     if strip is None:
         found = "no strip along the border explains the profile better than a sensor alone"
         return (answer("rim", 0.0, found, limits),)
@@ -56,10 +56,9 @@ def rim(data: CheckData, limits: Limits) -> tuple[Check, ...]:
     return (answer("rim", strip.probability, found, limits),)
 
 
-def _ground(fit: SplineEdge, limits: Limits, sides: tuple[str, str]) -> Check:
+def _ground(spans: list[tuple[float, float]], limits: Limits, sides: tuple[str, str]) -> Check:
     """How much the ground beside the target differs from its level at the target."""
-    spans = [_span(side) for side in fit.ground]
-    worst = int(np.argmax([span for span, _ in spans]))
+    worst = 0 if spans[0][0] >= spans[1][0] else 1
     value, from_px = spans[worst]
     found = "the ground beside the target is even"
     if value > 0:
@@ -82,9 +81,10 @@ def _close(fit: SplineEdge, limits: Limits, sides: tuple[str, str]) -> Check:
     """How much the ground steps where the blur ends: a step closer still is taken for blur."""
     levels = []
     for side in fit.ground:
-        near = side.distance_px <= _CLOSE_WIDTHS * fit.blur.width_px
-        levels.append(float(np.max(np.abs(side.level[near & side.seen]), initial=0.0)))
-    worst = int(np.argmax(levels))
+        near = int(np.searchsorted(side.distance_px, _CLOSE_WIDTHS * fit.blur.width_px, "right"))
+        seen = np.where(side.seen[:near], np.abs(side.level[:near]), 0.0)
+        levels.append(float(seen.max(initial=0.0)))
+    worst = 0 if levels[0] >= levels[1] else 1
     found = (
         f"{PLACES[sides[worst]]} the ground steps by {100 * levels[worst]:.1f} % of the contrast "
         f"within {_CLOSE_WIDTHS * fit.blur.width_px:.1f} px of the target"
@@ -92,7 +92,7 @@ def _close(fit: SplineEdge, limits: Limits, sides: tuple[str, str]) -> Check:
     return answer("close_ground", levels[worst], found, limits)
 
 
-def _mirrored(fit: SplineEdge, limits: Limits) -> Check:
+def _mirrored(fit: SplineEdge, spans: list[tuple[float, float]], limits: Limits) -> Check:
     """Whether the ground on one side is the mirror image of that on the other.
 
     Ground is not; ringing of a sharpened product, which is as far out on both sides of an edge,
@@ -103,7 +103,7 @@ def _mirrored(fit: SplineEdge, limits: Limits) -> Check:
     count = min(before.step.size, behind.step.size)
     one, other = before.step[:count], -behind.step[:count]
     power = math.sqrt(float(one @ one) * float(other @ other))
-    large = min(_span(before)[0], _span(behind)[0]) > _MIN_LEVEL
+    large = min(spans)[0] > _MIN_LEVEL
     value = max(float(one @ other) / power, 0.0) if large else 0.0
     found = f"what lies beside the target is to {100 * value:.0f} % mirrored on its other side"
     return answer("mirrored_ground", value, found, limits)

@@ -2,18 +2,19 @@
 
 With u the linear image between the plateaus (0 dark, 1 bright), the values are modelled as
 
-    v = u + c u (1 - u)
+    v = u + c u (1 - u)                                                 a curve
+    v = u + k ((1 - u0) u - max(u - u0, 0)^2 / (1 - u0))                a shoulder
 
-which a power law, a logarithm or a film curve is to second order. Light spreads by one line spread
-function (LSF) whether it comes from the dark or from the bright side, so u(1 - u), which is even
-about the edge where an even LSF gives what is odd, shows c. Two things show it:
+A power law, a logarithm or a film curve is the former to second order; soft saturation, which
+bends near the bright level only, the latter. Light spreads by one line spread function (LSF)
+whether it comes from the dark or from the bright side. Two things show a characteristic that is
+not straight:
 
-- the shape: c against an even LSF, and against an odd part of the LSF as trails and coma give. A
-  small odd part of low order cannot be told from c by one edge. A pulse shows both polarities: its
-  LSF may have any shape;
-- the noise: a curve of slope g' multiplies the noise of a side by g', so that ln of the ratio of
-  the variances is 2 ln((1 - c) / (1 + c)) for white noise. Without a curve the brighter side has
-  as much noise, or more by no more than photons make.
+- the shape: the sum of an edge and its mirror image (`mirror_sum`), which is zero behind an even
+  LSF, has a part that follows u. It is weighed against an odd part of the LSF, as trails and coma
+  give. A small odd part of low order cannot be told from a curve by one edge. A pulse shows both
+  polarities: its LSF may have any shape (`curved_model`);
+- the noise of an edge's two sides (`side_noise`), which a curve of slope g multiplies by g.
 
 Both are weighed by their likelihoods, with the unknowns integrated out.
 """
@@ -25,11 +26,10 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.special import ndtr
+from scipy.special import log_ndtr
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.numerics.noise import side_variances
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.curved_model import (
     CURVATURE_STD,
@@ -39,56 +39,73 @@ from acutance.targets.straight.curved_model import (
     solve,
 )
 from acutance.targets.straight.fit_edge import SplineEdge
+from acutance.targets.straight.mirror_sum import EVEN, USUAL, MirrorSum, Weighed
+from acutance.targets.straight.side_noise import SideNoise
 from acutance.targets.straight.step_profile import Profile
-from acutance.targets.straight.tuned import NOISE_FLOOR
 
 __all__ = ["Curvature", "find_curvature", "gamma_of"]
 
 _MAX_CURVATURE: Final = 0.7
 """A gamma of 3; where more were needed it is no curve but an asymmetric LSF."""
+_MAX_SHOULDER: Final = 0.45
+"""At .5 the brightest values no longer grow with the light."""
+_SHOULDERS: Final[Floats] = np.array([0.6, 0.7, 0.8])
+"""Where a shoulder may begin."""
+_BEGINS: Final[Floats] = np.append(0.0, _SHOULDERS)
+_MAX_FOLDS, _SETTLED_PX, _MIN_LOG_ODDS = 5, 0.02, -1.0
+"""An edge is folded anew about the middle of the linear image, where a curve is not unlikely."""
+_MIN_IMPLIED: Final = 0.2
+"""Curvature that the noise alone implies, from which on an edge is folded about its middle too."""
+_AMPLITUDE_STDS: Final[Floats] = np.array([CURVATURE_STD, 0.25, 0.25, 0.25])
+"""Prior of c and of every k."""
+_MIN_GAIN: Final = 0.1
+"""Of log likelihood, by shape and noise, below which the odds of a curve cannot become large."""
 _MIN_SIGMAS: Final = 1.2
-"""Of c in the first, linear step: below it no curve is looked for."""
+"""Of c of a pulse in the first, linear step: below it no curve is looked for."""
+_HIGHER_ORDERS: Final = 0.1
 _MAX_STEPS: Final = 5
 _MAX_STEP: Final = 0.3
 _SETTLED_SIGMAS: Final = 0.2
-_LOPSIDED_WIDTHS: Final = 3.0
-_MIN_SIDE_PIXELS: Final = 24
-_HIGHER_ORDERS: Final = 0.1
-_MIN_NOISE_SIGMAS: Final = 3.0
-_MAX_LOG_RATIO: Final = 3.0
-_MORE_THAN_PHOTONS: Final = 0.3
+_PRIOR_ODDS_OF_PULSES: Final = 1 / 3
 
-_PRIOR_EVEN, _PRIOR_ODD, _PRIOR_LOW_ODD = 0.5, 0.4, 0.1
+_EVEN, _ODD, _LOW_ODD, _LOW_ODD_TRAIL = 0.5, 0.1, 0.1, 0.3
 _LOW_ODD_STD: Final = 0.25
-"""Of linear sensors: an even LSF, any odd part, one of low order that looks like a curve; the
-curvature it looks like: .25 is coma of .02 waves rms or a trail of .18 px."""
-_WHITE, _PHOTONS = 0.6, 0.4
-"""Of a sensor's noise on the two sides: equal, or growing with the light."""
-_TEXTURE_SNR: Final = 60.0
-"""Contrast over noise at which the noise is as likely the ground's, of any ratio; its odds fall
-with the fourth power: 97 % at 26, as of paint on grass, 11 % at 100."""
-_NOISE_BEFORE: Final = 0.85
-"""Share of curves that the noise goes through; else it is added behind, as by compression."""
-_TEXTURE_STD: Final = 1.5
-_NOISE_STD: Final = 0.05
-_GRID: Final[Floats] = np.linspace(-4.0, 4.0, 81)
+"""Of linear sensors: an even LSF, any odd part, one of low order that looks like a curve, and one
+where the fit has found a charge trail; the curvature that a low one looks like: .25 is coma of .02
+waves rms or a trail of .18 px."""
+_PRIOR_SHOULDER: Final = 0.5
+"""Of the characteristics that are not straight, those with a shoulder."""
+_GRID: Final[Floats] = np.linspace(-4.0, 4.0, 41)
+_NORMAL: Final[Floats] = np.exp(-0.5 * _GRID**2)
+_NEGLIGIBLE: Final = 1e-12
 
 
 @dataclass(frozen=True)
 class Curvature:
-    """The curvature of the characteristic of an image.
+    """How the characteristic of an image curves.
 
     Parameters
     ----------
     value, std : float
-        c, and its standard deviation.
+        c, or k of a shoulder, and its standard deviation.
     log_odds : float
-        Natural logarithm of the likelihood of a curve over that of none.
+        Natural logarithm of the likelihood of a curve, or a shoulder, over that of neither.
+    shoulder : float, optional
+        Where a shoulder begins, u0; 0 of a curve.
     """
 
     value: float
     std: float
     log_odds: float
+    shoulder: float = 0.0
+
+    @property
+    def departure(self) -> float:
+        """Largest distance of the characteristic from a straight line, for a value of one."""
+        if self.shoulder == 0:
+            return 0.25
+        rest = 1 - self.shoulder
+        return rest * (self.shoulder + 0.25 * rest**2)
 
 
 NO_CURVATURE: Final = Curvature(0.0, math.inf, -math.inf)
@@ -103,19 +120,10 @@ def find_curvature(data: CheckData, profile: Profile) -> Curvature:
     profile : Profile
         The steps of the target.
     """
-    ratio = _noise_ratio(data)
-    unequal = ratio is not None and abs(ratio[0]) > _MIN_NOISE_SIGMAS * ratio[1]
-    if len(profile.shares) == 1 and not (unequal or _is_lopsided(data)):
-        return NO_CURVATURE
     try:
-        shape = _shape(data, profile, unequal=unequal)
+        return _of_edge(data) if len(profile.shares) == 1 else _of_pulse(data, profile)
     except TargetError:
         return NO_CURVATURE
-    if shape is None:
-        return NO_CURVATURE
-    if len(profile.shares) > 1:
-        return Curvature(shape.value, shape.std, shape.curved - np.logaddexp(shape.odd, shape.even))
-    return _with_noise(data, shape, ratio)
 
 
 def gamma_of(curvature: float, curvature_std: float, dark: float, bright: float) -> str:
@@ -137,41 +145,144 @@ def gamma_of(curvature: float, curvature_std: float, dark: float, bright: float)
     return f"a gamma of {gamma:.2f} ± {0.5 * (high - low):.2f}"
 
 
-@dataclass(frozen=True)
-class _Shape:
-    """What the shape of the transition shows: c, and the log evidence of three models."""
+def _of_edge(data: CheckData) -> Curvature:
+    """The curve or the shoulder that an edge shows, the likelier one.
 
-    value: float
-    std: float
-    even: float
-    odd: float
-    curved: float
+    The linear image is odd about its own middle, which is not the 50 % point of the values.
+    """
+    noise = SideNoise.of(data)
+    if not _may_curve(MirrorSum.of(data), noise):
+        return NO_CURVATURE
+    starts = [0.0]
+    if noise is not None and abs(noise.curvature) > _MIN_IMPLIED:
+        starts.append(_middle_px(data, Curvature(noise.curvature, 0.0, 0.0)))
+    found = [_settled(data, noise, middle_px) for middle_px in starts]
+    return max(found, key=lambda one: one.log_odds)
 
 
-def _shape(data: CheckData, profile: Profile, *, unequal: bool) -> _Shape | None:
-    """Compare an even LSF, one with an odd part, and a curve; of a pulse, any LSF and a curve.
+def _may_curve(mirrored: MirrorSum, noise: SideNoise | None) -> bool:
+    """Whether shape and noise together may outweigh a linear sensor: those of most edges do not."""
+    weighed = mirrored.weighed(_bends(mirrored.half), USUAL)
+    precision = weighed.power[0] + _AMPLITUDE_STDS**-2.0
+    gain = weighed.pull[0] ** 2 / precision - np.log(precision * _AMPLITUDE_STDS**2)
+    most = 0.5 * float(gain.max()) + (0.0 if noise is None else noise.max_gain)
+    return most > _MIN_GAIN
 
-    Where the two sides have no `unequal` noise, a curve is looked for only if the first step to it
-    is longer than chance.
+
+def _settled(data: CheckData, noise: SideNoise | None, middle_px: float) -> Curvature:
+    """What an edge shows that is folded about the middle of its linear image, from a first one."""
+    linear = _log_linear(data)
+    for _ in range(_MAX_FOLDS):
+        found = _folded(MirrorSum.of(data, middle_px), noise, linear)
+        moved_px = _middle_px(data, found) - middle_px
+        if found.log_odds < _MIN_LOG_ODDS or abs(moved_px) < _SETTLED_PX:
+            break
+        middle_px += moved_px
+    return found
+
+
+def _middle_px(data: CheckData, found: Curvature) -> float:
+    """Where the linear image passes one half."""
+    esf = data.fit.response.esf
+    near = np.abs(esf.distance_px) < 0.5 * data.fwhm_px
+    half = 0.5 + found.value * (0.25 if found.shoulder == 0 else 0.5 * (1 - found.shoulder))
+    return float(np.interp(half, esf.value[near], esf.distance_px[near]))
+
+
+def _log_linear(data: CheckData) -> Floats:
+    """Of linear sensors: an even LSF, any odd part, one that looks like a curve, (3,)."""
+    trail = data.fit.families.get("trail", 0.0) if isinstance(data.fit, SplineEdge) else 0.0
+    return np.asarray(np.log([_EVEN, _ODD, _LOW_ODD + _LOW_ODD_TRAIL * trail]))
+
+
+def _folded(mirrored: MirrorSum, noise: SideNoise | None, log_linear: Floats) -> Curvature:
+    """The likelier of curve and shoulder behind a folded edge, against linear sensors."""
+    weighed = mirrored.weighed(_bends(mirrored.half))
+    value, value_std, shape = _amplitudes(weighed)
+    # Shoulders bend one way.
+    shape[1:] += math.log(2) + log_ndtr(value[1:] / value_std[1:])
+    even, odd = np.logaddexp.reduceat(weighed.log_evidence, [0, EVEN])
+    # The models are the second order of a curve: the rest may cost a tenth of what they explain.
+    whole = shape + _HIGHER_ORDERS * np.maximum(shape - even, 0)
+    shape = np.maximum(shape, np.minimum(whole, odd))
+    amplitude = value[:, None] + value_std[:, None] * _GRID
+    density = _densities(amplitude)
+    allowed = np.sum(density, axis=1)
+    if noise is not None:
+        density *= noise.likelihood(_slopes(amplitude))
+    total = np.sum(density, axis=1)
+    curved = shape + np.log(total / allowed) + _log_prior()
+    # An odd part that looks like a curve: of sensors it is smaller than of curves.
+    rarer = _log_normal(float(value[0]), _LOW_ODD_STD) - _log_normal(float(value[0]), CURVATURE_STD)
+    linear = np.array([even, odd, shape[0] + rarer]) + log_linear
+    log_odds = float(np.logaddexp.reduce(curved) - np.logaddexp.reduce(linear))
+    best = int(np.argmax(curved))
+    own = density[best] / total[best]
+    mean = float(own @ amplitude[best])
+    spread = math.sqrt(float(own @ (amplitude[best] - mean) ** 2))
+    return Curvature(mean, spread, log_odds, float(_BEGINS[best]))
+
+
+def _log_prior() -> Floats:
+    """Of a curve, and of every shoulder, where the characteristic is not straight, (k,)."""
+    shoulders = np.full(_SHOULDERS.size, _PRIOR_SHOULDER / _SHOULDERS.size)
+    return np.asarray(np.log(np.append(1 - _PRIOR_SHOULDER, shoulders)))
+
+
+def _bends(half: Floats) -> Floats:
+    """What a curve and shoulders of unit size add to the sum of mirror images, (k, n)."""
+    u = np.stack([half, 1 - half])
+    rest = 1 - _SHOULDERS[:, None, None]
+    shoulders = rest * u - np.maximum(u - _SHOULDERS[:, None, None], 0) ** 2 / rest
+    return np.vstack([2 * half * (1 - half), np.add.reduce(shoulders, axis=1)])
+
+
+def _slopes(amplitude: Floats) -> Floats:
+    """Slope of the characteristic at the bright level over that at the dark one, (k, m)."""
+    rest = np.append(1.0, 1 - _SHOULDERS)[:, None]
+    at_dark = 1 + rest * amplitude
+    at_bright = at_dark - 2 * amplitude
+    return np.maximum(at_bright, 1e-3) / np.maximum(at_dark, 1e-3)
+
+
+def _densities(amplitude: Floats) -> Floats:
+    """Weights of the amplitudes, (k, m): normal, of shoulders those that bend down alone."""
+    allowed = (amplitude > 0) & (amplitude < _MAX_SHOULDER)
+    allowed[0] = np.abs(amplitude[0]) < _MAX_CURVATURE
+    return np.where(allowed, _NORMAL, _NEGLIGIBLE)
+
+
+def _amplitudes(weighed: Weighed) -> tuple[Floats, Floats, Floats]:
+    """Amplitudes of curve and shoulders behind an even LSF, their deviations, and log evidence.
+
+    Amplitudes are those at the ground that suits the curve best; (k,) each.
+    """
+    precision = weighed.power[:EVEN] + _AMPLITUDE_STDS**-2.0
+    mean = weighed.pull[:EVEN] / precision
+    gain = 0.5 * (weighed.pull[:EVEN] * mean - np.log(precision * _AMPLITUDE_STDS**2))
+    evidence = weighed.log_evidence[:EVEN, None] + gain
+    best = np.argmax(evidence, axis=0), np.arange(precision.shape[1])
+    return mean[best], precision[best] ** -0.5, np.logaddexp.reduce(evidence)
+
+
+def _of_pulse(data: CheckData, profile: Profile) -> Curvature:
+    """The curve that a pulse shows, against any LSF.
+
+    Looked for only if the first step to it is longer than chance.
     """
     blur = first_blur(data, profile)
-    measured = MeanProfile.of(data, blur.width_px)
-    linear = CurvedModel.about(measured, blur, profile)
-    everything = np.append(np.full(linear.odd.size, True), False)
-    no_curve = (
-        everything & np.append(~linear.odd, False) if len(profile.shares) == 1 else everything
-    )
-    curve = np.append(no_curve[:-1], True)
-    even = solve(linear.normal(linear.mean, 0.0), linear, no_curve, 0.0)
+    linear = CurvedModel.about(MeanProfile.of(data, blur.width_px), blur, profile)
+    everything = np.ones(linear.block.size, bool)
+    no_curve = everything.copy()
+    no_curve[-1] = False
+    straight = solve(linear.normal(linear.mean, 0.0), linear, no_curve, 0.0)
     # A second time about the fitted response, not about that of the first fit.
-    linear = linear.renewed(even.beta)
-    normal = linear.normal(linear.mean, 0.0)
-    even = solve(normal, linear, no_curve, 0.0, even)
-    u = linear.response(even.beta)
-    curved = solve(linear.normal(u, 0.0), linear, curve, 0.0, even)
-    if abs(curved.beta[-1]) < _MIN_SIGMAS * curved.last_std and not unequal:
-        return None
-    odd = solve(normal, linear, everything, 0.0, even)
+    linear = linear.renewed(straight.beta)
+    straight = solve(linear.normal(linear.mean, 0.0), linear, no_curve, 0.0, straight)
+    u = linear.response(straight.beta)
+    curved = solve(linear.normal(u, 0.0), linear, everything, 0.0, straight)
+    if abs(curved.beta[-1]) < _MIN_SIGMAS * curved.last_std:
+        return NO_CURVATURE
     c = 0.0
     for _ in range(_MAX_STEPS):
         step = float(curved.beta[-1])
@@ -180,92 +291,11 @@ def _shape(data: CheckData, profile: Profile, *, unequal: bool) -> _Shape | None
             break
         u = linear.response(curved.beta)
         linear = linear.renewed(curved.beta)
-        curved = solve(linear.normal(u, c), linear, curve, c, curved, most=2)
+        curved = solve(linear.normal(u, c), linear, everything, c, curved, most=2)
     if abs(c) >= _MAX_CURVATURE:
-        return None
-    # A parabola is the second order of a curve: the rest may cost a tenth of what it explains.
-    explained = max(curved.log_evidence - even.log_evidence, 0.0)
-    whole = curved.log_evidence + _HIGHER_ORDERS * explained
-    whole = max(curved.log_evidence, min(whole, odd.log_evidence))
-    return _Shape(c, curved.last_std, even.log_evidence, odd.log_evidence, whole)
-
-
-def _is_lopsided(data: CheckData) -> bool:
-    """Whether an edge shows any c against a Gaussian through a pixel: what it lacks is even.
-
-    Most edges do not need the whole comparison.
-    """
-    if not isinstance(data.fit, SplineEdge):
-        return True
-    blur, s = data.fit.blur, -data.before
-    near = np.abs(s) < _LOPSIDED_WIDTHS * blur.width_px
-    u, lsf, by_sigma, _ = blur.esf_and_slopes(s[near])
-    columns = np.stack([np.ones(u.size), u, lsf, by_sigma, u * (1 - u)])
-    try:
-        covariance = np.linalg.inv(columns @ columns.T)
-    except np.linalg.LinAlgError:
-        return True
-    c = float(covariance[-1] @ (columns @ data.value[near]))
-    return abs(c) > _MIN_SIGMAS * data.noise * math.sqrt(max(float(covariance[-1, -1]), 0.0))
-
-
-def _noise_ratio(data: CheckData) -> tuple[float, float] | None:
-    """Logarithm of bright over dark noise variance, and its deviation; none without noise."""
-    dark, bright = side_variances(data.residual, data.value - data.residual)
-    sides = [int(np.count_nonzero(side > data.far_px)) for side in (data.before, data.behind)]
-    if min(dark, bright) <= NOISE_FLOOR**2 or min(sides) < _MIN_SIDE_PIXELS:
-        return None
-    chance = data.smoothness * (2 / sides[0] + 2 / sides[1])
-    return math.log(bright / dark), math.hypot(_NOISE_STD, math.sqrt(chance))
-
-
-def _with_noise(data: CheckData, shape: _Shape, ratio: tuple[float, float] | None) -> Curvature:
-    """Weigh the shape with what the noise of the two sides shows."""
-    # An odd part that looks like a curve of c: of sensors it is smaller than of curves.
-    rarer = _log_normal(shape.value, _LOW_ODD_STD) - _log_normal(shape.value, CURVATURE_STD)
-    low_odd = math.log(_PRIOR_LOW_ODD) + rarer + shape.curved
-    linear = np.logaddexp(
-        math.log(_PRIOR_EVEN) + shape.even,
-        np.logaddexp(math.log(_PRIOR_ODD) + shape.odd, low_odd),
-    )
-    odds = shape.curved - float(linear)
-    if ratio is None:
-        return Curvature(shape.value, shape.std, odds)
-    found, std = ratio
-    widest = _most_photons(data.fit.dark, data.fit.bright)
-    texture = 1 / (1 + (1 / (_TEXTURE_SNR * data.noise)) ** 4)
-    c = np.clip(shape.value + shape.std * _GRID, -_MAX_CURVATURE, _MAX_CURVATURE)
-    through = np.exp(-0.5 * _GRID**2) * _noise_density(
-        found - 2 * np.log((1 - c) / (1 + c)), std, widest, texture
-    )
-    without = float(_noise_density(np.array([found]), std, widest, texture)[0])
-    behind = np.exp(-0.5 * _GRID**2) * without
-    density = _NOISE_BEFORE * through + (1 - _NOISE_BEFORE) * behind
-    total = float(density.sum())
-    odds += math.log(total / (without * float(np.exp(-0.5 * _GRID**2).sum())))
-    value = float(density @ c) / total
-    return Curvature(value, math.sqrt(float(density @ (c - value) ** 2) / total), odds)
-
-
-def _most_photons(dark: float, bright: float) -> float:
-    """Logarithm of the ratio of the sides' noise variances, if it is all from photons."""
-    photons = math.log(bright / dark) if 0 < dark < bright else _MAX_LOG_RATIO
-    return photons + _MORE_THAN_PHOTONS
-
-
-def _noise_density(log_ratio: Floats, std: float, widest: float, texture: float) -> Floats:
-    """Density of the logarithm of bright over dark noise variance, for linear values.
-
-    `texture` is the chance that the noise is the ground's.
-    """
-    photons = (ndtr(log_ratio / std) - ndtr((log_ratio - widest) / std)) / widest
-    sensor = _WHITE * _normal(log_ratio, std) + _PHOTONS * photons
-    ground = _normal(log_ratio, math.hypot(_TEXTURE_STD, std))
-    return np.asarray((1 - texture) * sensor + texture * ground)
-
-
-def _normal(x: Floats, std: float) -> Floats:
-    return np.asarray(np.exp(-0.5 * (x / std) ** 2) / (std * math.sqrt(2 * math.pi)))
+        return NO_CURVATURE
+    log_odds = curved.log_evidence - straight.log_evidence + math.log(_PRIOR_ODDS_OF_PULSES)
+    return Curvature(c, curved.last_std, log_odds)
 
 
 def _log_normal(x: float, std: float) -> float:

@@ -12,18 +12,19 @@ evidence, over sides and widths; what counts is how far the strip moves the numb
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.gaussian_pixel import GaussianPixel
+from acutance.numerics.lorentz_tail import tail_esf, tail_otf
 from acutance.numerics.marginal_likelihood import (
     Prior,
+    Whitened,
     likeliest_amplitudes,
-    log_evidence,
     whiten,
 )
 from acutance.numerics.normal_equations import Normal
@@ -31,7 +32,7 @@ from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.gradients import plateau_trends
 from acutance.targets.straight.ground_steps import near_ground
-from acutance.targets.straight.lsf import LsfModel
+from acutance.targets.straight.lsf import SplineResponse
 from acutance.targets.straight.lsf_prior import (
     FIRST_BLOCK,
     Directions,
@@ -44,7 +45,9 @@ from acutance.targets.straight.spline import (
     HALF_SUPPORT,
     edge_weights,
     esf_from_lsf,
+    expand,
     quasi_interpolant,
+    transform,
 )
 from acutance.targets.straight.spline_equations import accumulate
 from acutance.targets.straight.step_profile import EDGE
@@ -56,6 +59,7 @@ from acutance.targets.straight.tuned import (
     NOISE_FLOOR,
     RIM_ODDS,
     RIM_STD,
+    TAIL_WIDTH,
     TRAIL_LIKE_RIM_ODDS,
     TRAIL_LIKE_WIDTHS,
     TREND_LOG_AMPLITUDE,
@@ -70,9 +74,14 @@ _MIN_ASYMMETRY_STDS, _MIN_GROUND_STDS = 0.3, 0.5
 """Of the relative edge response (RER): where the ESF is more symmetric and the ground more even, a
 strip is not looked for."""
 _REACH_PX: Final = 4.0
-_NEGLIGIBLE: Final = 0.01
-_MIN_CHANCE: Final = 0.03
-_MAX_STEPS, _SETTLED = 10, 0.1
+_MAX_TRAIL: Final = 0.95
+"""Probability of a charge trail, beyond which it explains what is not symmetric."""
+_MIN_GAIN: Final = 0.1
+"""Of log evidence without amplitudes of its own, below which no strip becomes probable with them:
+of 140 that did, 2 lay below."""
+_STEP_PX, _STEPS = 0.05, 40
+"""Places of the ESF about its middle."""
+_MAX_STEPS, _SETTLED = 4, 0.3
 
 
 @dataclass(frozen=True)
@@ -99,32 +108,26 @@ class Rim:
     rer: float
 
 
-def find_rim(data: CheckData, fit: SplineEdge, asymmetry: float) -> Rim | None:
+def find_rim(data: CheckData, fit: SplineEdge) -> Rim | None:
     """The strip that may lie along the border; none where the edge shows no sign of one.
 
     Parameters
     ----------
     data : CheckData
     fit : SplineEdge
-    asymmetry : float
-        How far the ESF is from symmetric about its middle.
     """
-    if not _shows_signs(fit, asymmetry):
+    if not _shows_signs(fit, data.asymmetry) or fit.families.get("trail", 0.0) > _MAX_TRAIL:
         return None
     model = _Model.of(data, fit)
     found = _compared(model)
-    if found is None:
-        return None
-    chance = _chances(model, found)
+    chance, numbers = _chances(model, found), model.numbers(found.beta)
+    moved = numbers.away(fit.response) > _MOVED_STDS
     best = int(np.argmax(chance))
-    likely = np.flatnonzero(chance > _NEGLIGIBLE).tolist()
-    moved = {k: _moved(fit, model.lsf(found.beta[k])) for k in likely}
-    if best not in moved:
-        return None
-    probability = sum(float(chance[k]) for k, (stds, _) in moved.items() if stds > _MOVED_STDS)
     side, width_px = model.strips[best]
     height, std = float(found.height[best]), float(found.height_std[best])
-    return Rim(probability, side, width_px, height, std, moved[best][1])
+    return Rim(
+        float(np.sum(chance, where=moved)), side, width_px, height, std, float(numbers.rer[best])
+    )
 
 
 def _shows_signs(fit: SplineEdge, asymmetry: float) -> bool:
@@ -139,20 +142,18 @@ def _shows_signs(fit: SplineEdge, asymmetry: float) -> bool:
     return highest * rer.value > _MIN_GROUND_STDS * rer.std
 
 
-def _moved(fit: SplineEdge, sensor: LsfModel) -> tuple[float, float]:
-    """How far RER or MTF at Nyquist of a sensor are from those of the fit; its RER."""
-    middle = sensor.half_point()
-    if not math.isfinite(middle):
-        return 0.0, math.nan
-    other = sensor.response(middle)
-    moved = max(
-        abs(there.value - here.value) / max(here.std, 1e-9)
-        for here, there in (
-            (fit.response.rer, other.rer),
-            (fit.response.mtf_nyquist, other.mtf_nyquist),
+class _Numbers(NamedTuple):
+    """RER and MTF at Nyquist of several sensors, (k,) each."""
+
+    rer: Floats
+    mtf_nyquist: Floats
+
+    def away(self, response: SplineResponse) -> Floats:
+        """The larger distance of either from that of a response, in its deviations, (k,)."""
+        pairs = ((self.rer, response.rer), (self.mtf_nyquist, response.mtf_nyquist))
+        return np.asarray(
+            np.max([np.abs(one - own.value) / max(own.std, 1e-9) for one, own in pairs], axis=0)
         )
-    )
-    return moved, other.rer.value
 
 
 class _Found(NamedTuple):
@@ -160,6 +161,8 @@ class _Found(NamedTuple):
 
     Attributes
     ----------
+    plain : float
+        Log evidence without any.
     gain : (k,) array
         Log evidence with the strip over that without any.
     height, height_std : (k,) arrays
@@ -168,6 +171,7 @@ class _Found(NamedTuple):
         The other unknowns, with the strip.
     """
 
+    plain: float
     gain: Floats
     height: Floats
     height_std: Floats
@@ -217,9 +221,10 @@ class _Model:
         curves = sensor.esf + np.outer(tail_spline(), sensor.tail)
         level, ground = np.ones((CELLS + 3, 1)), near_ground()[0]
         design = np.hstack([level, curves, ground, _strip_splines(blur, strips)])
+        # The fit's own correlation of the noise, not that of the plateaus.
+        weight = data.weights[near] * (data.inflation / fit.correlation.inflation)
         every = accumulate(
-            [edge_weights(s / width)], data.value[near] - seen[0],
-            data.weights(fit.correlation.inflation)[near], trends, float(s.size),
+            [edge_weights(s / width)], data.value[near] - seen[0], weight, trends, float(s.size)
         ).combined(design)  # fmt: skip
         is_strip = np.zeros(every.projection.size, bool)
         is_strip[design.shape[1] - len(strips) : design.shape[1]] = True
@@ -230,11 +235,19 @@ class _Model:
             projection[is_strip], _prior(blur, sensor, len(trends)), strips,
         )  # fmt: skip
 
-    def lsf(self, beta: Floats) -> LsfModel:
-        """The LSF of some unknowns."""
-        own = beta[1 : 1 + self.directions.block.size]
-        esf, tail = self.directions.esf @ own, float(self.directions.tail @ own)
-        return LsfModel(self.blur, 1.0, esf, tail, np.zeros((CELLS + 4, 1)))
+    def numbers(self, beta: Floats) -> _Numbers:
+        """RER and MTF at Nyquist of the sensors of some unknowns, (k, m)."""
+        width, own = self.blur.width_px, beta[:, 1 : 1 + self.directions.block.size].T
+        spline, tail = self.directions.esf @ own, self.directions.tail @ own
+        height = 1 + spline[-1] + tail
+        s = np.asarray(_STEP_PX * np.arange(-_STEPS, _STEPS + 1), float)
+        esf = expand(*edge_weights(s / width)) @ spline
+        esf += self.blur.esf(s)[:, None] + np.outer(tail_esf(s / width, TAIL_WIDTH), tail)
+        esf /= height
+        freq_cpp = np.array([NYQUIST_CPP])
+        otf = self.blur.otf(freq_cpp) + transform(freq_cpp * width)[0] @ spline
+        otf += tail_otf(freq_cpp * width, TAIL_WIDTH) * tail
+        return _Numbers(_relative_edge_response(esf), np.abs(otf) / height)
 
     @property
     def outwards(self) -> Floats:
@@ -271,7 +284,31 @@ class _Model:
         height = left / precision
         gain = 0.5 * (left * height - np.log(precision * RIM_STD**2))
         moved = beta - (white.sigma[:, None] * seen * height).T
-        return _Found(gain, height, 1 / np.sqrt(precision), moved)
+        plain = self._log_evidence(white, beta, log_amplitude)
+        return _Found(plain, gain, height, 1 / np.sqrt(precision), moved)
+
+    def _log_evidence(self, white: Whitened, beta: Floats, log_amplitude: Floats) -> float:
+        """Log evidence without a strip, from the unknowns that it makes likeliest."""
+        prior = self.prior
+        away = (log_amplitude - prior.log_amplitude) / prior.log_amplitude_std
+        off = (beta - prior.mean) / white.sigma
+        misfit = self.normal.misfit(beta) + float(off @ off) + float(away @ away)
+        return float(np.log(np.diagonal(white.root)).sum()) - 0.5 * misfit
+
+
+def _relative_edge_response(esf: Floats) -> Floats:
+    """RER of ESFs about their 50 % points, which lie near the middle row; (k,)."""
+    half = round(0.5 / _STEP_PX)
+    rows = esf[half + 1 : -half - 1]
+    first = np.clip(np.argmax(rows > 0.5, axis=0), 1, None) + half
+    k = np.arange(esf.shape[1])
+    low, high = esf[first, k], esf[first + 1, k]
+    part = np.clip((0.5 - low) / np.maximum(high - low, 1e-9), 0.0, 1.0)
+
+    def at(place: Floats) -> Floats:
+        return np.asarray((1 - part) * esf[place, k] + part * esf[place + 1, k])
+
+    return at(first + half) - at(first - half)
 
 
 def _chances(model: _Model, found: _Found) -> Floats:
@@ -280,38 +317,39 @@ def _chances(model: _Model, found: _Found) -> Floats:
     return np.asarray(np.exp(odds - np.logaddexp.reduce(np.append(odds, 0.0))))
 
 
-def _compared(model: _Model) -> _Found | None:
-    """What every strip explains, at the amplitudes of the prior that suit it; none if too little.
+def _compared(model: _Model) -> _Found:
+    """What every strip explains, at the amplitudes of the prior that suit it.
 
     The amplitudes without a strip are those at which the LSF follows it as far as it can. Those of
     the most likely strip of either kind (that steepens the edge, and that widens it) are tried for
     all of them.
     """
     start = model.prior.log_amplitude
-    tried = [start, _settled(model.normal, model.prior, start)]
-    found = _best(model, tried)
-    if float(_chances(model, found).sum()) < _MIN_CHANCE:
-        return None
+    plain = _settled(model.normal, model.prior, start)
+    tried = [model.strips_at(start), model.strips_at(plain)]
+    found = _best(tried)
+    if float(found.gain.max()) < _MIN_GAIN:
+        return found
     steepens = found.height * model.outwards > 0
     for kind in (steepens, ~steepens):
         if kind.any():
             likely = int(np.argmax(np.where(kind, found.gain, -np.inf)))
-            tried.append(_settled(*model.with_strip(likely), tried[1]))
-    return _best(model, tried)
+            tried.append(model.strips_at(_settled(*model.with_strip(likely), plain)))
+    return _best(tried)
 
 
-def _best(model: _Model, tried: list[Floats]) -> _Found:
+def _best(tried: list[_Found]) -> _Found:
     """What every strip explains at the best of some amplitudes."""
-    found = [model.strips_at(log_amplitude) for log_amplitude in tried]
-    plain = [log_evidence(model.normal, model.prior, one, 1.0) for one in tried]
-    gains = np.array([one.gain + own for one, own in zip(found, plain, strict=True)])
+    gains = np.array([one.gain + one.plain for one in tried])
     best = np.argmax(gains, axis=0)
     own = (best, np.arange(best.size))
+    plain = max(one.plain for one in tried)
     return _Found(
-        gains[own] - max(plain),
-        np.array([one.height for one in found])[own],
-        np.array([one.height_std for one in found])[own],
-        np.array([one.beta for one in found])[own],
+        plain,
+        gains[own] - plain,
+        np.array([one.height for one in tried])[own],
+        np.array([one.height_std for one in tried])[own],
+        np.array([one.beta for one in tried])[own],
     )
 
 
@@ -344,13 +382,8 @@ def _prior(blur: GaussianPixel, sensor: Directions, trends: int) -> Prior:
 def _strip_splines(blur: GaussianPixel, strips: tuple[tuple[str, float], ...]) -> Floats:
     """Spline coefficients of strips of unit height, (CELLS + 3, k)."""
     width = blur.width_px
-    outer = [px if side == "bright" else -px for side, px in strips]
-    lsf = np.stack([blur.lsf_slopes(CENTRES * width - place)[0] for place in [0.0, *outer]], axis=1)
-    border, *steps = esf_from_lsf(quasi_interpolant(width * lsf)).T
-    return np.stack(
-        [
-            border - step if side == "bright" else step - border
-            for (side, _), step in zip(strips, steps, strict=True)
-        ],
-        axis=1,
-    )
+    outwards = np.array([1.0 if side == "bright" else -1.0 for side, _ in strips])
+    places = np.append(0.0, outwards * [px for _, px in strips])
+    lsf = blur.lsf((CENTRES[:, None] * width - places).ravel()).reshape(CENTRES.size, -1)
+    steps = esf_from_lsf(quasi_interpolant(width * lsf))
+    return np.asarray(outwards * (steps[:, :1] - steps[:, 1:]))

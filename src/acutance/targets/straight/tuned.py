@@ -166,10 +166,10 @@ REPEATED_SIGMAS: Final = 5.0
 STRUCTURE_OUTLIER_SIGMAS: Final = 4.0
 """Structure, slopes and repeated residuals below so many deviations are chance: at these, 200 of
 200 clean simulated edges pass every check (tests of false targets)."""
-NONLINEAR_LOG_ODDS: Final = 1.15
-"""Natural logarithm of the odds of a curve over none (nonlinearity.py): of edges of 40 to 60 px at
-SNR 100 none of even linear ones lies beyond, about 1 % of those with trails of .15 to .4 px, and 9
-of 10 of those behind a gamma of 1.3."""
+NONLINEAR_LOG_ODDS: Final = 0.7
+"""Natural logarithm of the odds of a curve or a shoulder over none (nonlinearity.py): of edges of
+30 to 60 px at SNR 30 to 500 behind fifteen kinds of sensors .2 % lie beyond, of those with trails
+of .15 to .4 px as many, and 98 % of those behind a gamma of 1.3."""
 RIM_ODDS, TRAIL_LIKE_RIM_ODDS, TRAIL_LIKE_WIDTHS = 0.2, 0.01, 1.3
 RIM_STD: Final = 0.15
 """Strips along an edge (rim.py): prior odds of one; of one narrower than so many widths that widens

@@ -1,0 +1,101 @@
+"""The noise of an edge's two sides: what its ratio shows of the image's characteristic.
+
+A characteristic of slope g multiplies noise by g, so that a curve changes ln of the ratio of the
+variances by 2 ln(g bright / g dark) for noise that was there before it. In values that are
+proportional to light the brighter side has as much noise, or more by no more than photons make, or
+anything where the noise is the texture of the ground.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.special import ndtr
+
+from acutance.curves.grid import Floats
+from acutance.targets.straight.check_data import CheckData
+from acutance.targets.straight.tuned import MIN_SIDE_PIXELS, NOISE_FLOOR
+
+__all__ = ["SideNoise"]
+
+_MAX_LOG_RATIO: Final = 3.0
+_MORE_THAN_PHOTONS: Final = 0.3
+_WHITE, _PHOTONS = 0.6, 0.4
+"""Of a sensor's noise on the two sides: equal, or growing with the light."""
+_TEXTURE_SNR: Final = 60.0
+"""Contrast over noise at which the noise is as likely the ground's, of any ratio; its odds fall
+with the fourth power: 97 % at 26, as of paint on grass, 11 % at 100. They grow with the square of
+the noise's power along the normal over that of white noise."""
+_NOISE_BEFORE: Final = 0.85
+"""Share of curves that the noise goes through; else it is added behind, as by compression."""
+_TEXTURE_STD: Final = 2.5
+_NOISE_STD: Final = 0.05
+
+
+@dataclass(frozen=True)
+class SideNoise:
+    """The noise of the bright side over that of the dark one.
+
+    Parameters
+    ----------
+    log_variance, std : float
+        Logarithm of the ratio of the variances, and its standard deviation.
+    widest : float
+        The largest such logarithm that photons make.
+    texture : float
+        Probability that the noise is the ground's.
+    """
+
+    log_variance: float
+    std: float
+    widest: float
+    texture: float
+
+    @classmethod
+    def of(cls, data: CheckData) -> SideNoise | None:
+        """The noise of an edge's plateaus; none where there is none, or few pixels."""
+        dark, bright = data.variances
+        sides = [int(np.count_nonzero(side)) for side in data.plateaus]
+        if min(dark, bright) <= NOISE_FLOOR**2 or min(sides) < MIN_SIDE_PIXELS:
+            return None
+        chance = data.smoothness * (2 / sides[0] + 2 / sides[1])
+        low, high = data.fit.dark, data.fit.bright
+        photons = math.log(high / low) if 0 < low < high else _MAX_LOG_RATIO
+        # Noise of a sensor hardly correlates, that of a resampled product a little.
+        odds = (_TEXTURE_SNR * data.noise) ** 4 * data.inflation**2
+        return cls(
+            math.log(bright / dark), math.hypot(_NOISE_STD, math.sqrt(chance)),
+            photons + _MORE_THAN_PHOTONS, odds / (1 + odds),
+        )  # fmt: skip
+
+    @property
+    def curvature(self) -> float:
+        """The c of ``v = u + c u (1 - u)`` through which equal noise is as unequal."""
+        return -math.tanh(0.25 * self.log_variance)
+
+    @property
+    def max_gain(self) -> float:
+        """Log likelihood of the characteristic that suits this noise best, over that of none."""
+        best = float(self._density(np.zeros(())))
+        without = float(self._density(np.array(self.log_variance)))
+        return max(math.log(_NOISE_BEFORE * best / without + 1 - _NOISE_BEFORE), 0.0)
+
+    def likelihood(self, slope: Floats) -> Floats:
+        """Likelihood of characteristics of a slope, bright over dark, over that of none."""
+        through = self._density(self.log_variance - 2 * np.log(slope))
+        without = float(self._density(np.array(self.log_variance)))
+        return _NOISE_BEFORE / without * through + (1 - _NOISE_BEFORE)
+
+    def _density(self, log_ratio: Floats) -> Floats:
+        """Density of the logarithm of bright over dark variance, for linear values."""
+        below = ndtr(log_ratio / self.std) - ndtr((log_ratio - self.widest) / self.std)
+        sensor = _WHITE * _normal(log_ratio, self.std) + _PHOTONS * below / self.widest
+        ground = _normal(log_ratio, math.hypot(_TEXTURE_STD, self.std))
+        return np.asarray((1 - self.texture) * sensor + self.texture * ground)
+
+
+def _normal(x: Floats, std: float) -> Floats:
+    return np.asarray(np.exp(-0.5 * (x / std) ** 2) / (std * math.sqrt(2 * math.pi)))
