@@ -1,7 +1,7 @@
 """Scenes against their truth: the sensor under ideal, partly soft and mostly soft objects.
 
 Landscapes of fields (`acutance.simulate.landscape`) without anything beside them, SNR 100 of the
-middle contrast; a share of the borders is soft, with Gaussians of .15 to 2 px. `acutance.scan_scene`
+middle contrast; a share of the borders is soft, Gaussians of .15 to 2 px. `acutance.scan_scene`
 measures across and along; the median of the used edges nearest to either direction stands beside.
 """
 

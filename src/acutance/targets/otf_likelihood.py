@@ -127,6 +127,10 @@ class OtfLikelihood(ShortRepr):
         """What an OTF (n,) leaves, (k,): of unit variance if it is the sensor's."""
         return np.asarray(self.whitened(otf) + self.level - self.values)
 
+    def widened(self, factor: float) -> OtfLikelihood:
+        """The likelihood with all standard deviations multiplied."""
+        return OtfLikelihood(self.root / factor, self.level / factor, self.values / factor)
+
     def _damped(self, matrix: Floats) -> OtfLikelihood:
         root = unstacked(stacked(self.root) @ matrix)
         return OtfLikelihood(root, self.level @ matrix, self.values @ matrix)

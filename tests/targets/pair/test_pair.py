@@ -31,7 +31,8 @@ class TestTruth:
         value, std = both(m)
         assert np.abs(value - true).max() < (2 if system == "sharpened" else 1.4) * NYQUIST
         assert np.all(np.abs(value - true) < 3.5 * std)
-        assert np.all(std < 1.2 * NYQUIST)
+        # How far kernels follow a shape is a share of its departure from a Gaussian.
+        assert np.all(std < (1.6 if system == "sharpened" else 1.2) * NYQUIST)
 
     def test_whole_curve_and_metrics(self) -> None:
         m = measured("halo", 3.0)

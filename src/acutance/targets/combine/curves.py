@@ -73,6 +73,9 @@ class OtfSamples:
         likelihood = None
         if self.likelihood is not None:
             likelihood = self.likelihood.turned(turn).near(otf, np.asarray(-1j * places))
+            # A failed measurement is not what its own pixels say.
+            own = float(np.mean(likelihood.residual(otf) ** 2))
+            likelihood = likelihood.widened(math.sqrt(max(1.0, own)))
         return replace(self, otf=otf, factor=factor, likelihood=likelihood)
 
     @property
