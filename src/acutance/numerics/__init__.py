@@ -3,7 +3,7 @@
 - normal_equations, marginal_likelihood: linear models with priors whose amplitudes the data set.
 - noise: its level, its outliers, its correlation; robust scales.
 - gaussian_pixel, gaussian_pixel_2d: a Gaussian seen through a pixel, with its derivatives.
-- process_modes, lorentz_tail: the corrections that a prior allows.
+- process_modes, lorentz_tail: the corrections that a prior allows; shape_error: what they leave.
 - otf_modes, otf_families (learned by learn_otf), combined_prior: those of a transfer function in
   two dimensions, and directions in them that sensors of a family take.
 - clipping: pixels at the end of the scale.

@@ -1,16 +1,21 @@
 """What the pixels of one measurement say of an optical transfer function (OTF), its prior apart.
 
 A measurement is a posterior: of mean m and covariance C, where its prior had m0 and C0. What its
-pixels say of the OTF f, the likelihood L, is the posterior over the prior::
+pixels say of a spectrum g, the likelihood L, is the posterior over the prior::
 
-    -2 ln L(f) = (f - m)^T C^-1 (f - m) - (f - m0)^T C0^-1 (f - m0) + const
-               = |R^T (f - m) - b|^2 + const,
+    -2 ln L(g) = (g - m)^T C^-1 (g - m) - (g - m0)^T C0^-1 (g - m0) + const
+               = |R^T g - y|^2 + const,
 
-    R R^T = C^-1 - C0^-1,    R b = C0^-1 (m - m0),
+    R R^T = C^-1 - C0^-1,    R (y - R^T m) = C0^-1 (m - m0),
 
-complex numbers being stacked, real parts first. Likelihoods of several measurements multiply;
-posteriors would count the prior that they share as often as there are of them (Rodgers, Inverse
-Methods for Atmospheric Sounding, 2000, section 4.1).
+complex numbers being stacked, real parts first. The spectrum is the OTF f times the light h, whose
+place is x: ``g = h f exp(-2 pi i u x)``, and ``f(0) = 1``. Neither h nor x is a property of the
+sensor, so both are integrated out about an OTF near by. An error of the light that is taken from
+the data would make every OTF seem less (R. W. Peelle's puzzle; G. D'Agostini, Nucl. Instrum.
+Methods A 346, 306, 1994).
+
+Likelihoods of several measurements multiply; posteriors would count the prior that they share as
+often as there are of them (Rodgers, Inverse Methods for Atmospheric Sounding, 2000, section 4.1).
 """
 
 from __future__ import annotations
@@ -30,76 +35,114 @@ __all__ = ["OtfLikelihood"]
 
 Complexes = NDArray[np.complex128]
 
-_BEYOND_PRIOR_STD = 2e-3
-"""How far sensors depart from what a prior allows for: at .0005 and .001 the OTF of diffracting
-and defocused sensors lies 10 to 60 standard deviations off in directions that neither prior nor
-pixels show; at .002 its chi-square is what it should be (benchmarks/combine.py)."""
+_EXACT = 1e-3
+"""How exact models of a spectrum are: no pixels determine it better. Chi-square of the true OTF
+over its freedom is .8 then, over all families of sensors (benchmarks/combine.py)."""
 _NOTHING = 1.0
 """Precision of what the pixels do not show: an OTF is between 0 and 1, or little more."""
+_STEPS = 3
+"""Steps to the light and the place of an image, both nearly known."""
+_DEPENDENT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class OtfLikelihood(ShortRepr):
-    """Sum of squares of ``root.T @ (f - m) - offset`` of an OTF f about a measured one, m.
+    """Sum of squares of ``root.T @ f + level - values`` of an OTF f.
 
     Parameters
     ----------
     root : (n, k) complex array
         Real and imaginary parts belong to those of the OTF.
-    offset : (k,) array
+    level : (k,) array
+        The same for zero frequency, where an OTF is 1.
+    values : (k,) array
     """
 
     root: Complexes
-    offset: Floats
+    level: Floats
+    values: Floats
 
     @classmethod
     def of_posterior(
-        cls, away: Complexes, factor: Complexes, prior_factor: Complexes
+        cls, mean: Complexes, away: Complexes, factor: Complexes, prior_factor: Complexes
     ) -> OtfLikelihood:
         """The likelihood of a measurement, from its posterior and its prior.
 
         Parameters
         ----------
-        away : (n,) complex array
-            Mean of the posterior minus that of the prior.
-        factor, prior_factor : (n, ...) complex array
-            Factors of their covariances, at one size of the prior.
+        mean : (n + 1,) complex array
+            Of the posterior, of the spectrum at frequencies from zero; 1 there.
+        away : (n + 1,) complex array
+            The same minus the mean of the prior.
+        factor, prior_factor : (n + 1, ...) complex array
+            Factors of their covariances.
         """
         prior = _inverse(prior_factor)
         size, axes = np.linalg.eigh(_inverse(factor) - prior)
         seen = size > _NOTHING
         root = axes[:, seen] * np.sqrt(size[seen])
-        return cls(unstacked(root), (root / size[seen]).T @ (prior @ stacked(away)))
+        values = root.T @ stacked(mean) + (root / size[seen]).T @ (prior @ stacked(away))
+        level, *others = unstacked(root)
+        return cls(np.asarray(others), np.asarray(level.real), values)
 
     def with_errors(self, factor: Complexes) -> OtfLikelihood:
-        """The likelihood if there were further errors ``factor @ z``, factor (n, j)."""
+        """The likelihood if there were further errors ``factor @ z`` of the OTF, factor (n, j)."""
         seen = self.whitened(factor)
         if seen.size == 0:
             return self
         size, axes = np.linalg.eigh(seen @ seen.T)
-        damped = (axes / np.sqrt(1 + size)) @ axes.T
-        return OtfLikelihood(unstacked(stacked(self.root) @ damped), damped @ self.offset)
-
-    def about(self, away: Complexes) -> OtfLikelihood:
-        """The same likelihood, of the OTF about one that differs by `away`, (n,)."""
-        return OtfLikelihood(self.root, self.offset - self.whitened(away))
+        return self._damped((axes / np.sqrt(1 + size)) @ axes.T)
 
     def turned(self, turn: Complexes) -> OtfLikelihood:
         """The likelihood of the OTF times a phasor (n,) at every place."""
-        return OtfLikelihood(self.root * turn[:, None], self.offset)
+        return OtfLikelihood(self.root * turn[:, None], self.level, self.values)
+
+    def near(self, otf: Complexes, waves: Complexes) -> OtfLikelihood:
+        """The likelihood near an OTF (n,), whatever the light and the place of the image.
+
+        Parameters
+        ----------
+        otf : (n,) complex array
+        waves : (n, j) complex array
+            Derivatives of the logarithm of a spectrum by places.
+        """
+        light, found = 1.0, self
+        for _ in range(_STEPS):
+            whole = found.whitened(otf) + found.level
+            by_place = found.whitened(light * otf[:, None] * waves)
+            columns = np.column_stack([whole, by_place])
+            step = np.linalg.lstsq(columns, self.values - light * whole, rcond=_DEPENDENT)[0]
+            light += float(step[0])
+            found = found.turned(np.exp(-waves @ step[1:]))
+        axes, size, _ = np.linalg.svd(columns)
+        rest = axes[:, np.count_nonzero(size > _DEPENDENT * size[0]) :]
+        root = light * unstacked(stacked(found.root) @ rest)
+        return OtfLikelihood(root, light * self.level @ rest, self.values @ rest)
 
     def whitened(self, values: Complexes) -> Floats:
         """``root.T @ values`` of values (n,) or (n, p)."""
         return np.asarray(stacked(self.root).T @ stacked(values))
 
+    def residual(self, otf: Complexes) -> Floats:
+        """What an OTF (n,) leaves, (k,): of unit variance if it is the sensor's."""
+        return np.asarray(self.whitened(otf) + self.level - self.values)
+
+    def widened(self, factor: float) -> OtfLikelihood:
+        """The likelihood with all standard deviations multiplied."""
+        return OtfLikelihood(self.root / factor, self.level / factor, self.values / factor)
+
+    def _damped(self, matrix: Floats) -> OtfLikelihood:
+        root = unstacked(stacked(self.root) @ matrix)
+        return OtfLikelihood(root, self.level @ matrix, self.values @ matrix)
+
     def to_dict(self) -> dict[str, Any]:
-        """Root and offset as lists."""
-        lower, turn = _triangular(stacked(self.root))
-        root = unstacked(lower)
+        """Root, level and values as lists."""
+        short = self._damped(_triangular(stacked(self.root)))
         return {
-            "root_real": _rounded(root.real),
-            "root_imag": _rounded(root.imag),
-            "offset": _rounded(turn @ self.offset),
+            "root_real": _rounded(short.root.real),
+            "root_imag": _rounded(short.root.imag),
+            "level": _rounded(short.level),
+            "values": _rounded(short.values),
         }
 
     @classmethod
@@ -109,27 +152,28 @@ class OtfLikelihood(ShortRepr):
         Raises
         ------
         ValueError
-            If root and offset do not belong together, or are not finite.
+            If its parts do not belong together, or are not finite.
         """
-        real, imag, offset = (
-            np.array(document[name], float) for name in ("root_real", "root_imag", "offset")
+        real, imag, level, values = (
+            np.array(document[name], float)
+            for name in ("root_real", "root_imag", "level", "values")
         )
-        if real.ndim != 2 or real.shape != imag.shape or offset.shape != real.shape[1:]:
-            raise ValueError(f"a likelihood of shapes {real.shape}, {imag.shape}, {offset.shape}")
-        if not all(np.isfinite(part).all() for part in (real, imag, offset)):
+        shapes = real.shape, imag.shape, level.shape, values.shape
+        if real.ndim != 2 or shapes[1:] != (real.shape, real.shape[1:], real.shape[1:]):
+            raise ValueError(f"a likelihood of shapes {', '.join(map(str, shapes))}")
+        if not all(np.isfinite(part).all() for part in (real, imag, level, values)):
             raise ValueError("numbers that are not finite")
-        return cls(real + 1j * imag, offset)
+        return cls(real + 1j * imag, level, values)
 
 
 def _inverse(factor: Complexes) -> Floats:
     wide = stacked(factor)
-    return np.asarray(np.linalg.inv(wide @ wide.T + _BEYOND_PRIOR_STD**2 * np.eye(len(wide))))
+    return np.asarray(np.linalg.inv(wide @ wide.T + _EXACT**2 * np.eye(len(wide))))
 
 
-def _triangular(root: Floats) -> tuple[Floats, Floats]:
-    """A root with zeros above its diagonal, a shorter text, and what turns the offset with it."""
-    turn, upper = np.linalg.qr(root.T)
-    return np.asarray(upper.T), np.asarray(turn.T)
+def _triangular(root: Floats) -> Floats:
+    """What gives a root zeros above its diagonal, a shorter text."""
+    return np.asarray(np.linalg.qr(root.T)[0])
 
 
 def _rounded(values: Floats) -> list[Any]:

@@ -63,6 +63,10 @@ TERMS = {
         "light from beyond the image", "B",
         "two guesses of the ground there: the border repeated, and mirrored",
     ),
+    "kernel_shape": TermWords(
+        "shape of the kernel", "B",
+        "a share of the departure from a Gaussian, from simulated pairs without noise",
+    ),
     "target_softness": TermWords("softness of the target's border", "B", "stated"),
     "level_uncertainty": TermWords("levels of the target", "B", "stated"),
     "row_scatter": TermWords("scatter of the rows", "A", "draws of the rows, as published"),

@@ -7,10 +7,12 @@ import pytest
 
 from acutance import optics
 from acutance.errors import ModelError
+from acutance.numerics.stacked import stacked
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
 from acutance.targets.combine.fit import combine_curves
 from acutance.targets.combine.sensor_forms import FORMS, TERMS, SensorForm
+from acutance.targets.otf_likelihood import OtfLikelihood
 
 FREQ = np.arange(1, 17) * 0.05
 DIRECTIONS = (6.0, 97.0, 31.0, 62.0)
@@ -205,3 +207,22 @@ def test_chi_square_of_chance():
     assert ChiSquare(23.21, 10.0, 20.0).p_value == pytest.approx(0.01, abs=1e-4)
     assert ChiSquare(40.0, 10.0, 20.0).birge_ratio == pytest.approx(2.0)
     assert ChiSquare(5.0, 10.0, 20.0).birge_ratio == 1
+
+
+def test_a_measurement_that_is_not_what_its_pixels_say_counts_for_less():
+    freq = np.arange(1, 9) / 20
+    otf, other = np.exp(-3 * freq**2) + 0j, np.exp(-9 * freq**2) + 0j
+    rng = np.random.default_rng(4)
+    root = 50 * (rng.standard_normal((8, 12)) + 1j * rng.standard_normal((8, 12)))
+    level = 50 * rng.standard_normal(12)
+
+    def residual(reported):
+        exact = OtfLikelihood(root, level, stacked(root).T @ stacked(otf) + level)
+        samples = OtfSamples("edge", freq, 0 * freq, reported, np.zeros((8, 1), complex), exact)
+        likelihood = samples.centred().likelihood
+        return np.mean(likelihood.residual(reported) ** 2), np.linalg.norm(likelihood.root)
+
+    right, wrong = residual(otf), residual(other)
+    assert right[0] == pytest.approx(0.0, abs=1e-6)
+    assert wrong[0] == pytest.approx(1.0)
+    assert wrong[1] < 0.5 * right[1]

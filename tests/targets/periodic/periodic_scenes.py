@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from acutance.geometry.bar_group import Bars
-from acutance.optics import Detector, Exponential, Gaussian, Sensor
+from acutance.optics import Detector, Exponential, Gaussian, Sensor, Sharpening
 from acutance.simulate import bars, reference_systems, star
 from acutance.targets.periodic import BarsOptions, StarOptions, measure_bars, measure_star
 
@@ -15,12 +15,17 @@ CYCLES = 24
 STATED = StarOptions(dark=200.0, bright=1200.0, level_std=1.0)
 STATED_BARS = BarsOptions(dark=200.0, bright=1200.0, level_std=1.0)
 FREQ = np.arange(10, 51, 5) / 100
+TAPS = (-0.08, 0.16, -0.32, 0.7, -1.56, 3.2, -1.56, 0.7, -0.32, 0.16, -0.08)
 
 SENSORS = {
     **reference_systems(),
     # Neither symmetric nor equal in both directions: its OTF has an imaginary part.
     "trail": Sensor(
         [Gaussian(0.25, 0.45), Exponential(0.5, "across"), Exponential(0.2, "along"), Detector()]
+    ),
+    # Restored by a kernel whose lobes lie further out than fine states of the PSF do.
+    "long kernel": Sensor(
+        [Gaussian(0.75), Detector(), Sharpening(tuple(map(tuple, np.outer(TAPS, TAPS).tolist())))]
     ),
 }
 

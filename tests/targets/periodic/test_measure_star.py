@@ -1,6 +1,7 @@
 """Stars measured against the truth of their simulation, and what is refused."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -35,6 +36,26 @@ def test_whole_curves_with_stated_levels(name):
     row, _ = found.centre
     assert abs(row.value - 36.2) < 0.02 + (0.5 if name == "asymmetric" else 0)
     assert found.trusted
+
+
+def test_a_shape_that_no_mode_follows_is_seen_in_the_residuals():
+    found, truth = measured_star("long kernel")
+    error, std = _errors(found, truth)
+    own = found.transfer.model.shape_error
+    assert own is not None
+    assert np.max(own.std) > 0.01
+    assert np.sqrt(np.mean((error / std) ** 2)) < 2.0
+    without = replace(found.transfer.model, shape_error=None)
+    plain = np.linalg.norm(without.factor(FREQ, np.zeros(FREQ.size)), axis=1)
+    # Errors are 4 deviations without it.
+    assert np.sqrt(np.mean((error[0] / plain) ** 2)) > 2.5
+    light = found.without_details().across.mtf(0.4)
+    assert light.std == pytest.approx(found.across.mtf(0.4).std, rel=0.01)
+
+
+def test_a_plain_star_has_no_such_error():
+    found, _ = measured_star("gaussian")
+    assert found.transfer.model.shape_error is None
 
 
 def test_square_wave_and_fan():

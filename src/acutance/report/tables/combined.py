@@ -32,7 +32,7 @@ PARAMETERS = {
     "sharpening_along": ("sharpening kernel, along", ""),
     "unsharp_gain": ("unsharp mask, gain", ""),
     "unsharp_sigma_px": ("unsharp mask, Gaussian", "px"),
-    **{f"tap_{k}": (f"kernel, tap {k}", "") for k in range(1, 5)},
+    **{f"tap_{k}": (f"kernel, tap {k}", "") for k in range(1, 8)},
     "cubic_a": ("cubic convolution, a", ""),
     "detector_fill": ("detector's width over the stated one", ""),
 }

@@ -69,20 +69,26 @@ class OtfSamples:
         places = 2 * math.pi * np.stack([self.u_cpp, self.v_cpp], axis=1)
         moved = np.linalg.lstsq(places[near], -np.angle(self.otf[near]), rcond=1e-6)[0]
         turn = np.exp(1j * (places @ moved))
-        likelihood = None if self.likelihood is None else self.likelihood.turned(turn)
         otf, factor = self.otf * turn, self.factor * turn[:, None]
+        likelihood = None
+        if self.likelihood is not None:
+            likelihood = self.likelihood.turned(turn).near(otf, np.asarray(-1j * places))
+            # A failed measurement is not what its own pixels say.
+            own = float(np.mean(likelihood.residual(otf) ** 2))
+            likelihood = likelihood.widened(math.sqrt(max(1.0, own)))
         return replace(self, otf=otf, factor=factor, likelihood=likelihood)
 
     @property
     def size(self) -> int:
         """Number of whitened values."""
-        return 2 * self.otf.size if self._seen is None else self._seen.offset.size
+        return 2 * self.otf.size if self.likelihood is None else self.likelihood.values.size
 
     @cached_property
     def whitened_otf(self) -> Floats:
         """What the pixels say of the whitened OTF, (size,)."""
-        own = self.whitened(self.otf)
-        return own if self._seen is None else own + self._seen.offset
+        if self.likelihood is not None:
+            return np.asarray(self.likelihood.values - self.likelihood.level)
+        return self.whitened(self.otf)
 
     @cached_property
     def whitened_factor(self) -> Floats:
@@ -91,7 +97,7 @@ class OtfSamples:
         Of a likelihood they have unit variance. Of a posterior it is the symmetric factor of the
         errors, whitened: every column belongs to a frequency, and the smallest errors are below 1.
         """
-        if self._seen is not None:
+        if self.likelihood is not None:
             return np.eye(self.size)
         wide = stacked(self.factor)
         value, vector = np.linalg.eigh(wide @ wide.T)
@@ -99,13 +105,9 @@ class OtfSamples:
 
     def whitened(self, values: Complexes) -> Floats:
         """Values (n,) or (n, p), whitened, (size, ...)."""
-        if self._seen is not None:
-            return self._seen.whitened(values)
+        if self.likelihood is not None:
+            return self.likelihood.whitened(values)
         return np.asarray(self._whitening @ stacked(values))
-
-    @cached_property
-    def _seen(self) -> OtfLikelihood | None:
-        return None if self.likelihood is None else self.likelihood.with_errors(self._shifts)
 
     @cached_property
     def _whitening(self) -> Floats:

@@ -169,7 +169,7 @@ def _defocus_numbers(p: Floats) -> dict[str, float]:
 
 
 def _kernel(p: Floats, u: Floats, v: Floats) -> Floats:
-    """An even kernel of nine taps, the same in both axes: its outer taps are -p[0], -p[1], ..."""
+    """An even kernel of 15 taps, the same in both axes: its outer taps are -p[0], -p[1], ..."""
     order = 2 * math.pi * np.arange(1, p.size + 1)
 
     def gain(freq: Floats) -> Floats:
@@ -195,6 +195,9 @@ def _interpolation_numbers(p: Floats) -> dict[str, float]:
     return {"cubic_a": _cubic(p)}
 
 
+_TAP_MEAN = (0.4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_TAP_STD = (0.5, 0.25, 0.12, 0.07, 0.05, 0.03, 0.02)
+
 TERMS: dict[str, Term] = {
     "gaussian": Term(
         _gaussian, (math.log(0.4), math.log(0.4), 0.0), (0.7, 0.7, 0.3), _gaussian_numbers
@@ -206,7 +209,7 @@ TERMS: dict[str, Term] = {
     "unsharp": Term(_unsharp, (-1.0, 0.0), (1.0, 0.3), _unsharp_numbers),
     "diffraction": Term(_diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
     "defocus": Term(_defocus, (math.log(1.3), -0.5, 0.25), (0.4, 1.0, 0.15), _defocus_numbers),
-    "kernel": Term(_kernel, (0.5, -0.1, 0.0, 0.0), (0.5, 0.2, 0.1, 0.05), _kernel_numbers),
+    "kernel": Term(_kernel, _TAP_MEAN, _TAP_STD, _kernel_numbers),
     "interpolation": Term(_interpolation, (0.0,), (0.6,), _interpolation_numbers),
 }
 """Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear and halo of a pixel or two, taps
@@ -332,6 +335,8 @@ FORMS: tuple[tuple[str, ...], ...] = (
     ("gaussian", "diffraction", "unsharp"),
     ("gaussian", "diffraction", "kernel"),
     ("gaussian", "smear", "kernel"),
+    ("gaussian", "defocus", "kernel"),
+    ("gaussian", "diffraction", "smear", "kernel"),
     ("gaussian", "diffraction", "interpolation"),
 )
 """Forms that are tried, the simplest first."""

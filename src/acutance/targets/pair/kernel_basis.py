@@ -118,6 +118,11 @@ class KernelBasis(ShortRepr):
         """Number of functions."""
         return int(self.blocks.size)
 
+    @property
+    def reach_px(self) -> float:
+        """How far the taps reach, in low pixels."""
+        return min(axis.half / axis.per_px for axis in (self.grid.down, self.grid.across))
+
     def columns(self, tile: PairTile) -> Floats:
         """The low pixels every function makes of the reference, (h, w, k)."""
         down, across, pairs = self._axes

@@ -10,6 +10,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.numerics.shape_error import ShapeError
 from acutance.targets.pair import tuned
 from acutance.targets.pair.kernel_basis import KernelBasis
 from acutance.targets.pair.kernel_covariance import KernelCovariance
@@ -21,6 +22,7 @@ __all__ = ["KernelOtf"]
 
 _FREQ_CPP: Floats = np.asarray(np.arange(1, 20) / 20)
 _PLANE_NODES = 33
+_HIGHEST_CPP = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +85,7 @@ class KernelOtf(ShortRepr):
             "fit": self._inflation(slopes)[:, None] * (slopes @ self.covariance.posterior),
             "reference_noise": slopes @ self.covariance.reference_noise,
             "light_from_beyond": slopes @ self.covariance.beyond,
+            "kernel_shape": self._of_shape(quotient, np.hypot(u_cpp, v_cpp)),
         }
         if self.reference is None:
             return found
@@ -125,6 +128,25 @@ class KernelOtf(ShortRepr):
         quotient = transfer @ self.beta / total
         slopes = (transfer - quotient[:, None] * self._at_zero) / total
         return quotient * centring, slopes * centring[:, None]
+
+    def _of_shape(self, quotient: Complexes, freq_cpp: Floats) -> Complexes:
+        """Factor (n, m) of what the basis cannot follow.
+
+        Its last column is the light beyond the taps, which the tail takes from them.
+        """
+        beyond = 1 - np.exp(-0.5 * (2 * math.pi * freq_cpp * self.basis.reach_px) ** 2)
+        light = self.beta[-1] * float(self.basis.far_tail.sum()) / float(self._at_zero @ self.beta)
+        far = tuned.FAR_SHARE * light * beyond * quotient
+        return np.column_stack([self._shape_error.factor(freq_cpp, quotient), far])
+
+    @cached_property
+    def _shape_error(self) -> ShapeError:
+        parametric = replace(self, beta=np.eye(self.beta.size)[0])
+
+        def departure(u: Floats, v: Floats) -> Complexes:
+            return np.asarray(self._quotient(u, v)[0] - parametric._quotient(u, v)[0])
+
+        return ShapeError.of(departure, min(self.band_cpp, _HIGHEST_CPP), tuned.SHAPE_SHARE)
 
     @cached_property
     def _at_zero(self) -> Floats:

@@ -32,7 +32,7 @@ from acutance.targets.periodic.otf_regression import (
     reweighted,
     weighted_normal,
 )
-from acutance.targets.periodic.star_rings import ring_modulations
+from acutance.targets.periodic.star_rings import ring_modulations, shape_error
 from acutance.targets.periodic.star_waves import StarTable, Wave, star_table
 from acutance.targets.periodic.stated_contrast import Levels, with_level
 from acutance.targets.periodic.tuned import APERTURE_STD, STAR_FINEST_CPP, STAR_NOISE_FLOOR
@@ -175,9 +175,15 @@ def solve_star(
         earlier = fitted.posterior if wider == mean else None
         mean, level = wider, max(fitted.otf.level, 1e-3 * level)
         weight, noise_found = again, found
+    residual = np.full(image.shape, np.nan)
+    residual[rows, cols] = fitted.residual
+    otf = replace(
+        fitted.otf,
+        shape_error=shape_error(residual, star, fitted.noise, fitted.otf.level, inner, outer),
+    )
     col_std, row_std = (np.linalg.norm(fitted.posterior.factor[_PLACE], axis=1) / level).tolist()
     return StarSolution(
-        star, (row_std, col_std), fitted.otf, rows, cols, value, fitted.residual, fitted.noise,
+        star, (row_std, col_std), otf, rows, cols, value, fitted.residual, fitted.noise,
         noise_found, inner, outer,
     )  # fmt: skip
 

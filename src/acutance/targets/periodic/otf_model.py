@@ -16,6 +16,7 @@ from acutance.numerics.otf_modes import (
     MeanOtf,
     ProcessModes,
 )
+from acutance.numerics.shape_error import ShapeError
 
 __all__ = ["FittedOtf", "all_modes", "level_row"]
 
@@ -33,11 +34,14 @@ class FittedOtf:
         frequency is the level.
     beta_factor : (m, k) array
         Factor of the covariance of beta.
+    shape_error : ShapeError, optional
+        Of a shape that the modes do not follow, as the pixels show it.
     """
 
     mean: MeanOtf
     beta: Floats
     beta_factor: Floats
+    shape_error: ShapeError | None = None
 
     @property
     def band_cpp(self) -> float:
@@ -59,7 +63,10 @@ class FittedOtf:
         modes = self._modes(u_cpp, v_cpp)
         otf = modes @ self.beta / self.level
         # The level is the OTF at zero frequency, where it is 1 without error.
-        return np.asarray((modes - np.outer(otf, self._at_zero)) @ self.beta_factor / self.level)
+        fitted = (modes - np.outer(otf, self._at_zero)) @ self.beta_factor / self.level
+        if self.shape_error is None:
+            return np.asarray(fitted)
+        return np.hstack([fitted, self.shape_error.factor(np.hypot(u_cpp, v_cpp), otf)])
 
     @cached_property
     def level(self) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.numerics.otf_modes import HIGHEST_CPP, Complexes, MeanOtf
+from acutance.numerics.shape_error import ShapeError
 from acutance.targets.periodic.otf_model import FittedOtf, all_modes
 
 __all__ = ["PackedOtf"]
@@ -39,11 +40,14 @@ class PackedOtf:
         Coefficients of its modes and of the processes'.
     steps : bytes
         Compressed triangular factor of the covariance, by the level, in steps of 3e-7.
+    shape_error : ShapeError, optional
+        Of a shape that the modes do not follow.
     """
 
     mean: MeanOtf
     beta: tuple[float, ...]
     steps: bytes
+    shape_error: ShapeError | None = None
 
     @classmethod
     def of(cls, fitted: FittedOtf) -> PackedOtf:
@@ -52,7 +56,8 @@ class PackedOtf:
         factor = root @ fitted.beta_factor / fitted.level
         upper = np.asarray(np.linalg.qr(factor.T, mode="r"))
         steps = np.round(upper.T[np.tril_indices(len(upper))] / _STEP).astype("<i4")
-        return cls(fitted.mean, tuple(fitted.beta.tolist()), zlib.compress(steps.tobytes(), 9))
+        packed = zlib.compress(steps.tobytes(), 9)
+        return cls(fitted.mean, tuple(fitted.beta.tolist()), packed, fitted.shape_error)
 
     @property
     def band_cpp(self) -> float:
@@ -77,10 +82,11 @@ class PackedOtf:
             np.linalg.solve(_orthonormal_root(self.mean, beta.size), triangle), float
         )
         level = FittedOtf(self.mean, beta, factor).level
-        return FittedOtf(self.mean, beta, level * factor)
+        return FittedOtf(self.mean, beta, level * factor, self.shape_error)
 
     def __getstate__(self) -> dict[str, object]:
-        return {"mean": self.mean, "beta": self.beta, "steps": self.steps}
+        names = "mean", "beta", "steps", "shape_error"
+        return {name: getattr(self, name) for name in names}
 
 
 @cache

@@ -9,10 +9,20 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.geometry.star_geometry import Flags, SiemensStar
+from acutance.numerics.shape_error import ShapeError
 
-__all__ = ["members_of", "ring_modulations", "rings_of"]
+__all__ = ["members_of", "ring_modulations", "rings_of", "shape_error"]
 
 _RING_STEP_PX = 1.0
+_CHANCE = 1.5
+"""Deviations by which the residuals' spokes have to exceed what noise makes."""
+_ALONG_AXES = 2.0
+"""Error along rows and columns, over its root mean square in all directions: filters act there."""
+_NEAR_CPP = 0.07
+_TURNS = np.arange(2, 18, 2)
+"""Even angular orders: transfer has the same modulus in opposite directions."""
+_MIN_PIXELS = 34
+_MIN_SINGULAR = 0.1
 
 
 def rings_of(
@@ -69,3 +79,75 @@ def ring_modulations(
         found.append((star.cycles / (2 * math.pi * mean_radius), fit[1], math.sqrt(variance)))
     table = np.array(found, float).reshape(-1, 3)
     return table[:, 0], table[:, 1], table[:, 2]
+
+
+def shape_error(
+    residual: Floats,
+    star: SiemensStar,
+    noise: float,
+    level: float,
+    inner_px: float,
+    outer_px: float,
+) -> ShapeError | None:
+    """What the residuals of a star show of a shape that the fit did not follow, or nothing.
+
+    A transfer that is wrong at the frequency of a ring leaves the ring's spokes there, in one
+    direction more than in others: filters act along rows and columns.
+
+    Parameters
+    ----------
+    residual : (rows, cols) array
+        NaN where no pixel was used.
+    star : SiemensStar
+    noise : float
+        Standard deviation of the pixels' noise.
+    level : float
+        Amplitude of the spokes before the sensor.
+    inner_px, outer_px : float
+    """
+    rings = _residual_rings(residual, star, inner_px, outer_px)
+    if not rings:
+        return None
+    freq = np.array([star.freq_cpp(radius) for radius, _, _ in rings])
+    found = [_spoke_power(value / noise, angle, star) for _, angle, value in rings]
+    power, excess, freedom = (np.array(column) for column in zip(*found, strict=True))
+    if np.sum(excess) < _CHANCE * math.sqrt(2 * np.sum(freedom)):
+        return None
+    places = np.arange(0.0, freq.max() + _NEAR_CPP, _NEAR_CPP)
+    near = np.exp(-0.5 * ((places[:, None] - freq) / _NEAR_CPP) ** 2) + np.finfo(float).tiny
+    mean_power = np.maximum(near @ power / near.sum(axis=1), 0.0)
+    std = _ALONG_AXES * noise / level * np.sqrt(mean_power)
+    std[0] = 0.0
+    return ShapeError(places, std)
+
+
+def _residual_rings(
+    residual: Floats, star: SiemensStar, inner_px: float, outer_px: float
+) -> list[tuple[float, Floats, Floats]]:
+    """Radius, directions and residuals of every ring that has enough pixels."""
+    rows, cols = np.nonzero(np.isfinite(residual))
+    radius, angle = star.polar(rows.astype(float), cols.astype(float))
+    value, found = residual[rows, cols], []
+    for low in np.arange(inner_px, outer_px - 0.5, 1.0):
+        here = (radius >= low) & (radius < low + 1)
+        if np.count_nonzero(here) >= _MIN_PIXELS:
+            found.append((float(np.mean(radius[here])), angle[here], value[here]))
+    return found
+
+
+def _spoke_power(standard: Floats, angle: Floats, star: SiemensStar) -> tuple[float, float, int]:
+    """Mean power of the spokes in a ring's standardised residuals, noise taken off.
+
+    Also chi-square of the spokes less its expectation, and that.
+    """
+    turns = np.multiply.outer(angle, _TURNS)
+    around = np.hstack([np.ones((angle.size, 1)), np.cos(turns), np.sin(turns)])
+    spokes = np.cos(star.cycles * angle + star.alpha_rad)
+    left, size, right = np.linalg.svd(spokes[:, None] * around, full_matrices=False)
+    kept = size > _MIN_SINGULAR * size[0]
+    seen, back = (left.T @ standard)[kept], right[kept].T / size[kept]
+    # Mean squares of one, and of sines and cosines, over directions.
+    weight = np.full(around.shape[1], 0.5)
+    weight[0] = 1.0
+    power = weight @ ((back @ seen) ** 2 - np.sum(back**2, axis=1))
+    return float(power), float(seen @ seen) - seen.size, seen.size

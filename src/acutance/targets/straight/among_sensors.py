@@ -24,7 +24,7 @@ from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.linear_model import Linear
 from acutance.targets.straight.sensor_density import SensorsSeen, drawn_sensors
 from acutance.targets.straight.spline import CELL, CELLS, SIZE, esf_from_lsf
-from acutance.targets.straight.tuned import KERNEL_FLOOR, MAX_SENSOR_MISFIT
+from acutance.targets.straight.tuned import BROAD_PRIOR, KERNEL_FLOOR, MAX_SENSOR_MISFIT
 
 __all__ = ["AmongSensors", "among_sensors"]
 
@@ -44,7 +44,11 @@ class AmongSensors:
     posterior : Posterior
         Normal, of the mean and the covariance of the mixture.
     information : (m, m) array
-        What the pixels alone say of all unknowns.
+        What the pixels alone say of all unknowns: the inverse of their covariance.
+    projection : (m,) array
+        The same times their values.
+    broad_prior : (m, m) array
+        Covariance of a prior that leaves the LSF open.
     share : dict of str to float
         Probability of every family of sensors.
     """
@@ -52,6 +56,8 @@ class AmongSensors:
     linear: Linear
     posterior: Posterior
     information: Floats
+    projection: Floats
+    broad_prior: Floats
     share: dict[str, float]
 
 
@@ -89,12 +95,25 @@ def among_sensors(
         _normal_prior(linear, posterior),
     )  # fmt: skip
     if equations.misfit(beta) - before.misfit(posterior.beta) > MAX_SENSOR_MISFIT * noise:
-        return AmongSensors(linear, posterior, before.gram / noise, {"other": 1.0})
+        return _as_before(linear, before, posterior, noise)
     found = Posterior(
         beta, _upper_factor(covariance), std, posterior.log_amplitude, posterior.variance,
         freedom=float(np.sum(covariance * information)),
     )  # fmt: skip
-    return AmongSensors(own, found, information, seen.share)
+    prior = np.diag(np.where(sensor, 0.0, std) ** 2)
+    broad = (BROAD_PRIOR * linear.first_fit.height) ** 2
+    prior[np.ix_(sensor, sensor)] = broad * drawn_sensors().second_moment
+    return AmongSensors(own, found, information, projection, prior, seen.share)
+
+
+def _as_before(linear: Linear, before: Normal, posterior: Posterior, noise: float) -> AmongSensors:
+    """The solution of the passes before, of a sensor that the density cannot follow."""
+    broad = posterior.prior_std.copy()
+    broad[_FIRST : 1 + linear.directions.block.size] *= BROAD_PRIOR
+    return AmongSensors(
+        linear, posterior, before.gram / noise, before.projection / noise, np.diag(broad**2),
+        {"other": 1.0},
+    )  # fmt: skip
 
 
 @cache

@@ -28,7 +28,7 @@ from acutance.targets.straight.spline import (
     waves,
 )
 from acutance.targets.straight.stated_target import NOTHING_STATED, StatedTarget, with_stated_target
-from acutance.targets.straight.tuned import APERTURE_PX, HALO_SHARE, TAIL_WIDTH
+from acutance.targets.straight.tuned import HALO_SHARE, TAIL_WIDTH
 
 __all__ = ["LsfModel", "SplineResponse", "of_stated_target", "with_uncertain_halo"]
 
@@ -86,13 +86,23 @@ class LsfModel:
         esf, lsf = self._parts(s, blurred)
         return self._sum(*esf), self._sum(*lsf)
 
-    def expected_otf(self, freq_cpp: Floats) -> NDArray[np.complex128]:
-        """Mean of the prior of the optical transfer function (OTF), about the LSF's centroid.
+    def otf(self, freq_cpp: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Normalised optical transfer function (OTF) about the LSF's centroid, and its design."""
+        value, design = self.spectrum(freq_cpp)
+        design[:, -2:] -= (value / self.height)[:, None]
+        return value, design
 
-        Of the blur's own aperture nothing is known but that detectors are about a pixel wide.
-        """
-        expected = GaussianPixel(self.blur.sigma_px, APERTURE_PX[0]).otf(freq_cpp)
-        return np.asarray(expected * waves(freq_cpp * self.blur.width_px, -self._centroid())[0])
+    def spectrum(self, freq_cpp: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Spectrum of the LSF about its centroid in units of its height, and the exact design."""
+        freq, centroid = freq_cpp * self.blur.width_px, self._centroid()
+        about = waves(freq, -centroid)[0] / self.height
+        design = transform(freq, centroid, 1 / self.height, further=1)
+        design[:, -1] = tail_otf(freq, TAIL_WIDTH) * about
+        # A real product: BLAS would start threads for a complex one of this size.
+        coefficients = np.append(self.spline, self.tail)
+        value = self.level * self.blur.otf(freq_cpp) * about
+        value += (coefficients @ design.T.view(float)).view(complex)
+        return value, design
 
     def half_point(self) -> float:
         """Normal distance of the 50 % point."""
@@ -111,7 +121,7 @@ class LsfModel:
         (esf, esf_design), (lsf, lsf_design) = (
             self._normalised(*parts) for parts in self._parts(s, self.blur.esf_and_lsf(s))
         )
-        otf, otf_design = self._otf(FREQ_CPP)
+        otf, otf_design = self.otf(FREQ_CPP)
         return SplineResponse(
             Esf(distance, esf, esf_design, self.latent),
             Lsf(distance, lsf, lsf_design, self.latent),
@@ -153,19 +163,6 @@ class LsfModel:
         np.multiply(value, -1 / height, out=dense[:, 0])
         np.add(dense[:, 0], tail * (1 / height), out=dense[:, 1])
         return value, SplineRows(cell, weights * (1 / height), dense, further=1)
-
-    def _otf(self, freq_cpp: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Normalised optical transfer function (OTF) about the LSF's centroid, and its design."""
-        freq, centroid = freq_cpp * self.blur.width_px, self._centroid()
-        about = waves(freq, -centroid)[0] / self.height
-        design = transform(freq, centroid, 1 / self.height, further=1)
-        design[:, -1] = tail_otf(freq, TAIL_WIDTH) * about
-        # A real product: BLAS would start threads for a complex one of this size.
-        coefficients = np.append(self.spline, self.tail)
-        value = self.level * self.blur.otf(freq_cpp) * about
-        value += (coefficients @ design.T.view(float)).view(complex)
-        design[:, -2:] -= (value / self.height)[:, None]
-        return value, design
 
     def _centroid(self) -> float:
         """Centroid of the LSF in widths."""

@@ -1,51 +1,82 @@
-"""What the pixels of a straight target say of its transfer function (OTF), the prior apart."""
+"""What the pixels of a straight target say of its transfer function (OTF), the prior apart.
+
+The likelihood is the posterior over a prior that is broad. Over a narrow one it would be a small
+difference of large numbers: a sharpened sensor lies many of its deviations away in directions that
+it hardly leaves open.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.targets.otf_likelihood import OtfLikelihood
+from acutance.targets.straight.lsf import LsfModel
 
 __all__ = ["PixelsAlone"]
 
 
 @dataclass(frozen=True, eq=False)
 class PixelsAlone(ShortRepr):
-    """A normal posterior of the line spread function and the prior that it has.
-
-    All by the columns of the curves' factors: spline and tail of the response to a step.
+    """The equations of a linear model of the line spread function (LSF), in m unknowns.
 
     Attributes
     ----------
-    away : (c,) array
-        Its mean minus that of the reported curves.
-    posterior, prior : (c, ...) array
-        Factors of the covariances.
+    blur : GaussianPixel
+        The first fit, which the unknowns correct.
+    level : float
+        Height of its step, in image units.
+    columns : (c, n) array
+        Spline and tail of the LSF by the first n unknowns.
+    information : (m, m) array
+        Inverse covariance of the unknowns by the pixels alone.
+    projection : (m,) array
+        The same times the values they have by the pixels alone.
+    prior_mean : (m,) array
+    prior : (m, m) array
+        Covariance of a prior, broad in the LSF.
     """
 
-    away: Floats
-    posterior: Floats
+    blur: GaussianPixel
+    level: float
+    columns: Floats
+    information: Floats
+    projection: Floats
+    prior_mean: Floats
     prior: Floats
 
-    def likelihood(
-        self, rows: NDArray[np.complex128], from_expected: NDArray[np.complex128]
-    ) -> OtfLikelihood:
-        """The likelihood of the OTF about the reported one.
+    def likelihood(self, freq_cpp: Floats, gain: Floats) -> OtfLikelihood:
+        """The likelihood of the OTF.
 
         Parameters
         ----------
-        rows : (n, c) complex array
-            Factor of the OTF at n frequencies.
-        from_expected : (n,) complex array
-            The reported OTF minus the one that was expected.
+        freq_cpp : (n,) array
+            Above zero.
+        gain : (n,) array
+            By how much the OTF of the sensor exceeds that of the image.
         """
-        away = rows @ self.away
-        found = OtfLikelihood.of_posterior(
-            from_expected + away, rows @ self.posterior, rows @ self.prior
+        known = np.linalg.inv(self.prior)
+        covariance = np.linalg.inv(self.information + known)
+        n = self.columns.shape[1]
+        unknowns = (covariance @ (self.projection + known @ self.prior_mean))[:n]
+        own, latent = self.columns @ unknowns, self.columns @ _root(covariance[:n, :n])
+        model = LsfModel(self.blur, self.level, own[:-1], float(own[-1]), latent)
+        spectrum, rows = model.spectrum(np.concatenate([[0.0], freq_cpp]))
+        raised = np.concatenate([[1.0], gain])
+        rows = raised[:, None] * rows
+        return OtfLikelihood.of_posterior(
+            raised * spectrum,
+            rows @ (own - self.columns @ self.prior_mean[:n]),
+            rows @ latent,
+            rows @ (self.columns @ _root(self.prior[:n, :n])),
         )
-        return found.about(-away)
+
+
+def _root(covariance: Floats) -> Floats:
+    """A factor of a covariance, (n, n)."""
+    size, axes = np.linalg.eigh(covariance)
+    return np.asarray(axes * np.sqrt(np.maximum(size, 0.0)))

@@ -101,6 +101,15 @@ class Sensors:
     basis: Floats
     families: tuple[SensorFamily, ...]
 
+    @cached_property
+    def second_moment(self) -> Floats:
+        """Covariance of all sensors about none, family by family, (q, q)."""
+        found = np.zeros((self.basis.shape[1],) * 2)
+        for family in self.families:
+            mean = family.coordinates.mean(axis=0)
+            found += family.covariance + np.outer(mean, mean)
+        return found
+
     def seen(
         self, information: Floats, projection: Floats, width_px: float, other: Floats
     ) -> SensorsSeen:

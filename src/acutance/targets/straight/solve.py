@@ -53,8 +53,6 @@ class Solved:
     ----------
     solution : Solution
         The last pass, among sensors.
-    normal_pass : Solution
-        The one before, whose prior is normal.
     seen : AmongSensors
         What the last pass found.
     outlier : (n,) array
@@ -64,7 +62,6 @@ class Solved:
     """
 
     solution: Solution
-    normal_pass: Solution
     seen: AmongSensors
     outlier: Floats
     correlation: Correlation
@@ -77,17 +74,11 @@ class Solved:
     @property
     def pixels_alone(self) -> PixelsAlone:
         """What the pixels say of the LSF, the prior apart."""
-        first = self.normal_pass
-        columns = first.linear.lsf_columns
-        n = columns.shape[1]
-        posterior = first.posterior
-        model = self.model
-        own = columns @ posterior.beta[:n]
+        seen, first_fit = self.seen, self.first_fit
         return PixelsAlone(
-            own - np.append(model.spline, model.tail),
-            columns @ posterior.factor[:n, : posterior.beta.size],
-            columns * posterior.prior_std[:n],
-        )
+            first_fit.blur, first_fit.height, seen.linear.lsf_columns,
+            seen.information, seen.projection, seen.linear.prior.mean, seen.broad_prior,
+        )  # fmt: skip
 
     @property
     def first_fit(self) -> FirstFit:
@@ -237,7 +228,7 @@ def solve(
     seen = among_sensors(
         solved.linear, solved.normal, solved.equations, solved.posterior, whiteness.inflation
     )
-    return Solved(_seen_again(solved, seen), solved, seen, outlier, whiteness)
+    return Solved(_seen_again(solved, seen), seen, outlier, whiteness)
 
 
 def _seen_again(solved: Solution, seen: AmongSensors) -> Solution:

@@ -116,9 +116,8 @@ class StraightMeasurement(Measurement):
             return None
         mtf = self.mtf
         places = np.searchsorted(mtf.freq_cpp, freq_cpp - 1e-9)
-        fitted, others = np.split(mtf.factor[places], [alone.away.size], axis=1)
-        expected = self.response.model.expected_otf(freq_cpp) * self.stated.gain(freq_cpp)
-        found: OtfLikelihood = alone.likelihood(fitted, mtf.otf[places] - expected)
+        others = mtf.factor[places][:, alone.columns.shape[0] :]
+        found: OtfLikelihood = alone.likelihood(freq_cpp, self.stated.gain(freq_cpp))
         return found.with_errors(others)
 
     def _budget(self) -> tuple[BudgetTerm, ...]:

@@ -15,6 +15,7 @@ from acutance.curves.grid import Floats
 __all__ = [
     "APERTURE_PX",
     "APERTURE_TAIL_PX",
+    "BROAD_PRIOR",
     "CHANGE_SIGMAS",
     "CURVATURE_STD_PER_PX",
     "DETAIL",
@@ -109,6 +110,10 @@ KERNEL_FLOOR: Final = 1e-3
 """Least standard deviation of a coordinate of a family: families of one cause vary in few."""
 NOISE_FLOOR: Final = 2e-4
 """The smallest noise that is told from the arithmetic's and the model's own."""
+BROAD_PRIOR: Final = 10.0
+"""Width of a prior that says nothing of the LSF, relative to the sensors that were drawn: of what
+the pixels alone say chi-square at the true OTF is then .7 of its freedom over all families (at 3 it
+is .5; of the normal prior itself 1 to 50, sharpened sensors being far from it)."""
 APERTURE_PX: Final = (1.0, 0.18)
 """Mean and standard deviation of the detector's aperture: fill factors are near one."""
 CURVATURE_STD_PER_PX: Final = 1e-3
