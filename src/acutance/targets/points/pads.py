@@ -22,11 +22,12 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
-from acutance.numerics.marginal_likelihood import Posterior, Prior
+from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.points import tuned
-from acutance.targets.points.amplitudes import likelier_posterior, posterior_log_evidence
+from acutance.targets.points.among_sensors import AmongSensors, Equations, among_sensors
 from acutance.targets.points.per_source import SourceProblem
+from acutance.targets.points.psf_prior import PsfDirections
 from acutance.targets.points.stamps import Stamps
 
 __all__ = ["Pads", "PadsFound", "find_pads", "pads_image"]
@@ -117,9 +118,8 @@ def find_pads(
     images: Sequence[Floats],
     contrast_std: float,
     weight: Floats,
-    prior: Prior,
-    found: Posterior,
-    inflation: float,
+    without: AmongSensors,
+    directions: PsfDirections,
 ) -> PadsFound | None:
     """The pads that make the pixels likelier, if there are any.
 
@@ -137,9 +137,12 @@ def find_pads(
         Prior standard deviation of the contrast, in image units.
     weight : (n,) array
         Inverse variances of the pixels, 1 on the background.
-    prior, found, inflation
-        Prior, solution and correlation of the noise of the fit without pads.
+    without : AmongSensors
+        The fit without pads.
+    directions : PsfDirections
+        What its first unknowns are.
     """
+    _, prior, inflation, found = without.equations
     more = replace(
         prior,
         block=np.append(prior.block, -1.0),
@@ -149,18 +152,29 @@ def find_pads(
     wider = replace(problem, shared=np.column_stack([problem.shared, *images]))
     every = wider.eliminated(weight).normal
     own = np.arange(problem.shared.shape[1])
-    without = posterior_log_evidence(_part(every, own), prior, found, inflation)
-    gains, tried = [], []
+    tried = []
     for number in range(len(images)):
         normal = _part(every, np.append(own, own.size + number))
-        tried.append(likelier_posterior(normal, more, found.variance, inflation, None))
-        gains.append(posterior_log_evidence(normal, more, tried[-1], inflation) - without)
+        likeliest = regress(normal, more, found.variance, inflation, found)
+        equations = Equations(normal, more, inflation, likeliest)
+        tried.append(among_sensors(equations, directions))
+    gains = [one.log_evidence - without.log_evidence for one in tried]
+    # The lobes of a compensated PSF pass for pads of any level: these are not told from none.
+    gains[1:] = [
+        gain + math.log(max(1 - _compensated(one), 1e-300))
+        for gain, one in zip(gains[1:], tried[1:], strict=True)
+    ]
     best = 1 + int(np.argmax(gains[1:]))
     gain = gains[best] - max(0.0, gains[0])
     if gain < tuned.PAD_OPEN_LOG_EVIDENCE:
         return None
     share = 1 / (1 + math.exp(min(tuned.PAD_LOG_EVIDENCE - gain, 700.0)))
-    return PadsFound(tuned.PAD_SIDES_PX[best - 1], share, tried[best])
+    return PadsFound(tuned.PAD_SIDES_PX[best - 1], share, tried[best].posterior)
+
+
+def _compensated(among: AmongSensors) -> float:
+    """Probability that the product was sharpened or restored."""
+    return sum(among.share.get(family, 0.0) for family in tuned.COMPENSATED)
 
 
 def _part(normal: Normal, columns: NDArray[np.intp]) -> Normal:

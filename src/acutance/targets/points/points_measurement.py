@@ -12,8 +12,8 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.targets.measurement import Measurement
 from acutance.targets.points.detect import RejectedSpot
-from acutance.targets.points.fit import PointsFit
 from acutance.targets.points.pads import Pads
+from acutance.targets.points.points_fit import PointsFit
 from acutance.targets.points.published import AlignedFit, PublishedMirrors
 from acutance.targets.points.sources import PointSource, SourceStamp
 from acutance.targets.points.survey import SurveyErrors
