@@ -70,8 +70,8 @@ class Kernels(NamedTuple):
         Factor of the covariance of every part at unit scale, but for the floor.
     scales : sequence of float
         Every kernel is there once at each scale, with an equal share of its weight.
-    floor : float
-        Standard deviation of every parameter that any kernel has besides.
+    floor : (p,) array
+        Standard deviation that the kernels of every part have of every parameter besides.
     """
 
     centres: Floats
@@ -79,7 +79,7 @@ class Kernels(NamedTuple):
     part: NDArray[np.intp]
     factors: Floats
     scales: Sequence[float]
-    floor: float
+    floor: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,6 +170,8 @@ class SeenKernels(NamedTuple):
     kernels : Kernels
     columns : (q, r) array
         The combinations.
+    error : (p, r) array
+        Their errors that the floors leave.
     off : (n, r) array
         What the data say, minus what the centres do.
     axes : (p, r, m) array
@@ -180,25 +182,24 @@ class SeenKernels(NamedTuple):
         Information about each.
     along : (n, m) array
         Products of `off` with the axes of a kernel's part.
-    log_volume : float
     """
 
     kernels: Kernels
     columns: Floats
+    error: Floats
     off: Floats
     axes: Floats
     factors: Floats
     power: Floats
     along: Floats
-    log_volume: float
 
     @classmethod
     def of(cls, kernels: Kernels, told: Combinations) -> SeenKernels:
         """What the combinations say of the kernels."""
-        error = np.sqrt(1 + kernels.floor**2 * np.sum(told.columns**2, axis=0))
-        columns = told.columns / error
-        off = told.values / error - kernels.centres @ columns
-        axes = columns.T @ kernels.factors
+        size = np.sum(told.columns**2, axis=0)
+        error = np.sqrt(1 + np.multiply.outer(kernels.floor**2, size))
+        off = (told.values - kernels.centres @ told.columns) / error[kernels.part]
+        axes = (told.columns.T @ kernels.factors) / error[:, :, None]
         power, turn = np.linalg.eigh(axes.transpose(0, 2, 1) @ axes)
         axes = axes @ turn
         along = np.empty((len(off), power.shape[1]))
@@ -206,8 +207,8 @@ class SeenKernels(NamedTuple):
         for own, first, last in zip(axes, bounds[:-1], bounds[1:], strict=True):
             np.matmul(off[first:last], own, out=along[first:last])
         return cls(
-            kernels, columns, off, axes, kernels.factors @ turn, np.maximum(power, 0.0), along,
-            float(np.log(error).sum()),
+            kernels, told.columns, error, off, axes, kernels.factors @ turn,
+            np.maximum(power, 0.0), along,
         )  # fmt: skip
 
     def log_weight(self, scale: float) -> Floats:
@@ -216,26 +217,24 @@ class SeenKernels(NamedTuple):
         part = self.kernels.part
         explained = np.einsum("ij,ij->i", self.along**2, (scale**2 / wider)[part])
         misfit = np.einsum("ij,ij->i", self.off, self.off) - explained
-        volume = 0.5 * np.log(wider).sum(axis=1)[part] + self.log_volume
-        return np.asarray(self.kernels.log_weight - 0.5 * misfit - volume)
+        volume = 0.5 * np.log(wider).sum(axis=1) + np.log(self.error).sum(axis=1)
+        return np.asarray(self.kernels.log_weight - 0.5 * misfit - volume[part])
 
     def means(self, scale: float, kept: NDArray[np.intp]) -> Floats:
         """Means of some kernels, (k, q)."""
         part, along = self.kernels.part[kept], self.along[kept]
         shrunk = scale**2 * along / (1 + scale**2 * self.power[part])
         left = self.off[kept] - np.einsum("ij,ikj->ik", shrunk, self.axes[part])
-        by_floor = self.kernels.floor**2 * left @ self.columns.T
+        by_floor = (left / self.error[part]) @ self.columns.T
+        by_floor *= self.kernels.floor[part, None] ** 2
         by_factor = np.einsum("ij,ikj->ik", shrunk, self.factors[part])
         return np.asarray(self.kernels.centres[kept] + by_factor + by_floor)
 
     def covariance(self, scale: float, part: int) -> Floats:
         """Covariance of the kernels of a part, (q, q)."""
-        factor, axes, floor = (
-            scale * self.factors[part],
-            scale * self.axes[part],
-            self.kernels.floor,
-        )
-        before = factor @ factor.T + floor**2 * np.eye(len(factor))
-        common = factor @ axes.T + floor**2 * self.columns
+        factor, axes = scale * self.factors[part], scale * self.axes[part]
+        variance = float(self.kernels.floor[part]) ** 2
+        before = factor @ factor.T + variance * np.eye(len(factor))
+        common = factor @ axes.T + variance * self.columns / self.error[part]
         reduced = (common @ axes) / np.sqrt(1 + scale**2 * self.power[part])
         return np.asarray(before - common @ common.T + reduced @ reduced.T)

@@ -25,6 +25,7 @@ from acutance.numerics.kernel_mixture import Kernels
 from acutance.targets.points.tuned import (
     FAMILY_WEIGHTS,
     KERNEL_FLOOR,
+    KERNEL_FLOOR_SHARE,
     KERNEL_LOG_RATIO,
     KERNEL_LOG_WIDTH,
     KERNEL_SCALES,
@@ -88,6 +89,8 @@ class Sensors:
         Part of every sensor, ascending: those of one family that are like it.
     factors : (p, q, m) array
         Factor of the covariance of every part.
+    floor : (p,) array
+        Least standard deviation of the coordinates in every part.
     families : (p,) tuple of str
         Family of every part.
     """
@@ -99,6 +102,7 @@ class Sensors:
     log_weight: Floats
     part: NDArray[np.intp]
     factors: Floats
+    floor: Floats
     families: tuple[str, ...]
 
     def about(self, widths_px: tuple[float, float]) -> Kernels:
@@ -109,7 +113,7 @@ class Sensors:
         near = away < _REACH**2
         return Kernels(
             self.centres[near], self.log_weight[near] - 0.5 * away[near], self.part[near],
-            self.factors, KERNEL_SCALES, KERNEL_FLOOR,
+            self.factors, KERNEL_SCALES, self.floor,
         )  # fmt: skip
 
 
@@ -133,6 +137,7 @@ def drawn_sensors() -> Sensors:
         np.concatenate([part.log_weight for part in parts]),
         np.repeat(np.arange(len(parts)), [len(part.centres) for part in parts]),
         np.stack([part.factor for part in parts]),
+        np.array([part.floor for part in parts]),
         tuple(name for name, own in found.items() for _ in own),
     )
 
@@ -145,6 +150,7 @@ class _Part(NamedTuple):
     log_ratio: Floats
     log_weight: Floats
     factor: Floats
+    floor: float
 
 
 def _parts(family: str, rows: Floats, basis: Basis) -> Iterator[_Part]:
@@ -158,7 +164,11 @@ def _parts(family: str, rows: Floats, basis: Basis) -> Iterator[_Part]:
         about = centres[part] - centres[part].mean(axis=0)
         power, axes = np.linalg.eigh(about.T @ about / part.size)
         factor = axes[:, -_AXES:] * np.sqrt(np.maximum(power[-_AXES:], 0.0))
-        yield _Part(centres[part], log_width[part], log_ratio[part], log_weight[part], factor)
+        size = float(np.sqrt(np.mean(np.sum(centres[part] ** 2, axis=1))))
+        floor = max(KERNEL_FLOOR, KERNEL_FLOOR_SHARE * size)
+        yield _Part(
+            centres[part], log_width[part], log_ratio[part], log_weight[part], factor, floor
+        )
 
 
 def _images(coordinates: Floats, log_widths: Floats, basis: Basis) -> tuple[Floats, Floats, Floats]:
