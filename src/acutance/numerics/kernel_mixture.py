@@ -68,18 +68,29 @@ class Kernels(NamedTuple):
         Part of every kernel, ascending.
     factors : (p, q, m) array
         Factor of the covariance of every part at unit scale, but for the floor.
-    scales : sequence of float
-        Every kernel is there once at each scale, with an equal share of its weight.
     floor : (p,) array
         Standard deviation that the kernels of every part have of every parameter besides.
+    name : (p,) array of str
+        What every part is called; several may have one name.
+    scales : sequence of float
+        Every kernel is there once at each scale, with an equal share of its weight.
     """
 
     centres: Floats
     log_weight: Floats
     part: NDArray[np.intp]
     factors: Floats
-    scales: Sequence[float]
     floor: Floats
+    name: NDArray[np.str_]
+    scales: Sequence[float]
+
+    def some(self, kept: NDArray[np.bool_]) -> Kernels:
+        """The kernels that are kept (n,), and their parts."""
+        present, part = np.unique(self.part[kept], return_inverse=True)
+        return Kernels(
+            self.centres[kept], self.log_weight[kept], part, self.factors[present],
+            self.floor[present], self.name[present], self.scales,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,22 +100,39 @@ class Mixture:
     Attributes
     ----------
     seen : SeenKernels
-    weight : (s, n) array
-        Probability of every kernel at every scale.
-    log_evidence : float
-        Logarithm of the density of the values, but for a constant of the combinations.
+    log_weight : (s, n) array
+        Logarithm of the density of the values with every kernel at every scale, but for a constant
+        of the combinations.
     """
 
     seen: SeenKernels
-    weight: Floats
-    log_evidence: float
+    log_weight: Floats
+
+    @cached_property
+    def log_evidence(self) -> float:
+        """Logarithm of the density of the values, but for the same constant."""
+        return float(np.logaddexp.reduce(self.log_weight, axis=None))
+
+    @cached_property
+    def weight(self) -> Floats:
+        """Probability of every kernel at every scale, (s, n); 0 for those that do not matter."""
+        relative = self.log_weight - self.log_weight.max()
+        weight = np.where(relative > _NEGLIGIBLE, np.exp(relative), 0.0)
+        return np.asarray(weight / weight.sum())
+
+    def likely(self, margin: float) -> Kernels:
+        """Kernels whose logarithm of the weight is less than a margin below the largest."""
+        best = self.log_weight.max(axis=0)
+        return self.seen.kernels.some(best > best.max() - margin)
 
     @property
-    def share(self) -> Floats:
-        """Probability of every part, (p,)."""
-        kernels = self.seen.kernels
-        every: Floats = self.weight.sum(axis=0)
-        return np.asarray(np.bincount(kernels.part, every, len(kernels.factors)), float)
+    def share(self) -> dict[str, float]:
+        """Probability of all parts of a name."""
+        kernels, found = self.seen.kernels, dict[str, float]()
+        shares = np.bincount(kernels.part, self.weight.sum(axis=0), len(kernels.name))
+        for name, share in zip(kernels.name.tolist(), shares.tolist(), strict=True):
+            found[name] = found.get(name, 0.0) + share
+        return found
 
     @cached_property
     def _means(self) -> tuple[Floats, Floats]:
@@ -155,11 +183,7 @@ def mixture(kernels: Kernels, told: Combinations) -> Mixture:
     """The mixture after the data."""
     seen = SeenKernels.of(kernels, told)
     log_weight = np.stack([seen.log_weight(scale) for scale in kernels.scales])
-    largest = float(log_weight.max())
-    weight = np.where(log_weight > largest + _NEGLIGIBLE, np.exp(log_weight - largest), 0.0)
-    whole = float(weight.sum())
-    evidence = largest + math.log(whole / len(kernels.scales))
-    return Mixture(seen, weight / whole, evidence)
+    return Mixture(seen, log_weight - math.log(len(kernels.scales)))
 
 
 class SeenKernels(NamedTuple):

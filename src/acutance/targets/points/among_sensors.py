@@ -21,6 +21,7 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from acutance.curves.grid import Floats
 from acutance.numerics.kernel_mixture import (
     Combinations,
+    Kernels,
     Mixture,
     combinations_of,
     mixture,
@@ -41,7 +42,9 @@ __all__ = ["AmongSensors", "Equations", "SensorModel", "among_sensors"]
 
 _UNTOLD: Final = 1.0
 """Information of combinations that pixels do not tell: coordinates are below one."""
-_CERTAIN: Final = 1e-9
+_MARGIN: Final = 40.0
+"""Logarithm of the weight below the largest from which on a sensor is out of the question."""
+_CERTAIN: Final = 1e-4
 """Probability below which a model has no part."""
 
 
@@ -70,12 +73,13 @@ class AmongSensors:
     @property
     def share(self) -> dict[str, float]:
         """Probability of every family of sensors, and that it is another sensor."""
-        found = {"other": self.other}
-        if self.mixture is not None:
-            names = drawn_sensors().families
-            for name, share in zip(names, self.mixture.share.tolist(), strict=True):
-                found[name] = found.get(name, 0.0) + (1 - self.other) * share
-        return found
+        known = {} if self.mixture is None else self.mixture.share
+        return {"other": self.other} | {name: (1 - self.other) * p for name, p in known.items()}
+
+    @property
+    def kernels(self) -> Kernels | None:
+        """Kernels of the sensors that also another model of the same pixels has to reckon with."""
+        return None if self.mixture is None else self.mixture.likely(_MARGIN)
 
     @cached_property
     def posterior(self) -> Posterior:
@@ -111,7 +115,9 @@ class Equations(NamedTuple):
         return self.likeliest.variance * self.inflation
 
 
-def among_sensors(equations: Equations, directions: PsfDirections) -> AmongSensors:
+def among_sensors(
+    equations: Equations, directions: PsfDirections, kernels: Kernels | None = None
+) -> AmongSensors:
     """Weigh the density of sensors, and the normal prior for sensors like none of them.
 
     Parameters
@@ -119,8 +125,11 @@ def among_sensors(equations: Equations, directions: PsfDirections) -> AmongSenso
     equations : Equations
     directions : PsfDirections
         What the first unknowns are.
+    kernels : Kernels, optional
+        Of the sensors to be thought of; those of about such a blur unless given.
     """
-    kernels = drawn_sensors().about(directions.blur.widths_px)
+    if kernels is None:
+        kernels = drawn_sensors().about(directions.blur.widths_px)
     model = SensorModel.of(equations, directions)
     of_others = _log_evidence_of_others(equations)
     if not kernels.part.size:

@@ -92,13 +92,14 @@ def _pads_beside(
     quiet = settled.posterior.variance < (contrast_std * tuned.PAD_MIN_NOISE) ** 2
     if quiet or settled.blocks.own_data.shape[0] < tuned.MIN_TIED_SOURCES:
         return None
-    state, noise = settled.state, settled.noise
+    state = settled.state
     sides_px = (tuned.NO_PAD_PX, *tuned.PAD_SIDES_PX)
     return find_pads(
         settled.problem,
+        settled.blocks,
         [pads_image(stamps, state.places, state.model.blur, one) for one in sides_px],
         contrast_std,
-        noise.weight(state.light),
+        settled.weight,
         without,
         state.model.directions,
     )
@@ -131,6 +132,7 @@ class _Settled(NamedTuple):
 
     state: _State
     problem: SourceProblem
+    weight: Floats
     blocks: Blocks
     prior: Prior
     posterior: Posterior
@@ -184,7 +186,7 @@ def _settle(
         if chasing and passes > _MIN_PASSES and max(bend, floor) < before.rms:
             break
         floor, noise = max(min_floor, bend), found
-    return _Settled(before, problem, blocks, prior, posterior, noise)
+    return _Settled(before, problem, weight, blocks, prior, posterior, noise)
 
 
 def _first_bend(stamps: Stamps, first: FirstFit, peaks: Floats) -> float:

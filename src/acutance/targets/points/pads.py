@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
@@ -26,7 +25,7 @@ from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.points import tuned
 from acutance.targets.points.among_sensors import AmongSensors, Equations, among_sensors
-from acutance.targets.points.per_source import SourceProblem
+from acutance.targets.points.per_source import Blocks, SourceProblem
 from acutance.targets.points.psf_prior import PsfDirections
 from acutance.targets.points.stamps import Stamps
 
@@ -115,6 +114,7 @@ class PadsFound(NamedTuple):
 
 def find_pads(
     problem: SourceProblem,
+    blocks: Blocks,
     images: Sequence[Floats],
     contrast_std: float,
     weight: Floats,
@@ -128,8 +128,8 @@ def find_pads(
 
     Parameters
     ----------
-    problem : SourceProblem
-        That of the fit without pads.
+    problem, blocks : SourceProblem, Blocks
+        Those of the fit without pads.
     images : sequence of (n,) arrays
         As `pads_image` gives them for `tuned.NO_PAD_PX`, then for every one of
         `tuned.PAD_SIDES_PX`.
@@ -142,42 +142,47 @@ def find_pads(
     directions : PsfDirections
         What its first unknowns are.
     """
-    _, prior, inflation, found = without.equations
+    alone, prior, inflation, found = without.equations
     more = replace(
         prior,
         block=np.append(prior.block, -1.0),
         scale=np.append(prior.scale, contrast_std),
         mean=np.append(prior.mean, 0.0),
     )
-    wider = replace(problem, shared=np.column_stack([problem.shared, *images]))
-    every = wider.eliminated(weight).normal
-    own = np.arange(problem.shared.shape[1])
-    tried = []
-    for number in range(len(images)):
-        normal = _part(every, np.append(own, own.size + number))
+    pads = replace(problem, shared=np.column_stack(images)).eliminated(weight)
+    between = blocks.shared.T @ pads.shared
+    kernels = without.kernels
+
+    def beneath(number: int) -> AmongSensors:
+        """The fit with pads of one image under the sources."""
+        normal = _bordered(alone, between[:, number], pads.normal, number)
         likeliest = regress(normal, more, found.variance, inflation, found)
         equations = Equations(normal, more, inflation, likeliest)
-        tried.append(among_sensors(equations, directions))
-    gains = [one.log_evidence - without.log_evidence for one in tried]
-    # The lobes of a compensated PSF pass for pads of any level: these are not told from none.
-    gains[1:] = [
-        gain + math.log(max(1 - _compensated(one), 1e-300))
-        for gain, one in zip(gains[1:], tried[1:], strict=True)
-    ]
-    best = 1 + int(np.argmax(gains[1:]))
-    gain = gains[best] - max(0.0, gains[0])
+        return among_sensors(equations, directions, kernels)
+
+    tried = [beneath(number) for number in range(1, len(images))]
+    gains = [_as_pads(one) - without.log_evidence for one in tried]
+    best = int(np.argmax(gains))
+    if gains[best] < tuned.PAD_OPEN_LOG_EVIDENCE:
+        return None
+    gain = gains[best] - max(0.0, beneath(0).log_evidence - without.log_evidence)
     if gain < tuned.PAD_OPEN_LOG_EVIDENCE:
         return None
     share = 1 / (1 + math.exp(min(tuned.PAD_LOG_EVIDENCE - gain, 700.0)))
-    return PadsFound(tuned.PAD_SIDES_PX[best - 1], share, tried[best].posterior)
+    return PadsFound(tuned.PAD_SIDES_PX[best], share, tried[best].posterior)
 
 
-def _compensated(among: AmongSensors) -> float:
-    """Probability that the product was sharpened or restored."""
-    return sum(among.share.get(family, 0.0) for family in tuned.COMPENSATED)
+def _as_pads(among: AmongSensors) -> float:
+    """Log evidence of pads under a sensor whose PSF is not compensated.
+
+    The lobes of one that is pass for pads of any level: these are not told from none.
+    """
+    compensated = sum(among.share.get(family, 0.0) for family in tuned.COMPENSATED)
+    return among.log_evidence + math.log(max(1 - compensated, 1e-300))
 
 
-def _part(normal: Normal, columns: NDArray[np.intp]) -> Normal:
-    """The normal equations of some of the coefficients."""
-    gram = normal.gram[np.ix_(columns, columns)]
-    return Normal(gram, normal.projection[columns], normal.data, normal.count)
+def _bordered(alone: Normal, between: Floats, pads: Normal, number: int) -> Normal:
+    """The normal equations with the contrast of the pads of one image as the last unknown."""
+    gram = np.block([[alone.gram, between[:, None]], [between, pads.gram[number, number]]])
+    projection = np.append(alone.projection, pads.projection[number])
+    return Normal(gram, projection, alone.data, alone.count)

@@ -36,7 +36,7 @@ __all__ = ["Basis", "Sensors", "drawn_sensors"]
 
 _REACH: Final = 3.0
 """Sensors whose blur differs by more standard deviations have no part."""
-_AXES: Final = 16
+_AXES: Final = 12
 """Principal axes of a part's covariance that its kernels have; elsewhere they have the floor."""
 _NOTHING: Final = 1e-4
 """Coordinates below which a sensor is its own mirror image, or its own transpose."""
@@ -77,44 +77,27 @@ class Sensors:
     ----------
     directions : (r, q) array
         What unit coordinates are of the directions of the families.
-    centres : (n, q) array
-        Coordinates of every sensor's departure.
+    kernels : Kernels
+        About the coordinates of every sensor's departure, weighted as often as such a sensor is
+        expected; a part are sensors of one family that are like each other, its name the family's.
     log_width : (n,) array
         Logarithm of the mean width of its blur in pixels.
     log_ratio : (n,) array
         Logarithm of the ratio of the widths across and along.
-    log_weight : (n,) array
-        Logarithm of how often such a sensor is expected.
-    part : (n,) int array
-        Part of every sensor, ascending: those of one family that are like it.
-    factors : (p, q, m) array
-        Factor of the covariance of every part.
-    floor : (p,) array
-        Least standard deviation of the coordinates in every part.
-    families : (p,) tuple of str
-        Family of every part.
     """
 
     directions: Floats
-    centres: Floats
+    kernels: Kernels
     log_width: Floats
     log_ratio: Floats
-    log_weight: Floats
-    part: NDArray[np.intp]
-    factors: Floats
-    floor: Floats
-    families: tuple[str, ...]
 
     def about(self, widths_px: tuple[float, float]) -> Kernels:
         """Kernels of the sensors of about those widths, if there are any."""
         width = (self.log_width - 0.5 * math.log(widths_px[0] * widths_px[1])) / KERNEL_LOG_WIDTH
         ratio = (self.log_ratio - math.log(widths_px[0] / widths_px[1])) / KERNEL_LOG_RATIO
         away = width**2 + ratio**2
-        near = away < _REACH**2
-        return Kernels(
-            self.centres[near], self.log_weight[near] - 0.5 * away[near], self.part[near],
-            self.factors, KERNEL_SCALES, self.floor,
-        )  # fmt: skip
+        weighted = self.kernels._replace(log_weight=self.kernels.log_weight - 0.5 * away)
+        return weighted.some(away < _REACH**2)
 
 
 @cache
@@ -129,21 +112,22 @@ def drawn_sensors() -> Sensors:
             if not name.startswith("basis ")
         }
     parts = [part for own in found.values() for part in own]
-    return Sensors(
-        basis.directions,
+    kernels = Kernels(
         np.concatenate([part.centres for part in parts]),
-        np.concatenate([part.log_width for part in parts]),
-        np.concatenate([part.log_ratio for part in parts]),
         np.concatenate([part.log_weight for part in parts]),
         np.repeat(np.arange(len(parts)), [len(part.centres) for part in parts]),
         np.stack([part.factor for part in parts]),
         np.array([part.floor for part in parts]),
-        tuple(name for name, own in found.items() for _ in own),
+        np.repeat(list(found), [len(own) for own in found.values()]),
+        KERNEL_SCALES,
     )
+    log_width = np.concatenate([part.log_width for part in parts])
+    log_ratio = np.concatenate([part.log_ratio for part in parts])
+    return Sensors(basis.directions, kernels, log_width, log_ratio)
 
 
 class _Part(NamedTuple):
-    """Sensors of one family that are like each other; arrays as those of `Sensors`."""
+    """Sensors of one family that are like each other, as `Sensors` and its kernels have them."""
 
     centres: Floats
     log_width: Floats

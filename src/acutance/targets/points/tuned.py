@@ -193,7 +193,7 @@ PAD_CONTRAST: Final = 0.03
 PAD_MIN_NOISE: Final = 0.033
 """Noise over that contrast below which no pads are sought (a peak 1000 times the noise): what the
 prior of a PSF that diffracts or is out of focus lacks shows there, and looks like a pad."""
-PAD_LOG_EVIDENCE: Final = 3.0
+PAD_LOG_EVIDENCE: Final = 2.5
 PAD_OPEN_LOG_EVIDENCE: Final = 1.0
 SURE_OF_PADS: Final = 0.95
 """Gain of log evidence at which pads are as likely as none, from which on they are thought of, and
