@@ -29,6 +29,7 @@ from acutance.targets.points.first_fit import FirstFit, own_columns
 from acutance.targets.points.noise import PointNoise, noise_around, noise_grows
 from acutance.targets.points.pads import Pads, PadsFound, find_pads, pads_image
 from acutance.targets.points.per_source import Blocks, SourceProblem
+from acutance.targets.points.pixels_alone import PixelsAlone
 from acutance.targets.points.points_fit import PointsFit
 from acutance.targets.points.psf import PsfModel
 from acutance.targets.points.psf_prior import PsfDirections
@@ -78,7 +79,11 @@ def fit_points(stamps: Stamps, first: FirstFit, *, robust: bool = True) -> Point
     fit = _points_fit(stamps, state, background, settled.blocks, posterior, settled.noise)
     if not (fit.model.volume > 0 and (fit.peaks > 0).all()):
         raise np.linalg.LinAlgError("the point spread function has no light at its centre")
-    fit = replace(fit, families=among.share)
+    doubt = np.zeros((posterior.beta.size, 0))
+    if pads is not None and not pads.sure:
+        doubt = pads.doubt(among.posterior)
+    alone = PixelsAlone.of(settled.posterior, state.model.weights.size, doubt)
+    fit = replace(fit, families=among.share, pixels_alone=alone)
     if pads is None or not pads.likely:
         return fit
     return replace(fit, pads=Pads.of(pads.side_px, posterior if pads.sure else pads.posterior))

@@ -111,6 +111,10 @@ class PadsFound(NamedTuple):
         ]
         return replace(without, beta=without.beta + self.share * away, factor=np.hstack(factor))
 
+    def doubt(self, without: Posterior) -> Floats:
+        """What pads would change of all unknowns, times the root of their probability, (m, 1)."""
+        return math.sqrt(self.share) * (self.posterior.beta[:-1] - without.beta)[:, None]
+
 
 def find_pads(
     problem: SourceProblem,

@@ -11,6 +11,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.noise import Correlation
 from acutance.targets.points import tuned
 from acutance.targets.points.pads import Pads
+from acutance.targets.points.pixels_alone import PixelsAlone
 from acutance.targets.points.psf import PsfModel
 from acutance.targets.points.stamps import Stamps
 
@@ -47,6 +48,8 @@ class PointsFit:
         Pads under the sources, where the pixels ask for them.
     families : mapping of str to float
         Probability of every family of sensors, and that it is another sensor.
+    pixels_alone : PixelsAlone, optional
+        What the pixels say of the PSF, the prior apart.
     """
 
     stamps: Stamps
@@ -64,6 +67,7 @@ class PointsFit:
     correlation: Correlation
     pads: Pads | None = None
     families: Mapping[str, float] = field(default_factory=dict)
+    pixels_alone: PixelsAlone | None = None
 
     @property
     def residual(self) -> Floats:
