@@ -23,12 +23,12 @@ from acutance.targets.points.sensor_density import Basis
 __all__ = ["DENSITY_COUNTS", "Departures", "density", "draw_departures", "write_density"]
 
 DENSITY_COUNTS: Final = {
-    "telescope": 900,
+    "telescope": 1400,
     "halo": 500,
     "trail": 400,
     "smear": 400,
-    "sharpened": 500,
-    "restored": 600,
+    "sharpened": 900,
+    "restored": 1500,
     "resampled": 400,
     "plain": 300,
 }

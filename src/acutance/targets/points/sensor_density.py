@@ -11,7 +11,7 @@ kernels (B. W. Silverman, Density Estimation, 1986, section 5.3).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -32,7 +32,7 @@ from acutance.targets.points.tuned import (
     LIKE_SENSORS,
 )
 
-__all__ = ["Basis", "Sensors", "drawn_sensors"]
+__all__ = ["Basis", "Sensors", "drawn_sensors", "sensors_of"]
 
 _REACH: Final = 3.0
 """Sensors whose blur differs by more standard deviations have no part."""
@@ -105,12 +105,22 @@ def drawn_sensors() -> Sensors:
     """The sensors of the file that benchmarks/learn_psf.py --density writes."""
     path = files("acutance.targets.points").joinpath("psf_sensors.npz")
     with path.open("rb") as file, np.load(file, allow_pickle=False) as kept:
-        basis = Basis(*(kept[f"basis {name}"].astype(float) for name in Basis._fields))
-        found = {
-            name: list(_parts(name, kept[name].astype(float), basis))
-            for name in kept.files
-            if not name.startswith("basis ")
-        }
+        found = {name: kept[name].astype(float) for name in kept.files}
+    basis = Basis(*(found.pop(f"basis {name}") for name in Basis._fields))
+    return sensors_of(basis, found)
+
+
+def sensors_of(basis: Basis, drawn: Mapping[str, Floats]) -> Sensors:
+    """The density of drawn sensors.
+
+    Parameters
+    ----------
+    basis : Basis
+        Of a + b + c coordinates.
+    drawn : mapping of str to (n, a + b + c + 2) arrays
+        Coordinates of the sensors of every family, and the logarithms of their widths.
+    """
+    found = {family: list(_parts(family, rows, basis)) for family, rows in drawn.items()}
     parts = [part for own in found.values() for part in own]
     kernels = Kernels(
         np.concatenate([part.centres for part in parts]),
