@@ -144,8 +144,8 @@ def among_sensors(
 class SensorModel:
     """The linear model whose PSF has the coordinates of the density of sensors.
 
-    Its other unknowns, the ellipse of the blur and the background, are integrated out; then they
-    follow the coordinates linearly.
+    Its other unknowns are the ellipse of the blur, the background, and fine structure of the size
+    expected, which coordinates lack. They are integrated out, then follow the coordinates linearly.
 
     Attributes
     ----------
@@ -176,7 +176,7 @@ class SensorModel:
         columns = np.zeros((prior.block.size, basis.shape[1]))
         columns[directions.learned] = basis
         gram, projection = normal.gram / noise, normal.projection / noise
-        std = prior.own_scale[other]
+        std = (prior.own_scale * np.exp(prior.members @ prior.log_amplitude))[other]
         factor = cho_factor(gram[np.ix_(other, other)] + np.diag(std**-2.0), lower=True)
         between = gram[other] @ columns
         follow, own_start = cho_solve(factor, between), cho_solve(factor, projection[other])
@@ -203,8 +203,9 @@ class SensorModel:
 
 
 def _others(directions: PsfDirections, size: int) -> NDArray[np.intp]:
-    """Unknowns that have no part in departures: the ellipse of the blur, and all after the PSF."""
-    return np.concatenate([np.arange(3), np.arange(directions.size, size)])
+    """Unknowns beside the coordinates: the ellipse, fine structure, and all after the PSF."""
+    after = np.arange(directions.size, size)
+    return np.concatenate([np.arange(3), np.flatnonzero(directions.is_detail), after])
 
 
 def _log_evidence_of_others(equations: Equations) -> float:

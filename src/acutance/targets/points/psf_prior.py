@@ -148,6 +148,11 @@ class PsfDirections:
         """Which directions are those of the families."""
         return slice(_BLURRED, self._first_mode)
 
+    @property
+    def is_detail(self) -> NDArray[np.bool_]:
+        """Which directions are modes of DETAIL, (size,)."""
+        return np.asarray(self.block == len(tuned.FAMILY_LOG_AMPLITUDES) + 1)
+
     @cached_property
     def _first_mode(self) -> int:
         """Number of the first mode of the processes."""
