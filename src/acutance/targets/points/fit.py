@@ -2,8 +2,9 @@
 
 Every pixel holds ``background + sum_k flux_k * PSF(x - x_k, y - y_k)``. The PSF is a Gaussian
 through a pixel (`first_fit`) plus the directions of its prior (`psf_prior`), whose amplitudes the
-data decide (`amplitudes`). Flux, place, background and slope of every source are unknowns of the
-same linear problem (`per_source`), solved again where they have moved.
+data decide (`amplitudes`); in the last pass it is that of a sensor (`among_sensors`). Flux, place,
+background and slope of every source are unknowns of the same linear problem (`per_source`), solved
+again where they have moved.
 """
 
 from __future__ import annotations

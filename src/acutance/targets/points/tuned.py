@@ -197,8 +197,9 @@ PAD_LOG_EVIDENCE: Final = 2.5
 PAD_OPEN_LOG_EVIDENCE: Final = 1.0
 SURE_OF_PADS: Final = 0.95
 """Gain of log evidence at which pads are as likely as none, from which on they are thought of, and
-the probability from which on they are part of the model: of 70 images of all families without
-pads, .4 was reached in ten, 2.5 in three, all of them sharpened."""
+the probability from which on they are part of the model. Of 72 images without pads, compensated
+products apart, four reached 1 and none 2.5; pads of 3 px and 2 % of the peak under a Gaussian gain
+4 to 6 at SNR 80, 10 to 12 at SNR 200."""
 
 # Prior of the point spread function --------------------------------------------------------------
 FAMILY_LOG_AMPLITUDES: Final = {
@@ -243,10 +244,11 @@ FAMILY_WEIGHTS: Final = {"telescope": 3.0}
 OTHER_WEIGHT: Final = 0.05
 """How often a sensor is like none of the families, on the same scale."""
 LIKE_SENSORS: Final = 80
-"""Most sensors that share a covariance of their kernels."""
+"""Most sensors that share a covariance of their kernels. With one covariance a family the errors of
+diffracting sensors at SNR 80 are .0084 for .0065 at Nyquist, of a Gaussian .0073 for .0066."""
 KERNEL_SCALES: Final = (0.2, 0.7)
 """Size of the kernels relative to that covariance: for a sensor like those that were drawn, and for
-one unlike them."""
+one unlike them. At (.4, 1) and (.25, .6, 1.4) errors are 2 to 10 % larger."""
 KERNEL_LOG_WIDTH: Final = 0.12
 KERNEL_LOG_RATIO: Final = 0.15
 """Standard deviations of the logarithms of the mean width, and of the ratio of the widths across
@@ -259,7 +261,7 @@ have errors twice as large at .001 for all; at .0003 for all three quarters of t
 restored and of diffracting sensors hold."""
 
 COMPENSATED: Final = ("sharpened", "restored")
-"""Families whose PSF has lobes. Of 32 such sensors without pads, two had gains of 6 and more."""
+"""Families whose PSF has lobes: of 32 such sensors without pads, two gained 6 and more by them."""
 
 # Iteration ---------------------------------------------------------------------------------------
 BEND: Final = 3.0
