@@ -259,8 +259,8 @@ KERNEL_FLOOR_SHARE: Final = 0.006
 """Least standard deviation of a coordinate among sensors: some vary in few ways. So much in any
 case, and a share of how far they depart, which is what the coordinates lack. Gaussians at SNR 200
 have errors twice as large at .001 for all; at .0003 for all three quarters of the intervals of
-restored and of diffracting sensors hold. At .004 diffracting sensors at SNR 200 have errors smaller
-by a fifth, and restored ones such as are rare among the drawn are off by two to three deviations."""
+restored and of diffracting sensors hold. At .004 diffracting sensors at SNR 200 are off by a fifth
+less, and restored ones that are rare among the drawn by two to three deviations."""
 
 COMPENSATED: Final = ("sharpened", "restored")
 """Families whose PSF has lobes: of 32 such sensors without pads, two gained 6 and more by them."""
