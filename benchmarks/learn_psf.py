@@ -1,7 +1,9 @@
-"""Learn the prior of point spread functions from sensors drawn at random, and keep it.
+"""Learn the priors of point spread functions from sensors drawn at random, and keep them.
 
 Example: python benchmarks/learn_psf.py --sensors 250 --out psf_families.npz
-The file lies beside targets/points/psf_families.py.
+Then: python benchmarks/learn_psf.py --seed 7 --density psf_sensors.npz
+Both files lie in targets/points: psf_families.py reads the first, sensor_density.py the second,
+which builds on the first.
 """
 
 from __future__ import annotations
@@ -10,18 +12,32 @@ import argparse
 from pathlib import Path
 
 from acutance.targets.points.learn_psf import learn, write
+from acutance.targets.points.learn_sensors import (
+    DENSITY_COUNTS,
+    density,
+    draw_departures,
+    write_density,
+)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--sensors", type=int, default=250, help="sensors a family")
+    parser.add_argument("--sensors", type=int, default=250, help="sensors a family (--out)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--out", type=Path, help="file of principal directions")
+    parser.add_argument("--density", type=Path, help="file of the density of sensors")
     arguments = parser.parse_args()
-    directions = learn(arguments.sensors, arguments.seed)
-    write(arguments.out, directions)
-    for name, rows in directions.items():
-        print(f"{name}: {rows.shape[0]} directions")
+    if arguments.out is None and arguments.density is None:
+        parser.error("give --out, --density or both: the files to write")
+    if arguments.out is not None:
+        directions = learn(arguments.sensors, arguments.seed)
+        write(arguments.out, directions)
+        for name, rows in directions.items():
+            print(f"{name}: {rows.shape[0]} directions")
+    if arguments.density is not None:
+        found = density(draw_departures(DENSITY_COUNTS, arguments.seed))
+        write_density(arguments.density, found)
+        print(f"{sum(DENSITY_COUNTS.values())} sensors")
 
 
 if __name__ == "__main__":

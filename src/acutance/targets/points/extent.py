@@ -16,7 +16,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.targets.points import tuned
 from acutance.targets.points.first_fit import own_columns
-from acutance.targets.points.fit import PointsFit
+from acutance.targets.points.points_fit import PointsFit
 from acutance.targets.points.population import densest_sharpest
 
 __all__ = ["excess_variances", "same_extent"]

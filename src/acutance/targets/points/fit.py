@@ -2,23 +2,25 @@
 
 Every pixel holds ``background + sum_k flux_k * PSF(x - x_k, y - y_k)``. The PSF is a Gaussian
 through a pixel (`first_fit`) plus the directions of its prior (`psf_prior`), whose amplitudes the
-data decide (`amplitudes`). Flux, place, background and slope of every source are unknowns of the
-same linear problem (`per_source`), solved again where they have moved.
+data decide (`amplitudes`); in the last pass it is that of a sensor (`among_sensors`). Flux, place,
+background and slope of every source are unknowns of the same linear problem (`per_source`), solved
+again where they have moved.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.numerics.marginal_likelihood import Posterior, Prior
-from acutance.numerics.noise import Correlation, robust_scale
+from acutance.numerics.noise import robust_scale
 from acutance.targets.points import tuned
+from acutance.targets.points.among_sensors import AmongSensors, Equations, among_sensors
 from acutance.targets.points.amplitudes import (
-    averaged_posterior,
     determined_directions,
     likelier_posterior,
     likeliest_growth,
@@ -28,11 +30,13 @@ from acutance.targets.points.first_fit import FirstFit, own_columns
 from acutance.targets.points.noise import PointNoise, noise_around, noise_grows
 from acutance.targets.points.pads import Pads, PadsFound, find_pads, pads_image
 from acutance.targets.points.per_source import Blocks, SourceProblem
+from acutance.targets.points.pixels_alone import PixelsAlone
+from acutance.targets.points.points_fit import PointsFit
 from acutance.targets.points.psf import PsfModel
 from acutance.targets.points.psf_prior import PsfDirections
 from acutance.targets.points.stamps import Stamps
 
-__all__ = ["PointsFit", "fit_points"]
+__all__ = ["fit_points"]
 
 _MIN_PASSES, _MAX_PASSES = 3, 14
 _MAX_STEP_PX = 0.15
@@ -41,73 +45,6 @@ _HARDLY_BETTER = 0.997
 _WORSE = 1.05
 _MAX_FLOOR = 0.3
 _DARK = 0.01
-
-
-@dataclass(frozen=True, eq=False)
-class PointsFit:
-    """Sources and their common PSF.
-
-    Parameters
-    ----------
-    stamps : Stamps
-        The pixels used.
-    model : PsfModel
-        The PSF with its covariance.
-    places, places_std : (k, 2) arrays
-        Sources as (row, col).
-    fluxes, fluxes_std : (k,) arrays
-        Light of each, summed over all pixels of the plane.
-    backgrounds : (k, 3) array
-        Background at the pixel nearest to a source, and its slopes down and to the right per px.
-    backgrounds_std : (k,) array
-        Standard deviation of the background.
-    light, fitted : (n,) arrays
-        What its own source, and the model as a whole, gives every pixel.
-    noise : float
-        Standard deviation of the background's noise.
-    gain : float
-        Variance of the noise per unit of light, 0 where the noise does not grow with it.
-    correlation : Correlation
-        Of the noise between neighbouring pixels.
-    pads : Pads, optional
-        Pads under the sources, where the pixels ask for them.
-    """
-
-    stamps: Stamps
-    model: PsfModel
-    places: Floats
-    places_std: Floats
-    fluxes: Floats
-    fluxes_std: Floats
-    backgrounds: Floats
-    backgrounds_std: Floats
-    light: Floats
-    fitted: Floats
-    noise: float
-    gain: float
-    correlation: Correlation
-    pads: Pads | None = None
-
-    @property
-    def residual(self) -> Floats:
-        """What the model leaves of every pixel, (n,)."""
-        return self.stamps.value - self.fitted
-
-    @property
-    def pixel_noise(self) -> Floats:
-        """Standard deviation of every pixel's noise, (n,)."""
-        return np.sqrt(self.noise**2 + self.gain * np.maximum(self.light, 0.0))
-
-    @property
-    def standard_residual(self) -> Floats:
-        """Residuals over noise and what the model may miss of the light, (n,)."""
-        return self.residual / np.hypot(self.pixel_noise, tuned.MODEL_ERROR * self.light)
-
-    @property
-    def peaks(self) -> Floats:
-        """What each source would add to a pixel right under it, (k,)."""
-        origin = np.zeros(1)
-        return self.fluxes * float(self.model.psf(origin, origin)[0])
 
 
 def fit_points(stamps: Stamps, first: FirstFit, *, robust: bool = True) -> PointsFit:
@@ -129,50 +66,48 @@ def fit_points(stamps: Stamps, first: FirstFit, *, robust: bool = True) -> Point
     background = Background.of(stamps, first)
     state = _first_state(stamps, first)
     settled = _settle(stamps, first, state, background, robust)
-    pads = _pads_beside(stamps, first, *settled)
+    among = settled.among_sensors()
+    pads = _pads_beside(stamps, first, settled, among)
     if pads is not None and pads.sure:
-        image = pads_image(stamps, settled[0].places, first.blur, pads.side_px)
+        image = pads_image(stamps, settled.state.places, first.blur, pads.side_px)
         background = background.with_pads(image, _pad_contrast(first))
         settled = _settle(stamps, first, state, background, robust)
-    state, _, blocks, prior, posterior, noise = settled
-    posterior = averaged_posterior(blocks.normal, prior, noise.correlation.inflation, posterior)
+        among = settled.among_sensors()
+    posterior = among.posterior
     if pads is not None and not pads.sure:
         posterior = pads.averaged(posterior)
-    state = _updated(stamps, state, background, blocks, posterior)
-    fit = _points_fit(stamps, state, background, blocks, posterior, noise)
+    state = _updated(stamps, settled.state, background, settled.blocks, posterior)
+    fit = _points_fit(stamps, state, background, settled.blocks, posterior, settled.noise)
     if not (fit.model.volume > 0 and (fit.peaks > 0).all()):
         raise np.linalg.LinAlgError("the point spread function has no light at its centre")
+    doubt = np.zeros((posterior.beta.size, 0))
+    if pads is not None and not pads.sure:
+        doubt = pads.doubt(among.posterior)
+    alone = PixelsAlone.of(settled.posterior, state.model.weights.size, doubt)
+    fit = replace(fit, families=among.share, pixels_alone=alone)
     if pads is None or not pads.likely:
         return fit
     return replace(fit, pads=Pads.of(pads.side_px, posterior if pads.sure else pads.posterior))
 
 
 def _pads_beside(
-    stamps: Stamps,
-    first: FirstFit,
-    state: _State,
-    problem: SourceProblem,
-    blocks: Blocks,
-    prior: Prior,
-    posterior: Posterior,
-    noise: PointNoise,
+    stamps: Stamps, first: FirstFit, settled: _Settled, without: AmongSensors
 ) -> PadsFound | None:
     """Pads under the sources, where the noise and the number of these allow to see them."""
     contrast_std = _pad_contrast(first)
-    quiet = posterior.variance < (contrast_std * tuned.PAD_MIN_NOISE) ** 2
-    if quiet or blocks.own_data.shape[0] < tuned.MIN_TIED_SOURCES:
+    quiet = settled.posterior.variance < (contrast_std * tuned.PAD_MIN_NOISE) ** 2
+    if quiet or settled.blocks.own_data.shape[0] < tuned.MIN_TIED_SOURCES:
         return None
+    state = settled.state
+    sides_px = (tuned.NO_PAD_PX, *tuned.PAD_SIDES_PX)
     return find_pads(
-        problem,
-        [
-            pads_image(stamps, state.places, state.model.blur, one)
-            for one in (tuned.NO_PAD_PX, *tuned.PAD_SIDES_PX)
-        ],
+        settled.problem,
+        settled.blocks,
+        [pads_image(stamps, state.places, state.model.blur, one) for one in sides_px],
         contrast_std,
-        noise.weight(state.light),
-        prior,
-        posterior,
-        noise.correlation.inflation,
+        settled.weight,
+        without,
+        state.model.directions,
     )
 
 
@@ -198,9 +133,27 @@ class _State:
         return float(np.sqrt(np.mean(self.residual**2)))
 
 
+class _Settled(NamedTuple):
+    """The last linear problem: where it was posed, and its solution by the normal prior."""
+
+    state: _State
+    problem: SourceProblem
+    weight: Floats
+    blocks: Blocks
+    prior: Prior
+    posterior: Posterior
+    noise: PointNoise
+
+    def among_sensors(self) -> AmongSensors:
+        """The solution with the density of sensors as the prior of the PSF."""
+        inflation = self.noise.correlation.inflation
+        equations = Equations(self.blocks.normal, self.prior, inflation, self.posterior)
+        return among_sensors(equations, self.state.model.directions)
+
+
 def _settle(
     stamps: Stamps, first: FirstFit, state: _State, background: Background, robust: bool
-) -> tuple[_State, SourceProblem, Blocks, Prior, Posterior, PointNoise]:
+) -> _Settled:
     """Solve the linear problem again until nothing moves: the last one, and where it was posed.
 
     No least squares of fixed weights: every pass finds the prior's amplitudes by the marginal
@@ -239,7 +192,7 @@ def _settle(
         if chasing and passes > _MIN_PASSES and max(bend, floor) < before.rms:
             break
         floor, noise = max(min_floor, bend), found
-    return before, problem, blocks, prior, posterior, noise
+    return _Settled(before, problem, weight, blocks, prior, posterior, noise)
 
 
 def _first_bend(stamps: Stamps, first: FirstFit, peaks: Floats) -> float:

@@ -4,7 +4,8 @@ Sensors of every family (`acutance.optics.FAMILIES`) are drawn at random. The PS
 as the first fit of sources would be, and what is left of it, in the splines of `psf_spline` and the
 tail, is its departure. Sensors are as often turned by 90 degrees and mirrored as not, so departures
 of different parities have nothing to do with one another: the principal directions of each, with
-the root of their mean square, are the family's part of the prior.
+the root of their mean square, are the family's part of the normal prior (`psf_prior`). The
+departures themselves are the density of sensors (`learn_sensors`).
 """
 
 from __future__ import annotations
@@ -71,11 +72,14 @@ class Departure(NamedTuple):
         Coefficients on the two grids.
     tail : float
         Share of light in the tail.
+    widths_px : (float, float)
+        Widths of the Gaussian through its pixel, across and along.
     """
 
     fine: Floats
     coarse: Floats
     tail: float
+    widths_px: tuple[float, float]
 
 
 def sampled_psf(sensor: Sensor) -> Floats:
@@ -127,7 +131,9 @@ def departure(sensor: Sensor) -> Departure:
     rest = near - blur_near @ shares
     rest -= (COARSE.rows(u.ravel(), v.ravel()) @ coarse.ravel()).reshape(rest.shape)
     scale = wide * high / shares[0]
-    return Departure(scale * FINE.coefficients(rest), scale * coarse, float(tail / shares[0]))
+    return Departure(
+        scale * FINE.coefficients(rest), scale * coarse, float(tail / shares[0]), (wide, high)
+    )
 
 
 def principal_directions(departures: Floats) -> tuple[Floats, Floats]:

@@ -15,18 +15,18 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
-from acutance.numerics.marginal_likelihood import Posterior, Prior
+from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.points import tuned
-from acutance.targets.points.amplitudes import likelier_posterior, posterior_log_evidence
-from acutance.targets.points.per_source import SourceProblem
+from acutance.targets.points.among_sensors import AmongSensors, Equations, among_sensors
+from acutance.targets.points.per_source import Blocks, SourceProblem
+from acutance.targets.points.psf_prior import PsfDirections
 from acutance.targets.points.stamps import Stamps
 
 __all__ = ["Pads", "PadsFound", "find_pads", "pads_image"]
@@ -111,15 +111,19 @@ class PadsFound(NamedTuple):
         ]
         return replace(without, beta=without.beta + self.share * away, factor=np.hstack(factor))
 
+    def doubt(self, without: Posterior) -> Floats:
+        """What pads would change of all unknowns, times the root of their probability, (m, 1)."""
+        return math.sqrt(self.share) * (self.posterior.beta[:-1] - without.beta)[:, None]
+
 
 def find_pads(
     problem: SourceProblem,
+    blocks: Blocks,
     images: Sequence[Floats],
     contrast_std: float,
     weight: Floats,
-    prior: Prior,
-    found: Posterior,
-    inflation: float,
+    without: AmongSensors,
+    directions: PsfDirections,
 ) -> PadsFound | None:
     """The pads that make the pixels likelier, if there are any.
 
@@ -128,8 +132,8 @@ def find_pads(
 
     Parameters
     ----------
-    problem : SourceProblem
-        That of the fit without pads.
+    problem, blocks : SourceProblem, Blocks
+        Those of the fit without pads.
     images : sequence of (n,) arrays
         As `pads_image` gives them for `tuned.NO_PAD_PX`, then for every one of
         `tuned.PAD_SIDES_PX`.
@@ -137,33 +141,52 @@ def find_pads(
         Prior standard deviation of the contrast, in image units.
     weight : (n,) array
         Inverse variances of the pixels, 1 on the background.
-    prior, found, inflation
-        Prior, solution and correlation of the noise of the fit without pads.
+    without : AmongSensors
+        The fit without pads.
+    directions : PsfDirections
+        What its first unknowns are.
     """
+    alone, prior, inflation, found = without.equations
     more = replace(
         prior,
         block=np.append(prior.block, -1.0),
         scale=np.append(prior.scale, contrast_std),
         mean=np.append(prior.mean, 0.0),
     )
-    wider = replace(problem, shared=np.column_stack([problem.shared, *images]))
-    every = wider.eliminated(weight).normal
-    own = np.arange(problem.shared.shape[1])
-    without = posterior_log_evidence(_part(every, own), prior, found, inflation)
-    gains, tried = [], []
-    for number in range(len(images)):
-        normal = _part(every, np.append(own, own.size + number))
-        tried.append(likelier_posterior(normal, more, found.variance, inflation, None))
-        gains.append(posterior_log_evidence(normal, more, tried[-1], inflation) - without)
-    best = 1 + int(np.argmax(gains[1:]))
-    gain = gains[best] - max(0.0, gains[0])
+    pads = replace(problem, shared=np.column_stack(images)).eliminated(weight)
+    between = blocks.shared.T @ pads.shared
+    kernels = without.kernels
+
+    def beneath(number: int) -> AmongSensors:
+        """The fit with pads of one image under the sources."""
+        normal = _bordered(alone, between[:, number], pads.normal, number)
+        likeliest = regress(normal, more, found.variance, inflation, found)
+        equations = Equations(normal, more, inflation, likeliest)
+        return among_sensors(equations, directions, kernels)
+
+    tried = [beneath(number) for number in range(1, len(images))]
+    gains = [_as_pads(one) - without.log_evidence for one in tried]
+    best = int(np.argmax(gains))
+    if gains[best] < tuned.PAD_OPEN_LOG_EVIDENCE:
+        return None
+    gain = gains[best] - max(0.0, beneath(0).log_evidence - without.log_evidence)
     if gain < tuned.PAD_OPEN_LOG_EVIDENCE:
         return None
     share = 1 / (1 + math.exp(min(tuned.PAD_LOG_EVIDENCE - gain, 700.0)))
-    return PadsFound(tuned.PAD_SIDES_PX[best - 1], share, tried[best])
+    return PadsFound(tuned.PAD_SIDES_PX[best], share, tried[best].posterior)
 
 
-def _part(normal: Normal, columns: NDArray[np.intp]) -> Normal:
-    """The normal equations of some of the coefficients."""
-    gram = normal.gram[np.ix_(columns, columns)]
-    return Normal(gram, normal.projection[columns], normal.data, normal.count)
+def _as_pads(among: AmongSensors) -> float:
+    """Log evidence of pads under a sensor whose PSF is not compensated.
+
+    The lobes of one that is pass for pads of any level: these are not told from none.
+    """
+    compensated = sum(among.share.get(family, 0.0) for family in tuned.COMPENSATED)
+    return among.log_evidence + math.log(max(1 - compensated, 1e-300))
+
+
+def _bordered(alone: Normal, between: Floats, pads: Normal, number: int) -> Normal:
+    """The normal equations with the contrast of the pads of one image as the last unknown."""
+    gram = np.block([[alone.gram, between[:, None]], [between, pads.gram[number, number]]])
+    projection = np.append(alone.projection, pads.projection[number])
+    return Normal(gram, projection, alone.data, alone.count)

@@ -20,8 +20,9 @@ from acutance.targets.points.checks import check_points, check_survey
 from acutance.targets.points.detect import RejectedSpot
 from acutance.targets.points.extent import excess_variances
 from acutance.targets.points.first_fit import FirstFit, fit_first_gaussian, unlike_sources
-from acutance.targets.points.fit import PointsFit, fit_points
+from acutance.targets.points.fit import fit_points
 from acutance.targets.points.options import PointsOptions
+from acutance.targets.points.points_fit import PointsFit
 from acutance.targets.points.points_measurement import PointsDetails, PointsMeasurement
 from acutance.targets.points.published import SdsuMirrorsOptions, sdsu_2003_mirrors
 from acutance.targets.points.selection import (

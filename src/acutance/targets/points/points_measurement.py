@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,11 +13,12 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.targets.measurement import Measurement
 from acutance.targets.points.detect import RejectedSpot
-from acutance.targets.points.fit import PointsFit
 from acutance.targets.points.pads import Pads
+from acutance.targets.points.points_fit import PointsFit
 from acutance.targets.points.published import AlignedFit, PublishedMirrors
 from acutance.targets.points.sources import PointSource, SourceStamp
 from acutance.targets.points.survey import SurveyErrors
+from acutance.targets.slices import OtfSlices
 
 __all__ = ["PointsDetails", "PointsMeasurement"]
 
@@ -84,6 +86,17 @@ class PointsMeasurement(Measurement):
     def positions(self) -> Floats:
         """Places of the sources as (row, col) in the whole image, (n, 2)."""
         return np.array([(one.row.value, one.col.value) for one in self.sources])
+
+    @cached_property
+    def slices(self) -> OtfSlices:
+        """Slices of the OTF, their covariance, and what the pixels alone say of them."""
+        if self.details is None and "record" in vars(self):
+            return self.record.slices
+        slices = OtfSlices.of_otf2d(self.otf)
+        fit = None if self.details is None else self.details.fit
+        if fit is None or fit.pixels_alone is None:
+            return slices
+        return replace(slices, likelihood=fit.pixels_alone.likelihood(fit.model, *slices.places))
 
     def target_document(self) -> dict[str, Any]:
         """Sources, what was rejected, the survey, the noise or the aligned samples."""

@@ -88,22 +88,18 @@ class PsfModel(ShortRepr):
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF about the fit's origin, exactly 1 at zero frequency, (n,)."""
-        design = self.directions.transform(u_cpp, v_cpp)
-        return self._normalised(u_cpp, v_cpp, design)
+        otf = self.directions.transform_sum(u_cpp, v_cpp, self.weights) / self.volume
+        otf[(u_cpp == 0) & (v_cpp == 0)] = 1.0
+        return np.asarray(otf)
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Factor of the OTF's covariance, exactly 0 at zero frequency, (n, k)."""
         design = self.directions.transform(u_cpp, v_cpp)
-        otf = self._normalised(u_cpp, v_cpp, design)
+        otf = self.blur.otf(u_cpp, v_cpp) + design.real @ self.weights
+        otf = (otf + 1j * (design.imag @ self.weights)) / self.volume
         # What adds light lowers the curve.
         design -= otf[:, None] * self._volumes
         design /= self.volume
         nought = (u_cpp == 0) & (v_cpp == 0)
         design[nought] = 0.0
         return np.asarray(design.real @ self._latent + 1j * (design.imag @ self._latent))
-
-    def _normalised(self, u_cpp: Floats, v_cpp: Floats, design: Complexes) -> Complexes:
-        correction = design.real @ self.weights + 1j * (design.imag @ self.weights)
-        otf = (self.blur.otf(u_cpp, v_cpp) + correction) / self.volume
-        otf[(u_cpp == 0) & (v_cpp == 0)] = 1.0
-        return np.asarray(otf)

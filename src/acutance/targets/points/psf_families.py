@@ -45,8 +45,21 @@ class _Group:
             )
             along = along.reshape(f.size, count, grid.reach + 1)
             found += np.einsum("nrk,nk->nr", along, grid.waves(f, self.across))
-        turns = (self.across < 0) + (self.along < 0)
-        return np.asarray(found * (-1j) ** turns)
+        return np.asarray(found * self._turn)
+
+    def transform_sum(self, f: Floats, g: Floats, weights: Floats) -> Complexes:
+        """``transform(f, g) @ weights``, (n,)."""
+        found = np.zeros(f.size)
+        for grid, quadrant in zip(GRIDS, self.quadrants, strict=True):
+            mixed = np.tensordot(weights, quadrant, 1)
+            along = grid.waves(g, self.along) @ mixed
+            found += np.einsum("nk,nk->n", along, grid.waves(f, self.across))
+        return np.asarray(found * self._turn)
+
+    @property
+    def _turn(self) -> complex:
+        """What functions of odd parity are turned by."""
+        return (-1j) ** ((self.across < 0) + (self.along < 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +113,14 @@ class Families:
     def transform(self, f: Floats, g: Floats) -> Complexes:
         """Transform of every direction without its tail at frequencies per width, (n, r)."""
         return np.hstack([one.transform(f, g) for one in self.groups])
+
+    def transform_sum(self, f: Floats, g: Floats, weights: Floats) -> Complexes:
+        """``transform(f, g) @ weights``, (n,)."""
+        ends = np.cumsum([one.tail.size for one in self.groups])[:-1]
+        found = np.zeros(f.size, complex)
+        for group, own in zip(self.groups, np.split(weights, ends), strict=True):
+            found += group.transform_sum(f, g, own)
+        return found
 
 
 def _inside(grid: SplineGrid, u: Floats, v: Floats) -> NDArray[np.intp]:

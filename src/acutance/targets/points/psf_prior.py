@@ -143,6 +143,16 @@ class PsfDirections:
         scale[3:_BLURRED] = tuned.APERTURE_STD * self.blur.aperture_px
         return scale
 
+    @property
+    def learned(self) -> slice:
+        """Which directions are those of the families."""
+        return slice(_BLURRED, self._first_mode)
+
+    @property
+    def is_detail(self) -> NDArray[np.bool_]:
+        """Which directions are modes of DETAIL, (size,)."""
+        return np.asarray(self.block == len(tuned.FAMILY_LOG_AMPLITUDES) + 1)
+
     @cached_property
     def _first_mode(self) -> int:
         """Number of the first mode of the processes."""
@@ -323,3 +333,23 @@ class PsfDirections:
         columns -= (2j * np.pi * u * own)[:, None] * gauge[1]
         columns -= (2j * np.pi * v * own)[:, None] * gauge[2]
         return columns
+
+    def transform_sum(self, u: Floats, v: Floats, weights: Floats) -> Complexes:
+        """``transform(u, v) @ weights`` and the mean blur's transform: that of `sum`, (n,)."""
+        own = self.blur.otf(u, v)
+        if not weights.any():
+            return own.astype(complex)
+        wide, high = self.blur.widths_px
+        gauge = self._gauge @ weights
+        found = own * (1 - gauge[0] - 2j * np.pi * (u * gauge[1] + v * gauge[2]))
+        found += self.blur.otf_slopes(u, v) @ weights[:_BLURRED]
+        learned = weights[_BLURRED : self._first_mode]
+        found += self.families.transform_sum(u * wide, v * high, learned)
+        for table, (scale_x, scale_y) in self._mixtures(weights):
+            order = np.arange(table.shape[0])
+            turns = (-1j) ** ((order[:, None] + order) % 4) * (2 * np.pi * scale_x * scale_y)
+            across = hermite(2 * np.pi * scale_x * u, order[-1])
+            along = hermite(2 * np.pi * scale_y * v, order[-1])
+            found += np.einsum("ij,ij->j", across, (table * turns) @ along)
+        tail = tail_otf(np.hypot(u, v), self.half_width_px)
+        return np.asarray(found + self._tail_weight(weights) * tail)

@@ -11,7 +11,7 @@ import numpy as np
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.targets.points.fit import PointsFit
+from acutance.targets.points.points_fit import PointsFit
 from acutance.targets.points.published import MirrorFit, PublishedMirrors
 
 __all__ = ["PointSource", "SourceStamp", "sources_of_fit", "sources_of_mirrors"]

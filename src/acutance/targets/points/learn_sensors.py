@@ -1,0 +1,158 @@
+"""Learn from optics what point spread functions there are: thousands of departures, in coordinates.
+
+Departures of drawn sensors (`learn_psf`) are written in coordinates common to all families. Each is
+a combination of the directions of `psf_families`, so pixels that are seen through these directions
+are seen through the coordinates, too. `sensor_density` reads the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Final, NamedTuple, Self
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.optics import Detector, Gaussian, Sensor, draw_sensor
+from acutance.targets.points.learn_psf import Departure, departure
+from acutance.targets.points.psf_families import Parities, learned_families
+from acutance.targets.points.psf_spline import GRIDS, parity_part
+from acutance.targets.points.sensor_density import Basis
+
+__all__ = ["DENSITY_COUNTS", "Departures", "density", "draw_departures", "write_density"]
+
+DENSITY_COUNTS: Final = {
+    "telescope": 1400,
+    "halo": 500,
+    "trail": 400,
+    "smear": 400,
+    "sharpened": 900,
+    "restored": 1500,
+    "resampled": 400,
+    "plain": 300,
+}
+"""Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
+detector, nothing else."""
+_COORDINATES: Final = (40, 12, 4)
+"""Of departures small and large what lies outside of these is below a hundredth of the first."""
+_SMALLEST: Final = 1e-3
+"""Departures of families smaller than this are not made larger."""
+
+
+class Departures(NamedTuple):
+    """Departures of sensors of one family, a row each.
+
+    Attributes
+    ----------
+    even, odd : (n, m) arrays
+        Parts even across and along, and odd across: a quadrant of coefficients on the fine grid,
+        then on the coarse one, then the tail; the root of the sum of squares is that of the light.
+    log_widths : (n, 2) array
+        Logarithms of the widths of the blur across and along, in pixels.
+    """
+
+    even: Floats
+    odd: Floats
+    log_widths: Floats
+
+    @classmethod
+    def of(cls, departures: Iterable[Departure]) -> Self:
+        """From departures on whole grids."""
+        every = list(departures)
+        even, odd = (
+            np.array([_quadrants(one, parities) for one in every]) for parities in ((1, 1), (-1, 1))
+        )
+        return cls(even, odd, np.log([one.widths_px for one in every]))
+
+
+def _quadrants(one: Departure, parities: Parities) -> Floats:
+    parts = [parity_part(grid, *parities).ravel() for grid in (one.fine, one.coarse)]
+    tail = one.tail * (parities == (1, 1))
+    return np.asarray(np.append(np.concatenate(parts), tail) * _metric())
+
+
+def _metric() -> Floats:
+    """Root of the light squared that a coefficient of a quadrant stands for, with its images."""
+    found = []
+    for grid in GRIDS:
+        images = np.full(2 * (grid.reach + 1,), 4.0)
+        images[0] *= 0.5
+        images[:, 0] *= 0.5
+        found.append(grid.step * np.sqrt(images).ravel())
+    return np.concatenate([*found, [1.0]])
+
+
+def _turned(rows: Floats) -> Floats:
+    """Rows of quadrants with their rows and columns exchanged."""
+    found, first = [], 0
+    for grid in GRIDS:
+        side = grid.reach + 1
+        own = rows[:, first : first + side**2].reshape(-1, side, side)
+        found.append(own.transpose(0, 2, 1).reshape(len(rows), -1))
+        first += side**2
+    return np.hstack([*found, rows[:, first:]])
+
+
+def draw_departures(counts: Mapping[str, int], seed: int) -> dict[str, Departures]:
+    """Departures of so many sensors of every family, drawn at random."""
+    found = {}
+    for number, (family, count) in enumerate(counts.items()):
+        rng = np.random.default_rng((seed, number))
+        found[family] = Departures.of(departure(_drawn(family, rng)) for _ in range(count))
+    return found
+
+
+def _drawn(family: str, rng: np.random.Generator) -> Sensor:
+    if family != "plain":
+        return draw_sensor(family, rng)
+    return Sensor([Gaussian(rng.uniform(0.15, 1.1)), Detector(rng.uniform(0.85, 1.0))])
+
+
+def density(drawn: Mapping[str, Departures]) -> dict[str, Floats]:
+    """The density of sensors: coordinates, and the sensors of every family in them.
+
+    Returns
+    -------
+    dict of str to array
+        "basis same", "basis opposite", "basis odd": as `sensor_density.Basis`; by family
+        (n, a + b + c + 2): coordinates, and the logarithms of the widths across and along.
+    """
+    even, odd, _ = (
+        np.column_stack([*(q.reshape(len(q), -1) for q in group.quadrants), group.tail]) * _metric()
+        for group in learned_families().groups
+    )
+    parts: dict[str, Basis] = {}
+    for family, one in drawn.items():
+        turned = _turned(one.even)
+        parts[family] = Basis(0.5 * (one.even + turned), 0.5 * (one.even - turned), one.odd)
+    axes, basis = {}, {}
+    for name, directions, count in zip(Basis._fields, (even, even, odd), _COORDINATES, strict=True):
+        rows = [getattr(one, name) for one in parts.values()]
+        axes[name] = _axes(rows, directions, count)
+        basis[f"basis {name}"] = np.linalg.lstsq(directions.T, axes[name], rcond=1e-10)[0]
+    sensors = {
+        family: np.hstack([*(getattr(one, name) @ axes[name] for name in Basis._fields), widths])
+        for (family, one), (_, _, widths) in zip(parts.items(), drawn.values(), strict=True)
+    }
+    return {**basis, **sensors}
+
+
+def _axes(rows: Iterable[Floats], directions: Floats, count: int) -> Floats:
+    """Principal axes of departures within the span of directions (r, m), orthonormal, (m, count).
+
+    Small departures are as interesting as large ones.
+    """
+    span = np.linalg.qr(directions.T)[0]
+    even = [one / max(float(np.linalg.norm(one, axis=1).mean()), _SMALLEST) for one in rows]
+    found = np.linalg.svd(np.concatenate(even) @ span, full_matrices=False)[2]
+    return np.asarray(span @ found[:count].T)
+
+
+def write_density(path: Path, found: Mapping[str, Floats]) -> None:
+    """Keep the density of sensors in a file that `sensor_density` reads."""
+    kept = {
+        name: rows.astype("<f4" if name.startswith("basis ") else "<f2")
+        for name, rows in found.items()
+    }
+    np.savez_compressed(path, allow_pickle=False, **kept)
