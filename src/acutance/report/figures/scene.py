@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.report.figures.panel import Panel, on_axes
-from acutance.report.paper import BLUE, FAINT, INK, SHADE, VERMILION
+from acutance.report.paper import BLUE, FAINT, SHADE, VERMILION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -125,10 +125,8 @@ def _draw_histogram(axes: Axes, measurement: SceneMeasurement) -> None:
     )  # fmt: skip
     axes.axvline(0.0, color=VERMILION, linewidth=1.6)
     ideal = measurement.objects["ideal"]
-    axes.text(
-        0.02, 0.96, f"ideal objects (blue): {100 * ideal.value:.0f} ± {100 * ideal.std:.0f} %",
-        transform=axes.transAxes, va="top", color=INK,
+    axes.set(
+        xlabel="edge − sensor, MTF at Nyquist", ylabel="edges",
+        title=f"Sharpness; blue: ideal, {100 * ideal.value:.0f} ± {100 * ideal.std:.0f} %",
     )  # fmt: skip
-    axes.set(xlabel="edge − sensor, MTF at Nyquist", ylabel="edges", title="Sharpness of the edges")
-    axes.set_ylim(top=1.15 * axes.get_ylim()[1])
     axes.grid(visible=False, axis="x")

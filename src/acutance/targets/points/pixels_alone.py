@@ -16,8 +16,8 @@ __all__ = ["PixelsAlone"]
 
 
 _WIDER, _OPEN = 10.0, 0.05
-"""The prior divided out: in units of that of the fit, and at least, as a share of light. A posterior
-over a narrow one would be a small difference of large numbers."""
+"""The prior divided out: in units of that of the fit, and at least, as a share of the light.
+A posterior over a narrow one would be a small difference of large numbers."""
 _NO_LIGHT = 1.0
 """Prior standard deviation of the light of a spectrum that is scaled to it."""
 

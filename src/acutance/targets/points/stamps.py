@@ -136,6 +136,6 @@ def _require_pixels(places: Floats, own: _Indices, radius_px: float) -> None:
     row, col = places[int(np.argmin(own))].tolist()
     raise TargetError(
         f"the source at row {row:.1f}, column {col:.1f} has no pixel of its own: all within "
-        f"{radius_px:g} px of it are missing or nearer to another source; such are no points: leave "
-        "it out of the positions, or choose a region of separate points"
+        f"{radius_px:g} px of it are missing or nearer to another source; such are no points: "
+        "leave it out of the positions, or choose a region of separate points"
     )
