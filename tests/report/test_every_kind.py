@@ -125,7 +125,7 @@ def test_all_outputs_are_made_without_details(result):
 
 
 def test_every_kind_but_the_straight_ones_has_panels_and_tables():
-    kinds = {"points", "biresolution", "bars", "star", "combined"}
+    kinds = {"points", "biresolution", "bars", "star", "combined", "scene"}
     assert set(KIND_PANELS) == set(KIND_TABLES) == kinds
 
 

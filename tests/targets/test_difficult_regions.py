@@ -144,7 +144,7 @@ def test_pixels_next_to_no_part_of_an_edge_show_no_change_along_it():
     )
     pixels = EdgePixels(image, truth.line, truth.dark, truth.bright, 0.6, 10.0)
     data = CheckData.of(pixels, fit_edge(pixels))
-    assert _change_along(data, np.zeros(data.t.size)) == 0.0
+    assert _change_along(data, np.zeros(int(np.count_nonzero(data.near)))) == 0.0
 
 
 def test_a_target_of_which_no_edge_was_measured_has_words_but_no_page():
