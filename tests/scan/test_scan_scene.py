@@ -90,6 +90,14 @@ def test_a_part_of_an_image_is_scanned(ideal):
     assert part.image.roi == (100, 50, 450, 500)
 
 
+def test_a_polygon_leaves_out_what_lies_beside_it(ideal):
+    image, _, scene = ideal
+    triangle = ac.Region([(0.0, 0.0), (599.0, 0.0), (0.0, 599.0)])
+    part = ac.scan_scene(image, triangle)
+    assert part.edges.size < 0.6 * scene.edges.size
+    assert (part.edges.row + part.edges.col).max() < 605
+
+
 def test_documents_tables_and_figures(ideal, tmp_path):
     _, _, scene = ideal
     document = json.loads(json.dumps(scene.to_dict()))

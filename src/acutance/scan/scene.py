@@ -27,7 +27,7 @@ from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
 from acutance.scan.sensor_fit import SensorFit, fit_sensor
 from acutance.scan.window_edges import UsedEdge, WindowEdges, scan_window
-from acutance.scan.windows import windows
+from acutance.scan.windows import Window, windows
 from acutance.targets.options import chosen_options
 from acutance.targets.region import RoiLike, chosen_region, image_info
 
@@ -65,7 +65,7 @@ def scan_scene(
     image : Image, (rows, cols) array_like or path
         An image of any size: it is read in windows.
     roi : Region, Box, (row, col, height, width) or None
-        Part of the image; of a polygon its bounding box.
+        Part of the image.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.
     options : ScanOptions, optional
@@ -98,44 +98,46 @@ def scan_scene(
     if workers < 1:
         raise OptionError(f"workers is {workers}: give the number of processes, 1 or more")
     chosen = chosen_options(options, ScanOptions)
-    source, box = _scene(image, roi)
-    found = _all_windows(source, box, Gsd.given(gsd_m), chosen, workers, progress)
+    source, box, region = _scene(image, roi)
+    scan = partial(scan_window, gsd=Gsd.given(gsd_m), options=chosen, region=region)
+    found = _all_windows(source, box, scan, chosen.window_px, workers, progress)
     edges = SceneEdges.of_rows([row for window in found for row in window.rows])
     used = [edge for window in found for edge in window.used]
     fit = _fit(used, edges)
     return _measurement(source, box, Gsd.given(gsd_m), chosen, edges, fit)
 
 
-def _scene(image: Image | ArrayLike | str | os.PathLike[str], roi: RoiLike) -> tuple[Image, Box]:
-    """The image, and the part of it to be scanned."""
+def _scene(
+    image: Image | ArrayLike | str | os.PathLike[str], roi: RoiLike
+) -> tuple[Image, Box, Region | None]:
+    """The image, the part of it to be read, and the region in it if that is no box."""
     if isinstance(image, str | os.PathLike):
         image = open_image(image)
     source = image if isinstance(image, Image) else Image.from_array(image)
     where = Box.whole(source.shape) if roi is None else chosen_region(roi)
     if isinstance(where, Region):
-        return source, where.box(source.shape)
+        return source, where.box(source.shape), where
     where.require_inside(source.shape)
-    return source, where
+    return source, where, None
 
 
 def _all_windows(
     image: Image,
     box: Box,
-    gsd: Gsd | None,
-    options: ScanOptions,
+    scan: Callable[[Image, Window], WindowEdges],
+    window_px: int,
     workers: int,
     progress: Progress | None,
 ) -> list[WindowEdges]:
     """The edges of all windows, in their order."""
-    parts = list(windows(box, options.window_px, image.shape))
+    parts = list(windows(box, window_px, image.shape))
     found: list[WindowEdges] = []
     with ExitStack() as stack:
         used = min(workers, len(parts))
         if used > 1:
             folder = stack.enter_context(TemporaryDirectory(prefix="acutance-"))
             image = disk_copy(image, Path(folder))
-        scan = partial(scan_window, image, gsd, options)
-        for window in results_in_turn(scan, parts, workers=used):
+        for window in results_in_turn(partial(scan, image), parts, workers=used):
             found.append(window)
             if progress is not None:
                 progress(len(found), len(parts))

@@ -13,7 +13,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import TargetError
 from acutance.numerics.one_thread import one_thread
 from acutance.numerics.stacked import stacked
-from acutance.raster import Box, Gsd, Image
+from acutance.raster import Box, Gsd, Image, Region
 from acutance.scan.edge_points import edge_points, gradient
 from acutance.scan.options import ScanOptions
 from acutance.scan.pieces import pieces, region_box
@@ -88,27 +88,38 @@ class WindowEdges:
 
 
 @one_thread
-def scan_window(image: Image, gsd: Gsd | None, options: ScanOptions, window: Window) -> WindowEdges:
+def scan_window(
+    image: Image,
+    window: Window,
+    *,
+    gsd: Gsd | None,
+    options: ScanOptions,
+    region: Region | None = None,
+) -> WindowEdges:
     """Find and measure the edges of one window.
 
     Parameters
     ----------
     image : Image
-    gsd : Gsd, optional
+    window : Window
+    gsd : Gsd or None
         Instead of the image's own.
     options : ScanOptions
-    window : Window
+    region : Region, optional
+        Pixels outside of it are not used.
     """
     rows: list[dict[str, Any]] = []
     used: list[UsedEdge] = []
     if min(window.whole.shape) < _MIN_SIDE_PX:
         return WindowEdges(rows, used)
     pixels, _ = read_data(image, window.whole)
+    if region is not None:
+        pixels = np.where(region.mask(window.whole), pixels, np.nan)
     for segment in _segments(pixels, window, options):
-        region, own = _region(image, gsd, pixels, window.whole, segment, options)
+        around, own = _around(image, gsd, pixels, window.whole, segment, options)
         row = _place(segment, window.whole)
         try:
-            found = measure_segment(region, own, "spline", _EDGE_OPTIONS)
+            found = measure_segment(around, own, "spline", _EDGE_OPTIONS)
         except TargetError as error:
             rows.append(row | {"reason": str(error)})
             continue
@@ -129,7 +140,7 @@ def _segments(pixels: Floats, window: Window, options: ScanOptions) -> Iterator[
         yield from pieces(segment, own, options.min_length_px, options.max_length_px)
 
 
-def _region(
+def _around(
     image: Image,
     gsd: Gsd | None,
     pixels: Floats,
