@@ -6,7 +6,7 @@ half extents follow GIQE, the 40-60 % slope follows Kohm (2004).
 The error of a curve at x is F(x) z, with F(x) the `row` of its factor there and z the latent
 variables that all curves of a measurement share. A place where the curve passes a level moves by
 -F(x) z / f'(x), with f' the `slope` of the curve. So every number has a row g of its own, and with
-the covariance L L^T of z the variance |g L|^2. Any part of that covariance, the share of one
+the covariance L L^T of z the variance g L L^T g^T. Any part of that covariance, the share of one
 cause, gives its part of the variance by the same row.
 """
 
