@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.report.figures.panel import Panel, on_axes
-from acutance.report.paper import BLUE, FAINT, SHADE, VERMILION
+from acutance.report.paper import BLUE, FAINT, INK, SHADE, VERMILION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,6 +81,8 @@ def _draw_map(axes: Axes, measurement: SceneMeasurement) -> None:
         xlim=(col - 0.5, col + width - 0.5), ylim=(row + height - 0.5, row - 0.5),
         xlabel="column", ylabel="row", title="Edges of the scene",
     )  # fmt: skip
+    # The colours in the middle of the scale are pale.
+    axes.set_facecolor(INK)
     axes.set_aspect("equal")
     axes.grid(visible=False)
 
