@@ -15,7 +15,9 @@ from multiprocessing import get_context, parent_process
 from multiprocessing.synchronize import Event
 from typing import TypeVar
 
-__all__ = ["results_in_turn", "run_tasks"]
+from acutance.errors import OptionError
+
+__all__ = ["require_workers", "results_in_turn", "run_tasks"]
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -25,6 +27,18 @@ _CHUNKS_PER_WORKER = 8
 _MAX_CHUNK = 16
 _WAITING_PER_WORKER = 4
 """Chunks that are handed out before the first of them is waited for."""
+
+
+def require_workers(workers: int) -> None:
+    """Refuse a number of processes that means nothing.
+
+    Raises
+    ------
+    OptionError
+        If there is no worker.
+    """
+    if workers < 1:
+        raise OptionError(f"workers is {workers}: give the number of processes, 1 or more")
 
 
 def run_tasks(
@@ -67,37 +81,34 @@ def _run_in_processes(
 ) -> None:
     size = max(1, min(_MAX_CHUNK, len(tasks) // (_CHUNKS_PER_WORKER * workers)))
     starts = range(0, len(tasks), size)
-    with _processes(workers) as (pool, stop):
-        started: dict[Future[list[Result]], int] = {}
-        kept: set[int] = set()
+    started: dict[Future[list[Result]], int] = {}
+    kept: set[int] = set()
 
-        def keep_all(future: Future[list[Result]]) -> None:
-            first = started[future]
-            for place, result in enumerate(future.result(), start=first):
-                if place not in kept:
-                    keep(place, result)
-                    kept.add(place)
+    def keep_all(future: Future[list[Result]]) -> None:
+        for place, result in enumerate(future.result(), start=started[future]):
+            if place not in kept:
+                keep(place, result)
+                kept.add(place)
 
-        try:
+    try:
+        with _processes(workers) as pool:
             with _interrupts_held_back():
                 for first in starts:
                     chunk = list(tasks[first : first + size])
                     started[pool.submit(_work_through, work, chunk)] = first
             for future in as_completed(started):
                 keep_all(future)
-        except BaseException:
-            stop.set()
-            pool.shutdown(cancel_futures=True)
-            # What the processes had finished when they were stopped is not to be done again.
-            for future in started:
-                if not future.cancelled() and future.exception() is None:
-                    keep_all(future)
-            raise
+    except BaseException:
+        # What the processes had finished when they were stopped is not to be done again.
+        for future in started:
+            if not future.cancelled() and future.exception() is None:
+                keep_all(future)
+        raise
 
 
 @contextmanager
-def _processes(workers: int) -> Iterator[tuple[ProcessPoolExecutor, Event]]:
-    """A pool of processes on one core each, and what tells them to begin no further task."""
+def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """A pool of processes on one core each, which begin no further task once a run has failed."""
     # Fresh processes read the number of threads when they load the libraries.
     context = get_context("spawn")
     stop = context.Event()
@@ -107,7 +118,12 @@ def _processes(workers: int) -> Iterator[tuple[ProcessPoolExecutor, Event]]:
             workers, mp_context=context, initializer=_obey_parent, initargs=(stop,)
         ) as pool,
     ):
-        yield pool, stop
+        try:
+            yield pool
+        except BaseException:
+            stop.set()
+            pool.shutdown(cancel_futures=True)
+            raise
 
 
 def results_in_turn(
@@ -131,22 +147,17 @@ def results_in_turn(
         return
     todo = iter(tasks)
     waiting: deque[Future[list[Result]]] = deque()
-    with _processes(workers) as (pool, stop):
-        try:
-            while True:
-                with _interrupts_held_back():
-                    while len(waiting) < _WAITING_PER_WORKER * workers:
-                        chunk = list(islice(todo, _MAX_CHUNK))
-                        if not chunk:
-                            break
-                        waiting.append(pool.submit(_work_through, work, chunk))
-                if not waiting:
-                    return
-                yield from waiting.popleft().result()
-        except BaseException:
-            stop.set()
-            pool.shutdown(cancel_futures=True)
-            raise
+    with _processes(workers) as pool:
+        while True:
+            with _interrupts_held_back():
+                while len(waiting) < _WAITING_PER_WORKER * workers:
+                    chunk = list(islice(todo, _MAX_CHUNK))
+                    if not chunk:
+                        break
+                    waiting.append(pool.submit(_work_through, work, chunk))
+            if not waiting:
+                return
+            yield from waiting.popleft().result()
 
 
 @contextmanager

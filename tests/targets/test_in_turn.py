@@ -1,10 +1,13 @@
 """Many regions: each as if it were measured alone, in its place, whatever the others are."""
 
+import gc
+
 import numpy as np
 import pytest
 
 import acutance as ac
 from acutance import simulate
+from acutance.targets import in_turn
 from acutance.targets.in_turn import are_many
 
 SENSOR = simulate.reference_systems()["gaussian"]
@@ -54,6 +57,31 @@ def test_regions_of_several_images_and_of_files(scene, tmp_path):
         assert other.image.path == str(path)
         assert one.across.mtf_nyquist == whole.across.mtf_nyquist
         assert one.across.mtf_nyquist != other.across.mtf_nyquist
+
+
+def test_images_that_take_turns_are_copied_once(scene, tmp_path):
+    other = scene[::-1].copy()
+    numbered = ((place, (scene, other)[place % 2], GOOD) for place in range(6))
+    copies = [image for _, image, _ in in_turn._on_disk(numbered, tmp_path)]
+    assert len(list(tmp_path.iterdir())) == 2
+    for place, copy in enumerate(copies):
+        np.testing.assert_array_equal(copy.read(), (scene, other)[place % 2])
+
+
+def test_an_image_that_takes_the_place_of_another_is_not_taken_for_it(tmp_path):
+    def pairs():
+        for place in range(20):
+            yield place, np.full((8, 8), float(place)), None
+            gc.collect()
+
+    for place, copy, _ in in_turn._on_disk(pairs(), tmp_path):
+        assert float(copy.read()[0, 0]) == place
+
+
+def test_rows_of_numbers_are_regions_and_are_named_when_refused(scene):
+    found, outside = ac.measure_edges(scene, np.array([GOOD, OUTSIDE]))
+    assert isinstance(found, ac.Record)
+    assert outside.values["roi"] == list(OUTSIDE)
 
 
 def test_an_image_that_cannot_be_read_spoils_no_other(scene, tmp_path):

@@ -12,7 +12,7 @@ from acutance.cli.option_groups import with_groups
 from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions
 from acutance.cli.output import OutputFile, check_optional
 from acutance.cli.results import Outputs, Shown
-from acutance.cli.study import progress_bar
+from acutance.cli.study import WorkersOption, progress_bar
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -44,9 +44,7 @@ def scan(
     min_length: Annotated[
         float, typer.Option(metavar="PX", help="Shorter edges are left out.")
     ] = 15.0,
-    workers: Annotated[
-        int | None, typer.Option(metavar="N", help="Processes; one a core without it.")
-    ] = None,
+    workers: WorkersOption = None,
     wanted: ResultOptions,
 ) -> None:
     """Measure a sensor from all straight edges of a scene: roofs, fields, roads, coasts.

@@ -19,7 +19,7 @@ from scipy.special import ndtr
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, gaussian
 
-__all__ = ["MIN_SIGMA_PX", "WIDE_WIDTHS", "Gaussian2d", "GaussianPixel2d", "PixelSlopes"]
+__all__ = ["MIN_SIGMA_PX", "WIDE_WIDTHS", "GaussianPixel2d", "PixelSlopes"]
 
 _REACH = 7.0
 """Distance from the aperture's edge, in standard deviations, beyond which the PSF is 0."""
@@ -53,31 +53,6 @@ class PixelSlopes(NamedTuple):
     by_yy: Floats
     by_width_x: Floats
     by_width_y: Floats
-
-
-@dataclass(frozen=True)
-class Gaussian2d:
-    """A Gaussian of covariance ((xx, xy), (xy, yy)), much wider than a pixel."""
-
-    xx: float
-    xy: float
-    yy: float
-
-    def slopes(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
-        """Light per square pixel at places (x, y), (n,), and its derivatives by x and y."""
-        det = self.xx * self.yy - self.xy**2
-        by_x, by_y = (self.yy * x - self.xy * y) / det, (self.xx * y - self.xy * x) / det
-        psf = np.exp(-0.5 * (by_x * x + by_y * y)) / (2 * math.pi * math.sqrt(det))
-        return psf, -by_x * psf, -by_y * psf
-
-    def psf(self, x: Floats, y: Floats) -> Floats:
-        """Light per square pixel at places (x, y), (n,)."""
-        return self.slopes(x, y)[0]
-
-    def otf(self, u: Floats, v: Floats) -> Floats:
-        """Transfer function at frequencies in cycles per pixel."""
-        power = self.xx * u * u + 2 * self.xy * u * v + self.yy * v * v
-        return np.asarray(np.exp(-2 * np.pi**2 * power))
 
 
 @dataclass(frozen=True)
@@ -128,11 +103,6 @@ class GaussianPixel2d:
         return GaussianPixel2d(
             more * self.xx + box, more * self.xy, more * self.yy + box, self.aperture_px
         )
-
-    def broadened(self, widths: float) -> Gaussian2d:
-        """A Gaussian without aperture `widths` times as wide, the aperture's variance included."""
-        more, box = widths**2, self.aperture_px**2 / 12
-        return Gaussian2d(more * (self.xx + box), more * self.xy, more * (self.yy + box))
 
     def psf(self, x: Floats, y: Floats) -> Floats:
         """The PSF at places (x, y), (n,)."""

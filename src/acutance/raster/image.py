@@ -94,6 +94,11 @@ class Image(ShortRepr):
             )
 
     @classmethod
+    def of(cls, image: Image | ArrayLike) -> Image:
+        """What stands for an image: itself, or an array as one (`from_array`)."""
+        return image if isinstance(image, Image) else cls.from_array(image)
+
+    @classmethod
     def from_array(
         cls,
         array: ArrayLike | np.ma.MaskedArray[Any, Any],

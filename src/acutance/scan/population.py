@@ -20,6 +20,7 @@ B 44, 1982, 226).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -32,7 +33,6 @@ __all__ = [
     "SOFT_SCALES_PX",
     "EdgeLikelihoods",
     "Membership",
-    "Shares",
     "expected_information",
     "fit_shares",
     "memberships",
@@ -48,6 +48,19 @@ PARTS: Final = ("ideal", *(f"soft {scale:g} px" for scale in SOFT_SCALES_PX), "s
 _SOFTNESS_PX: Final[Floats] = np.concatenate([
     np.arange(0.0, 0.4, 0.04), np.arange(0.4, 1.0, 0.08), np.arange(1.0, 4.01, 0.25)
 ])  # fmt: skip
+
+
+def _soft_density() -> Floats:
+    width = np.gradient(_SOFTNESS_PX)
+    width[0] *= 0.5
+    density = np.exp(-0.5 * (_SOFTNESS_PX / np.array(SOFT_SCALES_PX)[:, None]) ** 2) * width
+    return np.asarray(density / density.sum(axis=1, keepdims=True))
+
+
+_SOFT: Final[Floats] = _soft_density()
+"""Probability of every softness of the grid in every soft part, (3, t)."""
+_FREE: Final[Floats] = np.linalg.svd(np.ones((1, len(PARTS))))[2][1:]
+"""Directions in which shares may change: their sum is one."""
 _STRANGE: Final = 100.0
 """Variance of strange edges, in units of that of the pixels."""
 _PSEUDO_COUNTS: Final[Floats] = np.array([1.0, 0.2, 0.2, 0.2, 0.2])
@@ -87,7 +100,7 @@ class EdgeLikelihoods:
         """Likelihoods of the sensor along the bins, of edges that see `gain` (n, k) times that."""
         return replace(self, root=self.root * np.hstack([gain, gain])[:, :, None])
 
-    @property
+    @cached_property
     def blur(self) -> Floats:
         """Transfer function of objects of every softness of the grid, (t, 2 k)."""
         one = np.exp(-2 * (np.pi * np.outer(_SOFTNESS_PX, self.freq_cpp)) ** 2)
@@ -97,13 +110,6 @@ class EdgeLikelihoods:
         """``root.T @ f - value`` of every edge and softness, (n, t, r), of sensors (b, 2 k)."""
         seen = self.root * otf[self.bin][:, :, None]
         return np.asarray(self.blur @ seen - self.value[:, None, :])
-
-
-class Shares(NamedTuple):
-    """How many of the objects belong to each of `PARTS`, and the standard deviations."""
-
-    value: Floats
-    std: Floats
 
 
 class Membership(NamedTuple):
@@ -136,14 +142,6 @@ class Membership(NamedTuple):
         return weight
 
 
-def _soft_density() -> Floats:
-    """Probability of every softness of the grid in every soft part, (3, t)."""
-    width = np.gradient(_SOFTNESS_PX)
-    width[0] *= 0.5
-    density = np.exp(-0.5 * (_SOFTNESS_PX / np.array(SOFT_SCALES_PX)[:, None]) ** 2) * width
-    return np.asarray(density / density.sum(axis=1, keepdims=True))
-
-
 def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> tuple[Floats, Membership]:
     """Shares of the parts for a given sensor (b, 2 k), and what the edges are."""
     power = -0.5 * np.sum(edges.off(otf) ** 2, axis=2)
@@ -160,8 +158,7 @@ def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> tuple[Floa
 
 def memberships(edges: EdgeLikelihoods, power: Floats, share: Floats) -> Membership:
     """What the edges are, given their log likelihoods (n, t) by softness and the shares (5,)."""
-    density = _soft_density()
-    soft = share[1:-1] @ density
+    soft = share[1:-1] @ _SOFT
     with np.errstate(divide="ignore"):
         log_soft = power + np.log(soft)
     log_ideal = power[:, :1] + np.log(share[0])
@@ -173,11 +170,15 @@ def memberships(edges: EdgeLikelihoods, power: Floats, share: Floats) -> Members
     whole = odds.sum(axis=1, keepdims=True)
     chance = odds / whole
     softness, ideal, strange = chance[:, :-2], chance[:, -2:-1], chance[:, -1:]
-    within = share[1:-1, None] * density / np.maximum(soft, 1e-300)
-    part = np.hstack([ideal, softness @ within.T, strange])
+    part = np.hstack([ideal, softness @ _soft_parts(share).T, strange])
     softness = softness.copy()
     softness[:, 0] += ideal[:, 0]
     return Membership(softness, part, float(np.sum(largest) + np.sum(np.log(whole))))
+
+
+def _soft_parts(share: Floats) -> Floats:
+    """Probability of every soft part, of a soft object of every softness, (3, t)."""
+    return np.asarray(share[1:-1, None] * _SOFT / np.maximum(share[1:-1] @ _SOFT, 1e-300))
 
 
 def expected_information(edges: EdgeLikelihoods, member: Membership) -> tuple[Floats, Floats]:
@@ -212,8 +213,7 @@ def observed_information(
     gradient = np.zeros((bins, size))
     by_share = np.zeros((bins * size, share.size))
     off = edges.off(otf)
-    density = _soft_density()
-    within = share[1:-1, None] * density / np.maximum(share[1:-1] @ density, 1e-300)
+    within = _soft_parts(share)
     for b in range(bins):
         place = slice(b * size, (b + 1) * size)
         whole[place, place] = complete[b]
@@ -238,19 +238,18 @@ def observed_information(
 
 def _of_shares(member: Membership, share: Floats, by_share: Floats) -> Floats:
     """What not knowing the shares takes from the information about the sensor."""
-    free = np.linalg.svd(np.ones((1, share.size)))[2][1:]
-    information = free @ _share_information(member, share) @ free.T
-    crossed = by_share @ free.T
+    crossed = by_share @ _FREE.T
+    information = _share_information(member, share)
     return np.asarray(crossed @ np.linalg.solve(information, crossed.T))
 
 
 def _share_information(member: Membership, share: Floats) -> Floats:
+    """What the edges and the prior say of the shares, in the directions of `_FREE`."""
     scaled = member.part / share
-    return np.asarray(scaled.T @ scaled + np.diag(_PSEUDO_COUNTS / share**2))
+    return np.asarray(_FREE @ (scaled.T @ scaled + np.diag(_PSEUDO_COUNTS / share**2)) @ _FREE.T)
 
 
 def share_std(member: Membership, share: Floats) -> Floats:
     """Standard deviations of the shares, the sensor being known, (5,)."""
-    free = np.linalg.svd(np.ones((1, share.size)))[2][1:]
-    inverse = np.linalg.inv(free @ _share_information(member, share) @ free.T)
-    return np.asarray(np.sqrt(np.diagonal(free.T @ inverse @ free)))
+    inverse = np.linalg.inv(_share_information(member, share))
+    return np.asarray(np.sqrt(np.diagonal(_FREE.T @ inverse @ _FREE)))

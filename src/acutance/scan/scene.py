@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves import Estimate, Otf2d
 from acutance.curves.grid import Floats
-from acutance.errors import NoEdgeError, OptionError
-from acutance.execution import results_in_turn
+from acutance.errors import NoEdgeError
+from acutance.execution import require_workers, results_in_turn
 from acutance.geometry.angles import axis_difference
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, Region, open_image
@@ -95,8 +95,7 @@ def scan_scene(
     >>> print(scene.across.mtf_nyquist, scene.along.mtf_nyquist)  # doctest: +SKIP
     >>> scene.edges.row[scene.edges.used]  # doctest: +SKIP
     """
-    if workers < 1:
-        raise OptionError(f"workers is {workers}: give the number of processes, 1 or more")
+    require_workers(workers)
     chosen = chosen_options(options, ScanOptions)
     source, box, region = _scene(image, roi)
     scan = partial(scan_window, gsd=Gsd.given(gsd_m), options=chosen, region=region)
@@ -113,7 +112,7 @@ def _scene(
     """The image, the part of it to be read, and the region in it if that is no box."""
     if isinstance(image, str | os.PathLike):
         image = open_image(image)
-    source = image if isinstance(image, Image) else Image.from_array(image)
+    source = Image.of(image)
     where = Box.whole(source.shape) if roi is None else chosen_region(roi)
     if isinstance(where, Region):
         return source, where.box(source.shape), where
@@ -159,7 +158,7 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges) -> SensorFit:
             f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}scan a larger part of the "
             "image, or measure single edges"
         )
-    axis_deg = np.array([(one.normal_deg + 90.0) % 180.0 - 90.0 for one in used])
+    axis_deg = np.array([one.axis_deg for one in used])
     _, number = np.unique(np.floor((axis_deg + 90.0) / _BIN_DEG), return_inverse=True)
     normal_deg = np.array([axis_deg[number == b].mean() for b in range(int(number.max()) + 1)])
     gap = max(axis_difference(float(a), float(b)) for a in normal_deg for b in normal_deg)
@@ -201,10 +200,10 @@ def _sensor_of(
     """The mean of the edges of about every direction between quantiles of sharpness, (b, 2 k)."""
     modulus = np.array([np.abs(one.otf) for one in used])
     sharpness = modulus[:, : modulus.shape[1] // 2].sum(axis=1)
-    own_deg = np.array([one.normal_deg for one in used])
+    axis_deg = np.array([one.axis_deg for one in used])
     guesses = []
     for one in normal_deg:
-        away = np.abs((own_deg - one + 90.0) % 180.0 - 90.0)
+        away = axis_difference(axis_deg, float(one))
         near = np.argsort(away)[: max(_NEAR_EDGES, int(np.sum(away < _BIN_DEG)))]
         order = near[np.argsort(-sharpness[near])]
         first, last = (int(share * near.size) for share in quantiles)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -103,7 +103,9 @@ class SceneEdges(ShortRepr):
         writer.writerows(zip(*(map(_cell, column) for column in columns.values()), strict=True))
         return text.getvalue()
 
-    def to_geojson(self, lonlat: Any = None) -> dict[str, Any]:
+    def to_geojson(
+        self, lonlat: Callable[[Floats, Floats], tuple[Floats, Floats]] | None = None
+    ) -> dict[str, Any]:
         """Edges as line strings with all columns as properties.
 
         Parameters
@@ -112,10 +114,8 @@ class SceneEdges(ShortRepr):
             Gives longitudes and latitudes. Without it coordinates are columns and rows of pixels.
         """
         angle = np.radians(self.normal_deg)
-        away_row, away_col = (
-            0.5 * self.length_px * np.cos(angle),
-            -0.5 * self.length_px * np.sin(angle),
-        )
+        half = 0.5 * self.length_px
+        away_row, away_col = half * np.cos(angle), -half * np.sin(angle)
         ends = []
         for sign in (-1.0, 1.0):
             row, col = self.row + sign * away_row, self.col + sign * away_col

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.numerics.stacked import stacked, unstacked
+from acutance.numerics.stacked import unstacked
 from acutance.scan.population import (
     EdgeLikelihoods,
     Membership,
@@ -30,6 +30,7 @@ from acutance.targets.combine.fit import CombinedFit, combine_curves
 from acutance.targets.combine.sensor_forms import FORMS
 from acutance.targets.combine.weighted_forms import CombinedOtf
 from acutance.targets.otf_likelihood import OtfLikelihood
+from acutance.targets.slices import places_along
 
 __all__ = ["SensorFit", "fit_sensor"]
 
@@ -45,6 +46,7 @@ _GAINS: Final = (0.7, 1.4)
 _LEAST: Final = 1e3
 """Information of a direction whose edges are all strange: it has no part in a turn."""
 _EXACT: Final = 1e7
+"""One over the error of what is exact."""
 _UNSEEN: Final = 1.0
 """Information of combinations that edges do not show: the OTF is between 0 and 1."""
 
@@ -107,7 +109,8 @@ def fit_sensor(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Flo
         combined = combine_curves(curves, forms=forms).otf
         # Forms without any weight have none in the next turn, either.
         forms = tuple({form.form.terms: None for form in combined.forms})
-        updated = _along(combined, normal_deg, edges.freq_cpp)
+        found = _along(combined, normal_deg, edges.freq_cpp)
+        updated = np.hstack([found.real, found.imag])
         settled = float(np.abs(updated - otf)[:, _in_band(edges.freq_cpp)].max()) < _SETTLED
         otf, seen = updated, _along_bins(edges, normal_deg, combined)
     share, member = fit_shares(seen, otf, share)
@@ -122,17 +125,10 @@ def fit_sensor(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Flo
 def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:
     """What the edges say of the sensor along their bins; along their own normals it differs."""
     own, mean = (
-        _modulus_along(sensor, angle, edges.freq_cpp) for angle in (edges.normal_deg, normal_deg)
+        np.abs(_along(sensor, angle, edges.freq_cpp)) for angle in (edges.normal_deg, normal_deg)
     )
     low, high = _GAINS
     return edges.turned(np.clip(own / np.maximum(mean[edges.bin], 1e-3), low, high))
-
-
-def _modulus_along(sensor: CombinedOtf, normal_deg: Floats, freq_cpp: Floats) -> Floats:
-    """The MTF in every direction, (b, k)."""
-    angle = np.radians(normal_deg)
-    u, v = np.outer(np.cos(angle), freq_cpp).ravel(), np.outer(np.sin(angle), freq_cpp).ravel()
-    return np.asarray(np.abs(sensor.otf(u, v)).reshape(angle.size, freq_cpp.size))
 
 
 def _in_band(freq_cpp: Floats) -> NDArray[np.bool_]:
@@ -140,12 +136,10 @@ def _in_band(freq_cpp: Floats) -> NDArray[np.bool_]:
     return np.tile(freq_cpp <= NYQUIST_CPP, 2)
 
 
-def _along(sensor: CombinedOtf, normal_deg: Floats, freq_cpp: Floats) -> Floats:
-    """The OTF in every direction, (b, 2 k)."""
-    angle = np.radians(normal_deg)
-    return np.array([
-        stacked(sensor.otf(freq_cpp * np.cos(one), freq_cpp * np.sin(one))) for one in angle
-    ])  # fmt: skip
+def _along(sensor: CombinedOtf, normal_deg: Floats, freq_cpp: Floats) -> NDArray[np.complex128]:
+    """The OTF in every direction, (b, k)."""
+    otf = sensor.otf(*places_along(normal_deg, freq_cpp))
+    return np.asarray(otf.reshape(normal_deg.size, freq_cpp.size))
 
 
 def _samples(
@@ -161,7 +155,6 @@ def _samples(
         Direction by direction, of each the real parts first.
     information : (b * 2 k, b * 2 k) array
     """
-    angle = np.radians(normal_deg)
     order = _real_first(normal_deg.size, freq_cpp.size)
     size, axes = np.linalg.eigh(information[np.ix_(order, order)])
     seen = size > _UNSEEN
@@ -172,7 +165,7 @@ def _samples(
     level = np.append(np.zeros(values.size), _EXACT)
     likelihood = OtfLikelihood(unstacked(root), level, np.append(values, _EXACT))
     likelihood = likelihood.with_errors(_common_errors(normal_deg.size, freq_cpp))
-    u, v = np.outer(np.cos(angle), freq_cpp).ravel(), np.outer(np.sin(angle), freq_cpp).ravel()
+    u, v = places_along(normal_deg, freq_cpp)
     about = unstacked(otf[order])
     return OtfSamples("edges", u, v, about, np.zeros((about.size, 1), complex), likelihood)
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
+from acutance.geometry.angles import direction_difference, wrap_axis
 from acutance.numerics.one_thread import one_thread
 from acutance.numerics.stacked import stacked
 from acutance.raster import Box, Gsd, Image, Region
@@ -38,17 +39,18 @@ class UsedEdge:
 
     Attributes
     ----------
-    normal_deg : float
+    axis_deg : float
+        Of its normal, -90 to 90.
     freq_cpp : (k,) array
     otf : (k,) complex array
-        As measured.
+        As measured, along the axis.
     root : (2 k, r) array
     value : (r,) array
         What the pixels alone say of the OTF f, real parts first: ``root.T @ f`` is `value` with
         independent errors of one.
     """
 
-    normal_deg: float
+    axis_deg: float
     freq_cpp: Floats
     otf: NDArray[np.complex128]
     root: Floats
@@ -65,10 +67,10 @@ class UsedEdge:
         by_place = np.asarray(-2j * np.pi * slices.freq_cpp[:, None], complex)
         likelihood = slices.likelihood.near(slices.otf, by_place)
         root, value = likelihood.root, likelihood.values - likelihood.level
-        otf = slices.otf
-        if abs(found.normal_deg) > 90.0:
+        otf, axis_deg = slices.otf, wrap_axis(found.normal_deg)
+        if direction_difference(found.normal_deg, axis_deg) > 90.0:
             root, otf = root.conj(), otf.conj()
-        return cls(found.normal_deg, slices.freq_cpp, otf, stacked(root), value)
+        return cls(axis_deg, slices.freq_cpp, otf, stacked(root), value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,9 +154,9 @@ def _around(
     box = region_box(segment, options.half_width_px, Box.whole(whole.shape))
     at = Box(whole.row + box.row, whole.col + box.col, box.height, box.width)
     own_gsd = gsd or image.gsd(at.row + at.height / 2, at.col + at.width / 2)
-    region = RegionPixels(pixels[box.slices], at, image.saturation_level, own_gsd, image)
     line = segment.line
     moved = replace(line, row=line.row - box.row, col=line.col - box.col)
+    region = RegionPixels(pixels[box.slices], at, image.saturation_level, own_gsd, image)
     return region, replace(segment, line=moved)
 
 

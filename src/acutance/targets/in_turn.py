@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from functools import partial
@@ -13,7 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
-from acutance.execution import results_in_turn
+from acutance.execution import require_workers, results_in_turn
+from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Image
 from acutance.raster.disk_copy import disk_copy
 from acutance.targets.measurement import Measurement
@@ -62,8 +64,7 @@ def in_turn(
     OptionError
         If there is no worker.
     """
-    if workers < 1:
-        raise OptionError(f"workers is {workers}: give the number of processes, 1 or more")
+    require_workers(workers)
     pairs = image if regions is None else _of_one(image, regions)
     return _results(measure, _numbered(pairs), workers)
 
@@ -100,7 +101,7 @@ def _are_pairs(image: Any) -> bool:
 
 
 def _of_one(image: Any, regions: Iterable[Any]) -> Iterator[tuple[Any, Any]]:
-    source = image if isinstance(image, Image) else Image.from_array(image)
+    source = Image.of(image)
     return ((source, roi) for roi in regions)
 
 
@@ -110,18 +111,24 @@ def _numbered(pairs: Any) -> Iterator[tuple[int, Any, Any]]:
 
 def _on_disk(pairs: Iterator[tuple[int, Any, Any]], folder: Path) -> Iterator[tuple[int, Any, Any]]:
     """The same regions, of images that other processes can read."""
-    original, kept = None, None
+    copies: dict[int, Image] = {}
     for place, image, roi in pairs:
-        if kept is None or image is not original:
+        copy = copies.get(id(image))
+        if copy is None:
             try:
-                source = image if isinstance(image, Image) else Image.from_array(image)
-                original, kept = image, disk_copy(source, folder)
+                copy = disk_copy(Image.of(image), folder)
             except ImageError:
                 # The process that is to measure it says so.
-                original, kept = image, image
-        yield place, kept, roi
+                yield place, image, roi
+                continue
+            if isinstance(image, Image | np.ndarray):
+                copies[id(image)] = copy
+                weakref.finalize(image, copies.pop, id(image), None)
+        yield place, copy, roi
 
 
+# What a record derives from a fit are products of many small matrices too.
+@one_thread
 def _record(measure: Measure, numbered: tuple[int, Any, Any]) -> Record | Rejected:
     """The record of one region, or why there is none."""
     place, image, roi = numbered
@@ -141,6 +148,8 @@ def _where(place: int, image: Any, roi: Any) -> dict[str, Any]:
     found: dict[str, Any] = {"place": place, "path": getattr(image, "path", None)}
     if isinstance(roi, Box):
         found["roi"] = list(roi.as_tuple())
+    elif isinstance(roi, np.ndarray):
+        found["roi"] = roi.tolist()
     elif isinstance(roi, tuple | list):
         found["roi"] = list(roi)
     return found

@@ -92,7 +92,7 @@ def read_region(
         If the region is none, lies outside the image, is too small, or far larger than any target;
         `NoDataError` if it holds too few pixels with data.
     """
-    source = image if isinstance(image, Image) else Image.from_array(image)
+    source = Image.of(image)
     where = Box.whole(source.shape) if roi is None else chosen_region(roi)
     if isinstance(where, Region):
         box, region = where.box(source.shape), where

@@ -23,7 +23,7 @@ from acutance.errors import OptionError
 from acutance.numerics.stacked import stacked, unstacked
 from acutance.targets.otf_likelihood import OtfLikelihood
 
-__all__ = ["SLICE_DIRECTIONS_DEG", "OtfSlices"]
+__all__ = ["SLICE_DIRECTIONS_DEG", "OtfSlices", "places_along"]
 
 Complexes = NDArray[np.complex128]
 
@@ -81,13 +81,13 @@ class OtfSlices(ShortRepr):
         low, high = band_cpp
         freq = _FREQ_CPP[(low - 1e-9 <= _FREQ_CPP) & (high + 1e-9 >= _FREQ_CPP)]
         directions = np.asarray(directions_deg, float)
-        u, v = _places(directions, freq)
+        u, v = places_along(directions, freq)
         return cls(directions, freq, otf.model.otf(u, v), _narrowed(otf.model.factor(u, v)))
 
     @property
     def places(self) -> tuple[Floats, Floats]:
         """Frequencies across and along, (m * n,) each."""
-        return _places(self.normal_deg, self.freq_cpp)
+        return places_along(self.normal_deg, self.freq_cpp)
 
     def to_dict(self) -> dict[str, Any]:
         """Directions, frequencies, OTF and factor as lists."""
@@ -148,7 +148,8 @@ def _complex(document: Mapping[str, Any], name: str) -> Complexes:
     return np.asarray(real + 1j * imag)
 
 
-def _places(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
+def places_along(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
+    """Frequencies across and along (m * n,) of n frequencies along each of m directions."""
     x, y = unit_vector(normal_deg)
     return np.outer(x, freq_cpp).ravel(), np.outer(y, freq_cpp).ravel()
 

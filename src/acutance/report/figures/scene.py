@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from acutance.geometry.angles import wrap_axis
 from acutance.report.figures.panel import Panel, on_axes
 from acutance.report.paper import BLUE, FAINT, INK, SHADE, VERMILION
 
@@ -91,7 +92,7 @@ def _draw_directions(axes: Axes, measurement: SceneMeasurement) -> None:
     edges = measurement.edges
     used = np.flatnonzero(edges.used)
     some = used[:: max(1, used.size // _MANY)]
-    normal = (edges.normal_deg[some] + 90.0) % 180.0 - 90.0
+    normal = wrap_axis(edges.normal_deg[some])
     ideal = edges.ideal[some] > 0.5
     for own, color in ((~ideal, FAINT), (ideal, BLUE)):
         axes.scatter(

@@ -98,7 +98,7 @@ def measure_biresolution(
     """
     _require_method(method)
     chosen = chosen_options(options, BiresolutionOptions)
-    coarse, fine = _as_image(low), _as_image(high)
+    coarse, fine = Image.of(low), Image.of(high)
     grid = pair_grid(coarse, fine, ratio)
     reference = _reference(reference_mtf, coarse, fine, grid)
     tiles, match = registered_tiles(coarse, fine, grid, _as_region(roi, coarse), chosen)
@@ -147,10 +147,6 @@ def _require_method(method: str) -> None:
     if method not in BIRESOLUTION_METHODS:
         known = ", ".join(BIRESOLUTION_METHODS)
         raise OptionError(f"there is no bi-resolution method {method!r}: choose one of {known}")
-
-
-def _as_image(image: Image | ArrayLike) -> Image:
-    return image if isinstance(image, Image) else Image.from_array(image)
 
 
 def _as_region(roi: RoiLike, image: Image) -> Region | None:

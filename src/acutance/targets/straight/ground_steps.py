@@ -81,12 +81,11 @@ class Ground:
             Distance of the pixels outwards from the edge, on the dark and on the bright side, in
             widths.
         """
-        near = NEAR_GROUND_STEPS.size
-        spline, near_side, near_scale = near_ground()
-        far = [_steps(distance, near) for distance in outwards]
-        side = [near_side, *_numbers(far)]
-        scale = [near_scale, *(_SCALE[near : near + len(steps)] for steps in far)]
-        return cls(spline, np.vstack(far), np.concatenate(side), np.concatenate(scale), 2)
+        first, near = NEAR_GROUND_STEPS.size, near_ground()
+        far = [_steps(distance, first) for distance in outwards]
+        side = np.concatenate([near.side, *_numbers(far)])
+        scale = [near.scale, *(_SCALE[first : first + len(steps)] for steps in far)]
+        return cls(near.spline, np.vstack(far), side, np.concatenate(scale), near.walks)
 
     @classmethod
     def beside_pulse(cls, outwards: Sequence[Floats], width: float) -> Ground:
@@ -153,19 +152,11 @@ class GroundSide:
         return cls(_PLACES[: step.size] * width_px, step, np.cumsum(step), std)
 
 
-def near_ground() -> tuple[Floats, NDArray[np.intp], Floats]:
-    """The steps beside an edge within the spline's support: coefficients, side and scale of each.
-
-    Returns
-    -------
-    spline : (CELLS + 3, k) array
-    side : (k,) int array
-        0 before the edge, 1 behind it.
-    scale : (k,) array
-        As of `Ground`.
-    """
+def near_ground() -> Ground:
+    """The steps beside an edge within the spline's support; no pixels beyond it."""
     near = NEAR_GROUND_STEPS.size
-    return _edge_spline(), np.repeat([0, 1], near), np.tile(_SCALE[:near], 2)
+    side, scale = np.repeat([0, 1], near), np.tile(_SCALE[:near], 2)
+    return Ground(_edge_spline(), np.zeros((0, 0)), side, scale, 2)
 
 
 @cache

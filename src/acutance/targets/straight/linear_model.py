@@ -24,21 +24,16 @@ from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.gradients import plateau_trends
 from acutance.targets.straight.ground_steps import Ground, GroundSide
 from acutance.targets.straight.lsf import LsfModel
+from acutance.targets.straight.model_prior import GROUND_BLOCK, model_prior
 from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.rounding import Rounding, rounding_of
 from acutance.targets.straight.spline import CELLS, HALF_SUPPORT, combine
 from acutance.targets.straight.spline_equations import Stencil, step_stencils
 from acutance.targets.straight.step_profile import Profile
 from acutance.targets.straight.tuned import (
-    APERTURE_PX,
     CURVATURE_STD_PER_PX,
-    GROUND_LOG_AMPLITUDE,
-    LOG_AMPLITUDE,
-    LOG_AMPLITUDE_STD,
     NOISE_FLOOR,
     TAIL_WIDTH,
-    TREND_LOG_AMPLITUDE,
-    TREND_LOG_AMPLITUDE_STD,
 )
 
 __all__ = ["Linear", "NoiseModel"]
@@ -151,11 +146,17 @@ class Linear:
         fixed = [*further, trends, ground.columns]
         if rounding.std.size:
             fixed.append(rounding.modes)
+        # Rotation (radians), width (pixels) and height ratio are known to about one.
+        by_parameter = [1.0, CURVATURE_STD_PER_PX, *[1.0] * (derivatives - 2)]
+        prior = model_prior(
+            first_fit.blur, first_fit.height, directions, ground, len(trends),
+            np.concatenate([rounding.std, by_parameter]), rounding.floor,
+        )  # fmt: skip
         return cls(
             first_fit, s, t, seen, mean, slope, residual,
             step_stencils(profile, s, width), np.vstack(fixed), derivatives,
             directions, _design(directions, ground, len(further)),
-            _prior(first_fit, directions, ground, len(trends), rounding, derivatives), rounding,
+            prior, rounding,
         )  # fmt: skip
 
     @property
@@ -248,11 +249,10 @@ class Linear:
 
     def ground(self, posterior: Posterior) -> tuple[GroundSide, GroundSide]:
         """The ground before and behind the target, as shares of its first step's height."""
-        first = LOG_AMPLITUDE.size + 1
         height, width = self.first_fit.height, self.first_fit.blur.width_px
         sides = [
             GroundSide.of(posterior.beta[own] / height, posterior.factor[own] / height, width)
-            for own in (self.prior.block == first, self.prior.block == first + 1)
+            for own in (self.prior.block == GROUND_BLOCK + number for number in (0, 1))
         ]
         return sides[0], sides[1]
 
@@ -298,40 +298,3 @@ def _rounding(first_fit: FirstFit, pixels: Pixels, s: Floats, fitted: Floats) ->
     return rounding_of(
         pixels.value, fitted, first_fit.profile.outside(s), groups, first_fit.height, variances
     )
-
-
-def _prior(
-    first_fit: FirstFit,
-    directions: lsf_prior.Directions,
-    ground: Ground,
-    trends: int,
-    rounding: Rounding,
-    derivatives: int,
-) -> Prior:
-    """The prior of all unknowns."""
-    trend, first_side = LOG_AMPLITUDE.size, LOG_AMPLITUDE.size + 1
-    near, far = np.split(ground.side, [ground.spline.shape[1]])
-    waves = rounding.std.size
-    block = np.concatenate([
-        [-1], np.maximum(directions.block - lsf_prior.FIRST_BLOCK, -1), first_side + near,
-        np.full(trends, trend), first_side + far, np.full(waves + derivatives, -1),
-    ])  # fmt: skip
-    scale = np.ones(block.size)
-    scale[block >= first_side] = ground.scale
-    # Prior: rotation (radians), width (pixels) and height ratio are known to about one.
-    scale[-derivatives:] = 1 / first_fit.height
-    scale[1 - derivatives] = CURVATURE_STD_PER_PX / first_fit.height
-    scale[block.size - derivatives - waves : -derivatives] = rounding.std / first_fit.height
-    mean = np.zeros(block.size)
-    aperture, aperture_std = APERTURE_PX
-    where = 1 + int(np.flatnonzero(directions.block == 1)[0])
-    scale[where] = aperture_std
-    mean[where] = (aperture - first_fit.blur.aperture_px) * first_fit.height
-    walks = np.full(ground.walks, GROUND_LOG_AMPLITUDE)
-    log_amplitude_std = np.full(first_side + ground.walks, LOG_AMPLITUDE_STD)
-    log_amplitude_std[trend] = TREND_LOG_AMPLITUDE_STD
-    return Prior(
-        block, scale, mean, np.array([*LOG_AMPLITUDE, TREND_LOG_AMPLITUDE, *walks]),
-        log_amplitude_std, first_fit.height,
-        max(NOISE_FLOOR * first_fit.height, rounding.floor),
-    )  # fmt: skip

@@ -151,7 +151,7 @@ def _priors() -> tuple[Floats, Floats]:
     far = _CENTRES / _CENTRES[-1]
     levels = np.stack([np.full(_BINS, _LEVEL_STD), _SLOPE_STD * far, _SLOPE_STD * far**2], axis=1)
     even = levels @ levels.T
-    scale = near_ground()[2][: NEAR_GROUND_STEPS.size]
+    scale = near_ground().scale[: NEAR_GROUND_STEPS.size]
     steps = ndtr(FWHM_OF_SIGMA * (_CENTRES[:, None] - NEAR_GROUND_STEPS)) * scale
     ground = 2 * steps @ steps.T
     found = [even + amplitude**2 * ground for amplitude in _GROUND_AMPLITUDES]

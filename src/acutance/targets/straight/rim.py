@@ -33,12 +33,8 @@ from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.gradients import plateau_trends
 from acutance.targets.straight.ground_steps import near_ground
 from acutance.targets.straight.lsf import SplineResponse
-from acutance.targets.straight.lsf_prior import (
-    FIRST_BLOCK,
-    Directions,
-    directions,
-    tail_spline,
-)
+from acutance.targets.straight.lsf_prior import Directions, directions, tail_spline
+from acutance.targets.straight.model_prior import model_prior
 from acutance.targets.straight.spline import (
     CELLS,
     CENTRES,
@@ -52,18 +48,11 @@ from acutance.targets.straight.spline import (
 from acutance.targets.straight.spline_equations import accumulate
 from acutance.targets.straight.step_profile import EDGE
 from acutance.targets.straight.tuned import (
-    APERTURE_PX,
-    GROUND_LOG_AMPLITUDE,
-    LOG_AMPLITUDE,
-    LOG_AMPLITUDE_STD,
-    NOISE_FLOOR,
     RIM_ODDS,
     RIM_STD,
     TAIL_WIDTH,
     TRAIL_LIKE_RIM_ODDS,
     TRAIL_LIKE_WIDTHS,
-    TREND_LOG_AMPLITUDE,
-    TREND_LOG_AMPLITUDE_STD,
 )
 
 __all__ = ["Rim", "find_rim"]
@@ -219,8 +208,8 @@ class _Model:
         sensor = directions(blur)
         strips = tuple((name, px) for name in ("dark", "bright") for px in _WIDTHS_PX)
         curves = sensor.esf + np.outer(tail_spline(), sensor.tail)
-        level, ground = np.ones((CELLS + 3, 1)), near_ground()[0]
-        design = np.hstack([level, curves, ground, _strip_splines(blur, strips)])
+        level, ground = np.ones((CELLS + 3, 1)), near_ground()
+        design = np.hstack([level, curves, ground.spline, _strip_splines(blur, strips)])
         # The fit's own correlation of the noise, not that of the plateaus.
         weight = data.weights[near] * (data.inflation / fit.correlation.inflation)
         every = accumulate(
@@ -230,9 +219,10 @@ class _Model:
         is_strip[design.shape[1] - len(strips) : design.shape[1]] = True
         gram, projection, plain = every.gram, every.projection, ~is_strip
         normal = replace(every, gram=gram[np.ix_(plain, plain)], projection=projection[plain])
+        prior = model_prior(blur, 1.0, sensor, ground, len(trends), np.zeros(0))
         return cls(
             blur, sensor, normal, gram[np.ix_(plain, is_strip)], gram[is_strip, is_strip],
-            projection[is_strip], _prior(blur, sensor, len(trends)), strips,
+            projection[is_strip], prior, strips,
         )  # fmt: skip
 
     def numbers(self, beta: Floats) -> _Numbers:
@@ -249,15 +239,12 @@ class _Model:
         otf += tail_otf(freq_cpp * width, TAIL_WIDTH) * tail
         return _Numbers(_relative_edge_response(esf), np.abs(otf) / height)
 
-    @property
-    def outwards(self) -> Floats:
-        """1 for strips on the bright side, -1 for those on the dark one, (k,)."""
-        return np.array([1.0 if side == "bright" else -1.0 for side, _ in self.strips])
-
     def odds(self, height: Floats) -> Floats:
         """Prior odds of every strip of a height, (k,)."""
         width_px = np.array([width for _, width in self.strips])
-        widens = (height * self.outwards < 0) & (width_px < TRAIL_LIKE_WIDTHS * self.blur.width_px)
+        widens = (height * _outwards(self.strips) < 0) & (
+            width_px < TRAIL_LIKE_WIDTHS * self.blur.width_px
+        )
         return np.where(widens, TRAIL_LIKE_RIM_ODDS, RIM_ODDS) / len(self.strips)
 
     def with_strip(self, k: int) -> tuple[Normal, Prior]:
@@ -330,7 +317,7 @@ def _compared(model: _Model) -> _Found:
     found = _best(tried)
     if float(found.gain.max()) < _MIN_GAIN:
         return found
-    steepens = found.height * model.outwards > 0
+    steepens = found.height * _outwards(model.strips) > 0
     for kind in (steepens, ~steepens):
         if kind.any():
             likely = int(np.argmax(np.where(kind, found.gain, -np.inf)))
@@ -360,29 +347,15 @@ def _settled(normal: Normal, prior: Prior, log_amplitude: Floats) -> Floats:
     )
 
 
-def _prior(blur: GaussianPixel, sensor: Directions, trends: int) -> Prior:
-    """The prior of level, LSF, ground and trends: that of the reference estimator."""
-    trend, first_side = LOG_AMPLITUDE.size, LOG_AMPLITUDE.size + 1
-    _, side, ground_scale = near_ground()
-    block = np.concatenate([
-        [-1], np.maximum(sensor.block - FIRST_BLOCK, -1), first_side + side,
-        np.full(trends, trend),
-    ])  # fmt: skip
-    scale, mean = np.ones(block.size), np.zeros(block.size)
-    scale[block >= first_side] = ground_scale
-    aperture = 1 + int(np.flatnonzero(sensor.block == 1)[0])
-    scale[aperture] = APERTURE_PX[1]
-    mean[aperture] = APERTURE_PX[0] - blur.aperture_px
-    log_amplitude = [*LOG_AMPLITUDE, TREND_LOG_AMPLITUDE, *[GROUND_LOG_AMPLITUDE] * 2]
-    spread = np.full(len(log_amplitude), LOG_AMPLITUDE_STD)
-    spread[trend] = TREND_LOG_AMPLITUDE_STD
-    return Prior(block, scale, mean, np.array(log_amplitude), spread, 1.0, NOISE_FLOOR)
+def _outwards(strips: tuple[tuple[str, float], ...]) -> Floats:
+    """1 for strips on the bright side, -1 for those on the dark one, (k,)."""
+    return np.array([1.0 if side == "bright" else -1.0 for side, _ in strips])
 
 
 def _strip_splines(blur: GaussianPixel, strips: tuple[tuple[str, float], ...]) -> Floats:
     """Spline coefficients of strips of unit height, (CELLS + 3, k)."""
     width = blur.width_px
-    outwards = np.array([1.0 if side == "bright" else -1.0 for side, _ in strips])
+    outwards = _outwards(strips)
     places = np.append(0.0, outwards * [px for _, px in strips])
     lsf = blur.lsf((CENTRES[:, None] * width - places).ravel()).reshape(CENTRES.size, -1)
     steps = esf_from_lsf(quasi_interpolant(width * lsf))

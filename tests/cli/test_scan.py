@@ -1,0 +1,88 @@
+"""``acutance scan``: the answer, tables of the edges, and what is refused."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from acutance import simulate
+from acutance.raster import write_geotiff
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    """Half a megapixel of ground without texture, with sharp objects on it."""
+    image, _ = simulate.landscape(
+        simulate.reference_systems()["gaussian"],
+        shape=(500, 500),
+        snr=100,
+        options=simulate.LandscapeOptions(soft=0.0, texture=(0.0, 0.0), density_per_mpx=80),
+        rng=np.random.default_rng(6),
+    )
+    path = tmp_path_factory.mktemp("scenes") / "scene.tif"
+    write_geotiff(path, image.astype(np.float32), gsd_m=2.0)
+    return path
+
+
+def test_a_scene_is_measured_and_its_edges_are_written(acutance, scene, tmp_path, keeps_to_schema):
+    table = tmp_path / "edges.csv"
+    done = acutance("scan", scene, "--json", "--workers", 1, "--edges", table)
+    assert done.exit_code == 0, done.stderr
+    document = json.loads(done.stdout)
+    keeps_to_schema(document)
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    assert document["kind"] == "scene"
+    assert len(rows) == document["edges"]["found"]
+    assert sum(row["used"] == "1" for row in rows) == document["edges"]["used"]
+
+
+def test_edges_are_written_as_a_layer_and_may_be_long_ones_alone(acutance, scene, tmp_path):
+    layer = tmp_path / "edges.geojson"
+    done = acutance("scan", scene, "--min-length", 25, "--workers", 1, "--edges", layer)
+    assert done.exit_code == 0, done.stderr
+    assert "Edges of the scene" in done.stdout
+    features = json.loads(layer.read_text())["features"]
+    assert min(feature["properties"]["length_px"] for feature in features) >= 25
+
+
+def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown):
+    done = acutance("scan", scene, "--workers", 1, "--report", tmp_path / "scan.html")
+    assert done.exit_code == 0, done.stderr
+    ((name, result, _),) = [call for call in shown if call[0] == "page"]
+    assert (name, result.kind) == ("page", "scene")
+
+
+@pytest.mark.parametrize(
+    ("words", "message", "code"),
+    [
+        (("--roi", "0,0,60,60"), "at least 8 are needed", 4),
+        (("--edges", "edges.txt"), "--edges", 2),
+        (("--min-length", "1"), "min_length_px is 1: give", 2),
+        (("--min-length", "60"), "max_length_px", 2),
+        (("--workers", "0"), "workers", 2),
+        (("--limit", "rows=9"), "rows", 2),
+        (("--roi", "500,0,60,60"), "outside", 2),
+    ],
+)
+def test_what_cannot_be_done_is_refused(refused, scene, words, message, code):
+    refused(("scan", scene, *words), message, code)
+
+
+def test_several_regions_are_not_a_scene(refused, scene, tmp_path):
+    fields = tmp_path / "fields.geojson"
+    squares = [(0, 0), (200, 200)]
+    fields.write_text(json.dumps({
+        "type": "FeatureCollection",
+        "features": [
+            {
+                "type": "Feature",
+                "properties": {"name": f"field {row}"},
+                "geometry": {"type": "Polygon", "coordinates": [[
+                    [col, row], [col + 99, row], [col + 99, row + 99], [col, row + 99], [col, row],
+                ]]},
+            }
+            for row, col in squares
+        ],
+    }))  # fmt: skip
+    refused(("scan", scene, "--roi", fields), "--roi names 2 regions, and a scene is one")
