@@ -25,6 +25,7 @@ from acutance.targets.straight import StraightMeasurement
 from acutance.targets.straight.edge import measure_segment
 from acutance.targets.straight.find_edges import Segment
 from acutance.targets.straight.options import EdgeOptions
+from acutance.targets.straight.surroundings import line_distances
 
 __all__ = ["UsedEdge", "WindowEdges", "scan_window"]
 
@@ -150,13 +151,19 @@ def _around(
     segment: Segment,
     options: ScanOptions,
 ) -> tuple[RegionPixels, Segment]:
-    """The pixels about a piece, and the piece in their coordinates."""
+    """The pixels beside a piece, and the piece in their coordinates.
+
+    What lies beyond its ends belongs to its neighbours: no pixel is used twice.
+    """
     box = region_box(segment, options.half_width_px, Box.whole(whole.shape))
     at = Box(whole.row + box.row, whole.col + box.col, box.height, box.width)
     own_gsd = gsd or image.gsd(at.row + at.height / 2, at.col + at.width / 2)
     line = segment.line
     moved = replace(line, row=line.row - box.row, col=line.col - box.col)
-    region = RegionPixels(pixels[box.slices], at, image.saturation_level, own_gsd, image)
+    _, t = line_distances(box.shape, moved)
+    beside = (segment.start_px <= t) & (t <= segment.stop_px)
+    own = np.where(beside, pixels[box.slices], np.nan)
+    region = RegionPixels(own, at, image.saturation_level, own_gsd, image)
     return region, replace(segment, line=moved)
 
 
