@@ -133,8 +133,54 @@ def test_documents_tables_and_figures(ideal, tmp_path):
     (x0, y0), (x1, y1) = features[0]["geometry"]["coordinates"]
     assert np.hypot(x1 - x0, y1 - y0) == pytest.approx(scene.edges.length_px[0], rel=1e-6)
     assert "Edges of the scene" in ac.report.text(scene)
+    assert "Sharpness over the field" in ac.report.text(scene)
     assert len(ac.report.draw(scene).axes) > 5
     assert "Sharpness of the edges" in ac.report.page(scene)
+
+
+def test_sharpness_at_a_place(ideal):
+    _, _, scene = ideal
+    expected = float(np.abs(SENSOR.otf(np.array([0.5]), np.array([0.0])))[0])
+    corner = scene.at(599, 0)
+    assert abs(corner.across.mtf_nyquist.value - expected) < 3 * corner.across.mtf_nyquist.std
+    assert corner.across.mtf_nyquist.std >= 0.99 * scene.across.mtf_nyquist.std
+    assert corner.mtf_at(0.0)(0.5).value == pytest.approx(corner.across.mtf_nyquist.value)
+    assert "row 599, column 0" in repr(corner)
+    assert scene.field.chance_constant > 0.5
+    assert len(scene.over_field(2, 4)) == 8
+    with pytest.raises(ac.RegionError, match="rows 0 to 599"):
+        scene.at(600, 0)
+    places = scene.to_dict()["field"]["places"]
+    assert len(places) == 9
+    assert places[4]["along"]["rer"]["value"] == pytest.approx(0.68, abs=0.02)
+    light = scene.without_details()
+    assert light.at(599, 0).across.rer.value == pytest.approx(corner.across.rer.value)
+
+
+def test_a_field_of_view_that_is_softer_on_one_side():
+    shape, added = (700, 1400), (0.0, 0.2)
+    rng = np.random.default_rng(5)
+    options = LandscapeOptions(soft=0.0, **CLEAN)
+    seed = int(rng.integers(2**31))
+    sharp, soft = (
+        simulate.landscape(
+            ac.Sensor([*SENSOR.blocks, ac.optics.Gaussian(one)]) if one else SENSOR,
+            shape=shape, options=options, rng=np.random.default_rng(seed),
+        )[0]
+        for one in added
+    )  # fmt: skip
+    share = np.linspace(0, 1, shape[1])
+    image = (1 - share) * sharp + share * soft
+    image += rng.normal(0, options.typical_contrast / 100, shape)
+    scene = ac.scan_scene(image)
+    assert scene.field.chance_constant < 0.01
+    for col in (100, 700, 1300):
+        blur = np.exp(-2 * (np.pi * 0.5 * added[1]) ** 2)
+        true = 0.28905 * (1 + share[col] * (blur - 1))
+        number = scene.at(350, col).across.mtf_nyquist
+        assert abs(number.value - true) < 3 * number.std
+        assert number.std < 0.006
+    assert {check.name: check for check in scene.checks}["field_change"].value > 0.05
 
 
 def test_a_scene_is_combined_with_a_target(ideal):
@@ -163,6 +209,7 @@ def test_too_few_edges_are_an_error_that_says_how_many():
         lambda image: ac.ScanOptions(min_length_px=1.0),
         lambda image: ac.ScanOptions(min_length_px=60.0, max_length_px=64.0),
         lambda image: ac.ScanOptions(limits={"unknown": 1.0}),
+        lambda image: ac.ScanOptions(places=(0, 3)),
         lambda image: ac.scan_scene(image, options=ac.EdgeOptions()),
     ],
 )

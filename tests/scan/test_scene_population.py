@@ -4,20 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import integrate
 
+from acutance.scan.information import edge_terms, expected_information, observed_information
 from acutance.scan.population import (
-    PARTS,
     EdgeLikelihoods,
-    expected_information,
     fit_shares,
-    observed_information,
-    share_std,
+    share_covariance,
+    softness_grid,
 )
+from acutance.scan.softness import PARTS, START, law_densities
 
 FREQ = np.array([0.1, 0.25, 0.4, 0.5])
 TRUE = np.concatenate([np.exp(-2 * (np.pi * 0.5 * FREQ) ** 2), np.zeros(4)])
 STD = 0.02
-START = np.array([0.6, 0.1, 0.1, 0.1, 0.1])
 
 
 def drawn(soft_share, count=600, seed=0):
@@ -31,24 +31,70 @@ def drawn(soft_share, count=600, seed=0):
     return EdgeLikelihoods(FREQ, root, seen / STD, rank, bins, np.zeros(count)), tau
 
 
+def test_laws_are_densities():
+    for number in range(len(PARTS) - 2):
+        whole, _ = integrate.quad(lambda x, n=number: law_densities(np.array([x]))[n, 0], 0, 20)
+        assert whole == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_grid_of_an_edge_covers_its_softness():
+    edges, tau = drawn(0.6)
+    grid, width = softness_grid(edges, TRUE[None])
+    assert np.all((grid[:, 0] - width < tau) & (tau < grid[:, -1] + width))
+    # Several places in what the pixels of an edge allow, however soft its object is.
+    blur = edges.blur(grid**2)
+    power = np.concatenate([
+        -0.5 * np.sum(edges.off(TRUE[None], some, blur[some]) ** 2, axis=2)
+        for some in edges.chunks()
+    ])  # fmt: skip
+    near = np.sum(power > power.max(axis=1, keepdims=True) - 2, axis=1)
+    assert near.min() >= 4
+
+
+def test_the_likelihood_is_that_of_a_fine_integral():
+    edges, _ = drawn(0.6, 20)
+    otf = TRUE[None] * 0.98
+    share = START / START.sum()
+    fine = np.linspace(0, 6, 20001)
+    for one in range(20):
+        alone = EdgeLikelihoods(
+            FREQ, edges.root[[one]], edges.value[[one]], edges.rank[[one]], edges.bin[[one]],
+            edges.normal_deg[[one]],
+        )  # fmt: skip
+        updated, member = fit_shares(alone, otf, share)
+        blur = np.exp(-2 * (np.pi * np.outer(fine, FREQ)) ** 2)
+        off = otf * np.hstack([blur, blur]) / STD - edges.value[one]
+        likelihood = np.exp(-0.5 * np.sum(off**2, axis=1))
+        soft = np.tensordot(updated[1:-1], law_densities(fine), axes=1)
+        strange = likelihood[0] ** (1 / 100) * 100**-4.0
+        whole = (
+            updated[0] * likelihood[0]
+            + np.trapezoid(soft * likelihood, fine)
+            + updated[-1] * strange
+        )
+        assert member.log_likelihood == pytest.approx(np.log(whole), abs=0.02)
+
+
 @pytest.mark.parametrize("soft_share", [0.0, 0.4, 0.8])
 def test_the_shares_are_found_within_their_deviations(soft_share):
     edges, _ = drawn(soft_share)
     share, member = fit_shares(edges, TRUE[None], START)
-    std = share_std(member, share)
+    covariance = share_covariance(member, share)
     assert share.sum() == pytest.approx(1)
     assert len(share) == len(PARTS)
-    assert abs(share[0] - (1 - soft_share)) < 3 * std[0] + 0.03
+    assert abs(share[0] - (1 - soft_share)) < 3 * covariance[0, 0] ** 0.5 + 0.03
     assert share[-1] < 0.02
+    assert np.abs(covariance.sum(axis=0)).max() < 1e-9
 
 
 def test_every_edge_has_the_softness_of_its_object():
     edges, tau = drawn(0.5)
     _, member = fit_shares(edges, TRUE[None], START)
     far = tau > 0.5
-    assert np.abs(member.softness_px - tau)[far].mean() < 0.05
+    assert np.abs(member.mean_px - tau)[far].mean() < 0.05
     assert member.part[tau == 0, 0].mean() > 0.8
     assert member.part[far, 0].max() < 0.01
+    assert member.part.sum(axis=1) == pytest.approx(1.0)
 
 
 def test_edges_of_another_sensor_are_strange():
@@ -63,24 +109,39 @@ def test_edges_of_another_sensor_are_strange():
 
 def test_the_gradient_is_that_of_the_likelihood():
     edges, _ = drawn(0.5, 40)
-    share = np.array([0.5, 0.15, 0.15, 0.1, 0.1])
     otf = TRUE[None] * 0.97
-
-    def log_likelihood(values):
-        from acutance.scan.population import memberships
-
-        power = -0.5 * np.sum(edges.off(values) ** 2, axis=2)
-        return memberships(edges, power, share)
-
-    member = log_likelihood(otf)
+    share, member = fit_shares(edges, otf, START)
     _, gradient = observed_information(edges, otf, member, share)
-    for place in range(8):
+
+    # At the likeliest shares, with the prior of the shares, their change has no effect.
+    def log_posterior(values):
+        found, at = fit_shares(edges, values, share)
+        prior = np.array([1.0, *(6 * [0.2]), 0.2])
+        return at.log_likelihood + prior @ np.log(found)
+
+    for place in range(4):
         step = np.zeros((1, 8))
-        step[0, place] = 1e-5
-        rise = (
-            log_likelihood(otf + step).log_likelihood - log_likelihood(otf - step).log_likelihood
-        ) / 2e-5
-        assert gradient[place] == pytest.approx(rise, rel=1e-4, abs=1e-3)
+        step[0, place] = 1e-4
+        rise = (log_posterior(otf + step) - log_posterior(otf - step)) / 2e-4
+        assert gradient[place] == pytest.approx(rise, rel=0.02, abs=0.5)
+
+
+def test_the_information_is_the_curvature_of_the_likelihood():
+    edges, _ = drawn(0.5, 200, seed=3)
+    _, member = fit_shares(edges, TRUE[None], START)
+    share, member = fit_shares(edges, TRUE[None], member.part.mean(axis=0) + 1e-3)
+    (terms,) = edge_terms(edges, TRUE[None], member, share)
+    step = np.zeros((1, 8))
+    step[0, 3] = 2e-3
+
+    def pull(values):
+        # The shares stay: what changes is what every edge is.
+        found, at = fit_shares(edges, values, share)
+        (there,) = edge_terms(edges, values, at, found)
+        return there.gradient.sum(axis=0)[3]
+
+    falls = (pull(TRUE[None] - step) - pull(TRUE[None] + step)) / 4e-3
+    assert terms.information.sum(axis=0)[3, 3] == pytest.approx(falls, rel=0.1)
 
 
 def test_hidden_softness_costs_information():

@@ -19,6 +19,7 @@ _RANGES = {
     "min_gradient_sigmas": (3.0, 100.0),
     "window_px": (128, 8192),
 }
+_MAX_PLACES = 20
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,8 @@ class ScanOptions:
         Least gradient of an edge, in units of its noise on quiet ground.
     window_px : int
         Side of the windows in which an image is read.
+    places : (int, int)
+        Rows and columns of equal parts of the scene, in the middle of which sharpness is told.
     limits : mapping of str to float
         Limits of checks to be asked instead of those of the table, by name.
 
@@ -52,6 +55,7 @@ class ScanOptions:
     half_width_px: float = 20.0
     min_gradient_sigmas: float = 6.0
     window_px: int = 1024
+    places: tuple[int, int] = (3, 3)
     limits: Limits = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -61,6 +65,11 @@ class ScanOptions:
             value = getattr(self, name)
             if not low <= value <= high:
                 raise OptionError(f"{name} is {value:g}: give {low:g} to {high:g}")
+        if not all(1 <= count <= _MAX_PLACES for count in self.places):
+            raise OptionError(
+                f"places is {self.places[0]} x {self.places[1]}: give 1 to {_MAX_PLACES} by row "
+                "and by column"
+            )
         if self.max_length_px < 1.5 * self.min_length_px:
             raise OptionError(
                 f"max_length_px is {self.max_length_px:g} and min_length_px "
@@ -69,4 +78,5 @@ class ScanOptions:
 
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""
-        return {**{name: getattr(self, name) for name in _RANGES}, "limits": dict(self.limits)}
+        numbers = {name: getattr(self, name) for name in _RANGES}
+        return {**numbers, "places": list(self.places), "limits": dict(self.limits)}

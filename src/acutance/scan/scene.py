@@ -21,8 +21,9 @@ from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, Region, open_image
 from acutance.raster.disk_copy import disk_copy
 from acutance.scan.checks import check_scene
+from acutance.scan.field import Field
 from acutance.scan.options import ScanOptions
-from acutance.scan.population import PARTS, EdgeLikelihoods
+from acutance.scan.population import EdgeLikelihoods
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
 from acutance.scan.sensor_fit import SensorFit, fit_sensor
@@ -102,7 +103,7 @@ def scan_scene(
     found = _all_windows(source, box, scan, chosen.window_px, workers, progress)
     edges = SceneEdges.of_rows([row for window in found for row in window.rows])
     used = [edge for window in found for edge in window.used]
-    fit = _fit(used, edges)
+    fit = _fit(used, edges, Field.constant(box.as_tuple()))
     return _measurement(source, box, Gsd.given(gsd_m), chosen, edges, fit)
 
 
@@ -144,8 +145,8 @@ def _all_windows(
 
 
 @one_thread
-def _fit(used: Sequence[UsedEdge], edges: SceneEdges) -> SensorFit:
-    """The sensor and the objects.
+def _fit(used: Sequence[UsedEdge], edges: SceneEdges, field: Field) -> SensorFit:
+    """The sensor and the objects, over a field.
 
     Raises
     ------
@@ -169,7 +170,9 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges) -> SensorFit:
             "part of the image, or measure them with measure_edges"
         )
     guesses = [_sensor_of(used, normal_deg, quantiles) for quantiles in _SHARP]
-    return fit_sensor(_likelihoods(used, number, axis_deg), normal_deg, guesses)
+    likelihoods = _likelihoods(used, number, axis_deg)
+    x, y = field.places(edges.row[edges.used], edges.col[edges.used])
+    return fit_sensor(likelihoods, normal_deg, guesses, x, y)
 
 
 def _common_reason(edges: SceneEdges) -> str:
@@ -221,21 +224,19 @@ def _measurement(
     fit: SensorFit,
 ) -> SceneMeasurement:
     gsd = gsd or image.gsd(box.row + box.height / 2, box.col + box.width / 2)
-    member = fit.member
-    known = edges.with_objects(member.softness_px, member.part[:, 0])
+    known = edges.with_objects(fit.member.mean_px, fit.member.part[:, 0])
+    field = Field(box.as_tuple(), *fit.field[:4])
     return SceneMeasurement(
         kind="scene",
         method="population",
-        transfer=Otf2d(fit.otf, None if gsd is None else (gsd.row_m, gsd.col_m)),
+        transfer=Otf2d(field.mean_of(fit.otf), None if gsd is None else (gsd.row_m, gsd.col_m)),
         snr=float(np.median(edges.snr[edges.used])),
-        checks=check_scene(edges, fit, options.limits),
+        checks=check_scene(edges, fit, field, options.limits),
         image=image_info(image, box, gsd),
         options=options.to_dict(),
         edges=known,
-        objects={
-            name: Estimate(float(value), float(std), 0.0)
-            for name, value, std in zip(PARTS, fit.share, fit.share_std, strict=True)
-        },
+        field=field,
+        objects={name: Estimate(value, std, 0.0) for name, (value, std) in fit.kinds.items()},
         normal_deg_bins=tuple(fit.normal_deg.tolist()),
         details=fit,
     )

@@ -4,38 +4,129 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
-from acutance.curves import Estimate
+from acutance.curves import Estimate, Mtf, Otf2d, Response
+from acutance.curves.short_repr import ShortRepr
+from acutance.errors import RegionError
+from acutance.geometry.line import Orientation
+from acutance.scan.field import Field, FieldOtf
 from acutance.scan.scene_edges import SceneEdges
 from acutance.targets.measurement import Measurement
 
-__all__ = ["SceneMeasurement"]
+__all__ = ["SceneMeasurement", "ScenePlace"]
+
+_NUMBERS = ("mtf_nyquist", "rer", "fwhm_px")
+
+
+@dataclass(frozen=True, eq=False)
+class ScenePlace(ShortRepr):
+    """The sensor at a place of the field.
+
+    Parameters
+    ----------
+    row, col : float
+        In pixels of the image; integers are pixel centres.
+    otf : Otf2d
+    axes_deg : mapping of "across" and "along" to directions
+    """
+
+    row: float
+    col: float
+    otf: Otf2d
+    axes_deg: Mapping[Orientation, float]
+
+    @cached_property
+    def across(self) -> Response:
+        """Curves and numbers across track."""
+        return self.otf.response(self.axes_deg["across"])
+
+    @cached_property
+    def along(self) -> Response:
+        """Curves and numbers along track."""
+        return self.otf.response(self.axes_deg["along"])
+
+    def mtf_at(self, angle_deg: float) -> Mtf:
+        """The MTF in any direction, from the column axis (0) towards the row axis (90)."""
+        return self.otf.response(angle_deg).mtf
+
+    def summary(self) -> str:
+        """The place and the main numbers."""
+        numbers = f"across: {self.across.summary()}, along: {self.along.summary()}"
+        return f"row {self.row:g}, column {self.col:g}, {numbers}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The place and the main numbers, for JSON."""
+        directions: dict[str, Response] = {"across": self.across, "along": self.along}
+        return {
+            "row": round(self.row, 2),
+            "col": round(self.col, 2),
+            **{
+                name: {key: getattr(one, key).to_dict() for key in _NUMBERS}
+                for name, one in directions.items()
+            },
+        }
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SceneMeasurement(Measurement):
     """A sensor measured from the edges of a whole scene; `details` is the `SensorFit`.
 
+    Its numbers are the mean over the field, `at` has those of a place.
+
     Parameters
     ----------
     edges : SceneEdges
         Every edge that was found, one array a column.
+    field : Field
+        How sharpness changes over the scene.
     objects : mapping of str to Estimate
-        Shares of the objects: "ideal", "soft 0.2 px" and so on by the size of their softness, and
-        "strange" for edges that are neither.
+        Shares of the objects: "ideal", "soft", and "strange" for edges that are neither.
     normal_deg_bins : tuple of float
         Mean directions of the edges, -90 to 90 degrees.
     """
 
     edges: SceneEdges
+    field: Field
     objects: Mapping[str, Estimate]
     normal_deg_bins: tuple[float, ...]
 
+    def at(self, row: float, col: float) -> ScenePlace:
+        """The sensor at a place of the scene.
+
+        Parameters
+        ----------
+        row, col : float
+            In pixels of the image; integers are pixel centres.
+
+        Raises
+        ------
+        RegionError
+            If the place lies outside of what was scanned.
+        """
+        if not self.field.holds(row, col):
+            top, left, height, width = self.field.roi
+            raise RegionError(
+                f"row {row:g}, column {col:g} lies outside of what was scanned, rows {top} to "
+                f"{top + height - 1} and columns {left} to {left + width - 1}: give a place in it"
+            )
+        mean = self.otf.model
+        assert isinstance(mean, FieldOtf)
+        model = self.field.at(mean.base, row, col)
+        return ScenePlace(row, col, Otf2d(model, self.otf.gsd_m), self.axes_deg)
+
+    def over_field(self, rows: int = 3, cols: int = 3) -> tuple[ScenePlace, ...]:
+        """The sensor in the middle of so many equal parts of the scene, row by row."""
+        row, col = self.field.grid(rows, cols)
+        return tuple(self.at(float(i), float(j)) for i in row for j in col)
+
     def target_document(self) -> dict[str, Any]:
-        """How many edges, their directions, and the shares of the objects."""
+        """How many edges, their directions, the shares of the objects, and the field."""
+        places = self.over_field(*self.options["places"])
         return {
             "edges": {"found": self.edges.size, "used": int(self.edges.used.sum())},
             "directions_deg": [round(one, 3) for one in self.normal_deg_bins],
             "objects": {name: share.to_dict() for name, share in self.objects.items()},
+            "field": {**self.field.to_dict(), "places": [place.to_dict() for place in places]},
         }

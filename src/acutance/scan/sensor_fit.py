@@ -1,30 +1,29 @@
 """The sensor of a scene: one optical transfer function (OTF) over the plane, under all edges.
 
-Expectation and maximisation by turns: what every edge is, given the sensor (`population`); the
-sensor, given that, as the combination of all directions (`acutance.targets.combine`). The last
+By turns: how much of the blur is the sensor's (`acutance.scan.blur_modes`); how it changes over
+the field (`acutance.scan.field_fit`); what every edge is, given both (`acutance.scan.population`);
+the sensor, given that, as the combination of all directions (`acutance.targets.combine`). The last
 turn takes the information that is left when what the edges are is integrated out.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.numerics.stacked import unstacked
-from acutance.scan.population import (
-    EdgeLikelihoods,
-    Membership,
-    expected_information,
-    fit_shares,
-    observed_information,
-    share_std,
-)
+from acutance.numerics.stacked import stacked, unstacked
+from acutance.scan.blur_modes import COMMON_MODES, changed, edge_modes, fit_modes
+from acutance.scan.field_fit import FieldFit, fit_field
+from acutance.scan.information import expected_information, observed_information
+from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares, share_covariance
+from acutance.scan.softness import KINDS, START
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import CombinedFit, combine_curves
 from acutance.targets.combine.sensor_forms import FORMS
@@ -34,13 +33,15 @@ from acutance.targets.slices import places_along
 
 __all__ = ["SensorFit", "fit_sensor"]
 
-_START: Final[Floats] = np.array([0.6, 0.1, 0.1, 0.1, 0.1])
 _SETTLED: Final = 1e-3
 _MAX_TURNS: Final = 12
-_COMMON_STD, _COMMON_CPP = 3e-3, 0.15
+_MAX_FIELD_TURNS: Final = 4
+_CONSTANT: Final = 0.99
+"""Chance of a field without change above which none is followed."""
+_COMMON_STD, _COMMON_CPP = 1.5e-3, 0.15
 """Error of the transfer function that all edges of a sensor have in common, and over which
 frequencies: what the prior of an edge's line spread function does not allow for does not average
-out (benchmarks/scenes.py: errors of .000 to .004 at Nyquist, by the shape of the sensor)."""
+out (benchmarks/scenes.py: errors of .000 to .002, by the shape of the sensor)."""
 _GAINS: Final = (0.7, 1.4)
 """Between these the sensor along an edge's normal is of that along its bin."""
 _LEAST: Final = 1e3
@@ -49,6 +50,8 @@ _EXACT: Final = 1e7
 """One over the error of what is exact."""
 _UNSEEN: Final = 1.0
 """Information of combinations that edges do not show: the OTF is between 0 and 1."""
+_BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
+"""Blur that is added to first guesses: the sharpest edges are so by their noise, too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +61,14 @@ class SensorFit:
     Attributes
     ----------
     combined : CombinedFit
-        The sensor, fitted to all directions.
+        The sensor in the middle of the edges, all directions together.
+    field : FieldFit
+        Its change over the field.
     normal_deg : (b,) array
         Mean direction of every bin.
-    share, share_std : (5,) arrays
-        Of `population.PARTS`.
+    share : (p,) array
+        Of `softness.PARTS`.
+    share_covariance : (p, p) array
     member : Membership
         What every edge is.
     turns : int
@@ -70,20 +76,35 @@ class SensorFit:
     """
 
     combined: CombinedFit
+    field: FieldFit
     normal_deg: Floats
     share: Floats
-    share_std: Floats
+    share_covariance: Floats
     member: Membership
     turns: int
     settled: bool
 
     @property
+    def kinds(self) -> dict[str, tuple[float, float]]:
+        """Shares of ideal, soft and strange edges, and their standard deviations."""
+        found = {}
+        for name, some in KINDS.items():
+            variance = float(self.share_covariance[some, some].sum())
+            found[name] = float(self.share[some].sum()), math.sqrt(max(variance, 0.0))
+        return found
+
+    @property
     def otf(self) -> CombinedOtf:
-        """The sensor. Its edges are one measurement: there is nothing it could disagree with."""
+        """The sensor in the middle of the edges.
+
+        They are one measurement: there is nothing it could disagree with.
+        """
         return CombinedOtf(self.combined.otf.forms, 1.0)
 
 
-def fit_sensor(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]) -> SensorFit:
+def fit_sensor(
+    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats], x: Floats, y: Floats
+) -> SensorFit:
     """Fit the sensor of a scene.
 
     Parameters
@@ -93,33 +114,99 @@ def fit_sensor(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Flo
         Mean direction of every bin.
     guesses : sequence of (b, 2 k) arrays
         First guesses of the OTF in every direction, real parts first: the likeliest counts.
+    x, y : (n,) arrays
+        Places of the edges, -1 to 1 over the field.
     """
-    otf = max(guesses, key=lambda one: fit_shares(edges, one, _START)[1].log_likelihood)
-    share, forms, seen = _START, FORMS, edges
-    turns, settled = 0, False
-    while turns < _MAX_TURNS and not settled:
-        turns += 1
+    modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
+    start = _likeliest(edges, modes, guesses)
+    nothing = np.zeros((edges.size, edges.freq_cpp.size))
+    state = _settled(edges, normal_deg, _State(start, START, FORMS, edges, 0, False), nothing)
+    field = fit_field(state.along, state.otf, state.share, x, y)
+    for _ in range(_MAX_FIELD_TURNS):
+        if field.chance_constant > _CONSTANT:
+            break
+        moved = changed(state.otf, modes @ field.common)
+        state = _settled(edges, normal_deg, state._replace(otf=moved), field.log_gain)
+        before, field = field, fit_field(state.along, state.otf, state.share, x, y, field)
+        if np.abs(field.log_gain - before.log_gain).max() < _SETTLED:
+            break
+    seen = state.along.turned(np.exp(field.log_gain))
+    share, member = fit_shares(seen, state.otf, state.share)
+    left, gradient = observed_information(seen, state.otf, member, share)
+    samples = _samples(normal_deg, edges.freq_cpp, state.otf.ravel(), left, gradient)
+    return SensorFit(
+        combine_curves([samples]), field, normal_deg, share, share_covariance(member, share),
+        member, state.turns, state.settled,
+    )  # fmt: skip
+
+
+def _likeliest(edges: EdgeLikelihoods, modes: Floats, guesses: Sequence[Floats]) -> Floats:
+    """The likeliest of the guesses, somewhat blurred or sharpened."""
+    tried = [changed(one, modes[:, :, 0] * blur) for one in guesses for blur in _BLUR_STARTS_PX2]
+    return max(tried, key=lambda one: fit_shares(edges, one, START)[1].log_likelihood)
+
+
+class _State(NamedTuple):
+    """A sensor between two turns.
+
+    Attributes
+    ----------
+    otf : (b, 2 k) array
+        Along the bins, in the middle of the edges.
+    share : (p,) array
+    forms : sequence of tuples of str
+        Forms of sensors that have some weight.
+    along : EdgeLikelihoods
+        What the edges say of the sensor along their bins.
+    turns : int
+    settled : bool
+    """
+
+    otf: Floats
+    share: Floats
+    forms: Sequence[tuple[str, ...]]
+    along: EdgeLikelihoods
+    turns: int
+    settled: bool
+
+
+def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain: Floats) -> _State:
+    """The sensor after as many turns as it needs, under a given change over the field (n, k)."""
+    modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
+    in_band = _in_band(edges.freq_cpp)
+    otf, share, forms, along, turns, _ = state
+    before = np.full_like(otf, np.inf)
+    for turn in range(_MAX_TURNS + 1):
+        seen = along.turned(np.exp(log_gain))
+        found = fit_modes(seen, otf, share, modes[edges.bin])
+        otf, share = changed(otf, modes @ found.amount), found.share
+        if float(np.abs(otf - before)[:, in_band].max()) < _SETTLED:
+            return _State(otf, share, forms, along, turns + turn, settled=True)
+        before = otf
         share, member = fit_shares(seen, otf, share)
-        information, projection = expected_information(seen, member)
-        curves = [
-            _samples(normal_deg[[b]], edges.freq_cpp, otf[b], own, pull - own @ otf[b])
-            for b, (own, pull) in enumerate(zip(information, projection, strict=True))
-            if np.trace(own) > _LEAST
-        ]
-        combined = combine_curves(curves, forms=forms).otf
+        combined = _combined(seen, normal_deg, otf, member, forms)
         # Forms without any weight have none in the next turn, either.
         forms = tuple({form.form.terms: None for form in combined.forms})
-        found = _along(combined, normal_deg, edges.freq_cpp)
-        updated = np.hstack([found.real, found.imag])
-        settled = float(np.abs(updated - otf)[:, _in_band(edges.freq_cpp)].max()) < _SETTLED
-        otf, seen = updated, _along_bins(edges, normal_deg, combined)
-    share, member = fit_shares(seen, otf, share)
-    left, gradient = observed_information(seen, otf, member, share)
-    samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left, gradient)
-    return SensorFit(
-        combine_curves([samples]), normal_deg, share, share_std(member, share), member, turns,
-        settled,
-    )  # fmt: skip
+        stepped = _along(combined, normal_deg, edges.freq_cpp)
+        otf, along = stacked(stepped.T).T, _along_bins(edges, normal_deg, combined)
+    return _State(before, share, forms, along, turns + _MAX_TURNS, settled=False)
+
+
+def _combined(
+    edges: EdgeLikelihoods,
+    normal_deg: Floats,
+    otf: Floats,
+    member: Membership,
+    forms: Sequence[tuple[str, ...]],
+) -> CombinedOtf:
+    """The sensor, if it is known what the edges are."""
+    information, projection = expected_information(edges, member)
+    curves = [
+        _samples(normal_deg[[b]], edges.freq_cpp, otf[b], own, pull - own @ otf[b])
+        for b, (own, pull) in enumerate(zip(information, projection, strict=True))
+        if np.trace(own) > _LEAST
+    ]
+    return combine_curves(curves, forms=forms).otf
 
 
 def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:

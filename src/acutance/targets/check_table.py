@@ -385,6 +385,11 @@ _SCENE = {
         "Did the fit of sensor and objects fail to settle?", "<=", 0.0,
         "the edges do not separate the sensor from its objects", severity="fail",
     ),
+    "field_change": Question(
+        "How much does sharpness change over the field, as a share of its mean?", "<=", 0.1,
+        "the numbers are the mean over the field: read those of the places, or scan parts of it",
+        severity="note",
+    ),
 }  # fmt: skip
 
 QUESTIONS: dict[str, Question] = {

@@ -20,14 +20,22 @@ VERDICTS = {
     "invalid": "measured, not used: the numbers are not the sensor's",
     "rejected": "not measured",
 }
+_OBJECTS = {
+    "ideal": "ideal: as sharp as the sensor shows",
+    "soft": "soft",
+    "strange": "neither",
+}
 _REASONS = 8
 _WORDS = 12
 """Of a reason, as many words tell it from others."""
 
 
 def scene_tables(measurement: SceneMeasurement) -> tuple[Table, ...]:
-    """Edges by verdict, the shares of the objects, the most frequent reasons."""
-    return _edges_table(measurement), _objects_table(measurement), _reasons_table(measurement)
+    """Edges by verdict, the shares of the objects, sharpness over the field, what was left out."""
+    return (
+        _edges_table(measurement), _objects_table(measurement), _field_table(measurement),
+        _reasons_table(measurement),
+    )  # fmt: skip
 
 
 def _edges_table(measurement: SceneMeasurement) -> Table:
@@ -50,7 +58,7 @@ def _edges_table(measurement: SceneMeasurement) -> Table:
 
 def _objects_table(measurement: SceneMeasurement) -> Table:
     rows = tuple(
-        (_object_words(name), f"{100 * share.value:.1f} ± {100 * share.std:.1f}")
+        (_OBJECTS[name], f"{100 * share.value:.1f} ± {100 * share.std:.1f}")
         for name, share in measurement.objects.items()
     )
     return Table(
@@ -59,10 +67,27 @@ def _objects_table(measurement: SceneMeasurement) -> Table:
     )  # fmt: skip
 
 
-def _object_words(name: str) -> str:
-    if name.startswith("soft "):
-        return f"soft, about {name.removeprefix('soft ')}"
-    return {"ideal": "ideal: as sharp as the sensor shows", "strange": "neither"}[name]
+def _field_table(measurement: SceneMeasurement) -> Table:
+    rows = []
+    for place in measurement.over_field(*measurement.options["places"]):
+        numbers = (
+            str(getattr(one, name))
+            for name in ("mtf_nyquist", "rer", "fwhm_px")
+            for one in (place.across, place.along)
+        )
+        rows.append((f"{place.row:.0f}", f"{place.col:.0f}", *numbers))
+    chance = measurement.field.chance_constant
+    return Table(
+        (
+            "row", "column", "MTF at Nyquist across", "along", "RER across", "along",
+            "FWHM / px across", "along",
+        ),
+        tuple(rows), "rrrrrrrr", title="Sharpness over the field",
+        notes=(
+            "In the middle of equal parts of the scene. The chance that sharpness is the same "
+            f"everywhere is {chance:.2g}.",
+        ),
+    )  # fmt: skip
 
 
 def _reasons_table(measurement: SceneMeasurement) -> Table:

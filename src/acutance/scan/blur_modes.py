@@ -1,0 +1,152 @@
+"""Ways in which the blur of a sensor may change, and how much of each the edges of a scene show.
+
+A change of the logarithm of the optical transfer function (OTF) is a sum of modes: an added
+Gaussian blur, the same in all directions, across more than along, or oblique; and a loss in the
+middle of the band, as of defocus. With them the sensor's blur is told from that of all objects
+together (the ridge along which expectation and maximisation creeps; C. Liu, D. B. Rubin, Y. N. Wu,
+Biometrika 85, 1998, 755), and followed over the field of view (`acutance.scan.field_fit`).
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
+from acutance.scan.information import edge_terms
+from acutance.scan.population import EdgeLikelihoods, fit_shares
+
+__all__ = [
+    "BLUR_MODES",
+    "COMMON_MODES",
+    "ModesFit",
+    "blur_modes",
+    "changed",
+    "edge_modes",
+    "fit_modes",
+]
+
+BLUR_MODES: Final = ("all around", "across more than along", "oblique", "middle of the band")
+"""Units are the variance of a Gaussian blur, px^2; of the last, of one of the same effect at
+a quarter of a cycle per pixel."""
+COMMON_MODES: Final = 3
+"""The blurs: what a sensor and all of its objects have in common is none of shape."""
+_MAX_STEPS: Final = 8
+_MAX_HALVINGS: Final = 4
+_MAX_STEP: Final = 0.03
+"""Largest change of a variance in one step, px^2."""
+_LEAST: Final = 1e2
+"""Curvature below which a step is not trusted."""
+_SETTLED: Final = 0.05
+"""Rise of the log likelihood that is none."""
+
+
+class ModesFit(NamedTuple):
+    """The likeliest change of a sensor.
+
+    Attributes
+    ----------
+    amount : (q,) array
+    share : (p,) array
+        Of the parts of the population.
+    information : (q, q) array
+        Of the edges alone, about the amounts.
+    log_posterior : float
+    """
+
+    amount: Floats
+    share: Floats
+    information: Floats
+    log_posterior: float
+
+
+def blur_modes(u_cpp: Floats, v_cpp: Floats) -> Floats:
+    """Change of the logarithm of the OTF by a unit of every mode, (..., 4).
+
+    Parameters
+    ----------
+    u_cpp, v_cpp : (...) arrays
+        Frequencies across and along.
+    """
+    square = u_cpp**2 + v_cpp**2
+    middle = np.sin(np.pi * np.sqrt(square) / NYQUIST_CPP) ** 2 / 16
+    middle = np.where(square < NYQUIST_CPP**2, middle, 0.0)
+    parts = [square, u_cpp**2 - v_cpp**2, 2 * u_cpp * v_cpp, middle]
+    return np.asarray(-2 * np.pi**2 * np.stack(parts, axis=-1))
+
+
+def edge_modes(normal_deg: Floats, freq_cpp: Floats) -> Floats:
+    """The modes along directions, (n, k, 4)."""
+    angle = np.radians(normal_deg)[:, None]
+    return blur_modes(freq_cpp * np.cos(angle), freq_cpp * np.sin(angle))
+
+
+def changed(otf: Floats, log_gain: Floats) -> Floats:
+    """OTFs (n, 2 k), real parts first, times the exponential of (n, k)."""
+    gain = np.exp(log_gain)
+    return np.asarray(otf * np.hstack([gain, gain]))
+
+
+def fit_modes(
+    edges: EdgeLikelihoods,
+    otf: Floats,
+    share: Floats,
+    modes: Floats,
+    *,
+    start: Floats | None = None,
+    std: Floats | float = np.inf,
+) -> ModesFit:
+    """How much of every mode makes the edges likeliest.
+
+    Newton's method; what the edges are is integrated out.
+
+    Parameters
+    ----------
+    edges : EdgeLikelihoods
+    otf : (b, 2 k) array
+        The sensor along the bins.
+    share : (p,) array
+        First guess.
+    modes : (n, k, q) array
+        Change of the logarithm of the OTF that every edge sees.
+    start : (q,) array, optional
+        First guess of the amounts.
+    std : (q,) array or float, optional
+        Prior standard deviations of the amounts.
+    """
+    amount = np.zeros(modes.shape[2]) if start is None else start
+    precision = np.broadcast_to(np.asarray(std) ** -2.0, amount.shape)
+    seen = edges.turned(np.exp(modes @ amount))
+    share, member = fit_shares(seen, otf, share)
+    reached = member.log_likelihood - 0.5 * float(precision @ amount**2)
+    for _ in range(_MAX_STEPS):
+        pull, information = np.zeros(amount.size), np.zeros((amount.size,) * 2)
+        for terms in edge_terms(seen, otf, member, share):
+            both = np.concatenate([modes[terms.edges]] * 2, axis=1)
+            slopes = otf[seen.bin[terms.edges]][:, :, None] * both
+            pull += np.einsum("nkq,nk->q", slopes, terms.gradient)
+            information += np.einsum("nkq,nkp->qp", slopes, terms.information @ slopes)
+        step = _step(information, pull - precision * amount, precision)
+        for _ in range(_MAX_HALVINGS):
+            seen = edges.turned(np.exp(modes @ (amount + step)))
+            tried, member = fit_shares(seen, otf, share)
+            moved = amount + step
+            value = member.log_likelihood - 0.5 * float(precision @ moved**2)
+            if value > reached:
+                break
+            step = step / 3
+        else:
+            break
+        amount, share, rise, reached = moved, tried, value - reached, value
+        if rise < _SETTLED:
+            break
+    return ModesFit(amount, share, information, reached)
+
+
+def _step(information: Floats, pull: Floats, precision: Floats) -> Floats:
+    """Newton's step, upwards whatever the curvature."""
+    size, axes = np.linalg.eigh(information + np.diag(precision))
+    step = axes @ ((axes.T @ pull) / np.maximum(np.abs(size), _LEAST))
+    return np.asarray(np.clip(step, -_MAX_STEP, _MAX_STEP))

@@ -1,0 +1,163 @@
+"""Sharpness over the field of view: the blur of a sensor as a smooth surface.
+
+At a place p of the field the logarithm of the optical transfer function (OTF) is that of the
+middle plus modes of blur (`acutance.scan.blur_modes`), whose amounts are polynomials of p of the
+second degree at most::
+
+    ln H(u, v; p) = ln H(u, v) + sum over j, m of (P_j(p) - c_jm) a_jm psi_m(u, v)
+
+P_j are Legendre polynomials over the field, whose mean is zero; c_jm is the mean of P_j over the
+edges, each weighted by what it tells of mode m, so that errors of H and of a are independent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.curves.otf2d import OtfModel, PackableOtf
+from acutance.curves.short_repr import ShortRepr
+from acutance.scan.blur_modes import BLUR_MODES, blur_modes
+
+__all__ = ["DEGREES", "Field", "FieldOtf", "field_polynomials"]
+
+Complexes = NDArray[np.complex128]
+
+DEGREES: Final = (1, 1, 2, 2, 2)
+"""Of the polynomials: columns, rows, columns twice, both, rows twice."""
+_MAX_LOG_GAIN: Final = 1.0
+"""Beyond the band a change would grow without bounds, of light that is not there."""
+
+
+def field_polynomials(x: Floats, y: Floats) -> Floats:
+    """Legendre polynomials of places, -1 to 1 over the field, (n, 5)."""
+    parts = [x, y, 1.5 * x * x - 0.5, x * y, 1.5 * y * y - 0.5]
+    return np.asarray(np.stack(parts, axis=-1))
+
+
+@dataclass(frozen=True, eq=False)
+class FieldOtf(ShortRepr):
+    """The OTF at a place of the field, an `acutance.curves.OtfModel`.
+
+    Parameters
+    ----------
+    base : OtfModel
+        In the middle of the edges.
+    weight : (5, 4) array
+        Of the polynomials at the place, by mode.
+    amount : (20,) array
+    root : (20, r) array
+        Factor of its covariance.
+    """
+
+    base: OtfModel
+    weight: Floats
+    amount: Floats
+    root: Floats
+
+    @property
+    def band_cpp(self) -> float:
+        """Highest frequency that is transferred."""
+        return self.base.band_cpp
+
+    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """OTF, (n,), exactly 1 at zero frequency."""
+        return np.asarray(self.base.otf(u_cpp, v_cpp) * self._gain(u_cpp, v_cpp))
+
+    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+        """Factor of its covariance, (n, k): of the middle, and of the change."""
+        gain = self._gain(u_cpp, v_cpp)[:, None]
+        change = self.base.otf(u_cpp, v_cpp)[:, None] * (self._modes(u_cpp, v_cpp) @ self.root)
+        own = self.base.factor(u_cpp, v_cpp)
+        return np.asarray(np.concatenate([own, change], axis=1) * gain)
+
+    def packed(self) -> FieldOtf:
+        """The same in fewer bytes, where the middle has a lighter form."""
+        if not isinstance(self.base, PackableOtf):
+            return self
+        return replace(self, base=self.base.packed())
+
+    def _modes(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
+        """Change of the logarithm of the OTF by a unit of every amount, (n, 20)."""
+        each = self.weight[None] * blur_modes(u_cpp, v_cpp)[:, None]
+        return np.asarray(each.reshape(len(each), -1))
+
+    def _gain(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
+        log_gain = self._modes(u_cpp, v_cpp) @ self.amount
+        return np.asarray(np.exp(np.minimum(log_gain, _MAX_LOG_GAIN)))
+
+
+@dataclass(frozen=True, eq=False)
+class Field(ShortRepr):
+    """How the blur of a sensor changes over the part of an image that was scanned.
+
+    Parameters
+    ----------
+    roi : (row, col, height, width)
+        The part.
+    middle : (5, 4) array
+        Means of the polynomials over the edges, by mode.
+    amount : (20,) array
+        Of polynomials and modes, px^2.
+    root : (20, r) array
+        Factor of its covariance.
+    chance_constant : float
+        Probability that sharpness is the same everywhere, 0 to 1.
+    """
+
+    roi: tuple[int, int, int, int]
+    middle: Floats
+    amount: Floats
+    root: Floats
+    chance_constant: float
+
+    @classmethod
+    def constant(cls, roi: tuple[int, int, int, int]) -> Field:
+        """Of a sensor that is known to be the same everywhere."""
+        size = len(DEGREES) * len(BLUR_MODES)
+        middle = np.zeros((len(DEGREES), len(BLUR_MODES)))
+        return cls(roi, middle, np.zeros(size), np.zeros((size, 0)), 1.0)
+
+    def mean_of(self, base: OtfModel) -> FieldOtf:
+        """The mean over the field of a sensor that is `base` in the middle of the edges."""
+        return FieldOtf(base, -self.middle, self.amount, self.root)
+
+    def at(self, base: OtfModel, row: float, col: float) -> FieldOtf:
+        """The sensor at a place, in pixels of the image."""
+        weight = field_polynomials(*self.places(np.array(row), np.array(col)))
+        return FieldOtf(base, weight[:, None] - self.middle, self.amount, self.root)
+
+    def places(self, row: Floats, col: Floats) -> tuple[Floats, Floats]:
+        """Places in the field, -1 to 1 along columns (x) and rows (y)."""
+        return _centred(col, *self.roi[1::2]), _centred(row, *self.roi[::2])
+
+    def grid(self, rows: int, cols: int) -> tuple[Floats, Floats]:
+        """Rows and columns of the middles of so many equal parts of the field."""
+        row, col, height, width = self.roi
+        return _middles(row, height, rows), _middles(col, width, cols)
+
+    def holds(self, row: float, col: float) -> bool:
+        """Whether a place lies in the field."""
+        x, y = self.places(np.array(row), np.array(col))
+        return bool(max(abs(x), abs(y)) <= 1.0)
+
+    def summary(self) -> str:
+        """How likely it is that nothing changes."""
+        return f"constant with a chance of {self.chance_constant:.2g}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The chance of no change, for JSON."""
+        return {"chance_constant": round(self.chance_constant, 4)}
+
+
+def _centred(values: Floats, start: int, size: int) -> Floats:
+    half = 0.5 * size
+    return np.asarray((values - (start - 0.5) - half) / half)
+
+
+def _middles(start: int, size: int, count: int) -> Floats:
+    return np.asarray(start - 0.5 + size * (np.arange(count) + 0.5) / count)

@@ -1,0 +1,127 @@
+"""What the edges of a scene say of their sensor at a guess of it: gradient and information.
+
+At a guess of H the mixture of an edge's likelihoods has the gradient of the expected log
+likelihood (A. P. Dempster, N. M. Laird, D. B. Rubin, J. R. Stat. Soc. B 39, 1977, 1), and its
+curvature is the expected information less what the hidden softness costs, the covariance of the
+gradients (T. A. Louis, J. R. Stat. Soc. B 44, 1982, 226).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.scan.population import EdgeLikelihoods, Membership, share_information
+from acutance.scan.softness import FREE, STRANGE
+
+__all__ = ["EdgeTerms", "edge_terms", "expected_information", "observed_information"]
+
+
+class EdgeTerms(NamedTuple):
+    """Derivatives of the log likelihood of some edges by the sensor along their bins.
+
+    Attributes
+    ----------
+    edges : slice
+    gradient : (n, 2 k) array
+    information : (n, 2 k, 2 k) array
+        What the edges are being integrated out.
+    by_share : (n, 2 k, p) array
+        Covariance of the gradients by the sensor and by the shares of the parts.
+    """
+
+    edges: slice
+    gradient: Floats
+    information: Floats
+    by_share: Floats
+
+
+def edge_terms(
+    edges: EdgeLikelihoods, otf: Floats, member: Membership, share: Floats
+) -> Iterator[EdgeTerms]:
+    """Gradient and observed information of all edges, some at a time.
+
+    Parameters
+    ----------
+    edges : EdgeLikelihoods
+    otf : (b, 2 k) array
+    member : Membership
+        At that sensor and those shares.
+    share : (p,) array
+    """
+    for some in edges.chunks():
+        blur = edges.blur(member.softness_px[some] ** 2)
+        # Gradients of the log likelihood by the sensor, for every softness.
+        slopes = -(edges.off(otf, some, blur) @ _turned(edges.root[some])) * blur
+        chance, strange = member.chance[some], member.part[some, -1:]
+        weighted, if_strange = slopes * chance[:, :, None], slopes[:, 0] / STRANGE
+        mean = weighted.sum(axis=1) + strange * if_strange
+        missing = _turned(weighted) @ slopes - _squares(mean)
+        missing += strange[:, :, None] * _squares(if_strange)
+        by_part = np.concatenate([
+            weighted[:, :1],
+            np.einsum("pnt,ntk->npk", member.within[:, some], weighted[:, 1:]),
+            (strange * if_strange)[:, None],
+        ], axis=1)  # fmt: skip
+        by_share = _turned(by_part - member.part[some][:, :, None] * mean[:, None]) / share
+        complete = _complete(edges, some, blur, member.weight[some])
+        yield EdgeTerms(some, mean, complete - missing, by_share)
+
+
+def _complete(edges: EdgeLikelihoods, some: slice, blur: Floats, weight: Floats) -> Floats:
+    """Information of some edges if it were known what they are, (n, 2 k, 2 k)."""
+    root = edges.root[some]
+    return np.asarray((_turned(blur * weight[:, :, None]) @ blur) * (root @ _turned(root)))
+
+
+def _turned(matrices: Floats) -> Floats:
+    return np.swapaxes(matrices, 1, 2)
+
+
+def _squares(vectors: Floats) -> Floats:
+    return np.asarray(vectors[:, :, None] * vectors[:, None])
+
+
+def expected_information(edges: EdgeLikelihoods, member: Membership) -> tuple[Floats, Floats]:
+    """Information (b, 2 k, 2 k) about the sensor, and its product with the likeliest (b, 2 k).
+
+    If it were known what the edges are: the function that expectation and maximisation maximises.
+    """
+    bins, size = int(edges.bin.max()) + 1, edges.root.shape[1]
+    information, projection = np.zeros((bins, size, size)), np.zeros((bins, size))
+    for some in edges.chunks():
+        blur, weight = edges.blur(member.softness_px[some] ** 2), member.weight[some]
+        pull = np.einsum("nkr,nr->nk", edges.root[some], edges.value[some])
+        np.add.at(projection, edges.bin[some], np.einsum("nt,ntk->nk", weight, blur) * pull)
+        np.add.at(information, edges.bin[some], _complete(edges, some, blur, weight))
+    return information, projection
+
+
+def observed_information(
+    edges: EdgeLikelihoods, otf: Floats, member: Membership, share: Floats
+) -> tuple[Floats, Floats]:
+    """Information about the sensor in all directions, and the gradient of the log likelihood.
+
+    What the edges are is integrated out, and so are the shares of the parts.
+
+    Returns
+    -------
+    information : (b * 2 k, b * 2 k) array
+    gradient : (b * 2 k,) array
+    """
+    bins, size = otf.shape
+    own, gradient = np.zeros((bins, size, size)), np.zeros((bins, size))
+    by_share = np.zeros((bins, size, share.size))
+    for terms in edge_terms(edges, otf, member, share):
+        where = edges.bin[terms.edges]
+        np.add.at(own, where, terms.information)
+        np.add.at(gradient, where, terms.gradient)
+        np.add.at(by_share, where, terms.by_share)
+    whole = np.zeros((bins, size, bins, size))
+    whole[np.arange(bins), :, np.arange(bins)] = own
+    crossed = by_share.reshape(-1, share.size) @ FREE.T
+    cost = crossed @ np.linalg.solve(share_information(member, share), crossed.T)
+    return whole.reshape(bins * size, -1) - cost, gradient.ravel()
