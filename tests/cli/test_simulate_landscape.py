@@ -1,12 +1,16 @@
 """``acutance simulate landscape``: an image, and its edges as regions that can be measured."""
 
+import importlib
 import json
 from collections import Counter
 
 import numpy as np
 import pytest
 
+from acutance import simulate
+from acutance.cli.sensor import named_sensor
 from acutance.raster import open_image
+from acutance.simulate.landscape_pixels import draw_tiles
 
 
 @pytest.fixture
@@ -71,6 +75,43 @@ def test_blur_in_the_corners(render):
     assert all(one < before for before, one in zip(*nyquist, strict=True))
 
 
+def test_a_tilted_focus(render):
+    """The blur across and along is that of the column, at the middle of the object."""
+    _, even, _, _ = render()
+    for blur in ((0.4, 0.4), (0.0, 0.4)):
+        _, tilted, _, _ = render("--tilt-blur", f"{blur[0]},{blur[1]}")
+        for before, after in zip(even["features"], tilted["features"], strict=True):
+            one, other = before["properties"], after["properties"]
+            normal = np.radians(one["normal_deg"])
+            width = np.hypot(blur[0] * np.cos(normal), blur[1] * np.sin(normal))
+            lost = -np.log(other["sensor_mtf_nyquist"] / one["sensor_mtf_nyquist"])
+            sigma = np.sqrt(lost / 2) / (0.5 * np.pi)
+            assert sigma == pytest.approx(width * one["col"] / 319, abs=70 / 319 * width + 1e-6)
+
+
+def test_the_image_and_its_parts_are_those_of_python(render):
+    image, _, _, _ = render("--snr", 100, "--seed", 7, "--size", "300,1100")
+    drawn, _ = simulate.landscape(
+        named_sensor("generic-2005"), shape=(300, 1100), snr=100, rng=np.random.default_rng(7)
+    )
+    np.testing.assert_array_equal(image.read(), drawn)
+
+
+def test_an_interruption_leaves_no_file(acutance, tmp_path, monkeypatch):
+    """Ctrl-C after the first tile."""
+
+    def stopped(*arguments):
+        yield next(draw_tiles(*arguments))
+        raise KeyboardInterrupt
+
+    drawing = importlib.import_module("acutance.simulate.landscape")
+    monkeypatch.setattr(drawing, "draw_tiles", stopped)
+    size = ("--size", "300,1100")
+    result = acutance("simulate", "landscape", *size, "--out", tmp_path / "land.tif")
+    assert result.exit_code == 130
+    assert list(tmp_path.iterdir()) == []
+
+
 def counted(document):
     return Counter(one["properties"]["kind"] for one in document["features"])
 
@@ -116,10 +157,14 @@ def test_density_softness_and_slope(render):
         (("--texture", "0.1"), "lowest and highest"),
         (("--rims", 0.9, "--shadows", 0.4), "add up to"),
         (("--size", "20,20"), "finds room"),
+        (("--size", "30000,30000"), "400 million pixels"),
+        (("--tilt-blur", "0.3"), "across and along"),
+        (("--tilt-blur", "0.3,-1"), "along_px is -1"),
+        (("--tilt-blur", "0.3,0.1", "--corner-blur", 0.2), "use one"),
     ],
 )
 def test_what_cannot_be_is_refused(acutance, tmp_path, words, message):
     result = acutance("simulate", "landscape", *words, "--out", tmp_path / "land.tif")
     assert result.exit_code == 2
     assert message in result.stderr
-    assert not (tmp_path / "land.tif").exists()
+    assert list(tmp_path.iterdir()) == []

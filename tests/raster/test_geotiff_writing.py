@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import rasterio
 
-from acutance.errors import ImageError, OptionError
-from acutance.raster import Gsd, open_image, write_geotiff
+from acutance.errors import ImageError, OptionError, RegionError
+from acutance.raster import Box, Gsd, open_image, write_geotiff, write_geotiff_tiles
 
 
 @pytest.mark.parametrize("dtype", ["uint8", "uint16", "int16", "float32", "float64"])
@@ -68,4 +68,52 @@ def test_places_and_types_that_cannot_be_written(tmp_path, pixels):
         write_geotiff(tmp_path / "a.tif", pixels.astype(np.longdouble))
     with pytest.raises(OptionError, match="GSD"):
         write_geotiff(tmp_path / "a.tif", pixels, gsd_m=0)
+    assert list(tmp_path.iterdir()) == []
+
+
+def in_tiles(array, side=100):
+    for row in range(0, array.shape[0], side):
+        for col in range(0, array.shape[1], side):
+            box = Box(row, col, min(side, array.shape[0] - row), min(side, array.shape[1] - col))
+            yield box, array[box.slices]
+
+
+def test_an_image_in_parts(tmp_path):
+    path = tmp_path / "a.tif"
+    array = np.random.default_rng(1).normal(size=(530, 270)).astype(np.float32)
+    write_geotiff_tiles(path, array.shape, in_tiles(array), gsd_m=0.5)
+    write_geotiff(tmp_path / "b.tif", array, gsd_m=0.5)
+    image = open_image(path)
+    np.testing.assert_array_equal(image.read(), array)
+    assert image.gsd() == Gsd(0.5, 0.5)
+    write_geotiff_tiles(path, array.shape, in_tiles(array, 256), dtype=np.float64)
+    assert open_image(path).dtype == "float64"
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["a.tif", "b.tif"]
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError, OSError])
+def test_parts_that_stop_to_come_leave_nothing_behind(tmp_path, error):
+    """The error is that of the parts, and an older file stays."""
+    path = tmp_path / "a.tif"
+    path.write_bytes(b"older")
+
+    def parts():
+        yield from in_tiles(np.ones((100, 300), np.float32))
+        raise error("stopped")
+
+    with pytest.raises(error, match="stopped"):
+        write_geotiff_tiles(path, (200, 300), parts())
+    assert [entry.name for entry in tmp_path.iterdir()] == ["a.tif"]
+    assert path.read_bytes() == b"older"
+
+
+def test_parts_that_make_no_image_are_refused(tmp_path):
+    array = np.ones((200, 300), np.float32)
+    tiles = list(in_tiles(array))
+    with pytest.raises(ImageError, match="parts hold 50000 pixels, the image of 200 by 300"):
+        write_geotiff_tiles(tmp_path / "a.tif", array.shape, tiles[:-1])
+    with pytest.raises(RegionError, match="image of 150 rows"):
+        write_geotiff_tiles(tmp_path / "a.tif", (150, 300), tiles)
+    with pytest.raises(ImageError, match="box of 100 by 100"):
+        write_geotiff_tiles(tmp_path / "a.tif", array.shape, [(tiles[0][0], array)])
     assert list(tmp_path.iterdir()) == []

@@ -13,7 +13,9 @@ from acutance.simulate import (
     LandscapeOptions,
     Noise,
     SoftCorners,
+    TiltedFocus,
     landscape,
+    landscape_tiles,
     reference_systems,
 )
 
@@ -143,6 +145,43 @@ def test_a_field_varies_from_object_to_object():
     assert field.at(0.0, 0.0).blocks[-1].sigma_px == pytest.approx(0.5)
 
 
+def test_a_tilted_focus_blurs_one_side_and_one_direction_more():
+    field = TiltedFocus(SYSTEMS["gaussian"], SHAPE, 0.6, 0.2)
+    image, truth = seeded(field, options=replace(BARE, soft=0.0, curved=0.0))
+    across = [one for one in truth.edges if abs(math.cos(angle(one))) > 0.9]
+    along = [one for one in truth.edges if abs(math.sin(angle(one))) > 0.9]
+    slopes = [
+        np.polyfit([one.line.col for one in group], [float(one.mtf_nyquist) for one in group], 1)[0]
+        for group in (across, along)
+    ]
+    assert slopes[0] < 2 * slopes[1] < 0
+    edge = max(across, key=lambda one: one.line.col)
+    t, s, values = around(edge, image)
+    kept = (np.abs(t) < 0.4 * edge.length_px) & (np.abs(s) < 6)
+    esf = edge.system.profile(edge.ground_line.normal_deg).esf(s[kept])
+    np.testing.assert_allclose(values[kept], edge.dark + edge.contrast * esf, atol=0.05)
+
+
+def angle(edge):
+    return math.radians(edge.ground_line.normal_deg)
+
+
+def test_a_focus_is_sharpest_in_its_column():
+    field = TiltedFocus(SYSTEMS["gaussian"], (50, 301), 0.6, 0.3, focus_col=100.0)
+    assert field.at(20.0, 100.0) == SYSTEMS["gaussian"]
+    for col, share in ((300.0, 1.0), (200.0, 0.5), (0.0, 0.5)):
+        added = field.at(7.0, col).blocks[-1]
+        assert added.sigma_px == pytest.approx(0.6 * share)
+        assert added.sigma_along_px == pytest.approx(0.3 * share)
+    # The transfer across is that of the first number.
+    otf = field.at(0.0, 300.0).otf([0.5, 0.0], [0.0, 0.5]) / SYSTEMS["gaussian"].otf(0.5, 0.0)
+    np.testing.assert_allclose(otf, np.exp(-2 * (math.pi * np.array([0.6, 0.3]) * 0.5) ** 2))
+    with pytest.raises(ModelError, match="along_px is -1"):
+        TiltedFocus(SYSTEMS["gaussian"], (50, 300), 0.6, -1.0)
+    with pytest.raises(ModelError, match="focus_col is 300"):
+        TiltedFocus(SYSTEMS["gaussian"], (50, 300), 0.6, 0.2, focus_col=300)
+
+
 def test_ground_slopes_and_has_texture():
     _, flat = seeded(options=BARE)
     slope, contrast = 0.001, BARE.typical_contrast
@@ -171,12 +210,48 @@ def test_the_same_seed_gives_the_same_landscape():
     assert not np.array_equal(images[0], images[2])
 
 
+def test_tiles_are_the_image():
+    shape = (1100, 1200)
+    options = replace(LandscapeOptions(), density_per_mpx=20.0)
+    image, truth = seeded(shape=shape, options=options, snr=100)
+    tiles, listed = landscape_tiles(
+        SYSTEMS["gaussian"], shape=shape, options=options, snr=100, rng=np.random.default_rng(5)
+    )
+    seen = np.zeros(shape, int)
+    for box, pixels in tiles:
+        assert pixels.dtype == np.float32
+        np.testing.assert_array_equal(pixels, image[box.slices])
+        seen[box.slices] += 1
+    assert np.all(seen == 1)
+    assert [one.name for one in listed.edges] == [one.name for one in truth.edges]
+
+
+def test_objects_and_textures_do_not_depend_on_the_tiles(monkeypatch):
+    """Objects to the last bit; a texture is filtered with other ground around it."""
+    objects, whole = (seeded(options=options)[0] for options in (EVEN, LandscapeOptions()))
+    monkeypatch.setattr("acutance.simulate.landscape_pixels.TILE_PX", 192)
+    np.testing.assert_array_equal(seeded(options=EVEN)[0], objects)
+    in_tiles = seeded(options=LandscapeOptions())[0]
+    np.testing.assert_allclose(in_tiles, whole, atol=1e-3)
+
+
+def test_noise_is_white_across_tiles(monkeypatch):
+    monkeypatch.setattr("acutance.simulate.landscape_pixels.TILE_PX", 64)
+    options = replace(BARE, density_per_mpx=3.0)
+    noise = seeded(options=options, snr=50)[0] - seeded(options=options)[0]
+    assert np.std(noise) == pytest.approx(BARE.typical_contrast / 50, rel=0.01)
+    for lag in (1, 64):
+        for shifted in (noise[lag:] * noise[:-lag], noise[:, lag:] * noise[:, :-lag]):
+            assert abs(np.mean(shifted)) < 4 * np.var(noise) / math.sqrt(noise.size)
+
+
 def test_shares_are_kept_and_edges_are_of_every_direction():
     seen = []
     _, truth = seeded(
         shape=(1200, 1200), options=replace(EVEN, discs=0.2), progress=lambda *at: seen.append(at)
     )
-    assert seen[-1][0] == seen[-1][1] == len(seen)
+    assert [done for done, _ in seen] == sorted({done for done, _ in seen})
+    assert seen[-1] == (1200 * 1200, 1200 * 1200)
     kinds = [edge.kind(16.0) for edge in truth.edges]
     assert len(kinds) > 250
     assert 0.3 < kinds.count("clean") / len(kinds) < 0.65

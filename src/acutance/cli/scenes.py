@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,8 +18,11 @@ from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from acutance.curves.grid import Floats
     from acutance.optics import Sensor
+    from acutance.raster import Box
 
 __all__ = [
     "EXAMPLES",
@@ -75,13 +79,25 @@ class SimulatedFiles:
 
     def write(self, pixels: Floats, sensor: Sensor, document: dict[str, Any], seed: int) -> None:
         """Write both: pixels in single precision, the truth with the seed that made them."""
-        import numpy as np
+        from acutance.raster import Box
 
-        from acutance.raster import Gsd, write_geotiff
+        whole = Box.whole((pixels.shape[0], pixels.shape[1]))
+        self.write_tiles([(whole, pixels)], whole.shape, sensor, document, seed)
+
+    def write_tiles(
+        self,
+        tiles: Iterable[tuple[Box, NDArray[Any]]],
+        shape: tuple[int, int],
+        sensor: Sensor,
+        document: dict[str, Any],
+        seed: int,
+    ) -> None:
+        """The same of an image that comes in parts."""
+        from acutance.raster import Gsd, write_geotiff_tiles
         from acutance.report import json_text
 
         gsd = None if sensor.pixel_m is None else Gsd(*sensor.pixel_m)
-        write_geotiff(self.image.place, pixels.astype(np.float32), gsd_m=gsd)
+        write_geotiff_tiles(self.image.place, shape, tiles, gsd_m=gsd)
         say(f"wrote {self.image.path}")
         self.truth.deliver(json_text({**document, "seed": seed}))
 

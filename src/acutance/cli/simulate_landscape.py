@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,6 +17,12 @@ from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.cli.study import progress_bar
 from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.optics import Sensor
+    from acutance.raster import Box
+    from acutance.simulate import SensorField
+    from acutance.simulate.landscape_pixels import Canvas
 
 __all__ = ["LANDSCAPE_EXAMPLE", "landscape"]
 
@@ -76,6 +84,13 @@ def landscape(
             metavar="PX", min=0.0, help="Gaussian blur added in the corners, none in the middle."
         ),
     ] = 0.0,
+    tilt_blur: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ACROSS,ALONG",
+            help="Gaussian blurs of a tilted focus in px, in the last column; none in the first.",
+        ),
+    ] = None,
     size: Annotated[
         str, typer.Option(metavar="ROWS,COLS", help="Size of the image in pixels.")
     ] = "1000,1000",
@@ -127,20 +142,49 @@ def landscape(
         slope_per_px=slope,
         **shares,
     )
-    field = simulate.SoftCorners(system, shape, corner_blur) if corner_blur > 0 else system
-    with progress_bar("objects") as progress:
-        image, truth = simulate.landscape(
-            field,
-            shape=shape,
-            options=options,
-            snr=noise.snr,
-            noise=noise.described(),
-            rng=np.random.default_rng(seed),
-            progress=progress,
-        )
+    field = _field(system, shape, corner_blur, tilt_blur)
+    tiles, truth = simulate.landscape_tiles(
+        field,
+        shape=shape,
+        options=options,
+        snr=noise.snr,
+        noise=noise.described(),
+        rng=np.random.default_rng(seed),
+    )
     with progress_bar("truth of edges") as progress:
         document = landscape_document(truth, half_width_px=half_width, progress=progress)
-    files.write(image, system, document, seed)
+    with progress_bar("image, megapixels") as progress:
+        files.write_tiles(_counted(tiles, shape, progress), shape, system, document, seed)
     found = Counter(edge.kind(half_width) for edge in truth.edges)
     listed = ", ".join(f"{kind} {count}" for kind, count in found.most_common())
     typer.echo(f"{len(truth.edges)} edges, by what lies within {half_width:g} px: {listed}")
+
+
+def _field(
+    sensor: Sensor, shape: tuple[int, int], corner_blur: float, tilt_blur: str | None
+) -> Sensor | SensorField:
+    """The sensor, and how its blur changes over the image."""
+    from acutance.simulate import SoftCorners, TiltedFocus
+
+    if tilt_blur is None:
+        return SoftCorners(sensor, shape, corner_blur) if corner_blur > 0 else sensor
+    if corner_blur > 0:
+        raise OptionError(
+            f"--corner-blur {corner_blur:g} and --tilt-blur {tilt_blur} were both given: use one"
+        )
+    across, along = parse_pair("--tilt-blur", tilt_blur, "blur across and along, as in 0.4,0.2")
+    return TiltedFocus(sensor, shape, across, along)
+
+
+def _counted(
+    tiles: Iterable[tuple[Box, Canvas]],
+    shape: tuple[int, int],
+    progress: Callable[[int, int], None] | None,
+) -> Iterator[tuple[Box, Canvas]]:
+    """Tiles with their pixels counted in millions."""
+    done = 0
+    for box, pixels in tiles:
+        yield box, pixels
+        done += pixels.size
+        if progress is not None:
+            progress(math.ceil(done / 1e6), math.ceil(shape[0] * shape[1] / 1e6))

@@ -10,7 +10,7 @@ from acutance.raster.positions import read_positions
 from acutance.raster.region import Box, Region
 from acutance.raster.roi import parse_roi, parse_rois
 from acutance.raster.site import Site, find_site, site_region, sites
-from acutance.raster.writing import write_geotiff
+from acutance.raster.writing import write_geotiff, write_geotiff_tiles
 
 __all__ = [
     "Box",
@@ -33,4 +33,5 @@ __all__ = [
     "site_region",
     "sites",
     "write_geotiff",
+    "write_geotiff_tiles",
 ]

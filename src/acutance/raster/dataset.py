@@ -30,11 +30,11 @@ from acutance.raster.packed_file import packed_names
 from acutance.raster.pixels import equals_nodata, usable_values
 from acutance.raster.region import Box
 
-__all__ = ["GSD_TAGS", "DatasetPixels", "open_dataset", "open_quietly"]
+__all__ = ["CACHE_BYTES", "GSD_TAGS", "DatasetPixels", "open_dataset", "open_quietly"]
 
 GSD_TAGS = ("ACUTANCE_GSD_ROW_M", "ACUTANCE_GSD_COL_M")
 
-_CACHE_BYTES = 32 * 2**20
+CACHE_BYTES = 32 * 2**20
 """GDAL's block cache; its own default is a twentieth of the memory."""
 
 _PACKED_TRIED, _PACKED_NAMED = 20, 5
@@ -139,7 +139,7 @@ def open_quietly(path: str, mode: str = "r", **profile: Any) -> Any:
 def _opened(path: str) -> Iterator[Any]:
     """A dataset open for reading, with a small block cache and errors in our own words."""
     try:
-        with rasterio.Env(GDAL_CACHEMAX=_CACHE_BYTES), open_quietly(path) as dataset:
+        with rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES), open_quietly(path) as dataset:
             yield dataset
     except (RasterioError, CPLE_BaseError) as error:
         reason = str(error.__cause__ or error)

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import os
-import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from acutance.errors import ImageError
 from acutance.raster.gsd import Gsd
+from acutance.raster.region import Box
 
-__all__ = ["write_geotiff"]
+__all__ = ["write_geotiff", "write_geotiff_tiles"]
+
+Transform = tuple[float, float, float, float, float, float]
+"""Geotransform (a, b, c, d, e, f)."""
 
 _TILE_PX = 256
 
@@ -22,7 +28,7 @@ def write_geotiff(
     path: str | os.PathLike[str],
     array: ArrayLike,
     *,
-    transform: tuple[float, float, float, float, float, float] | None = None,
+    transform: Transform | None = None,
     crs: str | None = None,
     nodata: float | None = None,
     gsd_m: float | Gsd | None = None,
@@ -54,21 +60,78 @@ def write_geotiff(
     OptionError
         If the GSD is not a positive number.
     """
-    from rasterio._err import CPLE_BaseError
-    from rasterio.errors import RasterioError
-    from rasterio.transform import Affine
-
-    from acutance.raster.dataset import GSD_TAGS, open_quietly
-
-    target = Path(path)
     bands = _as_bands(np.asarray(array))
-    gsd = Gsd.given(gsd_m)
+    place = (transform, crs, nodata, Gsd.given(gsd_m))
+    whole = Box.whole((bands.shape[1], bands.shape[2]))
+    _write(Path(path), bands.shape[0], whole.shape, bands.dtype, [(whole, bands)], *place)
+
+
+def write_geotiff_tiles(
+    path: str | os.PathLike[str],
+    shape: tuple[int, int],
+    tiles: Iterable[tuple[Box, NDArray[Any]]],
+    *,
+    dtype: DTypeLike = np.float32,
+    transform: Transform | None = None,
+    crs: str | None = None,
+    nodata: float | None = None,
+    gsd_m: float | Gsd | None = None,
+) -> None:
+    """Write an image of one band that comes in parts, with the memory of a part.
+
+    The file is as `write_geotiff` writes it, whole or not at all: an error or an interruption
+    while the parts come leaves nothing behind.
+
+    Parameters
+    ----------
+    path : str or path
+        An existing file is replaced.
+    shape : (rows, cols)
+        Of the whole image.
+    tiles : iterable of (Box, (height, width) array)
+        Every pixel once, in any order. Parts that begin and end at multiples of 256 pixels are
+        compressed once.
+    dtype : dtype_like, optional
+        The type that is written.
+    transform, crs, nodata, gsd_m : optional
+        As in `write_geotiff`.
+
+    Raises
+    ------
+    ImageError
+        If the parts do not make the image, or the file cannot be written.
+    OptionError
+        If the GSD is not a positive number.
+    """
+    bands = ((box, _tile(box, pixels, shape)) for box, pixels in tiles)
+    place = (transform, crs, nodata, Gsd.given(gsd_m))
+    _write(Path(path), 1, shape, np.dtype(dtype), bands, *place)
+
+
+def _write(
+    target: Path,
+    count: int,
+    shape: tuple[int, int],
+    dtype: np.dtype[Any],
+    parts: Iterable[tuple[Box, NDArray[Any]]],
+    transform: Transform | None,
+    crs: str | None,
+    nodata: float | None,
+    gsd: Gsd | None,
+) -> None:
+    """Write `count` bands of a `shape`, part by part, under another name; then rename the file."""
+    from rasterio import Env
+    from rasterio.transform import Affine
+    from rasterio.windows import Window
+
+    from acutance.raster.dataset import CACHE_BYTES, GSD_TAGS, open_quietly
+
     profile = {
         "driver": "GTiff",
-        "count": bands.shape[0],
-        "height": bands.shape[1],
-        "width": bands.shape[2],
-        "dtype": bands.dtype.name,
+        "count": count,
+        "height": shape[0],
+        "width": shape[1],
+        "dtype": dtype.name,
         "nodata": nodata,
         "crs": crs,
         "transform": None if transform is None else Affine(*transform),
@@ -76,23 +139,57 @@ def write_geotiff(
         "blockxsize": _TILE_PX,
         "blockysize": _TILE_PX,
         "compress": "deflate",
-        "predictor": 3 if bands.dtype.kind == "f" else 2,
+        "predictor": 3 if dtype.kind == "f" else 2,
         "bigtiff": "if_safer",
     }
-    try:
-        with tempfile.TemporaryDirectory(prefix=".acutance-", dir=target.parent) as folder:
+    written = 0
+    with ExitStack() as stack:
+        # Errors of what makes the parts are its own, so the loop stands outside.
+        with _in_our_words(target, dtype):
+            folder = stack.enter_context(TemporaryDirectory(prefix=".acutance-", dir=target.parent))
+            stack.enter_context(Env(GDAL_CACHEMAX=CACHE_BYTES))
             partial = os.path.join(folder, "image.tif")
-            with open_quietly(partial, "w", **profile) as dataset:
-                dataset.write(bands)
-                if gsd is not None:
-                    values = (repr(gsd.row_m), repr(gsd.col_m))
-                    dataset.update_tags(**dict(zip(GSD_TAGS, values, strict=True)))
+            dataset = stack.enter_context(open_quietly(partial, "w", **profile))
+            if gsd is not None:
+                values = (repr(gsd.row_m), repr(gsd.col_m))
+                dataset.update_tags(**dict(zip(GSD_TAGS, values, strict=True)))
+        for box, bands in parts:
+            written += box.height * box.width
+            with _in_our_words(target, dtype):
+                dataset.write(bands, window=Window(box.col, box.row, box.width, box.height))
+        if written != shape[0] * shape[1]:
+            raise ImageError(
+                f"{target} is not written: its parts hold {written} pixels, the image of "
+                f"{shape[0]} by {shape[1]} has {shape[0] * shape[1]}; give each of them once"
+            )
+        with _in_our_words(target, dtype):
+            dataset.close()
             os.replace(partial, target)
+
+
+@contextmanager
+def _in_our_words(target: Path, dtype: np.dtype[Any]) -> Iterator[None]:
+    from rasterio._err import CPLE_BaseError
+    from rasterio.errors import RasterioError
+
+    try:
+        yield
     except (RasterioError, CPLE_BaseError, OSError, ValueError, TypeError) as error:
         raise ImageError(
             f"{target} cannot be written ({error.__cause__ or error}): check that the folder "
-            f"exists and may be written to, and that GeoTIFF has the type {bands.dtype.name}"
+            f"exists and may be written to, and that GeoTIFF has the type {dtype.name}"
         ) from error
+
+
+def _tile(box: Box, pixels: NDArray[Any], shape: tuple[int, int]) -> NDArray[Any]:
+    """A part with its band first, if it fits."""
+    box.require_inside(shape)
+    if pixels.shape != box.shape:
+        raise ImageError(
+            f"a part of shape {pixels.shape} was given for a box of {box.height} by {box.width} "
+            "pixels: give (rows, columns) of that size"
+        )
+    return pixels[np.newaxis]
 
 
 def _as_bands(array: NDArray[Any]) -> NDArray[Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from acutance.report.budget import sensor_document
@@ -143,7 +143,8 @@ def landscape_document(
         features.append(
             {
                 "type": "Feature",
-                "properties": _landscape_edge(edge, half_width_px),
+                # Of a copy: an edge keeps its curves, and there may be tens of thousands.
+                "properties": _landscape_edge(replace(edge), half_width_px),
                 "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]},
             }
         )

@@ -5,7 +5,7 @@ from acutance.simulate.campaign import Placed, brookings, render_site
 from acutance.simulate.edge import Truth, edge, render_edge
 from acutance.simulate.galaxy import Galaxy
 from acutance.simulate.ground import GroundNoise, alias_bands, render_raster
-from acutance.simulate.landscape import LandscapeTruth, landscape
+from acutance.simulate.landscape import LandscapeTruth, landscape, landscape_tiles
 from acutance.simulate.landscape_edges import Beside, LandscapeEdge
 from acutance.simulate.landscape_layout import Waves
 from acutance.simulate.landscape_options import LandscapeOptions
@@ -27,7 +27,7 @@ from acutance.simulate.scene import (
     stamp,
     texture,
 )
-from acutance.simulate.sensor_field import SensorField, SoftCorners
+from acutance.simulate.sensor_field import SensorField, SoftCorners, TiltedFocus
 from acutance.simulate.site import Scene, SceneEdge, SceneTarget, checkerboard, site
 from acutance.simulate.sky import SkyField, SkyTruth, sky
 from acutance.simulate.star import Star, StarTruth, add_star, star
@@ -68,6 +68,7 @@ __all__ = [
     "Star",
     "StarTruth",
     "Strip",
+    "TiltedFocus",
     "Truth",
     "Waves",
     "add_patches",
@@ -78,6 +79,7 @@ __all__ = [
     "checkerboard",
     "edge",
     "landscape",
+    "landscape_tiles",
     "mirror_columns",
     "mirror_square",
     "pair",

@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
+from acutance.errors import ModelError
 from acutance.simulate.landscape_objects import draw_object
 from acutance.simulate.landscape_options import LandscapeOptions
 from acutance.simulate.parcel import Parcel
 
-__all__ = ["Waves", "draw_waves", "place_objects"]
+__all__ = ["LandscapeLayout", "Waves", "draw_layout"]
 
 _CELL_PX = 2
 """Occupied ground is kept in squares of this side."""
@@ -24,6 +25,9 @@ _ATTEMPTS = 80
 
 _WAVES, _WAVE_PX = 5, (250.0, 900.0)
 """The ground is a sum of so many waves; no sensor changes waves of these lengths."""
+
+_SEED_WORDS = 4
+"""Of 32 bits each."""
 
 Mask = NDArray[np.bool_]
 
@@ -55,7 +59,54 @@ class Waves:
         return found
 
 
-def draw_waves(options: LandscapeOptions, rng: np.random.Generator) -> Waves:
+@dataclass(frozen=True, eq=False)
+class LandscapeLayout:
+    """All that is drawn at random of a landscape, but for its pixels.
+
+    Parameters
+    ----------
+    shape : (rows, cols)
+    options : LandscapeOptions
+    objects : tuple of tuple of Parcel
+        The parcels of each object.
+    ground : Waves
+    ground_texture : float
+        Standard deviation of the ground's texture in the image.
+    seed : tuple of int
+        Of the random numbers of single pixels: textures and noise.
+    """
+
+    shape: tuple[int, int]
+    options: LandscapeOptions
+    objects: tuple[tuple[Parcel, ...], ...]
+    ground: Waves
+    ground_texture: float
+    seed: tuple[int, ...]
+
+
+def draw_layout(
+    shape: tuple[int, int], options: LandscapeOptions, rng: np.random.Generator
+) -> LandscapeLayout:
+    """A landscape without its pixels.
+
+    Raises
+    ------
+    ModelError
+        If no object finds room.
+    """
+    ground = _draw_waves(options, rng)
+    ground_texture = options.typical_contrast * rng.uniform(*options.texture)
+    objects = _place_objects(shape, options, rng)
+    if not objects:
+        raise ModelError(
+            f"none of the objects finds room in an image of {shape[0]} by {shape[1]} px: use a "
+            "larger image, or smaller objects (LandscapeOptions)"
+        )
+    seed = tuple(int(word) for word in rng.integers(0, 2**32, _SEED_WORDS))
+    return LandscapeLayout(shape, options, tuple(objects), ground, ground_texture, seed)
+
+
+def _draw_waves(options: LandscapeOptions, rng: np.random.Generator) -> Waves:
     """Ground of the wanted root mean square slope."""
     slope = options.slope_per_px * options.typical_contrast / math.sqrt(_WAVES)
     waves = []
@@ -67,23 +118,10 @@ def draw_waves(options: LandscapeOptions, rng: np.random.Generator) -> Waves:
     return Waves(options.ground, tuple(waves))
 
 
-def place_objects(
+def _place_objects(
     shape: tuple[int, int], options: LandscapeOptions, rng: np.random.Generator
 ) -> list[tuple[Parcel, ...]]:
-    """Objects at random places, none nearer to another than asked for.
-
-    Parameters
-    ----------
-    shape : (rows, cols)
-        Of the image, which holds all of them whole.
-    options : LandscapeOptions
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    list of tuple of Parcel
-        The parcels of each object. Objects that find no room are left out.
-    """
+    """Objects at random places, none nearer to another than asked for, all whole in the image."""
     count = max(1, round(options.density_per_mpx * shape[0] * shape[1] / 1e6))
     drawn = [draw_object(options, rng) for _ in range(count)]
     masks = [_mask(one, 0.5 * options.clear_px) for one in drawn]

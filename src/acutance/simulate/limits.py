@@ -23,7 +23,7 @@ MAX_PIXELS = 25_000_000
 """Of an image of a single target, which takes about 120 bytes a pixel while it is rendered."""
 
 MAX_SCENE_PIXELS = 400_000_000
-"""Of a scene of many targets, rendered in windows, which takes about 12 bytes a pixel."""
+"""Of a scene of many targets, rendered in windows: up to 12 bytes a pixel in memory."""
 
 
 def require_shape(shape: tuple[int, int], most: int = MAX_PIXELS) -> None:

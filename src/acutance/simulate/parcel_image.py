@@ -12,16 +12,15 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
 from acutance.curves.grid import Floats
 from acutance.optics.block import Transfer
 from acutance.optics.sensor import Sensor
+from acutance.raster import Box
 from acutance.simulate.parcel import Parcel
-from acutance.simulate.scene import stamp
 
-__all__ = ["add_parcels", "fine_samples", "reach_of_light", "render_parcels"]
+__all__ = ["fine_samples", "reach_of_light", "render_parcels", "window_of_light"]
 
 _BLUR_SAMPLES = 1.1
 """Standard deviation of the Gaussian in fine samples: aliases below 1e-9 at the zero frequency."""
@@ -100,39 +99,13 @@ def render_parcels(
     return _every_pixel(spectrum, shape, subpixels), covers
 
 
-def add_parcels(
-    image: NDArray[np.float32],
-    covers: NDArray[np.float32],
-    sensor: Sensor,
-    parcels: Sequence[Parcel],
-    *,
-    reach_px: int,
-    subpixels: int,
-) -> None:
-    """Add parcels that lie together to a large image, at the cost of a small one.
-
-    Parameters
-    ----------
-    image : (rows, cols) array
-        Changed in place: a canvas.
-    covers : (2, rows, cols) array
-        Changed in place, as `render_parcels` returns it.
-    sensor : Sensor
-    parcels : sequence of Parcel
-    reach_px : int
-        How far their light is followed.
-    subpixels : int
-        Fine samples in a pixel, along one axis.
-    """
+def window_of_light(parcels: Sequence[Parcel], reach_px: int) -> Box:
+    """Where parcels that lie together are seen, with `reach_px` of empty ground around them."""
     extents = np.array([_extent(one) for one in parcels])
     top, left = (math.floor(low) - reach_px for low in extents[:, :2].min(axis=0))
     bottom, right = (math.ceil(high) + reach_px for high in extents[:, 2:].max(axis=0))
     rows, cols = (-(-size // _STEP_PX) * _STEP_PX for size in (bottom - top, right - left))
-    moved = [one.moved(-top, -left) for one in parcels]
-    part, shares = render_parcels(sensor, moved, (rows, cols), subpixels=subpixels)
-    stamp(image, part, top, left)
-    for whole, share in zip(covers, shares, strict=True):
-        stamp(whole, share, top, left)
+    return Box(top, left, rows, cols)
 
 
 def _extent(parcel: Parcel) -> tuple[float, float, float, float]:

@@ -25,6 +25,7 @@ __all__ = [
     "Shape",
     "Strip",
     "add_patches",
+    "grain_transfer",
     "render_patches",
     "render_strip",
     "stamp",
@@ -277,12 +278,15 @@ def texture(
         raise ModelError(f"texture: grain_px is {grain_px:g}, it has to be at least 0.5")
     if max(shape) > _TILE_PX:
         return _wide_texture(sensor, shape, std, grain_px, rng)
-    grain, gain = _grain(sensor, shape, grain_px)
+    grain, gain = grain_transfer(sensor, shape, grain_px)
     white = np.fft.rfft2(rng.standard_normal(shape))
     return np.asarray(std * gain * np.fft.irfft2(white * grain, shape))
 
 
-def _grain(sensor: Sensor, shape: tuple[int, int], grain_px: float) -> tuple[Transfer, float]:
+@lru_cache(maxsize=4)
+def grain_transfer(
+    sensor: Sensor, shape: tuple[int, int], grain_px: float
+) -> tuple[Transfer, float]:
     """Transfer of a grain seen through the sensor, and what gives it unit variance."""
     u = np.fft.rfftfreq(shape[1])
     v = np.fft.fftfreq(shape[0])[:, None]
@@ -296,7 +300,7 @@ def _wide_texture(
 ) -> Floats:
     """Texture of a large image, tile after tile, in single precision: tiles overlap and add up."""
     side = _TILE_PX + _KERNEL_PX
-    grain, gain = _grain(sensor, (side, side), grain_px)
+    grain, gain = grain_transfer(sensor, (side, side), grain_px)
     total = np.zeros(shape, np.float32)
     half = _KERNEL_PX // 2
     for top in range(-half, shape[0] + half, _TILE_PX):
