@@ -11,6 +11,7 @@ from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS
 
 TARGETS = ("vertical edge", "horizontal edge", "pulse tarp", "bars", "star", "mirrors")
+PAGES = (*TARGETS, "combined", "landscape")
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +30,7 @@ def test_one_image_holds_every_target_and_its_truth_lies_beside_it(folder):
     assert {one["kind"] for one in truth["targets"].values()} == {
         "pulse", "bars", "star", "points",
     }  # fmt: skip
-    assert [path.name for path in folder.glob("*.tif")] == ["site.tif"]
+    assert sorted(path.name for path in folder.glob("*.tif")) == ["landscape.tif", "site.tif"]
 
 
 def test_the_report_names_every_method_and_its_pages_exist(folder):
@@ -38,7 +39,7 @@ def test_the_report_names_every_method_and_its_pages_exist(folder):
     for name in (*methods, *TARGETS, "all combined"):
         assert name in index
     pages = re.findall(r'href="([^"]+)"', index)
-    assert len(pages) == len(TARGETS) + 1
+    assert set(pages) == {f"{file_of(name)}.html" for name in PAGES}
     for page in pages:
         assert "<svg" in (text := (folder / page).read_text(encoding="utf-8")) or "data:" in text
     assert "truth" in (folder / "pulse-tarp.html").read_text(encoding="utf-8")
@@ -46,7 +47,7 @@ def test_the_report_names_every_method_and_its_pages_exist(folder):
 
 def test_the_index_shows_the_verdict_of_every_page_and_what_it_flags(folder):
     index = html.unescape((folder / "index.html").read_text(encoding="utf-8"))
-    for name in (*TARGETS, "combined"):
+    for name in PAGES:
         document = json.loads((folder / f"{file_of(name)}.json").read_text(encoding="utf-8"))
         words = "All methods combined" if name == "combined" else f"The {name}"
         word = document["verdict"]["word"]
@@ -66,6 +67,21 @@ def test_no_reference_method_is_far_from_the_truth(folder):
     for row in checked:
         for name in ("mtf_nyquist", "rer", "fwhm_px"):
             assert abs(row[name]["off_in_std"]) < 4, (row["target"], name)
+
+
+def test_a_landscape_is_scanned_and_compared_with_its_truth(folder):
+    found = json.loads((folder / "landscape.json").read_text(encoding="utf-8"))
+    edges = json.loads((folder / "landscape.truth.geojson").read_text(encoding="utf-8"))["features"]
+    assert found["edges"]["used"] > 100 < len(edges)
+    rows = json.loads((folder / "comparison.json").read_text(encoding="utf-8"))["rows"]
+    index = (folder / "index.html").read_text(encoding="utf-8")
+    section = index[index.index("Without a target") :]
+    for row in (row for row in rows if row["target"] == "all combined"):
+        direction = row["orientation"]
+        for name in ("mtf_nyquist", "rer", "fwhm_px"):
+            one, true = found[direction][name], row[name]["truth"]
+            assert abs(one["value"] - true) < 3.5 * one["std"], (direction, name)
+        assert f"truth {row['mtf_nyquist']['truth']:.4f}" in section
 
 
 def test_the_combination_agrees_and_is_the_most_exact(folder):

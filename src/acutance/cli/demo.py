@@ -10,6 +10,7 @@ import typer
 
 from acutance.cli.demo_folder import MARK, demo_folder, file_of
 from acutance.cli.demo_index import Page, index_sections
+from acutance.cli.demo_landscape import LANDSCAPE, ScannedLandscape, scan_landscape
 from acutance.cli.demo_targets import Campaign, measure_campaign
 from acutance.cli.output import OutputFile, check_output
 from acutance.cli.terminal import say
@@ -34,7 +35,7 @@ def demo(
 
     Edge tarps, a pulse tarp, 20 mirrors, bars and a Siemens star on grass, in one GeoTIFF with
     its truth as JSON. An HTML report compares every method with the truth and with the others, and
-    combines them into one 2-D OTF.
+    combines them into one 2-D OTF. The same sensor over a landscape without targets is scanned.
     """
     place = demo_folder(folder)
 
@@ -51,16 +52,17 @@ def demo(
     path = place / "site.tif"
     write_geotiff(path, scene.image.astype(np.float32), gsd_m=GSD_M)
     campaign = measure_campaign(scene, open_image(path))
+    landscape = scan_landscape(scene.sensor, place / f"{LANDSCAPE}.tif", seed)
     say("writing the report")
     entries = campaign.entries()
-    pages = [_write_page(place, page) for page in _pages(campaign)]
-    _write_documents(place, campaign, entries)
+    pages = [_write_page(place, page) for page in _pages(campaign, landscape)]
+    _write_documents(place, campaign, entries, landscape)
     index = _output(place, "index.html")
     index.write(
         render_page(
             "One site, every method, and the truth",
             str(path),
-            index_sections(campaign, entries, pages),
+            index_sections(campaign, entries, pages, landscape),
         )
     )
     typer.echo(f"open {index.path}")
@@ -79,14 +81,16 @@ def _demonstration_sensor(gsd_m: float) -> Sensor:
     return optics.Sensor(blocks, gsd_m=gsd_m)
 
 
-def _pages(campaign: Campaign) -> Iterator[Page]:
-    """A page for each target, by every method where there are several, and one for all."""
+def _pages(campaign: Campaign, landscape: ScannedLandscape) -> Iterator[Page]:
+    """A page for each target, by every method where there are several, for all, for the scan."""
     for target in campaign.targets:
         several = len(target.comparison.measurements) > 1
         words = f"The {target.name}{' by every method' if several else ''}"
         result = target.comparison if several else target.reference
         yield Page(target.name, words, result, target.reference)
     yield Page("combined", "All methods combined", campaign.combined, campaign.combined)
+    scanned = landscape.measurement
+    yield Page(LANDSCAPE, f"The {LANDSCAPE}, scanned", scanned, scanned)
 
 
 def _write_page(place: Path, page: Page) -> Page:
@@ -96,7 +100,9 @@ def _write_page(place: Path, page: Page) -> Page:
     return page
 
 
-def _write_documents(place: Path, campaign: Campaign, entries: Sequence[CampaignEntry]) -> None:
+def _write_documents(
+    place: Path, campaign: Campaign, entries: Sequence[CampaignEntry], landscape: ScannedLandscape
+) -> None:
     """The comparison, and every reference measurement as JSON."""
     from acutance.report import json_text
     from acutance.report.tables.campaign import campaign_rows
@@ -108,6 +114,8 @@ def _write_documents(place: Path, campaign: Campaign, entries: Sequence[Campaign
             "agreement": campaign.combined.target_document()["agreement"],
         },
         "combined.json": campaign.combined.to_dict(),
+        f"{LANDSCAPE}.json": landscape.measurement.to_dict(),
+        f"{LANDSCAPE}.truth.geojson": landscape.document,
         **{f"{file_of(one.name)}.json": one.reference.to_dict() for one in campaign.targets},
     }
     for name, content in contents.items():

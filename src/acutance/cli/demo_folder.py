@@ -14,7 +14,10 @@ MARK = "truth.json"
 """Written first: a folder with a scene of ours in it is that of an earlier demonstration."""
 
 _SCHEMA = "acutance/scene/1"
-_TARGETS = ("vertical edge", "horizontal edge", "pulse tarp", "mirrors", "bars", "star", "combined")
+_TARGETS = (
+    "vertical edge", "horizontal edge", "pulse tarp", "mirrors", "bars", "star", "combined",
+    "landscape",
+)  # fmt: skip
 
 
 def file_of(name: str) -> str:
@@ -25,6 +28,8 @@ def file_of(name: str) -> str:
 FILES = (
     MARK,
     "site.tif",
+    "landscape.tif",
+    "landscape.truth.geojson",
     "comparison.json",
     "index.html",
     *(f"{file_of(name)}{ending}" for name in _TARGETS for ending in (".html", ".json")),

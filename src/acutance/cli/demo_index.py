@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from acutance.cli.demo_folder import file_of
+from acutance.cli.demo_landscape import LANDSCAPE, ScannedLandscape, landscape_section
 from acutance.cli.demo_targets import COMBINED, Campaign
 
 if TYPE_CHECKING:
@@ -69,7 +70,10 @@ class Page:
 
 
 def index_sections(
-    campaign: Campaign, entries: Sequence[CampaignEntry], pages: Sequence[Page]
+    campaign: Campaign,
+    entries: Sequence[CampaignEntry],
+    pages: Sequence[Page],
+    landscape: ScannedLandscape,
 ) -> tuple[Section, ...]:
     """The sections of the index page.
 
@@ -80,6 +84,7 @@ def index_sections(
         Every method and direction.
     pages : sequence of Page
         Those the index leads to.
+    landscape : ScannedLandscape
     """
     from acutance.report.html import Link, Section
 
@@ -97,6 +102,7 @@ def index_sections(
         ),
         _site_section(campaign),
         *_truth_sections(entries),
+        landscape_section(landscape, f"{file_of(LANDSCAPE)}.html"),
     )
 
 

@@ -29,7 +29,7 @@ __all__ = ["LANDSCAPE_EXAMPLE", "landscape"]
 LANDSCAPE_EXAMPLE = (
     "  acutance simulate landscape --size 2000,2000 --snr 100 --seed 1 --out land.tif\n"
     "  acutance simulate landscape --corner-blur 0.3 --clean --out land.tif\n"
-    "  acutance simulate landscape --size 10000,10000 --density 12 --tilt-blur 0.5,0.2 --out s.tif\n"
+    "  acutance simulate landscape --size 10000,10000 --tilt-blur 0.5,0.2 --out land.tif\n"
     "  acutance edge land.tif --roi land.truth.geojson --json"
 )
 

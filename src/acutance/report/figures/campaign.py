@@ -9,6 +9,7 @@ import numpy as np
 
 from acutance.report.figures.curves import TWO_SIDED_95, band_edges, mark_frequencies
 from acutance.report.figures.pixels import show_pixels
+from acutance.report.figures.scene import scene_panels
 from acutance.report.figures.straight import draw_esf, draw_prf
 from acutance.report.labels import metric_words
 from acutance.report.paper import (
@@ -29,8 +30,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, FigureBase
 
     from acutance.curves.grid import Floats
+    from acutance.optics import Sensor
     from acutance.report.figures.panel import Panel
     from acutance.report.tables.campaign import CampaignEntry
+    from acutance.scan import SceneMeasurement
     from acutance.simulate import Scene
     from acutance.targets.straight import StraightMeasurement
 
@@ -41,6 +44,7 @@ __all__ = [
     "draw_small_edge",
     "draw_small_pulse",
     "draw_titled",
+    "landscape_figure",
     "site_figure",
 ]
 
@@ -186,6 +190,25 @@ def curves_figure(entries: Sequence[CampaignEntry]) -> Figure:
                       label="truth")  # fmt: skip
             axes.set_title(f"MTF {orientation}")
             axes.legend(loc="upper right", bbox_to_anchor=(1.0, 0.93))
+    return figure
+
+
+def landscape_figure(measurement: SceneMeasurement, pixels: Floats, sensor: Sensor) -> Figure:
+    """A landscape, the edges found in it, and their sharpness by direction with the truth."""
+    scene_map, by_direction, _ = scene_panels(measurement)
+    with styled():
+        figure = new_page(14.6, 4.6)
+        image, edges, directions = split_page(figure, 1, 3, widths=(1.0, 1.3, 1.1))
+        axes = image.subplots()
+        show_pixels(axes, pixels, 0, 0)
+        axes.set_title("The landscape")
+        scene_map.draw(edges)
+        by_direction.draw(directions)
+        normal_deg = np.linspace(-90.0, 90.0, 91)
+        u, v = (0.5 * wave(np.radians(normal_deg)) for wave in (np.cos, np.sin))
+        directions.gca().plot(
+            normal_deg, np.abs(sensor.otf(u, v)), color=INK, linewidth=1.4, linestyle="--"
+        )
     return figure
 
 
