@@ -22,6 +22,7 @@ PANELS = {
     "plot_6_geotiff_region": 2,
     "plot_7_mirrors": 1,
     "plot_8_two_resolutions": 1,
+    "plot_b_scene": 1,
 }
 MARGIN_IN = 0.08
 
