@@ -18,9 +18,14 @@ import acutance as ac
 # 1.5 px.
 sensor = ac.simulate.reference_systems()["gaussian"]
 options = ac.simulate.LandscapeOptions(
-    density_per_mpx=60, soft=0.5, softness_px=(0.15, 1.5),
-    roofs=0.0, roads=0.0, side_roads=0.0, neighbours=0.0,
-)  # fmt: skip
+    density_per_mpx=60,
+    soft=0.5,
+    softness_px=(0.15, 1.5),
+    roofs=0.0,
+    roads=0.0,
+    side_roads=0.0,
+    neighbours=0.0,
+)
 image, truth = ac.simulate.landscape(
     sensor, shape=(900, 900), options=options, snr=100, rng=np.random.default_rng(2)
 )
@@ -67,4 +72,4 @@ histogram.axvline(scanned.value, color="tab:blue", label=f"scan {scanned}")
 histogram.axvline(median, color="tab:orange", label=f"median {median:.4f}")
 histogram.axvline(true, color="k", linestyle="--", label=f"truth {true:.4f}")
 histogram.set(xlabel="MTF at Nyquist", ylabel="edges", title="How sharp the edges are")
-histogram.legend(loc="upper center")
+histogram.legend(loc="upper left", bbox_to_anchor=(0.08, 1.0))

@@ -21,6 +21,9 @@ PERIOD_PX = 1024
 BANDS_CPP = (64, 128, 256, 512)
 """Highest frequency of the table: the first one that the OTF does not reach."""
 
+ENDS_CPP = (8, 16, 32)
+"""Where an OTF may end; the reference's is below 1e-17 there."""
+
 TAIL_PX, CORE_PX = 1.0, 0.3
 """Scales of the reference's Lorentzian and logistic curve, which is subtracted and added again."""
 
@@ -78,10 +81,11 @@ class Profile:
         """
         centroid, tail = _at_zero(otf)
         band = _band_cpp(otf)
-        freq = np.arange(PERIOD_PX * band + 1) / PERIOD_PX
+        # The transform fills the rest of the table with zeros.
+        freq = np.arange(PERIOD_PX * _end_cpp(otf, band) + 1) / PERIOD_PX
         centred = otf(freq) * np.exp(2j * math.pi * freq * centroid)
         rest = centred - _reference_otf(freq, tail)
-        size = 2 * (freq.size - 1)
+        size = 2 * PERIOD_PX * band
         integrated = np.zeros_like(rest)
         integrated[1:] = rest[1:] / (2j * math.pi * freq[1:])
         esf_rest = np.fft.fftshift(np.fft.irfft(integrated, size)) * 2 * band
@@ -143,6 +147,14 @@ def _band_cpp(otf: Callable[[Floats], Transfer]) -> int:
             "per pixel: add the blur that limits it, such as Detector() or Gaussian(0.3)"
         )
     return BANDS_CPP[-1]
+
+
+def _end_cpp(otf: Callable[[Floats], Transfer], band: int) -> int:
+    """Frequency from which the OTF is zero to the last bit: most end long before the table does."""
+    for end in ENDS_CPP:
+        if np.max(np.abs(otf(np.linspace(end, band, 397)))) < 1e-17:
+            return end
+    return band
 
 
 def _half_point(profile: Profile) -> float:
