@@ -107,7 +107,8 @@ def fit_field(
         starts = [np.concatenate([np.zeros(COMMON_MODES), before.amount])]
     fits = [fit_modes(edges, otf, share, both, start=start, std=std) for start in starts]
     fit = max(fits, key=lambda one: one.log_posterior)
-    amount, covariance, chance = _mean(fit)
+    constant = fit_modes(edges, otf, share, along[:, :, :COMMON_MODES])
+    amount, covariance, chance = _mean(fit, constant.log_posterior)
     size, axes = np.linalg.eigh(covariance)
     root = axes * np.sqrt(np.maximum(size, 0.0))
     return FieldFit(middle, amount, root, chance, modes @ amount, fit.amount[:COMMON_MODES])
@@ -159,16 +160,21 @@ def _hypotheses() -> list[_Field]:
     ]
 
 
-def _mean(fit: ModesFit) -> tuple[Floats, Floats, float]:
-    """Mean and covariance of the amounts over all hypotheses, and the chance of no change."""
+def _mean(fit: ModesFit, log_constant: float) -> tuple[Floats, Floats, float]:
+    """Mean and covariance of the amounts over all hypotheses, and the chance of no change.
+
+    The likelihood of a field is that of its quadratic form about the fit; that of no change is
+    exact, and far from it.
+    """
     found, size = fit.amount[COMMON_MODES:], fit.amount.size - COMMON_MODES
     value, axes = np.linalg.eigh(_without_common(fit.information))
     information = (axes * np.maximum(value, 0.0)) @ axes.T
     # The wide prior's pull ends where the edges' begins.
     pull = (information + np.eye(size) / _WIDE_PX2**2) @ found
+    at_nothing = fit.log_posterior - 0.5 * float(found @ pull)
     fields = _hypotheses()
     means, covariances = np.zeros((len(fields) + 1, size)), np.zeros((len(fields) + 1, size, size))
-    scores = np.zeros(len(fields) + 1)
+    scores = np.full(len(fields) + 1, log_constant)
     for i, field in enumerate(fields, start=1):
         on = np.flatnonzero(field.active)
         posterior = information[np.ix_(on, on)] + np.eye(on.size) / field.std**2
@@ -176,7 +182,7 @@ def _mean(fit: ModesFit) -> tuple[Floats, Floats, float]:
         means[i, on] = inverse @ pull[on]
         covariances[i][np.ix_(on, on)] = inverse
         narrowed = np.linalg.slogdet(posterior)[1] + 2 * on.size * np.log(field.std)
-        scores[i] = 0.5 * (pull[on] @ means[i, on] - narrowed)
+        scores[i] = at_nothing + 0.5 * (pull[on] @ means[i, on] - narrowed)
     odds = np.exp(scores - scores.max())
     odds *= np.r_[_CHANCE_CONSTANT, np.full(len(fields), (1 - _CHANCE_CONSTANT) / len(fields))]
     odds /= odds.sum()
