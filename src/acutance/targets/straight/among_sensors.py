@@ -13,16 +13,14 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
 
 from acutance.curves.grid import Floats
+from acutance.numerics.integrated_out import integrated_out
 from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight import lsf_prior
-from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.linear_model import Linear
-from acutance.targets.straight.sensor_density import SensorsSeen, drawn_sensors
+from acutance.targets.straight.sensor_density import drawn_sensors
 from acutance.targets.straight.spline import CELL, CELLS, SIZE, esf_from_lsf
 from acutance.targets.straight.tuned import BROAD_PRIOR, KERNEL_FLOOR, MAX_SENSOR_MISFIT
 
@@ -43,11 +41,14 @@ class AmongSensors:
     linear : Linear
     posterior : Posterior
         Normal, of the mean and the covariance of the mixture.
-    information : (m, m) array
-        What the pixels alone say of all unknowns: the inverse of their covariance.
-    projection : (m,) array
-        The same times their values.
-    broad_prior : (m, m) array
+    information : (n, n) array
+        What the pixels say of level and LSF, the n first unknowns, where all others are known: the
+        inverse of their covariance.
+    alone : (n, n) array
+        The same where the others are as uncertain as pixels and prior leave them.
+    projection : (n,) array
+        That times the values of the n unknowns.
+    broad_prior : (n, n) array
         Covariance of a prior that leaves the LSF open.
     share : dict of str to float
         Probability of every family of sensors.
@@ -56,6 +57,7 @@ class AmongSensors:
     linear: Linear
     posterior: Posterior
     information: Floats
+    alone: Floats
     projection: Floats
     broad_prior: Floats
     share: dict[str, float]
@@ -84,35 +86,46 @@ def among_sensors(
     r, q = linear.directions.block.size, drawn_sensors().basis.shape[1]
     equations = normal.combined(own.design)
     information, projection = equations.gram / noise, equations.projection / noise
-    std = np.concatenate([
-        posterior.prior_std[:_FIRST], np.full(q, np.inf), posterior.prior_std[1 + r :]
-    ])  # fmt: skip
-    prior_mean = own.prior.mean
-    sensor = np.zeros(std.size, bool)
-    sensor[_FIRST : _FIRST + q] = True
-    beta, covariance, seen = _solved(
-        information, projection + prior_mean / std**2, std, sensor, linear.first_fit,
-        _normal_prior(linear, posterior),
+    n, mean = _FIRST + q, own.prior.mean
+    first, last = posterior.prior_std[:_FIRST], posterior.prior_std[1 + r :]
+    std = np.concatenate([first, np.full(q, np.inf), last])
+    lsf = integrated_out(information, projection + mean / std**2, last, slice(n), slice(n, None))
+    sensor = integrated_out(
+        lsf.information, lsf.projection, first, slice(_FIRST, None), slice(_FIRST)
+    )
+    height = linear.first_fit.height
+    seen = drawn_sensors().seen(
+        height**2 * sensor.information, height * sensor.projection,
+        linear.first_fit.blur.width_px, _normal_prior(linear, posterior),
     )  # fmt: skip
+    beta, covariance = lsf.all_unknowns(
+        *sensor.all_unknowns(height * seen.mean, height**2 * seen.covariance)
+    )
     if equations.misfit(beta) - before.misfit(posterior.beta) > MAX_SENSOR_MISFIT * noise:
         return _as_before(linear, before, posterior, noise)
     found = Posterior(
         beta, _upper_factor(covariance), std, posterior.log_amplitude, posterior.variance,
-        freedom=float(np.sum(covariance * information)),
+        freedom=float(np.vdot(covariance, information)),
     )  # fmt: skip
-    prior = np.diag(np.where(sensor, 0.0, std) ** 2)
-    broad = (BROAD_PRIOR * linear.first_fit.height) ** 2
-    prior[np.ix_(sensor, sensor)] = broad * drawn_sensors().second_moment
-    return AmongSensors(own, found, information, projection, prior, seen.share)
+    prior = np.diag(np.append(first, np.zeros(q)) ** 2)
+    prior[_FIRST:, _FIRST:] = (BROAD_PRIOR * height) ** 2 * drawn_sensors().second_moment
+    alone = lsf.projection - (mean / std**2)[:n]
+    return AmongSensors(
+        own, found, information[:n, :n], lsf.information, alone, prior, seen.share
+    )  # fmt: skip
 
 
 def _as_before(linear: Linear, before: Normal, posterior: Posterior, noise: float) -> AmongSensors:
     """The solution of the passes before, of a sensor that the density cannot follow."""
-    broad = posterior.prior_std.copy()
-    broad[_FIRST : 1 + linear.directions.block.size] *= BROAD_PRIOR
+    n = 1 + linear.directions.block.size
+    broad, last = posterior.prior_std[:n].copy(), posterior.prior_std[n:]
+    broad[_FIRST:] *= BROAD_PRIOR
+    information, projection = before.gram / noise, before.projection / noise
+    projection[n:] += linear.prior.mean[n:] / last**2
+    lsf = integrated_out(information, projection, last, slice(n), slice(n, None))
     return AmongSensors(
-        linear, posterior, before.gram / noise, before.projection / noise, np.diag(broad**2),
-        {"other": 1.0},
+        linear, posterior, information[:n, :n], lsf.information, lsf.projection,
+        np.diag(broad**2), {"other": 1.0},
     )  # fmt: skip
 
 
@@ -163,39 +176,6 @@ def _normal_prior(linear: Linear, posterior: Posterior) -> Floats:
     columns = drawn_sensors().basis.T @ np.vstack([left, tail[own]])
     columns *= posterior.prior_std[1:][own] / linear.first_fit.height
     return np.asarray(columns @ columns.T + KERNEL_FLOOR**2 * np.eye(columns.shape[0]))
-
-
-def _solved(
-    information: Floats,
-    projection: Floats,
-    std: Floats,
-    sensor: NDArray[np.bool_],
-    first_fit: FirstFit,
-    normal: Floats,
-) -> tuple[Floats, Floats, SensorsSeen]:
-    """Mean and covariance of all unknowns, and what is seen of the sensor.
-
-    The other unknowns are integrated out; then they follow the coordinates linearly.
-    """
-    other, height = ~sensor, first_fit.height
-    precision = information[np.ix_(other, other)] + np.diag(std[other] ** -2.0)
-    between = information[np.ix_(other, sensor)]
-    factor = cho_factor(precision)
-    follow, start = cho_solve(factor, between), cho_solve(factor, projection[other])
-    own = information[np.ix_(sensor, sensor)] - between.T @ follow
-    pull = projection[sensor] - between.T @ start
-    width_px = first_fit.blur.width_px
-    seen = drawn_sensors().seen(height**2 * own, height * pull, width_px, normal)
-    mean, spread = height * seen.mean, height**2 * seen.covariance
-    beta, covariance = np.empty(std.size), np.empty((std.size, std.size))
-    beta[sensor], beta[other] = mean, start - follow @ mean
-    covariance[np.ix_(sensor, sensor)] = spread
-    covariance[np.ix_(other, sensor)] = -follow @ spread
-    covariance[np.ix_(sensor, other)] = covariance[np.ix_(other, sensor)].T
-    covariance[np.ix_(other, other)] = (
-        cho_solve(factor, np.eye(follow.shape[0])) + follow @ spread @ follow.T
-    )
-    return beta, covariance, seen
 
 
 def _upper_factor(covariance: Floats) -> Floats:

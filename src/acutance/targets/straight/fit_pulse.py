@@ -117,6 +117,6 @@ def _width(solved: Solved, fit_width: bool) -> Estimate:
 
 
 def _width_factor(solved: Solved, fit_width: bool) -> Floats:
-    factor = solved.solution.posterior.factor
+    factor = solved.solution.linear.latent(solved.solution.posterior)
     # Last but one of the unknowns: the height ratio comes after it.
     return factor[-2] if fit_width else np.zeros(factor.shape[1])

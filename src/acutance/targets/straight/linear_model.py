@@ -222,11 +222,21 @@ class Linear:
         """The LSF of the unknowns: the tail is added to the spline in closed form."""
         esf, tail, block = self.directions
         own = slice(1, 1 + block.size)
-        beta, factor = posterior.beta[own], posterior.factor[own]
+        beta, factor = posterior.beta[own], self.latent(posterior)[: block.size]
         latent = np.vstack([esf @ factor, tail @ factor])
         return LsfModel(
             self.first_fit.blur, self.first_fit.height, esf @ beta, float(tail @ beta), latent
         )
+
+    def latent(self, posterior: Posterior) -> Floats:
+        """Factor of the covariance of the unknowns of the LSF, then of line and profile, (k, k).
+
+        In no more latent variables than these unknowns need, of all that the posterior has.
+        """
+        own = slice(1, 1 + self.directions.block.size)
+        factor = posterior.factor
+        rows = np.concatenate([factor[own], factor[-self.derivatives :]])
+        return np.asarray(np.linalg.qr(rows.T, mode="r").T)
 
     @property
     def lsf_columns(self) -> Floats:
@@ -238,14 +248,17 @@ class Linear:
         return design
 
     def causes(self, posterior: Posterior, information: Floats) -> FitCauses:
-        """What the uncertainty of the LSF consists of, given what pixels say of all unknowns."""
+        """What the uncertainty of the LSF consists of.
+
+        `information` is what pixels say of level and LSF where all other unknowns are known.
+        """
         design = self.lsf_columns
         n = design.shape[1]
         background = posterior.beta.size - n - self.derivatives
         width = ("pulse_width",) * (self.derivatives - 3)
         height_ratio = ("background",) * (self.derivatives > 2)
         group = ("background",) * background + ("line", "line", *width, *height_ratio)
-        return FitCauses(design, posterior.factor[:n], information[:n, :n], group)
+        return FitCauses(design, posterior.factor[:n], information, group)
 
     def ground(self, posterior: Posterior) -> tuple[GroundSide, GroundSide]:
         """The ground before and behind the target, as shares of its first step's height."""

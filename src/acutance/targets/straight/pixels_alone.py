@@ -22,7 +22,9 @@ __all__ = ["PixelsAlone"]
 
 @dataclass(frozen=True, eq=False)
 class PixelsAlone(ShortRepr):
-    """The equations of a linear model of the line spread function (LSF), in m unknowns.
+    """The equations of a linear model of the line spread function (LSF), in n unknowns.
+
+    All other unknowns of the fit are integrated out.
 
     Attributes
     ----------
@@ -31,13 +33,13 @@ class PixelsAlone(ShortRepr):
     level : float
         Height of its step, in image units.
     columns : (c, n) array
-        Spline and tail of the LSF by the first n unknowns.
-    information : (m, m) array
+        Spline and tail of the LSF by the unknowns.
+    information : (n, n) array
         Inverse covariance of the unknowns by the pixels alone.
-    projection : (m,) array
+    projection : (n,) array
         The same times the values they have by the pixels alone.
-    prior_mean : (m,) array
-    prior : (m, m) array
+    prior_mean : (n,) array
+    prior : (n, n) array
         Covariance of a prior, broad in the LSF.
     """
 
@@ -60,23 +62,16 @@ class PixelsAlone(ShortRepr):
             By how much the OTF of the sensor exceeds that of the image.
         """
         known = np.linalg.inv(self.prior)
-        covariance = np.linalg.inv(self.information + known)
-        n = self.columns.shape[1]
-        unknowns = (covariance @ (self.projection + known @ self.prior_mean))[:n]
-        own, latent = self.columns @ unknowns, self.columns @ _root(covariance[:n, :n])
+        root = np.linalg.inv(np.linalg.cholesky(self.information + known)).T
+        unknowns = root @ (root.T @ (self.projection + known @ self.prior_mean))
+        own, latent = self.columns @ unknowns, self.columns @ root
         model = LsfModel(self.blur, self.level, own[:-1], float(own[-1]), latent)
         spectrum, rows = model.spectrum(np.concatenate([[0.0], freq_cpp]))
         raised = np.concatenate([[1.0], gain])
         rows = raised[:, None] * rows
         return OtfLikelihood.of_posterior(
             raised * spectrum,
-            rows @ (own - self.columns @ self.prior_mean[:n]),
+            rows @ (own - self.columns @ self.prior_mean),
             rows @ latent,
-            rows @ (self.columns @ _root(self.prior[:n, :n])),
+            rows @ (self.columns @ np.linalg.cholesky(self.prior)),
         )
-
-
-def _root(covariance: Floats) -> Floats:
-    """A factor of a covariance, (n, n)."""
-    size, axes = np.linalg.eigh(covariance)
-    return np.asarray(axes * np.sqrt(np.maximum(size, 0.0)))

@@ -77,7 +77,8 @@ class Solved:
         seen, first_fit = self.seen, self.first_fit
         return PixelsAlone(
             first_fit.blur, first_fit.height, seen.linear.lsf_columns,
-            seen.information, seen.projection, seen.linear.prior.mean, seen.broad_prior,
+            seen.alone, seen.projection, seen.linear.prior.mean[: seen.projection.size],
+            seen.broad_prior,
         )  # fmt: skip
 
     @property
