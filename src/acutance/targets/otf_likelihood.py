@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.numerics.pivoted_root import least_squares, pivoted_root
 from acutance.numerics.stacked import stacked, unstacked
 
 __all__ = ["OtfLikelihood"]
@@ -78,10 +79,8 @@ class OtfLikelihood(ShortRepr):
             Factors of their covariances.
         """
         prior = _inverse(prior_factor)
-        size, axes = np.linalg.eigh(_inverse(factor) - prior)
-        seen = size > _NOTHING
-        root = axes[:, seen] * np.sqrt(size[seen])
-        values = root.T @ stacked(mean) + (root / size[seen]).T @ (prior @ stacked(away))
+        root = pivoted_root(_inverse(factor) - prior, _NOTHING)
+        values = root.T @ stacked(mean) + least_squares(root, prior @ stacked(away))
         level, *others = unstacked(root)
         return cls(np.asarray(others), np.asarray(level.real), values)
 

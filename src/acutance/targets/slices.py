@@ -20,6 +20,7 @@ from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
+from acutance.numerics.pivoted_root import pivoted_root
 from acutance.numerics.stacked import stacked, unstacked
 from acutance.targets.otf_likelihood import OtfLikelihood
 
@@ -176,7 +177,4 @@ def _narrowed(factor: Complexes) -> Complexes:
     if factor.size == 0:
         return factor
     wide = stacked(factor)
-    variance, axes = np.linalg.eigh(wide @ wide.T)
-    size = np.sqrt(np.maximum(variance, 0.0))
-    kept = size > min(_MIN_STD, size[-1])
-    return unstacked(axes[:, kept] * size[kept])
+    return unstacked(pivoted_root(wide @ wide.T, _MIN_STD**2))

@@ -85,16 +85,17 @@ class FitCauses(ShortRepr):
         """
         n = self.information.shape[0]
         m = n + len(self.group)
-        open_root = self.factor[:, :n]
-        determined, axes = np.linalg.eigh(open_root.T @ self.information @ open_root)
-        determined = np.minimum(np.maximum(determined, 0.0), 1.0)
         caused = rows @ self.design @ self.factor
-        left_open = (caused[:, :n] @ axes) ** 2
         squares = caused**2
+        left_open = squares[:, :n].sum(axis=1)
+        by_pixels = caused[:, :n] @ self.factor[:, :n].T
+        noise = np.sum(by_pixels @ self.information * by_pixels, axis=1)
+        # Of a density with several peaks the covariance may exceed what any of them allows.
+        noise = np.minimum(noise, left_open)
         names = np.array(self.group)
         return {
-            "pixel_noise": left_open @ determined,
-            "prior_shape": left_open @ (1 - determined) + squares[:, m:].sum(axis=1),
+            "pixel_noise": noise,
+            "prior_shape": left_open - noise + squares[:, m:].sum(axis=1),
             **{
                 name: squares[:, n:m][:, names == name].sum(axis=1)
                 for name in dict.fromkeys(self.group)

@@ -236,7 +236,7 @@ class Linear:
         own = slice(1, 1 + self.directions.block.size)
         factor = posterior.factor
         rows = np.concatenate([factor[own], factor[-self.derivatives :]])
-        return np.asarray(np.linalg.qr(rows.T, mode="r").T)
+        return np.asarray(np.linalg.qr(rows.T, mode="r")).T
 
     @property
     def lsf_columns(self) -> Floats:

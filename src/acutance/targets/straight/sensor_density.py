@@ -31,6 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.numerics.pivoted_root import least_squares, pivoted_root
 from acutance.targets.straight.kernel_sums import kernel_moments, kernel_weights
 from acutance.targets.straight.tuned import (
     FAMILY_WEIGHTS,
@@ -197,15 +198,11 @@ class Sensors:
 def _told(information: Floats, projection: Floats, spread: Floats) -> tuple[Floats, Floats]:
     """Independent combinations (q, r) of the coordinates that pixels tell, and their values.
 
-    Those told best are first. In coordinates whose covariance `spread` is one the information is
-    diagonal.
+    Those told best are first, in coordinates whose covariance `spread` is one.
     """
     lower = np.linalg.cholesky(spread)
-    size, axes = np.linalg.eigh(lower.T @ information @ lower)
-    told = np.flatnonzero(size > _UNTOLD)[::-1]
-    scale = np.sqrt(size[told])
-    values = (axes[:, told] / scale).T @ (lower.T @ projection)
-    return np.linalg.solve(lower.T, axes[:, told] * scale), values
+    root = pivoted_root(lower.T @ information @ lower, _UNTOLD)
+    return np.linalg.solve(lower.T, root), least_squares(root, lower.T @ projection)
 
 
 class _Kernels(NamedTuple):
