@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 from acutance.targets.straight.step_profile import Sides
 
 __all__ = ["plateau_trends"]
@@ -25,15 +26,21 @@ def plateau_trends(sides: Sides, t: Floats) -> Floats:
     t : (n,) array
         Distance along the edge, pixels.
     """
-    along = t * (1 / max(float(np.max(np.abs(t))), 1e-9))
-    bow = 1.5 * along * along - 0.5
     modes = np.empty((5 * len(sides), t.size))
-    for side, (share, outwards) in zip(modes.reshape(-1, 5, t.size), sides, strict=True):
-        away = np.maximum(outwards, 0.0)
-        away *= 1 / max(float(away.max()), 1e-9)
-        np.multiply(share, along, out=side[0])
-        np.multiply(share, bow, out=side[1])
-        np.multiply(share, away, out=side[2])
-        np.multiply(side[0], away, out=side[3])
-        np.multiply(side[2], away, out=side[4])
+    for own, (share, outwards) in zip(modes.reshape(-1, 5, t.size), sides, strict=True):
+        _fill(own, share, outwards, t)
     return modes
+
+
+@compiled
+def _fill(modes: Floats, share: Floats, outwards: Floats, t: Floats) -> None:
+    """Trends of one side, (5, n)."""
+    along_scale = 1 / max(np.max(np.abs(t)), 1e-9)
+    away_scale = 1 / max(np.max(outwards), 1e-9)
+    for i in range(t.size):
+        along, away = along_scale * t[i], away_scale * max(outwards[i], 0.0)
+        modes[0, i] = share[i] * along
+        modes[1, i] = share[i] * (1.5 * along * along - 0.5)
+        modes[2, i] = share[i] * away
+        modes[3, i] = share[i] * along * away
+        modes[4, i] = share[i] * away * away

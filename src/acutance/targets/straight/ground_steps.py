@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, gaussian
+from acutance.numerics.normal_distribution import normal_distribution
 from acutance.targets.straight.spline import CELLS, CENTRES, esf_from_lsf, quasi_interpolant
 from acutance.targets.straight.tuned import (
     FAR_GROUND_STEPS,
@@ -37,9 +38,6 @@ __all__ = ["Ground", "GroundSide", "near_ground"]
 _MAX_SEAMS, _SEAM_WIDTHS = 3, 0.95
 """A pulse may be brighter or darker from some places on, evenly spaced by as much or more: closer
 ones are the LSF's."""
-_FAR_SIGMAS: Final = 7.0
-"""Beyond them the normal distribution is 0 or 1."""
-_ROOT_HALF: Final = math.sqrt(0.5)
 _ROOM = 1.0
 """How far the pixels have to reach beyond a step, in widths."""
 _PLACES: Final = np.concatenate([NEAR_GROUND_STEPS, FAR_GROUND_STEPS])
@@ -174,11 +172,5 @@ def _blurred(outwards: Floats, places: Floats) -> Floats:
     response = np.empty((places.size, outwards.size))
     for j in range(places.size):
         for i in range(outwards.size):
-            apart = FWHM_OF_SIGMA * (outwards[i] - places[j])
-            if apart < -_FAR_SIGMAS:
-                response[j, i] = 0.0
-            elif apart > _FAR_SIGMAS:
-                response[j, i] = 1.0
-            else:
-                response[j, i] = 0.5 * math.erfc(-_ROOT_HALF * apart)
+            response[j, i] = normal_distribution(FWHM_OF_SIGMA * (outwards[i] - places[j]))[0]
     return response

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 
-__all__ = ["kernel_moments", "kernel_weights"]
+__all__ = ["forward_substitution", "kernel_moments", "kernel_weights"]
 
 _NEGLIGIBLE = 9.0
 """Kernels whose log weight is less than the largest by this are left out."""
@@ -108,3 +108,17 @@ def kernel_moments(
                     spread[g, i, j] = spread[g, i, j] / total[g] - mean[g, i] * mean[g, j]
                     spread[g, j, i] = spread[g, i, j]
     return total, mean, spread
+
+
+@compiled
+def forward_substitution(lower: Floats, right: Floats) -> Floats:
+    """Solutions of several triangular systems, (g, r, k), of matrices (g, r, r) and right sides."""
+    found = right.copy()
+    for g in range(lower.shape[0]):
+        for i in range(lower.shape[1]):
+            for j in range(i):
+                for k in range(found.shape[2]):
+                    found[g, i, k] -= lower[g, i, j] * found[g, j, k]
+            for k in range(found.shape[2]):
+                found[g, i, k] /= lower[g, i, i]
+    return found

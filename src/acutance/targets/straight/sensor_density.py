@@ -32,7 +32,11 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.pivoted_root import least_squares, pivoted_root
-from acutance.targets.straight.kernel_sums import kernel_moments, kernel_weights
+from acutance.targets.straight.kernel_sums import (
+    forward_substitution,
+    kernel_moments,
+    kernel_weights,
+)
 from acutance.targets.straight.tuned import (
     FAMILY_WEIGHTS,
     KERNEL_FLOOR,
@@ -231,12 +235,15 @@ class _Kernels(NamedTuple):
     @classmethod
     def of(cls, covariance: Floats, combinations: Floats, values: Floats) -> _Kernels:
         """From the covariances, the combinations (q, r) that pixels tell, and their values."""
+        count, (q, r) = len(covariance), combinations.shape
         half = covariance @ combinations
-        lower = np.linalg.cholesky(np.eye(values.size) + combinations.T @ half)
-        whitening = np.linalg.inv(lower)
-        log_density = np.log(np.diagonal(whitening, axis1=1, axis2=2)).sum(axis=1)
-        root = half @ whitening.transpose(0, 2, 1)
-        return cls(covariance, root, whitening @ combinations.T, whitening @ values, log_density)
+        lower = np.asarray(np.linalg.cholesky(np.eye(r) + combinations.T @ half), float)
+        right = np.empty((2, count, r, q))
+        right[0], right[1] = half.transpose(0, 2, 1), combinations.T
+        root, axes = (forward_substitution(lower, one) for one in right)
+        told = forward_substitution(lower, np.tile(values[:, None], (count, 1, 1)))[..., 0]
+        log_density = -np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1)
+        return cls(covariance, root.transpose(0, 2, 1), axes, told, log_density)
 
 
 class _Groups(NamedTuple):
