@@ -169,7 +169,9 @@ def _falls(esf: Esf, places: list[float], values: list[float]) -> bool:
     Noise alone makes it fall here and there: a fall has to be more than two deviations deep.
     """
     depth = -np.diff(values)
-    if depth.max() < _ROUNDING:
+    falls = [i for i, one in enumerate(depth.tolist()) if one > _ROUNDING]
+    if not falls:
         return False
-    std = np.linalg.norm(np.diff(esf.gradient(np.array(places)), axis=0), axis=1)
-    return bool((depth > 2 * std + _ROUNDING).any())
+    rows = np.array([esf.row(places[i + 1]) - esf.row(places[i]) for i in falls])
+    std = np.linalg.norm(rows if esf.latent is None else rows @ esf.latent, axis=1)
+    return bool((depth[falls] > 2 * std + _ROUNDING).any())

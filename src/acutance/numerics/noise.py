@@ -53,22 +53,41 @@ def side_variances(residual: Floats, esf: Floats) -> tuple[float, float]:
     residual, esf : (n,) arrays
         Residuals of a fit, and the fitted edge response (0 dark .. 1 bright), of the same pixels.
     """
-    sides = (residual[esf < 0.05], residual[esf > 0.95])
-    dark, bright = (
-        _variance(side) if side.size >= _MIN_PAIRS else _variance(residual) for side in sides
-    )
-    return dark, bright
+    dark = _variance_between(residual, esf, -math.inf, 0.05)
+    return dark, _variance_between(residual, esf, 0.95, math.inf)
 
 
-def _variance(residual: Floats) -> float:
-    """Variance, without values that Gaussian noise does not reach."""
-    power = (residual - np.add.reduce(residual) / residual.size) ** 2
-    variance = float(np.add.reduce(power)) / residual.size
-    if float(power.max()) < 16 * variance:
+def _variance_between(residual: Floats, esf: Floats, low: float, high: float) -> float:
+    """Variance of the pixels of some responses, without values that Gaussian noise does not reach.
+
+    Of all pixels, where those are few.
+    """
+    count, variance, largest = _scatter(residual, esf, low, high)
+    if count < _MIN_PAIRS:
+        low, high = -math.inf, math.inf
+        _, variance, largest = _scatter(residual, esf, low, high)
+    if largest < 16 * variance:
         return variance
-    centred = residual - median(residual)
-    usual = residual[np.abs(centred) <= _MAX_GAUSSIAN * robust_scale(centred)]
+    own = residual[(esf > low) & (esf < high)]
+    centred = own - median(own)
+    usual = own[np.abs(centred) <= _MAX_GAUSSIAN * robust_scale(centred)]
     return float(np.var(usual)) if usual.size else variance
+
+
+@compiled
+def _scatter(residual: Floats, esf: Floats, low: float, high: float) -> tuple[int, float, float]:
+    """How many pixels have a response between two, their variance and largest square about it."""
+    count, total = 0, 0.0
+    for k in range(esf.size):
+        there = low < esf[k] < high
+        count += there
+        total += residual[k] if there else 0.0
+    mean, power, largest = total / count, 0.0, 0.0
+    for k in range(esf.size):
+        off = residual[k] - mean if low < esf[k] < high else 0.0
+        power += off * off
+        largest = max(largest, off * off)
+    return count, power / count, largest
 
 
 def robust_scale(residual: Floats) -> float:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
+from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median
 from acutance.targets.check import Check, Limits, answer, bounded_ratio, limit_of
 from acutance.targets.straight.check_data import PLACES, CheckData
@@ -58,7 +59,7 @@ and 21 of the 73 strips of .4 to 4 px that no other check finds."""
 
 def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> Check:
     """Structure of one plateau: variation of means over 4 x 4 pixels, beyond noise."""
-    variation = _blotches(data, data.value, (outwards > data.far_px).nonzero()[0])
+    variation = _blotches(data.blocks, data.value, outwards > data.far_px)
     found = (
         f"the plateau {PLACES[side]} varies by {100 * variation:.1f} % of the contrast from place "
         "to place"
@@ -69,27 +70,30 @@ def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> 
 def target_uniformity(data: CheckData, limits: Limits) -> Check:
     """Structure of a pulse and of its two sides, from the residuals there."""
     near = data.outside < 0.5 * data.fwhm_px
-    variation = _blotches(data, data.residual, near.nonzero()[0])
+    variation = _blotches(data.blocks, data.residual, near)
     found = f"the pulse varies by {100 * variation:.1f} % of its height from place to place"
     return answer("uniformity_target", bounded_ratio(1.0, variation), found, limits)
 
 
-def _blotches(data: CheckData, field: Floats, there: NDArray[np.intp]) -> float:
+@compiled
+def _blotches(block: NDArray[np.intp], field: Floats, there: NDArray[np.bool_]) -> float:
     """Standard deviation of means over blocks of pixels, without the share of noise."""
-    if there.size == 0:
+    level = np.mean(field[there]) if there.any() else 0.0
+    size = np.max(block) + 1
+    count, total, power = np.zeros(size), np.zeros(size), np.zeros(size)
+    for k in range(block.size):
+        if there[k]:
+            value = field[k] - level
+            count[block[k]] += 1
+            total[block[k]] += value
+            power[block[k]] += value * value
+    full = count >= _BLOCK_PX**2 // 2
+    count, total, power = count[full], total[full], power[full]
+    if count.size < 3:
         return 0.0
-    block, value = data.blocks[there], field[there]
-    value -= np.add.reduce(value) / value.size
-    count = np.bincount(block)
-    full = (count >= _BLOCK_PX**2 // 2).nonzero()[0]
-    if full.size < 3:
-        return 0.0
-    count = count[full]
-    mean = np.bincount(block, value)[full] / count
-    power = np.bincount(block, value * value)[full]
-    within = float(np.add.reduce(power - count * mean * mean))
-    noise = within / max(int(np.add.reduce(count - 1)), 1)
-    excess = float(np.var(mean, ddof=1)) - noise * float(np.mean(1 / count))
+    mean = total / count
+    noise = np.sum(power - count * mean * mean) / max(np.sum(count - 1), 1)
+    excess = np.var(mean) * mean.size / (mean.size - 1) - noise * np.mean(1 / count)
     return math.sqrt(max(excess, 0.0))
 
 
@@ -288,23 +292,10 @@ def _common_profile(data: CheckData, s: Floats, start: float, stop: float) -> tu
     1996).
     """
     bins = int((stop - start) // _BIN_PX)
-    there = ((s >= start) & (s < stop)).nonzero()[0]
-    if bins < 2 or there.size < _MIN_PARTS * bins:
+    if bins < 2:
         return 0.0, 0.0
-    t = data.t[there]
-    first, length = float(t.min()), float(t.max() - t.min())
-    parts = min(int(length // _PART_PX), _MAX_PARTS)
-    if parts < _MIN_PARTS:
-        return 0.0, 0.0
-    residual = data.bounded[there]
-    column = ((s[there] - start) * (bins / (stop - start))).astype(np.intp)
-    np.minimum(column, bins - 1, out=column)
-    row = ((t - first) * (parts / length)).astype(np.intp)
-    np.minimum(row, parts - 1, out=row)
-    cell = row * bins + column
-    count = np.bincount(cell, minlength=parts * bins).reshape(parts, bins)
-    mean = np.bincount(cell, residual, parts * bins).reshape(parts, bins) / np.maximum(count, 1)
-    mean = mean[:, (count >= 2).all(axis=0)]
+    mean = _part_means(s, data.t, data.bounded, start, stop, bins)
+    parts = mean.shape[0]
     if mean.shape[1] < 2:
         return 0.0, 0.0
     freedom = parts - 1
@@ -319,3 +310,29 @@ def _common_profile(data: CheckData, s: Floats, start: float, stop: float) -> tu
     variance = 2 * parts * freedom * max(squares, trace**2 / mean.shape[1], 1e-24)
     rms = math.sqrt(max(shared, 0.0) / (parts * freedom * mean.shape[1]))
     return rms, shared / math.sqrt(variance)
+
+
+@compiled
+def _part_means(
+    s: Floats, t: Floats, residual: Floats, start: float, stop: float, bins: int
+) -> Floats:
+    """Mean residual of every part of the target, (parts, bins), in bins that all parts fill.
+
+    No bins where there are few pixels, or the target is short.
+    """
+    count, first, last = 0, np.inf, -np.inf
+    for k in range(s.size):
+        if start <= s[k] < stop:
+            count, first, last = count + 1, min(first, t[k]), max(last, t[k])
+    parts = min(int((last - first) // _PART_PX), _MAX_PARTS) if count else 0
+    if parts < _MIN_PARTS or count < _MIN_PARTS * bins:
+        return np.zeros((0, 0))
+    total, pixels = np.zeros((parts, bins)), np.zeros((parts, bins))
+    for k in range(s.size):
+        if start <= s[k] < stop:
+            column = min(int((s[k] - start) * (bins / (stop - start))), bins - 1)
+            row = min(int((t[k] - first) * (parts / (last - first))), parts - 1)
+            total[row, column] += residual[k]
+            pixels[row, column] += 1
+    full = np.array([np.min(pixels[:, column]) >= 2 for column in range(bins)])
+    return total[:, full] / pixels[:, full]
