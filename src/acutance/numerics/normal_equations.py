@@ -46,3 +46,30 @@ class Normal:
         gram[r:, :r], gram[r:, r:] = half[:, p:].T, self.gram[p:, p:]
         projection = np.concatenate([directions.T @ self.projection[:p], self.projection[p:]])
         return Normal(gram, projection, self.data, self.count)
+
+    def exchanged(self, source: Normal, directions: Floats, new: slice, old: slice) -> Normal:
+        """The equations ``source.combined(directions)``, where most directions are as they were.
+
+        Parameters
+        ----------
+        source : Normal
+            Of which these equations are combinations too.
+        directions : (p, r) array
+        new : slice
+            Which of the directions are new.
+        old : slice
+            Which of the unknowns have gone in their place.
+        """
+        p, columns = directions.shape[0], directions[:, new]
+        products = columns.T @ source.gram[:p]
+        rows = np.hstack([products[:, :p] @ directions, products[:, p:]])
+        gram = np.empty((rows.shape[1],) * 2)
+        before, after = slice(old.start), slice(old.stop, None)
+        for one, own in ((before, slice(new.start)), (after, slice(new.stop, None))):
+            gram[own, : new.start] = self.gram[one, before]
+            gram[own, new.stop :] = self.gram[one, after]
+        gram[new], gram[:, new] = rows, rows.T
+        projection = np.concatenate([
+            self.projection[before], columns.T @ source.projection[:p], self.projection[after]
+        ])  # fmt: skip
+        return Normal(gram, projection, self.data, self.count)

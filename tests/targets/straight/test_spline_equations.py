@@ -35,6 +35,18 @@ def test_combined_equations_are_those_of_the_combined_design(taken):
     assert combined.data == found.data
 
 
+def test_exchanged_directions_give_the_equations_of_the_new_combinations():
+    found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS, N)
+    first, gone, last = (RNG.standard_normal((84, k)) for k in (2, 5, 3))
+    new = RNG.standard_normal((84, 4))
+    directions = np.hstack([first, new, last])
+    before = found.combined(np.hstack([first, gone, last]))
+    expected = found.combined(directions)
+    exchanged = before.exchanged(found, directions, slice(2, 6), slice(2, 7))
+    assert np.allclose(exchanged.gram, expected.gram)
+    assert np.allclose(exchanged.projection, expected.projection)
+
+
 def test_no_further_columns():
     found = accumulate([edge_weights(U)], Y, WEIGHT, np.empty((0, N)), N)
     dense = expand(*edge_weights(U))

@@ -84,9 +84,9 @@ def among_sensors(
     noise = posterior.variance * inflation
     own = _with_sensors(linear)
     r, q = linear.directions.block.size, drawn_sensors().basis.shape[1]
-    equations = normal.combined(own.design)
-    information, projection = equations.gram / noise, equations.projection / noise
     n, mean = _FIRST + q, own.prior.mean
+    equations = before.exchanged(normal, own.design, slice(_FIRST, n), slice(_FIRST, 1 + r))
+    information, projection = equations.gram / noise, equations.projection / noise
     first, last = posterior.prior_std[:_FIRST], posterior.prior_std[1 + r :]
     std = np.concatenate([first, np.full(q, np.inf), last])
     lsf = integrated_out(information, projection + mean / std**2, last, slice(n), slice(n, None))
