@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 
-__all__ = ["forward_substitution", "kernel_moments", "kernel_weights"]
+__all__ = ["LANES", "forward_substitution", "kernel_moments", "kernel_weights"]
 
+LANES = 16
+"""Coordinates are filled up with zeros to a multiple of this: a processor takes as many at once."""
 _NEGLIGIBLE = 9.0
 """Kernels whose log weight is less than the largest by this are left out."""
 
@@ -32,7 +34,8 @@ def kernel_weights(
 
     Parameters
     ----------
-    centres : (n, q) array
+    centres : (n, p) array
+        The q coordinates, filled up with zeros.
     log_before : (n,) array
         Logarithm of the weight of a centre before.
     members : (g, 2) int array
@@ -57,12 +60,14 @@ def kernel_weights(
     found = np.full((groups, np.max(members[:, 1] - members[:, 0])), -np.inf)
     for g in range(groups):
         first, last = members[g]
+        filled = np.zeros((combinations, centres.shape[1]))
+        filled[:, :q] = axes[g]
         for k in range(first, last):
             weight = log_before[k] + log_density[g]
             for j in range(combinations):
                 off = told[g, j]
-                for i in range(q):
-                    off -= axes[g, j, i] * centres[k, i]
+                for i in range(centres.shape[1]):
+                    off -= filled[j, i] * centres[k, i]
                 weight -= 0.5 * off * off
                 if weight < largest - _NEGLIGIBLE:
                     break
@@ -80,7 +85,8 @@ def kernel_moments(
 
     Parameters
     ----------
-    centres, members, log_weight, largest
+    centres : (n, q) array
+    members, log_weight, largest
         As of `kernel_weights`.
 
     Returns

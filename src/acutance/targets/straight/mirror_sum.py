@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.targets.straight.check_data import MISFIT, CheckData
 from acutance.targets.straight.ground_steps import near_ground
@@ -105,11 +106,9 @@ class MirrorSum:
         """
         response = data.fit.response
         cell_px = _CELL * data.fwhm_px
-        s, weight = data.fit.distance_px[data.near] - middle_px, data.weights[data.near]
-        cell = np.minimum(np.abs(s) * (1 / cell_px), _BIN.size - 1).astype(np.intp)
-        place = _BIN[cell] + (s > 0) * (_BINS + 1)
-        information = _by_bin(place, weight)
-        left = _by_bin(place, weight * data.residual[data.near]) / information
+        information, left = _folded(
+            data.fit.distance_px - middle_px, data.weights, data.residual, data.near, cell_px
+        )
         places = middle_px + cell_px / _CELL * np.concatenate([-_CENTRES, _CENTRES])
         esf = np.interp(places, response.esf.distance_px, response.esf.value).reshape(2, -1)
         lsf = np.interp(places, response.lsf.distance_px, response.lsf.value).reshape(2, -1)
@@ -136,10 +135,19 @@ class MirrorSum:
         )
 
 
-def _by_bin(place: NDArray[np.intp], weight: Floats) -> Floats:
-    """Sums of the weights in every bin of either side, (2, n)."""
-    total = np.bincount(place, weight, 2 * _BINS + 2).reshape(2, -1)[:, :_BINS]
-    return np.asarray(np.where(total == 0, 1e-12, total), float)
+@compiled
+def _folded(
+    s: Floats, weight: Floats, residual: Floats, near: NDArray[np.intp], cell_px: float
+) -> tuple[Floats, Floats]:
+    """Weight of the near pixels in every bin of either side, and their mean residual, (2, n)."""
+    total, left = np.full((2, _BINS), 1e-12), np.zeros((2, _BINS))
+    for k in near:
+        own = _BIN[min(int(abs(s[k]) / cell_px), _BIN.size - 1)]
+        if own < _BINS:
+            side = 1 if s[k] > 0 else 0
+            total[side, own] += weight[k]
+            left[side, own] += weight[k] * residual[k]
+    return total, left / total
 
 
 @cache

@@ -33,6 +33,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.numerics.pivoted_root import least_squares, pivoted_root
 from acutance.targets.straight.kernel_sums import (
+    LANES,
     forward_substitution,
     kernel_moments,
     kernel_weights,
@@ -159,6 +160,11 @@ class Sensors:
         return np.concatenate([family.coordinates for family in self.families])
 
     @cached_property
+    def _filled_centres(self) -> Floats:
+        count, q = self._centres.shape
+        return np.hstack([self._centres, np.zeros((count, -q % LANES))])
+
+    @cached_property
     def _log_width(self) -> Floats:
         return np.concatenate([family.log_width for family in self.families])
 
@@ -187,7 +193,7 @@ class Sensors:
         last = kernels.told[-1]
         other = math.log(OTHER_WEIGHT) + float(kernels.log_density[-1] - 0.5 * (last @ last))
         log_weight, largest = kernel_weights(
-            self._centres, log_before, members, kernels.axes[:-1], kernels.told[:-1],
+            self._filled_centres, log_before, members, kernels.axes[:-1], kernels.told[:-1],
             kernels.log_density[:-1], other,
         )  # fmt: skip
         weight, mean, spread = kernel_moments(self._centres, members, log_weight, largest)

@@ -79,8 +79,7 @@ class SideNoise:
     @property
     def max_gain(self) -> float:
         """Log likelihood of the characteristic that suits this noise best, over that of none."""
-        best = float(self._density(np.zeros(())))
-        without = float(self._density(np.array(self.log_variance)))
+        best, without = self._density(np.array([0.0, self.log_variance])).tolist()
         return max(math.log(_NOISE_BEFORE * best / without + 1 - _NOISE_BEFORE), 0.0)
 
     def likelihood(self, slope: Floats) -> Floats:
