@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,8 @@ from acutance.targets.straight.step_profile import Profile
 __all__ = ["Stencil", "accumulate", "renewed", "step_stencils"]
 
 Stencil = tuple[NDArray[np.intp], Floats]
+_SOME: Final = 64
+"""Pixels whose values are put side by side at a time."""
 
 
 def step_stencils(profile: Profile, s: Floats, width_px: float) -> list[Stencil]:
@@ -56,18 +59,19 @@ def accumulate(
     """
     m, q = CELLS + 3, columns.shape[0]
     gram, projection = np.zeros((m + q, m + q)), np.zeros(m + q)
-    rows = np.empty((1 + q, y.size))
-    rows[0], rows[1:] = y, columns
-    for i, (cell, basis) in enumerate(stencils):
-        weighted = basis * weight
-        _add_own(gram, _sums_by_cell(cell, weighted, basis))
-        _add_others(gram, projection, _sums_by_cell(cell, weighted, rows))
-        for other, other_basis in stencils[i + 1 :]:
-            _add_pair(gram, cell, weighted, other, other_basis)
+    root = np.sqrt(weight)
+    rows = np.empty((5 + q, y.size))
+    np.multiply(y, root, out=rows[4])
+    np.multiply(columns, root, out=rows[5:])
+    weighted = [(cell, basis * root) for cell, basis in stencils]
+    for i, (cell, basis) in enumerate(weighted):
+        rows[:4] = basis
+        _add_step(gram, projection, _sums_by_cell(cell, basis, rows))
+        for other, other_basis in weighted[i + 1 :]:
+            _add_pair(gram, cell, basis, other, other_basis)
     gram[m:, :m] = gram[:m, m:].T
     # The product of a matrix with its own transpose takes half the time of any other.
-    rows *= np.sqrt(weight)
-    products = rows @ rows.T
+    products = rows[4:] @ rows[4:].T
     gram[m:, m:], projection[m:] = products[1:, 1:], products[0, 1:]
     return Normal(gram, projection, products.item(0), count)
 
@@ -98,7 +102,7 @@ def renewed(
     for cell, basis in stencils:
         sums = _sums_by_cell(cell, basis, weighted)
         for a in range(4):
-            rows[:, a : a + CELLS] += sums[:, :, a].T
+            rows[:, a : a + CELLS] += sums[:, a].T
     rows[:, CELLS + 3 :] = weighted @ columns.T
     gram, projection = normal.gram.copy(), normal.projection.copy()
     gram[first:], gram[:, first:], projection[first:] = rows, rows.T, weighted @ y
@@ -116,48 +120,45 @@ def _sums_by_cell(cell: NDArray[np.intp], basis: Floats, rows: Floats) -> Floats
 
     Returns
     -------
-    (CELLS, k, 4) array
+    (CELLS, 4, k) array
     """
-    sums = np.zeros((CELLS, rows.shape[0], 4))
-    for i in range(cell.size):
-        own = sums[cell[i]]
-        p, r, s, t = basis[0, i], basis[1, i], basis[2, i], basis[3, i]
-        for b in range(rows.shape[0]):
-            value = rows[b, i]
-            own[b, 0] += p * value
-            own[b, 1] += r * value
-            own[b, 2] += s * value
-            own[b, 3] += t * value
+    size = rows.shape[0]
+    sums, some = np.zeros((CELLS, 4, size)), np.empty((_SOME, size))
+    for first in range(0, cell.size, _SOME):
+        count = min(_SOME, cell.size - first)
+        # The values of one pixel side by side: the processor takes several at once.
+        for b in range(size):
+            for i in range(count):
+                some[i, b] = rows[b, first + i]
+        for i in range(count):
+            own = sums[cell[first + i]]
+            for a in range(4):
+                factor = basis[a, first + i]
+                for b in range(size):
+                    own[a, b] += factor * some[i, b]
     return sums
 
 
 @compiled
-def _add_own(gram: Floats, sums: Floats) -> None:
-    """Products of one step's spline with itself."""
-    for cell in range(sums.shape[0]):
+def _add_step(gram: Floats, projection: Floats, sums: Floats) -> None:
+    """Products of one step's spline with itself, with the pixels' values and the regressors."""
+    for cell in range(CELLS):
         for a in range(4):
+            projection[cell + a] += sums[cell, a, 4]
             for b in range(4):
                 gram[cell + a, cell + b] += sums[cell, a, b]
-
-
-@compiled
-def _add_others(gram: Floats, projection: Floats, sums: Floats) -> None:
-    """Products of one step's spline with the pixels' values, and with the regressors."""
-    for cell in range(sums.shape[0]):
-        for a in range(4):
-            projection[cell + a] += sums[cell, 0, a]
-            for b in range(1, sums.shape[1]):
-                gram[cell + a, CELLS + 2 + b] += sums[cell, b, a]
+            for b in range(5, sums.shape[2]):
+                gram[cell + a, CELLS - 2 + b] += sums[cell, a, b]
 
 
 @compiled
 def _add_pair(
-    gram: Floats, cell: NDArray[np.intp], weighted: Floats, other: NDArray[np.intp], basis: Floats
+    gram: Floats, cell: NDArray[np.intp], basis: Floats, other: NDArray[np.intp], others: Floats
 ) -> None:
     """Products of two steps' splines, either way."""
     for i in range(cell.size):
         for a in range(4):
             for b in range(4):
-                product = weighted[a, i] * basis[b, i]
+                product = basis[a, i] * others[b, i]
                 gram[cell[i] + a, other[i] + b] += product
                 gram[other[i] + b, cell[i] + a] += product
