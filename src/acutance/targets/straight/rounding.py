@@ -60,8 +60,10 @@ NO_ROUNDING: Final = Rounding(np.empty((0, 0)), np.empty(0), 0.0)
 
 def smallest_step(value: Floats) -> float:
     """The step of an image's numbers: the smallest difference between two of them; 0 of one."""
-    values = np.unique(value)
-    return float(np.min(np.diff(values))) if values.size > 1 else 0.0
+    ordered = np.sort(value)
+    steps = ordered[1:] - ordered[:-1]
+    steps = steps[steps > 0]
+    return float(steps.min()) if steps.size else 0.0
 
 
 def level_step(value: Floats, level: float) -> float:

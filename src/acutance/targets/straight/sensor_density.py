@@ -180,10 +180,10 @@ class Sensors:
     def _about(self, width_px: float) -> tuple[NDArray[np.intp], Floats]:
         """Sensors of about that blur: first and last of every group, and all log weights."""
         away = (self._log_width - math.log(width_px)) / KERNEL_LOG_WIDTH
-        start, members = 0, []
+        start, members, ends = 0, [], np.array([-_REACH, _REACH])
         for family in self.families:
             own = away[start : start + family.log_width.size]
-            members += [start + np.searchsorted(own, (-_REACH, _REACH))] * _SIZES
+            members += [start + own.searchsorted(ends)] * _SIZES
             start += own.size
         return np.array(members, np.intp), self._log_share - 0.5 * away**2
 
