@@ -7,7 +7,7 @@ The questions of all kinds of target, with their limits, sources and advice, sta
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
@@ -312,6 +312,9 @@ class Checks(Sequence[Check]):
 
     def __len__(self) -> int:
         return len(self.answers)
+
+    def __iter__(self) -> Iterator[Check]:
+        return iter(self.answers)
 
     @overload
     def __getitem__(self, index: int) -> Check: ...
