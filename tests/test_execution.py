@@ -84,3 +84,17 @@ def test_tasks_are_taken_as_they_are_needed_and_a_run_can_be_left():
     assert next(results)[0] == 0
     results.close()
     assert len(taken) < 1000
+
+
+def waits_for_company(folder):
+    """The process of a task, which ends once another process has one, too."""
+    (folder / str(os.getpid())).touch()
+    until = time.monotonic() + 60
+    while len(list(folder.iterdir())) < 2 and time.monotonic() < until:
+        time.sleep(0.01)
+    return os.getpid()
+
+
+def test_few_long_tasks_occupy_all_processes(tmp_path):
+    found = list(results_in_turn(waits_for_company, [tmp_path] * 4, workers=2, chunk=1))
+    assert len(set(found)) == 2

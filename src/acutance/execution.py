@@ -127,7 +127,11 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def results_in_turn(
-    work: Callable[[Task], Result], tasks: Iterable[Task], *, workers: int = 1
+    work: Callable[[Task], Result],
+    tasks: Iterable[Task],
+    *,
+    workers: int = 1,
+    chunk: int = _MAX_CHUNK,
 ) -> Iterator[Result]:
     """The result of every task, in the order of the tasks, as soon as it is there.
 
@@ -141,6 +145,8 @@ def results_in_turn(
     tasks : iterable
     workers : int, optional
         As of `run_tasks`.
+    chunk : int, optional
+        Tasks that a process is handed at once: 1 of long tasks, so that few occupy all processes.
     """
     if workers < 2:
         yield from map(work, tasks)
@@ -151,10 +157,10 @@ def results_in_turn(
         while True:
             with _interrupts_held_back():
                 while len(waiting) < _WAITING_PER_WORKER * workers:
-                    chunk = list(islice(todo, _MAX_CHUNK))
-                    if not chunk:
+                    some = list(islice(todo, chunk))
+                    if not some:
                         break
-                    waiting.append(pool.submit(_work_through, work, chunk))
+                    waiting.append(pool.submit(_work_through, work, some))
             if not waiting:
                 return
             yield from waiting.popleft().result()

@@ -101,6 +101,13 @@ def test_windows_cover_a_box_once():
     assert count.sum() == 250 * 410
 
 
+@pytest.mark.parametrize(
+    ("shape", "count"), [((500, 500), 1), ((1000, 1000), 4), ((2048, 2000), 16), ((9000, 300), 9)]
+)
+def test_windows_of_small_images_are_smaller_so_that_all_processes_have_some(shape, count):
+    assert len(list(windows(Box.whole(shape), 1024, shape))) == count
+
+
 def test_the_region_of_a_piece_holds_it_with_ground_on_both_sides():
     image, _ = simulate.edge(SENSOR, angle_deg=30, shape=(120, 120))
     (segment,) = segments_of(image)

@@ -38,7 +38,8 @@ class ScanOptions:
     min_gradient_sigmas : float
         Least gradient of an edge, in units of its noise on quiet ground.
     window_px : int
-        Side of the windows in which an image is read.
+        Largest side of the windows in which an image is read. A small image is read in smaller
+        ones, of 512 px and more, so that several processes have something to do.
     places : (int, int)
         Rows and columns of equal parts of the scene, in the middle of which sharpness is told.
     limits : mapping of str to float

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,11 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from acutance.curves import Estimate, Otf2d
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
-from acutance.execution import require_workers, results_in_turn
+from acutance.execution import require_workers
 from acutance.geometry.angles import axis_difference
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, Region, open_image
-from acutance.raster.disk_copy import disk_copy
+from acutance.scan.all_windows import Progress, scan_windows
 from acutance.scan.checks import check_scene
 from acutance.scan.field import Field
 from acutance.scan.options import ScanOptions
@@ -27,14 +24,12 @@ from acutance.scan.population import EdgeLikelihoods
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
 from acutance.scan.sensor_fit import SensorFit, fit_sensor
-from acutance.scan.window_edges import UsedEdge, WindowEdges, scan_window
-from acutance.scan.windows import Window, windows
+from acutance.scan.window_edges import UsedEdge, scan_window
+from acutance.scan.windows import windows
 from acutance.targets.options import chosen_options
 from acutance.targets.region import RoiLike, chosen_region, image_info
 
 __all__ = ["scan_scene"]
-
-Progress = Callable[[int, int], None]
 
 _BIN_DEG = 7.5
 """A sensor changes along the normal by no more than .0005 within half of it."""
@@ -100,7 +95,8 @@ def scan_scene(
     chosen = chosen_options(options, ScanOptions)
     source, box, region = _scene(image, roi)
     scan = partial(scan_window, gsd=Gsd.given(gsd_m), options=chosen, region=region)
-    found = _all_windows(source, box, scan, chosen.window_px, workers, progress)
+    parts = list(windows(box, chosen.window_px, source.shape))
+    found = scan_windows(source, parts, scan, workers=workers, progress=progress)
     edges = SceneEdges.of_rows([row for window in found for row in window.rows])
     used = [edge for window in found for edge in window.used]
     fit = _fit(used, edges, Field.constant(box.as_tuple()))
@@ -119,29 +115,6 @@ def _scene(
         return source, where.box(source.shape), where
     where.require_inside(source.shape)
     return source, where, None
-
-
-def _all_windows(
-    image: Image,
-    box: Box,
-    scan: Callable[[Image, Window], WindowEdges],
-    window_px: int,
-    workers: int,
-    progress: Progress | None,
-) -> list[WindowEdges]:
-    """The edges of all windows, in their order."""
-    parts = list(windows(box, window_px, image.shape))
-    found: list[WindowEdges] = []
-    with ExitStack() as stack:
-        used = min(workers, len(parts))
-        if used > 1:
-            folder = stack.enter_context(TemporaryDirectory(prefix="acutance-"))
-            image = disk_copy(image, Path(folder))
-        for window in results_in_turn(partial(scan, image), parts, workers=used):
-            found.append(window)
-            if progress is not None:
-                progress(len(found), len(parts))
-    return found
 
 
 @one_thread

@@ -11,6 +11,10 @@ from acutance.raster import Box
 __all__ = ["MARGIN_PX", "Window", "windows"]
 
 MARGIN_PX = 32
+_MIN_SIDE_PX = 512
+"""Smaller windows would cut many edges at their borders."""
+_A_SIDE = 4
+"""Windows along the longer side of a box, at least, so that several processes have some."""
 
 
 class Window(NamedTuple):
@@ -31,15 +35,19 @@ class Window(NamedTuple):
 def windows(box: Box, side_px: int, shape: tuple[int, int]) -> Iterator[Window]:
     """Windows of a box, row by row; their cores are about square, and cover it once.
 
+    They depend on the box alone, so that results are the same whatever number of processes.
+
     Parameters
     ----------
     box : Box
         Inside the image.
     side_px : int
-        Largest side of a core.
+        Largest side of a core; a box of fewer than four a side has smaller ones, down to 512.
     shape : (rows, cols)
         Of the image.
     """
+    shared = -(-max(box.shape) // _A_SIDE)
+    side_px = min(side_px, max(shared, _MIN_SIDE_PX))
     for row, height in _cuts(box.row, box.height, side_px):
         for col, width in _cuts(box.col, box.width, side_px):
             core = Box(row, col, height, width)
