@@ -47,6 +47,8 @@ LIBRARIES = {
     "rich": {"cli"},
     "numba": {"numerics"},
     "threadpoolctl": {"numerics"},
+    "distributed": {"execution"},
+    "pyarrow": {"scan"},
 }
 
 # (module, imported module): why it is right all the same.

@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 
+import acutance as ac
 from acutance import simulate
 from acutance.raster import write_geotiff
 
@@ -46,6 +47,25 @@ def test_edges_are_written_as_a_layer_and_may_be_long_ones_alone(acutance, scene
     assert min(feature["properties"]["length_px"] for feature in features) >= 25
 
 
+def test_edges_of_a_map_have_longitude_and_latitude(acutance, scene, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    placed = tmp_path / "placed.tif"
+    write_geotiff(
+        placed, ac.open_image(scene).read().astype(np.float32), crs="EPSG:32631",
+        transform=(2.0, 0.0, 500000.0, 0.0, -2.0, 5400000.0),
+    )  # fmt: skip
+    kept = ("--keep", tmp_path / "scan.parts", "--workers", 1)
+    for ending in ("csv", "parquet"):
+        done = acutance("scan", placed, *kept, "--edges", tmp_path / f"edges.{ending}")
+        assert done.exit_code == 0, done.stderr
+    rows = list(csv.DictReader((tmp_path / "edges.csv").read_text().splitlines()))
+    table = parquet.read_table(tmp_path / "edges.parquet")
+    place = ac.open_image(placed).geolocation
+    lon, lat = place.to_lonlat(table["row"].to_numpy(), table["col"].to_numpy())
+    np.testing.assert_array_equal(table["lon_deg"].to_numpy(), lon)
+    assert [float(row["lat_deg"]) for row in rows] == pytest.approx(lat.tolist(), abs=1e-8)
+
+
 def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown):
     done = acutance("scan", scene, "--workers", 1, "--report", tmp_path / "scan.html")
     assert done.exit_code == 0, done.stderr
@@ -61,6 +81,8 @@ def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown):
         (("--min-length", "1"), "min_length_px is 1: give", 2),
         (("--min-length", "60"), "max_length_px", 2),
         (("--workers", "0"), "workers", 2),
+        (("--workers", "2", "--dask", "tcp://host:8786"), "--dask cannot be combined", 2),
+        (("--keep", "nowhere/scan.parts"), "cannot be kept in nowhere", 2),
         (("--limit", "rows=9"), "rows", 2),
         (("--roi", "500,0,60,60"), "outside", 2),
     ],

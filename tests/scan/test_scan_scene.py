@@ -1,6 +1,7 @@
 """Whole scenes: the sensor comes out, whatever the objects are; what cannot be told is said."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -181,6 +182,22 @@ def test_a_field_of_view_that_is_softer_on_one_side():
         assert abs(number.value - true) < 3 * number.std
         assert number.std < 0.006
     assert {check.name: check for check in scene.checks}["field_change"].value > 0.05
+
+
+def test_edges_are_written_as_parquet(ideal, tmp_path, monkeypatch):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    _, _, scene = ideal
+    scene.edges.to_parquet(tmp_path / "edges.parquet", lambda row, col: (col / 1e4, 50 - row / 1e4))
+    table = parquet.read_table(tmp_path / "edges.parquet")
+    assert table.num_rows == scene.edges.size
+    np.testing.assert_array_equal(table["row"].to_numpy(), scene.edges.row)
+    np.testing.assert_array_equal(table["lat_deg"].to_numpy(), 50 - scene.edges.row / 1e4)
+    assert table["used"].to_pylist() == scene.edges.used.tolist()
+    assert table["reason"].to_pylist() == scene.edges.reason.tolist()
+    assert table["softness_px"].null_count == int((~scene.edges.used).sum())
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(ac.OptionError, match=r"pip install 'acutance\[parquet\]'"):
+        scene.edges.to_parquet(tmp_path / "other.parquet")
 
 
 def test_a_scene_is_combined_with_a_target(ideal):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -24,7 +25,8 @@ __all__ = ["EXAMPLE", "scan"]
 EXAMPLE = (
     "\b\nExamples:\n"
     "  acutance scan scene.tif --report scan.html --edges edges.geojson\n"
-    "  acutance scan scene.tif --roi 0,0,4000,4000 --workers 2 --json"
+    "  acutance scan scene.tif --roi 0,0,4000,4000 --workers 2 --json\n"
+    "  acutance scan large.tif --keep large.scan --dask tcp://host:8786"
 )
 
 
@@ -37,14 +39,31 @@ def scan(
         str | None,
         typer.Option(
             metavar="FILE",
-            help="Write every edge that was found, used or not: .csv, or .geojson (longitude and "
-            "latitude where the image has a CRS, else columns and rows).",
+            help="Write every edge that was found, used or not: .csv, .parquet, or .geojson. "
+            "Longitude and latitude are added where the image has a CRS.",
+        ),
+    ] = None,
+    keep: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Keep finished windows in this file: an interrupted scan goes on from it when it "
+            "is called again, a finished one with other outputs takes seconds. Remove it when it "
+            "is no longer needed.",
         ),
     ] = None,
     min_length: Annotated[
         float, typer.Option(metavar="PX", help="Shorter edges are left out.")
     ] = 15.0,
     workers: WorkersOption = None,
+    dask: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Use the workers of this dask scheduler instead of processes: tcp://HOST:8786. "
+            "They have to see IMAGE under the same name.",
+        ),
+    ] = None,
     wanted: ResultOptions,
 ) -> None:
     """Measure a sensor from all straight edges of a scene: roofs, fields, roads, coasts.
@@ -54,7 +73,9 @@ def scan(
     """
     kept = (image, pixels.roi, pixels.linearize)
     outputs = Outputs.checked(wanted, kept)
-    table = check_optional("--edges", edges, (".csv", ".geojson"), keep=kept)
+    table = check_optional("--edges", edges, (".csv", ".parquet", ".geojson"), keep=kept)
+    if dask is not None and workers is not None:
+        raise OptionError("--workers and --dask cannot be combined: the cluster has its own")
     opened, regions = pixels.open(image)
     if len(regions) > 1:
         raise OptionError(
@@ -63,12 +84,15 @@ def scan(
     (region,) = regions.values()
 
     from acutance.scan import ScanOptions, scan_scene
+    from acutance.scan.parquet import require_parquet
 
+    if table is not None and table.ending == ".parquet":
+        require_parquet()
     options = ScanOptions(min_length_px=min_length, limits=wanted.limits)
     with progress_bar(f"scan {Path(image).name}") as progress:
         found = scan_scene(
             opened, region, options=options, workers=workers or os.cpu_count() or 1,
-            progress=progress,
+            scheduler=dask, keep=keep, progress=progress,
         )  # fmt: skip
     if table is not None:
         _write_edges(table, found.edges, opened)
@@ -76,10 +100,14 @@ def scan(
 
 
 def _write_edges(table: OutputFile, edges: SceneEdges, image: Image) -> None:
+    lonlat = None if image.geolocation is None else image.geolocation.to_lonlat
     if table.ending == ".csv":
-        table.deliver(edges.to_csv())
-        return
-    from acutance.report import json_text
+        table.deliver(edges.to_csv(lonlat))
+    elif table.ending == ".parquet":
+        content = io.BytesIO()
+        edges.to_parquet(content, lonlat)
+        table.deliver(content.getvalue())
+    else:
+        from acutance.report import json_text
 
-    to_lonlat = None if image.geolocation is None else image.geolocation.to_lonlat
-    table.deliver(json_text(edges.to_geojson(to_lonlat)))
+        table.deliver(json_text(edges.to_geojson(lonlat)))

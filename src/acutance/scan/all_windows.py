@@ -1,53 +1,166 @@
-"""All windows of an image, each a task of its own: in this process or in several."""
+"""All windows of an image, each a task of its own: on several processes, or on a cluster."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from acutance.execution import results_in_turn
-from acutance.raster import Image
-from acutance.raster.disk_copy import disk_copy
-from acutance.scan.window_edges import WindowEdges
-from acutance.scan.windows import Window
+from acutance.errors import OptionError
+from acutance.execution import require_workers, run_on_cluster, run_tasks
+from acutance.raster import Box, Gsd, Image, Region
+from acutance.raster.disk_copy import disk_copy, named_from_root
+from acutance.scan.kept_windows import KeptWindows
+from acutance.scan.options import ScanOptions
+from acutance.scan.scan_identity import scan_identity
+from acutance.scan.window_edges import WindowEdges, scan_window
+from acutance.scan.windows import Window, windows
+from acutance.targets.region import RoiLike, chosen_region
 
-__all__ = ["Progress", "scan_windows"]
+__all__ = ["Progress", "part_of", "scan_windows"]
 
+Found = list[WindowEdges]
+"""The edges of a window: of every band."""
 Progress = Callable[[int, int], None]
 """Function of (windows done, windows in all)."""
 
 
+def part_of(image: Image, roi: RoiLike) -> tuple[Box, Region | None]:
+    """The part of an image to be read, and the region in it if that is no box.
+
+    Raises
+    ------
+    RegionError
+        If it is not inside the image.
+    """
+    where = Box.whole(image.shape) if roi is None else chosen_region(roi)
+    if isinstance(where, Region):
+        return where.box(image.shape), where
+    where.require_inside(image.shape)
+    return where, None
+
+
 def scan_windows(
-    image: Image,
-    parts: Sequence[Window],
-    scan: Callable[[Image, Window], WindowEdges],
+    images: Sequence[Image],
+    box: Box,
+    region: Region | None,
     *,
-    workers: int,
+    gsd: Gsd | None,
+    options: ScanOptions,
+    workers: int = 1,
+    scheduler: str | None = None,
+    keep: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
-) -> list[WindowEdges]:
-    """The edges of all windows, in their order.
+) -> list[list[WindowEdges]]:
+    """The edges of all windows, in their order, and of every band.
 
     Parameters
     ----------
-    image : Image
-    parts : sequence of Window
-    scan : function of (image, window)
-        At the top of a module, or a ``functools.partial`` of one.
-    workers : int
+    images : sequence of Image
+        The bands, of equal shape.
+    box : Box
+        The part to be scanned.
+    region : Region or None
+        Pixels outside of it are not used.
+    gsd : Gsd or None
+        Instead of the images' own.
+    options : ScanOptions
+    workers : int, optional
         Processes.
+    scheduler : str, optional
+        Address of a dask scheduler whose workers are used instead.
+    keep : path, optional
+        File in which finished windows are kept.
     progress : function of (windows done, windows in all), optional
+
+    Raises
+    ------
+    OptionError
+        If there is no worker, a cluster is to read an image in memory or cannot be reached, or
+        the file is of another scan.
     """
-    found: list[WindowEdges] = []
+    require_workers(workers)
+    parts = list(windows(box, options.window_px, images[0].shape))
+    scan = partial(scan_window, gsd=gsd, options=options, region=region)
+    if scheduler is None:
+        run = partial(_run_here, scan, images, workers=workers)
+    else:
+        run = partial(run_on_cluster, partial(scan, _on_cluster(images)), scheduler=scheduler)
+    if keep is None:
+        return _all_windows(run, parts, None, progress)
+    with KeptWindows(keep, scan_identity(images, box, region, gsd, options)) as kept:
+        return _all_windows(run, parts, kept, progress)
+
+
+def _all_windows(
+    run: Callable[[Sequence[Window], Callable[[int, Found], None]], None],
+    parts: Sequence[Window],
+    kept: KeptWindows | None,
+    progress: Progress | None,
+) -> list[Found]:
+    """Windows that are kept already, and then the others, as they are finished."""
+    done: dict[int, Found] = {} if kept is None else dict(kept.done)
+    todo = [place for place in range(len(parts)) if place not in done]
+    if progress is not None and done:
+        progress(len(done), len(parts))
+
+    def add(number: int, found: Found) -> None:
+        place = todo[number]
+        if kept is not None:
+            kept.keep(place, found)
+        done[place] = found
+        if progress is not None:
+            progress(len(done), len(parts))
+
+    try:
+        run([parts[place] for place in todo], add)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(_interruption(len(done), len(parts), kept)) from None
+    return [done[place] for place in range(len(parts))]
+
+
+def _run_here(
+    scan: Callable[[Sequence[Image], Window], Found],
+    images: Sequence[Image],
+    parts: Sequence[Window],
+    add: Callable[[int, Found], None],
+    workers: int,
+) -> None:
+    """Windows on the processes of this machine."""
+    used = max(1, min(workers, len(parts)))
     with ExitStack() as stack:
-        used = min(workers, len(parts))
         if used > 1:
-            folder = stack.enter_context(TemporaryDirectory(prefix="acutance-"))
-            image = disk_copy(image, Path(folder))
-        for window in results_in_turn(partial(scan, image), parts, workers=used, chunk=1):
-            found.append(window)
-            if progress is not None:
-                progress(len(found), len(parts))
-    return found
+            folder = Path(stack.enter_context(TemporaryDirectory(prefix="acutance-")))
+            images = [disk_copy(image, folder) for image in images]
+        run_tasks(partial(scan, images), parts, add, workers=used, chunk=1)
+
+
+def _on_cluster(images: Sequence[Image]) -> list[Image]:
+    """The same images, as machines that see the same files find them.
+
+    Raises
+    ------
+    OptionError
+        If one is in memory.
+    """
+    if any(image.path is None for image in images):
+        raise OptionError(
+            "the image is in memory, where the workers of a cluster cannot read it: write it to a "
+            "file that all of them see (acutance.raster.write_geotiff), and scan that"
+        )
+    return [named_from_root(image) for image in images]
+
+
+def _interruption(done: int, total: int, kept: KeptWindows | None) -> str:
+    if kept is None:
+        return (
+            f"interrupted: {done} of {total} windows were done and are lost; name a file that "
+            "keeps them (keep, --keep) and a scan goes on where it was"
+        )
+    return (
+        f"interrupted: {done} of {total} windows are kept in {kept.path}; run the same command "
+        "again to go on"
+    )

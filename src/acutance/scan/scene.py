@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,11 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from acutance.curves import Estimate, Otf2d
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
-from acutance.execution import require_workers
 from acutance.geometry.angles import axis_difference
 from acutance.numerics.one_thread import one_thread
-from acutance.raster import Box, Gsd, Image, Region, open_image
-from acutance.scan.all_windows import Progress, scan_windows
+from acutance.raster import Box, Gsd, Image, open_image
+from acutance.scan.all_windows import Progress, part_of, scan_windows
 from acutance.scan.checks import check_scene
 from acutance.scan.field import Field
 from acutance.scan.options import ScanOptions
@@ -24,12 +22,11 @@ from acutance.scan.population import EdgeLikelihoods
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
 from acutance.scan.sensor_fit import SensorFit, fit_sensor
-from acutance.scan.window_edges import UsedEdge, scan_window
-from acutance.scan.windows import windows
+from acutance.scan.window_edges import UsedEdge, WindowEdges
 from acutance.targets.options import chosen_options
-from acutance.targets.region import RoiLike, chosen_region, image_info
+from acutance.targets.region import RoiLike, image_info
 
-__all__ = ["scan_scene"]
+__all__ = ["measured_scene", "scan_scene"]
 
 _BIN_DEG = 7.5
 """A sensor changes along the normal by no more than .0005 within half of it."""
@@ -48,6 +45,8 @@ def scan_scene(
     gsd_m: float | Gsd | None = None,
     options: ScanOptions | None = None,
     workers: int = 1,
+    scheduler: str | None = None,
+    keep: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> SceneMeasurement:
     """Measure a sensor from all straight edges of a scene.
@@ -68,6 +67,14 @@ def scan_scene(
     workers : int, optional
         Processes, each with its own windows. With more than one, a script has to guard its own
         start by ``if __name__ == "__main__"``.
+    scheduler : str, optional
+        Address of a dask scheduler ("tcp://host:8786"): its workers, which have to see the file
+        under the same name, are used instead of processes.
+    keep : path, optional
+        File in which finished windows are kept. A scan that was interrupted, however, goes on
+        where it was when it is called again; a finished one leaves the file, and the same scan
+        with other outputs is then a matter of seconds. The file of another scan (the image
+        changed, other options) is refused.
     progress : function of (windows done, windows in all), optional
 
     Returns
@@ -83,7 +90,8 @@ def scan_scene(
     NoEdgeError
         If too few edges can be used, or all have one direction.
     OptionError
-        If an option or the number of workers means nothing.
+        If an option or the number of workers means nothing, the scheduler cannot be reached, or
+        `keep` is of another scan.
 
     Examples
     --------
@@ -91,30 +99,45 @@ def scan_scene(
     >>> print(scene.across.mtf_nyquist, scene.along.mtf_nyquist)  # doctest: +SKIP
     >>> scene.edges.row[scene.edges.used]  # doctest: +SKIP
     """
-    require_workers(workers)
-    chosen = chosen_options(options, ScanOptions)
-    source, box, region = _scene(image, roi)
-    scan = partial(scan_window, gsd=Gsd.given(gsd_m), options=chosen, region=region)
-    parts = list(windows(box, chosen.window_px, source.shape))
-    found = scan_windows(source, parts, scan, workers=workers, progress=progress)
-    edges = SceneEdges.of_rows([row for window in found for row in window.rows])
-    used = [edge for window in found for edge in window.used]
-    fit = _fit(used, edges, Field.constant(box.as_tuple()))
-    return _measurement(source, box, Gsd.given(gsd_m), chosen, edges, fit)
-
-
-def _scene(
-    image: Image | ArrayLike | str | os.PathLike[str], roi: RoiLike
-) -> tuple[Image, Box, Region | None]:
-    """The image, the part of it to be read, and the region in it if that is no box."""
+    chosen, gsd = chosen_options(options, ScanOptions), Gsd.given(gsd_m)
     if isinstance(image, str | os.PathLike):
         image = open_image(image)
     source = Image.of(image)
-    where = Box.whole(source.shape) if roi is None else chosen_region(roi)
-    if isinstance(where, Region):
-        return source, where.box(source.shape), where
-    where.require_inside(source.shape)
-    return source, where, None
+    box, region = part_of(source, roi)
+    found = scan_windows(
+        [source], box, region, gsd=gsd, options=chosen, workers=workers, scheduler=scheduler,
+        keep=keep, progress=progress,
+    )  # fmt: skip
+    return measured_scene(source, box, gsd, chosen, [one for (one,) in found])
+
+
+def measured_scene(
+    image: Image,
+    box: Box,
+    gsd: Gsd | None,
+    options: ScanOptions,
+    found: Sequence[WindowEdges],
+) -> SceneMeasurement:
+    """The sensor under the edges of all windows of a band.
+
+    Parameters
+    ----------
+    image : Image
+    box : Box
+        The part that was scanned.
+    gsd : Gsd or None
+        Instead of the image's own.
+    options : ScanOptions
+    found : sequence of WindowEdges
+
+    Raises
+    ------
+    NoEdgeError
+        If too few edges can be used, or all have one direction.
+    """
+    edges = SceneEdges.of_rows([row for window in found for row in window.rows])
+    used = [edge for window in found for edge in window.used]
+    return _measurement(image, box, gsd, options, edges, _fit(used, edges))
 
 
 @one_thread

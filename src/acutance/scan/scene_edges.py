@@ -4,19 +4,27 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.scan.parquet import write_parquet
 
-__all__ = ["SceneEdges"]
+__all__ = ["SceneEdges", "ToLonLat"]
+
+ToLonLat = Callable[[Floats, Floats], tuple[Floats, Floats]]
+"""Function of (row, col): their longitudes and latitudes in degrees."""
 
 _DIGITS = 6
+_DEGREES = ("lon_deg", "lat_deg")
+_DECIMALS = 8
+"""Of degrees: a millimetre."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +38,11 @@ class SceneEdges(ShortRepr):
     normal_deg : float array
         Direction from dark to bright, from the column axis towards the row axis.
     length_px : float array
+    place_std_px : float array
+        Standard deviation of its place along the normal; NaN of an edge that was not measured, as
+        the numbers that follow.
     snr : float array
-        Contrast over noise; NaN of an edge that was not measured, as all that follow.
+        Contrast over noise.
     mtf_nyquist, mtf_nyquist_std, rer, rer_std, fwhm_px, fwhm_px_std : float arrays
         Of the edge along its normal: of sensor and object together.
     softness_px : float array
@@ -50,6 +61,7 @@ class SceneEdges(ShortRepr):
     col: Floats
     normal_deg: Floats
     length_px: Floats
+    place_std_px: Floats
     snr: Floats
     mtf_nyquist: Floats
     mtf_nyquist_std: Floats
@@ -94,18 +106,50 @@ class SceneEdges(ShortRepr):
         """All arrays by name."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
-    def to_csv(self) -> str:
-        """A table with one line an edge; NaN are empty."""
+    def placed_columns(self, lonlat: ToLonLat | None = None) -> dict[str, NDArray[Any]]:
+        """All arrays by name, with longitude and latitude in degrees where they are known."""
+        columns = self.columns()
+        if lonlat is None:
+            return columns
+        lon_deg, lat_deg = lonlat(self.row, self.col)
+        return columns | {"lon_deg": np.asarray(lon_deg), "lat_deg": np.asarray(lat_deg)}
+
+    def to_csv(self, lonlat: ToLonLat | None = None) -> str:
+        """A table with one line an edge; NaN are empty.
+
+        Parameters
+        ----------
+        lonlat : function of (row, col) arrays, optional
+            Gives longitudes and latitudes, two more columns.
+        """
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        columns = self.columns()
+        columns = self.placed_columns(lonlat)
         writer.writerow(columns)
-        writer.writerows(zip(*(map(_cell, column) for column in columns.values()), strict=True))
+        cells = (map(_degrees if name in _DEGREES else _cell, column)
+                 for name, column in columns.items())  # fmt: skip
+        writer.writerows(zip(*cells, strict=True))
         return text.getvalue()
 
-    def to_geojson(
-        self, lonlat: Callable[[Floats, Floats], tuple[Floats, Floats]] | None = None
-    ) -> dict[str, Any]:
+    def to_parquet(
+        self, file: str | os.PathLike[str] | BinaryIO, lonlat: ToLonLat | None = None
+    ) -> None:
+        """Write a Parquet file with one row an edge; NaN are missing values.
+
+        Parameters
+        ----------
+        file : path or binary file
+        lonlat : function of (row, col) arrays, optional
+            Gives longitudes and latitudes, two more columns.
+
+        Raises
+        ------
+        OptionError
+            If pyarrow is not installed.
+        """
+        write_parquet(file, self.placed_columns(lonlat))
+
+    def to_geojson(self, lonlat: ToLonLat | None = None) -> dict[str, Any]:
         """Edges as line strings with all columns as properties.
 
         Parameters
@@ -121,7 +165,7 @@ class SceneEdges(ShortRepr):
             row, col = self.row + sign * away_row, self.col + sign * away_col
             x, y = (col, row) if lonlat is None else lonlat(row, col)
             ends.append(np.stack([x, y], axis=1))
-        lines = np.round(np.stack(ends, axis=1), 8).tolist()
+        lines = np.round(np.stack(ends, axis=1), _DECIMALS).tolist()
         columns = self.columns()
         features = [
             {
@@ -141,6 +185,10 @@ def _value(one: Any) -> Any:
     if isinstance(one, np.floating):
         return float(f"{one:.{_DIGITS}g}") if np.isfinite(one) else None
     return str(one)
+
+
+def _degrees(one: Any) -> str:
+    return f"{one:.{_DECIMALS}f}" if np.isfinite(one) else ""
 
 
 def _cell(one: Any) -> str:

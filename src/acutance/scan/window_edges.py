@@ -1,8 +1,8 @@
-"""The edges of one window of an image: found, measured, judged."""
+"""The edges of one window of an image, in one band or several: found, measured, judged."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,10 +15,10 @@ from acutance.geometry.angles import direction_difference, wrap_axis
 from acutance.numerics.one_thread import one_thread
 from acutance.numerics.stacked import stacked
 from acutance.raster import Box, Gsd, Image, Region
-from acutance.scan.edge_points import edge_points, gradient
+from acutance.scan.band_pieces import Unseen, band_pieces, in_band
+from acutance.scan.edge_points import gradient
 from acutance.scan.options import ScanOptions
-from acutance.scan.pieces import pieces, region_box
-from acutance.scan.segments import find_segments
+from acutance.scan.pieces import region_box
 from acutance.scan.windows import Window
 from acutance.targets.region import RegionPixels, read_data
 from acutance.targets.straight import StraightMeasurement
@@ -92,35 +92,65 @@ class WindowEdges:
 
 @one_thread
 def scan_window(
-    image: Image,
+    images: Sequence[Image],
     window: Window,
     *,
     gsd: Gsd | None,
     options: ScanOptions,
     region: Region | None = None,
-) -> WindowEdges:
-    """Find and measure the edges of one window.
+) -> list[WindowEdges]:
+    """Find the edges of one window, and measure them in every band.
 
     Parameters
     ----------
-    image : Image
+    images : sequence of Image
+        The bands, of equal shape.
     window : Window
     gsd : Gsd or None
-        Instead of the image's own.
+        Instead of the images' own.
     options : ScanOptions
     region : Region, optional
         Pixels outside of it are not used.
+
+    Returns
+    -------
+    list of WindowEdges
+        One a band, all of the same edges in the same order.
     """
+    if min(window.whole.shape) < _MIN_SIDE_PX:
+        return [WindowEdges([], []) for _ in images]
+    every = [_pixels(image, window.whole, region) for image in images]
+    slopes = [gradient(pixels) for pixels in every]
+    found = band_pieces(slopes, window, options)
+    return [
+        _measured(image, pixels, in_band(found, band, slope, options), window.whole, gsd, options)
+        for band, (image, pixels, slope) in enumerate(zip(images, every, slopes, strict=True))
+    ]
+
+
+def _pixels(image: Image, box: Box, region: Region | None) -> Floats:
+    """The pixels of a box, NaN outside the region."""
+    pixels, _ = read_data(image, box)
+    return pixels if region is None else np.where(region.mask(box), pixels, np.nan)
+
+
+def _measured(
+    image: Image,
+    pixels: Floats,
+    segments: Iterable[Segment | Unseen],
+    whole: Box,
+    gsd: Gsd | None,
+    options: ScanOptions,
+) -> WindowEdges:
+    """The edges of one band."""
     rows: list[dict[str, Any]] = []
     used: list[UsedEdge] = []
-    if min(window.whole.shape) < _MIN_SIDE_PX:
-        return WindowEdges(rows, used)
-    pixels, _ = read_data(image, window.whole)
-    if region is not None:
-        pixels = np.where(region.mask(window.whole), pixels, np.nan)
-    for segment in _segments(pixels, window, options):
-        around, own = _around(image, gsd, pixels, window.whole, segment, options)
-        row = _place(segment, window.whole)
+    for segment in segments:
+        if isinstance(segment, Unseen):
+            rows.append(_place(segment.segment, whole) | {"reason": segment.reason})
+            continue
+        around, own = _around(image, gsd, pixels, whole, segment, options)
+        row = _place(segment, whole)
         try:
             found = measure_segment(around, own, "spline", _EDGE_OPTIONS)
         except TargetError as error:
@@ -131,16 +161,6 @@ def scan_window(
         if is_used:
             used.append(UsedEdge.of(found))
     return WindowEdges(rows, used)
-
-
-def _segments(pixels: Floats, window: Window, options: ScanOptions) -> Iterator[Segment]:
-    """Pieces of edges in the core of a window, in its pixels."""
-    slope = gradient(pixels)
-    points = edge_points(slope, options.min_gradient_sigmas)
-    core, whole = window.core, window.whole
-    own = Box(core.row - whole.row, core.col - whole.col, core.height, core.width)
-    for segment in find_segments(points, whole.shape, options.min_length_px):
-        yield from pieces(segment, own, options.min_length_px, options.max_length_px)
 
 
 def _around(
@@ -186,6 +206,7 @@ def _numbers(found: StraightMeasurement) -> dict[str, Any]:
         "col": found.line.col,
         "normal_deg": found.normal_deg,
         "length_px": found.line.length_px,
+        "place_std_px": found.line.offset_std_px,
         "snr": found.snr,
         "verdict": verdict.word,
         "reason": "" if verdict.word in _USED else verdict.sentence,

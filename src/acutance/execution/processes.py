@@ -1,4 +1,4 @@
-"""Independent tasks over all cores: the only module that starts processes."""
+"""Independent tasks over all cores of this machine."""
 
 from __future__ import annotations
 
@@ -47,6 +47,7 @@ def run_tasks(
     keep: Callable[[int, Result], None],
     *,
     workers: int | None = None,
+    chunk: int | None = None,
 ) -> None:
     """Hand the result of every task to `keep` as soon as it is there, in any order.
 
@@ -64,10 +65,13 @@ def run_tasks(
     workers : int, optional
         Processes, each on one core; 1 stays in this process. All cores unless given. With more
         than one, a script has to guard its own start by ``if __name__ == "__main__"``.
+    chunk : int, optional
+        Tasks that a process is handed at once: 1 of long tasks, so that few occupy all processes.
+        Without it their number decides.
     """
     used = min(workers or os.cpu_count() or 1, len(tasks))
     if used > 1:
-        _run_in_processes(work, tasks, keep, used)
+        _run_in_processes(work, tasks, keep, used, chunk)
         return
     for place, task in enumerate(tasks):
         keep(place, work(task))
@@ -78,8 +82,9 @@ def _run_in_processes(
     tasks: Sequence[Task],
     keep: Callable[[int, Result], None],
     workers: int,
+    chunk: int | None,
 ) -> None:
-    size = max(1, min(_MAX_CHUNK, len(tasks) // (_CHUNKS_PER_WORKER * workers)))
+    size = chunk or max(1, min(_MAX_CHUNK, len(tasks) // (_CHUNKS_PER_WORKER * workers)))
     starts = range(0, len(tasks), size)
     started: dict[Future[list[Result]], int] = {}
     kept: set[int] = set()
@@ -94,8 +99,8 @@ def _run_in_processes(
         with _processes(workers) as pool:
             with _interrupts_held_back():
                 for first in starts:
-                    chunk = list(tasks[first : first + size])
-                    started[pool.submit(_work_through, work, chunk)] = first
+                    some = tasks[first : first + size]
+                    started[pool.submit(_work_through, work, list(some))] = first
             for future in as_completed(started):
                 keep_all(future)
     except BaseException:
@@ -127,11 +132,7 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def results_in_turn(
-    work: Callable[[Task], Result],
-    tasks: Iterable[Task],
-    *,
-    workers: int = 1,
-    chunk: int = _MAX_CHUNK,
+    work: Callable[[Task], Result], tasks: Iterable[Task], *, workers: int = 1
 ) -> Iterator[Result]:
     """The result of every task, in the order of the tasks, as soon as it is there.
 
@@ -145,8 +146,6 @@ def results_in_turn(
     tasks : iterable
     workers : int, optional
         As of `run_tasks`.
-    chunk : int, optional
-        Tasks that a process is handed at once: 1 of long tasks, so that few occupy all processes.
     """
     if workers < 2:
         yield from map(work, tasks)
@@ -157,10 +156,10 @@ def results_in_turn(
         while True:
             with _interrupts_held_back():
                 while len(waiting) < _WAITING_PER_WORKER * workers:
-                    some = list(islice(todo, chunk))
-                    if not some:
+                    chunk = list(islice(todo, _MAX_CHUNK))
+                    if not chunk:
                         break
-                    waiting.append(pool.submit(_work_through, work, some))
+                    waiting.append(pool.submit(_work_through, work, chunk))
             if not waiting:
                 return
             yield from waiting.popleft().result()

@@ -96,5 +96,7 @@ def waits_for_company(folder):
 
 
 def test_few_long_tasks_occupy_all_processes(tmp_path):
-    found = list(results_in_turn(waits_for_company, [tmp_path] * 4, workers=2, chunk=1))
-    assert len(set(found)) == 2
+    found = {}
+    run_tasks(waits_for_company, [tmp_path] * 4, found.__setitem__, workers=2, chunk=1)
+    assert len(set(found.values())) == 2
+    assert set(found) == {0, 1, 2, 3}

@@ -1,0 +1,10 @@
+"""Independent tasks: the only room that starts processes, or hands work to those of others.
+
+`processes` (the cores of this machine), `cluster` (a dask scheduler that is running somewhere; only
+here: dask).
+"""
+
+from acutance.execution.cluster import run_on_cluster
+from acutance.execution.processes import require_workers, results_in_turn, run_tasks
+
+__all__ = ["require_workers", "results_in_turn", "run_on_cluster", "run_tasks"]

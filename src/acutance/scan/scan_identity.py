@@ -1,0 +1,118 @@
+"""What a scan is of: anything that changes an edge changes it."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from acutance.raster import Box, Gsd, Image, Region
+from acutance.raster.disk_copy import named_from_root
+from acutance.scan.options import ScanOptions
+
+__all__ = ["difference", "scan_identity"]
+
+_OF_THE_ANSWER = ("limits",)
+"""Options that change no edge."""
+_STRIP_PIXELS = 2**21
+_WORDS = {
+    "version": "version of acutance",
+    "images": "image or band",
+    "modified": "image, as it was before it changed",
+    "box": "region",
+    "region": "region",
+    "gsd": "GSD",
+}
+
+
+def scan_identity(
+    images: Sequence[Image],
+    box: Box,
+    region: Region | None,
+    gsd: Gsd | None,
+    options: ScanOptions,
+) -> dict[str, Any]:
+    """What is scanned, and how, for JSON.
+
+    Files are identified by name, size and time of change, pixels in memory by a checksum.
+
+    Parameters
+    ----------
+    images : sequence of Image
+        The bands.
+    box : Box
+        The part that is read.
+    region : Region or None
+        The part of it that is used.
+    gsd : Gsd or None
+        Instead of the images' own.
+    options : ScanOptions
+    """
+    from acutance import __version__
+
+    own = _content(options)
+    return {
+        "version": __version__,
+        "images": [_image(image) for image in images],
+        "modified": [_modified(image) for image in images],
+        "box": list(box.as_tuple()),
+        "region": _content(region),
+        "gsd": _content(gsd),
+        **{name: value for name, value in own.items() if name not in _OF_THE_ANSWER},
+    }
+
+
+def difference(one: Mapping[str, Any], other: Mapping[str, Any]) -> str | None:
+    """What two scans differ in first, in a word or two; None if they are one."""
+    for name in dict.fromkeys((*one, *other)):
+        if one.get(name) != other.get(name):
+            return _WORDS.get(name, name)
+    return None
+
+
+def _image(image: Image) -> Any:
+    """An image by its name and how it is read; one in memory by its pixels."""
+    named = named_from_root(image)
+    if image.path is None:
+        return {"pixels": _checksum(image)}
+    return {"shape": list(image.shape), "band": image.band, **_content(named.source)}
+
+
+def _modified(image: Image) -> Any:
+    """What changes with the content of a file."""
+    if image.path is None:
+        return None
+    try:
+        found = os.stat(image.path)
+    except OSError:
+        # A name of GDAL's own: inside a packed file, at another host.
+        return _checksum(image)
+    return [found.st_size, found.st_mtime_ns]
+
+
+def _checksum(image: Image) -> str:
+    """Of all pixels, as they are read."""
+    rows, cols = image.shape
+    step = max(1, _STRIP_PIXELS // cols)
+    found = hashlib.sha256(repr(image.shape).encode())
+    for row in range(0, rows, step):
+        found.update(image.read(Box(row, 0, min(step, rows - row), cols)).tobytes())
+    return found.hexdigest()
+
+
+def _content(thing: Any) -> Any:
+    """Anything made of dataclasses, numbers, text and arrays, for JSON; arrays as checksums."""
+    if is_dataclass(thing):
+        return {one.name: _content(getattr(thing, one.name)) for one in fields(thing)}
+    if isinstance(thing, np.ndarray):
+        values = np.ascontiguousarray(thing)
+        return hashlib.sha256(repr(values.shape).encode() + values.tobytes()).hexdigest()
+    if isinstance(thing, Mapping):
+        return {str(name): _content(one) for name, one in thing.items()}
+    if isinstance(thing, tuple | list):
+        return [_content(one) for one in thing]
+    return thing
