@@ -34,7 +34,15 @@ if TYPE_CHECKING:
     from acutance.geometry import Line
     from acutance.optics import Sensor
     from acutance.raster import Box, Gsd, Image, Region, open_image, sites
-    from acutance.scan import ScanOptions, SceneEdges, SceneMeasurement, scan_scene
+    from acutance.scan import (
+        BandScenes,
+        BandShift,
+        ScanOptions,
+        SceneEdges,
+        SceneMeasurement,
+        scan_bands,
+        scan_scene,
+    )
     from acutance.targets import (
         Check,
         ImageInfo,
@@ -76,6 +84,8 @@ __version__ = "0.1.0"
 # Where a public name lives. Modules are loaded when a name is first used, so that
 # `import acutance` stays quick.
 _HOMES = {
+    "BandScenes": "acutance.scan",
+    "BandShift": "acutance.scan",
     "BarsMeasurement": "acutance.targets.periodic",
     "BarsOptions": "acutance.targets.periodic",
     "BiresolutionMeasurement": "acutance.targets.pair",
@@ -123,6 +133,7 @@ _HOMES = {
     "measure_pulses": "acutance.targets.straight",
     "measure_star": "acutance.targets.periodic",
     "open_image": "acutance.raster",
+    "scan_bands": "acutance.scan",
     "scan_scene": "acutance.scan",
     "sites": "acutance.raster",
 }
@@ -130,6 +141,8 @@ _MODULES = ("optics", "report", "simulate")
 
 __all__ = [
     "AcutanceError",
+    "BandScenes",
+    "BandShift",
     "BarsMeasurement",
     "BarsOptions",
     "BiresolutionMeasurement",
@@ -191,6 +204,7 @@ __all__ = [
     "open_image",
     "optics",
     "report",
+    "scan_bands",
     "scan_scene",
     "simulate",
     "sites",

@@ -47,6 +47,49 @@ def test_edges_are_written_as_a_layer_and_may_be_long_ones_alone(acutance, scene
     assert min(feature["properties"]["length_px"] for feature in features) >= 25
 
 
+@pytest.fixture(scope="module")
+def colours(scene):
+    """The scene in two bands, the second of opposite contrast."""
+    pixels = ac.open_image(scene).read()
+    noise = np.random.default_rng(1).normal(0, 2, pixels.shape)
+    path = scene.with_name("colours.tif")
+    write_geotiff(path, np.array([pixels, 2000 + noise - pixels], np.float32), gsd_m=2.0)
+    return path
+
+
+def test_several_bands_are_one_run(acutance, colours, tmp_path, shown, keeps_to_schema):
+    done = acutance(
+        "scan", colours, "--band", "all", "--workers", 1, "--keep", tmp_path / "scan.parts",
+        "--edges", tmp_path / "edges.csv", "--figure", tmp_path / "scan.png", "--json",
+    )  # fmt: skip
+    assert done.exit_code == 0, done.stderr
+    document = json.loads(done.stdout)
+    assert document["schema"] == "acutance/bands/1"
+    assert [one["band"] for one in document["results"]] == ["1", "2"]
+    for one in document["results"]:
+        keeps_to_schema({name: value for name, value in one.items() if name != "band"})
+    (shift,) = document["shifts"]
+    assert (shift["band"], shift["relative_to"]) == ("2", "1")
+    assert abs(shift["row_px"]["value"]) < 3 * shift["row_px"]["std"]
+    rows = list(csv.DictReader((tmp_path / "edges.csv").read_text().splitlines()))
+    assert len(rows) == 2 * document["results"][0]["edges"]["found"]
+    assert [call[0] for call in shown] == ["draw", "draw"]
+    assert sorted(path.name for path in tmp_path.glob("*.png")) == [
+        "scan-band-1.png", "scan-band-2.png"
+    ]  # fmt: skip
+    # The windows are kept: text and page are a matter of seconds.
+    done = acutance(
+        "scan", colours, "--band", "1,2", "--workers", 1, "--keep", tmp_path / "scan.parts",
+        "--report", tmp_path / "scan.html",
+    )  # fmt: skip
+    assert done.exit_code == 0, done.stderr
+    assert "scene in 2 bands" in done.stdout
+    assert "Shifts relative to band 1" in done.stdout
+    page = (tmp_path / "scan.html").read_text()
+    assert "Band 2: result" in page
+    assert "Shifts relative to band 1" in page
+
+
 def test_edges_of_a_map_have_longitude_and_latitude(acutance, scene, tmp_path):
     parquet = pytest.importorskip("pyarrow.parquet")
     placed = tmp_path / "placed.tif"
@@ -81,6 +124,9 @@ def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown):
         (("--min-length", "1"), "min_length_px is 1: give", 2),
         (("--min-length", "60"), "max_length_px", 2),
         (("--workers", "0"), "workers", 2),
+        (("--band", "1,x"), "--band x is not the number of a band", 2),
+        (("--band", "1,1"), "give the number of every band once", 2),
+        (("--band", "1,4"), "band 4 of", 2),
         (("--workers", "2", "--dask", "tcp://host:8786"), "--dask cannot be combined", 2),
         (("--keep", "nowhere/scan.parts"), "cannot be kept in nowhere", 2),
         (("--limit", "rows=9"), "rows", 2),

@@ -17,6 +17,7 @@ __all__ = [
     "choose_methods",
     "choose_rer_centre",
     "numbers_of",
+    "parse_band",
     "parse_limits",
     "parse_pair",
     "parse_share",
@@ -147,4 +148,20 @@ def parse_share(option: str, text: str | None) -> float:
     except ValueError:
         raise OptionError(
             f"{option} {text}: write a share of the contrast (0.5% or 0.005)"
+        ) from None
+
+
+def parse_band(text: str) -> int:
+    """The number of a band.
+
+    Raises
+    ------
+    OptionError
+        If it is none.
+    """
+    try:
+        return int(text)
+    except ValueError:
+        raise OptionError(
+            f"--band {text} is not the number of a band: bands are counted from 1"
         ) from None

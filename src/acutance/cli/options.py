@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.choices import numbers_of, parse_limits, parse_share, parse_stated
+from acutance.cli.choices import numbers_of, parse_band, parse_limits, parse_share, parse_stated
 from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS, methods_text
 
@@ -103,7 +103,7 @@ class PixelOptions:
     site: Annotated[
         str | None, typer.Option(metavar="NAME", help="Region: a known site (see acutance sites).")
     ] = None
-    band: Annotated[int, typer.Option(metavar="N", help="Which band, from 1.")] = 1
+    band: Annotated[str, typer.Option(metavar="N", help="Which band, from 1.")] = "1"
     nodata: Annotated[
         float | None,
         typer.Option(
@@ -140,6 +140,19 @@ class PixelOptions:
         OptionError, ImageError, RegionError
             If the options contradict each other, or the image or a region cannot be had.
         """
+        (image,), regions = self.open_bands(path, (parse_band(self.band),))
+        return image, regions
+
+    def open_bands(
+        self, path: str, bands: Sequence[int] | None
+    ) -> tuple[tuple[Image, ...], dict[str, Region | None]]:
+        """Open several bands of the image, all without `bands`, and find the regions, by name.
+
+        Raises
+        ------
+        OptionError, ImageError, RegionError
+            As of `open`.
+        """
         if self.roi is not None and self.site is not None:
             raise OptionError("--roi and --site both name a region: give one of them")
         if self.along_track not in _AXES:
@@ -147,18 +160,18 @@ class PixelOptions:
         if self.gamma is not None and self.linearize is not None:
             raise OptionError("--gamma and --linearize both name a curve: give one of them")
         gsd_m = parse_gsd(self.gsd)
-        from acutance.raster import find_site, open_image, parse_rois, site_region
+        from acutance.raster import find_site, open_bands, parse_rois, site_region
 
         place = None if self.site is None else find_site(self.site)
-        image = open_image(
-            path, self.band, gsd_m, self.nodata, along_track=_AXES[self.along_track],
+        images = open_bands(
+            path, bands, gsd_m, self.nodata, along_track=_AXES[self.along_track],
             linearize=self.linearize if self.gamma is None else self.gamma,
         )  # fmt: skip
         if place is not None:
-            return image, {place.name: site_region(place, image)}
+            return images, {place.name: site_region(place, images[0])}
         if self.roi is None:
-            return image, {"": None}
-        return image, dict(parse_rois(self.roi, image))
+            return images, {"": None}
+        return images, dict(parse_rois(self.roi, images[0]))
 
 
 @dataclass(frozen=True)

@@ -1,40 +1,65 @@
-"""``acutance scan``: measure a sensor from all straight edges of a scene."""
+"""``acutance scan``: measure a sensor from all straight edges of a scene, in its bands."""
 
 from __future__ import annotations
 
 import io
 import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from acutance.cli.choices import parse_band
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions
 from acutance.cli.output import OutputFile, check_optional
 from acutance.cli.results import Outputs, Shown
 from acutance.cli.study import WorkersOption, progress_bar
+from acutance.cli.terminal import command_line
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
     from acutance.raster import Image
-    from acutance.scan import SceneEdges
+    from acutance.scan import BandScenes, SceneMeasurement
+    from acutance.scan.edge_table import EdgeTable
 
 __all__ = ["EXAMPLE", "scan"]
 
 EXAMPLE = (
     "\b\nExamples:\n"
     "  acutance scan scene.tif --report scan.html --edges edges.geojson\n"
-    "  acutance scan scene.tif --roi 0,0,4000,4000 --workers 2 --json\n"
+    "  acutance scan scene.tif --band all --json\n"
+    "  acutance scan scene.tif --roi 0,0,4000,4000 --workers 2\n"
     "  acutance scan large.tif --keep large.scan --dask tcp://host:8786"
 )
+
+
+@dataclass(frozen=True)
+class ScenePixelOptions(PixelOptions):
+    """Which pixels are meant: of one band or of several."""
+
+    band: Annotated[
+        str,
+        typer.Option(
+            metavar="N,...|all",
+            help="Which band, from 1. Several, 1,2,3 or all, are measured at the same edges, with "
+            "the shifts between them.",
+        ),
+    ] = "1"
+
+    @property
+    def bands(self) -> Sequence[int] | None:
+        """The numbers of the bands; None for all of them."""
+        return None if self.band == "all" else [parse_band(one) for one in self.band.split(",")]
 
 
 @with_groups
 def scan(
     *,
     image: ImageArgument,
-    pixels: PixelOptions,
+    pixels: ScenePixelOptions,
     edges: Annotated[
         str | None,
         typer.Option(
@@ -76,30 +101,41 @@ def scan(
     table = check_optional("--edges", edges, (".csv", ".parquet", ".geojson"), keep=kept)
     if dask is not None and workers is not None:
         raise OptionError("--workers and --dask cannot be combined: the cluster has its own")
-    opened, regions = pixels.open(image)
+    bands = pixels.bands
+    images, regions = pixels.open_bands(image, bands)
     if len(regions) > 1:
         raise OptionError(
             f"--roi names {len(regions)} regions, and a scene is one: give one of them"
         )
     (region,) = regions.values()
 
-    from acutance.scan import ScanOptions, scan_scene
+    from acutance.scan import BandScenes, ScanOptions, scan_bands, scan_scene
     from acutance.scan.parquet import require_parquet
 
     if table is not None and table.ending == ".parquet":
         require_parquet()
-    options = ScanOptions(min_length_px=min_length, limits=wanted.limits)
     with progress_bar(f"scan {Path(image).name}") as progress:
-        found = scan_scene(
-            opened, region, options=options, workers=workers or os.cpu_count() or 1,
-            scheduler=dask, keep=keep, progress=progress,
-        )  # fmt: skip
+        how: dict[str, Any] = {
+            "options": ScanOptions(min_length_px=min_length, limits=wanted.limits),
+            "workers": workers or os.cpu_count() or 1,
+            "scheduler": dask,
+            "keep": keep,
+            "progress": progress,
+        }
+        found: SceneMeasurement | BandScenes
+        if bands is None or len(bands) > 1:
+            found = scan_bands(images, roi=region, **how)
+        else:
+            found = scan_scene(images[0], region, **how)
     if table is not None:
-        _write_edges(table, found.edges, opened)
-    outputs.deliver(Shown(found))
+        _write_edges(table, found.edges, images[0])
+    if isinstance(found, BandScenes):
+        _deliver_bands(outputs, found, kept)
+    else:
+        outputs.deliver(Shown(found))
 
 
-def _write_edges(table: OutputFile, edges: SceneEdges, image: Image) -> None:
+def _write_edges(table: OutputFile, edges: EdgeTable, image: Image) -> None:
     lonlat = None if image.geolocation is None else image.geolocation.to_lonlat
     if table.ending == ".csv":
         table.deliver(edges.to_csv(lonlat))
@@ -111,3 +147,21 @@ def _write_edges(table: OutputFile, edges: SceneEdges, image: Image) -> None:
         from acutance.report import json_text
 
         table.deliver(json_text(edges.to_geojson(lonlat)))
+
+
+def _deliver_bands(outputs: Outputs, found: BandScenes, kept: tuple[str | None, ...]) -> None:
+    """One page and one document of all bands; figures and curves in files of their own."""
+    from acutance import report
+
+    names = [f"band-{name}" for name in found.scenes]
+    each = [Shown(scene) for scene in found.measurements]
+    for own, shown in zip(outputs.of_regions(names, kept), each, strict=True):
+        replace(own, report=None).write_files(shown)
+    if outputs.report is not None:
+        outputs.report.deliver(report.bands_page(found, command=command_line()))
+    if outputs.as_json:
+        document = report.bands_document(found, covariance=outputs.covariance)
+        typer.echo(report.json_text(document))
+    else:
+        typer.echo(report.bands_text(found))
+    outputs.require_checks(each, missing=len(found.rejected))

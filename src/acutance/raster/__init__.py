@@ -5,7 +5,7 @@ from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import Image
 from acutance.raster.linearization import LogCurve, PowerCurve, SrgbCurve, TableCurve
-from acutance.raster.open_image import open_image
+from acutance.raster.open_image import open_bands, open_image
 from acutance.raster.positions import read_positions
 from acutance.raster.region import Box, Region
 from acutance.raster.roi import parse_roi, parse_rois
@@ -26,6 +26,7 @@ __all__ = [
     "TableCurve",
     "find_fill",
     "find_site",
+    "open_bands",
     "open_image",
     "parse_roi",
     "parse_rois",

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from numpy.typing import NDArray
 
-from acutance.errors import ImageError
+from acutance.errors import ImageError, OptionError
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import AlongTrack, Image
 from acutance.raster.linearization import LinearizeLike
 from acutance.raster.pixels import NpyPixels, is_nan, largest_count, require_image_array, type_name
 
-__all__ = ["open_image"]
+__all__ = ["open_bands", "open_image"]
 
 # Names that GDAL understands and the file system does not: "/vsizip/a.zip/b.tif",
 # "https://host/a.tif", "HDF5:a.h5://band". One letter and a colon is a Windows drive.
@@ -76,6 +77,43 @@ def open_image(
         opened = open_dataset(name, band, gsd, nodata)
     opened = replace(opened, along_track=along_track, every_value_is_data=is_nan(nodata))
     return opened.linearized(linearize)
+
+
+def open_bands(
+    path: str | os.PathLike[str],
+    bands: Sequence[int] | None = None,
+    gsd_m: float | Gsd | None = None,
+    nodata: float | None = None,
+    along_track: AlongTrack = "y",
+    linearize: LinearizeLike = None,
+) -> tuple[Image, ...]:
+    """Open several bands of an image file.
+
+    Parameters
+    ----------
+    path : str or path
+    bands : sequence of int, optional
+        Which, from 1, each once; without it all but a band of transparency.
+    gsd_m, nodata, along_track, linearize : optional
+        As of `open_image`, the same for all bands.
+
+    Raises
+    ------
+    ImageError
+        As of `open_image`.
+    OptionError
+        If no band is asked for, or one twice.
+    """
+    numbers = _all_bands(open_image(path)) if bands is None else list(bands)
+    if not numbers or len(set(numbers)) < len(numbers):
+        raise OptionError(f"bands are {numbers}: give the number of every band once")
+    return tuple(open_image(path, one, gsd_m, nodata, along_track, linearize) for one in numbers)
+
+
+def _all_bands(first: Image) -> list[int]:
+    """The bands of a file but that of transparency."""
+    transparent = getattr(first.source, "alpha_band", None)
+    return [one for one in range(1, first.band_count + 1) if one != transparent]
 
 
 def _as_name(path: Any) -> str:

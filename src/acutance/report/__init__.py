@@ -9,9 +9,11 @@ measurements of one target, which is compared (`compare` adds the truth):
 - `text` writes for a terminal, `csv` the MTF, `document` JSON (with its schema)
 
 `labels.py` has what numbers, kinds and methods are called, `paper.py` colours, type and saving.
-Studies, plans and budgets have outputs of their own (``studies/``, `budget.py`).
+Bands of a scene, studies, plans and budgets have outputs of their own (`bands.py`, ``studies/``,
+`budget.py`).
 """
 
+from acutance.report.bands import bands_document, bands_page, bands_tables, bands_text
 from acutance.report.budget import (
     budget_document,
     budget_figure,
@@ -43,6 +45,10 @@ __all__ = [
     "Comparison",
     "Panel",
     "Table",
+    "bands_document",
+    "bands_page",
+    "bands_tables",
+    "bands_text",
     "budget_document",
     "budget_figure",
     "budget_text",

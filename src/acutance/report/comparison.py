@@ -31,16 +31,21 @@ class Comparison(ShortRepr):
         What else is known of it, by the names of the measurements: "width_px".
     rejected : tuple of Rejected, optional
         What could not be measured, and why; `values` hold the "method".
+    names : tuple of str, optional
+        What the measurements are called, where it is not the method that differs.
     """
 
     measurements: tuple[Measurement, ...]
     truth: Mapping[str, Response] = field(default_factory=dict)
     true_numbers: Mapping[str, Estimate] = field(default_factory=dict)
     rejected: tuple[Rejected, ...] = ()
+    names: tuple[str, ...] = ()
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Short names, all different: methods, or numbers where methods repeat."""
+        """Short names, all different: their own, methods, or numbers where methods repeat."""
+        if self.names:
+            return self.names
         methods = [one.method for one in self.measurements]
         if len(set(methods)) == len(methods):
             return tuple(methods)

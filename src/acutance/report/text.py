@@ -24,7 +24,7 @@ from acutance.targets import TargetResult
 if TYPE_CHECKING:
     from acutance.targets.measurement import Measurement
 
-__all__ = ["align_columns", "text"]
+__all__ = ["align_columns", "table_text", "text"]
 
 MAX_ROWS = 40
 
@@ -48,9 +48,9 @@ def text(result: Result) -> str:
         return _comparison_text(found)
     parts = [
         f"{describe_measurement(found)}\n  {describe_image(found)}",
-        _table_text(numbers_table(found), drop_last=1),
+        table_text(numbers_table(found), drop_last=1),
         *([f"  {causes}"] if (causes := uncertainty_line(found)) else []),
-        *(_table_text(table) for table in kind_tables(found) if not table.page_only),
+        *(table_text(table) for table in kind_tables(found) if not table.page_only),
     ]
     if found.checks:
         checks = [
@@ -87,7 +87,7 @@ def _comparison_text(comparison: Comparison) -> str:
         (
             f"{title} by {len(comparison.labels)} methods, {' and '.join(comparison.directions)} "
             f"track\n  {describe_image(first)}",
-            *map(_table_text, tables(comparison)),
+            *map(table_text, tables(comparison)),
             "\n".join((*verdicts, *refused)),
         )
     )
@@ -105,14 +105,21 @@ def _target_text(result: TargetResult[Any]) -> str:
     return "\n\n".join(
         (
             head + where,
-            *map(_table_text, tables(result)),
+            *map(table_text, tables(result)),
             "\n".join((count_failed_checks(measurements), *failed)),
         )
     )
 
 
-def _table_text(table: Table, drop_last: int = 0) -> str:
-    """Title, header and rows; a long table is cut, a line of a cell is one line here."""
+def table_text(table: Table, drop_last: int = 0) -> str:
+    """Title, header and rows; a long table is cut, a line of a cell is one line here.
+
+    Parameters
+    ----------
+    table : Table
+    drop_last : int, optional
+        How many of its last columns are left out.
+    """
     kept = len(table.columns) - drop_last
     rows = [[cell.split("\n")[0] for cell in row[:kept]] for row in table.rows[:MAX_ROWS]]
     header = [list(table.columns[:kept])] if any(table.columns) else []

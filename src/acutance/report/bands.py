@@ -1,0 +1,154 @@
+"""Several bands of a scene: text, JSON and page, of one table of bands and one of their shifts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from acutance.report.comparison import Comparison
+from acutance.report.figures.comparison import comparison_figure
+from acutance.report.html import Plate, Section, Table, Verdict, render_page
+from acutance.report.json import document
+from acutance.report.labels import describe_image, metric_words, provenance, word_estimate
+from acutance.report.page import sections, verdict_of
+from acutance.report.text import table_text
+
+if TYPE_CHECKING:
+    from acutance.scan import BandScenes
+
+__all__ = ["bands_document", "bands_page", "bands_tables", "bands_text"]
+
+_NUMBERS = ("mtf_nyquist", "rer", "fwhm_px")
+
+
+def bands_tables(found: BandScenes) -> tuple[Table, ...]:
+    """Numbers of every band, and where the bands lie relative to the first.
+
+    Parameters
+    ----------
+    found : BandScenes
+    """
+    tables = [_numbers_table(found)]
+    if found.shifts:
+        tables.append(_shifts_table(found))
+    return tuple(tables)
+
+
+def _numbers_table(found: BandScenes) -> Table:
+    rows: list[tuple[str, ...]] = []
+    alerts = set()
+    for name, scene in found.scenes.items():
+        for direction, response in scene.directions.items():
+            first = direction == next(iter(scene.directions))
+            if not scene.trusted:
+                alerts.add(len(rows))
+            rows.append((
+                name if first else "", direction,
+                *(word_estimate(getattr(response, one)).value_and_std for one in _NUMBERS),
+                str(int(scene.edges.used.sum())) if first else "",
+                f"{100 * scene.objects['ideal'].value:.0f}" if first else "",
+                scene.verdict.word if first else "",
+            ))  # fmt: skip
+    labels = (metric_words(name).label_with_unit for name in _NUMBERS)
+    return Table(
+        ("Band", "Direction", *labels, "Edges", "Ideal [%]", "Verdict"), tuple(rows), "llrrrrrl",
+        alerts=frozenset(alerts), title="Bands",
+    )  # fmt: skip
+
+
+def _shifts_table(found: BandScenes) -> Table:
+    rows = tuple(
+        (
+            name, word_estimate(one.row_px).value_and_std, word_estimate(one.col_px).value_and_std,
+            f"{one.scatter_px:.3f}", str(one.edges),
+        )
+        for name, one in found.shifts.items()
+    )  # fmt: skip
+    return Table(
+        ("Band", "Rows [px]", "Columns [px]", "Scatter [px]", "Edges"), rows, "lrrrr",
+        title=f"Shifts relative to band {found.first}",
+        notes=(
+            "Where a band has the ground, less where the first has it. Scatter: by how much single "
+            "edges differ in excess of their deviations.",
+        ),
+    )  # fmt: skip
+
+
+def bands_text(found: BandScenes) -> str:
+    """Several bands for a terminal: the tables, the verdicts, what was not measured.
+
+    Parameters
+    ----------
+    found : BandScenes
+    """
+    first = found.scenes[found.first]
+    bands = f"{len(found.scenes)} band{'s' if len(found.scenes) > 1 else ''}"
+    lines = [
+        f"band {name}: {scene.verdict.word}: {scene.verdict.sentence}"
+        for name, scene in found.scenes.items()
+    ]
+    lines += [f"band {one.values['band']}: not measured: {one.reason}" for one in found.rejected]
+    return "\n\n".join((
+        f"scene in {bands}\n  {describe_image(first)}",
+        *map(table_text, bands_tables(found)),
+        "\n".join(lines),
+    ))  # fmt: skip
+
+
+def bands_document(found: BandScenes, covariance: bool = False) -> dict[str, Any]:
+    """The document ``acutance/bands/1``: one result a band, shifts, bands without a result.
+
+    Parameters
+    ----------
+    found : BandScenes
+    covariance : bool, optional
+        As of `acutance.report.document`.
+    """
+    return {
+        "schema": "acutance/bands/1",
+        "results": [
+            {"band": name, **document(scene, covariance=covariance)}
+            for name, scene in found.scenes.items()
+        ],
+        "shifts": [
+            {"band": name, "relative_to": found.first, **one.to_dict()}
+            for name, one in found.shifts.items()
+        ],
+        "rejected": [
+            {"stage": one.stage, "reason": one.reason, "values": dict(one.values)}
+            for one in found.rejected
+        ],
+    }
+
+
+def bands_page(found: BandScenes, *, command: str | None = None) -> str:
+    """Several bands as one page: the tables and all MTFs first, then every band.
+
+    Parameters
+    ----------
+    found : BandScenes
+    command : str, optional
+        The command line.
+    """
+    names = tuple(f"band {name}" for name in found.scenes)
+    curves = Plate.of_figure(
+        comparison_figure(Comparison(found.measurements, names=names), on_page=True),
+        "MTFs, their differences and the differences of the ESFs",
+        f"Filled areas are 95 % intervals. Differences are taken to band {found.first}.",
+        wide=True,
+    )
+    verdicts = [
+        verdict_of(scene, f"Band {name} – ") for name, scene in found.scenes.items()
+    ] + [
+        Verdict("invalid", f"Band {one.values['band']} – Not measured: {one.reason}")
+        for one in found.rejected
+    ]  # fmt: skip
+    overview = Section("Result", verdicts=tuple(verdicts), plates=(curves,), command=command)
+    each = [
+        replace(section, title=f"Band {name}: {section.title[:1].lower()}{section.title[1:]}")
+        for name, scene in found.scenes.items()
+        for section in sections(scene)
+    ]
+    first = found.scenes[found.first]
+    content = (*map(Section.of_table, bands_tables(found)), overview, *each)
+    return render_page(f"Scene in {len(names)} bands", ", ".join(names), content, provenance(first))

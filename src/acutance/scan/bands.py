@@ -1,0 +1,212 @@
+"""Measure a sensor in several bands at once, and the shifts between them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from acutance.curves.short_repr import ShortRepr
+from acutance.errors import ImageError, NoEdgeError
+from acutance.raster import Gsd, Image, open_bands
+from acutance.scan.all_windows import Progress, part_of, scan_windows
+from acutance.scan.band_shift import BandShift, band_shift
+from acutance.scan.edge_table import EdgeTable
+from acutance.scan.options import ScanOptions
+from acutance.scan.scene import measured_scene
+from acutance.scan.scene_edges import SceneEdges
+from acutance.scan.scene_measurement import SceneMeasurement
+from acutance.targets.options import chosen_options
+from acutance.targets.region import RoiLike
+from acutance.targets.target_result import Rejected
+
+__all__ = ["BandEdges", "BandScenes", "scan_bands"]
+
+
+@dataclass(frozen=True, eq=False)
+class BandEdges(EdgeTable):
+    """The edges of several bands in one table: every edge has a row in each band.
+
+    Parameters
+    ----------
+    by_band : mapping of str to SceneEdges
+    """
+
+    by_band: Mapping[str, SceneEdges]
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """All arrays by name; the first is the band."""
+        each = {name: one.columns() for name, one in self.by_band.items()}
+        bands = np.repeat(np.array(list(each)), [one.size for one in self.by_band.values()])
+        names = next(iter(each.values()))
+        joined = {name: np.concatenate([own[name] for own in each.values()]) for name in names}
+        return {"band": bands, **joined}
+
+
+@dataclass(frozen=True, eq=False)
+class BandScenes(ShortRepr):
+    """A sensor measured in several bands of a scene.
+
+    Parameters
+    ----------
+    scenes : mapping of str to SceneMeasurement
+        By the number of the band, in the order they were asked for. All have the same edges in
+        the same order; one that a band does not show is not used there.
+    shifts : mapping of str to BandShift
+        Where each other band lies relative to the first that was measured; a band that shares too
+        few edges with it is missing.
+    rejected : tuple of Rejected
+        Bands that could not be measured, and why; `values` hold the "band".
+    """
+
+    scenes: Mapping[str, SceneMeasurement]
+    shifts: Mapping[str, BandShift]
+    rejected: tuple[Rejected, ...] = ()
+
+    @property
+    def first(self) -> str:
+        """The band that shifts are relative to."""
+        return next(iter(self.scenes))
+
+    @property
+    def measurements(self) -> tuple[SceneMeasurement, ...]:
+        """The measurements of all bands."""
+        return tuple(self.scenes.values())
+
+    def summary(self) -> str:
+        """Which bands, and the MTF at Nyquist of each."""
+        return "; ".join(
+            f"band {name}: mtf_nyquist across {one.across.mtf_nyquist}, along "
+            f"{one.along.mtf_nyquist}"
+            for name, one in self.scenes.items()
+        )
+
+    @property
+    def edges(self) -> BandEdges:
+        """The edges of all bands in one table."""
+        return BandEdges({name: one.edges for name, one in self.scenes.items()})
+
+
+def scan_bands(
+    image: str | os.PathLike[str] | Sequence[Image | ArrayLike] | NDArray[Any],
+    bands: Sequence[int] | None = None,
+    *,
+    roi: RoiLike = None,
+    gsd_m: float | Gsd | None = None,
+    options: ScanOptions | None = None,
+    workers: int = 1,
+    scheduler: str | None = None,
+    keep: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+) -> BandScenes:
+    """Measure a sensor in several registered bands of a scene, and the shifts between them.
+
+    Edges are found once, each in the band that shows it best, and measured at the same place in
+    every band that shows it.
+
+    Parameters
+    ----------
+    image : path, sequence of Image or (bands, rows, cols) array_like
+        Bands of one grid, displaced by less than about 2 pixels.
+    bands : sequence of int, optional
+        Which bands, from 1; all of them without it (a band of transparency is none).
+    roi : Region, Box, (row, col, height, width) or None
+        Part of the image.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres, instead of the image's own.
+    options : ScanOptions, optional
+    workers, scheduler, keep, progress : optional
+        As of `acutance.scan_scene`.
+
+    Returns
+    -------
+    BandScenes
+        A `SceneMeasurement` of every band, and where the bands lie relative to the first.
+
+    Raises
+    ------
+    ImageError, RegionError
+        If there are no pixels to scan, or the bands differ in shape.
+    NoEdgeError
+        If no band has enough edges.
+    OptionError
+        As of `acutance.scan_scene`.
+
+    Examples
+    --------
+    >>> found = ac.scan_bands("scene.tif", [1, 2, 3], workers=2)  # doctest: +SKIP
+    >>> found.scenes["2"].across.mtf_nyquist, found.shifts["2"].row_px  # doctest: +SKIP
+    """
+    chosen, gsd = chosen_options(options, ScanOptions), Gsd.given(gsd_m)
+    images = _bands(image, bands)
+    first = next(iter(images.values()))
+    box, region = part_of(first, roi)
+    found = scan_windows(
+        list(images.values()), box, region, gsd=gsd, options=chosen, workers=workers,
+        scheduler=scheduler, keep=keep, progress=progress,
+    )  # fmt: skip
+    scenes: dict[str, SceneMeasurement] = {}
+    rejected: list[Rejected] = []
+    for place, (name, one) in enumerate(images.items()):
+        try:
+            scenes[name] = measured_scene(one, box, gsd, chosen, [own[place] for own in found])
+        except NoEdgeError as error:
+            rejected.append(Rejected("fit", str(error), {"band": name}))
+    if not scenes:
+        raise NoEdgeError(
+            f"none of the {len(images)} bands could be measured: {rejected[0].reason}"
+        )
+    return BandScenes(scenes, _shifts(scenes), tuple(rejected))
+
+
+def _shifts(scenes: Mapping[str, SceneMeasurement]) -> dict[str, BandShift]:
+    """Shifts of all bands relative to the first."""
+    (_, first), *others = scenes.items()
+    every = {name: band_shift(first.edges, one.edges) for name, one in others}
+    return {name: shift for name, shift in every.items() if shift is not None}
+
+
+def _bands(image: Any, bands: Sequence[int] | None) -> dict[str, Image]:
+    """The bands by their numbers.
+
+    Raises
+    ------
+    ImageError
+        If there is no such band, or they differ in shape.
+    """
+    if isinstance(image, str | os.PathLike):
+        found = {str(one.band): one for one in open_bands(image, bands)}
+    elif isinstance(image, Image):
+        raise ImageError(
+            "the image is one band: give the path of the file, or a sequence of its bands"
+        )
+    else:
+        numbered = _numbered([Image.of(one) for one in image])
+        wanted = list(numbered) if bands is None else [str(one) for one in bands]
+        missing = [one for one in wanted if one not in numbered]
+        if missing or not wanted:
+            raise ImageError(
+                f"band {', '.join(missing) or 'none'} was requested of {len(numbered)}: choose "
+                f"bands from 1 to {len(numbered)}"
+            )
+        found = {one: numbered[one] for one in wanted}
+    shapes = {one.shape for one in found.values()}
+    if len(shapes) > 1:
+        raise ImageError(
+            "the bands differ in shape ("
+            + ", ".join(f"{rows} x {cols}" for rows, cols in sorted(shapes))
+            + "): scan those of one grid together"
+        )
+    return found
+
+
+def _numbered(images: Sequence[Image]) -> dict[str, Image]:
+    """Bands by their numbers in their files; where these repeat, by their order."""
+    own = [str(one.band) for one in images if one.path is not None]
+    if len(set(own)) == len(images):
+        return dict(zip(own, images, strict=True))
+    return {str(place): one for place, one in enumerate(images, start=1)}
