@@ -58,14 +58,14 @@ def test_an_error_ends_the_run_as_it_was_raised(cluster):
 def test_a_scan_on_a_cluster_is_the_same(cluster, tmp_path, monkeypatch):
     image, _ = simulate.landscape(
         simulate.reference_systems()["gaussian"],
-        shape=(400, 400),
+        shape=(300, 300),
         snr=100,
-        options=simulate.LandscapeOptions(soft=0.0, texture=(0.0, 0.0), density_per_mpx=120),
+        options=simulate.LandscapeOptions(soft=0.0, texture=(0.0, 0.0), density_per_mpx=200),
         rng=np.random.default_rng(6),
     )
     write_geotiff(tmp_path / "scene.tif", image.astype(np.float32), gsd_m=2.0)
     monkeypatch.chdir(tmp_path)
-    options = ac.ScanOptions(window_px=200)
+    options = ac.ScanOptions(window_px=150)
     here = ac.scan_scene("scene.tif", options=options)
     there = ac.scan_scene("scene.tif", options=options, scheduler=cluster)
     for name, column in here.edges.columns().items():
@@ -73,6 +73,23 @@ def test_a_scan_on_a_cluster_is_the_same(cluster, tmp_path, monkeypatch):
     assert there.across.mtf_nyquist == here.across.mtf_nyquist
     with pytest.raises(ac.OptionError, match="in memory, where the workers of a cluster"):
         ac.scan_scene(image, scheduler=cluster)
+
+
+def test_a_file_that_workers_do_not_see_is_said_to_be_theirs(cluster, tmp_path):
+    write_geotiff(tmp_path / "scene.tif", np.zeros((64, 64), np.float32))
+    image = ac.open_image(tmp_path / "scene.tif")
+    (tmp_path / "scene.tif").unlink()
+    with pytest.raises(ac.ImageError, match="all of them have to see the file under this name"):
+        ac.scan_scene(image, scheduler=cluster)
+
+
+def ends_its_process(task):
+    os._exit(1)
+
+
+def test_a_cluster_that_loses_its_work_is_named(cluster):
+    with pytest.raises(ac.OptionError, match="lost its work"):
+        run_on_cluster(ends_its_process, [1], print, scheduler=cluster)
 
 
 def test_workers_of_another_version_are_refused(cluster, monkeypatch):

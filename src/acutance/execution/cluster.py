@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, TypeVar
+from functools import partial
+from typing import Any, NamedTuple, TypeVar
 
-from acutance.errors import OptionError
+from acutance.errors import AcutanceError, OptionError
 
 __all__ = ["run_on_cluster"]
 
@@ -42,24 +43,49 @@ def run_on_cluster(
     Raises
     ------
     OptionError
-        If dask is not installed, the scheduler or its workers cannot be reached, or they have
-        another version of this package.
+        If dask is not installed, the scheduler or its workers cannot be reached, they have
+        another version of this package, or end in the middle of the work.
     """
     with _client(scheduler) as client:
         from distributed import as_completed
+        from distributed.client import FutureCancelledError
+        from distributed.scheduler import KilledWorker
 
         _require_version(client, scheduler)
-        futures = client.map(work, tasks, pure=False, retries=1)
+        futures = client.map(partial(_outcome, work), tasks, pure=False)
         places = {future.key: place for place, future in enumerate(futures)}
         # Only what the cluster still works on is referred to: what was fetched is forgotten there.
         waiting = as_completed(futures)
         del futures
         try:
             for future in waiting:
-                keep(places[future.key], future.result())
+                result = future.result()
+                if isinstance(result, _Failure):
+                    raise result.kind(result.message)
+                keep(places[future.key], result)
                 future.release()
+        except (FutureCancelledError, KilledWorker) as error:
+            raise OptionError(
+                f"the cluster {scheduler} lost its work ({error}): look at its logs, and run the "
+                "same again"
+            ) from error
         finally:
             client.cancel(list(waiting.futures))
+
+
+class _Failure(NamedTuple):
+    """An error of ours on its way: what caused it in a library may not travel."""
+
+    kind: type[AcutanceError]
+    message: str
+
+
+def _outcome(work: Callable[[Task], Result], task: Task) -> Result | _Failure:
+    """The result of a task, or why there is none."""
+    try:
+        return work(task)
+    except AcutanceError as error:
+        return _Failure(type(error), str(error))
 
 
 @contextmanager

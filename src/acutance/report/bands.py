@@ -143,12 +143,17 @@ def bands_page(found: BandScenes, *, command: str | None = None) -> str:
         Verdict("invalid", f"Band {one.values['band']} – Not measured: {one.reason}")
         for one in found.rejected
     ]  # fmt: skip
-    overview = Section("Result", verdicts=tuple(verdicts), plates=(curves,), command=command)
     each = [
         replace(section, title=f"Band {name}: {section.title[:1].lower()}{section.title[1:]}")
         for name, scene in found.scenes.items()
         for section in sections(scene)
     ]
-    first = found.scenes[found.first]
-    content = (*map(Section.of_table, bands_tables(found)), overview, *each)
-    return render_page(f"Scene in {len(names)} bands", ", ".join(names), content, provenance(first))
+    content = (
+        Section("Result", verdicts=tuple(verdicts)),
+        *map(Section.of_table, bands_tables(found)),
+        Section("Curves of all bands", plates=(curves,), command=command),
+        *each,
+    )
+    facts = provenance(found.scenes[found.first])
+    facts.pop("band", None)
+    return render_page(f"Scene in {len(names)} bands", ", ".join(names), content, facts)

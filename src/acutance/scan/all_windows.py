@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from acutance.errors import OptionError
+from acutance.errors import ImageError, OptionError
 from acutance.execution import require_workers, run_on_cluster, run_tasks
 from acutance.raster import Box, Gsd, Image, Region
 from acutance.raster.disk_copy import disk_copy, named_from_root
@@ -88,7 +88,7 @@ def scan_windows(
     if scheduler is None:
         run = partial(_run_here, scan, images, workers=workers)
     else:
-        run = partial(run_on_cluster, partial(scan, _on_cluster(images)), scheduler=scheduler)
+        run = partial(_run_on_cluster, scan, images, scheduler=scheduler)
     if keep is None:
         return _all_windows(run, parts, None, progress)
     with KeptWindows(keep, scan_identity(images, box, region, gsd, options)) as kept:
@@ -136,6 +136,23 @@ def _run_here(
             folder = Path(stack.enter_context(TemporaryDirectory(prefix="acutance-")))
             images = [disk_copy(image, folder) for image in images]
         run_tasks(partial(scan, images), parts, add, workers=used, chunk=1)
+
+
+def _run_on_cluster(
+    scan: Callable[[Sequence[Image], Window], Found],
+    images: Sequence[Image],
+    parts: Sequence[Window],
+    add: Callable[[int, Found], None],
+    scheduler: str,
+) -> None:
+    """Windows on the workers of a cluster."""
+    try:
+        run_on_cluster(partial(scan, _on_cluster(images)), parts, add, scheduler=scheduler)
+    except ImageError as error:
+        raise ImageError(
+            f"{error}. A worker of {scheduler} found this: all of them have to see the file under "
+            "this name"
+        ) from error
 
 
 def _on_cluster(images: Sequence[Image]) -> list[Image]:
