@@ -13,7 +13,7 @@ import rasterio.shutil
 from rasterio.enums import ColorInterp
 
 from acutance.errors import ImageError, OptionError, RegionError
-from acutance.raster import Box, Gsd, open_image
+from acutance.raster import Box, Gsd, open_bands, open_image
 
 BOX = Box(7, 11, 20, 30)
 DTYPES = ["uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"]
@@ -316,3 +316,21 @@ def test_pixels_that_are_no_grey_levels(pixels, write_raster):
     )
     with pytest.raises(ImageError, match="palette indices"):
         open_image(path)
+
+
+def test_all_bands_are_opened_but_that_of_transparency(pixels, write_raster):
+    def declare(dataset):
+        dataset.colorinterp = [ColorInterp.red, ColorInterp.green, ColorInterp.alpha]
+
+    stack = np.stack([pixels, pixels + 1, np.full(pixels.shape, 255, pixels.dtype)])
+    path = write_raster("a.tif", stack, edit=declare)
+    first, second = open_bands(path, gsd_m=2.0)
+    assert (first.band, second.band) == (1, 2)
+    assert np.array_equal(second.read(), first.read() + 1)
+    assert second.gsd() == Gsd(2.0, 2.0)
+    assert [one.band for one in open_bands(path, [2, 1])] == [2, 1]
+    for numbers in ([], [1, 1]):
+        with pytest.raises(OptionError, match="the number of every band once"):
+            open_bands(path, numbers)
+    with pytest.raises(ImageError, match="band 4 of"):
+        open_bands(path, [1, 4])

@@ -1,5 +1,6 @@
 """Interrupted scans: finished windows are kept, and a scan that goes on ends as if nothing were."""
 
+import json
 import os
 import shutil
 import signal
@@ -13,7 +14,8 @@ import pytest
 
 import acutance as ac
 from acutance import simulate
-from acutance.raster import write_geotiff
+from acutance.raster import Box, write_geotiff
+from acutance.scan.scan_identity import difference, scan_identity
 
 OPTIONS = ac.ScanOptions(window_px=128)
 PROGRAM = """
@@ -144,6 +146,23 @@ def test_limits_of_the_answer_are_no_other_scan(path, kept):
     scene = ac.scan_scene(path, options=options, keep=kept, progress=lambda *n: seen.append(n))
     assert seen == [(9, 9)]
     assert "edges_used" in [check.name for check in scene.failed_checks]
+
+
+def test_how_an_image_is_read_is_part_of_the_scan(path, tmp_path):
+    def identity(**how):
+        image = ac.open_image(path, **how)
+        return scan_identity([image], Box.whole(image.shape), None, None, OPTIONS)
+
+    every_value = identity(nodata=float("nan"))
+    assert difference(every_value, json.loads(json.dumps(every_value))) is None
+    table = tmp_path / "curve.csv"
+    table.write_text("0,0\n1000,900\n3000,3000\n")
+    curved = identity(linearize=str(table))
+    assert difference(curved, identity(linearize=str(table))) is None
+    for other in (every_value, curved, identity(linearize=2.2)):
+        assert difference(identity(), other) == "image or band"
+    table.write_text("0,0\n1000,901\n3000,3000\n")
+    assert difference(curved, identity(linearize=str(table))) == "image or band"
 
 
 def test_an_array_is_known_by_its_pixels(path, tmp_path):

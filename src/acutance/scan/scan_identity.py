@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
@@ -69,7 +70,8 @@ def scan_identity(
 def difference(one: Mapping[str, Any], other: Mapping[str, Any]) -> str | None:
     """What two scans differ in first, in a word or two; None if they are one."""
     for name in dict.fromkeys((*one, *other)):
-        if one.get(name) != other.get(name):
+        # As text: NaN, a nodata value, equals itself there.
+        if json.dumps(one.get(name)) != json.dumps(other.get(name)):
             return _WORDS.get(name, name)
     return None
 
@@ -115,4 +117,4 @@ def _content(thing: Any) -> Any:
         return {str(name): _content(one) for name, one in thing.items()}
     if isinstance(thing, tuple | list):
         return [_content(one) for one in thing]
-    return thing
+    return thing.item() if isinstance(thing, np.generic) else thing
