@@ -188,8 +188,9 @@ def test_an_edge_of_one_band_alone_is_found_once_and_cut_where_another_has_it():
     assert any(isinstance(one, Unseen) for one in seen)
 
 
-def test_a_band_without_edges_is_rejected_and_the_others_stay(bands):
-    empty = np.random.default_rng(1).normal(100, 1, bands[0].shape)
+@pytest.mark.parametrize("noise", [0.0, 1.0])
+def test_a_band_without_edges_is_rejected_and_the_others_stay(bands, noise):
+    empty = np.random.default_rng(1).normal(100, noise, bands[0].shape)
     several = ac.scan_bands(np.array([bands[0], empty]))
     assert list(several.scenes) == ["1"]
     (rejected,) = several.rejected

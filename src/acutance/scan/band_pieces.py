@@ -140,15 +140,15 @@ def in_band(
             yield segment
             continue
         rise = _rise(segment, slope)
-        if abs(rise) < options.min_gradient_sigmas * slope.noise:
+        if abs(rise) > options.min_gradient_sigmas * slope.noise:
+            yield segment if rise > 0 else _turned(segment)
+        else:
             yield Unseen(
                 segment,
                 "its two sides differ too little in this band: the gradient is "
                 f"{abs(rise) / max(slope.noise, 1e-300):.1f} deviations of its noise, at least "
                 f"{options.min_gradient_sigmas:g} are needed",
             )
-        else:
-            yield segment if rise > 0 else _turned(segment)
 
 
 def _rise(segment: Segment, slope: Gradient) -> float:
