@@ -28,12 +28,15 @@ def scene(tmp_path_factory):
 
 def test_a_scene_is_measured_and_its_edges_are_written(acutance, scene, tmp_path, keeps_to_schema):
     table = tmp_path / "edges.csv"
-    done = acutance("scan", scene, "--json", "--workers", 1, "--edges", table)
+    done = acutance(
+        "scan", scene, "--json", "--workers", 1, "--edges", table, "--field", "2x4"
+    )  # fmt: skip
     assert done.exit_code == 0, done.stderr
     document = json.loads(done.stdout)
     keeps_to_schema(document)
     rows = list(csv.DictReader(table.read_text().splitlines()))
     assert document["kind"] == "scene"
+    assert len(document["field"]["places"]) == 8
     assert len(rows) == document["edges"]["found"]
     assert sum(row["used"] == "1" for row in rows) == document["edges"]["used"]
 
@@ -124,6 +127,8 @@ def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown):
         (("--min-length", "1"), "min_length_px is 1: give", 2),
         (("--min-length", "60"), "max_length_px", 2),
         (("--workers", "0"), "workers", 2),
+        (("--field", "3"), "--field 3 is no grid", 2),
+        (("--field", "3x99"), "places is 3 x 99", 2),
         (("--band", "1,x"), "--band x is not the number of a band", 2),
         (("--band", "1,1"), "give the number of every band once", 2),
         (("--band", "1,4"), "band 4 of", 2),

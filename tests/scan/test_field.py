@@ -34,7 +34,8 @@ def drawn(variance, soft_share=0.0, count=800, seed=0):
     seen = np.hstack([own, np.zeros_like(own)]) + rng.normal(0, STD, (count, 2 * FREQ.size))
     root = np.broadcast_to(np.eye(2 * FREQ.size) / STD, (count, *(2 * [2 * FREQ.size])))
     rank = np.full(count, 2.0 * FREQ.size)
-    return EdgeLikelihoods(FREQ, root, seen / STD, rank, bins, NORMALS[bins]), x, y
+    gain = np.ones((count, FREQ.size))
+    return EdgeLikelihoods(FREQ, root, seen / STD, rank, bins, normals, gain), x, y
 
 
 def settled(edges, x, y):

@@ -28,7 +28,8 @@ def drawn(soft_share, count=600, seed=0):
     seen = TRUE * np.hstack([blur, blur]) + rng.normal(0, STD, (count, 8))
     root = np.broadcast_to(np.eye(8) / STD, (count, 8, 8))
     rank, bins = np.full(count, 8.0), np.zeros(count, int)
-    return EdgeLikelihoods(FREQ, root, seen / STD, rank, bins, np.zeros(count)), tau
+    normals, gain = np.zeros(count), np.ones((count, 4))
+    return EdgeLikelihoods(FREQ, root, seen / STD, rank, bins, normals, gain), tau
 
 
 def test_laws_are_densities():
@@ -59,7 +60,7 @@ def test_the_likelihood_is_that_of_a_fine_integral():
     for one in range(20):
         alone = EdgeLikelihoods(
             FREQ, edges.root[[one]], edges.value[[one]], edges.rank[[one]], edges.bin[[one]],
-            edges.normal_deg[[one]],
+            edges.normal_deg[[one]], edges.gain[[one]],
         )  # fmt: skip
         updated, member = fit_shares(alone, otf, share)
         blur = np.exp(-2 * (np.pi * np.outer(fine, FREQ)) ** 2)
@@ -111,7 +112,7 @@ def test_the_gradient_is_that_of_the_likelihood():
     edges, _ = drawn(0.5, 40)
     otf = TRUE[None] * 0.97
     share, member = fit_shares(edges, otf, START)
-    _, gradient = observed_information(edges, otf, member, share)
+    gradient = sum(terms.gradient.sum(axis=0) for terms in edge_terms(edges, otf, member, share))
 
     # At the likeliest shares, with the prior of the shares, their change has no effect.
     def log_posterior(values):
@@ -148,7 +149,7 @@ def test_hidden_softness_costs_information():
     edges, _ = drawn(0.6)
     share, member = fit_shares(edges, TRUE[None], START)
     (complete,), _ = expected_information(edges, member)
-    left, _ = observed_information(edges, TRUE[None], member, share)
+    left = observed_information(edges, TRUE[None], member, share)
     assert np.linalg.eigvalsh(complete - left).min() > -1e-6 * np.trace(complete)
     nyquist = 3
     assert np.linalg.inv(left)[nyquist, nyquist] > np.linalg.inv(complete)[nyquist, nyquist]

@@ -18,6 +18,7 @@ __all__ = [
     "choose_rer_centre",
     "numbers_of",
     "parse_band",
+    "parse_grid",
     "parse_limits",
     "parse_pair",
     "parse_share",
@@ -165,3 +166,17 @@ def parse_band(text: str) -> int:
         raise OptionError(
             f"--band {text} is not the number of a band: bands are counted from 1"
         ) from None
+
+
+def parse_grid(option: str, text: str) -> tuple[int, int]:
+    """Rows and columns of a grid, as in ``3x3``.
+
+    Raises
+    ------
+    OptionError
+        If they are not two numbers.
+    """
+    found = re.fullmatch(r"(\d{1,4})x(\d{1,4})", text.strip())
+    if found is None:
+        raise OptionError(f"{option} {text} is no grid: give rows and columns, such as 3x3")
+    return int(found[1]), int(found[2])

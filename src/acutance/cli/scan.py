@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.choices import parse_band
+from acutance.cli.choices import parse_band, parse_grid
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions
 from acutance.cli.output import OutputFile, check_optional
@@ -30,7 +30,7 @@ __all__ = ["EXAMPLE", "scan"]
 EXAMPLE = (
     "\b\nExamples:\n"
     "  acutance scan scene.tif --report scan.html --edges edges.geojson\n"
-    "  acutance scan scene.tif --band all --json\n"
+    "  acutance scan scene.tif --band all --field 5x5 --json\n"
     "  acutance scan scene.tif --roi 0,0,4000,4000 --workers 2\n"
     "  acutance scan large.tif --keep large.scan --dask tcp://host:8786"
 )
@@ -80,6 +80,13 @@ def scan(
     min_length: Annotated[
         float, typer.Option(metavar="PX", help="Shorter edges are left out.")
     ] = 15.0,
+    field: Annotated[
+        str,
+        typer.Option(
+            metavar="ROWSxCOLS",
+            help="Tell the sharpness in the middle of so many equal parts of the scene.",
+        ),
+    ] = "3x3",
     workers: WorkersOption = None,
     dask: Annotated[
         str | None,
@@ -101,7 +108,7 @@ def scan(
     table = check_optional("--edges", edges, (".csv", ".parquet", ".geojson"), keep=kept)
     if dask is not None and workers is not None:
         raise OptionError("--workers and --dask cannot be combined: the cluster has its own")
-    bands = pixels.bands
+    bands, places = pixels.bands, parse_grid("--field", field)
     images, regions = pixels.open_bands(image, bands)
     if len(regions) > 1:
         raise OptionError(
@@ -116,7 +123,7 @@ def scan(
         require_parquet()
     with progress_bar(f"scan {Path(image).name}") as progress:
         how: dict[str, Any] = {
-            "options": ScanOptions(min_length_px=min_length, limits=wanted.limits),
+            "options": ScanOptions(min_length_px=min_length, places=places, limits=wanted.limits),
             "workers": workers or os.cpu_count() or 1,
             "scheduler": dask,
             "keep": keep,

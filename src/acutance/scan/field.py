@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.curves.otf2d import OtfModel, PackableOtf
 from acutance.curves.short_repr import ShortRepr
-from acutance.scan.blur_modes import BLUR_MODES, blur_modes
+from acutance.scan.blur_modes import blur_modes
 
-__all__ = ["DEGREES", "Field", "FieldOtf", "field_polynomials"]
+__all__ = ["DEGREES", "Field", "FieldOtf", "field_places", "field_polynomials"]
 
 Complexes = NDArray[np.complex128]
 
@@ -31,6 +31,11 @@ DEGREES: Final = (1, 1, 2, 2, 2)
 """Of the polynomials: columns, rows, columns twice, both, rows twice."""
 _MAX_LOG_GAIN: Final = 1.0
 """Beyond the band a change would grow without bounds, of light that is not there."""
+
+
+def field_places(roi: tuple[int, int, int, int], row: Floats, col: Floats) -> tuple[Floats, Floats]:
+    """Places in a field (row, col, height, width), -1 to 1 along columns (x) and rows (y)."""
+    return _centred(col, *roi[1::2]), _centred(row, *roi[::2])
 
 
 def field_polynomials(x: Floats, y: Floats) -> Floats:
@@ -115,25 +120,14 @@ class Field(ShortRepr):
     root: Floats
     chance_constant: float
 
-    @classmethod
-    def constant(cls, roi: tuple[int, int, int, int]) -> Field:
-        """Of a sensor that is known to be the same everywhere."""
-        size = len(DEGREES) * len(BLUR_MODES)
-        middle = np.zeros((len(DEGREES), len(BLUR_MODES)))
-        return cls(roi, middle, np.zeros(size), np.zeros((size, 0)), 1.0)
-
     def mean_of(self, base: OtfModel) -> FieldOtf:
         """The mean over the field of a sensor that is `base` in the middle of the edges."""
         return FieldOtf(base, -self.middle, self.amount, self.root)
 
     def at(self, base: OtfModel, row: float, col: float) -> FieldOtf:
         """The sensor at a place, in pixels of the image."""
-        weight = field_polynomials(*self.places(np.array(row), np.array(col)))
+        weight = field_polynomials(*field_places(self.roi, np.array(row), np.array(col)))
         return FieldOtf(base, weight[:, None] - self.middle, self.amount, self.root)
-
-    def places(self, row: Floats, col: Floats) -> tuple[Floats, Floats]:
-        """Places in the field, -1 to 1 along columns (x) and rows (y)."""
-        return _centred(col, *self.roi[1::2]), _centred(row, *self.roi[::2])
 
     def grid(self, rows: int, cols: int) -> tuple[Floats, Floats]:
         """Rows and columns of the middles of so many equal parts of the field."""
@@ -142,7 +136,7 @@ class Field(ShortRepr):
 
     def holds(self, row: float, col: float) -> bool:
         """Whether a place lies in the field."""
-        x, y = self.places(np.array(row), np.array(col))
+        x, y = field_places(self.roi, np.array(row), np.array(col))
         return bool(max(abs(x), abs(y)) <= 1.0)
 
     def summary(self) -> str:

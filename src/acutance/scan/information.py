@@ -55,7 +55,7 @@ def edge_terms(
     for some in edges.chunks():
         blur = edges.blur(member.softness_px[some] ** 2)
         # Gradients of the log likelihood by the sensor, for every softness.
-        slopes = -(edges.off(otf, some, blur) @ _turned(edges.root[some])) * blur
+        slopes = -(edges.off(otf, some, blur) @ _turned(edges.seen_root(some))) * blur
         chance, strange = member.chance[some], member.part[some, -1:]
         weighted, if_strange = slopes * chance[:, :, None], slopes[:, 0] / STRANGE
         mean = weighted.sum(axis=1) + strange * if_strange
@@ -73,7 +73,7 @@ def edge_terms(
 
 def _complete(edges: EdgeLikelihoods, some: slice, blur: Floats, weight: Floats) -> Floats:
     """Information of some edges if it were known what they are, (n, 2 k, 2 k)."""
-    root = edges.root[some]
+    root = edges.seen_root(some)
     return np.asarray((_turned(blur * weight[:, :, None]) @ blur) * (root @ _turned(root)))
 
 
@@ -94,7 +94,7 @@ def expected_information(edges: EdgeLikelihoods, member: Membership) -> tuple[Fl
     information, projection = np.zeros((bins, size, size)), np.zeros((bins, size))
     for some in edges.chunks():
         blur, weight = edges.blur(member.softness_px[some] ** 2), member.weight[some]
-        pull = np.einsum("nkr,nr->nk", edges.root[some], edges.value[some])
+        pull = np.einsum("nkr,nr->nk", edges.seen_root(some), edges.value[some])
         np.add.at(projection, edges.bin[some], np.einsum("nt,ntk->nk", weight, blur) * pull)
         np.add.at(information, edges.bin[some], _complete(edges, some, blur, weight))
     return information, projection
@@ -102,26 +102,20 @@ def expected_information(edges: EdgeLikelihoods, member: Membership) -> tuple[Fl
 
 def observed_information(
     edges: EdgeLikelihoods, otf: Floats, member: Membership, share: Floats
-) -> tuple[Floats, Floats]:
-    """Information about the sensor in all directions, and the gradient of the log likelihood.
+) -> Floats:
+    """Information about the sensor in all directions, (b * 2 k, b * 2 k).
 
     What the edges are is integrated out, and so are the shares of the parts.
-
-    Returns
-    -------
-    information : (b * 2 k, b * 2 k) array
-    gradient : (b * 2 k,) array
     """
     bins, size = otf.shape
-    own, gradient = np.zeros((bins, size, size)), np.zeros((bins, size))
+    own = np.zeros((bins, size, size))
     by_share = np.zeros((bins, size, share.size))
     for terms in edge_terms(edges, otf, member, share):
         where = edges.bin[terms.edges]
         np.add.at(own, where, terms.information)
-        np.add.at(gradient, where, terms.gradient)
         np.add.at(by_share, where, terms.by_share)
     whole = np.zeros((bins, size, bins, size))
     whole[np.arange(bins), :, np.arange(bins)] = own
     crossed = by_share.reshape(-1, share.size) @ FREE.T
     cost = crossed @ np.linalg.solve(share_information(member, share), crossed.T)
-    return whole.reshape(bins * size, -1) - cost, gradient.ravel()
+    return np.asarray(whole.reshape(bins * size, -1) - cost)

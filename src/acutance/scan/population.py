@@ -66,6 +66,8 @@ class EdgeLikelihoods:
         Bin of directions of each.
     normal_deg : (n,) array
         Its own direction, -90 to 90.
+    gain : (n, k) array
+        What each sees, over the sensor along its bin.
     """
 
     freq_cpp: Floats
@@ -74,6 +76,7 @@ class EdgeLikelihoods:
     rank: Floats
     bin: NDArray[np.intp]
     normal_deg: Floats
+    gain: Floats
 
     @property
     def size(self) -> int:
@@ -82,7 +85,12 @@ class EdgeLikelihoods:
 
     def turned(self, gain: Floats) -> EdgeLikelihoods:
         """Likelihoods of the sensor along the bins, of edges that see `gain` (n, k) times that."""
-        return replace(self, root=self.root * np.hstack([gain, gain])[:, :, None])
+        return replace(self, gain=self.gain * gain)
+
+    def seen_root(self, some: slice) -> Floats:
+        """Root of the likelihoods of the sensor along the bins, of some edges, (n, 2 k, r)."""
+        gain = self.gain[some]
+        return np.asarray(self.root[some] * np.hstack([gain, gain])[:, :, None])
 
     def chunks(self) -> Iterator[slice]:
         """Some edges at a time."""
@@ -96,7 +104,7 @@ class EdgeLikelihoods:
 
     def off(self, otf: Floats, some: slice, blur: Floats) -> Floats:
         """``root.T @ f - value`` of some edges, (n, t, r); otf (b, 2 k), blur (n, t, 2 k)."""
-        seen = self.root[some] * otf[self.bin[some]][:, :, None]
+        seen = self.seen_root(some) * otf[self.bin[some]][:, :, None]
         return np.asarray(blur @ seen - self.value[some][:, None, :])
 
 
@@ -123,7 +131,7 @@ def _likeliest(edges: EdgeLikelihoods, otf: Floats, some: slice) -> tuple[Floats
 
     It is below zero for an edge that is sharper than the sensor.
     """
-    root = edges.root[some] * otf[edges.bin[some]][:, :, None]
+    root = edges.seen_root(some) * otf[edges.bin[some]][:, :, None]
     tried = np.broadcast_to(_COARSE_PX2, (len(root), _COARSE_PX2.size))
     power = np.sum(edges.off(otf, some, edges.blur(tried)) ** 2, axis=2)
     variance = _COARSE_PX2[np.argmin(power, axis=1)]

@@ -17,7 +17,7 @@ from acutance.scan.options import ScanOptions
 
 __all__ = ["difference", "scan_identity"]
 
-_OF_THE_ANSWER = ("limits",)
+_OF_THE_ANSWER = ("limits", "places")
 """Options that change no edge."""
 _STRIP_PIXELS = 2**21
 _WORDS = {

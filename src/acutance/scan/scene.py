@@ -16,7 +16,7 @@ from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, open_image
 from acutance.scan.all_windows import Progress, part_of, scan_windows
 from acutance.scan.checks import check_scene
-from acutance.scan.field import Field
+from acutance.scan.field import Field, field_places
 from acutance.scan.options import ScanOptions
 from acutance.scan.population import EdgeLikelihoods
 from acutance.scan.scene_edges import SceneEdges
@@ -137,12 +137,13 @@ def measured_scene(
     """
     edges = SceneEdges.of_rows([row for window in found for row in window.rows])
     used = [edge for window in found for edge in window.used]
-    return _measurement(image, box, gsd, options, edges, _fit(used, edges))
+    fit = _fit(used, edges, box.as_tuple())
+    return _measurement(image, box, gsd, options, edges, fit)
 
 
 @one_thread
-def _fit(used: Sequence[UsedEdge], edges: SceneEdges, field: Field) -> SensorFit:
-    """The sensor and the objects, over a field.
+def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, int]) -> SensorFit:
+    """The sensor and the objects.
 
     Raises
     ------
@@ -167,7 +168,7 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, field: Field) -> SensorFit
         )
     guesses = [_sensor_of(used, normal_deg, quantiles) for quantiles in _SHARP]
     likelihoods = _likelihoods(used, number, axis_deg)
-    x, y = field.places(edges.row[edges.used], edges.col[edges.used])
+    x, y = field_places(roi, edges.row[edges.used], edges.col[edges.used])
     return fit_sensor(likelihoods, normal_deg, guesses, x, y)
 
 
@@ -190,7 +191,8 @@ def _likelihoods(
     value = np.zeros((len(used), int(ranks.max())))
     for i, (one, rank) in enumerate(zip(used, ranks, strict=True)):
         root[i, :, :rank], value[i, :rank] = one.root, one.value
-    return EdgeLikelihoods(freq, root, value, ranks.astype(float), number, axis_deg)
+    gain = np.ones((len(used), freq.size))
+    return EdgeLikelihoods(freq, root, value, ranks.astype(float), number, axis_deg, gain)
 
 
 def _sensor_of(

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.stacked import stacked, unstacked
 from acutance.scan.blur_modes import COMMON_MODES, changed, edge_modes, fit_modes
 from acutance.scan.field_fit import FieldFit, fit_field
@@ -33,7 +32,9 @@ from acutance.targets.slices import places_along
 
 __all__ = ["SensorFit", "fit_sensor"]
 
-_SETTLED: Final = 1e-3
+_SETTLED: Final = 0.1
+"""Square of a turn's change, in standard deviations of what the edges say."""
+_SETTLED_GAIN: Final = 1e-3
 _MAX_TURNS: Final = 12
 _MAX_FIELD_TURNS: Final = 4
 _CONSTANT: Final = 0.99
@@ -128,12 +129,13 @@ def fit_sensor(
         moved = changed(state.otf, modes @ field.common)
         state = _settled(edges, normal_deg, state._replace(otf=moved), field.log_gain)
         before, field = field, fit_field(state.along, state.otf, state.share, x, y, field)
-        if np.abs(field.log_gain - before.log_gain).max() < _SETTLED:
+        if np.abs(field.log_gain - before.log_gain).max() < _SETTLED_GAIN:
             break
     seen = state.along.turned(np.exp(field.log_gain))
     share, member = fit_shares(seen, state.otf, state.share)
-    left, gradient = observed_information(seen, state.otf, member, share)
-    samples = _samples(normal_deg, edges.freq_cpp, state.otf.ravel(), left, gradient)
+    left = observed_information(seen, state.otf, member, share)
+    # It is the likeliest already: a further step would follow what little is left of information.
+    samples = _samples(normal_deg, edges.freq_cpp, state.otf.ravel(), left)
     return SensorFit(
         combine_curves([samples]), field, normal_deg, share, share_covariance(member, share),
         member, state.turns, state.settled,
@@ -173,36 +175,38 @@ class _State(NamedTuple):
 def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain: Floats) -> _State:
     """The sensor after as many turns as it needs, under a given change over the field (n, k)."""
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
-    in_band = _in_band(edges.freq_cpp)
     otf, share, forms, along, turns, _ = state
-    before = np.full_like(otf, np.inf)
+    before = None
     for turn in range(_MAX_TURNS + 1):
         seen = along.turned(np.exp(log_gain))
         found = fit_modes(seen, otf, share, modes[edges.bin])
         otf, share = changed(otf, modes @ found.amount), found.share
-        if float(np.abs(otf - before)[:, in_band].max()) < _SETTLED:
-            return _State(otf, share, forms, along, turns + turn, settled=True)
-        before = otf
         share, member = fit_shares(seen, otf, share)
-        combined = _combined(seen, normal_deg, otf, member, forms)
+        information, projection = expected_information(seen, member)
+        if before is not None:
+            moved = otf - before
+            if float(np.einsum("bk,bkl,bl", moved, information, moved)) < _SETTLED:
+                return _State(otf, share, forms, along, turns + turn, settled=True)
+        before = otf
+        combined = _combined(edges.freq_cpp, normal_deg, otf, information, projection, forms)
         # Forms without any weight have none in the next turn, either.
         forms = tuple({form.form.terms: None for form in combined.forms})
         stepped = _along(combined, normal_deg, edges.freq_cpp)
         otf, along = stacked(stepped.T).T, _along_bins(edges, normal_deg, combined)
-    return _State(before, share, forms, along, turns + _MAX_TURNS, settled=False)
+    return _State(otf, share, forms, along, turns + _MAX_TURNS, settled=False)
 
 
 def _combined(
-    edges: EdgeLikelihoods,
+    freq_cpp: Floats,
     normal_deg: Floats,
     otf: Floats,
-    member: Membership,
+    information: Floats,
+    projection: Floats,
     forms: Sequence[tuple[str, ...]],
 ) -> CombinedOtf:
     """The sensor, if it is known what the edges are."""
-    information, projection = expected_information(edges, member)
     curves = [
-        _samples(normal_deg[[b]], edges.freq_cpp, otf[b], own, pull - own @ otf[b])
+        _samples(normal_deg[[b]], freq_cpp, otf[b], own, pull - own @ otf[b])
         for b, (own, pull) in enumerate(zip(information, projection, strict=True))
         if np.trace(own) > _LEAST
     ]
@@ -218,11 +222,6 @@ def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf)
     return edges.turned(np.clip(own / np.maximum(mean[edges.bin], 1e-3), low, high))
 
 
-def _in_band(freq_cpp: Floats) -> NDArray[np.bool_]:
-    """Which of the real and imaginary parts lie below Nyquist."""
-    return np.tile(freq_cpp <= NYQUIST_CPP, 2)
-
-
 def _along(sensor: CombinedOtf, normal_deg: Floats, freq_cpp: Floats) -> NDArray[np.complex128]:
     """The OTF in every direction, (b, k)."""
     otf = sensor.otf(*places_along(normal_deg, freq_cpp))
@@ -230,7 +229,11 @@ def _along(sensor: CombinedOtf, normal_deg: Floats, freq_cpp: Floats) -> NDArray
 
 
 def _samples(
-    normal_deg: Floats, freq_cpp: Floats, otf: Floats, information: Floats, pull: Floats
+    normal_deg: Floats,
+    freq_cpp: Floats,
+    otf: Floats,
+    information: Floats,
+    pull: Floats | float = 0.0,
 ) -> OtfSamples:
     """A likelihood about an OTF: its information, and its gradient there.
 
@@ -238,10 +241,13 @@ def _samples(
     ----------
     normal_deg : (b,) array
     freq_cpp : (k,) array
-    otf, pull : (b * 2 k,) arrays
+    otf : (b * 2 k,) array
         Direction by direction, of each the real parts first.
     information : (b * 2 k, b * 2 k) array
+    pull : (b * 2 k,) array, optional
+        Gradient; none where the OTF is the likeliest.
     """
+    pull = np.broadcast_to(pull, otf.shape)
     order = _real_first(normal_deg.size, freq_cpp.size)
     size, axes = np.linalg.eigh(information[np.ix_(order, order)])
     seen = size > _UNSEEN
