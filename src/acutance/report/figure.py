@@ -71,7 +71,7 @@ def draw(
         Several measurements of one target are compared.
     backdrop : (rows, cols) array, optional
         Of all edges of a target: the pixels to draw them on; without it the measured regions are
-        put together.
+        put together. Of a scene: a quick look at what was scanned, of any size.
     origin : (int, int), optional
         Row and column of the backdrop's first pixel in the whole image.
 
@@ -85,10 +85,10 @@ def draw(
         return target_figure(found, backdrop=backdrop, origin=origin)
     if isinstance(found, Comparison):
         return comparison_figure(found)
-    return measurement_figure(found)
+    return measurement_figure(found, backdrop=backdrop)
 
 
-def panels(measurement: Measurement) -> tuple[Panel, ...]:
+def panels(measurement: Measurement, *, backdrop: Floats | None = None) -> tuple[Panel, ...]:
     """Every drawing of a measurement, its MTF first.
 
     After `without_details` those that need pixels are left out.
@@ -96,17 +96,21 @@ def panels(measurement: Measurement) -> tuple[Panel, ...]:
     Parameters
     ----------
     measurement : Measurement
+    backdrop : (rows, cols) array, optional
+        Of a scene: see `draw`.
     """
     if measurement.kind in ("edge", "pulse"):
         return straight_panels(measurement)  # type: ignore[arg-type]
+    if measurement.kind == "scene":
+        return (*curve_panels(measurement), *scene_panels(measurement, backdrop))  # type: ignore[arg-type]
     kind = KIND_PANELS.get(measurement.kind)
     return (*curve_panels(measurement), *(kind(measurement) if kind else ()))
 
 
-def measurement_figure(measurement: Measurement) -> Figure:
+def measurement_figure(measurement: Measurement, *, backdrop: Floats | None = None) -> Figure:
     """One page, 13 inches wide, with every drawing of a measurement, its numbers and checks."""
     numbers, checks = _number_rows(measurement), _check_rows(measurement)
-    rows, last = _arranged(panels(measurement))
+    rows, last = _arranged(panels(measurement, backdrop=backdrop))
     heights = [max(panel.height_in for panel in row) for row in rows]
     lines = max(len(numbers), len(checks) + 2)
     last_in = ROW_IN + LINE_IN * max(0, lines - LINES_WITH_ROOM)

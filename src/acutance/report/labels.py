@@ -43,9 +43,8 @@ __all__ = [
 
 MISSING = "–"
 
-_ROUNDING_STD = 1e-9
-"""Standard deviations below this are rounding errors of the computer: the number is exact."""
-_MIN_STD = 1e-6
+_ROUNDING_STD, _MIN_STD, _NOTHING = 1e-9, 1e-6, 5e-5
+"""Standard deviations below the first are rounding errors of the computer: numbers are exact."""
 _RATIO = "MTF ratio low/high"
 
 KIND_WORDS = {
@@ -198,13 +197,14 @@ def word_estimate(estimate: Estimate) -> NumberWords:
     """Write an estimate with two significant digits of its standard deviation.
 
     A number without a standard deviation, or with one that is but rounding, gets four decimals
-    and no interval. A standard deviation too small for decimals is written as a power of ten.
+    and no interval; 0 ± nearly nothing is 0. A standard deviation too small is a power of ten.
     """
     value, std = estimate.value, estimate.std
     if not math.isfinite(value):
         return NumberWords("undefined", MISSING, MISSING, MISSING)
-    if not (math.isfinite(std) and std > _ROUNDING_STD * max(1.0, abs(value))):
-        exact = "0" if abs(value) < _ROUNDING_STD else write_fixed(value)
+    is_nothing = abs(value) + std < _NOTHING
+    if is_nothing or not (math.isfinite(std) and std > _ROUNDING_STD * max(1.0, abs(value))):
+        exact = "0" if is_nothing or abs(value) < _ROUNDING_STD else write_fixed(value)
         return NumberWords(exact, MISSING, MISSING, MISSING)
     digits = min(max(0, 1 - math.floor(math.log10(std))), 7)
     low, high = estimate.interval(0.95)
@@ -270,8 +270,11 @@ def describe_target(measurement: Measurement) -> str:
     ]
     if measurement.is_ratio:
         parts.append(f"{_RATIO} (not the low sensor's own MTF)")
+    edges = getattr(measurement, "edges", None)
+    parts += [] if edges is None else [f"{int(edges.used.sum())} of {edges.size} edges used"]
     if math.isfinite(measurement.snr):
-        parts.append(f"SNR {format_number(measurement.snr, 3)}")
+        median = "" if edges is None else "median "
+        parts.append(f"{median}SNR {format_number(measurement.snr, 3)}")
     return ", ".join(parts)
 
 

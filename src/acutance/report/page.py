@@ -55,7 +55,7 @@ def page(
         The command line that produced it; of edges and pulses of a file it is made up from the
         measurement when not given.
     backdrop, origin : optional
-        Of all edges of a target: see `acutance.report.draw`.
+        Of all edges of a target, or of a scene: see `acutance.report.draw`.
 
     Returns
     -------
@@ -107,7 +107,7 @@ def sections(
         return _target_sections(found, backdrop, origin, command)
     if isinstance(found, Comparison):
         return _comparison_sections(found, command)
-    return _measurement_sections(found, command)
+    return _measurement_sections(found, backdrop, command)
 
 
 def verdict_of(result: Measurement | Record, label: str = "") -> Verdict:
@@ -132,9 +132,11 @@ def panel_plate(panel: Panel) -> Plate:
     return Plate.of_figure(figure, panel.title, panel.caption, wide=panel.wide)
 
 
-def _measurement_sections(measurement: Measurement, command: str | None) -> tuple[Section, ...]:
+def _measurement_sections(
+    measurement: Measurement, backdrop: Floats | None, command: str | None
+) -> tuple[Section, ...]:
     """Verdict, main numbers and MTF first; then drawings, tables, how it was measured."""
-    mtf, *others = panels(measurement)
+    mtf, *others = panels(measurement, backdrop=backdrop)
     target = [panel for panel in others if panel.is_target]
     rest = [panel for panel in others if not panel.is_target]
     *numbers, last = map(Section.of_table, tables(measurement))

@@ -195,7 +195,7 @@ def curves_figure(entries: Sequence[CampaignEntry]) -> Figure:
 
 def landscape_figure(measurement: SceneMeasurement, pixels: Floats, sensor: Sensor) -> Figure:
     """A landscape, the edges found in it, and their sharpness by direction with the truth."""
-    scene_map, by_direction, _ = scene_panels(measurement)
+    scene_map, by_direction, *_ = scene_panels(measurement)
     with styled():
         figure = new_page(14.6, 4.6)
         image, edges, directions = split_page(figure, 1, 3, widths=(1.0, 1.3, 1.1))
@@ -204,10 +204,10 @@ def landscape_figure(measurement: SceneMeasurement, pixels: Floats, sensor: Sens
         axes.set_title("The landscape")
         scene_map.draw(edges)
         by_direction.draw(directions)
-        normal_deg = np.linspace(-90.0, 90.0, 91)
-        u, v = (0.5 * wave(np.radians(normal_deg)) for wave in (np.cos, np.sin))
+        normal = np.linspace(0.0, 2 * np.pi, 181)
+        u, v = (0.5 * wave(normal) for wave in (np.cos, np.sin))
         directions.gca().plot(
-            normal_deg, np.abs(sensor.otf(u, v)), color=INK, linewidth=1.4, linestyle="--"
+            normal, np.abs(sensor.otf(u, v)), color=INK, linewidth=1.4, linestyle="--"
         )
     return figure
 

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.report.html import Table
+from acutance.report.tables.scene_reasons import reasons_table
 
 if TYPE_CHECKING:
     from acutance.scan import SceneMeasurement
 
-__all__ = ["scene_tables"]
+__all__ = ["scene_tables", "word_chance"]
 
 VERDICTS = {
     "good": "measured, and used",
@@ -21,20 +22,23 @@ VERDICTS = {
     "rejected": "not measured",
 }
 _OBJECTS = {
-    "ideal": "ideal: as sharp as the sensor shows",
-    "soft": "soft",
-    "strange": "neither",
+    "ideal": "as sharp as the sensor shows",
+    "soft": "blurred borders on the ground",
+    "strange": "neither: too sharp, or of another shape",
 }
-_REASONS = 8
-_WORDS = 12
-"""Of a reason, as many words tell it from others."""
+_MIN_CHANCE = 1e-4
+
+
+def word_chance(chance: float) -> str:
+    """A probability: "0.37", "below 0.0001"."""
+    return f"{chance:.2g}" if chance >= _MIN_CHANCE else f"below {_MIN_CHANCE:.4f}"
 
 
 def scene_tables(measurement: SceneMeasurement) -> tuple[Table, ...]:
     """Edges by verdict, the shares of the objects, sharpness over the field, what was left out."""
     return (
         _edges_table(measurement), _objects_table(measurement), _field_table(measurement),
-        _reasons_table(measurement),
+        reasons_table(measurement.edges),
     )  # fmt: skip
 
 
@@ -58,11 +62,11 @@ def _edges_table(measurement: SceneMeasurement) -> Table:
 
 def _objects_table(measurement: SceneMeasurement) -> Table:
     rows = tuple(
-        (_OBJECTS[name], f"{100 * share.value:.1f} ± {100 * share.std:.1f}")
+        (name, f"{100 * share.value:.1f} ± {100 * share.std:.1f}", _OBJECTS[name])
         for name, share in measurement.objects.items()
     )
     return Table(
-        ("objects", "share / %"), rows, "lr", title="Objects",
+        ("objects", "share / %", "meaning"), rows, "lrl", title="Objects",
         notes=("How soft the borders are on the ground, found together with the sensor.",),
     )  # fmt: skip
 
@@ -76,7 +80,7 @@ def _field_table(measurement: SceneMeasurement) -> Table:
             for one in (place.across, place.along)
         )
         rows.append((f"{place.row:.0f}", f"{place.col:.0f}", *numbers))
-    chance = measurement.field.chance_constant
+    chance = word_chance(measurement.field.chance_constant)
     return Table(
         (
             "row", "column", "MTF at Nyquist across", "along", "RER across", "along",
@@ -85,17 +89,6 @@ def _field_table(measurement: SceneMeasurement) -> Table:
         tuple(rows), "rrrrrrrr", title="Sharpness over the field",
         notes=(
             "In the middle of equal parts of the scene. The chance that sharpness is the same "
-            f"everywhere is {chance:.2g}.",
+            f"everywhere is {chance}.",
         ),
     )  # fmt: skip
-
-
-def _reasons_table(measurement: SceneMeasurement) -> Table:
-    edges = measurement.edges
-    short = [" ".join(one.split()[:_WORDS]) for one in edges.reason[~edges.used].tolist()]
-    words, counts = np.unique(short, return_counts=True)
-    order = np.argsort(-counts, kind="stable")[:_REASONS]
-    rows = tuple((f"{words[i]} …", str(int(counts[i]))) for i in order)
-    return Table(
-        ("why edges are not used", "edges"), rows, "lr", title="Edges left out", page_only=True
-    )

@@ -1,0 +1,89 @@
+"""The sensor of a scene beside its edges, at Nyquist: along their normals, at their places."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
+from acutance.scan.blur_modes import blur_modes
+from acutance.scan.field import DEGREES, FieldOtf, field_polynomials
+
+if TYPE_CHECKING:
+    from acutance.scan import SceneMeasurement
+
+__all__ = ["EdgesSeen", "edges_seen", "sensor_along", "sensor_at"]
+
+_EVERY_DEG = np.linspace(0.0, 180.0, 361)
+"""The sensor is computed along these: a scene may have more edges than it has directions."""
+
+
+class EdgesSeen(NamedTuple):
+    """Used edges beside the sensor, (n,) arrays; those without an MTF are left out.
+
+    Attributes
+    ----------
+    row, col, normal_deg, length_px : arrays
+    mtf, std : arrays
+        At Nyquist, of sensor and object together.
+    ideal : array
+        Probability that the object is.
+    sensor : array
+        MTF at Nyquist of the sensor at the place of the edge, along its normal.
+    """
+
+    row: Floats
+    col: Floats
+    normal_deg: Floats
+    length_px: Floats
+    mtf: Floats
+    std: Floats
+    ideal: Floats
+    sensor: Floats
+
+    @property
+    def off(self) -> Floats:
+        """Edge minus sensor."""
+        return np.asarray(self.mtf - self.sensor)
+
+
+def edges_seen(measurement: SceneMeasurement) -> EdgesSeen:
+    """The used edges of a scene, and the sensor where each of them lies."""
+    edges = measurement.edges
+    own = edges.used & np.isfinite(edges.mtf_nyquist) & (edges.mtf_nyquist_std > 0)
+    row, col, normal_deg = edges.row[own], edges.col[own], edges.normal_deg[own]
+    return EdgesSeen(
+        row, col, normal_deg, edges.length_px[own], edges.mtf_nyquist[own],
+        edges.mtf_nyquist_std[own], edges.ideal[own], sensor_at(measurement, row, col, normal_deg),
+    )  # fmt: skip
+
+
+def sensor_along(measurement: SceneMeasurement, normal_deg: Floats) -> tuple[Floats, Floats]:
+    """MTF at Nyquist along normals (n,), the mean over the field, and its standard deviation."""
+    model, (u, v) = measurement.otf.model, _nyquist(normal_deg)
+    otf, factor = model.otf(u, v), model.factor(u, v)
+    modulus = np.abs(otf)
+    along = (np.conj(otf) / np.maximum(modulus, 1e-12))[:, None] * factor
+    return modulus, np.sqrt(np.sum(along.real**2, axis=1))
+
+
+def sensor_at(
+    measurement: SceneMeasurement, row: Floats, col: Floats, normal_deg: Floats
+) -> Floats:
+    """MTF at Nyquist at places (n,) along normals (n,): that of `Field.at`, of many at once."""
+    mean, field = measurement.otf.model, measurement.field
+    assert isinstance(mean, FieldOtf)
+    every = np.abs(mean.base.otf(*_nyquist(_EVERY_DEG)))
+    base = np.interp(np.mod(normal_deg, 180.0), _EVERY_DEG, every)
+    weight = field_polynomials(*field.places(row, col))[:, :, None] - field.middle
+    by_mode = np.sum(weight * field.amount.reshape(len(DEGREES), -1), axis=1)
+    log_gain = np.sum(by_mode * blur_modes(*_nyquist(normal_deg)), axis=1)
+    return np.asarray(base * np.exp(log_gain))
+
+
+def _nyquist(normal_deg: Floats) -> tuple[Floats, Floats]:
+    """Frequencies u and v of Nyquist along normals."""
+    angle = np.radians(normal_deg)
+    return NYQUIST_CPP * np.cos(angle), NYQUIST_CPP * np.sin(angle)

@@ -1,0 +1,232 @@
+"""Drawings and tables of a scene: nothing empty, with few edges and many, with details and not."""
+
+import html
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_every_kind import scene
+from test_figures import outside, overlaps, texts
+
+from acutance.report import draw, figure_bytes, page, panels, text
+from acutance.report.figures.scene_population import expected_counts, scatter_of
+from acutance.report.figures.scene_sensor import EdgesSeen, edges_seen, sensor_along, sensor_at
+from acutance.report.paper import new_page, styled
+from acutance.report.tables.scene import scene_tables, word_chance
+from acutance.report.tables.scene_reasons import reasons_table
+from acutance.scan import SceneEdges
+from acutance.scan.softness import PARTS
+
+PANELS = (
+    "Edges of the scene", "By direction", "Sharpness of the edges", "Sharpness over the field",
+)  # fmt: skip
+RNG = np.random.default_rng(7)
+
+
+@pytest.fixture(scope="module")
+def measured():
+    return scene()
+
+
+def some_edges(edges, which):
+    return SceneEdges(**{name: column[which] for name, column in edges.columns().items()})
+
+
+def panel_axes(measurement, title, **drawn_on):
+    (panel,) = [one for one in panels(measurement, **drawn_on) if one.title == title]
+    with styled():
+        figure = new_page(6.0, panel.height_in)
+        panel.draw(figure)
+        figure.canvas.draw()
+    return figure.axes, panel
+
+
+def test_every_drawing_of_a_scene_holds_something(measured):
+    found = panels(measured)
+    assert tuple(one.title for one in found[-4:]) == PANELS
+    for title in PANELS:
+        axes, _ = panel_axes(measured, title)
+        assert all(one.has_data() for one in axes if one.get_label() != "<colorbar>")
+
+
+def test_the_sensor_at_many_places_is_that_of_each(measured):
+    edges = edges_seen(measured)
+    for i in range(0, edges.mtf.size, 9):
+        model = measured.at(edges.row[i], edges.col[i]).otf.model
+        angle = np.radians(edges.normal_deg[i])
+        otf = model.otf(np.array([0.5 * np.cos(angle)]), np.array([0.5 * np.sin(angle)]))
+        assert edges.sensor[i] == pytest.approx(float(np.abs(otf[0])), abs=1e-4)
+
+
+def test_the_sensor_along_the_axes_has_its_stated_numbers(measured):
+    for name, angle_deg in measured.axes_deg.items():
+        mtf, std = sensor_along(measured, np.array([angle_deg]))
+        stated = measured.directions[name].mtf_nyquist
+        assert mtf[0] == pytest.approx(stated.value, abs=1e-3)
+        assert std[0] == pytest.approx(stated.std, rel=0.05)
+
+
+def test_the_map_has_every_edge_of_a_small_scene_and_some_of_a_large_one(measured):
+    axes, panel = panel_axes(measured, PANELS[0])
+    left_out, used = axes[0].collections
+    count = int(measured.edges.used.sum())
+    assert len(used.get_paths()) == count
+    assert len(left_out.get_paths()) == measured.edges.size - count
+    assert "One in" not in panel.caption
+    which = np.tile(np.arange(measured.edges.size), 300)
+    large = replace(measured, edges=some_edges(measured.edges, which))
+    axes, panel = panel_axes(large, PANELS[0])
+    assert 1200 < len(axes[0].collections[1].get_paths()) <= 2500
+    assert "One in" in panel.caption
+    assert all(one.get_rasterized() for one in axes[0].collections if len(one.get_paths()) > 1000)
+
+
+def test_a_map_is_drawn_on_a_quick_look(measured):
+    assert not panel_axes(measured, PANELS[0])[0][0].images
+    quick = RNG.normal(100.0, 5.0, (60, 70))
+    quick[:4] = np.nan
+    (image,) = panel_axes(measured, PANELS[0], backdrop=quick)[0][0].images
+    row, col, height, width = measured.image.roi
+    assert image.get_extent() == [col - 0.5, col + width - 0.5, row + height - 0.5, row - 0.5]
+    empty = np.full((5, 5), np.nan)
+    assert not panel_axes(measured, PANELS[0], backdrop=empty)[0][0].images
+    assert "data:image" in page(measured, backdrop=quick)
+
+
+def test_directions_are_those_of_the_image_and_all_dots_are_inside(measured):
+    (axes,), panel = panel_axes(measured, PANELS[1])
+    assert axes.name == "polar"
+    assert axes.get_theta_direction() == -1
+    (line,) = axes.lines
+    assert line.get_ydata() == pytest.approx(
+        sensor_along(measured, np.degrees(line.get_xdata()))[0]
+    )
+    dots = np.concatenate([one.get_offsets() for one in axes.collections[:2]])
+    assert len(dots) == measured.edges.used.sum()
+    assert dots[:, 1].max() <= axes.get_ylim()[1]
+    assert "95 % band" in panel.caption
+
+
+def test_the_field_has_numbers_at_its_places_in_the_same_colours(measured):
+    axes, panel = panel_axes(measured, PANELS[3])
+    across, along = axes[:2]
+    assert across.images[0].get_clim() == along.images[0].get_clim()
+    assert len(across.texts) == len(along.texts) == 9
+    middle = measured.over_field(3, 3)[4]
+    assert across.texts[4].get_text().startswith(f"{middle.across.mtf_nyquist.value:.2f}")
+    row, col = across.texts[4].get_position()[::-1]
+    assert (row, col) == (middle.row, middle.col)
+    found = sensor_at(measured, np.array([row]), np.array([col]), np.array([0.0]))[0]
+    image = across.images[0].get_array()
+    near = image[image.shape[0] // 2, image.shape[1] // 2]
+    assert near == pytest.approx(found, abs=0.01)
+    assert word_chance(measured.field.chance_constant) in panel.caption
+
+
+def test_chances_are_written_to_be_read():
+    assert [word_chance(one) for one in (0.4321, 1.0, 2e-143)] == ["0.43", "1", "below 0.0001"]
+
+
+def population(share, size=4000):
+    """Edges of a known population about a sensor of 0.3."""
+    std = RNG.uniform(0.01, 0.03, size)
+    soft = RNG.uniform(size=size) > share
+    tau = np.where(soft, 0.4 * np.abs(RNG.normal(size=size)), 0.0)
+    mtf = np.abs(0.3 * np.exp(-0.5 * (np.pi * tau) ** 2) + std * RNG.normal(size=size))
+    nothing = np.zeros(size)
+    return EdgesSeen(nothing, nothing, nothing, nothing, mtf, std, nothing, np.full(size, 0.3))
+
+
+def test_the_expected_counts_are_those_of_a_population_that_is_drawn():
+    edges = population(0.6)
+    assert scatter_of(edges) == pytest.approx(1.0, abs=0.06)
+    share = np.zeros(len(PARTS))
+    share[0], share[PARTS.index("half-normal 0.4 px")] = 0.6, 0.4
+    bins = np.linspace(-0.3, 0.12, 22)
+    ideal, every = expected_counts(edges, share, bins)
+    counts, _ = np.histogram(edges.off, bins)
+    assert ideal.sum() == pytest.approx(0.6 * 4000, rel=0.01)
+    assert every.sum() == pytest.approx(counts.sum(), rel=0.01)
+    assert np.all(np.abs(counts - every) < 5 * np.sqrt(every + 1))
+
+
+def test_edges_that_scatter_by_less_than_their_deviations_are_expected_to():
+    edges = population(1.0)
+    assert scatter_of(edges._replace(std=2 * edges.std)) == pytest.approx(0.5, abs=0.03)
+    assert scatter_of(EdgesSeen(*(column[:3] for column in edges))) == 1.0
+
+
+def test_the_population_is_drawn_over_the_edges_with_details_alone(measured):
+    (axes,), panel = panel_axes(measured, PANELS[2])
+    labels = [one.get_text() for one in axes.get_legend().get_texts()]
+    assert labels == ["edges", "sensor", "expected", "ideal ones"]
+    assert "expects" in panel.caption
+    (axes,), panel = panel_axes(measured.without_details(), PANELS[2])
+    assert [one.get_text() for one in axes.get_legend().get_texts()] == ["edges", "sensor"]
+    assert "expects" not in panel.caption
+
+
+def test_eight_edges_and_columns_without_numbers_are_drawn(measured):
+    edges = some_edges(measured.edges, np.flatnonzero(measured.edges.used)[:8])
+    edges.mtf_nyquist[2:] = edges.mtf_nyquist_std[2:] = edges.snr[:] = np.nan
+    few = replace(measured, edges=edges)
+    figure = draw(few)
+    assert not outside(figure)
+    assert "8 of 8 edges used" in texts(figure)
+    assert not re.search(r"\bnan\b", texts(figure) + text(few))
+    assert reasons_table(edges).rows == ()
+    edges.mtf_nyquist[:] = np.nan
+    figure_bytes(draw(replace(few, details=None)), ".png")
+
+
+def test_labels_stay_apart_at_many_edges(measured):
+    which = np.tile(np.arange(measured.edges.size), 100)
+    figure = draw(replace(measured, edges=some_edges(measured.edges, which)))
+    crossed = [
+        pair for pair in overlaps(figure) if not all(re.fullmatch(r"[\d.]+", one) for one in pair)
+    ]
+    assert not crossed
+
+
+def reasons(pairs):
+    rows = [{"row": 0.0, "verdict": verdict, "reason": reason} for verdict, reason in pairs]
+    return reasons_table(SceneEdges.of_rows(rows)).rows
+
+
+def test_reasons_that_differ_in_numbers_are_one_with_their_medians():
+    few = "only {} rows of the target have at least 3.7 px of plateau on both sides (at least 8 "
+    advice = "objects on the target, or a fit that does not hold; choose a cleaner region"
+    found = reasons([
+        *(("rejected", few.format(n) + "are needed): choose a region") for n in (0, 2, 5)),
+        *(("doubtful", f"{n} % of the pixels lie far: {advice}") for n in ("2.5", "4")),
+        ("invalid", "something else: do this"),
+    ])  # fmt: skip
+    assert found == (
+        (
+            "3", "rejected", "–",
+            "Only 2 rows of the target have at least 3.7 px of plateau on both sides (at least 8 "
+            "are needed)",
+        ),
+        ("2", "doubtful", "outliers", "3.25 % of the pixels lie far"),
+        ("1", "invalid", "–", "Something else"),
+    )  # fmt: skip
+
+
+def test_sides_are_not_told_apart_and_rare_reasons_are_counted_together():
+    rim = "a strip on the {} side has an RER of .5: a rim, gutter or kerb is then taken for the "
+    rim += "sensor's; compare other edges"
+    kinds = [("rejected", f"{chr(97 + i) * 3} is wrong") for i in range(15)]
+    found = reasons([*(("doubtful", rim.format(one)) for one in ("dark", "bright")), *kinds])
+    assert found[0][:3] == ("2", "doubtful", "rim")
+    assert found[0][3].startswith("A strip on one side")
+    assert found[-1] == ("2", "", "", "2 other reasons")
+    assert sum(int(row[0]) for row in found) == 17
+
+
+def test_the_page_of_a_scene_says_what_its_numbers_are(measured):
+    whole = html.unescape(page(measured))
+    for words in ("median SNR", f"of {measured.edges.size} edges used", "pale as sharp", *PANELS):
+        assert words in whole
+    names = [row[0] for row in scene_tables(measured)[1].rows]
+    assert names == ["ideal", "soft", "strange"]
