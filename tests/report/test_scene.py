@@ -176,6 +176,8 @@ def test_eight_edges_and_columns_without_numbers_are_drawn(measured):
     assert "8 of 8 edges used" in texts(figure)
     assert not re.search(r"\bnan\b", texts(figure) + text(few))
     assert reasons_table(edges).rows == ()
+    (axes,), _ = panel_axes(few, PANELS[2])
+    assert axes.patches[0].get_data().values.sum() == 2
     edges.mtf_nyquist[:] = np.nan
     figure_bytes(draw(replace(few, details=None)), ".png")
 

@@ -79,6 +79,9 @@ def _draw_directions(axes: Any, measurement: SceneMeasurement) -> None:
     ticks = np.asarray(MaxNLocator(4).tick_values(0.0, top))
     axes.set_yticks(ticks[(ticks > 0) & (ticks < top)])
     axes.tick_params(axis="y", labelsize=7.5)
+    axes.set_axisbelow(False)
+    for label in axes.get_yticklabels():
+        label.set_bbox({"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 0.6})
     axes.set_rlabel_position(22.5)
     axes.set_title("MTF at Nyquist by direction", pad=14)
     axes.grid(color=FAINT, alpha=0.35)

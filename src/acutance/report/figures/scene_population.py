@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["expected_counts", "population_panel", "scatter_of"]
 
-_TAILS: Final = 0.005
+_TAIL: Final = 0.005
+"""Share of the edges beyond either end, where there are enough of them."""
+_ENOUGH: Final = 200
 _MIN_BINS, _MAX_BINS = 12, 60
 _MIN_REACH: Final = 0.02
 _HEADROOM: Final = 1.25
@@ -52,8 +54,8 @@ def population_panel(measurement: SceneMeasurement) -> Panel:
     return Panel(
         "Sharpness of the edges",
         "Grey bars: MTF at Nyquist of the used edges minus that of the sensor (red) at their place "
-        "along their normal; one in a hundred lies beyond the ends. Soft objects lie on the left."
-        + expected,
+        "along their normal; at most one in a hundred lies beyond the ends. Soft objects lie on "
+        "the left." + expected,
         on_axes(_draw, measurement),
     )
 
@@ -134,7 +136,8 @@ def _draw(axes: Axes, measurement: SceneMeasurement) -> None:
 
 
 def _bins(off: Floats) -> Floats:
-    """Bins that hold nearly all edges, the narrower the more there are."""
-    low, high = np.quantile(off, [_TAILS, 1 - _TAILS]) if off.size else (0.0, 0.0)
+    """Bins that hold all edges, or nearly all of many, the narrower the more there are."""
+    tail = _TAIL if off.size > _ENOUGH else 0.0
+    low, high = np.quantile(off, [tail, 1 - tail]) if off.size else (0.0, 0.0)
     count = int(np.clip(2 * off.size**0.4, _MIN_BINS, _MAX_BINS))
     return np.linspace(min(low, -_MIN_REACH), max(high, _MIN_REACH), count + 1)
