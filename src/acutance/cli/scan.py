@@ -139,7 +139,16 @@ def scan(
     if isinstance(found, BandScenes):
         _deliver_bands(outputs, found, kept)
     else:
-        outputs.deliver(Shown(found))
+        is_drawn = outputs.figure is not None or outputs.report is not None
+        outputs.deliver(Shown(found, _backdrop(images[0], found) if is_drawn else {}))
+
+
+def _backdrop(image: Image, found: SceneMeasurement) -> dict[str, Any]:
+    """A quick look at what was scanned, for its map."""
+    from acutance.raster import Box
+    from acutance.raster.quick_look import quick_look
+
+    return {"backdrop": quick_look(image, Box(*found.image.roi))}
 
 
 def _write_edges(table: OutputFile, edges: EdgeTable, image: Image) -> None:

@@ -126,8 +126,12 @@ class Field(ShortRepr):
 
     def at(self, base: OtfModel, row: float, col: float) -> FieldOtf:
         """The sensor at a place, in pixels of the image."""
-        weight = field_polynomials(*field_places(self.roi, np.array(row), np.array(col)))
+        weight = field_polynomials(*self.places(np.array(row), np.array(col)))
         return FieldOtf(base, weight[:, None] - self.middle, self.amount, self.root)
+
+    def places(self, row: Floats, col: Floats) -> tuple[Floats, Floats]:
+        """Places in the field, -1 to 1 along columns (x) and rows (y)."""
+        return field_places(self.roi, row, col)
 
     def grid(self, rows: int, cols: int) -> tuple[Floats, Floats]:
         """Rows and columns of the middles of so many equal parts of the field."""
@@ -136,7 +140,7 @@ class Field(ShortRepr):
 
     def holds(self, row: float, col: float) -> bool:
         """Whether a place lies in the field."""
-        x, y = field_places(self.roi, np.array(row), np.array(col))
+        x, y = self.places(np.array(row), np.array(col))
         return bool(max(abs(x), abs(y)) <= 1.0)
 
     def summary(self) -> str:
