@@ -144,6 +144,10 @@ def test_the_sensor_at_a_place():
     std = np.linalg.norm(right.factor(u, v)[2])
     assert std == pytest.approx(2 * np.pi**2 * 0.25 * 0.01 * abs(added.otf(u, v)[2]))
     assert Otf2d(right).response(0.0).mtf_nyquist.std == pytest.approx(std, rel=1e-3)
+    change, own_std = field.change(59.5, 220.5, u, v)
+    mean = field.mean_of(base).otf(u, v)
+    assert np.exp(change) == pytest.approx(np.abs(right.otf(u, v) / mean))
+    assert own_std[2] == pytest.approx(2 * np.pi**2 * 0.25 * 0.01)
     rows, cols = field.grid(2, 3)
     assert rows.tolist() == [34.5, 84.5]
     assert cols.tolist() == pytest.approx([53.0, 120.0, 187.0])

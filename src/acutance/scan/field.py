@@ -129,6 +129,13 @@ class Field(ShortRepr):
         weight = field_polynomials(*self.places(np.array(row), np.array(col)))
         return FieldOtf(base, weight[:, None] - self.middle, self.amount, self.root)
 
+    def change(self, row: float, col: float, u_cpp: Floats, v_cpp: Floats) -> tuple[Floats, Floats]:
+        """Logarithm of the MTF at a place over its mean, and its standard deviation, (n,) each."""
+        place = field_polynomials(*self.places(np.array(row), np.array(col)))
+        modes = place[None, :, None] * blur_modes(u_cpp, v_cpp)[:, None]
+        modes = modes.reshape(len(modes), -1)
+        return modes @ self.amount, np.linalg.norm(modes @ self.root, axis=1)
+
     def places(self, row: Floats, col: Floats) -> tuple[Floats, Floats]:
         """Places in the field, -1 to 1 along columns (x) and rows (y)."""
         return field_places(self.roi, row, col)

@@ -386,7 +386,7 @@ _SCENE = {
         "the edges do not separate the sensor from its objects", severity="fail",
     ),
     "field_change": Question(
-        "How much does sharpness change over the field, as a share of its mean?", "<=", 0.1,
+        "By which share of its mean does sharpness surely change over the field?", "<=", 0.1,
         "the numbers are the mean over the field: read those of the places, or scan parts of it",
         severity="note",
     ),
