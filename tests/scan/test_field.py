@@ -100,6 +100,18 @@ def test_soft_objects_make_no_field():
     assert fit_field(edges, middle(constant), START, x, y).chance_constant > 0.9
 
 
+def test_few_edges_are_not_asked():
+    edges, x, y = drawn(tilted, count=50)
+    field = fit_field(edges, middle(tilted), START, x, y)
+    assert field.chance_constant == 0.5
+    assert not field.amount.any()
+    assert not field.log_gain.any()
+    edges, x, y = drawn(tilted, count=120)
+    field = fit_field(edges, middle(tilted), START, x, y)
+    assert not field.amount.reshape(5, 4)[2:].any()
+    assert field.amount.reshape(5, 4)[0, 0] > 0.005
+
+
 def test_a_change_over_the_field_is_found_within_its_deviation():
     off, held = [], []
     places = np.array([[-0.9, 0.2], [0.9, 0.9], [0.0, -0.7]])

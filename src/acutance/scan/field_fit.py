@@ -8,6 +8,7 @@ amounts that are drawn from normal distributions of several widths. The result i
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 from typing import Final, NamedTuple
@@ -33,6 +34,8 @@ _STD_PX2: Final = (0.004, 0.015, 0.06, 0.2)
 """Widths of the amounts' distributions, px^2."""
 _WIDE_PX2: Final = 0.3
 """Width of the one for the first fit, from which the others follow."""
+_EDGES_EACH: Final = 10
+"""Edges that a hypothesis needs for each of its amounts: a few soft objects are a field, too."""
 _HEATS: Final = (4.0, 2.0)
 """Deviations of the edges are widened by these, one after the other, for a first guess."""
 _CHANCE_CONSTANT: Final = 0.5
@@ -47,7 +50,7 @@ class FieldFit(NamedTuple):
     middle : (5, 4) array
         Means of the polynomials over the edges, by mode.
     amount : (20,) array
-    root : (20, 20) array
+    root : (20, r) array
         Factor of its covariance.
     chance_constant : float
     log_gain : (n, k) array
@@ -92,6 +95,11 @@ def fit_field(
         Places of the edges, -1 to 1 over the field.
     before : FieldFit, optional
         A first guess, under which the edges tell where their middle is.
+
+    Returns
+    -------
+    FieldFit
+        Of few edges nothing is asked: the chance of no change is what it was before.
     """
     along = edge_modes(edges.normal_deg, edges.freq_cpp)
     polynomials = field_polynomials(x, y)
@@ -99,18 +107,28 @@ def fit_field(
     middle = _middle(seen, otf, share, along, polynomials)
     modes = (polynomials[:, :, None] - middle)[:, None] * along[:, :, None]
     modes = modes.reshape(*along.shape[:2], -1)
-    both = np.concatenate([along[:, :, :COMMON_MODES], modes], axis=2)
+    fields = [one for one in _hypotheses() if _EDGES_EACH * one.active.sum() <= edges.size]
+    if not fields:
+        nothing = np.zeros(modes.shape[2])
+        return FieldFit(
+            middle, nothing, np.zeros((nothing.size, 0)), _CHANCE_CONSTANT, modes @ nothing,
+            np.zeros(COMMON_MODES),
+        )  # fmt: skip
+    asked = np.any([one.active for one in fields], axis=0)
+    both = np.concatenate([along[:, :, :COMMON_MODES], modes[:, :, asked]], axis=2)
     std = np.where(np.arange(both.shape[2]) < COMMON_MODES, np.inf, _WIDE_PX2)
     if before is None:
         starts = [np.zeros(std.size), _cooled(edges, otf, share, both, std)]
     else:
-        starts = [np.concatenate([np.zeros(COMMON_MODES), before.amount])]
+        starts = [np.concatenate([np.zeros(COMMON_MODES), before.amount[asked]])]
     fits = [fit_modes(edges, otf, share, both, start=start, std=std) for start in starts]
     fit = max(fits, key=lambda one: one.log_posterior)
     constant = fit_modes(edges, otf, share, along[:, :, :COMMON_MODES])
-    amount, covariance, chance = _mean(fit, constant.log_posterior)
+    fields = [one._replace(active=one.active[asked]) for one in fields]
+    mean, covariance, chance = _mean(fit, constant.log_posterior, fields)
     size, axes = np.linalg.eigh(covariance)
-    root = axes * np.sqrt(np.maximum(size, 0.0))
+    amount, root = np.zeros(asked.size), np.zeros((asked.size, size.size))
+    amount[asked], root[asked] = mean, axes * np.sqrt(np.maximum(size, 0.0))
     return FieldFit(middle, amount, root, chance, modes @ amount, fit.amount[:COMMON_MODES])
 
 
@@ -160,7 +178,9 @@ def _hypotheses() -> list[_Field]:
     ]
 
 
-def _mean(fit: ModesFit, log_constant: float) -> tuple[Floats, Floats, float]:
+def _mean(
+    fit: ModesFit, log_constant: float, fields: Sequence[_Field]
+) -> tuple[Floats, Floats, float]:
     """Mean and covariance of the amounts over all hypotheses, and the chance of no change.
 
     The likelihood of a field is that of its quadratic form about the fit; that of no change is
@@ -172,7 +192,6 @@ def _mean(fit: ModesFit, log_constant: float) -> tuple[Floats, Floats, float]:
     # The wide prior's pull ends where the edges' begins.
     pull = (information + np.eye(size) / _WIDE_PX2**2) @ found
     at_nothing = fit.log_posterior - 0.5 * float(found @ pull)
-    fields = _hypotheses()
     means, covariances = np.zeros((len(fields) + 1, size)), np.zeros((len(fields) + 1, size, size))
     scores = np.full(len(fields) + 1, log_constant)
     for i, field in enumerate(fields, start=1):

@@ -124,7 +124,7 @@ def fit_sensor(
     state = _settled(edges, normal_deg, _State(start, START, FORMS, edges, 0, False), nothing)
     field = fit_field(state.along, state.otf, state.share, x, y)
     for _ in range(_MAX_FIELD_TURNS):
-        if field.chance_constant > _CONSTANT:
+        if field.chance_constant > _CONSTANT or not field.amount.any():
             break
         moved = changed(state.otf, modes @ field.common)
         state = _settled(edges, normal_deg, state._replace(otf=moved), field.log_gain)
