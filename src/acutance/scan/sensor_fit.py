@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.stacked import stacked, unstacked
 from acutance.scan.blur_modes import COMMON_MODES, changed, edge_modes, fit_modes
 from acutance.scan.field_fit import FieldFit, fit_field
@@ -53,6 +54,10 @@ _UNSEEN: Final = 1.0
 """Information of combinations that edges do not show: the OTF is between 0 and 1."""
 _BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
 """Blur that is added to first guesses: the sharpest edges are so by their noise, too."""
+_ALIKE: Final = 0.005
+"""Mean difference of transfer functions within the band that is none."""
+_FREE_PX2: Final = 0.1
+"""Prior standard deviation of the modes by which first guesses may change."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,9 +124,11 @@ def fit_sensor(
         Places of the edges, -1 to 1 over the field.
     """
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
-    start = _likeliest(edges, modes, guesses)
     nothing = np.zeros((edges.size, edges.freq_cpp.size))
-    state = _settled(edges, normal_deg, _State(start, START, FORMS, edges, 0, False), nothing)
+    state = max(
+        (_settled(edges, normal_deg, one, nothing) for one in _starts(edges, normal_deg, guesses)),
+        key=lambda one: fit_shares(one.along, one.otf, one.share)[1].log_likelihood,
+    )
     field = fit_field(state.along, state.otf, state.share, x, y)
     for _ in range(_MAX_FIELD_TURNS):
         if field.chance_constant > _CONSTANT or not field.amount.any():
@@ -140,12 +147,6 @@ def fit_sensor(
         combine_curves([samples]), field, normal_deg, share, share_covariance(member, share),
         member, state.turns, state.settled,
     )  # fmt: skip
-
-
-def _likeliest(edges: EdgeLikelihoods, modes: Floats, guesses: Sequence[Floats]) -> Floats:
-    """The likeliest of the guesses, somewhat blurred or sharpened."""
-    tried = [changed(one, modes[:, :, 0] * blur) for one in guesses for blur in _BLUR_STARTS_PX2]
-    return max(tried, key=lambda one: fit_shares(edges, one, START)[1].log_likelihood)
 
 
 class _State(NamedTuple):
@@ -170,6 +171,28 @@ class _State(NamedTuple):
     along: EdgeLikelihoods
     turns: int
     settled: bool
+
+
+def _starts(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]) -> list[_State]:
+    """The likeliest sensors near the guesses, of free shape, as far as they differ.
+
+    The likelihood has several tops where few edges are sharp: a soft sensor whose sharpest edges
+    are noise, and a sharp one under soft objects.
+    """
+    modes = edge_modes(normal_deg, edges.freq_cpp)
+    steeper = (edges.freq_cpp[:, None] / NYQUIST_CPP) ** 2
+    free = np.concatenate([modes, modes[:, :, :COMMON_MODES] * steeper], axis=2)
+    in_band = np.tile(edges.freq_cpp <= NYQUIST_CPP, 2)
+    found: list[_State] = []
+    for guess in guesses:
+        tried = [changed(guess, modes[:, :, 0] * blur) for blur in _BLUR_STARTS_PX2]
+        start = max(tried, key=lambda one: fit_shares(edges, one, START)[1].log_likelihood)
+        fit = fit_modes(edges, start, START, free[edges.bin], std=_FREE_PX2)
+        otf = changed(start, free @ fit.amount)
+        apart = [float(np.abs(otf - one.otf)[:, in_band].mean()) for one in found]
+        if min(apart, default=np.inf) > _ALIKE:
+            found.append(_State(otf, fit.share, FORMS, edges, 0, settled=False))
+    return found
 
 
 def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain: Floats) -> _State:
