@@ -4,27 +4,31 @@ In the order data take: `windows` (a large image in parts), `edge_points` (maxim
 between pixels), `segments` (straight or gently curved chains of them), `pieces` (what is measured
 by itself), `band_pieces` (the same in several bands), `window_edges` (a window's edges, measured
 and judged by `acutance.targets.straight`), `all_windows` (every window, on several processes or a
-cluster; finished ones in a file: `kept_windows`, `scan_identity`), `population` (what the edges
-share, and how soft the objects are), `sensor_fit` (the sensor over the plane of frequencies),
-`scene` (the public function), `scene_edges` and `scene_measurement` (its result; written by
-`edge_table` and `parquet`), `checks` (is the scene rich enough), `bands` (several bands at once;
-`band_shift` between them), `options`.
+cluster; finished ones in a file: `kept_windows`, `scan_identity`), `softness` (laws of the
+objects), `population` (what the edges share, and what each is), `information` (what they say of
+the sensor), `blur_modes` (how a blur may change), `field_fit` and `field` (over the field of
+view), `sensor_fit` (the sensor over the plane of frequencies), `scene` (the public function),
+`scene_edges` and `scene_measurement` (its result; written by `edge_table` and `parquet`), `checks`
+(is the scene rich enough), `bands` (several bands at once; `band_shift` between them), `options`.
 """
 
 from acutance.scan.band_shift import BandShift
 from acutance.scan.bands import BandEdges, BandScenes, scan_bands
+from acutance.scan.field import Field
 from acutance.scan.options import ScanOptions
 from acutance.scan.scene import scan_scene
 from acutance.scan.scene_edges import SceneEdges
-from acutance.scan.scene_measurement import SceneMeasurement
+from acutance.scan.scene_measurement import SceneMeasurement, ScenePlace
 
 __all__ = [
     "BandEdges",
     "BandScenes",
     "BandShift",
+    "Field",
     "ScanOptions",
     "SceneEdges",
     "SceneMeasurement",
+    "ScenePlace",
     "scan_bands",
     "scan_scene",
 ]
