@@ -112,7 +112,7 @@ def test_the_gradient_is_that_of_the_likelihood():
     edges, _ = drawn(0.5, 40)
     otf = TRUE[None] * 0.97
     share, member = fit_shares(edges, otf, START)
-    gradient = sum(terms.gradient.sum(axis=0) for terms in edge_terms(edges, otf, member, share))
+    gradient = sum(terms.gradient.sum(axis=0) for terms in edge_terms(edges, otf, member))
 
     # At the likeliest shares, with the prior of the shares, their change has no effect.
     def log_posterior(values):
@@ -131,14 +131,14 @@ def test_the_information_is_the_curvature_of_the_likelihood():
     edges, _ = drawn(0.5, 200, seed=3)
     _, member = fit_shares(edges, TRUE[None], START)
     share, member = fit_shares(edges, TRUE[None], member.part.mean(axis=0) + 1e-3)
-    (terms,) = edge_terms(edges, TRUE[None], member, share)
+    (terms,) = edge_terms(edges, TRUE[None], member)
     step = np.zeros((1, 8))
     step[0, 3] = 2e-3
 
     def pull(values):
-        # The shares stay: what changes is what every edge is.
-        found, at = fit_shares(edges, values, share)
-        (there,) = edge_terms(edges, values, at, found)
+        # Of so many edges the shares hardly move: what changes is what every edge is.
+        _, at = fit_shares(edges, values, share)
+        (there,) = edge_terms(edges, values, at)
         return there.gradient.sum(axis=0)[3]
 
     falls = (pull(TRUE[None] - step) - pull(TRUE[None] + step)) / 4e-3

@@ -26,6 +26,7 @@ __all__ = [
     "changed",
     "edge_modes",
     "fit_modes",
+    "mode_slopes",
 ]
 
 BLUR_MODES: Final = ("all around", "across more than along", "oblique", "middle of the band")
@@ -123,9 +124,8 @@ def fit_modes(
     reached = member.log_likelihood - 0.5 * float(precision @ amount**2)
     for _ in range(_MAX_STEPS):
         pull, information = np.zeros(amount.size), np.zeros((amount.size,) * 2)
-        for terms in edge_terms(seen, otf, member, share):
-            both = np.concatenate([modes[terms.edges]] * 2, axis=1)
-            slopes = otf[seen.bin[terms.edges]][:, :, None] * both
+        for terms in edge_terms(seen, otf, member):
+            slopes = mode_slopes(seen, otf, modes, terms.edges)
             pull += np.einsum("nkq,nk->q", slopes, terms.gradient)
             information += np.einsum("nkq,nkp->qp", slopes, terms.information @ slopes)
         step = _step(information, pull - precision * amount, precision)
@@ -143,6 +143,12 @@ def fit_modes(
         if rise < _SETTLED:
             break
     return ModesFit(amount, share, information, reached)
+
+
+def mode_slopes(edges: EdgeLikelihoods, otf: Floats, modes: Floats, some: slice) -> Floats:
+    """Derivatives of the OTF that some edges see by the amounts of modes, (n, 2 k, q)."""
+    both = np.concatenate([modes[some]] * 2, axis=1)
+    return np.asarray(otf[edges.bin[some]][:, :, None] * both)
 
 
 def _step(information: Floats, pull: Floats, precision: Floats) -> Floats:

@@ -23,6 +23,7 @@ from acutance.scan.blur_modes import (
     ModesFit,
     edge_modes,
     fit_modes,
+    mode_slopes,
 )
 from acutance.scan.field import DEGREES, field_polynomials
 from acutance.scan.information import edge_terms
@@ -153,9 +154,8 @@ def _middle(
     """Means of the polynomials, every edge weighted by what it tells of a mode, (5, 4)."""
     weights = np.zeros((edges.size, along.shape[2]))
     _, member = fit_shares(edges, otf, share)
-    for terms in edge_terms(edges, otf, member, share):
-        both = np.concatenate([along[terms.edges]] * 2, axis=1)
-        slopes = otf[edges.bin[terms.edges]][:, :, None] * both
+    for terms in edge_terms(edges, otf, member):
+        slopes = mode_slopes(edges, otf, along, terms.edges)
         weights[terms.edges] = np.einsum("nkq,nkq->nq", slopes, terms.information @ slopes)
     weights = np.maximum(weights, 0.0)
     return np.asarray(polynomials.T @ weights / np.maximum(weights.sum(axis=0), 1e-12))

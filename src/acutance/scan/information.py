@@ -26,22 +26,20 @@ class EdgeTerms(NamedTuple):
     Attributes
     ----------
     edges : slice
+    slopes : (n, t + 1, 2 k) array
+        Gradients for every softness.
     gradient : (n, 2 k) array
     information : (n, 2 k, 2 k) array
         What the edges are being integrated out.
-    by_share : (n, 2 k, p) array
-        Covariance of the gradients by the sensor and by the shares of the parts.
     """
 
     edges: slice
+    slopes: Floats
     gradient: Floats
     information: Floats
-    by_share: Floats
 
 
-def edge_terms(
-    edges: EdgeLikelihoods, otf: Floats, member: Membership, share: Floats
-) -> Iterator[EdgeTerms]:
+def edge_terms(edges: EdgeLikelihoods, otf: Floats, member: Membership) -> Iterator[EdgeTerms]:
     """Gradient and observed information of all edges, some at a time.
 
     Parameters
@@ -49,8 +47,7 @@ def edge_terms(
     edges : EdgeLikelihoods
     otf : (b, 2 k) array
     member : Membership
-        At that sensor and those shares.
-    share : (p,) array
+        At that sensor.
     """
     for some in edges.chunks():
         blur = edges.blur(member.softness_px[some] ** 2)
@@ -61,14 +58,20 @@ def edge_terms(
         mean = weighted.sum(axis=1) + strange * if_strange
         missing = _turned(weighted) @ slopes - _squares(mean)
         missing += strange[:, :, None] * _squares(if_strange)
-        by_part = np.concatenate([
-            weighted[:, :1],
-            np.einsum("pnt,ntk->npk", member.within[:, some], weighted[:, 1:]),
-            (strange * if_strange)[:, None],
-        ], axis=1)  # fmt: skip
-        by_share = _turned(by_part - member.part[some][:, :, None] * mean[:, None]) / share
         complete = _complete(edges, some, blur, member.weight[some])
-        yield EdgeTerms(some, mean, complete - missing, by_share)
+        yield EdgeTerms(some, slopes, mean, complete - missing)
+
+
+def _by_share(terms: EdgeTerms, member: Membership, share: Floats) -> Floats:
+    """Covariance of the gradients by the sensor and by the shares of the parts, (n, 2 k, p)."""
+    part = member.part[terms.edges]
+    weighted = terms.slopes * member.chance[terms.edges][:, :, None]
+    by_part = np.concatenate([
+        weighted[:, :1],
+        np.einsum("pnt,ntk->npk", member.within[:, terms.edges], weighted[:, 1:]),
+        (part[:, -1:] * terms.slopes[:, 0] / STRANGE)[:, None],
+    ], axis=1)  # fmt: skip
+    return np.asarray(_turned(by_part - part[:, :, None] * terms.gradient[:, None]) / share)
 
 
 def _complete(edges: EdgeLikelihoods, some: slice, blur: Floats, weight: Floats) -> Floats:
@@ -110,10 +113,10 @@ def observed_information(
     bins, size = otf.shape
     own = np.zeros((bins, size, size))
     by_share = np.zeros((bins, size, share.size))
-    for terms in edge_terms(edges, otf, member, share):
+    for terms in edge_terms(edges, otf, member):
         where = edges.bin[terms.edges]
         np.add.at(own, where, terms.information)
-        np.add.at(by_share, where, terms.by_share)
+        np.add.at(by_share, where, _by_share(terms, member, share))
     whole = np.zeros((bins, size, bins, size))
     whole[np.arange(bins), :, np.arange(bins)] = own
     crossed = by_share.reshape(-1, share.size) @ FREE.T
