@@ -13,8 +13,11 @@ from package_source import MODULES, ROOT, Import, all_imports, dotted_name, impo
 FLOORS = (
     "cli",
     "report",
+    "batch",
+    "restore",
     "studies",
     "scan",
+    "archive",
     "targets",
     "simulate",
     "raster",
@@ -33,12 +36,15 @@ KINDS = ("straight", "points", "pair", "periodic", "combine")
 FORBIDDEN = {
     ("simulate", "numerics"): "the truth shares no numerics with the estimators",
     ("raster", "numerics"): "files know nothing of fits",
+    ("scan", "archive"): "who measures does not keep",
+    ("studies", "archive"): "who simulates does not keep",
+    ("restore", "archive"): "a filter is made of one measurement",
 }
 
 # Libraries, and the floors that may use them.
 LIBRARIES = {
     "numpy": set(FLOORS) - {"errors"},
-    "scipy": {"scan", "targets", "simulate", "raster", "numerics", "optics"},
+    "scipy": {"archive", "restore", "scan", "targets", "simulate", "raster", "numerics", "optics"},
     "rasterio": {"raster"},
     "matplotlib": {"report"},
     "jinja2": {"report"},
@@ -48,7 +54,13 @@ LIBRARIES = {
     "numba": {"numerics"},
     "threadpoolctl": {"numerics"},
     "distributed": {"execution"},
-    "pyarrow": {"scan"},
+    "pandas": {"archive"},
+    "psycopg": {"archive"},
+    "pyarrow": {"archive", "scan"},
+    "pydantic": {"archive", "batch", "raster"},
+    "pystac": {"archive"},
+    "sqlalchemy": {"archive"},
+    "xarray": {"archive"},
 }
 
 # (module, imported module): why it is right all the same.

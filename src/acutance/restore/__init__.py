@@ -1,0 +1,1 @@
+"""From a measured MTF to a sharper image, and what it costs."""
