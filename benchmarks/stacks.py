@@ -4,9 +4,11 @@ The image holds squares turned by six angles, seen by a Gaussian of 0.4 px throu
 100; a region of 60 x 60 px lies about the middle of every side. `acutance.each_edge` hands out a
 record of each: all numbers with their standard deviations, curves, covariance, checks and verdict.
 The plain 4x-binned e-SFR (benchmarks/speed.py) measures the same regions in the same run: it finds
-no edge, trims nothing and has no uncertainty. Times are of the processor, but those of several
-workers and of one are of the clock. The first edge of a process is timed in a fresh one, from the
-import of acutance to the numbers; compiled loops were kept by an earlier process.
+no edge, trims nothing and has no uncertainty. MTF Mapper, where it is found on the path, finds the
+squares itself and measures every side, without standard deviations. Times are of the processor, but
+those of several workers and of one are of the clock. The first edge of a process is timed in a
+fresh one, from the import of acutance to the numbers; compiled loops were kept by an earlier
+process.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from mtf_mapper import MapperEdges, mtf_mapper_edges
 from speed import plain_esfr
 from trials import TWO_SIDED_95, command, publish, table
 
@@ -164,14 +167,17 @@ def main() -> None:
     if not np.array_equal(found, again, equal_nan=True):
         raise SystemExit("two workers give other numbers than one")
     count, truth = len(squares.regions), true_nyquist(squares.normal_deg)
+    mapper = mtf_mapper_edges(squares.image, bright_targets=True)
     times = [
         ("plain 4x-binned e-SFR, without deviations", plain, "1.00"),
         ("each_edge, records with checks and verdict", one, f"{one / plain:.2f}"),
+        *mapper_time(mapper, count, plain),
     ]
     error = found[:, 0] - truth
     accuracy = [
         accuracy_row("plain 4x-binned e-SFR", np.array(esfr) - truth, None),
         accuracy_row("each_edge", error, found[:, 1]),
+        *mapper_accuracy(mapper),
     ]
     small = squares.regions[0]
     cut = squares.image[small[0] + 10 : small[0] + 50, small[1] + 10 : small[1] + 50].astype(float)
@@ -197,6 +203,24 @@ def main() -> None:
         table(["", "found"], single),
     ]
     publish("Thousands of regions of one image", parts, arguments)
+
+
+def mapper_time(
+    mapper: MapperEdges | None, count: int, plain: float
+) -> list[tuple[str, float, str]]:
+    """MTF Mapper's row of the times, for as many edges; none where it is not installed."""
+    if mapper is None:
+        return []
+    taken = mapper.processor_s / mapper.nyquist.size * count
+    name = f"MTF Mapper, {mapper.nyquist.size} sides found by itself, without deviations"
+    return [(name, taken, f"{taken / plain:.2f}")]
+
+
+def mapper_accuracy(mapper: MapperEdges | None) -> list[list[str]]:
+    """MTF Mapper's row of the accuracies."""
+    if mapper is None:
+        return []
+    return [accuracy_row("MTF Mapper", mapper.nyquist - true_nyquist(mapper.angle_deg), None)]
 
 
 def _verdict(image: np.ndarray) -> Callable[[], Any]:
