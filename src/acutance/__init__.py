@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from acutance.errors import (
     AcutanceError,
+    ArchiveError,
     ImageError,
     ModelError,
     NoBarsError,
@@ -30,6 +31,7 @@ from acutance.errors import (
 
 if TYPE_CHECKING:
     from acutance import optics, report, simulate
+    from acutance.archive import Archive
     from acutance.curves import Esf, Estimate, Estimates, Lsf, Mtf, Response
     from acutance.geometry import Line
     from acutance.optics import Sensor
@@ -84,6 +86,7 @@ __version__ = "0.1.0"
 # Where a public name lives. Modules are loaded when a name is first used, so that
 # `import acutance` stays quick.
 _HOMES = {
+    "Archive": "acutance.archive",
     "BandScenes": "acutance.scan",
     "BandShift": "acutance.scan",
     "BarsMeasurement": "acutance.targets.periodic",
@@ -141,6 +144,8 @@ _MODULES = ("optics", "report", "simulate")
 
 __all__ = [
     "AcutanceError",
+    "Archive",
+    "ArchiveError",
     "BandScenes",
     "BandShift",
     "BarsMeasurement",

@@ -13,7 +13,9 @@
     │   ├── PhaseError                    the edge is aligned with the grid: no sub-pixel phases
     │   └── SupportError                  too few rows or too narrow plateaus
     ├── OptionError         (ValueError)  an option has a value out of its range
-    └── ModelError          (ValueError)  a sensor or a scene is described in contradiction
+    ├── ModelError          (ValueError)  a sensor or a scene is described in contradiction
+    └── ArchiveError        (OSError)     an archive is missing, of another program, not reachable,
+                                          or cannot be written
 
 Every message names what was asked, what was found and what to do. Every class is also
 the builtin that fits, so that code which does not import acutance can catch it.
@@ -21,6 +23,7 @@ the builtin that fits, so that code which does not import acutance can catch it.
 
 __all__ = [
     "AcutanceError",
+    "ArchiveError",
     "ImageError",
     "ModelError",
     "NoBarsError",
@@ -81,3 +84,7 @@ class OptionError(AcutanceError, ValueError):
 
 class ModelError(AcutanceError, ValueError):
     """A sensor or a scene is described in contradiction with itself."""
+
+
+class ArchiveError(AcutanceError, OSError):
+    """An archive is missing, of another program, not reachable, or cannot be written."""

@@ -58,6 +58,7 @@ LIBRARIES = {
     "psycopg": {"archive"},
     "pyarrow": {"archive", "scan"},
     "pydantic": {"archive", "batch", "raster"},
+    "pydantic_core": {"archive"},
     "pystac": {"archive"},
     "sqlalchemy": {"archive"},
     "xarray": {"archive"},

@@ -1,4 +1,52 @@
 """Measurements kept over years, and the questions that are asked of them.
 
-Sees records only, never pixels.
+Sees records only, never pixels. In the order the data take:
+
+- `entry`: one measurement, or one rejection, with what is known of its image and its target
+- `identity`: what makes an entry the one that is there already
+- `dates`: moments in UTC, and how dates without a time or a zone are read
+- `tables`, `migrations`: the tables of an archive, and how older ones become today's
+- `connection`, `failures`: SQLite or PostgreSQL, transactions that wait, errors in words
+- `packing`, `rows`, `adding`: entries become rows, added once each
+- `runs`: batches that wrote into the archive
+- `selection`, `columns`, `measurements`: which rows are meant, and what they hold as columns
+- `stored_entries`: rows become entries again
+- `archive`: all of it under one name, `Archive`
 """
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from acutance.archive.archive import Archive
+    from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
+    from acutance.archive.measurements import Measurements, Rejections
+
+__all__ = [
+    "Archive",
+    "Entry",
+    "ImageEntry",
+    "Kept",
+    "Measurements",
+    "Rejections",
+    "TargetEntry",
+]
+
+# The modules are loaded when a name is first used: an entry costs no SQLAlchemy.
+_HOMES = {
+    "Archive": "archive",
+    "Entry": "entry",
+    "ImageEntry": "entry",
+    "Kept": "entry",
+    "Measurements": "measurements",
+    "Rejections": "measurements",
+    "TargetEntry": "entry",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        return getattr(importlib.import_module(f"acutance.archive.{_HOMES[name]}"), name)
+    raise AttributeError(f"module 'acutance.archive' has no attribute {name!r}")

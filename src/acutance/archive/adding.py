@@ -1,0 +1,199 @@
+"""Entries are added, each once: one whose key is there already is passed over.
+
+A chunk of entries is one transaction: a process that ends in the middle leaves whole chunks. Keys
+are written in their order, so that two processes that add the same do not wait for one another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime
+from functools import partial
+from itertools import islice
+from typing import Any, TypeVar
+
+from sqlalchemy import Connection, Table, select
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.sql.dml import ReturningInsert
+
+from acutance.archive.connection import Database
+from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
+from acutance.archive.packing import packed
+from acutance.archive.rows import EntryRows, image_row, rows_of, target_row
+from acutance.archive.tables import directions, documents, images, measurements, runs, targets
+from acutance.errors import OptionError
+
+__all__ = ["CHUNK", "add_entries", "add_entry"]
+
+CHUNK = 1000
+"""Entries of one transaction."""
+
+_PACKERS = 2
+_FEW = 8
+_Described = TypeVar("_Described", ImageEntry, TargetEntry)
+
+
+def add_entry(database: Database, entry: Entry, run: int | None = None) -> Kept:
+    """Add one entry.
+
+    Raises
+    ------
+    ArchiveError
+        If it cannot be kept.
+    OptionError
+        If it holds what no archive can, or there is no such run.
+    """
+    rows = rows_of(entry)
+    ready = _packed_documents([rows])
+    added = database.write(partial(_add_chunk, chunk=ready, run=run))
+    found = select(measurements.c.id).where(measurements.c.key == rows.key)
+    number = database.read(lambda connection: connection.execute(found).scalar_one())
+    return Kept(number, rows.key, bool(added))
+
+
+def add_entries(
+    database: Database,
+    entries: Iterable[Entry],
+    run: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> int:
+    """Add entries, and count those that were not there.
+
+    Parameters
+    ----------
+    database : Database
+    entries : iterable of Entry
+    run : int, optional
+        What wrote them.
+    progress : callable, optional
+        Told after each transaction how many entries were read.
+
+    Raises
+    ------
+    ArchiveError
+        If they cannot be kept; chunks before stay.
+    OptionError
+        If one holds what no archive can, or there is no such run.
+    """
+    added, read = 0, 0
+    for chunk in _chunks(entries):
+        ready = _packed_documents([rows_of(entry) for entry in chunk])
+        added += database.write(partial(_add_chunk, chunk=ready, run=run))
+        read += len(chunk)
+        if progress is not None:
+            progress(read)
+    return added
+
+
+def _chunks(entries: Iterable[Entry]) -> Iterator[list[Entry]]:
+    left = iter(entries)
+    while chunk := list(islice(left, CHUNK)):
+        yield chunk
+
+
+def _packed_documents(chunk: Sequence[EntryRows]) -> Mapping[str, tuple[EntryRows, bytes | None]]:
+    """Rows and packed documents by key, in the order of the keys."""
+    texts = [rows.document for rows in chunk]
+    if len(chunk) <= _FEW:
+        stored = [_packed(text) for text in texts]
+    else:
+        with ThreadPoolExecutor(_PACKERS) as threads:
+            stored = list(threads.map(_packed, texts, chunksize=50))
+    by_key = {rows.key: (rows, one) for rows, one in zip(chunk, stored, strict=True)}
+    return {key: by_key[key] for key in sorted(by_key)}
+
+
+def _packed(text: bytes | None) -> bytes | None:
+    return None if text is None else packed(text)
+
+
+def _add_chunk(
+    connection: Connection, chunk: Mapping[str, tuple[EntryRows, bytes | None]], run: int | None
+) -> int:
+    _require_run(connection, run)
+    there = select(measurements.c.key).where(measurements.c.key.in_(list(chunk)))
+    known = set(connection.execute(there).scalars())
+    new = [one for key, one in chunk.items() if key not in known]
+    if not new:
+        return 0
+    image_ids = _ids(connection, images, image_row, [rows.image for rows, _ in new])
+    target_ids = _ids(
+        connection, targets, target_row, [rows.target for rows, _ in new if rows.target is not None]
+    )
+    now = datetime.now(UTC)
+    written = [
+        rows.measurement
+        | {
+            "image_id": image_ids[id(rows.image)],
+            "target_id": None if rows.target is None else target_ids[id(rows.target)],
+            "run_id": run,
+            "added": now,
+        }
+        for rows, _ in new
+    ]
+    inserted = connection.execute(_insert_new(connection, measurements, "key", "id"), written).all()
+    ids: dict[str, int] = {row.key: row.id for row in inserted}
+    _insert_all(
+        connection,
+        directions,
+        [
+            {"measurement_id": ids[rows.key], **row}
+            for rows, _ in new
+            if rows.key in ids
+            for row in rows.directions
+        ],
+    )
+    _insert_all(
+        connection,
+        documents,
+        [
+            {"measurement_id": ids[rows.key], "document": stored}
+            for rows, stored in new
+            if rows.key in ids and stored is not None
+        ],
+    )
+    return len(ids)
+
+
+def _insert_all(connection: Connection, table: Table, rows: Sequence[Mapping[str, Any]]) -> None:
+    if rows:
+        connection.execute(table.insert(), rows)
+
+
+def _insert_new(
+    connection: Connection, table: Table, unique: str, also: str
+) -> ReturningInsert[Any]:
+    """Insert rows unless their unique column is there, and return those that were inserted."""
+    insert = sqlite.insert if connection.dialect.name == "sqlite" else postgresql.insert
+    columns = table.c[unique], table.c[also]
+    return insert(table).on_conflict_do_nothing(index_elements=[unique]).returning(*columns)
+
+
+def _ids(
+    connection: Connection,
+    table: Table,
+    row_of: Callable[[_Described], Mapping[str, Any]],
+    described: Sequence[_Described],
+) -> dict[int, int]:
+    """The numbers of the rows of images or targets, made where there are none, by `id`."""
+    each = {id(one): row_of(one) for one in {id(one): one for one in described}.values()}
+    rows = {row["identity"]: row for row in each.values()}
+    found = _found_ids(connection, table, list(rows))
+    missing = [rows[identity] for identity in sorted(set(rows) - set(found))]
+    if missing:
+        connection.execute(_insert_new(connection, table, "identity", "id"), missing)
+        found = _found_ids(connection, table, list(rows))
+    return {place: found[row["identity"]] for place, row in each.items()}
+
+
+def _found_ids(connection: Connection, table: Table, identities: Sequence[str]) -> dict[str, int]:
+    asked = select(table.c.identity, table.c.id).where(table.c.identity.in_(identities))
+    return {row.identity: row.id for row in connection.execute(asked)}
+
+
+def _require_run(connection: Connection, run: int | None) -> None:
+    if run is None:
+        return
+    if connection.execute(select(runs.c.id).where(runs.c.id == run)).first() is None:
+        raise OptionError(f"there is no run {run} in the archive: start one with start_run()")

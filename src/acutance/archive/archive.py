@@ -1,0 +1,226 @@
+"""An archive: measurements kept over years, in a file or on a server."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from types import TracebackType
+from typing import Any, Self, Unpack
+
+from acutance.archive.adding import add_entries, add_entry
+from acutance.archive.connection import open_database
+from acutance.archive.dates import When, as_utc
+from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
+from acutance.archive.measurements import (
+    Measurements,
+    Rejections,
+    select_measurements,
+    select_rejections,
+)
+from acutance.archive.migrations import ensure_schema
+from acutance.archive.runs import end_run, kept_keys, start_run
+from acutance.archive.selection import Selection, SelectionWords
+from acutance.errors import OptionError
+from acutance.targets.measurement import Measurement
+from acutance.targets.record import Record
+
+__all__ = ["Archive"]
+
+
+class Archive:
+    """Measurements with their images, targets and runs, in a file of SQLite or in PostgreSQL.
+
+    Many processes may add at once; what is added twice is kept once. The tables are made where
+    there are none, and those of an older version brought forward.
+
+    Parameters
+    ----------
+    place : path or str
+        A file, or a URL ``postgresql+psycopg://USER@HOST/DATABASE``.
+    read_only : bool, optional
+        Change nothing, not even the tables of an older version.
+
+    Raises
+    ------
+    ArchiveError
+        If the place is of another program or a newer version, or cannot be reached.
+
+    Examples
+    --------
+    >>> with ac.Archive("campaign.db") as archive:  # doctest: +SKIP
+    ...     archive.add(measurement, sensor="QB02", acquired="2026-05-01", target="Stennis tarp")
+    ...     archive.measurements(sensor="QB02", kind="edge").to_pandas()
+    """
+
+    def __init__(self, place: str | os.PathLike[str], *, read_only: bool = False) -> None:
+        self._database = open_database(place, read_only=read_only)
+        try:
+            ensure_schema(self._database)
+        except BaseException:
+            self.close()
+            raise
+
+    @property
+    def place(self) -> str:
+        """Where it is kept: the file, or the URL without its password."""
+        return self._database.place
+
+    def close(self) -> None:
+        """Close the connections. What was read from the archive stays."""
+        self._database.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<Archive: {self.place}>"
+
+    def add(
+        self,
+        measurement: Measurement | Record,
+        *,
+        sensor: str | None = None,
+        acquired: When | None = None,
+        target: str | TargetEntry | None = None,
+        image: ImageEntry | None = None,
+        band: str | None = None,
+        key: str | None = None,
+        run: int | None = None,
+    ) -> Kept:
+        """Keep a measurement.
+
+        Parameters
+        ----------
+        measurement : Measurement or Record
+        sensor : str, optional
+        acquired : datetime, date or str, optional
+            When the image was taken; without a time zone UTC.
+        target : str or TargetEntry, optional
+        image : ImageEntry, optional
+            What is known of the image, instead of `sensor` and `acquired`.
+        band : str, optional
+            The name of the band, "pan".
+        key : str, optional
+            What makes it the same as one that is kept; see `acutance.archive.identity`.
+        run : int, optional
+            Of `start_run`.
+
+        Returns
+        -------
+        Kept
+            The number of its row, and whether it was new.
+
+        Raises
+        ------
+        OptionError
+            If it is no measurement, or described twice.
+        ArchiveError
+            If it cannot be kept.
+        """
+        record = _record_of(measurement)
+        if image is not None and (sensor is not None or acquired is not None):
+            raise OptionError("sensor and acquired are part of image: give them there")
+        if image is None:
+            image = ImageEntry(
+                path=record.image.path,
+                sensor=sensor,
+                acquired=None if acquired is None else as_utc(acquired, "acquired"),
+                gsd_m=record.image.pixel_gsd_m,
+            )
+        if isinstance(target, str):
+            target = TargetEntry(name=target, kind=record.kind)
+        entry = Entry(record=record, image=image, target=target, band=band, key=key)
+        return add_entry(self._database, entry, run)
+
+    def add_entries(
+        self,
+        entries: Iterable[Entry],
+        *,
+        run: int | None = None,
+        progress: Callable[[int], None] | None = None,
+    ) -> int:
+        """Keep entries, measured and rejected, in transactions of a thousand.
+
+        Parameters
+        ----------
+        entries : iterable of Entry
+        run : int, optional
+            Of `start_run`.
+        progress : callable, optional
+            Told after each transaction how many were read.
+
+        Returns
+        -------
+        int
+            How many were new.
+
+        Raises
+        ------
+        OptionError, ArchiveError
+            If one cannot be kept; transactions before stay.
+        """
+        return add_entries(self._database, entries, run, progress)
+
+    def keys(self, *, run: int | None = None, images: Iterable[str] | None = None) -> set[str]:
+        """Keys of what is kept, measured or rejected.
+
+        Parameters
+        ----------
+        run : int, optional
+            What this run wrote.
+        images : iterable of str, optional
+            Of images with this content (SHA-256).
+        """
+        return kept_keys(self._database, run, None if images is None else list(images))
+
+    def start_run(self, plan: Mapping[str, Any]) -> int:
+        """Write down that a run began, with its plan; returns its number."""
+        return start_run(self._database, plan)
+
+    def end_run(self, run: int, summary: Mapping[str, Any]) -> None:
+        """Write down that a run ended, with its summary."""
+        end_run(self._database, run, summary)
+
+    def measurements(self, **selection: Unpack[SelectionWords]) -> Measurements:
+        """Measurements as columns, a row for each measurement and direction.
+
+        Parameters
+        ----------
+        **selection
+            Filters: fields of `acutance.archive.selection.Selection`.
+
+        Raises
+        ------
+        OptionError
+            If there is no such filter, or a value it cannot have.
+        """
+        return select_measurements(self._database, Selection.of(selection))
+
+    def rejected(self, **selection: Unpack[SelectionWords]) -> Rejections:
+        """What was not measured, and why, as columns.
+
+        Parameters
+        ----------
+        **selection
+            Filters, as of `measurements`; not those of directions, verdicts and numbers.
+        """
+        return select_rejections(self._database, Selection.of(selection))
+
+
+def _record_of(measurement: Measurement | Record) -> Record:
+    if isinstance(measurement, Measurement):
+        return measurement.record
+    if isinstance(measurement, Record):
+        return measurement
+    raise OptionError(
+        f"a {type(measurement).__name__} was given: add measurements or their records, those of a "
+        "target one by one (result.measurements)"
+    )

@@ -1,0 +1,207 @@
+"""The database of an archive: a file of SQLite, or PostgreSQL by its URL.
+
+Every piece of work is one transaction. One that writes takes SQLite's lock at its beginning, so
+that it waits for others and never meets them halfway. What fails for a passing reason (a server
+that starts again, transactions that met) is done again until `PATIENCE_S` has passed.
+"""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+from urllib.parse import quote
+
+from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
+from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError
+from sqlalchemy.pool import QueuePool
+
+from acutance.archive.failures import explained, is_passing
+from acutance.errors import ArchiveError
+
+__all__ = ["PATIENCE_S", "Database", "open_database"]
+
+Done = TypeVar("Done")
+
+PATIENCE_S = 20.0
+"""How long a busy file, or a server that does not answer, is waited for."""
+
+_PAUSE_S = 0.1
+_WRITES = "acutance_writes"
+_DRIVER = "postgresql+psycopg"
+
+
+@dataclass(frozen=True)
+class Database:
+    """Where an archive is kept.
+
+    Parameters
+    ----------
+    engine : Engine
+    place : str
+        The file, or the URL without its password.
+    read_only : bool
+    """
+
+    engine: Engine
+    place: str
+    read_only: bool
+
+    @property
+    def is_file(self) -> bool:
+        """Whether it is a file of SQLite."""
+        return self.engine.dialect.name == "sqlite"
+
+    def read(self, work: Callable[[Connection], Done]) -> Done:
+        """Do something that only reads, in one transaction.
+
+        Raises
+        ------
+        ArchiveError
+            If the database cannot be used, or not within `PATIENCE_S`.
+        """
+        return self._done(work, writes=False)
+
+    def write(self, work: Callable[[Connection], Done]) -> Done:
+        """Do something that writes, in one transaction: all of it is kept, or nothing.
+
+        It is done again where it failed for a passing reason, so it must not do anything else.
+
+        Raises
+        ------
+        ArchiveError
+            If the archive was opened to be read, cannot be written, or not within `PATIENCE_S`.
+        """
+        if self.read_only:
+            raise ArchiveError(
+                f"archive {self.place} was opened to be read: open it without read_only=True"
+            )
+        return self._done(work, writes=True)
+
+    def use_write_ahead_log(self) -> None:
+        """Let readers of a file go on while another process writes."""
+        if self.is_file:
+            self._done(_set_write_ahead_log, writes=None)
+
+    def _done(self, work: Callable[[Connection], Done], writes: bool | None) -> Done:
+        given_up = time.monotonic() + PATIENCE_S
+        while True:
+            try:
+                with self.engine.connect() as connection:
+                    connection.execution_options(**{_WRITES: writes})
+                    with connection.begin():
+                        return work(connection)
+            except DBAPIError as error:
+                if not is_passing(error) or time.monotonic() > given_up:
+                    raise explained(error, self.place, PATIENCE_S) from error
+            time.sleep(_PAUSE_S)
+
+    def close(self) -> None:
+        """Close all connections; the next piece of work opens one again."""
+        self.engine.dispose()
+
+
+def open_database(place: str | os.PathLike[str], *, read_only: bool = False) -> Database:
+    """The database of a place; nothing is read yet.
+
+    Parameters
+    ----------
+    place : path or str
+        A file of SQLite, or a URL ``postgresql+psycopg://USER@HOST/DATABASE``.
+    read_only : bool, optional
+
+    Raises
+    ------
+    ArchiveError
+        If there can be no archive in that place, or the library for it is not installed.
+    """
+    text = os.fspath(place)
+    if "://" not in text:
+        return _file_database(Path(text), read_only)
+    url = _url(text)
+    if url.get_backend_name() == "sqlite":
+        if not url.database or url.database == ":memory:":
+            raise ArchiveError(f"archive {text} names no file: write sqlite:///FILE, or the file")
+        return _file_database(Path(url.database), read_only)
+    return _server_database(url, read_only)
+
+
+def _url(text: str) -> URL:
+    try:
+        url = make_url(text)
+    except (ArgumentError, ValueError) as error:
+        raise ArchiveError(
+            f"archive {text} is no URL: write {_DRIVER}://USER@HOST/DATABASE"
+        ) from error
+    if url.drivername in ("postgres", "postgresql"):
+        url = url.set(drivername=_DRIVER)
+    if url.drivername not in ("sqlite", "sqlite+pysqlite", _DRIVER):
+        raise ArchiveError(
+            f"archives are kept by SQLite and PostgreSQL, not by {url.drivername}: give a file, or "
+            f"{_DRIVER}://USER@HOST/DATABASE"
+        )
+    return url
+
+
+def _file_database(path: Path, read_only: bool) -> Database:
+    _require_file_place(path, read_only)
+    address = _file_address(path, read_only)
+
+    def connect() -> sqlite3.Connection:
+        # Transactions are begun by the listener below, not by the driver.
+        connection = sqlite3.connect(
+            address, timeout=PATIENCE_S, isolation_level=None, check_same_thread=False, uri=True
+        )
+        connection.execute("PRAGMA foreign_keys = ON")
+        return connection
+
+    engine = create_engine("sqlite://", creator=connect, poolclass=QueuePool)
+    event.listen(engine, "begin", _begin)
+    return Database(engine, str(path), read_only)
+
+
+def _require_file_place(path: Path, read_only: bool) -> None:
+    if path.is_dir():
+        raise ArchiveError(f"archive {path} is a folder: name a file in it")
+    if read_only and not path.exists():
+        raise ArchiveError(f"archive {path} is not there: correct its name")
+    if not path.parent.is_dir():
+        raise ArchiveError(
+            f"archive {path} cannot be made, there is no folder {path.parent}: make it first"
+        )
+
+
+def _file_address(path: Path, read_only: bool) -> str:
+    """The URI of a file; where the folder cannot be written, one that nobody else writes."""
+    address = f"file:{quote(str(path))}"
+    if not read_only:
+        return address
+    beside = path.with_name(f"{path.name}-wal")
+    frozen = not os.access(path.parent, os.W_OK) and not beside.exists()
+    return f"{address}?mode=ro{'&immutable=1' if frozen else ''}"
+
+
+def _begin(connection: Connection) -> None:
+    writes = connection.get_execution_options().get(_WRITES)
+    if writes is not None:
+        connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+
+
+def _set_write_ahead_log(connection: Connection) -> None:
+    connection.exec_driver_sql("PRAGMA journal_mode = WAL")
+
+
+def _server_database(url: URL, read_only: bool) -> Database:
+    waited = {"connect_timeout": max(int(PATIENCE_S / 4), 1)}
+    try:
+        engine = create_engine(url, connect_args=waited, pool_pre_ping=True)
+    except (ModuleNotFoundError, NoSuchModuleError) as error:
+        raise ArchiveError(
+            "archives in PostgreSQL need psycopg, which is not installed: pip install "
+            "'acutance[postgres]'"
+        ) from error
+    return Database(engine, url.render_as_string(hide_password=True), read_only)

@@ -1,0 +1,134 @@
+"""What an archive keeps at a time: a measurement or a rejection, its image and its target."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import date, datetime
+from typing import Any
+
+from acutance.errors import OptionError
+from acutance.targets.record import Record
+from acutance.targets.target_result import Rejected
+
+__all__ = ["Entry", "ImageEntry", "Kept", "TargetEntry"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImageEntry:
+    """What is known of an image; what is not known is ``None``.
+
+    Parameters
+    ----------
+    path : str, optional
+        The file it was read from.
+    content : str, optional
+        SHA-256 of the file's bytes, in hexadecimal digits: the identity of the image, whatever
+        folder it lies in.
+    sensor, level : str, optional
+        Which sensor took it, and the level of the product.
+    acquired : datetime, optional
+        When. Without a time zone it is UTC.
+    gsd_m : (float, float), optional
+        GSD from row to row and from column to column.
+    view_zenith_deg, view_azimuth_deg, sun_elevation_deg, sun_azimuth_deg : float, optional
+    sources : mapping, optional
+        Which file said what.
+    """
+
+    path: str | None = None
+    content: str | None = None
+    sensor: str | None = None
+    level: str | None = None
+    acquired: datetime | None = None
+    gsd_m: tuple[float, float] | None = None
+    view_zenith_deg: float | None = None
+    view_azimuth_deg: float | None = None
+    sun_elevation_deg: float | None = None
+    sun_azimuth_deg: float | None = None
+    sources: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TargetEntry:
+    """A target on the ground.
+
+    Parameters
+    ----------
+    name : str
+    kind : str
+        "edge", "pulse", "points", "biresolution", "bars", "star", "scene", "combined".
+    definition : mapping, optional
+        The GeoJSON feature as it was given.
+    site : str, optional
+        Where it lies, by name.
+    valid_from, valid_to : date, optional
+        First and last day it was there.
+    lon, lat : float, optional
+        In degrees (WGS 84).
+    """
+
+    name: str
+    kind: str
+    definition: Mapping[str, Any] = field(default_factory=dict)
+    site: str | None = None
+    valid_from: date | None = None
+    valid_to: date | None = None
+    lon: float | None = None
+    lat: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Entry:
+    """A measurement, or the reason why there is none, with its image and target.
+
+    Parameters
+    ----------
+    record : Record, optional
+    rejected : Rejected, optional
+        Exactly one of the two.
+    image : ImageEntry, optional
+    target : TargetEntry, optional
+    band : str, optional
+        The name of the spectral band, "pan" or "B04"; its number is in the record.
+    key : str, optional
+        What makes the entry the same as one that is kept already; derived from the rest without
+        it (`acutance.archive.identity`).
+
+    Raises
+    ------
+    OptionError
+        If there is neither a record nor a rejection, or both.
+    """
+
+    record: Record | None = None
+    rejected: Rejected | None = None
+    image: ImageEntry = field(default_factory=ImageEntry)
+    target: TargetEntry | None = None
+    band: str | None = None
+    key: str | None = None
+
+    def __post_init__(self) -> None:
+        if (self.record is None) == (self.rejected is None):
+            found = "neither" if self.record is None else "both"
+            raise OptionError(
+                f"an entry has either a record or a rejection, this one has {found}: give one"
+            )
+
+
+@dataclass(frozen=True)
+class Kept:
+    """Where a measurement is kept.
+
+    Attributes
+    ----------
+    id : int
+        The number of its row.
+    key : str
+    new : bool
+        Whether it was added now; false if it was there already.
+    """
+
+    id: int
+    key: str
+    new: bool

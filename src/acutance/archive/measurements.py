@@ -1,0 +1,225 @@
+"""Measurements and rejections of an archive as columns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from functools import partial
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from sqlalchemy import Column, Connection, Select, select
+
+from acutance.archive.columns import Columns
+from acutance.archive.connection import Database
+from acutance.archive.packing import unpacked
+from acutance.archive.selection import Selection
+from acutance.archive.tables import (
+    VERDICTS,
+    directions,
+    documents,
+    images,
+    measurements,
+    metric_columns,
+    targets,
+)
+from acutance.errors import OptionError
+from acutance.targets.record import Record
+
+__all__ = ["Measurements", "Rejections", "read_records", "select_measurements", "select_rejections"]
+
+_MANY = 500
+
+Load = Callable[[Sequence[int]], list[Record]]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Measurements(Columns):
+    """Measurements as columns: a row for each measurement and direction, oldest first.
+
+    Columns: ``id`` (of the measurement, the same in all its directions), ``sensor``, ``level``,
+    ``band``, ``site``, ``target``, ``kind``, ``method``, ``orientation``, ``acquired``, ``image``
+    (its file name), ``image_id`` (equal for measurements of one image), ``run``, ``verdict``,
+    ``snr``, ``angle_deg``, ``gsd_m`` (along the direction), ``view_zenith_deg``,
+    ``sun_elevation_deg``, ``measured_at``, and every metric with its standard deviation
+    (``mtf_nyquist``, ``mtf_nyquist_std``, ...).
+
+    Parameters
+    ----------
+    columns : mapping of str to (n,) array
+    load : callable
+        Reads the records of some measurements by their numbers.
+    """
+
+    load: Load = field(repr=False)
+    shown: ClassVar[tuple[str, ...]] = (
+        "id", "sensor", "band", "target", "kind", "method", "orientation", "acquired", "verdict",
+        "mtf_nyquist", "mtf_nyquist_std", "rer", "rer_std", "fwhm_px", "fwhm_px_std",
+    )  # fmt: skip
+
+    def record(self, i: int) -> Record:
+        """The record of row `i`, with its curves and their covariance."""
+        return self.load([int(self.columns["id"][i])])[0]
+
+    def records(self) -> list[Record]:
+        """The records of all rows, each measurement once, in the order of the rows."""
+        return self.load(list(dict.fromkeys(self.columns["id"].tolist())))
+
+    def summary(self) -> str:
+        """How many measurements, of which sensors."""
+        sensors = sorted({name for name in self.columns["sensor"].tolist() if name is not None})
+        count = f"{len(set(self.columns['id'].tolist()))} measurements, {len(self)} rows"
+        return f"{count}, {', '.join(sensors)}" if sensors else count
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Rejections(Columns):
+    """What was not measured as columns: where, at which stage, and why, oldest first."""
+
+    shown: ClassVar[tuple[str, ...]] = (
+        "id", "sensor", "band", "target", "kind", "acquired", "image", "stage", "reason",
+    )  # fmt: skip
+
+    def summary(self) -> str:
+        """How many."""
+        return f"{len(self)} rejected"
+
+
+_SHARED: tuple[tuple[str, Column[Any]], ...] = (
+    ("id", measurements.c.id),
+    ("sensor", images.c.sensor),
+    ("level", images.c.level),
+    ("band", measurements.c.band),
+    ("site", targets.c.site),
+    ("target", targets.c.name),
+    ("kind", measurements.c.kind),
+    ("method", measurements.c.method),
+    ("acquired", images.c.acquired),
+    ("image", images.c.name),
+    ("image_id", images.c.id),
+    ("content", images.c.content),
+    ("run", measurements.c.run_id),
+    ("view_zenith_deg", images.c.view_zenith_deg),
+    ("sun_elevation_deg", images.c.sun_elevation_deg),
+)
+_MEASURED: tuple[tuple[str, Column[Any]], ...] = (
+    ("orientation", directions.c.orientation),
+    ("verdict", measurements.c.verdict),
+    ("snr", measurements.c.snr),
+    ("angle_deg", directions.c.angle_deg),
+    ("gsd_m", directions.c.gsd_m),
+    ("measured_at", measurements.c.measured_at),
+    *((name, directions.c[name]) for name in metric_columns()),
+)
+_REJECTED: tuple[tuple[str, Column[Any]], ...] = (
+    ("stage", measurements.c.stage),
+    ("reason", measurements.c.reason),
+    ("values", measurements.c.rejected_values),
+)
+_TEXTS = frozenset(
+    ("sensor", "level", "band", "site", "target", "kind", "method", "image", "content",
+     "orientation", "stage", "reason", "values")
+)  # fmt: skip
+_MOMENTS = frozenset(("acquired", "measured_at"))
+_WHOLE = frozenset(("id", "image_id"))
+_WORDS = np.array(VERDICTS, object)
+
+
+def select_measurements(database: Database, selection: Selection) -> Measurements:
+    """The measurements that a selection means, in the directions that their targets showed."""
+    columns = (*_SHARED, *_MEASURED)
+    asked = select(*(column.label(name) for name, column in columns))
+    asked = _with_images(asked).join(directions, directions.c.measurement_id == measurements.c.id)
+    asked = asked.where(directions.c.measured, *selection.of_measurements())
+    found = _read_columns(database, asked, [name for name, _ in columns])
+    found["image_id"] = _labels(found["image_id"], found.pop("content"))
+    found["verdict"] = _WORDS[found["verdict"].astype(int)]
+    order = _oldest_first(found, found["orientation"] == "along")
+    return Measurements(
+        {name: column[order] for name, column in found.items()},
+        lambda ids: read_records(database, ids),
+    )
+
+
+def select_rejections(database: Database, selection: Selection) -> Rejections:
+    """What a selection means of what was not measured.
+
+    Raises
+    ------
+    OptionError
+        If the selection is one of directions, verdicts or numbers, which rejections do not have.
+    """
+    for name in ("orientation", "verdict", "limits"):
+        if getattr(selection, name) is not None:
+            raise OptionError(f"what was rejected has no {name}: select by other filters")
+    columns = (*_SHARED, *_REJECTED)
+    asked = _with_images(select(*(column.label(name) for name, column in columns)))
+    asked = asked.where(measurements.c.stage.is_not(None), *selection.of_entries())
+    found = _read_columns(database, asked, [name for name, _ in columns])
+    found["image_id"] = _labels(found["image_id"], found.pop("content"))
+    order = _oldest_first(found, np.zeros(len(found["id"])))
+    return Rejections({name: column[order] for name, column in found.items()})
+
+
+def read_records(database: Database, ids: Sequence[int]) -> list[Record]:
+    """The records of measurements by their numbers, in the order that is given.
+
+    Raises
+    ------
+    OptionError
+        If there is no measurement of a number.
+    """
+    stored: dict[int, bytes] = {}
+    for first in range(0, len(ids), _MANY):
+        some = ids[first : first + _MANY]
+        asked = select(documents).where(documents.c.measurement_id.in_(some))
+        stored |= database.read(partial(_by_number, asked=asked))
+    missing = [number for number in ids if number not in stored]
+    if missing:
+        raise OptionError(f"there is no measurement {missing[0]} in the archive")
+    return [Record(unpacked(stored[number])) for number in ids]
+
+
+def _by_number(connection: Connection, asked: Select[Any]) -> dict[int, bytes]:
+    return {row.measurement_id: row.document for row in connection.execute(asked)}
+
+
+def _with_images(asked: Select[Any]) -> Select[Any]:
+    joined = measurements.join(images).outerjoin(targets, measurements.c.target_id == targets.c.id)
+    return asked.select_from(joined)
+
+
+def _read_columns(
+    database: Database, asked: Select[Any], names: Sequence[str]
+) -> dict[str, NDArray[Any]]:
+    rows = database.read(lambda connection: connection.execute(asked).all())
+    listed: Iterable[Sequence[Any]] = zip(*rows, strict=True) if rows else [()] * len(names)
+    return {name: _column(name, values) for name, values in zip(names, listed, strict=True)}
+
+
+def _column(name: str, values: Sequence[Any]) -> NDArray[Any]:
+    if name in _TEXTS:
+        texts = np.empty(len(values), object)
+        texts[:] = values
+        return texts
+    if name in _MOMENTS:
+        return np.array([_without_zone(one) for one in values], "datetime64[us]")
+    return np.array(values, np.int64 if name in _WHOLE else float)
+
+
+def _without_zone(when: datetime | None) -> datetime | None:
+    return None if when is None else when.replace(tzinfo=None)
+
+
+def _labels(image_id: NDArray[Any], content: NDArray[Any]) -> NDArray[Any]:
+    """One number for all rows of an image: its content says which, where it is known."""
+    first: dict[str, int] = {}
+    pairs = zip(image_id.tolist(), content.tolist(), strict=True)
+    labels = [first.setdefault(known, number) if known else number for number, known in pairs]
+    return np.array(labels, np.int64)
+
+
+def _oldest_first(found: dict[str, NDArray[Any]], direction: NDArray[Any]) -> NDArray[np.intp]:
+    return np.lexsort((direction, found["id"], found["acquired"]))

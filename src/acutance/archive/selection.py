@@ -1,0 +1,158 @@
+"""Which rows are meant: filters on everything, named as the options of the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any, TypedDict
+
+from sqlalchemy import Column, ColumnElement, or_
+
+from acutance.archive.dates import When, as_utc, end_of
+from acutance.archive.tables import VERDICTS, directions, images, measurements, targets
+from acutance.curves import METRICS
+from acutance.errors import OptionError
+
+__all__ = ["Limits", "Selection", "SelectionWords"]
+
+Names = str | Sequence[str]
+"""A name, or several any of which may be the one."""
+
+Limits = Mapping[str, tuple[float | None, float | None]]
+"""By metric the least and the largest value; ``None`` where there is no limit."""
+
+
+class SelectionWords(TypedDict, total=False):
+    """The fields of `Selection` as keywords."""
+
+    sensor: Names | None
+    band: Names | None
+    site: Names | None
+    target: Names | None
+    kind: Names | None
+    method: Names | None
+    orientation: Names | None
+    since: When | None
+    until: When | None
+    verdict: str | None
+    image: Names | None
+    run: int | None
+    limits: Limits | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Selection:
+    """Filters, all of which a row passes; ``None`` lets every row pass.
+
+    Parameters
+    ----------
+    sensor, band, site, target, kind, method, orientation : str or sequence of str, optional
+        Whole names, as they were written; of several, any.
+    since, until : datetime, date or str, optional
+        Of the acquisition, both included; a day is all of the day, and without a zone UTC. What has
+        no date does not pass.
+    verdict : {"good", "usable", "doubtful", "invalid"}, optional
+        At least.
+    image : str or sequence of str, optional
+        Path, file name, or SHA-256 of the content.
+    run : int, optional
+    limits : mapping of str to (float or None, float or None), optional
+        Least and largest value of metrics, both included.
+    """
+
+    sensor: Names | None = None
+    band: Names | None = None
+    site: Names | None = None
+    target: Names | None = None
+    kind: Names | None = None
+    method: Names | None = None
+    orientation: Names | None = None
+    since: When | None = None
+    until: When | None = None
+    verdict: str | None = None
+    image: Names | None = None
+    run: int | None = None
+    limits: Limits | None = field(default=None)
+
+    @classmethod
+    def of(cls, words: Mapping[str, Any]) -> Selection:
+        """The selection of some keywords.
+
+        Raises
+        ------
+        OptionError
+            If there is no such filter, or a value it cannot have.
+        """
+        known = [one.name for one in fields(cls)]
+        unknown = [name for name in words if name not in known]
+        if unknown:
+            raise OptionError(
+                f"{', '.join(map(repr, unknown))} is no filter: there are {', '.join(known)}"
+            )
+        found = cls(**words)
+        found.require_values()
+        return found
+
+    def require_values(self) -> None:
+        """Refuse values that no row can have.
+
+        Raises
+        ------
+        OptionError
+            Names the filter, and what it can be.
+        """
+        if self.verdict is not None and self.verdict not in VERDICTS:
+            raise OptionError(
+                f"verdict is {self.verdict!r}: it is one of {', '.join(reversed(VERDICTS))}"
+            )
+        for name in _names(self.orientation or ()):
+            if name not in ("across", "along"):
+                raise OptionError(f"orientation is {name!r}: it is across or along")
+        for metric in self.limits or {}:
+            if metric not in METRICS:
+                raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRICS)}")
+        since = None if self.since is None else as_utc(self.since, "since")
+        until = None if self.until is None else end_of(self.until, "until")
+        if since is not None and until is not None and since > until:
+            raise OptionError(f"since ({since:%Y-%m-%d}) is later than until ({until:%Y-%m-%d})")
+
+    def of_measurements(self) -> Iterator[ColumnElement[bool]]:
+        """Conditions on rows of measurements, with their directions."""
+        yield from self.of_entries()
+        if self.orientation is not None:
+            yield directions.c.orientation.in_(_names(self.orientation))
+        for metric, (low, high) in (self.limits or {}).items():
+            if low is not None:
+                yield directions.c[metric] >= low
+            if high is not None:
+                yield directions.c[metric] <= high
+
+    def of_entries(self) -> Iterator[ColumnElement[bool]]:
+        """Conditions on measurements and rejections, with their images and targets."""
+        for column, wanted in self._named():
+            if wanted is not None:
+                yield column.in_(_names(wanted))
+        if self.since is not None:
+            yield images.c.acquired >= as_utc(self.since)
+        if self.until is not None:
+            yield images.c.acquired <= end_of(self.until)
+        if self.verdict is not None:
+            yield measurements.c.verdict >= VERDICTS.index(self.verdict)
+        if self.image is not None:
+            named = _names(self.image)
+            columns = (images.c.path, images.c.name, images.c.content)
+            yield or_(*(column.in_(named) for column in columns))
+        if self.run is not None:
+            yield measurements.c.run_id == self.run
+
+    def _named(self) -> Iterator[tuple[Column[Any], Names | None]]:
+        yield images.c.sensor, self.sensor
+        yield measurements.c.band, self.band
+        yield targets.c.site, self.site
+        yield targets.c.name, self.target
+        yield measurements.c.kind, self.kind
+        yield measurements.c.method, self.method
+
+
+def _names(wanted: Names) -> list[str]:
+    return [wanted] if isinstance(wanted, str) else list(wanted)

@@ -1,0 +1,188 @@
+"""What is added is kept, once, whole."""
+
+from __future__ import annotations
+
+import threading
+from datetime import UTC, date, datetime, timedelta, timezone
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
+from acutance.curves import METRICS
+from acutance.errors import OptionError
+
+
+def test_a_measurement_comes_back_whole(archive, edge_record):
+    kept = archive.add(edge_record, sensor="QB02", acquired="2026-05-01", target="Stennis tarp")
+    assert kept.new
+    found = archive.measurements(sensor="QB02", kind="edge")
+    assert len(found) == 1
+    assert found["id"][0] == kept.id
+    assert found.record(0) == edge_record
+    assert found["acquired"][0] == np.datetime64("2026-05-01T00:00:00")
+    for metric in METRICS:
+        number = edge_record.across.numbers[metric]
+        assert found[metric][0] == number.value
+        assert found[f"{metric}_std"][0] == number.std
+    assert found["gsd_m"][0] == 0.7
+    assert found["angle_deg"][0] == edge_record.document["line"]["normal_deg"]
+    assert found["verdict"][0] == edge_record.verdict.word
+    assert found["snr"][0] == edge_record.snr
+
+
+def test_both_directions_are_rows(archive, bars_record):
+    archive.add(bars_record)
+    found = archive.measurements()
+    assert found["orientation"].tolist() == ["across", "along"]
+    assert found["angle_deg"].tolist() == [0.0, 90.0]
+    assert found["mtf_nyquist"][1] == bars_record.along.mtf_nyquist.value
+    assert archive.measurements(orientation="along")["angle_deg"].tolist() == [90.0]
+
+
+def test_adding_twice_adds_once(archive, edge_record):
+    first = archive.add(edge_record, sensor="QB02", target="tarp")
+    second = archive.add(edge_record, sensor="QB02", target="tarp")
+    assert (first.new, second.new, first.id) == (True, False, second.id)
+    later = {**edge_record.document, "measured_at": "2030-01-01T00:00:00+00:00"}
+    assert not archive.add(ac.Record(later), sensor="QB02", target="tarp").new
+    assert archive.add(edge_record, sensor="QB02", target="another").new
+    assert archive.add(edge_record, sensor="QB02", target="tarp", band="green").new
+    assert len(archive.measurements()) == 3
+
+
+def test_images_of_one_name_are_not_one_image(archive, edge_record):
+    """Without the content of the file, the numbers tell measurements of equal names apart."""
+    number = edge_record.document["mtf_nyquist"]
+    other = ac.Record({**edge_record.document, "mtf_nyquist": {**number, "value": 0.5}})
+    january, february = ImageEntry(path="/01/B4.tif"), ImageEntry(path="/02/B4.tif")
+    assert archive.add(edge_record, image=january).new
+    assert archive.add(other, image=february).new
+    assert not archive.add(edge_record, image=february).new
+
+
+def test_the_content_is_the_image_whatever_its_folder(archive, entry_of):
+    entry = entry_of(0)
+    moved = ImageEntry(path="/elsewhere/new.tif", content=entry.image.content)
+    assert archive.add_entries([entry, entry_of(0, image=moved)]) == 1
+
+
+def test_edges_of_one_region_are_several(archive, entry_of, edge_record):
+    line = {**edge_record.document["line"], "row": 50.0}
+    second = ac.Record({**edge_record.document, "line": line})
+    assert archive.add_entries([entry_of(0, record=edge_record), entry_of(0, record=second)]) == 2
+
+
+def test_a_key_of_ones_own(archive, entry_of):
+    assert archive.add_entries([entry_of(0, key="a"), entry_of(1, key="a")]) == 1
+    assert archive.keys() == {"a"}
+
+
+def test_rejections_are_rows(archive, entry_of):
+    rejected = ac.Rejected("region", "too small", {"place": 3, "value": float("nan")})
+    entry = entry_of(0, record=None, rejected=rejected)
+    assert archive.add_entries([entry, entry]) == 1
+    found = archive.rejected(sensor="K3", target="tarp 0")
+    assert found["stage"].tolist() == ["region"]
+    assert found["values"].tolist() == [{"place": 3, "value": None}]
+    assert found["kind"].tolist() == ["edge"]
+    assert len(archive.measurements()) == 0
+    with pytest.raises(OptionError, match="no verdict"):
+        archive.rejected(verdict="good")
+
+
+def test_chunks_count_what_is_new(archive, entry_of, monkeypatch):
+    monkeypatch.setattr("acutance.archive.adding.CHUNK", 4)
+    told = []
+    assert archive.add_entries((entry_of(i) for i in range(10)), progress=told.append) == 10
+    assert told == [4, 8, 10]
+    assert archive.add_entries(entry_of(i) for i in range(12)) == 2
+    assert len(archive.measurements()) == 12
+    assert len(set(archive.measurements()["image_id"].tolist())) == 6
+
+
+def test_keys_of_runs_and_images(archive, entry_of):
+    run = archive.start_run({"images": ["*.tif"], "limit": float("inf")})
+    archive.add_entries([entry_of(0), entry_of(1)], run=run)
+    archive.add_entries([entry_of(2)])
+    archive.end_run(run, {"measured": 2})
+    assert len(archive.keys()) == 3
+    assert len(archive.keys(run=run)) == 2
+    assert archive.keys(images=[entry_of(2).image.content]) == archive.keys() - archive.keys(
+        run=run
+    )
+    assert set(archive.measurements(run=run)["run"].tolist()) == {run}
+    with pytest.raises(OptionError, match="no run 99"):
+        archive.add_entries([entry_of(5)], run=99)
+    with pytest.raises(OptionError, match="no run 99"):
+        archive.end_run(99, {})
+
+
+def test_dates_without_a_zone_are_utc(archive, entry_of, edge_record):
+    """A day is its midnight, and as the end of a period all of it."""
+    naive = datetime(2026, 3, 1, 12)
+    east = datetime(2026, 3, 2, 1, tzinfo=timezone(timedelta(hours=9)))
+    for i, when in enumerate((naive, east, date(2026, 3, 3), "2026-03-04T10:00:00Z")):
+        archive.add(edge_record, acquired=when, target=f"{i}")
+    found = archive.measurements()["acquired"].astype("datetime64[h]").astype(str).tolist()
+    assert found == ["2026-03-01T12", "2026-03-01T16", "2026-03-03T00", "2026-03-04T10"]
+    assert len(archive.measurements(since="2026-03-01", until="2026-03-01")) == 2
+    assert len(archive.measurements(since=datetime(2026, 3, 1, 16, tzinfo=UTC))) == 3
+    assert len(archive.measurements(until=date(2026, 3, 3))) == 3
+    with pytest.raises(OptionError, match="no date"):
+        archive.add(edge_record, acquired="last week")
+
+
+def test_what_is_no_measurement_is_refused(archive, edge_record):
+    with pytest.raises(OptionError, match="dict was given"):
+        archive.add(dict(edge_record.document))
+    with pytest.raises(OptionError, match="neither"):
+        Entry()
+    with pytest.raises(OptionError, match="part of image"):
+        archive.add(edge_record, sensor="QB02", image=ImageEntry())
+    with pytest.raises(OptionError, match="written as JSON"):
+        archive.add(ac.Record({**edge_record.document, "note": "\ud800"}))
+
+
+def test_old_measurements_are_combined(archive, entry_of, bars_record):
+    """The covariance is kept: combining what came out is combining what went in."""
+    entries = [entry_of(0), Entry(record=bars_record)]
+    archive.add_entries(entries)
+    kept = ac.combine(archive.measurements().records())
+    known = {one.kind for one in archive.measurements().records()}
+    assert known == {"edge", "star"}
+    before = ac.combine([bars_record, entries[0].record])
+    assert kept.across.mtf_nyquist.value == pytest.approx(before.across.mtf_nyquist.value, rel=1e-6)
+    assert kept.across.mtf_nyquist.std == pytest.approx(before.across.mtf_nyquist.std, rel=1e-3)
+
+
+def test_threads_add_the_same_once(place, entry_of):
+    """Every process or thread has its own archive; together they keep each entry once."""
+    entries = [entry_of(i) for i in range(40)]
+    Archive(place).close()
+    added = []
+
+    def add(order):
+        with Archive(place) as own:
+            added.append(sum(own.add_entries(entries[i : i + 5]) for i in order))
+
+    orders = range(0, 40, 5), range(35, -1, -5)
+    threads = [threading.Thread(target=add, args=(order,)) for order in orders]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sum(added) == 40
+    with Archive(place) as own:
+        assert len(own.measurements()) == 40
+
+
+def test_a_target_with_all_that_is_known(archive, edge_record):
+    target = TargetEntry(
+        name="O'Neil's 100 % tarp; --", kind="edge", site='"Süd"', valid_from=date(2025, 1, 1),
+        lon=-89.6, lat=30.4, definition={"type": "Feature", "geometry": None},
+    )  # fmt: skip
+    archive.add(edge_record, target=target, band="近赤外")
+    assert archive.measurements(target=target.name, site='"Süd"', band="近赤外")["id"].size == 1
+    assert archive.measurements(target="O'Neil's%").columns["id"].size == 0

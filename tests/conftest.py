@@ -1,0 +1,113 @@
+"""A private server of PostgreSQL for the tests of every room that needs one."""
+
+from __future__ import annotations
+
+import os
+import pwd
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from sqlalchemy import create_engine, text
+
+BINARIES = sorted(Path("/usr/lib/postgresql").glob("*/bin"))
+UNPRIVILEGED = ("postgres", "nobody")
+
+
+@dataclass(frozen=True)
+class PostgresServer:
+    """A server in a folder of its own, reached by a socket in it.
+
+    Parameters
+    ----------
+    folder, binaries : Path
+    user : str
+        Who the server runs as; it refuses to run as root.
+    """
+
+    folder: Path
+    binaries: Path
+    user: str
+
+    def start(self) -> None:
+        """Start the server, and wait until it answers."""
+        options = f"-k {self.folder} -c listen_addresses='' -c fsync=off"
+        self._call("pg_ctl", "start", "-w", "-D", self._data, "-o", options, "-l", self._log)
+
+    def stop(self) -> None:
+        """Stop the server at once, as a crash would."""
+        self._call("pg_ctl", "stop", "-w", "-m", "immediate", "-D", self._data)
+
+    def make(self) -> None:
+        """Make the folder of the data."""
+        self._call("initdb", "-D", self._data, "-A", "trust", "-U", "tester", "-E", "UTF8")
+
+    def new_database(self, name: str) -> str:
+        """The URL of an empty database."""
+        engine = create_engine(self.url("postgres"), isolation_level="AUTOCOMMIT")
+        with engine.connect() as connection:
+            connection.execute(text(f'DROP DATABASE IF EXISTS "{name}" WITH (FORCE)'))
+            connection.execute(text(f'CREATE DATABASE "{name}"'))
+        engine.dispose()
+        return self.url(name)
+
+    def url(self, database: str) -> str:
+        """The URL of a database."""
+        return f"postgresql+psycopg://tester@/{database}?host={self.folder}"
+
+    @property
+    def _data(self) -> str:
+        return str(self.folder / "data")
+
+    @property
+    def _log(self) -> str:
+        return str(self.folder / "log")
+
+    def _call(self, program: str, *words: str) -> None:
+        as_user = {"user": self.user, "group": pwd.getpwnam(self.user).pw_gid}
+        done = subprocess.run(
+            [str(self.binaries / program), *words],
+            **(as_user if os.geteuid() == 0 else {}),
+            cwd=self.folder,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE if program == "initdb" else subprocess.DEVNULL,
+            check=False,
+        )
+        assert done.returncode == 0, f"{program} failed: {done.stderr!r}"
+
+
+@pytest.fixture(scope="session")
+def postgres_server() -> Iterator[PostgresServer]:
+    """A server of PostgreSQL, skipped where Debian's package is not installed."""
+    if not BINARIES:
+        pytest.skip("PostgreSQL is not installed: apt-get install postgresql")
+    pytest.importorskip("psycopg")
+    user = pwd.getpwuid(os.geteuid()).pw_name
+    if os.geteuid() == 0:
+        user = next(
+            name for name in UNPRIVILEGED if name in {one.pw_name for one in pwd.getpwall()}
+        )
+    # Names of sockets are short: pytest's own folders are too deep.
+    folder = Path(tempfile.mkdtemp(prefix="pg-"))
+    if os.geteuid() == 0:
+        shutil.chown(folder, user)
+    server = PostgresServer(folder, BINARIES[-1], user)
+    try:
+        server.make()
+        server.start()
+        yield server
+    finally:
+        if (folder / "data" / "postmaster.pid").exists():
+            server.stop()
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@pytest.fixture
+def postgres_url(postgres_server: PostgresServer) -> str:
+    """An empty database."""
+    return postgres_server.new_database("test")
