@@ -7,10 +7,11 @@ are written in their order, so that two processes that add the same do not wait 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import UTC, datetime
 from functools import partial
 from itertools import islice
+from operator import itemgetter
 from typing import Any, TypeVar
 
 from sqlalchemy import Connection, Table, select
@@ -29,8 +30,6 @@ __all__ = ["CHUNK", "add_entries", "add_entry"]
 CHUNK = 1000
 """Entries of one transaction."""
 
-_PACKERS = 2
-_FEW = 8
 _Described = TypeVar("_Described", ImageEntry, TargetEntry)
 
 
@@ -45,8 +44,7 @@ def add_entry(database: Database, entry: Entry, run: int | None = None) -> Kept:
         If it holds what no archive can, or there is no such run.
     """
     rows = rows_of(entry)
-    ready = _packed_documents([rows])
-    added = database.write(partial(_add_chunk, chunk=ready, run=run))
+    added = _write(database, [rows], run)
     found = select(measurements.c.id).where(measurements.c.key == rows.key)
     number = database.read(lambda connection: connection.execute(found).scalar_one())
     return Kept(number, rows.key, bool(added))
@@ -77,35 +75,39 @@ def add_entries(
         If one holds what no archive can, or there is no such run.
     """
     added, read = 0, 0
-    for chunk in _chunks(entries):
-        ready = _packed_documents([rows_of(entry) for entry in chunk])
-        added += database.write(partial(_add_chunk, chunk=ready, run=run))
-        read += len(chunk)
-        if progress is not None:
-            progress(read)
+    with ThreadPoolExecutor(1) as writer:
+        # While one chunk is compressed and written, the next is put into rows.
+        writing: Future[int] | None = None
+        for chunk in _chunks(entries):
+            rows = [rows_of(entry) for entry in chunk]
+            if writing is not None:
+                added += writing.result()
+                _tell(progress, read)
+            writing, read = writer.submit(_write, database, rows, run), read + len(rows)
+        if writing is not None:
+            added += writing.result()
+            _tell(progress, read)
     return added
+
+
+def _write(database: Database, rows: Sequence[EntryRows], run: int | None) -> int:
+    """Write rows in one transaction, in the order of their keys, and count those that are new."""
+    by_key = {
+        one.key: (one, None if one.document is None else packed(one.document)) for one in rows
+    }
+    chunk = {key: by_key[key] for key in sorted(by_key)}
+    return database.write(partial(_add_chunk, chunk=chunk, run=run))
+
+
+def _tell(progress: Callable[[int], None] | None, read: int) -> None:
+    if progress is not None:
+        progress(read)
 
 
 def _chunks(entries: Iterable[Entry]) -> Iterator[list[Entry]]:
     left = iter(entries)
     while chunk := list(islice(left, CHUNK)):
         yield chunk
-
-
-def _packed_documents(chunk: Sequence[EntryRows]) -> Mapping[str, tuple[EntryRows, bytes | None]]:
-    """Rows and packed documents by key, in the order of the keys."""
-    texts = [rows.document for rows in chunk]
-    if len(chunk) <= _FEW:
-        stored = [_packed(text) for text in texts]
-    else:
-        with ThreadPoolExecutor(_PACKERS) as threads:
-            stored = list(threads.map(_packed, texts, chunksize=50))
-    by_key = {rows.key: (rows, one) for rows, one in zip(chunk, stored, strict=True)}
-    return {key: by_key[key] for key in sorted(by_key)}
-
-
-def _packed(text: bytes | None) -> bytes | None:
-    return None if text is None else packed(text)
 
 
 def _add_chunk(
@@ -157,8 +159,15 @@ def _add_chunk(
 
 
 def _insert_all(connection: Connection, table: Table, rows: Sequence[Mapping[str, Any]]) -> None:
-    if rows:
-        connection.execute(table.insert(), rows)
+    """Insert rows of plain numbers, texts and bytes, which the driver takes as they are."""
+    if not rows:
+        return
+    insert = table.insert().compile(dialect=connection.dialect)
+    if insert.positiontup is None:
+        connection.exec_driver_sql(insert.string, list(rows))
+    else:
+        values_of = itemgetter(*insert.positiontup)
+        connection.exec_driver_sql(insert.string, [values_of(row) for row in rows])
 
 
 def _insert_new(

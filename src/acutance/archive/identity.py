@@ -20,7 +20,7 @@ from typing import Any
 from acutance.archive.dates import as_utc
 from acutance.archive.entry import Entry, ImageEntry, TargetEntry
 from acutance.curves import METRICS
-from acutance.targets.record import Record, strict_json
+from acutance.targets.record import Record
 
 __all__ = ["file_name", "image_identity", "key_of", "target_identity"]
 
@@ -99,11 +99,12 @@ def _all_fields(entry: ImageEntry | TargetEntry) -> dict[str, Any]:
 
 
 def _digest(parts: Mapping[str, Any]) -> str:
-    text = json.dumps(
-        strict_json(parts), sort_keys=True, separators=(",", ":"), default=_as_text
-    )  # fmt: skip
+    text = json.dumps(parts, sort_keys=True, separators=(",", ":"), default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _as_text(value: Any) -> str:
+def _plain(value: Any) -> Any:
+    """What JSON does not have: mappings of other classes, dates."""
+    if isinstance(value, Mapping):
+        return dict(value)
     return value.isoformat() if isinstance(value, date) else str(value)
