@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 from types import TracebackType
-from typing import Any, Self, Unpack
+from typing import TYPE_CHECKING, Any, Self, Unpack
 
 from acutance.archive.adding import add_entries, add_entry
 from acutance.archive.connection import open_database
@@ -23,6 +23,10 @@ from acutance.archive.selection import Selection, SelectionWords
 from acutance.errors import OptionError
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import Record
+
+if TYPE_CHECKING:
+    from acutance.archive.exchange.importing import Imported
+    from acutance.targets.combine import CombinedMeasurement
 
 __all__ = ["Archive"]
 
@@ -203,6 +207,104 @@ class Archive:
             If there is no such filter, or a value it cannot have.
         """
         return select_measurements(self._database, Selection.of(selection))
+
+    def combine(self, **selection: Unpack[SelectionWords]) -> CombinedMeasurement:
+        """What the selected measurements of one sensor say together, see `acutance.combine`.
+
+        Parameters
+        ----------
+        **selection
+            Filters, as of `measurements`. A measurement is taken with all its directions.
+
+        Raises
+        ------
+        OptionError
+            If there are none, or they cannot be combined.
+        """
+        from acutance.targets.combine import combine
+
+        records = self.measurements(**selection).records()
+        if not records:
+            raise OptionError("the selection holds no measurement to combine: widen it")
+        return combine(records)
+
+    def export(
+        self,
+        place: str | os.PathLike[str],
+        *,
+        to: str,
+        progress: Callable[[int, int], None] | None = None,
+        **selection: Unpack[SelectionWords],
+    ) -> int:
+        """Write measurements and rejections into a file.
+
+        Parameters
+        ----------
+        place : path
+            A file; of "stac" a new folder.
+        to : {"jsonl", "parquet", "csv", "csv-documents", "stac"}
+            All but "csv" lose nothing, and can be imported.
+        progress : callable, optional
+            Told how many of how many were read.
+        **selection
+            Filters, as of `measurements`.
+
+        Returns
+        -------
+        int
+            How many were written.
+
+        Raises
+        ------
+        OptionError
+            If a library is missing, or the place cannot be written.
+        """
+        from acutance.archive.exchange.exporting import export_entries
+
+        return export_entries(self._database, Selection.of(selection), place, to, progress)
+
+    def import_documents(
+        self,
+        paths: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
+        *,
+        sensor: str | None = None,
+        level: str | None = None,
+        acquired: When | None = None,
+        target: str | TargetEntry | None = None,
+        band: str | None = None,
+        run: int | None = None,
+        progress: Callable[[int], None] | None = None,
+    ) -> Imported:
+        """Add documents of files: what commands print with ``--json``, and what `export` wrote.
+
+        Parameters
+        ----------
+        paths : path or iterable of path
+            JSON, JSON lines, CSV with documents, Parquet, and folders of them or of STAC.
+        sensor, level, acquired, target, band : optional
+            Of documents that do not know it; what was exported has its own.
+        run : int, optional
+            Of `start_run`.
+        progress : callable, optional
+            Told now and then how many entries were read.
+
+        Returns
+        -------
+        Imported
+            How many were read, how many were new, and which files were refused.
+        """
+        from acutance.archive.exchange.documents import Stated
+        from acutance.archive.exchange.importing import import_files
+
+        stated = Stated(
+            sensor=sensor,
+            level=level,
+            band=band,
+            acquired=None if acquired is None else as_utc(acquired, "acquired"),
+            target=target,
+        )
+        several = [paths] if isinstance(paths, str | os.PathLike) else paths
+        return import_files(self._database, several, stated, run, progress)
 
     def rejected(self, **selection: Unpack[SelectionWords]) -> Rejections:
         """What was not measured, and why, as columns.

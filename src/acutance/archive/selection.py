@@ -119,6 +119,10 @@ class Selection:
     def of_measurements(self) -> Iterator[ColumnElement[bool]]:
         """Conditions on rows of measurements, with their directions."""
         yield from self.of_entries()
+        yield from self.of_directions()
+
+    def of_directions(self) -> Iterator[ColumnElement[bool]]:
+        """Conditions on rows of directions alone."""
         if self.orientation is not None:
             yield directions.c.orientation.in_(_names(self.orientation))
         for metric, (low, high) in (self.limits or {}).items():

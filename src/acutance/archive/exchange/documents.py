@@ -1,0 +1,110 @@
+"""What measuring commands print with ``--json``, and what exports wrote, read as entries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any
+
+from acutance.archive.entry import Entry, ImageEntry, TargetEntry
+from acutance.archive.exchange import entry_document
+from acutance.errors import OptionError
+from acutance.targets.record import SCHEMA, Record
+from acutance.targets.target_result import Rejected
+
+__all__ = ["Stated", "entries_of"]
+
+_OF_MEASUREMENTS = ("acutance/target/1", "acutance/comparison/1")
+_OF_RESULTS = ("acutance/regions/1", "acutance/bands/1")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stated:
+    """What is stated of documents that do not know it themselves.
+
+    Parameters
+    ----------
+    sensor, level, band : str, optional
+    acquired : datetime, optional
+    target : TargetEntry or str, optional
+    """
+
+    sensor: str | None = None
+    level: str | None = None
+    band: str | None = None
+    acquired: datetime | None = None
+    target: TargetEntry | str | None = field(default=None)
+
+
+def entries_of(document: Any, stated: Stated) -> Iterator[Entry]:
+    """Entries of a document: of a measurement, of many, or of an export.
+
+    Parameters
+    ----------
+    document : mapping, or list of them
+    stated : Stated
+        Of measurements; what was exported has its own image and target.
+
+    Raises
+    ------
+    OptionError
+        If it is none of them.
+    """
+    if isinstance(document, list):
+        for one in document:
+            yield from entries_of(one, stated)
+        return
+    schema = document.get("schema") if isinstance(document, Mapping) else None
+    if schema == entry_document.SCHEMA:
+        yield entry_document.entry_of_document(document)
+    elif schema == SCHEMA:
+        yield _measured(document, stated)
+    elif schema in _OF_MEASUREMENTS:
+        yield from entries_of(_part(document, "measurements"), stated)
+        yield from (_rejected(one, stated) for one in _part(document, "rejected"))
+    elif schema in _OF_RESULTS:
+        yield from entries_of(_part(document, "results"), stated)
+        yield from (_rejected(one, stated) for one in _part(document, "rejected"))
+    else:
+        raise OptionError(
+            f"its schema is {schema!r}: give what a measuring command printed with --json, or what "
+            "acutance archive export wrote"
+        )
+
+
+def _part(document: Mapping[str, Any], name: str) -> list[Any]:
+    part = document.get(name)
+    if not isinstance(part, list):
+        raise OptionError(f"the document lacks {name}: it was cut or changed")
+    return part
+
+
+def _measured(document: Mapping[str, Any], stated: Stated) -> Entry:
+    record = Record.from_dict(document)
+    image = ImageEntry(
+        path=record.image.path,
+        sensor=stated.sensor,
+        level=stated.level,
+        acquired=stated.acquired,
+        gsd_m=record.image.pixel_gsd_m,
+    )
+    target = stated.target if stated.target is not None else document.get("region") or None
+    if isinstance(target, str):
+        target = TargetEntry(name=target, kind=record.kind)
+    return Entry(record=record, image=image, target=target, band=stated.band)
+
+
+def _rejected(document: Mapping[str, Any], stated: Stated) -> Entry:
+    try:
+        rejected = Rejected(document["stage"], document["reason"], document["values"])
+        path, region = rejected.values.get("path"), rejected.values.get("region")
+    except (AttributeError, KeyError, TypeError) as error:
+        raise OptionError(f"a rejection of the document is damaged ({error!r})") from error
+    image = ImageEntry(
+        path=path, sensor=stated.sensor, level=stated.level, acquired=stated.acquired
+    )
+    target = stated.target if stated.target is not None else region
+    if isinstance(target, str):
+        target = TargetEntry(name=target, kind="unknown")
+    return Entry(rejected=rejected, image=image, target=target, band=stated.band)

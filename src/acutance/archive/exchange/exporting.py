@@ -1,0 +1,74 @@
+"""Entries of an archive are written into files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+
+from acutance.archive.connection import Database
+from acutance.archive.entry import Entry
+from acutance.archive.exchange.csv_tables import write_csv
+from acutance.archive.exchange.jsonl import write_jsonl
+from acutance.archive.exchange.parquet import write_parquet
+from acutance.archive.exchange.stac import write_stac
+from acutance.archive.selection import Selection
+from acutance.archive.stored_entries import select_ids, stored_entries
+from acutance.errors import OptionError
+
+__all__ = ["FORMATS", "export_entries"]
+
+Progress = Callable[[int, int], None]
+_TOLD_EVERY = 500
+
+FORMATS: Mapping[str, Callable[[Iterable[Entry], Path], int]] = {
+    "jsonl": write_jsonl,
+    "parquet": write_parquet,
+    "csv": write_csv,
+    "csv-documents": partial(write_csv, with_documents=True),
+    "stac": write_stac,
+}
+"""Formats by name. All but "csv" can be imported again, and lose nothing."""
+
+
+def export_entries(
+    database: Database,
+    selection: Selection,
+    place: str | os.PathLike[str],
+    to: str,
+    progress: Progress | None = None,
+) -> int:
+    """Write what a selection means, and count it.
+
+    Parameters
+    ----------
+    database : Database
+    selection : Selection
+    place : path
+        A file; of "stac" a folder.
+    to : str
+        A name of `FORMATS`.
+    progress : callable, optional
+        Told how many of how many entries were read.
+
+    Raises
+    ------
+    OptionError
+        If there is no such format, its library is missing, or the place cannot be written.
+    """
+    if to not in FORMATS:
+        raise OptionError(f"there is no format {to!r} to export to, only {', '.join(FORMATS)}")
+    path = Path(place)
+    if not path.absolute().parent.is_dir():
+        raise OptionError(f"{path} cannot be written, there is no folder {path.parent}")
+    ids = select_ids(database, selection)
+    entries = _told(stored_entries(database, ids), len(ids), progress)
+    return FORMATS[to](entries, path)
+
+
+def _told(entries: Iterator[Entry], total: int, progress: Progress | None) -> Iterator[Entry]:
+    for number, entry in enumerate(entries, start=1):
+        yield entry
+        if progress is not None and (number % _TOLD_EVERY == 0 or number == total):
+            progress(number, total)

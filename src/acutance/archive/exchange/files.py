@@ -1,0 +1,34 @@
+"""Files that are whole or not there."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from acutance.errors import OptionError
+
+__all__ = ["whole_file"]
+
+
+@contextmanager
+def whole_file(place: Path) -> Iterator[Path]:
+    """A name to write under; at the end the file is renamed, or removed after an error.
+
+    Raises
+    ------
+    OptionError
+        If the file system refuses.
+    """
+    part = place.with_name(f"{place.name}.part")
+    try:
+        yield part
+        os.replace(part, place)
+    except OSError as error:
+        if isinstance(error, OptionError):
+            raise
+        reason = error.strerror or str(error)
+        raise OptionError(f"{place} cannot be written ({reason}): choose another place") from error
+    finally:
+        part.unlink(missing_ok=True)

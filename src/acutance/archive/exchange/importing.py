@@ -1,0 +1,141 @@
+"""Documents of files are added to an archive; files that cannot be read stop no other."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic_core import from_json
+
+from acutance.archive.adding import add_entries
+from acutance.archive.connection import Database
+from acutance.archive.entry import Entry
+from acutance.archive.exchange.csv_tables import read_csv
+from acutance.archive.exchange.documents import Stated, entries_of
+from acutance.archive.exchange.jsonl import read_jsonl
+from acutance.archive.exchange.parquet import read_parquet
+from acutance.errors import OptionError
+
+__all__ = ["Imported", "import_files"]
+
+_CATALOG = "catalog.json"
+
+Read = Callable[[Path], Iterator[tuple[str, bytes | str]]]
+
+
+@dataclass(frozen=True)
+class Imported:
+    """What an import did.
+
+    Attributes
+    ----------
+    read : int
+        Entries that were read.
+    new : int
+        Entries that were not there.
+    refused : mapping of str to str
+        By file (and line) why it could not be read.
+    """
+
+    read: int
+    new: int
+    refused: Mapping[str, str]
+
+
+def import_files(
+    database: Database,
+    paths: Iterable[str | os.PathLike[str]],
+    stated: Stated,
+    run: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Imported:
+    """Add the documents of files.
+
+    Parameters
+    ----------
+    database : Database
+    paths : iterable of path
+        JSON documents, JSON lines, CSV with documents, Parquet, and folders of them or of STAC.
+    stated : Stated
+    run : int, optional
+    progress : callable, optional
+        Told now and then how many entries were read.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive cannot keep them.
+    """
+    refused: dict[str, str] = {}
+    count = 0
+
+    def entries() -> Iterator[Entry]:
+        nonlocal count
+        for path in paths:
+            for entry in _readable(Path(path), stated, refused):
+                count += 1
+                yield entry
+
+    new = add_entries(database, entries(), run, progress)
+    return Imported(count, new, refused)
+
+
+def _readable(path: Path, stated: Stated, refused: dict[str, str]) -> Iterator[Entry]:
+    """Entries of a path; what cannot be read is put down instead."""
+    where = str(path)
+    try:
+        for file in _files(path):
+            where = str(file)
+            for place, text in _reader(file)(file):
+                yield from _entries(place, text, stated, refused)
+    except (OptionError, OSError, UnicodeDecodeError) as error:
+        refused[where] = _reason(error, where)
+
+
+def _entries(place: str, text: bytes | str, stated: Stated, refused: dict[str, str]) -> list[Entry]:
+    """Entries of one text of JSON: all of them, or none."""
+    try:
+        return list(entries_of(from_json(text), stated))
+    except OptionError as error:
+        refused[place] = str(error)
+    except ValueError as error:
+        refused[place] = f"it is no JSON ({error}): was it cut?"
+    return []
+
+
+def _files(path: Path) -> list[Path]:
+    """The file, or those of a folder: of a STAC catalogue the lines beside its items."""
+    if not path.is_dir():
+        return [path]
+    if (path / _CATALOG).is_file():
+        found = sorted(path.rglob("*.jsonl"))
+    else:
+        found = sorted(one for one in path.iterdir() if one.suffix.lower() in _READERS)
+    if not found:
+        raise OptionError("the folder holds nothing that can be imported")
+    return found
+
+
+def _reader(path: Path) -> Read:
+    return _READERS.get(path.suffix.lower(), _read_json)
+
+
+def _read_json(path: Path) -> Iterator[tuple[str, bytes]]:
+    yield str(path), path.read_bytes()
+
+
+_READERS: Mapping[str, Read] = {
+    ".json": _read_json,
+    ".jsonl": read_jsonl,
+    ".ndjson": read_jsonl,
+    ".csv": read_csv,
+    ".parquet": read_parquet,
+}
+
+
+def _reason(error: Exception, where: str) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return str(error).removeprefix(f"{where} ").removeprefix(": ")

@@ -1,0 +1,146 @@
+"""STAC: a catalogue with an item for each image, and the whole documents beside it.
+
+An item has the numbers of its measurements (extension ``mtf``); its asset "mtf:documents" has the
+entries as JSON lines, so that nothing is lost.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from acutance.archive.columns import require_library
+from acutance.archive.dates import as_utc
+from acutance.archive.entry import Entry, ImageEntry
+from acutance.archive.exchange.entry_document import entry_document
+from acutance.archive.exchange.stac_item import (
+    EXTENSION,
+    VIEW,
+    image_properties,
+    item_name,
+    item_numbers,
+)
+from acutance.archive.packing import json_bytes
+from acutance.errors import OptionError
+
+__all__ = ["write_stac"]
+
+_LINES = "measurements.jsonl"
+
+
+@dataclass
+class _Item:
+    """An item as it grows."""
+
+    image: ImageEntry
+    acquired: datetime
+    places: dict[tuple[float, float], None] = field(default_factory=dict)
+    numbers: dict[str, list[dict[str, Any]]] = field(
+        default_factory=lambda: {"mtf:measurements": [], "mtf:rejected": []}
+    )
+
+
+def write_stac(entries: Iterable[Entry], place: Path) -> int:
+    """Write a catalogue into a new folder, and count the entries.
+
+    Raises
+    ------
+    OptionError
+        If pystac is not installed, an image has no date, or the folder is there already.
+    """
+    require_library("pystac", "stac")
+    if place.exists() and (not place.is_dir() or any(place.iterdir())):
+        raise OptionError(f"{place} is there already: name a folder that is new or empty")
+    # pystac takes a name with a dot for that of a file.
+    part = place.with_name(f"{place.name}-part".replace(".", "-"))
+    shutil.rmtree(part, ignore_errors=True)
+    try:
+        items, count = _write_lines(entries, part)
+        _write_items(items, part)
+        os.replace(part, place)
+    except OSError as error:
+        if isinstance(error, OptionError):
+            raise
+        reason = error.strerror or str(error)
+        raise OptionError(f"{place} cannot be written ({reason}): choose another place") from error
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    return count
+
+
+def _write_lines(entries: Iterable[Entry], folder: Path) -> tuple[dict[str, _Item], int]:
+    items: dict[str, _Item] = {}
+    count = 0
+    for entry in entries:
+        name = item_name(entry.image)
+        if name not in items:
+            items[name] = _Item(entry.image, _acquired(entry))
+            (folder / name).mkdir(parents=True)
+        item = items[name]
+        for part, numbers in item_numbers(entry):
+            item.numbers[part].append(numbers)
+        target = entry.target
+        if target is not None and target.lon is not None and target.lat is not None:
+            item.places[target.lon, target.lat] = None
+        with (folder / name / _LINES).open("ab") as lines:
+            lines.write(json_bytes(entry_document(entry)) + b"\n")
+        count += 1
+    return items, count
+
+
+def _acquired(entry: Entry) -> datetime:
+    if entry.image.acquired is None:
+        raise OptionError(
+            f"image {entry.image.path or '(without a path)'} has no date, and an item of STAC "
+            "needs one: leave those without a date out (since), or export to jsonl or parquet"
+        )
+    return as_utc(entry.image.acquired, "acquired")
+
+
+def _write_items(items: dict[str, _Item], folder: Path) -> None:
+    from pystac import Catalog, CatalogType
+
+    folder.mkdir(exist_ok=True)
+    catalog = Catalog("acutance", "Images whose sharpness was measured", "Measurements of acutance")
+    for name, item in items.items():
+        catalog.add_item(_stac_item(name, item))
+    catalog.normalize_hrefs(str(folder))
+    catalog.save(CatalogType.SELF_CONTAINED)
+
+
+def _stac_item(name: str, item: _Item) -> Any:
+    from pystac import Asset, Item
+
+    geometry, bbox = _geometry(list(item.places))
+    own = image_properties(item.image)
+    viewed = any(key.startswith("view:") for key in own)
+    made = Item(
+        name, geometry, bbox, item.acquired, own | item.numbers,
+        stac_extensions=[EXTENSION, *([VIEW] if viewed else [])],
+    )  # fmt: skip
+    documents = Asset(
+        f"./{_LINES}", "Whole documents", media_type="application/x-ndjson", roles=["metadata"]
+    )
+    made.add_asset("mtf:documents", documents)
+    return made
+
+
+def _geometry(
+    places: list[tuple[float, float]],
+) -> tuple[dict[str, Any] | None, list[float] | None]:
+    """Where the targets lie, and the box about them."""
+    if not places:
+        return None, None
+    lon, lat = zip(*places, strict=True)
+    points = [list(place) for place in places]
+    single = len(points) == 1
+    geometry = {
+        "type": "Point" if single else "MultiPoint",
+        "coordinates": points[0] if single else points,
+    }
+    return geometry, [min(lon), min(lat), max(lon), max(lat)]
