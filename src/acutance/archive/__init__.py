@@ -7,10 +7,11 @@ Sees records only, never pixels. In the order the data take:
 - `dates`: moments in UTC, and how dates without a time or a zone are read
 - `tables`, `migrations`: the tables of an archive, and how older ones become today's
 - `connection`, `failures`: SQLite or PostgreSQL, transactions that wait, errors in words
-- `packing`, `rows`, `adding`: entries become rows, added once each
+- `packing`, `systematic`, `rows`, `adding`: entries become rows, added once each
 - `runs`: batches that wrote into the archive
 - `selection`, `columns`, `measurements`: which rows are meant, and what they hold as columns
-- `stored_entries`: rows become entries again
+- `stored_entries`, `overview`: rows become entries again, and are counted
+- `exchange`: files of documents and tables, in and out
 - `archive`: all of it under one name, `Archive`
 """
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, Unpack
 
@@ -18,8 +18,10 @@ from acutance.archive.measurements import (
     select_rejections,
 )
 from acutance.archive.migrations import ensure_schema
+from acutance.archive.overview import Overview, overview_of
 from acutance.archive.runs import end_run, kept_keys, start_run
 from acutance.archive.selection import Selection, SelectionWords
+from acutance.archive.stored_entries import select_ids, stored_entries
 from acutance.errors import OptionError
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import Record
@@ -207,6 +209,33 @@ class Archive:
             If there is no such filter, or a value it cannot have.
         """
         return select_measurements(self._database, Selection.of(selection))
+
+    def entries(self, **selection: Unpack[SelectionWords]) -> Iterator[Entry]:
+        """Measurements and rejections as they were added, with their images and targets.
+
+        Parameters
+        ----------
+        **selection
+            Filters, as of `measurements`.
+        """
+        return stored_entries(self._database, select_ids(self._database, Selection.of(selection)))
+
+    def entry(self, number: int) -> Entry:
+        """What was added under a number (`Kept.id`, or the column "id").
+
+        Raises
+        ------
+        OptionError
+            If there is none.
+        """
+        found = list(stored_entries(self._database, [number]))
+        if not found:
+            raise OptionError(f"there is no measurement {number} in the archive")
+        return found[0]
+
+    def overview(self) -> Overview:
+        """How many measurements, rejections, images and targets, by sensor."""
+        return overview_of(self._database)
 
     def combine(self, **selection: Unpack[SelectionWords]) -> CombinedMeasurement:
         """What the selected measurements of one sensor say together, see `acutance.combine`.

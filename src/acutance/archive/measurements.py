@@ -23,6 +23,7 @@ from acutance.archive.tables import (
     images,
     measurements,
     metric_columns,
+    systematic_columns,
     targets,
 )
 from acutance.errors import OptionError
@@ -44,7 +45,8 @@ class Measurements(Columns):
     (its file name), ``image_id`` (equal for measurements of one image), ``run``, ``verdict``,
     ``snr``, ``angle_deg``, ``gsd_m`` (along the direction), ``view_zenith_deg``,
     ``sun_elevation_deg``, ``measured_at``, and every metric with its standard deviation
-    (``mtf_nyquist``, ``mtf_nyquist_std``, ...).
+    (``mtf_nyquist``, ``mtf_nyquist_std``, ...). Of the three main numbers also what of it does not
+    average out over images (``rer_systematic_std``, `acutance.archive.systematic`).
 
     Parameters
     ----------
@@ -111,7 +113,7 @@ _MEASURED: tuple[tuple[str, Column[Any]], ...] = (
     ("angle_deg", directions.c.angle_deg),
     ("gsd_m", directions.c.gsd_m),
     ("measured_at", measurements.c.measured_at),
-    *((name, directions.c[name]) for name in metric_columns()),
+    *((name, directions.c[name]) for name in (*metric_columns(), *systematic_columns())),
 )
 _REJECTED: tuple[tuple[str, Column[Any]], ...] = (
     ("stage", measurements.c.stage),

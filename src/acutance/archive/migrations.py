@@ -8,18 +8,51 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
+from typing import Any
 
 from sqlalchemy import Connection, inspect, select, text, update
 
 from acutance.archive.connection import Database
-from acutance.archive.tables import APPLICATION, METADATA, SCHEMA_VERSION, about
+from acutance.archive.packing import unpacked
+from acutance.archive.systematic import systematic_stds
+from acutance.archive.tables import (
+    APPLICATION,
+    METADATA,
+    SCHEMA_VERSION,
+    about,
+    directions,
+    documents,
+    systematic_columns,
+)
 from acutance.errors import ArchiveError
 
 __all__ = ["STEPS", "Step", "ensure_schema"]
 
 Step = Callable[[Connection], None]
 
-STEPS: Mapping[int, Step] = {}
+_SOME = 500
+
+
+def _add_systematic_stds(connection: Connection) -> None:
+    """Columns of what does not average out, read from the documents that are there."""
+    for name in systematic_columns():
+        added = f"ALTER TABLE directions ADD COLUMN {name} DOUBLE PRECISION"
+        connection.execute(text(added))
+    ids = connection.execute(select(documents.c.measurement_id)).scalars().all()
+    for first in range(0, len(ids), _SOME):
+        some = documents.c.measurement_id.in_(ids[first : first + _SOME])
+        for number, stored in connection.execute(select(documents).where(some)).all():
+            _fill_systematic_stds(connection, number, unpacked(stored))
+
+
+def _fill_systematic_stds(connection: Connection, number: int, document: Mapping[str, Any]) -> None:
+    for orientation in ("across", "along"):
+        row = (directions.c.measurement_id == number) & (directions.c.orientation == orientation)
+        found = systematic_stds(document, orientation)
+        connection.execute(update(directions).where(row).values(found))
+
+
+STEPS: Mapping[int, Step] = {1: _add_systematic_stds}
 """By version: what leads from it to the next."""
 
 _LOCK = 0x61637574

@@ -12,6 +12,7 @@ from acutance.archive.dates import as_utc
 from acutance.archive.entry import Entry, ImageEntry, TargetEntry
 from acutance.archive.identity import file_name, image_identity, key_of, target_identity
 from acutance.archive.packing import json_bytes
+from acutance.archive.systematic import systematic_stds
 from acutance.archive.tables import VERDICTS
 from acutance.curves import METRICS
 from acutance.errors import OptionError
@@ -131,6 +132,7 @@ def _direction_rows(record: Record) -> Iterator[Row]:
             "angle_deg": _angle_deg(document, name),
             "gsd_m": _finite(part.get("gsd_m")),
             **_numbers(part),
+            **systematic_stds(document, name),
         }
 
 

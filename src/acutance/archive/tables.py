@@ -24,7 +24,7 @@ from sqlalchemy import (
 )
 from sqlalchemy.engine import Dialect
 
-from acutance.curves import METRICS
+from acutance.curves import MAIN_NUMBERS, METRICS
 
 __all__ = [
     "APPLICATION",
@@ -38,11 +38,12 @@ __all__ = [
     "measurements",
     "metric_columns",
     "runs",
+    "systematic_columns",
     "targets",
 ]
 
 APPLICATION = "acutance"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 VERDICTS = ("invalid", "doubtful", "usable", "good")
 """Words of verdicts from worst to best; a row holds the place in this list."""
@@ -82,6 +83,11 @@ def _json(name: str, **how: Any) -> Column[Any]:
 def metric_columns() -> tuple[str, ...]:
     """Names of the columns of numbers: every metric, and its standard deviation."""
     return tuple(name for metric in METRICS for name in (metric, f"{metric}_std"))
+
+
+def systematic_columns() -> tuple[str, ...]:
+    """Names of the columns of what of a standard deviation does not average out."""
+    return tuple(f"{name}_systematic_std" for name in MAIN_NUMBERS)
 
 
 about = Table(
@@ -173,7 +179,7 @@ directions = Table(
     Column("measured", Boolean, nullable=False),
     Column("angle_deg", Double),
     Column("gsd_m", Double),
-    *(Column(name, Double) for name in metric_columns()),
+    *(Column(name, Double) for name in (*metric_columns(), *systematic_columns())),
 )  # fmt: skip
 """The numbers, a row for each direction; `measured` is false where they follow from the prior."""
 

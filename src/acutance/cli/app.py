@@ -12,6 +12,7 @@ from typer.core import TyperGroup
 
 from acutance import __version__
 from acutance.cli import (
+    archive,
     bars,
     biresolution,
     combine,
@@ -119,6 +120,7 @@ for _name, _module, _words in (
     _measures = _name in KINDS or _name in ("combine", "scan")
     _epilog = f"{EXIT_CODES}\n\n{_module.EXAMPLE}" if _measures else _module.EXAMPLE
     app.command(_name, epilog=_epilog, short_help=_words)(getattr(_module, _name))
+app.add_typer(archive.app, name="archive")
 app.add_typer(simulate.app, name="simulate")
 app.add_typer(plan_mirrors.app, name="plan")
 

@@ -86,15 +86,15 @@ def execution_of(
     return Execution(seed=seed, workers=workers, folder=folder, progress=progress)
 
 
-def progress_bar(title: str) -> AbstractContextManager[Callable[[int, int], None] | None]:
-    """A bar of finished trials on stderr; nothing where stderr is no terminal."""
+def progress_bar(title: str) -> AbstractContextManager[Callable[[int, int | None], None] | None]:
+    """A bar of what is finished, of how much, on stderr; nothing where stderr is no terminal."""
     from rich.console import Console
 
     console = Console(stderr=True)
     return _Bar(title, console) if console.is_terminal else nullcontext()
 
 
-class _Bar(AbstractContextManager[Callable[[int, int], None]]):
+class _Bar(AbstractContextManager[Callable[[int, int | None], None]]):
     def __init__(self, title: str, console: Any) -> None:
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
         from rich.progress import TimeRemainingColumn as Remaining
@@ -102,7 +102,7 @@ class _Bar(AbstractContextManager[Callable[[int, int], None]]):
         columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), Remaining())
         self._progress = Progress(*columns, console=console, transient=True)
 
-    def __enter__(self) -> Callable[[int, int], None]:
+    def __enter__(self) -> Callable[[int, int | None], None]:
         self._progress.start()
         task = self._progress.add_task("", total=None)
         return lambda done, total: self._progress.update(task, completed=done, total=total)

@@ -10,7 +10,7 @@ from acutance.archive.entry import Entry
 from acutance.archive.exchange.entry_document import entry_document
 from acutance.archive.packing import json_bytes
 from acutance.archive.rows import image_row, rows_of, target_row
-from acutance.archive.tables import VERDICTS, metric_columns
+from acutance.archive.tables import VERDICTS, metric_columns, systematic_columns
 
 __all__ = ["FLAGS", "MOMENTS", "NUMBERS", "TEXTS", "flat_columns", "flat_rows"]
 
@@ -26,7 +26,8 @@ TEXTS = (
 )  # fmt: skip
 MOMENTS = ("acquired", "measured_at")
 NUMBERS = (
-    "lon", "lat", *_OF_IMAGE_NUMBERS, "snr", "angle_deg", "gsd_m", *metric_columns()
+    "lon", "lat", *_OF_IMAGE_NUMBERS, "snr", "angle_deg", "gsd_m", *metric_columns(),
+    *systematic_columns(),
 )  # fmt: skip
 FLAGS = ("measured",)
 

@@ -1,0 +1,159 @@
+"""What the commands of an archive print: tables as wide as the terminal, and one measurement."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from acutance.archive import Entry
+    from acutance.archive.overview import SensorCount
+    from acutance.targets.record import Record
+
+__all__ = ["entry_text", "print_measurements", "print_rejections", "print_sensors", "print_table"]
+
+_WIDE = 110
+_GAP = 2
+_NARROWEST = 6
+_UNKNOWN = "–"
+_NUMBERS = {"mtf_nyquist": "MTF(0.5)", "rer": "RER", "fwhm_px": "FWHM [px]"}
+_SHRINKS = ("sensor", "band", "target", "kind", "reason")
+"""Columns of names and sentences, cut off where the terminal is too narrow."""
+
+
+def print_measurements(rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print rows of measurements; eighty columns have neither kind, band nor deviations."""
+    wide = _width() >= _WIDE
+    names = ["id", "acquired", "sensor", "target", "orientation", "verdict"]
+    if wide:
+        names[3:4] = ["band", "target", "kind"]
+    cells = [[*(_cell(row, name) for name in names), *_estimates(row, wide)] for row in rows]
+    titles = {"acquired": "date", "orientation": "dir."}
+    header = [*(titles.get(name, name) for name in names), *_NUMBERS.values()]
+    print_table(header, cells, numbers=("id", *_NUMBERS.values()))
+
+
+def print_rejections(rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print what was not measured, and why."""
+    names = ("id", "acquired", "sensor", "target", "stage", "reason")
+    cells = [[_cell(row, name) for name in names] for row in rows]
+    print_table(["id", "date", *names[2:]], cells, numbers=("id",))
+
+
+def print_sensors(sensors: Iterable[SensorCount]) -> None:
+    """Print how much there is of each sensor."""
+    rows = [
+        (
+            one.sensor or _UNKNOWN, str(one.measured), str(one.rejected), str(one.images),
+            *(_UNKNOWN if when is None else f"{when:%Y-%m-%d}" for when in (one.first, one.last)),
+        )
+        for one in sensors
+    ]  # fmt: skip
+    counts = ("measured", "rejected", "images")
+    print_table(("sensor", *counts, "first", "last"), rows, numbers=counts)
+
+
+def print_table(
+    header: Sequence[str], rows: Sequence[Sequence[str]], numbers: Sequence[str] = ()
+) -> None:
+    """Print a table that is no wider than the terminal.
+
+    Parameters
+    ----------
+    header : sequence of str
+    rows : sequence of sequences of str
+    numbers : sequence of str, optional
+        Columns that are aligned to the right.
+    """
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
+    for name, width in zip(header, _widths(header, rows), strict=True):
+        table.add_column(
+            Text(name), justify="right" if name in numbers else "left", width=width,
+            no_wrap=True, overflow="ellipsis",
+        )  # fmt: skip
+    for row in rows:
+        table.add_row(*map(Text, row))
+    Console(file=sys.stdout, width=_width(), highlight=False).print(table)
+
+
+def entry_text(entry: Entry) -> str:
+    """The numbers of an entry, and what is known of its image and its target."""
+    image, target, record = entry.image, entry.target, entry.record
+    if record is not None:
+        lines = [*_record_lines(record)]
+    else:
+        assert entry.rejected is not None
+        lines = [f"not measured ({entry.rejected.stage}): {entry.rejected.reason}"]
+    known = {
+        "sensor": image.sensor,
+        "band": entry.band,
+        "acquired": None if image.acquired is None else f"{image.acquired:%Y-%m-%d %H:%M} UTC",
+        "image": image.path,
+        "content": image.content,
+        "level": image.level,
+        "target": None if target is None else target.name,
+        "site": None if target is None else target.site,
+        "key": entry.key,
+    }
+    lines += [f"  {name:<9} {value}" for name, value in known.items() if value is not None]
+    return "\n".join(lines)
+
+
+def _record_lines(record: Record) -> Iterable[str]:
+    from acutance.curves import METRICS
+    from acutance.report.labels import title_of
+    from acutance.report.text import align_columns
+
+    yield title_of(record)
+    yield f"  {record.verdict}"
+    numbers = {name: one.numbers for name, one in record.directions.items()}
+    rows = [
+        (metric, *(str(found.get(metric, _UNKNOWN)) for found in numbers.values()))
+        for metric in METRICS
+    ]
+    yield align_columns([("", *numbers), *rows], "l" + "r" * len(numbers))
+
+
+def _widths(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[int]:
+    """Widths of the columns: names and sentences, the widest first, give way to the numbers."""
+    widths = [max(map(len, column)) for column in zip(header, *rows, strict=True)]
+    shrinking = [i for i, name in enumerate(header) if name in _SHRINKS]
+    while shrinking and sum(widths) + _GAP * (len(widths) - 1) > _width():
+        widest = max(shrinking, key=widths.__getitem__)
+        if widths[widest] <= _NARROWEST:
+            break
+        widths[widest] -= 1
+    return widths
+
+
+def _estimates(row: Mapping[str, Any], with_std: bool) -> list[str]:
+    from acutance.curves import Estimate
+
+    found = []
+    for name in _NUMBERS:
+        value, std = row[name], row[f"{name}_std"]
+        if value is None:
+            found.append(_UNKNOWN)
+        else:
+            shown = str(Estimate(value, 0.0 if std is None else std))
+            found.append(shown if with_std else f"{value:.3f}")
+    return found
+
+
+def _cell(row: Mapping[str, Any], name: str) -> str:
+    value = row[name]
+    if value is None:
+        return _UNKNOWN
+    return f"{value:%Y-%m-%d}" if name == "acquired" else str(value)
+
+
+def _width() -> int:
+    """Columns of the terminal; 120 where the table goes into a file."""
+    return shutil.get_terminal_size((120, 24)).columns
