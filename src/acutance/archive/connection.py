@@ -95,6 +95,11 @@ class Database:
                     connection.execution_options(**{_WRITES: writes})
                     with connection.begin():
                         return work(connection)
+            except UnicodeEncodeError as error:
+                raise ArchiveError(
+                    f"archive {self.place} cannot keep a text with half a character "
+                    f"({error.object!r:.60}): correct it"
+                ) from error
             except DBAPIError as error:
                 if not is_passing(error) or time.monotonic() > given_up:
                     raise explained(error, self.place, PATIENCE_S) from error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import DBAPIError, OperationalError
 
 from acutance.errors import ArchiveError
 
@@ -13,7 +13,6 @@ __all__ = ["explained", "is_passing"]
 _PASSING = ("08", "40", "57P", "55P03", "53300")
 """Beginnings of PostgreSQL's codes for what may work a moment later: a connection that is lost or
 not to be had, transactions that met, a server that stops or starts."""
-_STARTING = ("starting up", "shutting down", "recovery mode", "too many clients", "too many conn")
 
 _SQLITE = {
     "SQLITE_NOTADB": "is no archive: the file is not a database of SQLite",
@@ -37,6 +36,12 @@ _POSTGRES = {
     "3D000": "is not there: create the database first (createdb)",
     "28": "cannot be opened: the server refuses the user ({reason})",
 }
+_REFUSALS = {
+    'FATAL:  database "': "3D000",
+    "authentication failed": "28P01",
+    'FATAL:  role "': "28000",
+    "no pg_hba.conf entry": "28000",
+}
 
 
 def is_passing(error: DBAPIError) -> bool:
@@ -46,14 +51,9 @@ def is_passing(error: DBAPIError) -> bool:
         return code.startswith(("SQLITE_BUSY", "SQLITE_LOCKED"))
     if code:
         return code.startswith(_PASSING)
-    reason = str(error.orig)
-    refused = "FATAL" in reason and not any(words in reason for words in _STARTING)
-    return type(error.orig).__module__.startswith("psycopg") and _is_connection(error, refused)
-
-
-def _is_connection(error: DBAPIError, refused: bool) -> bool:
-    lost = error.connection_invalidated or type(error).__name__ == "OperationalError"
-    return lost and not refused
+    # A connection that was not made, and not refused for one of the reasons below.
+    of_server = type(error.orig).__module__.startswith("psycopg")
+    return of_server and isinstance(error, OperationalError)
 
 
 def explained(error: DBAPIError, place: str, patience_s: float) -> ArchiveError:
@@ -83,7 +83,12 @@ def explained(error: DBAPIError, place: str, patience_s: float) -> ArchiveError:
 def _code(error: DBAPIError) -> str:
     """The name of SQLite's, or the SQLSTATE of PostgreSQL's error; empty where there is none."""
     orig: Any = error.orig
-    return str(getattr(orig, "sqlite_errorname", None) or getattr(orig, "sqlstate", None) or "")
+    code = getattr(orig, "sqlite_errorname", None) or getattr(orig, "sqlstate", None)
+    if code:
+        return str(code)
+    # What is refused while a connection is made has words only.
+    reason = str(orig)
+    return next((code for words, code in _REFUSALS.items() if words in reason), "")
 
 
 def _reason(error: DBAPIError) -> str:
