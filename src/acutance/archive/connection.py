@@ -162,6 +162,7 @@ def _file_database(path: Path, read_only: bool) -> Database:
             address, timeout=PATIENCE_S, isolation_level=None, check_same_thread=False, uri=True
         )
         connection.execute("PRAGMA foreign_keys = ON")
+        connection.execute(f"PRAGMA query_only = {int(read_only)}")
         return connection
 
     engine = create_engine("sqlite://", creator=connect, poolclass=QueuePool)
@@ -181,13 +182,19 @@ def _require_file_place(path: Path, read_only: bool) -> None:
 
 
 def _file_address(path: Path, read_only: bool) -> str:
-    """The URI of a file; where the folder cannot be written, one that nobody else writes."""
+    """The URI of a file: made where there is none, unless it is only read.
+
+    A file that is only read is opened to be written if it may be, or SQLite could not clear away
+    the log beside it; `PRAGMA query_only` then refuses writing. Where not even its folder may be
+    written, nobody else writes it, and no log is needed.
+    """
     address = f"file:{quote(str(path))}"
     if not read_only:
         return address
-    beside = path.with_name(f"{path.name}-wal")
-    frozen = not os.access(path.parent, os.W_OK) and not beside.exists()
-    return f"{address}?mode=ro{'&immutable=1' if frozen else ''}"
+    if os.access(path, os.W_OK) and os.access(path.parent, os.W_OK):
+        return f"{address}?mode=rw"
+    logged = path.with_name(f"{path.name}-wal").exists()
+    return f"{address}?mode=ro{'' if logged else '&immutable=1'}"
 
 
 def _begin(connection: Connection) -> None:

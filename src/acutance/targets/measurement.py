@@ -200,6 +200,20 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
         """The measurement as the JSON document ``acutance/measurement/1``."""
         return self.record.to_dict()
 
+    @staticmethod
+    def from_dict(document: Mapping[str, Any]) -> Record:
+        """What `to_dict` wrote, read again: the `Record`, since a document has no pixels and fits.
+
+        Its numbers, curves, covariance and checks are those of the measurement, it compares equal
+        to its ``record``, and whatever takes measurements takes it.
+
+        Raises
+        ------
+        OptionError
+            If it is no document of a measurement, or damaged.
+        """
+        return Record.from_dict(document)
+
     def target_document(self) -> dict[str, Any]:
         """Fields that the kind of target adds to the document; none unless overridden."""
         return {}
