@@ -1,0 +1,172 @@
+"""The measurements of an image joined: what is left to a trend is one number an image.
+
+Measurements of one image share its atmosphere, so that a hundred of them tell no more about the
+sensor than the atmosphere of that image allows. Their scatter beyond the stated deviations (the
+targets differ, deviations are stated too small) is fitted over all images together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.archive.trends.series import Series
+from acutance.curves.grid import Floats
+
+__all__ = ["ImageMeans", "image_means", "joined_images"]
+
+_HUBER: Final = 2.0
+"""Deviations from which a measurement counts less."""
+_HUBER_SQUARE: Final = 0.9209
+"""Mean square of a standard normal number cut off there."""
+_PASSES: Final = 30
+_MAX_RATIO: Final = 1e6
+
+
+@dataclass(frozen=True, eq=False)
+class ImageMeans:
+    """One mean an image, in the order of time.
+
+    Attributes
+    ----------
+    when, value : (j,) array
+    variance : (j,) array
+        Of the mean, without what all measurements share.
+    count : (j,) int array
+        Measurements.
+    label : (j,) int array
+        The image; -1 where several were joined.
+    within_std : float
+        Scatter within an image beyond the stated deviations.
+    typical_std : float
+        Of one measurement, with that scatter.
+    systematic_std : float
+        What all measurements share.
+    joined : int
+        Images a place: 1, or more where there are very many.
+    scatter : float
+        Between the images that were joined; 0 where none were.
+    """
+
+    when: Floats
+    value: Floats
+    variance: Floats
+    count: NDArray[np.int64]
+    label: NDArray[np.int64]
+    within_std: float
+    typical_std: float
+    systematic_std: float
+    joined: int = 1
+    scatter: float = 0.0
+
+    @property
+    def size(self) -> int:
+        """Number of images."""
+        return int(self.value.size)
+
+
+def stated_variance(std: Floats) -> Floats:
+    """Squares of the stated deviations; where none is stated, their median stands in."""
+    known = std[np.isfinite(std)]
+    missing = float(np.median(known)) if known.size else 0.0
+    return np.asarray(np.where(np.isfinite(std), std, missing) ** 2)
+
+
+def image_means(series: Series) -> ImageMeans:
+    """The mean of every image, robust, with its variance.
+
+    Parameters
+    ----------
+    series : Series
+        With dates and values (`Series.dated`).
+    """
+    _, index = np.unique(series.image, return_inverse=True)
+    order = np.argsort(index, kind="stable")
+    index, value = index[order], series.value[order]
+    variance = stated_variance(series.std)[order]
+    count = np.bincount(index)
+    mean, added = _within_images(index, count, value, variance)
+    total = variance + added
+    weight = 1 / np.maximum(total, total.max() / _MAX_RATIO) if total.max() > 0 else total + 1.0
+    when = np.bincount(index, series.when[order]) / count
+    label = series.image[order][np.concatenate([[0], np.cumsum(count)[:-1]])]
+    spread = np.bincount(index, weight**2 * total) / np.bincount(index, weight) ** 2
+    systematic = 0.0
+    if series.systematic_std is not None:
+        systematic = float(np.nan_to_num(series.systematic_std).mean())
+    at = np.argsort(when, kind="stable")
+    return ImageMeans(
+        when[at], mean[at], spread[at], count[at], label[at],
+        float(np.sqrt(added)), float(np.sqrt(np.median(total))), systematic,
+    )  # fmt: skip
+
+
+def _within_images(
+    index: NDArray[np.intp], count: NDArray[np.int64], value: Floats, variance: Floats
+) -> tuple[Floats, float]:
+    """Means of the images (j,), and the variance within them beyond the stated one.
+
+    The variance is that at which the sum of squares, cut off at `_HUBER` deviations, is as large
+    as it is expected (the method of Paule and Mandel, made robust).
+    """
+    mean = np.bincount(index, value) / count
+    free = value.size - count.size
+    if free == 0:
+        return mean, 0.0
+    low, high = 0.0, float(np.var(value - mean[index])) * 4 + 1e-300
+    share = 1 / np.sqrt(np.maximum(1 - 1 / count[index], 0.5))
+    added, first = 0.0, True
+    for _ in range(_PASSES):
+        mean, square = _robust_means(index, count, value, variance + added, mean, share)
+        is_large = square > _HUBER_SQUARE * np.count_nonzero(count[index] > 1)
+        if first and not is_large:
+            return mean, 0.0
+        first = False
+        low, high = (added, high) if is_large else (low, added)
+        added = 0.5 * (low + high)
+    return mean, added
+
+
+def _robust_means(
+    index: NDArray[np.intp], count: NDArray[np.int64], value: Floats, variance: Floats,
+    mean: Floats, share: Floats,
+) -> tuple[Floats, float]:  # fmt: skip
+    """Huber's means of the images, and the sum of squares of residuals cut off."""
+    floor = max(float(variance.max()) / _MAX_RATIO, float(np.var(value)) * 1e-12, 1e-300)
+    std = np.sqrt(np.maximum(variance, floor))
+    for _ in range(3):
+        off = np.abs(value - mean[index]) * share / std
+        weight = np.minimum(1.0, _HUBER / np.maximum(off, 1e-9)) / std**2
+        mean = np.bincount(index, weight * value) / np.bincount(index, weight)
+    off = np.minimum(np.abs(value - mean[index]) * share / std, _HUBER)
+    return mean, float((off[count[index] > 1] ** 2).sum())
+
+
+def joined_images(images: ImageMeans, most: int) -> ImageMeans:
+    """At most so many places: neighbours in time are joined, each with the scatter it shows."""
+    if images.size <= most:
+        return images
+    parts = np.array_split(np.arange(images.size), most)
+    centre = np.array([np.median(images.value[part]) for part in parts])
+    deviation = np.concatenate([
+        np.abs(images.value[part] - one) / np.sqrt(1 - 1 / part.size)
+        for part, one in zip(parts, centre, strict=True) if part.size > 1
+    ])  # fmt: skip
+    scale = max(1.4826 * float(np.median(deviation)), 1e-12)
+    value, variance = np.empty(most), np.empty(most)
+    for at, part in enumerate(parts):
+        mean = centre[at]
+        for _ in range(5):
+            off = np.abs(images.value[part] - mean) / scale
+            weight = np.minimum(1.0, _HUBER / np.maximum(off, 1e-9))
+            mean = float(np.average(images.value[part], weights=weight))
+        value[at], variance[at] = mean, scale**2 / part.size
+    return ImageMeans(
+        np.array([images.when[part].mean() for part in parts]), value, variance,
+        np.array([images.count[part].sum() for part in parts]), np.full(most, -1),
+        images.within_std, images.typical_std, images.systematic_std,
+        images.size // most, scale,
+    )  # fmt: skip

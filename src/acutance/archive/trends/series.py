@@ -1,0 +1,153 @@
+"""One metric of one sensor through time, as columns: what trends and specifications read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, date, datetime, timedelta
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.archive.dates import as_utc
+from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
+from acutance.errors import OptionError
+
+__all__ = ["Event", "Series", "date_of", "decimal_year"]
+
+
+def decimal_year(when: datetime | date | str) -> float:
+    """A moment (UTC) as a year with decimals: 2 July 2023, noon, is 2023.5."""
+    moment = as_utc(when)
+    begin = datetime(moment.year, 1, 1, tzinfo=UTC)
+    end = datetime(moment.year + 1, 1, 1, tzinfo=UTC)
+    return moment.year + (moment - begin) / (end - begin)
+
+
+def date_of(year: float) -> date:
+    """The day of a year with decimals."""
+    begin = datetime(int(year), 1, 1, tzinfo=UTC)
+    end = datetime(int(year) + 1, 1, 1, tzinfo=UTC)
+    # Half a second more: midnight stays on its day.
+    return (begin + (year % 1) * (end - begin) + timedelta(seconds=0.5)).date()
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that may have changed the sensor at a known date.
+
+    Parameters
+    ----------
+    when : datetime, date or str
+    name : str
+        "refocus", "new processor".
+    changes_drift : bool, optional
+        Whether the drift may be another one afterwards, too.
+    """
+
+    when: datetime | date | str
+    name: str
+    changes_drift: bool = False
+
+    @property
+    def year(self) -> float:
+        """The date as a year with decimals."""
+        return decimal_year(self.when)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Series(ShortRepr):
+    """Measurements of one metric, one a place of the arrays.
+
+    Parameters
+    ----------
+    metric : str
+        "mtf_nyquist".
+    when : (n,) array
+        Years with decimals (`decimal_year`); ``nan`` where the date is not known.
+    value : (n,) array
+    std : (n,) array
+        Random part of the stated standard deviation; ``nan`` where none was stated.
+    image : (n,) int array
+        Which image: measurements of one image share its atmosphere.
+    systematic_std : (n,) array, optional
+        Part that all measurements of this sensor and method share: it does not average out.
+    gsd_m : (n,) array, optional
+        GSD along the direction of the metric; ``nan`` where it is not known.
+    image_names : mapping of int to str, optional
+        What an image is called in messages.
+    name : str, optional
+        What was measured: "QB02, pan, across".
+
+    Raises
+    ------
+    OptionError
+        If the arrays differ in length, or nothing can be used.
+    """
+
+    metric: str
+    when: Floats
+    value: Floats
+    std: Floats
+    image: NDArray[np.int64]
+    systematic_std: Floats | None = None
+    gsd_m: Floats | None = None
+    image_names: Mapping[int, str] = field(default_factory=dict)
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        arrays = (self.when, self.std, self.image, self.systematic_std, self.gsd_m)
+        sizes = {np.shape(array) for array in arrays if array is not None}
+        if sizes - {np.shape(self.value)}:
+            raise OptionError(
+                f"the columns of a series have the shapes {sorted(sizes)} and "
+                f"{np.shape(self.value)}: give one number a measurement in each"
+            )
+
+    @property
+    def size(self) -> int:
+        """Number of measurements."""
+        return int(self.value.size)
+
+    @property
+    def title(self) -> str:
+        """Metric and what was measured."""
+        return f"{self.metric} of {self.name}" if self.name else self.metric
+
+    def of(self, rows: NDArray[np.bool_]) -> Series:
+        """The measurements of a mask."""
+        return Series(
+            metric=self.metric, when=self.when[rows], value=self.value[rows], std=self.std[rows],
+            image=self.image[rows],
+            systematic_std=None if self.systematic_std is None else self.systematic_std[rows],
+            gsd_m=None if self.gsd_m is None else self.gsd_m[rows],
+            image_names=self.image_names, name=self.name,
+        )  # fmt: skip
+
+    def known(self) -> Series:
+        """The measurements whose value exists."""
+        return self.of(np.isfinite(self.value))
+
+    def dated(self) -> Series:
+        """The measurements whose value and date exist.
+
+        Raises
+        ------
+        OptionError
+            If there are none.
+        """
+        found = self.of(np.isfinite(self.value) & np.isfinite(self.when))
+        if found.size == 0:
+            raise OptionError(
+                f"{self.title}: none of {self.size} measurements has a date and a value: state "
+                "when the images were acquired"
+            )
+        return found
+
+    def summary(self) -> str:
+        """Metric, number of measurements and images, first and last date."""
+        found = self.when[np.isfinite(self.when)]
+        span = f", {date_of(found.min())} to {date_of(found.max())}" if found.size else ""
+        images = np.unique(self.image).size
+        return f"{self.title}, {self.size} measurements in {images} images{span}"

@@ -1,0 +1,59 @@
+"""Numbers of trends that were tuned: what each is, which benchmark set it, what it gave.
+
+All are relative to the level of the series; ``benchmarks/trends.py`` measures what they give.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+__all__ = [
+    "DEGREES",
+    "DRIFT_STD_PER_YEAR",
+    "EVENT_STD",
+    "MAX_IMAGES",
+    "MIN_IMAGES",
+    "MIN_IMAGES_BY_STEPS",
+    "MIN_SEGMENT",
+    "NO_STD",
+    "OUTLIER_SCALES",
+    "REPORTED_STEP",
+    "SCATTER",
+    "SEASON_PROBABILITY",
+    "SEASON_STD",
+    "STEADY_PROBABILITY",
+    "STEPS_PER_YEAR",
+    "STEP_STD",
+]
+
+DRIFT_STD_PER_YEAR: Final = 0.05
+"""Standard deviation of the prior of a drift. The rate's coverage with a drift of 2 % a year does
+not depend on it within a factor of two."""
+STEADY_PROBABILITY: Final = 0.5
+"""Prior probability that a sensor does not drift at all, where steps are weighed against drifts."""
+STEP_STD: Final = 0.08
+"""Standard deviation of the prior of the size of a step."""
+STEPS_PER_YEAR: Final = 0.1
+"""How often a step is expected."""
+REPORTED_STEP: Final = 0.5
+"""Probability from which a step is reported."""
+EVENT_STD: Final = 0.15
+"""Standard deviation of the prior of the step at a stated event: it is expected to change much."""
+SEASON_STD: Final = 0.03
+"""Standard deviation of the prior of the cosine and of the sine of a season."""
+SEASON_PROBABILITY: Final = 0.2
+NO_STD: Final = 1e-4
+"""Standard deviation of what is absent: one form of the model serves with and without it."""
+SCATTER: Final = 0.04
+"""Median of the prior of the scatter between images (half-Cauchy)."""
+DEGREES: Final = (3.0, 8.0, 60.0)
+"""Degrees of freedom of the scatter between images: heavy tails to nearly normal, all likely."""
+MIN_SEGMENT: Final = 3
+"""Images before, after and between steps: fewer are bad days."""
+MIN_IMAGES_BY_STEPS: Final = (8, 15, 24)
+"""Images from which one, two and three steps are sought."""
+MIN_IMAGES: Final = 3
+MAX_IMAGES: Final = 400
+"""More images are joined in the order of time: steps are sought among so many at most."""
+OUTLIER_SCALES: Final = 4.5
+"""An image farther than so many scales from the trend is a bad day."""
