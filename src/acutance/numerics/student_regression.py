@@ -199,7 +199,7 @@ def _log_evidence(
             log_density += 0.5 * (math.log(precision[i] / (2 * math.pi)))
             log_density -= 0.5 * precision[i] * beta[i] ** 2
     density = 2 / math.pi * scatter * scatter_prior / (scatter**2 + scatter_prior**2)
-    return log_density + math.log(density)
+    return float(log_density + math.log(density))
 
 
 @compiled
@@ -256,9 +256,7 @@ def _step_evidences(
     return found
 
 
-def step_evidences(
-    model: StudentModel, steps: NDArray[np.int64], step_precision: float
-) -> Floats:
+def step_evidences(model: StudentModel, steps: NDArray[np.int64], step_precision: float) -> Floats:
     """Log evidences of m sets of k steps, (m,).
 
     Parameters

@@ -7,14 +7,16 @@ targets differ, deviations are stated too small) is fitted over all images toget
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.archive.trends.series import Series
 from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["ImageMeans", "image_means", "joined_images"]
 
@@ -27,7 +29,7 @@ _MAX_RATIO: Final = 1e6
 
 
 @dataclass(frozen=True, eq=False)
-class ImageMeans:
+class ImageMeans(ShortRepr):
     """One mean an image, in the order of time.
 
     Attributes
@@ -45,8 +47,8 @@ class ImageMeans:
         Of one measurement, with that scatter.
     systematic_std : float
         What all measurements share.
-    joined : int
-        Images a place: 1, or more where there are very many.
+    images : int
+        Number of images: that of the places, or more where very many were joined.
     scatter : float
         Between the images that were joined; 0 where none were.
     """
@@ -59,13 +61,39 @@ class ImageMeans:
     within_std: float
     typical_std: float
     systematic_std: float
-    joined: int = 1
+    images: int
     scatter: float = 0.0
 
     @property
     def size(self) -> int:
-        """Number of images."""
+        """Number of places."""
         return int(self.value.size)
+
+    @property
+    def are_joined(self) -> bool:
+        """Whether a place stands for several images."""
+        return self.images > self.size
+
+    def to_dict(self) -> dict[str, Any]:
+        """All fields, arrays as lists."""
+        found = {one.name: getattr(self, one.name) for one in fields(self)}
+        return {
+            name: value.tolist() if isinstance(value, np.ndarray) else value
+            for name, value in found.items()
+        }
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> ImageMeans:
+        """What `to_dict` wrote."""
+        fields_of: dict[str, Any] = {
+            name: _array(name, value) if isinstance(value, list) else value
+            for name, value in document.items()
+        }
+        return cls(**fields_of)
+
+
+def _array(name: str, listed: list[float]) -> NDArray[Any]:
+    return np.array(listed, np.int64 if name in ("count", "label") else float)
 
 
 def stated_variance(std: Floats) -> Floats:
@@ -100,7 +128,7 @@ def image_means(series: Series) -> ImageMeans:
     at = np.argsort(when, kind="stable")
     return ImageMeans(
         when[at], mean[at], spread[at], count[at], label[at],
-        float(np.sqrt(added)), float(np.sqrt(np.median(total))), systematic,
+        float(np.sqrt(added)), float(np.sqrt(np.median(total))), systematic, count.size,
     )  # fmt: skip
 
 
@@ -168,5 +196,5 @@ def joined_images(images: ImageMeans, most: int) -> ImageMeans:
         np.array([images.when[part].mean() for part in parts]), value, variance,
         np.array([images.count[part].sum() for part in parts]), np.full(most, -1),
         images.within_std, images.typical_std, images.systematic_std,
-        images.size // most, scale,
+        images.images, scale,
     )  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, date, datetime, timedelta
 
 import numpy as np
@@ -79,6 +79,8 @@ class Series(ShortRepr):
         What an image is called in messages.
     name : str, optional
         What was measured: "QB02, pan, across".
+    notes : tuple of str, optional
+        What has to be known of the measurements, in sentences.
 
     Raises
     ------
@@ -95,6 +97,7 @@ class Series(ShortRepr):
     gsd_m: Floats | None = None
     image_names: Mapping[int, str] = field(default_factory=dict)
     name: str = ""
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         arrays = (self.when, self.std, self.image, self.systematic_std, self.gsd_m)
@@ -117,12 +120,11 @@ class Series(ShortRepr):
 
     def of(self, rows: NDArray[np.bool_]) -> Series:
         """The measurements of a mask."""
-        return Series(
-            metric=self.metric, when=self.when[rows], value=self.value[rows], std=self.std[rows],
-            image=self.image[rows],
-            systematic_std=None if self.systematic_std is None else self.systematic_std[rows],
-            gsd_m=None if self.gsd_m is None else self.gsd_m[rows],
-            image_names=self.image_names, name=self.name,
+        systematic, gsd_m = self.systematic_std, self.gsd_m
+        return replace(
+            self, when=self.when[rows], value=self.value[rows], std=self.std[rows],
+            image=self.image[rows], gsd_m=None if gsd_m is None else gsd_m[rows],
+            systematic_std=None if systematic is None else systematic[rows],
         )  # fmt: skip
 
     def known(self) -> Series:

@@ -163,5 +163,3 @@ def _with_any_other(steps: Steps, places: Places) -> Steps:
     repeated = np.repeat(steps, places.first.size, axis=0)
     other = np.tile(places.first, steps.shape[0])
     return _apart(np.column_stack([repeated, other]))
-
-

@@ -1,0 +1,184 @@
+"""What a sensor has to reach, as a file of requirements.
+
+.. code-block:: toml
+
+    title = "NASA data purchase"
+
+    [[requirement]]
+    name = "panchromatic MTF"
+    metric = "mtf_nyquist"
+    minimum = 0.09              # or maximum = ...
+    sensor = "QB02"             # of all sensors without it, each by itself
+    band = "pan"
+    orientation = "across"      # of both without it, each by itself
+    confidence = 0.95
+    since = 2003-01-01          # or window_days = 365, up to the last image
+    on = 2003-12-31             # the day asked; that of the last image without it
+    verdict = "usable"          # measurements of this verdict or better
+"""
+
+from __future__ import annotations
+
+import datetime
+import os
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from acutance.curves import METRICS
+from acutance.errors import OptionError
+
+__all__ = ["Requirement", "Specification", "read_specification"]
+
+Names = str | list[str]
+
+
+class Requirement(BaseModel):
+    """One requirement: the mean of a sensor at a date, above a minimum or below a maximum.
+
+    Parameters
+    ----------
+    metric : str
+        One of the numbers of a measurement, "mtf_nyquist".
+    minimum, maximum : float, optional
+        Exactly one of them.
+    name : str, optional
+        What it is called.
+    sensor, band, orientation, site, target, kind, method : optional
+        Which measurements count.
+    confidence : float, optional
+        Probability from which it is met, and from which it is not met.
+    since, until : date, optional
+        Days of acquisition that count, both included.
+    window_days : float, optional
+        Only so many days up to the last image.
+    on : date, optional
+        The day for which it is asked; that of the last image without it.
+    verdict : str, optional
+        Measurements of this verdict or better.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    metric: str
+    minimum: float | None = Field(None, allow_inf_nan=False)
+    maximum: float | None = Field(None, allow_inf_nan=False)
+    name: str = ""
+    sensor: Names | None = None
+    band: Names | None = None
+    orientation: Literal["across", "along"] | None = None
+    site: Names | None = None
+    target: Names | None = None
+    kind: Names | None = None
+    method: Names | None = None
+    confidence: float = Field(0.95, gt=0.5, lt=1)
+    since: datetime.date | None = None
+    until: datetime.date | None = None
+    window_days: float | None = Field(None, gt=0)
+    on: datetime.date | None = None
+    verdict: Literal["good", "usable", "doubtful", "invalid"] = "usable"
+
+    @model_validator(mode="after")
+    def _has_one_limit(self) -> Requirement:
+        if (self.minimum is None) == (self.maximum is None):
+            raise ValueError("give a minimum or a maximum, one of them")
+        if self.metric not in METRICS:
+            raise ValueError(f"metric {self.metric!r} is none of {', '.join(METRICS)}")
+        return self
+
+    @property
+    def limit(self) -> float:
+        """The minimum or the maximum."""
+        return float(self.maximum if self.minimum is None else self.minimum)  # type: ignore[arg-type]
+
+    @property
+    def is_minimum(self) -> bool:
+        """Whether the sensor has to be above the limit."""
+        return self.minimum is not None
+
+    @property
+    def sentence(self) -> str:
+        """Metric, sense and limit."""
+        return f"{self.metric} {'>=' if self.is_minimum else '<='} {self.limit:g}"
+
+    @property
+    def selection(self) -> dict[str, Any]:
+        """The filters of an archive that it means."""
+        names = ("sensor", "band", "orientation", "site", "target", "kind", "method", "since",
+                 "until", "verdict")  # fmt: skip
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+
+class Specification(BaseModel):
+    """All requirements of a file.
+
+    Parameters
+    ----------
+    title : str, optional
+    requirement : list of Requirement
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    title: str = ""
+    requirement: list[Requirement] = Field(min_length=1)
+
+    @classmethod
+    def of(cls, document: Mapping[str, Any], source: str = "the specification") -> Specification:
+        """The specification of a document; everything that is wrong is named at once.
+
+        Parameters
+        ----------
+        document : mapping
+        source : str, optional
+            Where it came from, for the message.
+
+        Raises
+        ------
+        OptionError
+            If it has unknown keys, or values they cannot have.
+        """
+        try:
+            return cls.model_validate(document)
+        except ValidationError as error:
+            raise OptionError(f"{source}: {'; '.join(_wrong(error))}") from None
+
+
+def read_specification(path: str | os.PathLike[str]) -> Specification:
+    """The specification of a TOML file.
+
+    Parameters
+    ----------
+    path : path
+
+    Returns
+    -------
+    Specification
+
+    Raises
+    ------
+    OptionError
+        If it cannot be read, is no TOML, or says what cannot be.
+    """
+    try:
+        text = Path(path).read_bytes().decode()
+        document = tomllib.loads(text)
+    except OSError as error:
+        raise OptionError(f"{path} cannot be read ({error.strerror}): name a TOML file") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise OptionError(f"{path} is no TOML: {error}") from error
+    return Specification.of(document, str(path))
+
+
+def _wrong(error: ValidationError) -> list[str]:
+    """What is wrong, each with its place."""
+    found = []
+    for one in error.errors():
+        place = ".".join(str(part + 1 if isinstance(part, int) else part) for part in one["loc"])
+        kind, message = one["type"], one["msg"].removeprefix("Value error, ")
+        said = "is no key" if kind == "extra_forbidden" else message[:1].lower() + message[1:]
+        found.append(f"{place}: {said}")
+    return found

@@ -1,0 +1,225 @@
+"""Does a sensor meet a requirement: met, not met, or cannot be told yet.
+
+What is judged is the mean of the sensor on the day asked, over the year (without the season): not
+a single image, and not the mean of those that happen to be there. Its posterior is that of the
+trend; of images that show no trend (fewer than three dates) the mean with random effects stands in.
+"""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil
+from typing import Any, Final
+
+import numpy as np
+
+from acutance.archive.specification import Requirement
+from acutance.archive.trends.fit_trend import fit_trend
+from acutance.archive.trends.images import image_means
+from acutance.archive.trends.series import Event, Series, date_of, decimal_year
+from acutance.archive.trends.trend import Trend
+from acutance.archive.trends.tuned import MIN_IMAGES
+from acutance.archive.weighted_means import weighted_mean
+from acutance.curves import METRICS, Estimate
+from acutance.curves.estimate import normal_quantile
+from acutance.errors import OptionError
+
+__all__ = ["Answer", "check_requirement"]
+
+MET: Final = "met"
+NOT_MET: Final = "not met"
+OPEN: Final = "cannot be told yet"
+_YEAR_DAYS: Final = 365.25
+_MOST: Final = 10_000
+"""More images than this are no answer."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is known of a requirement.
+
+    Attributes
+    ----------
+    requirement : Requirement
+    what : str
+        Whose it is: "QB02, pan, across".
+    word : {"met", "not met", "cannot be told yet"}
+    probability : float or None
+        That it is met; ``None`` where nothing can be said.
+    mean : Estimate or None
+        The sensor's mean on the day.
+    day : date or None
+    images : int
+    more_images : int or None
+        How many more would tell, if the mean is what it is now; 0 where it is told, ``None`` where
+        none of a reasonable number would.
+    reason : str
+        Why it cannot be told, or what to know of it.
+    """
+
+    requirement: Requirement
+    what: str
+    word: str
+    probability: float | None
+    mean: Estimate | None
+    day: datetime.date | None
+    images: int
+    more_images: int | None
+    reason: str = ""
+
+    @property
+    def summary(self) -> str:
+        """The answer in a sentence."""
+        what = f"{self.what}: " if self.what else ""
+        asked = self.requirement.sentence
+        if self.mean is None or self.probability is None:
+            return f"{what}{asked} {self.word}: {self.reason}."
+        text = (
+            f"{what}{asked} is {self.word}" if self.word != OPEN else f"{what}{asked} {self.word}"
+        )
+        text += f" (probability of being met {_written(self.probability)}): {self.mean}"
+        if self.day is not None:
+            text += f" on {self.day}"
+        text += f", {self.images} images."
+        if self.word == OPEN:
+            text += f" {self.advice}"
+        return f"{text} {self.reason}".rstrip()
+
+    @property
+    def advice(self) -> str:
+        """How many more images would tell."""
+        if self.more_images is None:
+            return "More images alone would not tell: the mean is too near the limit."
+        count = self.more_images
+        return f"About {count} more image{'' if count == 1 else 's'} would tell."
+
+    def to_dict(self) -> dict[str, Any]:
+        """All fields for JSON; the requirement as it was written."""
+        return {
+            "requirement": self.requirement.model_dump(mode="json", exclude_none=True),
+            "what": self.what,
+            "word": self.word,
+            "probability": self.probability,
+            "mean": None if self.mean is None else self.mean.to_dict(),
+            "day": None if self.day is None else self.day.isoformat(),
+            "images": self.images,
+            "more_images": self.more_images,
+            "summary": self.summary,
+        }
+
+
+def check_requirement(
+    requirement: Requirement, series: Series, events: Sequence[Event] = ()
+) -> Answer:
+    """Judge a requirement by the measurements of one sensor, band and direction.
+
+    Parameters
+    ----------
+    requirement : Requirement
+    series : Series
+        Of its metric; those outside its window are left out here.
+    events : sequence of Event, optional
+        Dates at which the sensor may have changed.
+
+    Returns
+    -------
+    Answer
+    """
+    known = _in_window(series.known(), requirement)
+    images = int(np.unique(known.image).size)
+    if images < 2:
+        return _untold(requirement, series, images)
+    try:
+        trend = fit_trend(known, events)
+    except OptionError:
+        return _by_mean(requirement, known)
+    return _by_trend(requirement, trend)
+
+
+def _in_window(series: Series, requirement: Requirement) -> Series:
+    if requirement.window_days is None or not np.isfinite(series.when).any():
+        return series
+    last = np.nanmax(series.when)
+    return series.of(series.when >= last - requirement.window_days / _YEAR_DAYS)
+
+
+def _untold(requirement: Requirement, series: Series, images: int) -> Answer:
+    reason = (
+        "there is no image" if images == 0 else
+        "there is one image, which does not show how much images scatter"
+    )  # fmt: skip
+    return Answer(requirement, series.name, OPEN, None, None, None, images,
+                  MIN_IMAGES - images, reason)  # fmt: skip
+
+
+def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
+    year = float(trend.images.when[-1])
+    if requirement.on is not None:
+        year = decimal_year(requirement.on)
+    density = trend.mean(year, season=False)
+    below = density.probability_below(requirement.limit)
+    met = 1 - below if requirement.is_minimum else below
+    posterior = trend.posterior
+    # Of Student-t scatter an image tells (nu + 1) / (nu + 3) of what a normal one would.
+    square = trend.scatter.value**2 + trend.images.typical_std**2
+    lost = float(posterior.share @ ((posterior.degrees + 3) / (posterior.degrees + 1)))
+    mean = density.estimate(0.0 if trend.metric in METRICS else None)
+    return _answer(
+        requirement, trend.name, met, mean, date_of(year), trend.images.images, square * lost,
+        trend.images.systematic_std, " ".join(trend.notes),
+    )  # fmt: skip
+
+
+def _by_mean(requirement: Requirement, series: Series) -> Answer:
+    """Of images without dates, or all of one day: their mean, taken as that of the sensor."""
+    undated = Series(
+        metric=series.metric, when=np.zeros(series.size), value=series.value, std=series.std,
+        image=series.image, systematic_std=series.systematic_std, name=series.name,
+    )  # fmt: skip
+    images = image_means(undated)
+    found = weighted_mean(
+        images.value, np.sqrt(images.variance), systematic_std=images.systematic_std, lowest=0.0
+    )
+    below = found.probability_below(requirement.limit)
+    if np.isnan(below):
+        reason = "the images agree to the last digit and state no deviation"
+        return Answer(requirement, series.name, OPEN, None, None, None, images.size, None, reason)
+    met = 1 - below if requirement.is_minimum else below
+    square = found.scatter.value**2 + images.typical_std**2
+    return _answer(
+        requirement, series.name, met, found.mean, None, images.size, square,
+        images.systematic_std, "No trend: too few dates; the mean of the images stands in.",
+    )  # fmt: skip
+
+
+def _answer(
+    requirement: Requirement, what: str, met: float, mean: Estimate, day: datetime.date | None,
+    images: int, square: float, systematic_std: float, reason: str,
+) -> Answer:  # fmt: skip
+    confidence = requirement.confidence
+    word = MET if met >= confidence else NOT_MET if met <= 1 - confidence else OPEN
+    is_told = word != OPEN
+    more = 0 if is_told else _images_that_tell(requirement, mean, square, systematic_std)
+    return Answer(requirement, what, word, met, mean, day, images, more, reason)
+
+
+def _images_that_tell(
+    requirement: Requirement, mean: Estimate, square: float, systematic_std: float
+) -> int | None:
+    """Images about the day asked that would bring the mean's deviation to its distance."""
+    quantile = normal_quantile(2 * requirement.confidence - 1)
+    wanted = ((mean.value - requirement.limit) / quantile) ** 2 - systematic_std**2
+    now = max(mean.std**2 - systematic_std**2, 1e-300)
+    if wanted <= 0:
+        return None
+    count = max(1, ceil(square * (1 / wanted - 1 / now)))
+    return count if count <= _MOST else None
+
+
+def _written(probability: float) -> str:
+    """A probability that never looks like a certainty."""
+    if probability > 0.999:
+        return "> 0.999"
+    return "< 0.001" if probability < 0.001 else f"{probability:.3f}"

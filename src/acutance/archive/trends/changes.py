@@ -1,0 +1,152 @@
+"""What changed: steps at unknown dates, and the steps at stated events."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from acutance.archive.trends.posterior import TrendPosterior
+from acutance.archive.trends.series import date_of
+from acutance.archive.trends.tuned import REPORTED_STEP
+from acutance.curves import Estimate
+from acutance.curves.grid import Floats
+
+__all__ = ["Change", "EventEffect", "event_effects", "found_changes"]
+
+_LEVEL = 0.95
+
+
+@dataclass(frozen=True)
+class Change:
+    """A step at a date that was not stated.
+
+    Attributes
+    ----------
+    date : date
+        As probable before as after it.
+    since, until : date
+        Days between which it lies with a probability of 95 %.
+    size : Estimate
+        In the units of the metric; negative where it fell.
+    relative_size : Estimate
+        Over the level before it.
+    probability : float
+        That there is a step between those days.
+    """
+
+    date: datetime.date
+    since: datetime.date
+    until: datetime.date
+    size: Estimate
+    relative_size: Estimate
+    probability: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """All fields, dates in ISO 8601."""
+        return {
+            "date": self.date.isoformat(),
+            "since": self.since.isoformat(),
+            "until": self.until.isoformat(),
+            "size": self.size.to_dict(),
+            "relative_size": self.relative_size.to_dict(),
+            "probability": self.probability,
+        }
+
+
+@dataclass(frozen=True)
+class EventEffect:
+    """What a stated event did.
+
+    Attributes
+    ----------
+    name : str
+    date : date
+    size : Estimate
+        Step, in the units of the metric.
+    drift_change_per_year : Estimate or None
+        Where the drift may have changed.
+    """
+
+    name: str
+    date: datetime.date
+    size: Estimate
+    drift_change_per_year: Estimate | None = None
+
+    def to_dict(self) -> Mapping[str, Any]:
+        """All fields, the date in ISO 8601."""
+        slope = self.drift_change_per_year
+        return {
+            "name": self.name,
+            "date": self.date.isoformat(),
+            "size": self.size.to_dict(),
+            "drift_change_per_year": None if slope is None else slope.to_dict(),
+        }
+
+
+def found_changes(posterior: TrendPosterior) -> tuple[Change, ...]:
+    """The steps that are probable enough to be reported, in the order of time."""
+    probability = posterior.step_probability
+    if probability[1:].sum() < REPORTED_STEP:
+        return ()
+    count = 1 + int(np.argmax(probability[1:]))
+    with_them = posterior.steps == count
+    if not with_them.any():
+        return ()
+    those = posterior.those(with_them)
+    found = (_change(posterior, those, place) for place in range(count))
+    return tuple(change for change in found if change.probability >= REPORTED_STEP)
+
+
+def _change(posterior: TrendPosterior, those: TrendPosterior, place: int) -> Change:
+    low, high = those.step_low[:, place], those.step_high[:, place]
+    since, middle, until = (
+        _gap_quantile(low, high, those.share, level)
+        for level in (0.5 - _LEVEL / 2, 0.5, 0.5 + _LEVEL / 2)
+    )
+    size = those.coefficient(posterior.design.size + place)
+    before = np.array([middle - 1e-6])
+    levels, _ = those.of(those.rows(before, season=False))
+    level = float(those.share @ levels[:, 0]) or 1.0
+    return Change(
+        date_of(middle), date_of(since), date_of(until), size.estimate(),
+        size.times(1 / level).estimate(), _probability(posterior, since, until),
+    )  # fmt: skip
+
+
+def _gap_quantile(low: Floats, high: Floats, share: Floats, level: float) -> float:
+    """Quantile of a date that lies anywhere in one of several gaps."""
+    edges = np.unique(np.concatenate([low, high]))
+    width = np.maximum(high - low, 1e-9)
+    part = np.clip((edges[:, None] - low) / width, 0.0, 1.0) @ share
+    return float(np.interp(level, part, edges))
+
+
+def _probability(posterior: TrendPosterior, since: float, until: float) -> float:
+    """That any step lies between two dates."""
+    width = np.maximum(posterior.step_high - posterior.step_low, 1e-9)
+    inside = np.minimum(posterior.step_high, until) - np.maximum(posterior.step_low, since)
+    chance = np.nan_to_num(np.clip(inside / width, 0.0, 1.0))
+    held = 1 - np.prod(1 - chance, axis=1)
+    total = 0.0
+    for count, weight in enumerate(posterior.step_probability):
+        mask = posterior.steps == count
+        if mask.any():
+            total += float(
+                weight * (posterior.share[mask] @ held[mask]) / posterior.share[mask].sum()
+            )
+    return total
+
+
+def event_effects(posterior: TrendPosterior) -> tuple[EventEffect, ...]:
+    """The step, and the change of the drift, at every stated event."""
+    found, at = [], 4
+    for event in posterior.design.events:
+        size = posterior.coefficient(at).estimate()
+        slope = posterior.coefficient(at + 1).estimate() if event.changes_drift else None
+        found.append(EventEffect(event.name, date_of(event.year), size, slope))
+        at += 1 + event.changes_drift
+    return tuple(found)

@@ -1,0 +1,108 @@
+"""From a series to its trend."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from acutance.archive.trends.design import Design
+from acutance.archive.trends.gsd import gsd_events
+from acutance.archive.trends.images import ImageMeans, image_means, joined_images
+from acutance.archive.trends.posterior import TrendPosterior, trend_posterior
+from acutance.archive.trends.series import Event, Series, date_of
+from acutance.archive.trends.trend import BadDay, Trend
+from acutance.archive.trends.tuned import MAX_IMAGES, MIN_IMAGES, OUTLIER_SCALES
+from acutance.curves.grid import Floats
+from acutance.errors import OptionError
+
+__all__ = ["fit_trend"]
+
+_YEAR_DAYS = 365.25
+_MIN_DAYS = 1.0
+
+
+def fit_trend(series: Series, events: Sequence[Event] = ()) -> Trend:
+    """Level, drift, steps, season and scatter of a series.
+
+    Where the GSD of the images changes, a metric in pixels gets an event there
+    (`acutance.archive.trends.gsd`).
+
+    Parameters
+    ----------
+    series : Series
+    events : sequence of Event, optional
+        Dates at which the sensor may have changed.
+
+    Returns
+    -------
+    Trend
+
+    Raises
+    ------
+    OptionError
+        If fewer than three images have dates, or all are of one day.
+    """
+    dated = series.dated()
+    changes, notes = gsd_events(dated)
+    images = joined_images(image_means(dated), MAX_IMAGES)
+    _require_time(images, dated)
+    ordered = tuple(sorted((*events, *changes), key=lambda event: event.year))
+    design = Design(float(images.when.mean()), ordered)
+    posterior = trend_posterior(images, design)
+    return Trend(
+        metric=series.metric, name=series.name, measurements=dated.size, images=images,
+        posterior=posterior, bad_days=_bad_days(images, posterior, series),
+        notes=(*series.notes, *_left_out(series, dated), *_outside(images, events), *notes),
+    )  # fmt: skip
+
+
+def _require_time(images: ImageMeans, series: Series) -> None:
+    days = _YEAR_DAYS * float(images.when[-1] - images.when[0])
+    if images.size < MIN_IMAGES:
+        raise OptionError(
+            f"{series.title}: {images.size} images have dates, a trend needs {MIN_IMAGES}: select "
+            "more, or take their mean"
+        )
+    if days < _MIN_DAYS:
+        raise OptionError(
+            f"{series.title}: all {images.size} images are of {date_of(float(images.when[0]))}, "
+            "and a trend needs time between them: take their mean"
+        )
+
+
+def _left_out(series: Series, dated: Series) -> tuple[str, ...]:
+    left = series.known().size - dated.size
+    return (f"{left} measurements without a date are left out.",) if left else ()
+
+
+def _outside(images: ImageMeans, events: Sequence[Event]) -> tuple[str, ...]:
+    """Events before the first or after the last image: nothing shows what they did."""
+    names = [event.name for event in events
+             if not images.when[0] < event.year <= images.when[-1]]  # fmt: skip
+    if not names:
+        return ()
+    return (f"No image shows what {', '.join(names)} did: all are on one side of it.",)
+
+
+def _bad_days(images: ImageMeans, posterior: TrendPosterior, series: Series) -> tuple[BadDay, ...]:
+    """Images too far from the trend, worst first."""
+    if images.are_joined:
+        return ()
+    expected, scale = _expected(images, posterior)
+    off = (images.value - expected) / scale
+    far = np.flatnonzero(np.abs(off) > OUTLIER_SCALES)
+    return tuple(
+        BadDay(
+            date_of(float(images.when[at])), series.image_names.get(int(images.label[at]), ""),
+            float(images.value[at]), float(expected[at]), float(off[at]),
+        )
+        for at in far[np.argsort(-np.abs(off[far]))]
+    )  # fmt: skip
+
+
+def _expected(images: ImageMeans, posterior: TrendPosterior) -> tuple[Floats, Floats]:
+    """Mean of the posterior at every image, and the scale of its scatter."""
+    mean, _ = posterior.of(posterior.rows(images.when))
+    scatter = float(posterior.share @ posterior.scatter)
+    return posterior.share @ mean, np.sqrt(scatter**2 + images.variance)
