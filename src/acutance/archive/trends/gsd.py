@@ -7,15 +7,13 @@ then an event with a step of its own.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from acutance.archive.trends.series import Event, Series, date_of
-from acutance.errors import OptionError
 
-__all__ = ["gsd_events", "gsd_range", "in_metres"]
+__all__ = ["gsd_events", "gsd_range"]
 
 _SAME: Final = 0.02
 """GSDs that differ by less are those of one product."""
@@ -26,36 +24,6 @@ def gsd_range(series: Series) -> tuple[float, float] | None:
     """Smallest and largest GSD in metres; ``None`` where none is known."""
     known = np.array([]) if series.gsd_m is None else series.gsd_m[np.isfinite(series.gsd_m)]
     return (float(known.min()), float(known.max())) if known.size else None
-
-
-def in_metres(series: Series) -> Series:
-    """A series of a length in pixels (``fwhm_px``) as lengths in metres (``fwhm_m``).
-
-    Frequencies in cycles per pixel become cycles per metre.
-
-    Raises
-    ------
-    OptionError
-        If the metric is no length or frequency in pixels, or a GSD is not known.
-    """
-    name, unit = series.metric.rpartition("_")[::2]
-    if unit not in ("px", "cpp"):
-        raise OptionError(
-            f"{series.metric} cannot be told in metres: only lengths (fwhm_px) and frequencies "
-            "(mtf50_cpp) can"
-        )
-    if series.gsd_m is None or not np.isfinite(series.gsd_m).all():
-        raise OptionError(
-            f"{series.title} in metres needs the GSD of every image: state it, or select those "
-            "that have one"
-        )
-    factor = series.gsd_m if unit == "px" else 1 / series.gsd_m
-    systematic = series.systematic_std
-    return replace(
-        series, metric=f"{name}_m" if unit == "px" else f"{name}_cpm",
-        value=series.value * factor, std=series.std * factor,
-        systematic_std=None if systematic is None else systematic * factor,
-    )  # fmt: skip
 
 
 def gsd_events(series: Series) -> tuple[tuple[Event, ...], tuple[str, ...]]:
@@ -79,7 +47,7 @@ def gsd_events(series: Series) -> tuple[tuple[Event, ...], tuple[str, ...]]:
     if len(changed) > _MAX_CHANGES:
         return (), (
             f"The {span}, from image to image: numbers in pixels scatter with it. Compare lengths "
-            "in metres.",
+            "in metres (fwhm_m).",
         )
     events = tuple(
         Event(date_of(0.5 * float(when[at - 1] + when[at])),
@@ -88,10 +56,10 @@ def gsd_events(series: Series) -> tuple[tuple[Event, ...], tuple[str, ...]]:
     )  # fmt: skip
     note = f"The {span}: each change is an event with a step of its own"
     unit = series.metric.rpartition("_")[2]
-    advice = ("; in metres the series is one." if unit in ("px", "cpp") else
+    advice = ("; in metres (fwhm_m) there is none." if unit in ("px", "cpp") else
               ", because the frequency it belongs to changes on the ground.")  # fmt: skip
     return events, (note + advice,)
 
 
 def _is_in_metres(metric: str) -> bool:
-    return metric.rpartition("_")[2] in ("m", "cpm")
+    return metric.rpartition("_")[2] == "m"

@@ -1,0 +1,259 @@
+"""Tables of measurements across and along the track, by sensor, band, site, date.
+
+A cell of several measurements is their mean with random effects (`acutance.archive.weighted_means`)
+over images; every leading group has its average. The tables of the QuickBird and KOMPSAT-3
+documents are of this form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.archive.columns import Columns
+from acutance.archive.trends.images import image_means
+from acutance.archive.trends.series import Series
+from acutance.archive.weighted_means import weighted_mean
+from acutance.curves import METRICS, Estimate
+from acutance.errors import OptionError
+
+__all__ = ["GROUPS", "MeasurementTable", "TableRow", "table_by"]
+
+GROUPS: Final = (
+    "sensor", "band", "level", "site", "target", "date", "kind", "method", "image", "verdict",
+)  # fmt: skip
+"""What measurements can be grouped by."""
+ORIENTATIONS: Final = ("across", "along")
+_NEVER_MIXED: Final = ("sensor", "band", "level")
+_NONE: Final = "–"
+AVERAGE: Final = "average"
+
+
+@dataclass(frozen=True)
+class TableRow:
+    """One row.
+
+    Attributes
+    ----------
+    group : tuple of str
+        Values of the columns the table is grouped by; an average has "average" after those it is
+        of.
+    images, measurements : int
+    gsd_m : (float, float) or None
+        Smallest and largest.
+    cells : dict of (str, str) to Estimate
+        By orientation and metric; what was not measured is missing.
+    """
+
+    group: tuple[str, ...]
+    images: int
+    measurements: int
+    gsd_m: tuple[float, float] | None
+    cells: dict[tuple[str, str], Estimate]
+
+    @property
+    def is_average(self) -> bool:
+        """Whether it is the average of the rows before it."""
+        return AVERAGE in self.group
+
+
+@dataclass(frozen=True)
+class MeasurementTable:
+    """Rows of means across and along.
+
+    Attributes
+    ----------
+    by : tuple of str
+    metrics : tuple of str
+    rows : tuple of TableRow
+        In the order of their groups, averages after them.
+    """
+
+    by: tuple[str, ...]
+    metrics: tuple[str, ...]
+    rows: tuple[TableRow, ...]
+
+    @property
+    def columns(self) -> tuple[tuple[str, str], ...]:
+        """Orientation and metric of the columns that hold something."""
+        found = {key for row in self.rows for key in row.cells}
+        every = ((one, metric) for one in ORIENTATIONS for metric in self.metrics)
+        return tuple(key for key in every if key in found)
+
+    @property
+    def header(self) -> tuple[str, ...]:
+        """Titles of all columns."""
+        return (*self.by, "images", "GSD [m]", *(f"{metric} {one}" for one, metric in self.columns))
+
+    def texts(self) -> Iterator[tuple[str, ...]]:
+        """The rows as text."""
+        for row in self.rows:
+            cells = (_text(row.cells.get(key)) for key in self.columns)
+            yield (*row.group, str(row.images), _gsd_text(row.gsd_m), *cells)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All rows as strict JSON types."""
+        return {
+            "schema": "acutance/archive-table/1",
+            "by": list(self.by),
+            "metrics": list(self.metrics),
+            "rows": [_row_document(row, self.by) for row in self.rows],
+        }
+
+
+def table_by(
+    rows: Columns,
+    by: Sequence[str] = ("site", "date"),
+    metrics: Sequence[str] = ("rer", "fwhm_px", "mtf_nyquist"),
+) -> MeasurementTable:
+    """Means across and along by what measurements are grouped by.
+
+    Sensors, bands and product levels are never mixed: where there are several of them, they lead
+    the groups.
+
+    Parameters
+    ----------
+    rows : Columns
+        Of `acutance.Archive.measurements`.
+    by : sequence of str, optional
+        Of `GROUPS`.
+    metrics : sequence of str, optional
+
+    Returns
+    -------
+    MeasurementTable
+
+    Raises
+    ------
+    OptionError
+        If there is no such group or metric, or there are no rows.
+    """
+    _require(rows, by, metrics)
+    words = {name: _words(rows, name) for name in GROUPS}
+    lead = [name for name in _NEVER_MIXED if name not in by and len(set(words[name])) > 1]
+    names = (*lead, *by)
+    keys = list(zip(*(words[name] for name in names), strict=True))
+    found = [_row(rows, key, _mask(keys, key), metrics) for key in sorted(set(keys))]
+    fixed = max(len(lead), max((names.index(one) + 1 for one in _NEVER_MIXED if one in by
+                                and len(set(words[one])) > 1), default=0))  # fmt: skip
+    return MeasurementTable(
+        names, tuple(metrics), tuple(_with_averages(rows, found, keys, fixed, metrics))
+    )
+
+
+def _require(rows: Columns, by: Sequence[str], metrics: Sequence[str]) -> None:
+    unknown = [name for name in by if name not in GROUPS]
+    if unknown or not by:
+        raise OptionError(
+            f"a table is by {', '.join(unknown) or 'nothing'}: choose of {', '.join(GROUPS)}"
+        )
+    strange = [name for name in metrics if name not in METRICS]
+    if strange or not metrics:
+        raise OptionError(
+            f"there is no metric {', '.join(strange) or '(none given)'}, only {', '.join(METRICS)}"
+        )
+    if not len(rows):
+        raise OptionError("nothing is selected: widen the filters")
+
+
+def _words(rows: Columns, name: str) -> list[str]:
+    if name == "date":
+        days = rows["acquired"].astype("datetime64[D]")
+        return [_NONE if np.isnat(day) else str(day) for day in days]
+    return [_NONE if one is None else str(one) for one in rows[name].tolist()]
+
+
+def _mask(keys: list[tuple[str, ...]], prefix: tuple[str, ...]) -> NDArray[np.bool_]:
+    return np.array([key[: len(prefix)] == prefix for key in keys])
+
+
+def _row(
+    rows: Columns, group: tuple[str, ...], mask: NDArray[np.bool_], metrics: Sequence[str]
+) -> TableRow:
+    cells = {}
+    for orientation in ORIENTATIONS:
+        own = mask & (rows["orientation"] == orientation)
+        for metric in metrics:
+            estimate = _cell(rows, metric, own)
+            if estimate is not None:
+                cells[orientation, metric] = estimate
+    gsd_m = rows["gsd_m"][mask]
+    known = gsd_m[np.isfinite(gsd_m)]
+    return TableRow(
+        group, np.unique(rows["image_id"][mask]).size, np.unique(rows["id"][mask]).size,
+        (float(known.min()), float(known.max())) if known.size else None, cells,
+    )  # fmt: skip
+
+
+def _cell(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Estimate | None:
+    """One measurement as it is, of several the mean of the means of images."""
+    mask = mask & np.isfinite(rows[metric])
+    value, std = rows[metric][mask], rows[f"{metric}_std"][mask]
+    if value.size == 0:
+        return None
+    if value.size == 1:
+        return Estimate(float(value[0]), float(std[0]))
+    image = rows["image_id"][mask]
+    if np.unique(image).size == 1:
+        return weighted_mean(value, std).mean
+    series = Series(metric=metric, when=np.zeros(value.size), value=value, std=std, image=image)
+    images = image_means(series)
+    return weighted_mean(images.value, np.sqrt(images.variance)).mean
+
+
+def _with_averages(
+    rows: Columns, found: list[TableRow], keys: list[tuple[str, ...]], fixed: int,
+    metrics: Sequence[str],
+) -> Iterator[TableRow]:  # fmt: skip
+    """The rows, after each leading group its average, and that of all where nothing is mixed.
+
+    Parameters
+    ----------
+    rows : Columns
+    found : list of TableRow
+    keys : list of tuple of str
+        Groups of the rows of the archive.
+    fixed : int
+        Leading columns that averages may not run over.
+    metrics : sequence of str
+    """
+    width = len(found[0].group)
+    for at, row in enumerate(found):
+        yield row
+        for size in range(width - 1, fixed - 1, -1):
+            prefix = row.group[:size]
+            is_last = at + 1 == len(found) or found[at + 1].group[:size] != prefix
+            count = sum(one.group[:size] == prefix for one in found)
+            if is_last and count > 1:
+                blank = ("",) * (width - size - 1)
+                group = (*prefix, AVERAGE, *blank)
+                yield _row(rows, group, _mask(keys, prefix), metrics)
+
+
+def _text(estimate: Estimate | None) -> str:
+    return _NONE if estimate is None else str(estimate)
+
+
+def _gsd_text(gsd_m: tuple[float, float] | None) -> str:
+    if gsd_m is None:
+        return _NONE
+    low, high = gsd_m
+    return f"{low:.3g}" if high <= 1.005 * low else f"{low:.3g}–{high:.3g}"
+
+
+def _row_document(row: TableRow, by: tuple[str, ...]) -> dict[str, Any]:
+    cells: dict[str, dict[str, Any]] = {}
+    for (orientation, metric), estimate in row.cells.items():
+        cells.setdefault(orientation, {})[metric] = estimate.to_dict()
+    return {
+        **dict(zip(by, row.group, strict=True)),
+        "is_average": row.is_average,
+        "images": row.images,
+        "measurements": row.measurements,
+        "gsd_m": None if row.gsd_m is None else list(row.gsd_m),
+        **cells,
+    }

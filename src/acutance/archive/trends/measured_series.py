@@ -1,0 +1,123 @@
+"""From rows of an archive to series: one metric of one sensor, band and direction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.archive.columns import Columns
+from acutance.archive.trends.series import Series
+from acutance.curves import MAIN_NUMBERS, METRICS
+from acutance.curves.grid import Floats
+from acutance.errors import OptionError
+
+__all__ = ["all_series", "one_series"]
+
+_ONE_OF = ("sensor", "band", "orientation")
+"""What a trend is of one of."""
+_MIXED = ("method", "kind", "level")
+"""What differs in how it measures: its change looks like one of the sensor."""
+
+
+def one_series(rows: Columns, metric: str) -> Series:
+    """The series of rows that are of one sensor, band and direction.
+
+    Parameters
+    ----------
+    rows : Columns
+        Of `acutance.Archive.measurements`.
+    metric : str
+
+    Raises
+    ------
+    OptionError
+        If there is no such metric, no rows, or they are of several sensors, bands or directions.
+    """
+    _require_metric(metric)
+    if not len(rows):
+        raise OptionError("nothing is selected: widen the filters")
+    for name in _ONE_OF:
+        found = _words(rows, name)
+        if len(found) > 1:
+            raise OptionError(
+                f"the measurements are of {len(found)} {name}s, {', '.join(found)}: select one "
+                f"({name}=..., --{name})"
+            )
+    return _series(rows, metric, np.ones(len(rows), bool))
+
+
+def all_series(rows: Columns, metric: str) -> Iterator[Series]:
+    """A series for each sensor, band and direction that rows are of.
+
+    Parameters
+    ----------
+    rows : Columns
+    metric : str
+    """
+    _require_metric(metric)
+    keys = [tuple(one) for one in zip(*(rows[name].tolist() for name in _ONE_OF), strict=True)]
+    index = {key: at for at, key in enumerate(dict.fromkeys(keys))}
+    label = np.array([index[key] for key in keys], int)
+    for key in sorted(index, key=lambda one: tuple(str(part) for part in one)):
+        yield _series(rows, metric, label == index[key])
+
+
+def _require_metric(metric: str) -> None:
+    if metric not in METRICS:
+        raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRICS)}")
+
+
+def _words(rows: Columns, name: str) -> list[str]:
+    return sorted({"unknown" if one is None else str(one) for one in rows[name].tolist()})
+
+
+def _series(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Series:
+    value = rows[metric][mask]
+    std, systematic = _parts(rows, metric, mask)
+    image = rows["image_id"][mask]
+    names = dict(zip(image.tolist(), rows["image"][mask].tolist(), strict=True))
+    title = [rows[name][mask][0] for name in _ONE_OF]
+    return Series(
+        metric=metric, when=_years(rows["acquired"][mask]), value=value, std=std,
+        systematic_std=systematic, image=image, gsd_m=rows["gsd_m"][mask],
+        image_names={number: name for number, name in names.items() if name is not None},
+        name=", ".join(str(part) for part in title if part is not None),
+        notes=tuple(_mixed(rows, mask)),
+    )  # fmt: skip
+
+
+def _parts(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """Random and systematic parts of the stated deviations.
+
+    Budgets are of the main numbers; the largest of their systematic shares stands in for others.
+    """
+    std = rows[f"{metric}_std"][mask]
+    if metric in MAIN_NUMBERS:
+        systematic = np.nan_to_num(rows[f"{metric}_systematic_std"][mask])
+    else:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            shares = [rows[f"{name}_systematic_std"][mask] / rows[f"{name}_std"][mask]
+                      for name in MAIN_NUMBERS]  # fmt: skip
+        share = np.max([np.where(np.isfinite(one), one, 0.0) for one in shares], axis=0)
+        systematic = np.nan_to_num(share * std)
+    systematic = np.minimum(systematic, np.nan_to_num(std))
+    return np.sqrt(np.maximum(std**2 - systematic**2, 0.0)), systematic
+
+
+def _years(acquired: NDArray[np.datetime64]) -> Floats:
+    """Years with decimals; ``nan`` where there is no date."""
+    year = acquired.astype("datetime64[Y]")
+    begin, end = (one.astype("datetime64[us]") for one in (year, year + 1))
+    return np.asarray(1970 + year.astype(float) + (acquired - begin) / (end - begin))
+
+
+def _mixed(rows: Columns, mask: NDArray[np.bool_]) -> Iterator[str]:
+    for name in _MIXED:
+        found = sorted({str(one) for one in rows[name][mask].tolist() if one is not None})
+        if len(found) > 1:
+            yield (
+                f"Measurements of {len(found)} {name}s are mixed ({', '.join(found)}): where one "
+                "takes over from another, that looks like a change of the sensor."
+            )
