@@ -19,6 +19,7 @@ from acutance.archive.measurements import (
 )
 from acutance.archive.migrations import ensure_schema
 from acutance.archive.overview import Overview, overview_of
+from acutance.archive.questions import Questions
 from acutance.archive.runs import end_run, kept_keys, start_run
 from acutance.archive.selection import Selection, SelectionWords
 from acutance.archive.stored_entries import select_ids, stored_entries
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["Archive"]
 
 
-class Archive:
+class Archive(Questions):
     """Measurements with their images, targets and runs, in a file of SQLite or in PostgreSQL.
 
     Many processes may add at once; what is added twice is kept once. The tables are made where

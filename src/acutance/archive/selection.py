@@ -26,6 +26,7 @@ class SelectionWords(TypedDict, total=False):
     """The fields of `Selection` as keywords."""
 
     sensor: Names | None
+    level: Names | None
     band: Names | None
     site: Names | None
     target: Names | None
@@ -46,7 +47,7 @@ class Selection:
 
     Parameters
     ----------
-    sensor, band, site, target, kind, method, orientation : str or sequence of str, optional
+    sensor, level, band, site, target, kind, method, orientation : str or sequence of str, optional
         Whole names, as they were written; of several, any.
     since, until : datetime, date or str, optional
         Of the acquisition, both included; a day is all of the day, and without a zone UTC. What has
@@ -61,6 +62,7 @@ class Selection:
     """
 
     sensor: Names | None = None
+    level: Names | None = None
     band: Names | None = None
     site: Names | None = None
     target: Names | None = None
@@ -151,6 +153,7 @@ class Selection:
 
     def _named(self) -> Iterator[tuple[Column[Any], Names | None]]:
         yield images.c.sensor, self.sensor
+        yield images.c.level, self.level
         yield measurements.c.band, self.band
         yield targets.c.site, self.site
         yield targets.c.name, self.target

@@ -26,7 +26,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from acutance.curves import METRICS
 from acutance.errors import OptionError
@@ -47,7 +47,7 @@ class Requirement(BaseModel):
         Exactly one of them.
     name : str, optional
         What it is called.
-    sensor, band, orientation, site, target, kind, method : optional
+    sensor, level, band, orientation, site, target, kind, method : optional
         Which measurements count.
     confidence : float, optional
         Probability from which it is met, and from which it is not met.
@@ -68,6 +68,7 @@ class Requirement(BaseModel):
     maximum: float | None = Field(None, allow_inf_nan=False)
     name: str = ""
     sensor: Names | None = None
+    level: Names | None = None
     band: Names | None = None
     orientation: Literal["across", "along"] | None = None
     site: Names | None = None
@@ -85,9 +86,14 @@ class Requirement(BaseModel):
     def _has_one_limit(self) -> Requirement:
         if (self.minimum is None) == (self.maximum is None):
             raise ValueError("give a minimum or a maximum, one of them")
-        if self.metric not in METRICS:
-            raise ValueError(f"metric {self.metric!r} is none of {', '.join(METRICS)}")
         return self
+
+    @field_validator("metric")
+    @classmethod
+    def _is_metric(cls, name: str) -> str:
+        if name not in METRICS:
+            raise ValueError(f"{name!r} is none of {', '.join(METRICS)}")
+        return name
 
     @property
     def limit(self) -> float:
@@ -107,8 +113,8 @@ class Requirement(BaseModel):
     @property
     def selection(self) -> dict[str, Any]:
         """The filters of an archive that it means."""
-        names = ("sensor", "band", "orientation", "site", "target", "kind", "method", "since",
-                 "until", "verdict")  # fmt: skip
+        names = ("sensor", "level", "band", "orientation", "site", "target", "kind", "method",
+                 "since", "until", "verdict")  # fmt: skip
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
 

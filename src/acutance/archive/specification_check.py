@@ -8,25 +8,26 @@ trend; of images that show no trend (fewer than three dates) the mean with rando
 from __future__ import annotations
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil
 from typing import Any, Final
 
 import numpy as np
 
-from acutance.archive.specification import Requirement
+from acutance.archive.columns import Columns
+from acutance.archive.specification import Requirement, Specification
 from acutance.archive.trends.fit_trend import fit_trend
-from acutance.archive.trends.images import image_means
+from acutance.archive.trends.images import mean_of_images
+from acutance.archive.trends.measured_series import all_series
 from acutance.archive.trends.series import Event, Series, date_of, decimal_year
 from acutance.archive.trends.trend import Trend
 from acutance.archive.trends.tuned import MIN_IMAGES
-from acutance.archive.weighted_means import weighted_mean
 from acutance.curves import METRICS, Estimate
 from acutance.curves.estimate import normal_quantile
 from acutance.errors import OptionError
 
-__all__ = ["Answer", "check_requirement"]
+__all__ = ["Answer", "SpecificationCheck", "check_requirement", "check_specification"]
 
 MET: Final = "met"
 NOT_MET: Final = "not met"
@@ -34,6 +35,10 @@ OPEN: Final = "cannot be told yet"
 _YEAR_DAYS: Final = 365.25
 _MOST: Final = 10_000
 """More images than this are no answer."""
+
+
+Select = Callable[[dict[str, Any]], Columns]
+"""Rows of an archive by the filters of a requirement."""
 
 
 @dataclass(frozen=True)
@@ -110,6 +115,81 @@ class Answer:
         }
 
 
+@dataclass(frozen=True)
+class SpecificationCheck:
+    """The answers to all requirements of a specification.
+
+    Attributes
+    ----------
+    title : str
+    answers : tuple of Answer
+        In the order of the requirements; one for each sensor, band, level and direction that a
+        requirement does not choose between.
+    """
+
+    title: str
+    answers: tuple[Answer, ...]
+
+    @property
+    def word(self) -> str:
+        """Of the whole: not met if one is not met, met if all are, else it cannot be told yet."""
+        words = {answer.word for answer in self.answers}
+        if NOT_MET in words:
+            return NOT_MET
+        return MET if words == {MET} else OPEN
+
+    @property
+    def summary(self) -> str:
+        """The word, and how many answers are of each."""
+        counts = {word: sum(answer.word == word for answer in self.answers)
+                  for word in (MET, NOT_MET, OPEN)}  # fmt: skip
+        listed = ", ".join(f"{count} {word}" for word, count in counts.items() if count)
+        return f"{self.title or 'The specification'}: {self.word} ({listed})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Title, word and all answers for JSON."""
+        return {
+            "schema": "acutance/specification-check/1",
+            "title": self.title,
+            "word": self.word,
+            "summary": self.summary,
+            "answers": [answer.to_dict() for answer in self.answers],
+        }
+
+
+def check_specification(
+    specification: Specification, select: Select, events: Sequence[Event] = ()
+) -> SpecificationCheck:
+    """Judge all requirements of a specification.
+
+    Parameters
+    ----------
+    specification : Specification
+    select : callable
+        Rows of an archive by filters (`Requirement.selection`).
+    events : sequence of Event, optional
+        Dates at which the sensors may have changed.
+
+    Returns
+    -------
+    SpecificationCheck
+    """
+    answers: list[Answer] = []
+    for requirement in specification.requirement:
+        rows = select(requirement.selection)
+        found = [check_requirement(requirement, series, events)
+                 for series in all_series(rows, requirement.metric)]  # fmt: skip
+        answers += found or [_nothing(requirement)]
+    return SpecificationCheck(specification.title, tuple(answers))
+
+
+def _nothing(requirement: Requirement) -> Answer:
+    """Nothing in the archive is what a requirement is about."""
+    chosen = (requirement.selection.get(name) for name in ("sensor", "band", "orientation"))
+    what = ", ".join(one if isinstance(one, str) else " or ".join(one) for one in chosen if one)
+    return Answer(requirement, what, OPEN, None, None, None, 0, MIN_IMAGES, "there is no image")
+
+
 def check_requirement(
     requirement: Requirement, series: Series, events: Sequence[Event] = ()
 ) -> Answer:
@@ -174,23 +254,17 @@ def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
 
 def _by_mean(requirement: Requirement, series: Series) -> Answer:
     """Of images without dates, or all of one day: their mean, taken as that of the sensor."""
-    undated = Series(
-        metric=series.metric, when=np.zeros(series.size), value=series.value, std=series.std,
-        image=series.image, systematic_std=series.systematic_std, name=series.name,
-    )  # fmt: skip
-    images = image_means(undated)
-    found = weighted_mean(
-        images.value, np.sqrt(images.variance), systematic_std=images.systematic_std, lowest=0.0
-    )
+    found = mean_of_images(series)
     below = found.probability_below(requirement.limit)
     if np.isnan(below):
         reason = "the images agree to the last digit and state no deviation"
-        return Answer(requirement, series.name, OPEN, None, None, None, images.size, None, reason)
+        return Answer(requirement, series.name, OPEN, None, None, None, found.count, None, reason)
     met = 1 - below if requirement.is_minimum else below
-    square = found.scatter.value**2 + images.typical_std**2
+    stated = np.nan_to_num(series.std)
+    square = found.scatter.value**2 + float(np.median(stated**2))
     return _answer(
-        requirement, series.name, met, found.mean, None, images.size, square,
-        images.systematic_std, "No trend: too few dates; the mean of the images stands in.",
+        requirement, series.name, met, found.mean, None, found.count, square,
+        found.systematic_std, "No trend: too few dates; the mean of the images stands in.",
     )  # fmt: skip
 
 

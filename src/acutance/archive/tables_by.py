@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.archive.columns import Columns
+from acutance.archive.measurements import Measurements
 from acutance.archive.trends.images import image_means
 from acutance.archive.trends.series import Series
 from acutance.archive.weighted_means import weighted_mean
@@ -29,6 +30,9 @@ GROUPS: Final = (
 """What measurements can be grouped by."""
 ORIENTATIONS: Final = ("across", "along")
 _NEVER_MIXED: Final = ("sensor", "band", "level")
+PRINTED: Final = ("prf_fwhm_px", "prf_fwhm_m")
+"""Numbers of published tables that are no metric: widths of pulse responses, the target's included.
+They are read from the documents."""
 _NONE: Final = "–"
 AVERAGE: Final = "average"
 
@@ -106,7 +110,7 @@ class MeasurementTable:
 
 
 def table_by(
-    rows: Columns,
+    rows: Measurements,
     by: Sequence[str] = ("site", "date"),
     metrics: Sequence[str] = ("rer", "fwhm_px", "mtf_nyquist"),
 ) -> MeasurementTable:
@@ -117,8 +121,7 @@ def table_by(
 
     Parameters
     ----------
-    rows : Columns
-        Of `acutance.Archive.measurements`.
+    rows : Measurements
     by : sequence of str, optional
         Of `GROUPS`.
     metrics : sequence of str, optional
@@ -133,15 +136,16 @@ def table_by(
         If there is no such group or metric, or there are no rows.
     """
     _require(rows, by, metrics)
+    numbers = _with_printed(rows, [name for name in metrics if name in PRINTED])
     words = {name: _words(rows, name) for name in GROUPS}
     lead = [name for name in _NEVER_MIXED if name not in by and len(set(words[name])) > 1]
     names = (*lead, *by)
     keys = list(zip(*(words[name] for name in names), strict=True))
-    found = [_row(rows, key, _mask(keys, key), metrics) for key in sorted(set(keys))]
+    found = [_row(numbers, key, _mask(keys, key), metrics) for key in sorted(set(keys))]
     fixed = max(len(lead), max((names.index(one) + 1 for one in _NEVER_MIXED if one in by
                                 and len(set(words[one])) > 1), default=0))  # fmt: skip
     return MeasurementTable(
-        names, tuple(metrics), tuple(_with_averages(rows, found, keys, fixed, metrics))
+        names, tuple(metrics), tuple(_with_averages(numbers, found, keys, fixed, metrics))
     )
 
 
@@ -151,13 +155,30 @@ def _require(rows: Columns, by: Sequence[str], metrics: Sequence[str]) -> None:
         raise OptionError(
             f"a table is by {', '.join(unknown) or 'nothing'}: choose of {', '.join(GROUPS)}"
         )
-    strange = [name for name in metrics if name not in METRICS]
+    strange = [name for name in metrics if name not in (*METRICS, *PRINTED)]
     if strange or not metrics:
         raise OptionError(
-            f"there is no metric {', '.join(strange) or '(none given)'}, only {', '.join(METRICS)}"
+            f"there is no metric {', '.join(strange) or '(none given)'}, only "
+            f"{', '.join((*METRICS, *PRINTED))}"
         )
     if not len(rows):
         raise OptionError("nothing is selected: widen the filters")
+
+
+def _with_printed(rows: Measurements, names: Sequence[str]) -> Columns:
+    """The rows with columns of printed numbers that are no metric."""
+    columns = dict(rows.columns)
+    records = (
+        dict(zip(dict.fromkeys(rows["id"].tolist()), rows.records(), strict=True)) if names else {}
+    )
+    for name in names:
+        found = [
+            (records[number].directions[orientation].document.get(name) or {}).get("value")
+            for number, orientation in zip(rows["id"].tolist(), rows["orientation"], strict=True)
+        ]
+        columns[name] = np.array(found, float)
+        columns[f"{name}_std"] = np.full(len(rows), np.nan)
+    return Columns(columns)
 
 
 def _words(rows: Columns, name: str) -> list[str]:

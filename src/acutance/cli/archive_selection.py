@@ -34,6 +34,9 @@ class SelectionOptions:
     band: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Of this band; repeatable.")
     ] = None
+    level: Annotated[
+        list[str] | None, typer.Option(metavar="LEVEL", help="Of this product level; repeatable.")
+    ] = None
     site: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="At this site; repeatable.")
     ] = None
@@ -86,10 +89,10 @@ class SelectionOptions:
         low, high = _numbers("--min", self.minimum or ()), _numbers("--max", self.maximum or ())
         limits = {name: (low.get(name), high.get(name)) for name in (*low, *high)}
         words: SelectionWords = {
-            "sensor": self.sensor, "band": self.band, "site": self.site, "target": self.target,
-            "kind": self.kind, "method": self.method, "orientation": self.orientation,
-            "since": self.since, "until": self.until, "verdict": self.verdict,
-            "image": self.image, "run": self.run, "limits": limits or None,
+            "sensor": self.sensor, "band": self.band, "level": self.level, "site": self.site,
+            "target": self.target, "kind": self.kind, "method": self.method,
+            "orientation": self.orientation, "since": self.since, "until": self.until,
+            "verdict": self.verdict, "image": self.image, "run": self.run, "limits": limits or None,
         }  # fmt: skip
         return words
 

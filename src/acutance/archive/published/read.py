@@ -81,8 +81,9 @@ def _numbers(row: Mapping[str, Any], direction: str, table: Mapping[str, Any]) -
     gsd_m = own.pop("gsd_m", table.get("gsd_m"))
     if not own:
         return {}
-    if gsd_m is not None and "fwhm_px" in own:
-        own["fwhm_m"] = round(own["fwhm_px"] * gsd_m, 6)
+    widths = [name for name in own if name.endswith("_px")]
+    if gsd_m is not None:
+        own |= {name.replace("_px", "_m"): round(own[name] * gsd_m, 6) for name in widths}
     numbers = dict.fromkeys(METRICS) | {
         metric: {"value": value, "std": None, "interval95": None} for metric, value in own.items()
     }

@@ -8,17 +8,19 @@ targets differ, deviations are stated too small) is fitted over all images toget
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.archive.trends.series import Series
+from acutance.archive.weighted_means import WeightedMean, weighted_mean
+from acutance.curves import METRICS
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 
-__all__ = ["ImageMeans", "image_means", "joined_images"]
+__all__ = ["ImageMeans", "image_means", "joined_images", "mean_of_images"]
 
 _HUBER: Final = 2.0
 """Deviations from which a measurement counts less."""
@@ -171,6 +173,21 @@ def _robust_means(
         mean = np.bincount(index, weight * value) / np.bincount(index, weight)
     off = np.minimum(np.abs(value - mean[index]) * share / std, _HUBER)
     return mean, float((off[count[index] > 1] ** 2).sum())
+
+
+def mean_of_images(series: Series) -> WeightedMean:
+    """The mean over images with random effects, whatever their dates.
+
+    Parameters
+    ----------
+    series : Series
+    """
+    known = series.known()
+    images = image_means(replace(known, when=np.zeros(known.size)))
+    lowest = 0.0 if series.metric in METRICS else None
+    return weighted_mean(
+        images.value, np.sqrt(images.variance), systematic_std=images.systematic_std, lowest=lowest
+    )
 
 
 def joined_images(images: ImageMeans, most: int) -> ImageMeans:

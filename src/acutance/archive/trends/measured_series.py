@@ -1,4 +1,4 @@
-"""From rows of an archive to series: one metric of one sensor, band and direction."""
+"""From rows of an archive to series: one metric of one sensor, band, product level, direction."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from acutance.errors import OptionError
 
 __all__ = ["all_series", "one_series"]
 
-_ONE_OF = ("sensor", "band", "orientation")
+_ONE_OF = ("sensor", "band", "level", "orientation")
 """What a trend is of one of."""
-_MIXED = ("method", "kind", "level")
+_MIXED = ("method", "kind")
 """What differs in how it measures: its change looks like one of the sensor."""
 
 
 def one_series(rows: Columns, metric: str) -> Series:
-    """The series of rows that are of one sensor, band and direction.
+    """The series of rows that are of one sensor, band, product level and direction.
 
     Parameters
     ----------
@@ -33,7 +33,8 @@ def one_series(rows: Columns, metric: str) -> Series:
     Raises
     ------
     OptionError
-        If there is no such metric, no rows, or they are of several sensors, bands or directions.
+        If there is no such metric, no rows, or they are of several sensors, bands, levels
+        or directions.
     """
     _require_metric(metric)
     if not len(rows):
@@ -49,7 +50,7 @@ def one_series(rows: Columns, metric: str) -> Series:
 
 
 def all_series(rows: Columns, metric: str) -> Iterator[Series]:
-    """A series for each sensor, band and direction that rows are of.
+    """A series for each sensor, band, product level and direction that rows are of.
 
     Parameters
     ----------

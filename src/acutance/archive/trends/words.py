@@ -65,11 +65,7 @@ def _step_words(trend: Trend) -> list[str]:
     chance = trend.step_probability
     if found:
         return found
-    if trend.steady_probability > 1 - CHANGED:
-        return [
-            f"It is steady (probability {trend.steady_probability:.2f}; of a step {chance:.2f})."
-        ]
-    if chance < _WORTH:
+    if trend.steady_probability > 1 - CHANGED or chance < _WORTH:
         return [f"No step (probability of one: {chance:.2f})."]
     return [
         f"It has changed (probability {1 - trend.steady_probability:.2f}), and these images cannot "

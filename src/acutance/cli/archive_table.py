@@ -1,0 +1,61 @@
+"""``acutance archive table``: means across and along by sensor, band, site, date."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from acutance.cli.archive_selection import PlaceArgument, SelectionOptions
+from acutance.cli.option_groups import with_groups
+from acutance.cli.options import JsonOption
+from acutance.cli.terminal import NOTHING_MEASURED, fail
+
+__all__ = ["EXAMPLE", "table"]
+
+EXAMPLE = (
+    "\b\nExamples:\n"
+    "  acutance archive table campaign.db --by site,date\n"
+    "  acutance archive table campaign.db --by sensor,band --metric mtf_nyquist --metric fwhm_m"
+)
+
+
+@with_groups
+def table(
+    *,
+    place: PlaceArgument,
+    by: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME,...",
+            help="Groups: sensor, band, level, site, target, date, kind, method, image, verdict.",
+        ),
+    ] = "site,date",
+    metric: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Which numbers; rer, fwhm_px and mtf_nyquist without."),
+    ] = None,
+    selected: SelectionOptions,
+    as_json: JsonOption = False,
+) -> None:
+    """Print means across and along, with the averages of leading groups.
+
+    Means are over images and have their scatter in their deviation. Measurements count whose
+    verdict is usable or good (--verdict).
+    """
+    from acutance.archive import Archive
+    from acutance.report import json_text
+    from acutance.report.text import align_columns
+
+    groups = [name.strip() for name in by.split(",") if name.strip()]
+    with Archive(place, read_only=True) as archive:
+        words = selected.words
+        if not len(archive.measurements(**words)):
+            fail(f"archive {place} holds nothing that is selected", NOTHING_MEASURED)
+        chosen = tuple(metric or ("rer", "fwhm_px", "mtf_nyquist"))
+        found = archive.table(groups, chosen, **words)
+    if as_json:
+        typer.echo(json_text(found.to_dict()))
+        return
+    sides = "l" * len(found.by) + "r" * (len(found.header) - len(found.by))
+    typer.echo(align_columns([found.header, *found.texts()], sides, indent=""))

@@ -1,0 +1,119 @@
+"""``acutance archive trend``: what years of measurements say of a sensor."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from acutance.cli.archive_selection import PlaceArgument, SelectionOptions
+from acutance.cli.option_groups import with_groups
+from acutance.cli.options import JsonOption
+from acutance.cli.terminal import NOTHING_MEASURED, fail
+from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.archive.trends import Event, Trend
+
+__all__ = ["EXAMPLE", "EventOption", "parse_events", "trend"]
+
+EXAMPLE = (
+    "\b\nExamples:\n"
+    "  acutance archive trend campaign.db --metric mtf_nyquist --sensor QB02 --orientation across\n"
+    "  acutance archive trend campaign.db --sensor QB02 --orientation along "
+    '--event "2026-03-01=refocus" --limit .09'
+)
+EventOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="DATE=NAME",
+        help="Something that may have changed the sensor on this day; repeatable. The drift stays "
+        "the same; DATE=NAME+drift lets it change, too.",
+    ),
+]
+_DRIFT = "+drift"
+
+
+@with_groups
+def trend(
+    *,
+    place: PlaceArgument,
+    metric: Annotated[
+        str, typer.Option(metavar="NAME", help="Which number: mtf_nyquist, rer, fwhm_m, ...")
+    ] = "mtf_nyquist",
+    selected: SelectionOptions,
+    event: EventOption = None,
+    limit: Annotated[
+        float | None, typer.Option(metavar="VALUE", help="Tell when this value will be passed.")
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Tell level, drift, steps, season and scatter of one metric of one sensor.
+
+    Measurements count whose verdict is usable or good (--verdict). Intervals hold 95 %.
+    """
+    from acutance.archive import Archive
+    from acutance.report import json_text
+
+    events = parse_events(event)
+    with Archive(place, read_only=True) as archive:
+        words = selected.words
+        if not len(archive.measurements(**words)):
+            fail(f"archive {place} holds nothing that is selected", NOTHING_MEASURED)
+        found = archive.trend(metric, events=events, **words)
+    crossing = None if limit is None else found.crosses(limit)
+    if as_json:
+        document = found.to_dict()
+        if crossing is not None:
+            document["crossing"] = crossing.to_dict()
+        typer.echo(json_text(document))
+        return
+    typer.echo(_text(found))
+    if crossing is not None:
+        typer.echo(f"\nThe sensor's mean {crossing.summary()}.")
+
+
+def parse_events(texts: list[str] | None) -> list[Event]:
+    """Events as they were typed.
+
+    Raises
+    ------
+    OptionError
+        If one is not of the form DATE=NAME.
+    """
+    from acutance.archive.trends import Event
+
+    found = []
+    for text in texts or ():
+        day, sign, name = text.partition("=")
+        if not (sign and name.removesuffix(_DRIFT)):
+            raise OptionError(f"--event {text}: write DATE=NAME, as in 2026-03-01=refocus")
+        event = Event(day, name.removesuffix(_DRIFT), name.endswith(_DRIFT))
+        _ = event.year
+        found.append(event)
+    return found
+
+
+def _text(found: Trend) -> str:
+    from acutance.archive.trends.words import percent, signed
+    from acutance.report.text import align_columns
+
+    rate, relative = found.rate_per_year, found.relative_rate_per_year
+    low, high = relative.interval(0.95)
+    rows = [
+        (f"level on {found.last}", str(found.level), ""),
+        ("drift a year", signed(rate),
+         f"{percent(relative)}, 95 %: {100 * low:+.1f} to {100 * high:+.1f} %"),
+        ("scatter between images", str(found.scatter),
+         f"{100 * found.scatter.value / abs(found.level.value or 1.0):.1f} %"),
+        ("season, amplitude", str(found.season_amplitude),
+         f"probability of a season {found.season_probability:.2f}"),
+        ("steps", str(len(found.changes)), f"probability of any {found.step_probability:.2f}"),
+        *((f"  {change.date}", signed(change.size),
+           f"{percent(change.relative_size)}, {change.since} to {change.until}, "
+           f"probability {change.probability:.2f}") for change in found.changes),
+        *((f"  {effect.date} {effect.name}", signed(effect.size), "stated")
+          for effect in found.events),
+    ]  # fmt: skip
+    table = align_columns(rows, "lll", indent="  ")
+    return f"{found.title}\n\n{table}\n\n{found.summary()}"
