@@ -30,7 +30,14 @@ from acutance.raster.packed_file import packed_names
 from acutance.raster.pixels import equals_nodata, usable_values
 from acutance.raster.region import Box
 
-__all__ = ["CACHE_BYTES", "GSD_TAGS", "DatasetPixels", "open_dataset", "open_quietly"]
+__all__ = [
+    "CACHE_BYTES",
+    "GSD_TAGS",
+    "DatasetPixels",
+    "open_dataset",
+    "open_quietly",
+    "opened_dataset",
+]
 
 GSD_TAGS = ("ACUTANCE_GSD_ROW_M", "ACUTANCE_GSD_COL_M")
 
@@ -72,7 +79,7 @@ class DatasetPixels:
 
     def read(self, box: Box) -> Floats:
         window = Window(box.col, box.row, box.width, box.height)
-        with _opened(self.path) as dataset:
+        with opened_dataset(self.path) as dataset:
             raw: NDArray[Any] = dataset.read(self.band, window=window)
             masked = equals_nodata(raw, self.nodata)
             if self.has_mask:
@@ -93,7 +100,7 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
     ImageError
         If no driver reads the file, or the band is absent or cannot be measured.
     """
-    with _opened(path) as dataset:
+    with opened_dataset(path) as dataset:
         _require_band(dataset, path, band)
         scale, offset = float(dataset.scales[band - 1]), float(dataset.offsets[band - 1])
         if not (np.isfinite(scale) and np.isfinite(offset) and scale != 0.0):
@@ -136,7 +143,7 @@ def open_quietly(path: str, mode: str = "r", **profile: Any) -> Any:
 
 
 @contextmanager
-def _opened(path: str) -> Iterator[Any]:
+def opened_dataset(path: str) -> Iterator[Any]:
     """A dataset open for reading, with a small block cache and errors in our own words."""
     try:
         with rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES), open_quietly(path) as dataset:

@@ -1,0 +1,99 @@
+"""Read what an image says of itself, from its tags and from the documents beside it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from acutance.errors import RegionError
+from acutance.raster.image import Image
+from acutance.raster.metadata.documents import read_document
+from acutance.raster.metadata.files_beside import files_beside
+from acutance.raster.metadata.findings import Findings, Stated, find
+from acutance.raster.metadata.gdal_tags import file_tags, read_tags
+from acutance.raster.metadata.statement import ImageStatement, state
+from acutance.raster.open_image import open_image
+
+__all__ = ["read_statement"]
+
+
+def read_statement(
+    path: str | os.PathLike[str], documents: Sequence[str | os.PathLike[str]] | None = None
+) -> ImageStatement:
+    """What an image says of itself: sensor, bands, time, angles, GSD and level.
+
+    Sources are the documents beside the image (DIMAP, IMD, MTL, Sentinel-2 MTD, KOMPSAT, Gaofen,
+    PlanetScope, STAC item), then the tags of its file; the GSD is that of the geotransform, if
+    there is one. What none of them says stays empty, and what they say differently is named.
+
+    Parameters
+    ----------
+    path : str or path
+        An image that `acutance.open_image` opens.
+    documents : sequence of paths, optional
+        Documents that are about this image, wherever they lie, instead of those beside it.
+
+    Returns
+    -------
+    ImageStatement
+
+    Raises
+    ------
+    ImageError
+        If the image cannot be read.
+    """
+    image = open_image(path)
+    name = Path(str(image.path)).name
+    of_files = [read_document(one, name) for one in files_beside(str(image.path))]
+    if documents is not None:
+        of_files = [read_document(Path(one), name, stated=True) for one in documents]
+    tags = read_tags(file_tags(str(image.path)), name)
+    sources = _with_time([_of_geolocation(image, name), *of_files, tags])
+    return _for_bands(state(str(image.path), sources, _place(image)), image.band_count)
+
+
+def _of_geolocation(image: Image, name: str) -> Findings:
+    """The GSD in the middle of the image, by its geotransform or as the file declares it."""
+    gsd = image.gsd()
+    place = "geotransform" if image.own_gsd is None else "declared GSD"
+    return find(name, {"gsd_m": (None if gsd is None else (gsd.row_m, gsd.col_m), place)})
+
+
+def _with_time(sources: list[Findings]) -> list[Findings]:
+    """Where the time of the granule is not stated, the beginning of its datatake is the time."""
+    if any("acquired" in one.values for one in sources):
+        return sources
+    for place, one in enumerate(sources):
+        if "datatake" in one.values:
+            begin: Stated[object] = one.values["datatake"]
+            note = f"{begin.source} is when the datatake began, up to some minutes earlier"
+            values = {**one.values, "acquired": begin}
+            sources[place] = replace(one, values=values, notes=(*one.notes, note))
+            break
+    return sources
+
+
+def _place(image: Image) -> tuple[float, float] | None:
+    """Longitude and latitude of the middle of the image."""
+    if image.geolocation is None:
+        return None
+    rows, cols = image.shape
+    try:
+        lon, lat = image.geolocation.to_lonlat((rows - 1) / 2, (cols - 1) / 2)
+    except RegionError:
+        return None
+    return (float(lon), float(lat)) if abs(float(lat)) <= 90.0 else None
+
+
+def _for_bands(found: ImageStatement, count: int) -> ImageStatement:
+    """Names of bands only where there is one for each."""
+    if found.bands is None or len(found.bands.value) == count:
+        return found
+    names = ", ".join(found.bands.value)
+    note = (
+        f"{found.bands.source} names {len(found.bands.value)} bands ({names}), and the image has "
+        f"{count}: names are left out"
+    )
+    return replace(found, bands=None, notes=(*found.notes, note))
