@@ -24,7 +24,7 @@ from rasterio.windows import Window
 from acutance.curves.grid import Floats
 from acutance.errors import ImageError, OptionError
 from acutance.raster.geolocation import Geolocation
-from acutance.raster.gsd import Gsd
+from acutance.raster.gsd import GSD_TAGS, Gsd
 from acutance.raster.image import Image
 from acutance.raster.packed_file import packed_names
 from acutance.raster.pixels import equals_nodata, usable_values
@@ -32,14 +32,11 @@ from acutance.raster.region import Box
 
 __all__ = [
     "CACHE_BYTES",
-    "GSD_TAGS",
     "DatasetPixels",
     "open_dataset",
     "open_quietly",
     "opened_dataset",
 ]
-
-GSD_TAGS = ("ACUTANCE_GSD_ROW_M", "ACUTANCE_GSD_COL_M")
 
 CACHE_BYTES = 32 * 2**20
 """GDAL's block cache; its own default is a twentieth of the memory."""

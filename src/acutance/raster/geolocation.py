@@ -7,6 +7,7 @@ one place with both.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,7 @@ from acutance.errors import RegionError
 from acutance.geometry.angles import wrap_direction
 from acutance.raster.gsd import Gsd
 
-__all__ = ["LONLAT_CRS", "Geolocation", "transform_points"]
+__all__ = ["LONLAT_CRS", "Geolocation", "ground_gsd", "transform_points"]
 
 LONLAT_CRS = "OGC:CRS84"
 
@@ -125,7 +126,7 @@ class Geolocation:
             ``None`` if the CRS defines no length, or the place has none.
         """
         on_map = self._gsd_on_map()
-        on_ground = self._gsd_on_ground(row, col)
+        on_ground = ground_gsd(self.to_lonlat, row, col)
         if on_map is None or on_ground is None:
             return on_map or on_ground
         distortion = max(
@@ -144,24 +145,39 @@ class Geolocation:
         a, b, _, d, e, _ = self.transform
         return _gsd_or_none(math.hypot(b, e) * metres, math.hypot(a, d) * metres)
 
-    def _gsd_on_ground(self, row: float, col: float) -> Gsd | None:
-        """Lengths on the WGS 84 ellipsoid of one pixel's steps, by central difference."""
-        rows = np.array([row - 0.5, row + 0.5, row, row])
-        cols = np.array([col, col, col - 0.5, col + 0.5])
-        try:
-            lon, lat = self.to_lonlat(rows, cols)
-        except RegionError:
-            return None
-        if not (np.isfinite(lon).all() and np.isfinite(lat).all() and abs(lat).max() <= 90.0):
-            return None
-        latitude = math.radians(float(lat.mean()))
-        squashed = 1.0 - _WGS84_ECCENTRICITY2 * math.sin(latitude) ** 2
-        to_north = _WGS84_RADIUS_M * (1.0 - _WGS84_ECCENTRICITY2) / squashed**1.5
-        to_east = _WGS84_RADIUS_M / math.sqrt(squashed) * math.cos(latitude)
-        turn_deg: Floats = wrap_direction(lon[1::2] - lon[::2])
-        step_deg = np.hypot(to_east * turn_deg, to_north * (lat[1::2] - lat[::2]))
-        step_m = np.radians(step_deg)
-        return _gsd_or_none(float(step_m[0]), float(step_m[1]))
+
+def ground_gsd(
+    to_lonlat: Callable[[ArrayLike, ArrayLike], tuple[Floats, Floats]], row: float, col: float
+) -> Gsd | None:
+    """Lengths on the WGS 84 ellipsoid of one pixel's steps, by central difference.
+
+    Parameters
+    ----------
+    to_lonlat : function of (rows, cols)
+        Longitudes and latitudes in degrees.
+    row, col : float
+
+    Returns
+    -------
+    Gsd or None
+        ``None`` where the place has no longitude and latitude.
+    """
+    rows = np.array([row - 0.5, row + 0.5, row, row])
+    cols = np.array([col, col, col - 0.5, col + 0.5])
+    try:
+        lon, lat = to_lonlat(rows, cols)
+    except RegionError:
+        return None
+    if not (np.isfinite(lon).all() and np.isfinite(lat).all() and abs(lat).max() <= 90.0):
+        return None
+    latitude = math.radians(float(lat.mean()))
+    squashed = 1.0 - _WGS84_ECCENTRICITY2 * math.sin(latitude) ** 2
+    to_north = _WGS84_RADIUS_M * (1.0 - _WGS84_ECCENTRICITY2) / squashed**1.5
+    to_east = _WGS84_RADIUS_M / math.sqrt(squashed) * math.cos(latitude)
+    turn_deg: Floats = wrap_direction(lon[1::2] - lon[::2])
+    step_deg = np.hypot(to_east * turn_deg, to_north * (lat[1::2] - lat[::2]))
+    step_m = np.radians(step_deg)
+    return _gsd_or_none(float(step_m[0]), float(step_m[1]))
 
 
 def transform_points(

@@ -9,7 +9,10 @@ from numbers import Real
 from acutance.curves.direction import gsd_along
 from acutance.errors import OptionError
 
-__all__ = ["Gsd"]
+__all__ = ["GSD_TAGS", "Gsd"]
+
+GSD_TAGS = ("ACUTANCE_GSD_ROW_M", "ACUTANCE_GSD_COL_M")
+"""Metadata of a file that was written with a GSD: metres from row to row, column to column."""
 
 
 @dataclass(frozen=True)

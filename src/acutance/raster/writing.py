@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from acutance.errors import ImageError
-from acutance.raster.gsd import Gsd
+from acutance.raster.gsd import GSD_TAGS, Gsd
 from acutance.raster.region import Box
 
 __all__ = ["write_geotiff", "write_geotiff_tiles"]
@@ -32,6 +32,7 @@ def write_geotiff(
     crs: str | None = None,
     nodata: float | None = None,
     gsd_m: float | Gsd | None = None,
+    tags: Mapping[str, str] | None = None,
 ) -> None:
     """Write an image as a tiled, compressed GeoTIFF, whole or not at all.
 
@@ -52,6 +53,8 @@ def write_geotiff(
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, kept as metadata that `open_image` reads, for an
         image that has no CRS to derive it from.
+    tags : mapping of str to str, optional
+        Metadata of the file, by name: "ACQUISITION_DATETIME", "SENSOR".
 
     Raises
     ------
@@ -61,7 +64,7 @@ def write_geotiff(
         If the GSD is not a positive number.
     """
     bands = _as_bands(np.asarray(array))
-    place = (transform, crs, nodata, Gsd.given(gsd_m))
+    place = (transform, crs, nodata, {**(tags or {}), **_gsd_tags(Gsd.given(gsd_m))})
     whole = Box.whole((bands.shape[1], bands.shape[2]))
     _write(Path(path), bands.shape[0], whole.shape, bands.dtype, [(whole, bands)], *place)
 
@@ -104,7 +107,7 @@ def write_geotiff_tiles(
         If the GSD is not a positive number.
     """
     bands = ((box, _tile(box, pixels, shape)) for box, pixels in tiles)
-    place = (transform, crs, nodata, Gsd.given(gsd_m))
+    place = (transform, crs, nodata, _gsd_tags(Gsd.given(gsd_m)))
     _write(Path(path), 1, shape, np.dtype(dtype), bands, *place)
 
 
@@ -117,14 +120,14 @@ def _write(
     transform: Transform | None,
     crs: str | None,
     nodata: float | None,
-    gsd: Gsd | None,
+    tags: Mapping[str, str],
 ) -> None:
     """Write `count` bands of a `shape`, part by part, under another name; then rename the file."""
     from rasterio import Env
     from rasterio.transform import Affine
     from rasterio.windows import Window
 
-    from acutance.raster.dataset import CACHE_BYTES, GSD_TAGS, open_quietly
+    from acutance.raster.dataset import CACHE_BYTES, open_quietly
 
     profile = {
         "driver": "GTiff",
@@ -150,9 +153,7 @@ def _write(
             stack.enter_context(Env(GDAL_CACHEMAX=CACHE_BYTES))
             partial = os.path.join(folder, "image.tif")
             dataset = stack.enter_context(open_quietly(partial, "w", **profile))
-            if gsd is not None:
-                values = (repr(gsd.row_m), repr(gsd.col_m))
-                dataset.update_tags(**dict(zip(GSD_TAGS, values, strict=True)))
+            dataset.update_tags(**tags)
         for box, bands in parts:
             written += box.height * box.width
             with _in_our_words(target, dtype):
@@ -165,6 +166,11 @@ def _write(
         with _in_our_words(target, dtype):
             dataset.close()
             os.replace(partial, target)
+
+
+def _gsd_tags(gsd: Gsd | None) -> dict[str, str]:
+    """The GSD as metadata that `open_image` reads."""
+    return {} if gsd is None else {GSD_TAGS[0]: repr(gsd.row_m), GSD_TAGS[1]: repr(gsd.col_m)}
 
 
 @contextmanager

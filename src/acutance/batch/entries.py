@@ -1,0 +1,78 @@
+"""What is known of an image and of a target, as an archive keeps it."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from acutance.archive.entry import ImageEntry, TargetEntry
+from acutance.errors import RegionError
+from acutance.raster.geolocation import LONLAT_CRS, transform_points
+from acutance.raster.metadata import ImageStatement
+from acutance.raster.surveyed_targets import SurveyedTarget
+
+if TYPE_CHECKING:
+    from acutance.batch.measure_image import BatchTask
+
+__all__ = ["image_entry", "target_entry"]
+
+_FIELDS = (
+    "sensor", "level", "acquired", "gsd_m",
+    "view_zenith_deg", "view_azimuth_deg", "sun_elevation_deg", "sun_azimuth_deg",
+)  # fmt: skip
+
+
+def image_entry(task: BatchTask, statement: ImageStatement) -> ImageEntry:
+    """An image with what the plan states of it, and where it says nothing with what it says itself.
+
+    Parameters
+    ----------
+    task : BatchTask
+    statement : ImageStatement
+    """
+    values: dict[str, Any] = {}
+    sources: dict[str, Any] = {}
+    for name in _FIELDS:
+        own, said = getattr(task.stated, name), getattr(statement, name)
+        if own is not None:
+            values[name], sources[name] = own, "stated in the plan"
+        elif said is not None:
+            values[name], sources[name] = said.value, said.source
+    if statement.conflicts:
+        sources["conflicts"] = list(statement.conflicts)
+    if statement.notes:
+        sources["notes"] = list(statement.notes)
+    when = values.get("acquired")
+    if isinstance(when, datetime):
+        values["acquired"] = when.astimezone(UTC) if when.tzinfo else when.replace(tzinfo=UTC)
+    return ImageEntry(path=task.path, content=task.content, sources=sources, **values)
+
+
+def target_entry(target: SurveyedTarget) -> TargetEntry:
+    """A target with its middle in longitude and latitude, where it has one."""
+    lon, lat = _middle(target)
+    return TargetEntry(
+        name=target.name,
+        kind=target.kind,
+        definition=target.definition,
+        site=target.site,
+        valid_from=target.valid_from,
+        valid_to=target.valid_to,
+        lon=lon,
+        lat=lat,
+    )
+
+
+def _middle(target: SurveyedTarget) -> tuple[float | None, float | None]:
+    if target.in_pixels or not target.points:
+        return None, None
+    x, y = np.mean(np.array(target.points), axis=0)
+    try:
+        lon, lat = transform_points(x, y, target.crs, LONLAT_CRS)
+    except RegionError:
+        return None, None
+    if not (np.isfinite(lon) and np.isfinite(lat)):
+        return None, None
+    return (float(lon) + 180.0) % 360.0 - 180.0, float(lat)

@@ -1,0 +1,107 @@
+"""The images of a batch: files of paths and patterns, and what identifies their contents."""
+
+from __future__ import annotations
+
+import glob
+import hashlib
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from acutance.batch.plan import StatedOfImages
+from acutance.errors import OptionError
+from acutance.raster.metadata.files_beside import files_beside
+
+__all__ = ["ImageFile", "content_of", "list_images", "stated_of"]
+
+_BLOCK_BYTES = 2**20
+
+
+@dataclass(frozen=True)
+class ImageFile:
+    """An image of a batch.
+
+    Parameters
+    ----------
+    path : str
+    stamp : str
+        Sizes and times of change of the file and the documents beside it: while it stays the
+        same, so does what is remembered of the image. Empty if there is no such file.
+    size : int
+        Bytes.
+    """
+
+    path: str
+    stamp: str
+    size: int
+
+
+def list_images(patterns: Iterable[str]) -> list[ImageFile]:
+    """The images of paths and patterns, each once, in their order.
+
+    Raises
+    ------
+    OptionError
+        If a pattern matches no file, or there are no images.
+    """
+    found: dict[str, ImageFile] = {}
+    empty = []
+    for pattern in patterns:
+        is_path = os.path.exists(pattern) or not glob.has_magic(pattern)
+        paths = [pattern] if is_path else sorted(glob.glob(pattern, recursive=True))
+        if not paths:
+            empty.append(pattern)
+        for path in paths:
+            if is_path or os.path.isfile(path):
+                found.setdefault(os.path.realpath(path), _image_file(path))
+    if empty:
+        raise OptionError(f"no file matches {', '.join(empty)}: correct the names of the images")
+    if not found:
+        raise OptionError("there are no images: name files, or a pattern such as images/*.tif")
+    return list(found.values())
+
+
+def _image_file(path: str) -> ImageFile:
+    try:
+        own = os.stat(path)
+    except OSError:
+        return ImageFile(path, "", 0)
+    beside = [(one.name, *_stat(one)) for one in files_beside(path)]
+    return ImageFile(path, repr([own.st_size, own.st_mtime_ns, beside]), own.st_size)
+
+
+def _stat(path: Path) -> tuple[int, int]:
+    try:
+        found = path.stat()
+    except OSError:
+        return 0, 0
+    return found.st_size, found.st_mtime_ns
+
+
+def content_of(path: str) -> str | None:
+    """SHA-256 of a file's bytes; None if they cannot be read."""
+    digest = hashlib.sha256()
+    try:
+        with open(path, "rb") as file:
+            while block := file.read(_BLOCK_BYTES):
+                digest.update(block)
+    except OSError:
+        return None
+    return digest.hexdigest()
+
+
+def stated_of(path: str, stated: Sequence[StatedOfImages]) -> StatedOfImages:
+    """What the plan states of one image: all that match it, later ones before earlier ones."""
+    values: dict[str, object] = {}
+    for one in stated:
+        if not one.images or any(_matches(path, pattern) for pattern in one.images):
+            values.update({name: value for name, value in vars(one).items() if value is not None})
+    values.pop("images", None)
+    return StatedOfImages(**values)  # type: ignore[arg-type]
+
+
+def _matches(path: str, pattern: str) -> bool:
+    """Whether a path is that of a pattern, by its end: "K3_*.tif" matches in every folder."""
+    wanted = Path(pattern)
+    return Path(path).match(str(wanted)) or Path(os.path.realpath(path)).match(str(wanted.absolute()))

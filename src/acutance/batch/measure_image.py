@@ -1,0 +1,241 @@
+"""One image of a batch, in a worker: opened once, every target measured or rejected."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import date
+from typing import Any
+
+from acutance.archive.entry import Entry, ImageEntry
+from acutance.batch.entries import image_entry, target_entry
+from acutance.batch.measure_target import measure_target
+from acutance.batch.place_target import NotHereError, PlacedTarget, place_target
+from acutance.batch.plan import StatedOfImages
+from acutance.batch.plan_options import ChosenOptions
+from acutance.batch.row_key import row_key, unreadable_key
+from acutance.batch.selected_bands import Band, selected
+from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
+from acutance.raster import Gsd, Image, open_bands
+from acutance.raster.metadata import ImageStatement, read_statement
+from acutance.raster.sensor_model import georeference_of
+from acutance.raster.surveyed_targets import SurveyedTarget
+from acutance.targets.target_result import Rejected
+
+__all__ = ["BatchTask", "BatchWork", "MeasuredImage", "measure_image"]
+
+
+@dataclass(frozen=True)
+class BatchWork:
+    """What is the same for all images.
+
+    Parameters
+    ----------
+    targets : sequence of SurveyedTarget
+    chosen : sequence of ChosenOptions
+        Of every target.
+    digests : sequence of str
+        Of every target with its options.
+    bands : tuple of (str or int), or None
+        Names or numbers; all without it.
+    """
+
+    targets: Sequence[SurveyedTarget]
+    chosen: Sequence[ChosenOptions]
+    digests: Sequence[str]
+    bands: tuple[str | int, ...] | None
+
+
+@dataclass(frozen=True)
+class BatchTask:
+    """One image.
+
+    Parameters
+    ----------
+    path : str
+    content : str or None
+        SHA-256; None if it cannot be read.
+    stated : StatedOfImages
+        Of this image.
+    reading : str
+        Digest of how it is read.
+    done : frozenset of str
+        Keys of its rows that the archive has.
+    """
+
+    path: str
+    content: str | None
+    stated: StatedOfImages
+    reading: str
+    done: frozenset[str]
+
+
+@dataclass(frozen=True)
+class MeasuredImage:
+    """What a worker returns.
+
+    Parameters
+    ----------
+    entries : list of Entry
+    bands : tuple of Band, or None
+        All of the image; None where it cannot be opened.
+    day : str or None
+        Of the acquisition.
+    measuring_s : float
+        Spent in measurements, of all the worker did.
+    """
+
+    entries: list[Entry]
+    bands: tuple[Band, ...] | None
+    day: str | None
+    measuring_s: float
+
+
+@dataclass(frozen=True)
+class _Opened:
+    """An image with all it says."""
+
+    images: tuple[Image, ...]
+    bands: tuple[Band, ...]
+    statement: ImageStatement
+    entry: ImageEntry
+    acquired: date | None
+
+
+def measure_image(work: BatchWork, task: BatchTask) -> MeasuredImage:
+    """Measure all targets of an image that are not done.
+
+    Parameters
+    ----------
+    work : BatchWork
+    task : BatchTask
+    """
+    try:
+        opened = _opened(task)
+    except AcutanceError as error:
+        return MeasuredImage([_unreadable(task, error)], None, None, 0.0)
+    found = list(_rows(work, task, opened))
+    day = None if opened.acquired is None else opened.acquired.isoformat()
+    return MeasuredImage(
+        [entry for entry, _ in found], opened.bands, day, sum(seconds for _, seconds in found)
+    )
+
+
+def _opened(task: BatchTask) -> _Opened:
+    stated = task.stated
+    if task.content is None:
+        # The error of a missing file, or of one that may not be read, says which.
+        open_bands(task.path)
+        raise ImageError(f"{task.path} cannot be read: check that it is a file you may read")
+    images = open_bands(
+        task.path,
+        gsd_m=None if stated.gsd_m is None else Gsd(*stated.gsd_m),
+        nodata=stated.nodata,
+        along_track=stated.along_track or "y",
+        linearize=stated.linearize,
+    )
+    statement = read_statement(task.path, stated.metadata)
+    names = stated.band_names
+    if names is not None and len(names) != len(images):
+        raise OptionError(
+            f"{len(names)} band_names are stated for {task.path}, which has {len(images)} bands"
+        )
+    bands = tuple(
+        Band(one.band, statement.band_name(one.band) if names is None else names[place])
+        for place, one in enumerate(images)
+    )
+    entry = image_entry(task, statement)
+    acquired = None if entry.acquired is None else entry.acquired.date()
+    return _Opened(images, bands, statement, entry, acquired)
+
+
+def _unreadable(task: BatchTask, error: AcutanceError) -> Entry:
+    rejected = Rejected("image", str(error), {"why": "unreadable image", "path": task.path})
+    image = ImageEntry(path=task.path, content=task.content, sensor=task.stated.sensor)
+    return Entry(rejected=rejected, image=image, key=unreadable_key(task.content, task.path))
+
+
+def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[Entry, float]]:
+    """Rows that are not done, and the seconds their measurements took."""
+    day = None if opened.acquired is None else opened.acquired.isoformat()
+    for target, chosen, digest in zip(work.targets, work.chosen, work.digests, strict=True):
+        described = None
+        for place, band in enumerate(opened.bands):
+            if not selected(band, work.bands, target.bands):
+                continue
+            dated = target.valid_from is not None or target.valid_to is not None
+            key = row_key(str(task.content), task.reading, digest, band.number, day if dated else None)
+            if key in task.done:
+                continue
+            if described is None:
+                described = target_entry(target)
+            found, seconds = _row(target, chosen, opened, place)
+            yield (
+                Entry(
+                    **found, image=opened.entry, target=described, band=band.name, key=key
+                ),
+                seconds,
+            )
+
+
+def _row(
+    target: SurveyedTarget, chosen: ChosenOptions, opened: _Opened, place: int
+) -> tuple[dict[str, Any], float]:
+    """A record or a rejection, and the seconds of the measurement."""
+    image, begin = opened.images[place], None
+    try:
+        _require_valid(target, opened.acquired)
+        placed = _placed(target, image, opened)
+        begin = time.perf_counter()
+        record = measure_target(placed, image, chosen).record
+        return {"record": record}, time.perf_counter() - begin
+    except NotHereError as error:
+        rejected = _rejected(error.stage, str(error), error.why, chosen, image)
+    except AcutanceError as error:
+        rejected = _rejected(_stage(error), str(error), type(error).__name__, chosen, image)
+    except Exception as error:  # one target that fails must not end a batch of thousands
+        reason = f"the measurement failed, {type(error).__name__}: {str(error)[:200]}"
+        rejected = _rejected("fit", reason, type(error).__name__, chosen, image)
+    return {"rejected": rejected}, 0.0 if begin is None else time.perf_counter() - begin
+
+
+def _require_valid(target: SurveyedTarget, acquired: date | None) -> None:
+    if target.valid_from is None and target.valid_to is None:
+        return
+    if acquired is None:
+        raise NotHereError(
+            "no date",
+            "the target is there at times only, and the image states no date: state it in the "
+            "plan (acquired)",
+            "date",
+        )
+    begin, end = target.valid_from or date.min, target.valid_to or date.max
+    if not begin <= acquired <= end:
+        raise NotHereError(
+            "not there then",
+            f"the image is of {acquired}, and the target is there from {target.valid_from or '-'} "
+            f"to {target.valid_to or '-'}",
+            "date",
+        )
+
+
+def _placed(target: SurveyedTarget, image: Image, opened: _Opened) -> PlacedTarget:
+    georeference = None if target.in_pixels else georeference_of(image, target.height_m)
+    stated = opened.entry.gsd_m
+    gsd = None
+    if image.own_gsd is None and image.geolocation is None and stated is not None:
+        gsd = Gsd(*stated)
+    return place_target(target, image, georeference, gsd)
+
+
+def _stage(error: AcutanceError) -> str:
+    kinds = (("image", ImageError), ("region", RegionError), ("options", OptionError))
+    return next((stage for stage, kind in kinds if isinstance(error, kind)), "fit")
+
+
+def _rejected(
+    stage: str, reason: str, why: str, chosen: ChosenOptions, image: Image
+) -> Rejected:
+    values = {"why": why, "band": image.band, "method": chosen.method, "path": image.path}
+    return Rejected(stage, reason, values)

@@ -1,0 +1,268 @@
+"""What a batch is to do: images, targets, archive, and what is stated of them."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from datetime import date, datetime
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
+from acutance.errors import OptionError
+
+__all__ = ["BatchPlan", "StatedOfImages", "plan_of", "read_plan"]
+
+Texts = str | list[str]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class _Stated(_Model):
+    """What is stated of images, instead of what they say themselves."""
+
+    images: Texts | None = None
+    sensor: str | None = Field(default=None, min_length=1)
+    level: str | None = Field(default=None, min_length=1)
+    acquired: datetime | None = None
+    band_names: list[str] | None = Field(default=None, min_length=1)
+    gsd_m: float | list[float] | None = None
+    view_zenith_deg: float | None = Field(default=None, ge=0, le=90)
+    view_azimuth_deg: float | None = Field(default=None, ge=-180, le=360)
+    sun_elevation_deg: float | None = Field(default=None, ge=-90, le=90)
+    sun_azimuth_deg: float | None = Field(default=None, ge=-180, le=360)
+    metadata: Texts | None = None
+    nodata: float | None = None
+    along_track: Literal["x", "y"] | None = None
+    linearize: str | float | None = None
+
+    @field_validator("acquired", mode="before")
+    @classmethod
+    def _a_time(cls, value: Any) -> Any:
+        # A number would be taken for seconds since 1970, a day for its midnight.
+        if isinstance(value, date) and not isinstance(value, datetime):
+            raise ValueError("write the time too, 2026-01-05T10:00:00Z")
+        if value is not None and not isinstance(value, str | datetime):
+            raise ValueError("write a time, 2026-01-05T10:00:00Z")
+        return value
+
+    @field_validator("gsd_m")
+    @classmethod
+    def _positive(cls, value: Any) -> Any:
+        sides = value if isinstance(value, list) else [value]
+        if value is not None and not (len(sides) in (1, 2) and all(one > 0 for one in sides)):
+            raise ValueError("write metres, .7, or [ROW, COLUMN] where they differ")
+        return value
+
+
+class _Plan(_Model):
+    """The file."""
+
+    images: Texts
+    targets: str
+    archive: str
+    bands: list[str | int] | None = Field(default=None, min_length=1)
+    workers: int | None = Field(default=None, ge=1)
+    dask: str | None = None
+    stated: list[_Stated] = Field(default_factory=list)
+    edge: dict[str, Any] = Field(default_factory=dict)
+    pulse: dict[str, Any] = Field(default_factory=dict)
+    points: dict[str, Any] = Field(default_factory=dict)
+    star: dict[str, Any] = Field(default_factory=dict)
+    bars: dict[str, Any] = Field(default_factory=dict)
+    scene: dict[str, Any] = Field(default_factory=dict)
+
+    @field_validator("stated", mode="before")
+    @classmethod
+    def _one_or_several(cls, value: Any) -> Any:
+        return [value] if isinstance(value, Mapping) else value
+
+
+_KINDS = ("edge", "pulse", "points", "star", "bars", "scene")
+
+
+@dataclass(frozen=True)
+class StatedOfImages:
+    """What is stated of the images that match; None leaves it to the images.
+
+    Parameters
+    ----------
+    images : tuple of str
+        Patterns of paths; all images without any.
+    sensor, level : str or None
+    acquired : datetime or None
+    band_names : tuple of str or None
+        In the order of the file.
+    gsd_m : (row, col) or None
+    view_zenith_deg, view_azimuth_deg, sun_elevation_deg, sun_azimuth_deg : float or None
+    metadata : tuple of str or None
+        Documents to read instead of those beside the image.
+    nodata : float or None
+    along_track : {"x", "y"} or None
+    linearize : str, float or None
+        As of `acutance.open_image`.
+    """
+
+    images: tuple[str, ...] = ()
+    sensor: str | None = None
+    level: str | None = None
+    acquired: datetime | None = None
+    band_names: tuple[str, ...] | None = None
+    gsd_m: tuple[float, float] | None = None
+    view_zenith_deg: float | None = None
+    view_azimuth_deg: float | None = None
+    sun_elevation_deg: float | None = None
+    sun_azimuth_deg: float | None = None
+    metadata: tuple[str, ...] | None = None
+    nodata: float | None = None
+    along_track: Literal["x", "y"] | None = None
+    linearize: str | float | None = None
+
+
+@dataclass(frozen=True)
+class BatchPlan:
+    """What a batch is to do.
+
+    Parameters
+    ----------
+    images : tuple of str
+        Paths and patterns of paths ("images/**/*.tif").
+    targets : str or mapping
+        A GeoJSON file, or its document.
+    archive : str
+        A file, or the URL of a database.
+    bands : tuple of (str or int), or None
+        Names or numbers of the bands to measure; all without it.
+    workers : int or None
+        Processes; all cores without it.
+    dask : str or None
+        Address of a scheduler whose workers are used instead.
+    stated : tuple of StatedOfImages
+        Later ones go before earlier ones.
+    options : mapping of str to mapping
+        By kind: the method, and options of its measurement.
+    """
+
+    images: tuple[str, ...]
+    targets: str | Mapping[str, Any]
+    archive: str
+    bands: tuple[str | int, ...] | None = None
+    workers: int | None = None
+    dask: str | None = None
+    stated: tuple[StatedOfImages, ...] = ()
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All of it, for JSON."""
+        return {
+            **{one.name: getattr(self, one.name) for one in fields(self)},
+            "images": list(self.images),
+            "stated": [_set_values(one) for one in self.stated],
+            "options": {kind: dict(one) for kind, one in self.options.items()},
+        }
+
+
+def _set_values(stated: StatedOfImages) -> dict[str, Any]:
+    values = ((one.name, getattr(stated, one.name)) for one in fields(stated))
+    return {
+        name: value.isoformat() if isinstance(value, datetime) else value
+        for name, value in values
+        if value is not None
+    }
+
+
+def read_plan(path: str | os.PathLike[str]) -> BatchPlan:
+    """The plan of a TOML file; paths in it are relative to the file.
+
+    Parameters
+    ----------
+    path : str or path
+
+    Raises
+    ------
+    OptionError
+        If it cannot be read, or holds what is not known: all faults are named at once.
+    """
+    name = Path(path)
+    try:
+        document = tomllib.loads(name.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise OptionError(f"the plan {name} cannot be read ({error}): write a TOML file") from error
+    return plan_of(document, str(name), name.parent)
+
+
+def plan_of(document: Mapping[str, Any], name: str, folder: Path | None = None) -> BatchPlan:
+    """The plan of a document.
+
+    Parameters
+    ----------
+    document : mapping
+    name : str
+        Of the file, for messages.
+    folder : Path, optional
+        What paths are relative to; the current folder without it.
+
+    Raises
+    ------
+    OptionError
+        If it holds what is not known, or lacks what is needed: all faults are named at once.
+    """
+    try:
+        given = _Plan.model_validate(document)
+    except ValidationError as error:
+        faults = "\n".join(f"  - {_fault(one)}" for one in error.errors())
+        raise OptionError(f"the plan {name} cannot be used:\n{faults}") from None
+    at = Path() if folder is None else folder
+    return BatchPlan(
+        images=tuple(_below(at, one) for one in _texts(given.images)),
+        targets=_below(at, given.targets),
+        archive=given.archive if "://" in given.archive else _below(at, given.archive),
+        bands=None if given.bands is None else tuple(given.bands),
+        workers=given.workers,
+        dask=given.dask,
+        stated=tuple(_stated(one, at) for one in given.stated),
+        options={kind: getattr(given, kind) for kind in _KINDS if getattr(given, kind)},
+    )
+
+
+def _stated(given: _Stated, folder: Path) -> StatedOfImages:
+    gsd = given.gsd_m
+    sides = (gsd, gsd) if isinstance(gsd, float) else None if gsd is None else (gsd[0], gsd[-1])
+    documents = None if given.metadata is None else _texts(given.metadata)
+    plain = {
+        name: getattr(given, name)
+        for name in _Stated.model_fields
+        if name not in ("images", "band_names", "gsd_m", "metadata")
+    }
+    return StatedOfImages(
+        images=tuple(_below(folder, one) for one in _texts(given.images or [])),
+        band_names=None if given.band_names is None else tuple(given.band_names),
+        gsd_m=sides,
+        metadata=None if documents is None else tuple(_below(folder, one) for one in documents),
+        **plain,
+    )
+
+
+def _texts(value: Texts) -> Sequence[str]:
+    return [value] if isinstance(value, str) else value
+
+
+def _below(folder: Path, path: str) -> str:
+    """A path of a plan, seen from the current folder; a name of GDAL's own as it is."""
+    if path.startswith(("/vsi", "~")) or ":" in path[2:]:
+        return os.path.expanduser(path)
+    return str(folder / path)
+
+
+def _fault(error: Any) -> str:
+    place = ".".join(str(one) for one in error["loc"])
+    if error["type"] == "extra_forbidden":
+        return f"there is no key {place!r}"
+    if error["type"] == "missing":
+        return f"the key {place!r} is missing"
+    return f"{place} is {error['input']!r:.60}: {error['msg']}"

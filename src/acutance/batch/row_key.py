@@ -1,0 +1,58 @@
+"""What makes a row of an archive the same: the image's content, the target, the band, the options.
+
+When it was measured, by which version and from which folder does not count.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from acutance.batch.plan_options import ChosenOptions
+from acutance.raster.surveyed_targets import SurveyedTarget
+
+__all__ = ["reading_digest", "row_key", "target_digest", "unreadable_key"]
+
+_FREE = ("description", "source")
+
+
+def target_digest(target: SurveyedTarget, chosen: ChosenOptions) -> str:
+    """Of a target as it is described, and of how it is measured."""
+    definition = dict(target.definition)
+    properties = dict(definition.get("properties") or {})
+    definition["properties"] = {key: one for key, one in properties.items() if key not in _FREE}
+    return _digest({"name": target.name, "target": definition, "options": chosen.document})
+
+
+def reading_digest(reading: Mapping[str, Any]) -> str:
+    """Of how the pixels of an image are read."""
+    return _digest({key: one for key, one in reading.items() if one is not None})
+
+
+def row_key(content: str, reading: str, target: str, band: int, day: str | None) -> str:
+    """The key of a row.
+
+    Parameters
+    ----------
+    content : str
+        SHA-256 of the image.
+    reading, target : str
+        Digests of how it is read, and of the target with its options.
+    band : int
+    day : str or None
+        Of the acquisition, for a target that is there at times only.
+    """
+    parts = f"{content}/{reading}/{target}/{band}/{day or ''}"
+    return hashlib.sha256(parts.encode()).hexdigest()
+
+
+def unreadable_key(content: str | None, path: str) -> str:
+    """The key of the one row of an image that cannot be read."""
+    return hashlib.sha256(f"unreadable/{content or path}".encode()).hexdigest()
+
+
+def _digest(document: Any) -> str:
+    text = json.dumps(document, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
