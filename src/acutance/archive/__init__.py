@@ -8,7 +8,7 @@ Sees records only, never pixels. In the order the data take:
 - `tables`, `migrations`: the tables of an archive, and how older ones become today's
 - `connection`, `failures`: SQLite or PostgreSQL, transactions that wait, errors in words
 - `packing`, `systematic`, `rows`, `adding`: entries become rows, added once each
-- `runs`: batches that wrote into the archive
+- `runs`, `outcomes`: batches that wrote into the archive; how what they ask for came out
 - `selection`, `columns`, `measurements`: which rows are meant, and what they hold as columns
 - `stored_entries`, `overview`: rows become entries again, and are counted
 - `exchange`: files of documents and tables, in and out

@@ -18,6 +18,7 @@ from acutance.archive.measurements import (
     select_rejections,
 )
 from acutance.archive.migrations import ensure_schema
+from acutance.archive.outcomes import Outcome, kept_outcomes
 from acutance.archive.overview import Overview, overview_of
 from acutance.archive.questions import Questions
 from acutance.archive.runs import end_run, kept_keys, start_run
@@ -187,6 +188,16 @@ class Archive(Questions):
             Of images with this content (SHA-256).
         """
         return kept_keys(self._database, run, None if images is None else list(images))
+
+    def outcomes(self, images: Iterable[str]) -> dict[str, Outcome]:
+        """How the rows of some images came out, by key: their verdict, or why they have none.
+
+        Parameters
+        ----------
+        images : iterable of str
+            Contents of images (SHA-256).
+        """
+        return kept_outcomes(self._database, images)
 
     def start_run(self, plan: Mapping[str, Any]) -> int:
         """Write down that a run began, with its plan; returns its number."""

@@ -74,7 +74,9 @@ def edge_candidates(placed: PlacedTarget, image: Image) -> list[tuple[RegionPixe
     ]
     if not found:
         which = "" if wanted is None else f" {wanted} track"
-        raise NotHereError("not found", f"no straight edge{which} stands out in the outline", "find")
+        raise NotHereError(
+            "not found", f"no straight edge{which} stands out in the outline", "find"
+        )
     return found[:_TRIED]
 
 
@@ -121,8 +123,8 @@ def _nearest(placed: PlacedTarget, region: RegionPixels) -> Segment:
         )
         raise NotHereError(
             "not found",
-            f"no straight edge lies within {placed.search_px:.1f} px of the surveyed line: {found}; "
-            "check the coordinates, or state a larger position_std_m",
+            f"no straight edge lies within {placed.search_px:.1f} px of the surveyed line: "
+            f"{found}; check the coordinates, or state a larger position_std_m",
             "find",
         )
     return best[1]
@@ -138,7 +140,9 @@ def _against(segment: Segment, start: Floats, stop: Floats) -> tuple[float, floa
     turn_deg = axis_difference(segment.line.normal_deg, normal_deg)
     offset = abs(float(segment.line.normal_distance(middle[0], middle[1])))
     row, col = _ends(segment)
-    reach = np.sort([float((np.array([r, c]) - start) @ along) for r, c in zip(row, col, strict=True)])
+    reach = np.sort(
+        [float((np.array([r, c]) - start) @ along) for r, c in zip(row, col, strict=True)]
+    )
     shared = min(reach[1], length) - max(reach[0], 0.0)
     return offset, turn_deg, max(shared, 0.0) / length
 

@@ -104,4 +104,6 @@ def stated_of(path: str, stated: Sequence[StatedOfImages]) -> StatedOfImages:
 def _matches(path: str, pattern: str) -> bool:
     """Whether a path is that of a pattern, by its end: "K3_*.tif" matches in every folder."""
     wanted = Path(pattern)
-    return Path(path).match(str(wanted)) or Path(os.path.realpath(path)).match(str(wanted.absolute()))
+    return Path(path).match(str(wanted)) or Path(os.path.realpath(path)).match(
+        str(wanted.absolute())
+    )

@@ -14,7 +14,7 @@ from acutance.batch.measure_target import measure_target
 from acutance.batch.place_target import NotHereError, PlacedTarget, place_target
 from acutance.batch.plan import StatedOfImages
 from acutance.batch.plan_options import ChosenOptions
-from acutance.batch.row_key import row_key, unreadable_key
+from acutance.batch.row_key import day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
 from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
 from acutance.raster import Gsd, Image, open_bands
@@ -164,17 +164,14 @@ def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[E
         for place, band in enumerate(opened.bands):
             if not selected(band, work.bands, target.bands):
                 continue
-            dated = target.valid_from is not None or target.valid_to is not None
-            key = row_key(str(task.content), task.reading, digest, band.number, day if dated else None)
+            key = row_key(str(task.content), task.reading, digest, band.number, day_of(target, day))
             if key in task.done:
                 continue
             if described is None:
                 described = target_entry(target)
             found, seconds = _row(target, chosen, opened, place)
             yield (
-                Entry(
-                    **found, image=opened.entry, target=described, band=band.name, key=key
-                ),
+                Entry(**found, image=opened.entry, target=described, band=band.name, key=key),
                 seconds,
             )
 
@@ -234,8 +231,6 @@ def _stage(error: AcutanceError) -> str:
     return next((stage for stage, kind in kinds if isinstance(error, kind)), "fit")
 
 
-def _rejected(
-    stage: str, reason: str, why: str, chosen: ChosenOptions, image: Image
-) -> Rejected:
+def _rejected(stage: str, reason: str, why: str, chosen: ChosenOptions, image: Image) -> Rejected:
     values = {"why": why, "band": image.band, "method": chosen.method, "path": image.path}
     return Rejected(stage, reason, values)

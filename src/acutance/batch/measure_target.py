@@ -11,7 +11,7 @@ from acutance.batch.place_target import PlacedTarget
 from acutance.batch.plan_options import ChosenOptions
 from acutance.errors import TargetError
 from acutance.numerics.one_thread import one_thread
-from acutance.raster import Image, Region
+from acutance.raster import Image
 from acutance.targets.measurement import Measurement
 
 __all__ = ["measure_target"]
@@ -119,8 +119,6 @@ def _scene(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measure
 
     region = grown(placed) if placed.target.points else None
     return scan_scene(image, region, gsd_m=placed.gsd, options=chosen.options)
-
-
 
 
 _MEASURES: dict[str, Callable[[PlacedTarget, Image, ChosenOptions], Measurement]] = {

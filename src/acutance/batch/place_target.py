@@ -10,6 +10,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
 from acutance.raster import Box, Geolocation, Gsd, Image, Region
+from acutance.raster.geolocation import is_geographic
 from acutance.raster.sensor_model import SensorModel
 from acutance.raster.surveyed_targets import SurveyedTarget
 
@@ -117,7 +118,7 @@ def _in_pixels(target: SurveyedTarget, image: Image, georeference: Georeference)
 
 def _near_image(points: Floats, image: Image, georeference: Georeference) -> Floats:
     """Points of an image in degrees, on the turn of the Earth on which the image lies."""
-    if not isinstance(georeference, Geolocation) or not _counts_degrees(georeference):
+    if not isinstance(georeference, Geolocation) or not is_geographic(georeference.crs):
         return points
     step = georeference.transform[0]
     if step == 0.0 or georeference.transform[1] != 0.0:
@@ -125,13 +126,8 @@ def _near_image(points: Floats, image: Image, georeference: Georeference) -> Flo
     turn_px = 360.0 / abs(step)
     middle = (image.shape[1] - 1) / 2
     turns = np.round((points[:, 1].mean() - middle) / turn_px)
-    return points - [0.0, turns * turn_px]
-
-
-def _counts_degrees(georeference: Geolocation) -> bool:
-    from acutance.raster.geolocation import is_geographic
-
-    return is_geographic(georeference.crs)
+    moved: Floats = points - np.array([0.0, turns * turn_px])
+    return moved
 
 
 def _gsd_at(place: Floats, image: Image, georeference: Georeference) -> Gsd | None:
@@ -217,7 +213,8 @@ def _require_size(placed: PlacedTarget) -> None:
 
 def _too_small(found: str, least: float) -> NoReturn:
     raise NotHereError(
-        "too small", f"{found}, and at least {least:g} px are needed: the image is too coarse for it"
+        "too small",
+        f"{found}, and at least {least:g} px are needed: the image is too coarse for it",
     )
 
 

@@ -70,9 +70,7 @@ def choose_options(
     return tuple(one for one in found if one is not None)
 
 
-def _merged(
-    target: SurveyedTarget, of_plan: Mapping[str, Mapping[str, Any]]
-) -> dict[str, Any]:
+def _merged(target: SurveyedTarget, of_plan: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """The options of a target go before those of the plan, limit by limit."""
     given = of_plan.get(target.kind, {})
     merged = {**given, **target.options}

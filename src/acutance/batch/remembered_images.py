@@ -60,10 +60,8 @@ class RememberedImages:
         """What is remembered of files that have not changed, by path."""
         try:
             with closing(self._opened()) as database:
-                rows = dict(
-                    (path, (stamp, text))
-                    for path, stamp, text in database.execute("SELECT path, stamp, known FROM images_1")
-                )
+                read = database.execute("SELECT path, stamp, known FROM images_1")
+                rows = {path: (stamp, text) for path, stamp, text in read}
         except (sqlite3.Error, OSError):
             return {}
         found = {}
@@ -91,6 +89,8 @@ class RememberedImages:
     def _opened(self) -> sqlite3.Connection:
         self.place.parent.mkdir(parents=True, exist_ok=True)
         database = sqlite3.connect(self.place, timeout=_PATIENCE_S)
+        # What a sudden end of the machine loses is found out again.
+        database.execute("PRAGMA synchronous = OFF")
         database.execute(_TABLE)
         return database
 

@@ -13,7 +13,7 @@ from typing import Any
 from acutance.batch.plan_options import ChosenOptions
 from acutance.raster.surveyed_targets import SurveyedTarget
 
-__all__ = ["reading_digest", "row_key", "target_digest", "unreadable_key"]
+__all__ = ["day_of", "reading_digest", "row_key", "target_digest", "unreadable_key"]
 
 _FREE = ("description", "source")
 
@@ -46,6 +46,11 @@ def row_key(content: str, reading: str, target: str, band: int, day: str | None)
     """
     parts = f"{content}/{reading}/{target}/{band}/{day or ''}"
     return hashlib.sha256(parts.encode()).hexdigest()
+
+
+def day_of(target: SurveyedTarget, day: str | None) -> str | None:
+    """The day of an image, where it decides whether the target is there."""
+    return None if target.valid_from is None and target.valid_to is None else day
 
 
 def unreadable_key(content: str | None, path: str) -> str:

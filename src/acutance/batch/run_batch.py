@@ -4,23 +4,30 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from acutance.archive import Archive
+from acutance.archive.outcomes import Outcome
 from acutance.batch.image_list import ImageFile, content_of, list_images, stated_of
 from acutance.batch.measure_image import BatchTask, BatchWork, MeasuredImage, measure_image
 from acutance.batch.plan import BatchPlan, read_plan
 from acutance.batch.plan_options import choose_options
 from acutance.batch.remembered_images import KnownImage, RememberedImages
-from acutance.batch.row_key import reading_digest, row_key, target_digest, unreadable_key
+from acutance.batch.row_key import (
+    day_of,
+    reading_digest,
+    row_key,
+    target_digest,
+    unreadable_key,
+)
 from acutance.batch.selected_bands import Band, selected
 from acutance.batch.summary import BatchSummary, Tally
 from acutance.errors import OptionError
 from acutance.execution import require_workers, run_on_cluster, run_tasks
-from acutance.raster.surveyed_targets import SurveyedTarget, read_targets, targets_of
+from acutance.raster.surveyed_targets import read_targets, targets_of
 
 __all__ = ["run_batch"]
 
@@ -30,8 +37,6 @@ KeptKeys = Callable[[Sequence[str]], None]
 _READING = ("gsd_m", "nodata", "along_track", "linearize", "band_names")
 _MANY_BYTES = 2 * 10**9
 """So many are read for their checksums by all processes."""
-_PAUSE_S = 2.0
-"""Between two writings of what was found out about images."""
 
 
 def run_batch(
@@ -97,9 +102,12 @@ def run_batch(
     work = _work(wanted)
     files = list_images(wanted.images)
     with Archive(wanted.archive) as place:
-        batch = _Batch(wanted, work, place, progress, kept)
-        batch.run(files)
-        return batch.summary(len(files), time.monotonic() - begin)
+        known = _known_images(files, wanted)
+        tally = Tally()
+        there = place.outcomes({one.content for one in known.values()})
+        todo = _tasks(files, known, wanted, work, there, tally)
+        run = _run(todo, wanted, work, place, there, tally, progress, kept) if todo else None
+    return tally.summary(wanted.archive, len(files), time.monotonic() - begin, run)
 
 
 def _wanted(
@@ -123,7 +131,7 @@ def _wanted(
         plan = BatchPlan(images=(), targets={}, archive="")
     elif not isinstance(plan, BatchPlan):
         plan = read_plan(plan)
-    given = {
+    given: dict[str, Any] = {
         "images": None if images is None else _texts(images),
         "targets": targets if isinstance(targets, Mapping | None) else os.fspath(targets),
         "archive": None if archive is None else os.fspath(archive),
@@ -157,23 +165,117 @@ def _work(plan: BatchPlan) -> BatchWork:
     return BatchWork(targets, chosen, digests, plan.bands)
 
 
-class _Batch:
-    """A batch under way: what was there, what is to do, what came out."""
+def _known_images(files: Sequence[ImageFile], plan: BatchPlan) -> dict[str, KnownImage]:
+    """What identifies every image, by path: remembered, or found out from its bytes."""
+    memory = RememberedImages()
+    known = memory.known(files)
+    unknown = [one for one in files if one.path not in known]
+    learned: dict[ImageFile, KnownImage] = {}
 
-    def __init__(
-        self,
-        plan: BatchPlan,
-        work: BatchWork,
-        archive: Archive,
-        progress: Progress | None,
-        kept: KeptKeys | None,
-    ) -> None:
-        self.plan, self.work, self.archive = plan, work, archive
-        self.progress, self.kept = progress, kept
-        self.remembered, self.tally = RememberedImages(), Tally()
-        self.done_before, self.added, self.measuring_s = 0, 0, 0.0
-        self.finished, self.total = 0, 0
-        self.run_number: int | None = None
-        self.unreadable: list[str] = []
-        self.learned: dict[ImageFile, KnownImage] = {}
-        self.written_at = time.monotonic()
+    def keep(place: int, content: str | None) -> None:
+        if content is not None:
+            learned[unknown[place]] = KnownImage(content)
+
+    many = sum(one.size for one in unknown) > _MANY_BYTES
+    paths = [one.path for one in unknown]
+    run_tasks(content_of, paths, keep, workers=plan.workers if many else 1)
+    memory.remember(learned)
+    return {**known, **{file.path: one for file, one in learned.items()}}
+
+
+def _tasks(
+    files: Sequence[ImageFile],
+    known: Mapping[str, KnownImage],
+    plan: BatchPlan,
+    work: BatchWork,
+    there: Mapping[str, Outcome],
+    tally: Tally,
+) -> list[tuple[ImageFile, BatchTask]]:
+    """The images that have rows to do; what is there already is counted."""
+    by_content: dict[str, set[str]] = {}
+    for key, one in there.items():
+        by_content.setdefault(str(one.content), set()).add(key)
+    found, seen = [], set[tuple[str, str]]()
+    for file in files:
+        stated, image = stated_of(file.path, plan.stated), known.get(file.path)
+        reading = reading_digest({name: getattr(stated, name) for name in _READING})
+        content = None if image is None else image.content
+        if content is not None and (content, reading) in seen:
+            continue
+        seen.add((content or file.path, reading))
+        done = by_content.get(content or "", set())
+        wanted = None if image is None else _wanted_keys(image, reading, work)
+        if unreadable_key(content, file.path) in done:
+            wanted = {unreadable_key(content, file.path)}
+        if wanted is not None and wanted <= done:
+            tally.add_earlier([there[key] for key in wanted])
+            continue
+        found.append((file, BatchTask(file.path, content, stated, reading, frozenset(done))))
+    return found
+
+
+def _wanted_keys(image: KnownImage, reading: str, work: BatchWork) -> set[str] | None:
+    """The keys of all rows of an image; None while its bands are not known."""
+    if image.bands is None:
+        return None
+    return {
+        row_key(image.content, reading, digest, band.number, day_of(target, image.day))
+        for target, digest in zip(work.targets, work.digests, strict=True)
+        for band in (Band(*one) for one in image.bands)
+        if selected(band, work.bands, target.bands)
+    }
+
+
+def _run(
+    todo: Sequence[tuple[ImageFile, BatchTask]],
+    plan: BatchPlan,
+    work: BatchWork,
+    archive: Archive,
+    there: Mapping[str, Outcome],
+    tally: Tally,
+    progress: Progress | None,
+    kept: KeptKeys | None,
+) -> int:
+    """Measure, and keep every image's rows in one transaction as soon as they are there."""
+    number = archive.start_run(plan.to_dict())
+    memory = RememberedImages()
+    finished: set[int] = set()
+
+    def keep(place: int, found: MeasuredImage) -> None:
+        file, task = todo[place]
+        if place in finished:
+            return
+        archive.add_entries(found.entries, run=number)
+        finished.add(place)
+        if kept is not None:
+            kept([str(entry.key) for entry in found.entries])
+        if task.content is not None and found.bands is not None:
+            image = KnownImage(task.content, found.bands, found.day)
+            memory.remember({file: image})
+            wanted = _wanted_keys(image, task.reading, work) or set()
+            tally.add_earlier([there[key] for key in wanted & task.done])
+        tally.add_image(task.path, found)
+        if progress is not None:
+            progress(len(finished), len(todo))
+
+    tasks = [task for _, task in todo]
+    try:
+        if progress is not None:
+            progress(0, len(todo))
+        _spread(partial(measure_image, work), tasks, keep, plan)
+    finally:
+        archive.end_run(number, {**tally.to_dict(), "finished": len(finished) == len(todo)})
+    return number
+
+
+def _spread(
+    measure: Callable[[BatchTask], MeasuredImage],
+    tasks: Sequence[BatchTask],
+    keep: Callable[[int, MeasuredImage], None],
+    plan: BatchPlan,
+) -> None:
+    """All images over processes, or over the workers of a cluster."""
+    if plan.dask is not None:
+        run_on_cluster(measure, tasks, keep, scheduler=plan.dask)
+    else:
+        run_tasks(measure, tasks, keep, workers=plan.workers, chunk=1)

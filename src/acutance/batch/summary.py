@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from acutance.curves.short_repr import ShortRepr
+
+if TYPE_CHECKING:
+    from acutance.archive.outcomes import Outcome
+    from acutance.batch.measure_image import MeasuredImage
 
 __all__ = ["BatchSummary", "Tally"]
 
@@ -98,23 +102,56 @@ class BatchSummary(ShortRepr):
 
 
 class Tally:
-    """Rows counted by verdict and by reason."""
+    """Rows counted while they come."""
 
     def __init__(self) -> None:
         self.verdicts: Counter[str] = Counter()
         self.reasons: Counter[str] = Counter()
+        self.earlier, self.kept, self.measuring_s = 0, 0, 0.0
+        self.unreadable: list[str] = []
 
-    def add(self, verdict: str | None, reason: str | None) -> None:
-        """Count a row: its verdict, or the reason why it was not measured."""
+    def add_earlier(self, rows: Sequence[Outcome]) -> None:
+        """Count rows that were there before."""
+        self.earlier += len(rows)
+        for one in rows:
+            self._count(one.verdict, one.why)
+
+    def add_image(self, path: str, found: MeasuredImage) -> None:
+        """Count the rows of an image."""
+        self.kept += len(found.entries)
+        self.measuring_s += found.measuring_s
+        if found.bands is None:
+            self.unreadable.append(path)
+        for entry in found.entries:
+            if entry.record is not None:
+                self._count(entry.record.verdict.word, None)
+            elif entry.rejected is not None:
+                self._count(None, str(entry.rejected.values.get("why") or entry.rejected.stage))
+
+    def _count(self, verdict: str | None, why: str | None) -> None:
         if verdict is not None:
             self.verdicts[verdict] += 1
         else:
-            self.reasons[reason or "rejected"] += 1
+            self.reasons[why or "rejected"] += 1
 
-    def by_verdict(self) -> dict[str, int]:
-        """Counts, the best verdict first."""
-        return {one: self.verdicts[one] for one in VERDICTS if self.verdicts[one]}
+    def to_dict(self) -> dict[str, Any]:
+        """Counts so far, for JSON."""
+        return {
+            "kept": self.kept,
+            "done_before": self.earlier,
+            "verdicts": {one: self.verdicts[one] for one in VERDICTS if self.verdicts[one]},
+            "reasons": dict(self.reasons.most_common()),
+        }
 
-    def by_reason(self) -> dict[str, int]:
-        """Counts, the most frequent reason first."""
-        return dict(self.reasons.most_common())
+    def summary(self, archive: str, images: int, elapsed_s: float, run: int | None) -> BatchSummary:
+        """What came out, verdicts from the best, reasons from the most frequent."""
+        counts = self.to_dict()
+        return BatchSummary(
+            archive=archive,
+            images=images,
+            unreadable=tuple(self.unreadable),
+            measuring_s=self.measuring_s,
+            elapsed_s=elapsed_s,
+            run=run,
+            **counts,
+        )

@@ -103,9 +103,11 @@ def _run_in_processes(
                     started[pool.submit(_work_through, work, list(some))] = first
             for future in as_completed(started):
                 keep_all(future)
+                # What was kept is not to fill the memory of a long run.
+                del started[future]
     except BaseException:
         # What the processes had finished when they were stopped is not to be done again.
-        for future in started:
+        for future in list(started):
             if not future.cancelled() and future.exception() is None:
                 keep_all(future)
         raise

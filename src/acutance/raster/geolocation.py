@@ -19,7 +19,7 @@ from acutance.errors import RegionError
 from acutance.geometry.angles import wrap_direction
 from acutance.raster.gsd import Gsd
 
-__all__ = ["LONLAT_CRS", "Geolocation", "ground_gsd", "transform_points"]
+__all__ = ["LONLAT_CRS", "Geolocation", "ground_gsd", "is_geographic", "transform_points"]
 
 LONLAT_CRS = "OGC:CRS84"
 
@@ -214,6 +214,17 @@ def transform_points(
             f"({str(error)[:120]}): give the region in pixels, ROW,COL,HEIGHT,WIDTH"
         ) from error
     return np.reshape(moved[0], xs.shape), np.reshape(moved[1], xs.shape)
+
+
+def is_geographic(crs: str) -> bool:
+    """Whether the coordinates of a CRS are longitude and latitude.
+
+    Raises
+    ------
+    RegionError
+        If the CRS is unknown.
+    """
+    return bool(_parse_crs(crs).is_geographic)
 
 
 def _parse_crs(crs: str) -> Any:
