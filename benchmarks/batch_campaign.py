@@ -1,7 +1,7 @@
 """A campaign to be worked off: images of one field with ten targets, on a map that is metres off.
 
-Eight images are rendered, at eight sub-pixel places; every image of the campaign is one of them with
-noise of its own, a date of its own, and a geotransform that is wrong by some metres.
+Eight images are rendered, at eight sub-pixel places; every image of the campaign is one of them
+with noise of its own, a date of its own, and a geotransform that is wrong by some metres.
 """
 
 from __future__ import annotations

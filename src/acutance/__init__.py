@@ -32,10 +32,12 @@ from acutance.errors import (
 if TYPE_CHECKING:
     from acutance import optics, report, simulate
     from acutance.archive import Archive
+    from acutance.batch import BatchPlan, BatchSummary, read_plan, run_batch
     from acutance.curves import Esf, Estimate, Estimates, Lsf, Mtf, Response
     from acutance.geometry import Line
     from acutance.optics import Sensor
     from acutance.raster import Box, Gsd, Image, Region, open_image, sites
+    from acutance.raster.metadata import ImageStatement, read_statement
     from acutance.scan import (
         BandScenes,
         BandShift,
@@ -91,6 +93,8 @@ _HOMES = {
     "BandShift": "acutance.scan",
     "BarsMeasurement": "acutance.targets.periodic",
     "BarsOptions": "acutance.targets.periodic",
+    "BatchPlan": "acutance.batch",
+    "BatchSummary": "acutance.batch",
     "BiresolutionMeasurement": "acutance.targets.pair",
     "BiresolutionOptions": "acutance.targets.pair",
     "Box": "acutance.raster",
@@ -104,6 +108,7 @@ _HOMES = {
     "Gsd": "acutance.raster",
     "Image": "acutance.raster",
     "ImageInfo": "acutance.targets",
+    "ImageStatement": "acutance.raster.metadata",
     "Line": "acutance.geometry",
     "Lsf": "acutance.curves",
     "Measurement": "acutance.targets",
@@ -136,6 +141,9 @@ _HOMES = {
     "measure_pulses": "acutance.targets.straight",
     "measure_star": "acutance.targets.periodic",
     "open_image": "acutance.raster",
+    "read_plan": "acutance.batch",
+    "read_statement": "acutance.raster.metadata",
+    "run_batch": "acutance.batch",
     "scan_bands": "acutance.scan",
     "scan_scene": "acutance.scan",
     "sites": "acutance.raster",
@@ -150,6 +158,8 @@ __all__ = [
     "BandShift",
     "BarsMeasurement",
     "BarsOptions",
+    "BatchPlan",
+    "BatchSummary",
     "BiresolutionMeasurement",
     "BiresolutionOptions",
     "Box",
@@ -164,6 +174,7 @@ __all__ = [
     "Image",
     "ImageError",
     "ImageInfo",
+    "ImageStatement",
     "Line",
     "Lsf",
     "Measurement",
@@ -208,7 +219,10 @@ __all__ = [
     "measure_star",
     "open_image",
     "optics",
+    "read_plan",
+    "read_statement",
     "report",
+    "run_batch",
     "scan_bands",
     "scan_scene",
     "simulate",

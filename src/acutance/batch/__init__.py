@@ -5,7 +5,7 @@ the options of the kinds), `image_list` (files and their contents, by `remembere
 `row_key` (what is done is not done again), then in the workers `measure_image` (one image, all its
 targets), with `place_target` (where the survey says it is, or why not here), `find_line` and
 `find_points` (the target near that place) and `measure_target` (by kind); `entries` (rows for the
-archive), `run_batch` (all of it) and `summary` (what came out).
+archive), `whole_batch` (all of it) and `summary` (what came out).
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from acutance.batch.plan import BatchPlan, read_plan
-    from acutance.batch.run_batch import run_batch
     from acutance.batch.summary import BatchSummary
+    from acutance.batch.whole_batch import run_batch
 
 __all__ = ["BatchPlan", "BatchSummary", "read_plan", "run_batch"]
 
@@ -24,7 +24,7 @@ _HOMES = {
     "BatchPlan": "plan",
     "BatchSummary": "summary",
     "read_plan": "plan",
-    "run_batch": "run_batch",
+    "run_batch": "whole_batch",
 }
 
 

@@ -10,7 +10,6 @@ from typing import Any
 
 from acutance.archive.entry import Entry, ImageEntry
 from acutance.batch.entries import image_entry, target_entry
-from acutance.batch.measure_target import measure_target
 from acutance.batch.place_target import NotHereError, PlacedTarget, place_target
 from acutance.batch.plan import StatedOfImages
 from acutance.batch.plan_options import ChosenOptions
@@ -180,6 +179,9 @@ def _row(
     target: SurveyedTarget, chosen: ChosenOptions, opened: _Opened, place: int
 ) -> tuple[dict[str, Any], float]:
     """A record or a rejection, and the seconds of the measurement."""
+    # The rooms of the kinds are loaded where something is measured.
+    from acutance.batch.measure_target import measure_target
+
     image, begin = opened.images[place], None
     try:
         _require_valid(target, opened.acquired)

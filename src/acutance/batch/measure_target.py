@@ -42,9 +42,10 @@ def _edge(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measurem
     from acutance.targets.straight.edge import measure_segment
 
     first: TargetError | None = None
+    options = chosen.build()
     for region, segment in edge_candidates(placed, image):
         try:
-            return measure_segment(region, segment, chosen.method, chosen.options)
+            return measure_segment(region, segment, chosen.method, options)
         except TargetError as error:
             first = first or error
     raise first or TargetError("there is no edge")
@@ -61,7 +62,7 @@ def _pulse(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measure
     is_line = placed.target.shape == "LineString"
     region = line_region(placed, _width_px(placed)) if is_line else grown(placed)
     found = measure_pulse(
-        image, region, gsd_m=placed.gsd, method=chosen.method, options=chosen.options, **stated
+        image, region, gsd_m=placed.gsd, method=chosen.method, options=chosen.build(), **stated
     )
     if is_line:
         require_near(placed, found.line)
@@ -84,12 +85,13 @@ def _points(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measur
     how: dict[str, Any] = {
         "gsd_m": placed.gsd,
         "method": chosen.method,
-        "options": chosen.options,
+        "options": chosen.build(),
     }
     if placed.target.shape == "Polygon":
         return measure_points(image, grown(placed), **how)
     box, places = find_points(placed, image)
-    surveyed = placed.points if len(places) > 1 else None
+    # The survey with its common shift taken out: what is left is compared point by point.
+    surveyed = places if len(places) > 1 else None
     return measure_points(image, box, positions=places, surveyed=surveyed, **how)
 
 
@@ -98,7 +100,7 @@ def _star(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measurem
 
     return measure_star(
         image, grown(placed), cycles=placed.target.settings.get("cycles"), gsd_m=placed.gsd,
-        method=chosen.method, options=chosen.options,
+        method=chosen.method, options=chosen.build(),
     )  # fmt: skip
 
 
@@ -108,7 +110,9 @@ def _bars(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measurem
     from acutance.targets.periodic import measure_bars
 
     count = placed.target.settings.get("count")
-    options = chosen.options if count is None else replace(chosen.options, count=count)
+    options = chosen.build()
+    if count is not None:
+        options = replace(options, count=count)
     return measure_bars(
         image, grown(placed), gsd_m=placed.gsd, method=chosen.method, options=options
     )
@@ -118,7 +122,7 @@ def _scene(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measure
     from acutance.scan import scan_scene
 
     region = grown(placed) if placed.target.points else None
-    return scan_scene(image, region, gsd_m=placed.gsd, options=chosen.options)
+    return scan_scene(image, region, gsd_m=placed.gsd, options=chosen.build())
 
 
 _MEASURES: dict[str, Callable[[PlacedTarget, Image, ChosenOptions], Measurement]] = {

@@ -1,4 +1,8 @@
-"""The options with which targets are measured: those of the plan, then those of the target."""
+"""The options with which targets are measured: those of the plan, then those of the target.
+
+What is given is compared by names and values. The classes of the options, and with them the rooms
+of the kinds, are loaded when something is to be measured.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +11,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
-from acutance.curves import Estimate
 from acutance.errors import OptionError
 from acutance.raster.surveyed_targets import SurveyedTarget
 from acutance.targets.kinds import KINDS
 
-__all__ = ["ChosenOptions", "choose_options"]
+__all__ = ["ChosenOptions", "choose_options", "require_options"]
 
 _NOT_HERE = frozenset(("method_options", "groups", "centre"))
 """Options that are objects, or places in one image."""
@@ -26,99 +29,134 @@ class ChosenOptions:
 
     Parameters
     ----------
-    method : str
-    options : object
-        Of the kind's own class.
-    document : mapping
-        The same for JSON: part of the key.
+    kind, method : str
+    given : mapping
+        Options by name; the others have their default values.
     """
 
+    kind: str
     method: str
-    options: Any
-    document: Mapping[str, Any]
+    given: Mapping[str, Any]
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """What is part of the key of a row."""
+        return {"method": self.method, **self.given}
+
+    def build(self) -> Any:
+        """The options as an object of the kind's own class.
+
+        Raises
+        ------
+        OptionError
+            If a value means nothing.
+        """
+        of_class = _class_of(self.kind)
+        try:
+            return of_class(**{name: _value(name, one) for name, one in self.given.items()})
+        except (TypeError, ValueError) as error:
+            raise OptionError(str(error)) from error
 
 
 def choose_options(
     targets: Sequence[SurveyedTarget], of_plan: Mapping[str, Mapping[str, Any]]
 ) -> tuple[ChosenOptions, ...]:
-    """The method and the options of every target.
+    """The method and the options of every target, whatever they are worth.
 
     Parameters
     ----------
     targets : sequence of SurveyedTarget
     of_plan : mapping of str to mapping
         By kind.
+    """
+    return tuple(
+        _chosen(one.kind, one.method, of_plan.get(one.kind, {}), one.options) for one in targets
+    )
+
+
+def require_options(
+    targets: Sequence[SurveyedTarget],
+    chosen: Sequence[ChosenOptions],
+    of_plan: Mapping[str, Mapping[str, Any]],
+) -> None:
+    """Refuse options that do not exist, and values that mean nothing.
+
+    Parameters
+    ----------
+    targets, chosen : sequences
+        As of `choose_options`.
+    of_plan : mapping of str to mapping
 
     Raises
     ------
     OptionError
-        If the plan or targets have options that do not exist, or values that mean nothing: all
-        of them are named at once.
+        Names all of them at once, those of the plan once and not for every target.
     """
     faults: list[str] = []
-    wrong = {
-        kind for kind, given in of_plan.items()
-        if _chosen(kind, "the plan", None, given, faults) is None
-    }  # fmt: skip
-    found = [
-        _chosen(one.kind, f"target {one.name}", one.method, _merged(one, of_plan), faults)
-        for one in targets
-        if one.kind not in wrong
-    ]
+    wrong = set()
+    for kind, given in of_plan.items():
+        found = _faults("the plan", _chosen(kind, None, given, {}))
+        faults.extend(found)
+        wrong |= {kind} if found else set()
+    for target, one in zip(targets, chosen, strict=True):
+        if target.kind not in wrong:
+            faults.extend(_faults(f"target {target.name}", one))
     if faults:
         raise OptionError("options cannot be used:\n" + "\n".join(f"  - {one}" for one in faults))
-    return tuple(one for one in found if one is not None)
-
-
-def _merged(target: SurveyedTarget, of_plan: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """The options of a target go before those of the plan, limit by limit."""
-    given = of_plan.get(target.kind, {})
-    merged = {**given, **target.options}
-    limits = _limits(given, target.options)
-    return {**merged, "limits": limits} if limits else merged
-
-
-def _limits(*given: Mapping[str, Any]) -> dict[str, Any]:
-    merged: dict[str, Any] = {}
-    for one in given:
-        if isinstance(one.get("limits"), Mapping):
-            merged.update(one["limits"])
-    return merged
 
 
 def _chosen(
-    kind: str, whose: str, method: str | None, given: Mapping[str, Any], faults: list[str]
-) -> ChosenOptions | None:
-    """The options of one kind; None where something is wrong with them, added to the faults."""
-    before = len(faults)
-    room, name, methods = _of_kind(kind)
-    of_class: Any = getattr(importlib.import_module(room), name)
-    known = [one.name for one in fields(of_class) if one.name not in _NOT_HERE]
-    unknown = [one for one in given if one not in (*known, "method")]
-    faults.extend(f"{whose}: {kind} has no option {one!r}" for one in unknown)
-    chosen = method or given.get("method") or methods[0]
-    if chosen not in methods:
-        faults.append(f"{whose}: there is no {kind} method {chosen!r}: {', '.join(methods)}")
-    values = {key: one for key, one in given.items() if key in known}
-    try:
-        options = of_class(**{key: _value(key, one) for key, one in values.items()})
-    except (OptionError, TypeError, ValueError) as error:
-        faults.append(f"{whose}: {error}")
-        return None
-    if len(faults) > before:
-        return None
-    return ChosenOptions(str(chosen), options, {"method": chosen, **options.to_dict()})
+    kind: str, method: str | None, of_plan: Mapping[str, Any], own: Mapping[str, Any]
+) -> ChosenOptions:
+    """Options of a target go before those of the plan, limit by limit."""
+    merged = {**of_plan, **own}
+    limits = {**_limits(of_plan), **_limits(own)}
+    if limits:
+        merged["limits"] = limits
+    stated = merged.pop("method", None)
+    return ChosenOptions(kind, method or stated or _of_kind(kind)[2][0], merged)
+
+
+def _limits(given: Mapping[str, Any]) -> dict[str, Any]:
+    limits = given.get("limits")
+    return dict(limits) if isinstance(limits, Mapping) else {}
+
+
+def _faults(whose: str, chosen: ChosenOptions) -> list[str]:
+    """What is wrong with options, in words."""
+    methods = _of_kind(chosen.kind)[2]
+    known = [one.name for one in fields(_class_of(chosen.kind)) if one.name not in _NOT_HERE]
+    found = [
+        f"{whose}: {chosen.kind} has no option {one!r}" for one in chosen.given if one not in known
+    ]
+    if chosen.method not in methods:
+        named = ", ".join(methods)
+        found.append(f"{whose}: there is no {chosen.kind} method {chosen.method!r}: {named}")
+    if not found:
+        try:
+            chosen.build()
+        except OptionError as error:
+            found.append(f"{whose}: {error}")
+    return found
 
 
 def _of_kind(kind: str) -> tuple[str, str, tuple[str, ...]]:
+    """Room, class of options and methods of a kind."""
     if kind == "scene":
         return _SCENE
     found = KINDS[kind]
     return found.room, found.options, found.methods
 
 
+def _class_of(kind: str) -> Any:
+    room, name, _ = _of_kind(kind)
+    return getattr(importlib.import_module(room), name)
+
+
 def _value(name: str, value: Any) -> Any:
-    """A number with its deviation, {value = 0.05, std = 0.02}; lists as tuples."""
+    """A number with its deviation, {value = 0.05, std = 0.02}, as an estimate; lists as tuples."""
+    from acutance.curves import Estimate
+
     if name in _STATED and isinstance(value, Mapping):
         if set(value) != {"value", "std"}:
             raise OptionError(f"{name} is {dict(value)!r}: write a number, or value and std")

@@ -14,10 +14,12 @@ from acutance import __version__
 from acutance.cli import (
     archive,
     bars,
+    batch,
     biresolution,
     combine,
     demo,
     edge,
+    image,
     plan_mirrors,
     points,
     pulse,
@@ -113,11 +115,13 @@ for _name, _module, _words in (
     ("star", star, "Measure a Siemens star, full or a fan."),
     ("combine", combine, "Combine measurements of one sensor."),
     ("scan", scan, "Measure a sensor from all edges of a scene."),
+    ("batch", batch, "Measure all targets of many images into an archive."),
+    ("image", image, "Show what an image says of itself."),
     ("sites", sites, "List the edge targets that --site knows."),
     ("study", study, "Run a study of targets and estimators."),
     ("demo", demo, "Measure a simulated campaign by every method."),
 ):
-    _measures = _name in KINDS or _name in ("combine", "scan")
+    _measures = _name in KINDS or _name in ("batch", "combine", "scan")
     _epilog = f"{EXIT_CODES}\n\n{_module.EXAMPLE}" if _measures else _module.EXAMPLE
     app.command(_name, epilog=_epilog, short_help=_words)(getattr(_module, _name))
 app.add_typer(archive.app, name="archive")

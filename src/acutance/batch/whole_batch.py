@@ -9,12 +9,12 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from acutance.archive import Archive
+from acutance.archive import Archive, Entry
 from acutance.archive.outcomes import Outcome
 from acutance.batch.image_list import ImageFile, content_of, list_images, stated_of
 from acutance.batch.measure_image import BatchTask, BatchWork, MeasuredImage, measure_image
 from acutance.batch.plan import BatchPlan, read_plan
-from acutance.batch.plan_options import choose_options
+from acutance.batch.plan_options import choose_options, require_options
 from acutance.batch.remembered_images import KnownImage, RememberedImages
 from acutance.batch.row_key import (
     day_of,
@@ -32,7 +32,7 @@ from acutance.raster.surveyed_targets import read_targets, targets_of
 __all__ = ["run_batch"]
 
 Progress = Callable[[int, int], None]
-KeptKeys = Callable[[Sequence[str]], None]
+KeptEntries = Callable[[Sequence[Entry]], None]
 
 _READING = ("gsd_m", "nodata", "along_track", "linearize", "band_names")
 _MANY_BYTES = 2 * 10**9
@@ -49,7 +49,7 @@ def run_batch(
     workers: int | None = None,
     scheduler: str | None = None,
     progress: Progress | None = None,
-    kept: KeptKeys | None = None,
+    kept: KeptEntries | None = None,
 ) -> BatchSummary:
     """Measure every target in every image, and keep the results in an archive.
 
@@ -76,8 +76,8 @@ def run_batch(
     scheduler : str, optional
         Address of a dask scheduler whose workers see the images under the same names.
     progress : function of (images done, images in all), optional
-    kept : function of keys, optional
-        Told the keys of rows once the archive has them.
+    kept : function of (sequence of Entry), optional
+        Told the rows of an image, each with its key, once the archive has them.
 
     Returns
     -------
@@ -234,9 +234,10 @@ def _run(
     there: Mapping[str, Outcome],
     tally: Tally,
     progress: Progress | None,
-    kept: KeptKeys | None,
+    kept: KeptEntries | None,
 ) -> int:
     """Measure, and keep every image's rows in one transaction as soon as they are there."""
+    require_options(work.targets, work.chosen, plan.options)
     number = archive.start_run(plan.to_dict())
     memory = RememberedImages()
     finished: set[int] = set()
@@ -248,7 +249,7 @@ def _run(
         archive.add_entries(found.entries, run=number)
         finished.add(place)
         if kept is not None:
-            kept([str(entry.key) for entry in found.entries])
+            kept(found.entries)
         if task.content is not None and found.bands is not None:
             image = KnownImage(task.content, found.bands, found.day)
             memory.remember({file: image})

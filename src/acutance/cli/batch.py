@@ -1,0 +1,207 @@
+"""``acutance batch``: all targets of many images into an archive."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from acutance.cli.options import JsonOption
+from acutance.cli.study import WorkersOption, progress_bar
+from acutance.cli.terminal import FAILED_CHECK, NOTHING_MEASURED, say
+from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.archive import Entry
+    from acutance.batch import BatchPlan, BatchSummary
+
+__all__ = ["EXAMPLE", "batch"]
+
+EXAMPLE = (
+    "\b\nExamples:\n"
+    "  acutance batch images/*.tif --targets targets.geojson --archive campaign.db\n"
+    "  acutance batch plan.toml --workers 8\n"
+    "  acutance batch plan.toml --dask tcp://host:8786 --json\n"
+    "  acutance batch images/*.tif --targets targets.geojson --archive campaign.db --band pan,3"
+)
+_PLAN = ".toml"
+
+
+def batch(
+    images: Annotated[
+        list[str],
+        typer.Argument(metavar="IMAGE...|PLAN.toml", help="Images, or the file of a plan."),
+    ],
+    targets: Annotated[
+        str | None, typer.Option(metavar="FILE", help="The targets: features of a GeoJSON file.")
+    ] = None,
+    archive: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PLACE", help="Where results are kept: a file, or the URL of a database."
+        ),
+    ] = None,
+    band: Annotated[
+        str | None,
+        typer.Option(metavar="BAND,...", help="Names or numbers of the bands; all without it."),
+    ] = None,
+    sensor: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="The sensor of all images, whatever they say."),
+    ] = None,
+    workers: WorkersOption = None,
+    dask: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Use the workers of this dask scheduler instead of processes: tcp://HOST:8786. "
+            "They have to see the images under the same names.",
+        ),
+    ] = None,
+    log: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="Add a line of JSON to this file for every row once it is kept."
+        ),
+    ] = None,
+    as_json: JsonOption = False,
+    strict: Annotated[
+        bool,
+        typer.Option(
+            "--strict", help="Exit with code 3 when a row is rejected, doubtful or invalid."
+        ),
+    ] = False,
+) -> None:
+    """Measure every target in every image, and keep the results in an archive.
+
+    There is one row for every image, target and band: a measurement, or the reason why there is
+    none. What is done is not done again: a batch that was interrupted goes on when it is called
+    again. An image that cannot be read stops no other.
+    """
+    plan = _plan(images, targets, archive, band, sensor, workers, dask)
+
+    from acutance.batch import run_batch
+
+    try:
+        with _logged(log) as kept, progress_bar("batch") as progress:
+            found = run_batch(plan, progress=progress, kept=kept)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(
+            "interrupted: what was kept is kept, the same command goes on"
+        ) from None
+    typer.echo(json.dumps(found.to_dict(), indent=2) if as_json else _text(found))
+    if found.measured == 0:
+        say("acutance: nothing could be measured")
+        raise typer.Exit(NOTHING_MEASURED)
+    if strict and found.failed:
+        say(f"acutance: {found.failed} rows are rejected, doubtful or invalid")
+        raise typer.Exit(FAILED_CHECK)
+
+
+def _plan(
+    images: Sequence[str],
+    targets: str | None,
+    archive: str | None,
+    band: str | None,
+    sensor: str | None,
+    workers: int | None,
+    dask: str | None,
+) -> BatchPlan:
+    """The plan of the file or of the words, with what the options say."""
+    if workers is not None and dask is not None:
+        raise OptionError("--workers and --dask cannot be combined: the cluster has its own")
+
+    from acutance.batch.plan import BatchPlan, StatedOfImages, read_plan
+
+    is_plan = images[0].lower().endswith(_PLAN)
+    if is_plan and len(images) > 1:
+        raise OptionError(f"{images[0]} is a plan and names its images: give it alone")
+    if not is_plan and (targets is None or archive is None):
+        raise OptionError("images need --targets FILE and --archive PLACE, or give a plan.toml")
+    given: dict[str, Any] = {
+        "targets": targets,
+        "archive": archive,
+        "bands": None if band is None else _bands(band),
+        "workers": workers,
+        "dask": dask,
+    }
+    plan = (
+        read_plan(images[0]) if is_plan else BatchPlan(images=tuple(images), targets="", archive="")
+    )
+    plan = replace(plan, **{name: one for name, one in given.items() if one is not None})
+    if workers is not None:
+        plan = replace(plan, dask=None)
+    if dask is not None:
+        plan = replace(plan, workers=None)
+    if sensor is not None:
+        plan = replace(plan, stated=(*plan.stated, StatedOfImages(sensor=sensor)))
+    return plan
+
+
+def _bands(text: str) -> tuple[str | int, ...]:
+    """Names and numbers of bands, typed as ``pan,3``."""
+    parts = [part.strip() for part in text.split(",")]
+    if not all(parts):
+        raise OptionError(f"--band {text}: write names or numbers, as in pan,3")
+    return tuple(int(part) if part.isdecimal() else part for part in parts)
+
+
+@contextmanager
+def _logged(name: str | None) -> Iterator[Callable[[Sequence[Entry]], None] | None]:
+    """Writes a line for every row; nothing where there is no file to write to."""
+    if name is None:
+        yield None
+        return
+    try:
+        file = open(name, "a", encoding="utf-8")  # noqa: SIM115
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OptionError(
+            f"--log {name} cannot be written ({reason}): name another file"
+        ) from error
+
+    def write(entries: Sequence[Entry]) -> None:
+        file.writelines(f"{json.dumps(_line(one), ensure_ascii=False)}\n" for one in entries)
+        file.flush()
+
+    with file:
+        yield write
+
+
+def _line(entry: Entry) -> dict[str, Any]:
+    record, rejected = entry.record, entry.rejected
+    return {
+        "key": entry.key,
+        "image": entry.image.path,
+        "target": None if entry.target is None else entry.target.name,
+        "band": entry.band,
+        "verdict": None if record is None else record.verdict.word,
+        "reason": None if rejected is None else rejected.reason,
+    }
+
+
+def _text(found: BatchSummary) -> str:
+    """Counts, then verdicts and reasons, and where to read on."""
+    lines = [
+        f"{found.images} images: {found.kept} rows added to {found.archive}, "
+        f"{found.done_before} were there",
+        _counts("measured", found.measured, found.verdicts),
+        _counts("rejected", found.rejected, found.reasons),
+        *(f"unreadable: {path}" for path in found.unreadable[:_NAMED]),
+    ]
+    if len(found.unreadable) > _NAMED:
+        lines.append(f"and {len(found.unreadable) - _NAMED} more that cannot be read")
+    return "\n".join(lines)
+
+
+_NAMED = 5
+"""Images that are named in the summary; all are rows of the archive."""
+
+
+def _counts(word: str, total: int, parts: Any) -> str:
+    listed = ", ".join(f"{count} {name}" for name, count in parts.items())
+    return f"{word} {total}" + (f": {listed}" if listed else "")
