@@ -106,6 +106,12 @@ def _in_pixels(target: SurveyedTarget, image: Image, georeference: Georeference)
             f"the image has neither geotransform, RPC nor ground control points to find "
             f'{target.crs} by: give the target in pixels ("crs": "pixel")',
         )
+    if isinstance(georeference, SensorModel) and georeference.needs_height:
+        raise NotHereError(
+            "no height",
+            "the image is located by RPC, which need the height of the ground: give the target's "
+            "height above the ellipsoid (height_m)",
+        )
     try:
         row, col = georeference.from_crs(points[:, 0], points[:, 1], target.crs)
     except RegionError as error:

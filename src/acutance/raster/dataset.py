@@ -193,16 +193,29 @@ def _require_band(dataset: Any, path: str, band: int) -> None:
             f"band {band} of {path} holds complex values ({dtype}), not real numbers: "
             "write its modulus to a file first"
         )
-    if dataset.colorinterp[band - 1] == ColorInterp.palette:
+    if _color_meanings(dataset)[band - 1] == ColorInterp.palette:
         raise ImageError(
             f"band {band} of {path} holds palette indices, not grey levels: "
             "expand it first, for example with gdal_translate -expand gray"
         )
 
 
+def _color_meanings(dataset: Any) -> tuple[ColorInterp, ...]:
+    """What the bands mean in a picture.
+
+    A document beside the image that GDAL could not parse left its error behind, which rasterio
+    raises at this question. The image is none the worse: asked again it answers.
+    """
+    try:
+        meanings: tuple[ColorInterp, ...] = dataset.colorinterp
+    except CPLE_BaseError:
+        meanings = dataset.colorinterp
+    return meanings
+
+
 def _alpha_band(dataset: Any, band: int) -> int | None:
     """The band of transparency, unless it is the one to be measured."""
-    for number, meaning in enumerate(dataset.colorinterp, start=1):
+    for number, meaning in enumerate(_color_meanings(dataset), start=1):
         if meaning == ColorInterp.alpha and number != band:
             return number
     return None

@@ -46,6 +46,11 @@ class SensorModel:
     control_points: tuple[ControlPoint, ...] = ()
     height_m: float | None = None
 
+    @property
+    def needs_height(self) -> bool:
+        """Whether it has no answer because the height of the ground is not known."""
+        return self.rpc is not None and self.height_m is None
+
     def from_crs(self, x: ArrayLike, y: ArrayLike, crs: str) -> tuple[Floats, Floats]:
         """Pixel positions (row, col) of coordinates in any CRS; integers are pixel centres.
 
@@ -87,7 +92,7 @@ class SensorModel:
         from rasterio.errors import RasterioError
         from rasterio.transform import GCPTransformer, RPCTransformer
 
-        if self.rpc is not None and self.height_m is None:
+        if self.needs_height:
             raise RegionError(
                 "the image is located by RPC, which need the height of the ground: give the "
                 "target's height above the ellipsoid (height_m)"

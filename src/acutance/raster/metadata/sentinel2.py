@@ -17,7 +17,7 @@ PRODUCT_ROOTS = ("Level-1C_User_Product", "Level-2A_User_Product")
 _BANDS = ("B01", "B02", "B03", "B04", "B05", "B06", "B07", "B08", "B8A", "B09", "B10", "B11", "B12")
 """By bandId, 0 to 12."""
 _BAND = re.compile(r"_(B\d\d|B8A)(?=[_.]|$)")
-_TILE = re.compile(r"_(T\d\d[A-Z]{3})_")
+_TILE = re.compile(r"(?:^|_)(T\d\d[A-Z]{3})_")
 
 
 def read_tile(root: Element, source: str, image: str) -> Findings:

@@ -1,0 +1,142 @@
+"""Targets of GeoJSON: what is read, and that all faults are named at once."""
+
+from __future__ import annotations
+
+import json
+import pickle
+
+import pytest
+
+from acutance.errors import OptionError
+from acutance.raster.surveyed_targets import read_targets, targets_of
+
+
+def feature(shape="LineString", points=((5.0, 60.0), (5.001, 60.0)), **properties):
+    geometry = None if shape is None else {"type": shape, "coordinates": points}
+    return {"type": "Feature", "geometry": geometry, "properties": {"kind": "edge", **properties}}
+
+
+def collection(*features, **members):
+    return {"type": "FeatureCollection", "features": list(features), **members}
+
+
+def refused(document, *messages):
+    with pytest.raises(OptionError) as caught:
+        targets_of(document, "targets.geojson")
+    for message in messages:
+        assert message in str(caught.value)
+
+
+def test_a_file(tmp_path):
+    path = tmp_path / "targets.geojson"
+    polygon = [[[0, 0], [40, 0], [40, 40], [0, 40], [0, 0]]]
+    document = collection(
+        feature(name="north", valid_from="2026-01-01", bands=["pan", 3], position_std_m=2),
+        feature("Polygon", polygon, name="star", kind="star", cycles=36, description="painted"),
+        crs={"type": "name", "properties": {"name": "EPSG:32631"}},
+    )
+    path.write_text(json.dumps(document), encoding="utf-8-sig")
+    north, star = read_targets(str(path))
+    assert (north.name, north.kind, north.crs, north.shape) == (
+        "north", "edge", "EPSG:32631", "LineString",
+    )  # fmt: skip
+    assert (north.valid_from.isoformat(), north.valid_to, north.bands) == (
+        "2026-01-01", None, ("pan", 3),
+    )  # fmt: skip
+    assert (star.settings, len(star.points)) == ({"cycles": 36}, 4)
+    assert star.definition["properties"]["description"] == "painted"
+    assert pickle.loads(pickle.dumps(star)).definition == star.definition
+
+
+def test_without_a_crs_coordinates_are_degrees():
+    (target,) = targets_of(feature(), "targets")
+    assert (target.crs, target.name, target.in_pixels) == ("OGC:CRS84", "1", False)
+    refused(feature(points=((600000, 5000000), (600010, 5000000))), "no longitude and latitude")
+
+
+def test_pixels():
+    (target,) = targets_of(feature(points=((10, 20), (30, 20))), "targets", "pixel")
+    assert target.in_pixels
+
+
+def test_a_site_of_the_catalogue_needs_no_geometry():
+    (target,) = targets_of(feature(None, site="Salon de Provence", orientation="across"), "targets")
+    assert target.shape == "Point"
+    assert target.points == ((5.120278, 43.605833),)
+    assert (target.size_m, target.position_std_m) == (60.0, 15.0)
+    assert target.settings == {"orientation": "across"}
+
+
+def test_all_faults_of_all_features_at_once():
+    document = collection(
+        feature(name="a", kind="wires"),
+        feature(name="b", colour="red", width_m=3, valid_from="soon"),
+        feature("Point", [5.0, 60.0], name="c"),
+        feature(None, name="d"),
+        feature(None, name="e", site="atlantis"),
+        feature(None, name="f", site="big-spring"),
+        feature(name="g", valid_from="2026-02-01", valid_to="2026-01-01"),
+        feature("Point", [5.0, 60.0], name="h", kind="points", size_m=10),
+        feature("LineString", [[5, 60]], name="i"),
+        feature("LineString", [[5, 60], [5, float("nan")]], name="j"),
+        feature("LineString", "nowhere", name="k"),
+        feature("Polygon", [[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 0], [1, 1]]], name="l"),
+        feature(name="m", kind="pulse", width_m=3, width_px=4),
+        feature(name="n", position_std_m=-1),
+        feature(name="o", valid_from=20260101),
+        feature(name="same"),
+        feature(name="same"),
+        {"type": "Polygon"},
+        "feature",
+    )
+    refused(
+        document,
+        "feature 1 (a): kind is 'wires'",
+        "feature 2 (b): there is no property 'colour'",
+        "feature 2 (b): valid_from is 'soon'",
+        "feature 3 (c): a Point needs size_m",
+        "feature 4 (d): it has no geometry, and names no site",
+        "feature 5 (e): there is no site 'atlantis'",
+        "feature 6 (f): the coordinates of Big Spring",
+        "feature 7 (g): valid_to 2026-01-01 is before",
+        "feature 8 (h): its geometry is 'Point': the kind 'points' takes MultiPoint or Polygon",
+        "feature 9 (i): its LineString has 1 points",
+        "feature 10 (j): a coordinate is no finite number",
+        "feature 11 (k): its coordinates are not pairs",
+        "feature 12 (l): its Polygon has 2 rings",
+        "feature 13 (m): width_m and width_px are both given",
+        "feature 14 (n): position_std_m is -1",
+        "feature 15 (o): valid_from is 20260101",
+        "2 features have the name 'same'",
+        "feature 18: it is no GeoJSON Feature",
+        "feature 19: it is no GeoJSON Feature",
+    )
+
+
+def test_properties_of_other_kinds():
+    refused(feature(width_m=3.0), "width_m is no property of the kind 'edge'")
+    refused(feature(kind="pulse", cycles=36), "cycles is no property of the kind 'pulse'")
+
+
+@pytest.mark.parametrize(
+    ("document", "message"),
+    [
+        (collection(), "holds no features"),
+        ({"type": "Polygon"}, "write the targets as a FeatureCollection"),
+        ({}, "write the targets as a FeatureCollection"),
+        ({"type": "FeatureCollection", "features": {}}, "FeatureCollection"),
+        (feature(kind=None), "kind is None"),
+        ({"type": "Feature", "geometry": None, "properties": None}, "'kind' is missing"),
+    ],
+)
+def test_what_holds_no_targets(document, message):
+    refused(document, message)
+
+
+def test_files_that_are_none(tmp_path):
+    with pytest.raises(OptionError, match="cannot be read as GeoJSON"):
+        read_targets(str(tmp_path / "none.geojson"))
+    path = tmp_path / "targets.geojson"
+    path.write_text("[1, 2]")
+    with pytest.raises(OptionError, match="not a GeoJSON object"):
+        read_targets(str(path))
