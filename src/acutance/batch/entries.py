@@ -9,6 +9,7 @@ import numpy as np
 
 from acutance.archive.entry import ImageEntry, TargetEntry
 from acutance.errors import RegionError
+from acutance.geometry.angles import wrap_direction
 from acutance.raster.geolocation import LONLAT_CRS, transform_points
 from acutance.raster.metadata import ImageStatement
 from acutance.raster.surveyed_targets import SurveyedTarget
@@ -68,11 +69,13 @@ def target_entry(target: SurveyedTarget) -> TargetEntry:
 def _middle(target: SurveyedTarget) -> tuple[float | None, float | None]:
     if target.in_pixels or not target.points:
         return None, None
-    x, y = np.mean(np.array(target.points), axis=0)
+    points = np.array(target.points)
     try:
-        lon, lat = transform_points(x, y, target.crs, LONLAT_CRS)
+        lon, lat = transform_points(points[:, 0], points[:, 1], target.crs, LONLAT_CRS)
     except RegionError:
         return None, None
-    if not (np.isfinite(lon) and np.isfinite(lat)):
+    if not (np.isfinite(lon).all() and np.isfinite(lat).all()):
         return None, None
-    return (float(lon) + 180.0) % 360.0 - 180.0, float(lat)
+    # Points on both sides of the antimeridian have their middle there too.
+    middle = lon[0] + np.mean(wrap_direction(lon - lon[0]))
+    return float(wrap_direction(middle)), float(lat.mean())

@@ -131,8 +131,8 @@ def _near_image(points: Floats, image: Image, georeference: Georeference) -> Flo
         return points
     turn_px = 360.0 / abs(step)
     middle = (image.shape[1] - 1) / 2
-    turns = np.round((points[:, 1].mean() - middle) / turn_px)
-    moved: Floats = points - np.array([0.0, turns * turn_px])
+    turns = np.round((points[:, 1] - middle) / turn_px)
+    moved: Floats = points - np.column_stack([np.zeros(len(points)), turns * turn_px])
     return moved
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -25,7 +26,7 @@ from acutance.batch.row_key import (
 )
 from acutance.batch.selected_bands import Band, selected
 from acutance.batch.summary import BatchSummary, Tally
-from acutance.errors import OptionError
+from acutance.errors import ArchiveError, OptionError
 from acutance.execution import require_workers, run_on_cluster, run_tasks
 from acutance.raster.surveyed_targets import read_targets, targets_of
 
@@ -246,7 +247,7 @@ def _run(
         file, task = todo[place]
         if place in finished:
             return
-        archive.add_entries(found.entries, run=number)
+        new = archive.add_entries(found.entries, run=number)
         finished.add(place)
         if kept is not None:
             kept(found.entries)
@@ -255,17 +256,21 @@ def _run(
             memory.remember({file: image})
             wanted = _wanted_keys(image, task.reading, work) or set()
             tally.add_earlier([there[key] for key in wanted & task.done])
-        tally.add_image(task.path, found)
+        tally.add_image(task.path, found, new)
         if progress is not None:
             progress(len(finished), len(todo))
 
     tasks = [task for _, task in todo]
+    if progress is not None:
+        progress(0, len(todo))
     try:
-        if progress is not None:
-            progress(0, len(todo))
         _spread(partial(measure_image, work), tasks, keep, plan)
-    finally:
-        archive.end_run(number, {**tally.to_dict(), "finished": len(finished) == len(todo)})
+    except BaseException:
+        # Why the run ended is to be told, and not that this could not be written down.
+        with suppress(ArchiveError):
+            archive.end_run(number, {**tally.to_dict(), "finished": False})
+        raise
+    archive.end_run(number, {**tally.to_dict(), "finished": True})
     return number
 
 

@@ -1,0 +1,137 @@
+"""Plans: what they may hold, and that all faults are named at once."""
+
+from __future__ import annotations
+
+import os
+from datetime import UTC, datetime
+
+import pytest
+
+from acutance.batch.image_list import list_images, stated_of
+from acutance.batch.plan import StatedOfImages, plan_of, read_plan
+from acutance.errors import OptionError
+
+NEEDED = {"images": "*.tif", "targets": "targets.geojson", "archive": "kept.db"}
+
+
+def test_paths_are_relative_to_the_plan(tmp_path):
+    path = tmp_path / "plan.toml"
+    path.write_text(
+        """
+images = ["images/*.tif", "/data/a.tif"]
+targets = "targets.geojson"
+archive = "campaign.db"
+bands = ["pan", 3]
+workers = 2
+
+[[stated]]
+sensor = "QB02"
+acquired = 2026-01-05T10:00:00Z
+gsd_m = [0.72, 0.70]
+
+[[stated]]
+images = "K3_*.tif"
+sensor = "K3"
+gsd_m = 0.7
+metadata = "documents/K3_Aux.xml"
+
+[edge]
+method = "spline"
+target_softness_m = {value = 0.05, std = 0.02}
+[edge.limits]
+rows = 12
+"""
+    )
+    plan = read_plan(path)
+    assert plan.images == (str(tmp_path / "images/*.tif"), "/data/a.tif")
+    assert plan.archive == str(tmp_path / "campaign.db")
+    assert (plan.bands, plan.workers, plan.dask) == (("pan", 3), 2, None)
+    first, second = plan.stated
+    assert (first.acquired, first.gsd_m) == (
+        datetime(2026, 1, 5, 10, tzinfo=UTC), (0.72, 0.70),
+    )  # fmt: skip
+    assert second.gsd_m == (0.7, 0.7)
+    assert second.metadata == (str(tmp_path / "documents/K3_Aux.xml"),)
+    assert plan.options["edge"]["limits"] == {"rows": 12}
+
+
+def test_a_server_stays_as_it_is(tmp_path):
+    plan = plan_of({**NEEDED, "archive": "postgresql+psycopg://user@host/db"}, "plan", tmp_path)
+    assert plan.archive == "postgresql+psycopg://user@host/db"
+
+
+def test_all_faults_at_once():
+    document = {
+        "images": "*.tif",
+        "target": "targets.geojson",
+        "colour": 1,
+        "workers": 0,
+        "stated": {"sensr": "QB02", "acquired": 20260105, "gsd_m": -1.0},
+        "edge": "spline",
+    }
+    with pytest.raises(OptionError) as caught:
+        plan_of(document, "plan.toml")
+    for words in (
+        "the plan plan.toml cannot be used",
+        "there is no key 'target'",
+        "there is no key 'colour'",
+        "the key 'targets' is missing",
+        "the key 'archive' is missing",
+        "workers is 0",
+        "there is no key 'stated.0.sensr'",
+        "stated.0.acquired is 20260105",
+        "stated.0.gsd_m is -1.0",
+        "edge is 'spline'",
+    ):
+        assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["images = ", "\x00", "a = 1\na = 2"])
+def test_files_that_are_no_plan(tmp_path, text):
+    path = tmp_path / "plan.toml"
+    path.write_text(text)
+    with pytest.raises(OptionError, match="cannot be read"):
+        read_plan(path)
+    with pytest.raises(OptionError, match="cannot be read"):
+        read_plan(tmp_path / "none.toml")
+
+
+def test_a_day_is_no_time():
+    from datetime import date
+
+    with pytest.raises(OptionError, match="write the time too"):
+        plan_of({**NEEDED, "stated": {"acquired": date(2026, 1, 5)}}, "plan")
+
+
+def test_later_statements_go_before_earlier_ones(tmp_path):
+    stated = (
+        StatedOfImages(sensor="A", level="L1", gsd_m=(1.0, 1.0)),
+        StatedOfImages(images=("K3_*.tif",), sensor="B"),
+        StatedOfImages(images=(str(tmp_path / "deep" / "*.tif"),), sensor="C"),
+    )
+    assert stated_of("x.tif", stated).sensor == "A"
+    found = stated_of("images/K3_1.tif", stated)
+    assert (found.sensor, found.level) == ("B", "L1")
+    assert stated_of(str(tmp_path / "deep" / "K3_1.tif"), stated).sensor == "C"
+
+
+def test_images_are_listed_once(tmp_path):
+    for name in ("b.tif", "a.tif", "a.tif.aux.xml", "c[1].tif"):
+        (tmp_path / name).write_bytes(b"x")
+    (tmp_path / "folder.tif").mkdir()
+    os.symlink(tmp_path / "a.tif", tmp_path / "link.tif")
+    found = list_images([str(tmp_path / "b.tif"), str(tmp_path / "*.tif")])
+    assert [os.path.basename(one.path) for one in found] == ["b.tif", "a.tif", "c[1].tif"]
+    (exact,) = list_images([str(tmp_path / "c[1].tif")])
+    assert exact.size == 1
+    (missing,) = list_images([str(tmp_path / "missing.tif")])
+    assert (missing.stamp, missing.size) == ("", 0)
+
+
+def test_a_document_beside_an_image_changes_its_stamp(tmp_path):
+    image = tmp_path / "a.tif"
+    image.write_bytes(b"x")
+    (before,) = list_images([str(image)])
+    (tmp_path / "a.IMD").write_text("A = 1")
+    (after,) = list_images([str(image)])
+    assert before.stamp != after.stamp

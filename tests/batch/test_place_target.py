@@ -1,0 +1,98 @@
+"""Where a survey lies in an image, at the ends of the Earth too."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from acutance.batch.place_target import NotHereError, place_target
+from acutance.raster import Geolocation, Gsd, Image
+from acutance.raster.surveyed_targets import targets_of
+
+
+def target(points, shape="LineString", crs=None, **properties):
+    document = {
+        "type": "Feature",
+        "geometry": {"type": shape, "coordinates": points},
+        "properties": {"kind": "edge", "name": "edge", **properties},
+    }
+    return targets_of(document, "targets", crs)[0]
+
+
+def image_at(transform, crs, shape=(200, 200)):
+    from dataclasses import replace
+
+    return replace(Image.from_array(np.zeros(shape)), geolocation=Geolocation(transform, crs))
+
+
+def placed(survey, image):
+    return place_target(survey, image, image.geolocation)
+
+
+@pytest.mark.parametrize("west", [179.999, -180.001])
+@pytest.mark.parametrize("turn", [0.0, -360.0])
+def test_across_the_antimeridian(west, turn):
+    image = image_at((1e-5, 0.0, west, 0.0, -1e-5, 10.001), "EPSG:4326")
+    found = placed(target([[179.9995 + turn, 10.0], [180.0005 + turn, 10.0002]]), image)
+    assert found.points == pytest.approx(np.array([[99.5, 49.5], [79.5, 149.5]]), abs=1e-5)
+
+
+def test_a_line_over_the_antimeridian_stays_short():
+    image = image_at((1e-5, 0.0, 179.999, 0.0, -1e-5, 10.001), "EPSG:4326")
+    found = placed(target([[179.9998, 10.0], [-179.9998, 10.0]]), image)
+    assert np.ptp(found.points[:, 1]) == pytest.approx(40.0, abs=1e-6)
+
+
+def test_the_pole():
+    # Polar stereographic: the pole is the origin, in the middle of the image.
+    image = image_at((1.0, 0.0, -100.0, 0.0, -1.0, 100.0), "EPSG:3031")
+    found = placed(target([[0.0, -89.9995], [180.0, -89.9995]]), image)
+    middle = found.points.mean(axis=0)
+    assert middle == pytest.approx([99.5, 99.5], abs=0.1)
+    utm = image_at((1.0, 0.0, 5e5, 0.0, -1.0, 5e6), "EPSG:32631")
+    with pytest.raises(NotHereError) as caught:
+        placed(target([[0.0, 90.0], [1.0, 89.9]]), utm)
+    assert caught.value.why in ("outside", "no georeference")
+
+
+def test_a_point_is_a_square_of_metres():
+    image = image_at((0.5, 0.0, 6e5, 0.0, -0.5, 5e6), "EPSG:32631")
+    survey = target([6e5 + 50, 5e6 - 50], "Point", "EPSG:32631", size_m=20, position_std_m=2)
+    found = placed(survey, image)
+    assert np.ptp(found.points, axis=0) == pytest.approx([40.0, 40.0])
+    assert found.search_px == pytest.approx(12.0)
+    assert found.gsd == Gsd(0.5, 0.5)
+
+
+def test_pixels_without_a_gsd():
+    plain = Image.from_array(np.zeros((100, 100)))
+    found = place_target(target([[20, 10], [20, 60]], crs="pixel"), plain, None)
+    assert found.points.tolist() == [[10, 20], [60, 20]]
+    assert (found.gsd, found.search_px) == (None, 6.0)
+    with pytest.raises(NotHereError, match="GSD"):
+        place_target(target([50, 50], "Point", "pixel", size_m=20), plain, None)
+    square = place_target(target([50, 50], "Point", "pixel", size_px=20), plain, None)
+    assert np.ptp(square.points, axis=0) == pytest.approx([20.0, 20.0])
+
+
+def test_a_crs_that_is_unknown():
+    image = image_at((0.5, 0.0, 6e5, 0.0, -0.5, 5e6), "EPSG:32631")
+    with pytest.raises(NotHereError, match="is not known"):
+        placed(target([[0, 0], [1, 1]], crs="EPSG:999999"), image)
+
+
+def test_targets_that_reach_the_border():
+    image = image_at((0.5, 0.0, 6e5, 0.0, -0.5, 5e6), "EPSG:32631")
+
+    def at(first, last):
+        points = [[6e5 + 0.5 * (c + 0.5), 5e6 - 0.5 * (r + 0.5)] for r, c in (first, last)]
+        return target(points, crs="EPSG:32631", position_std_m=1)
+
+    assert placed(at((50, -10), (50, 90)), image)
+    for far, why in (((50, -90), "clipped"), ((-50, -50), "clipped")):
+        with pytest.raises(NotHereError) as caught:
+            placed(at(far, (50, 30)), image)
+        assert caught.value.why == why
+    with pytest.raises(NotHereError) as caught:
+        placed(at((50, 300), (50, 400)), image)
+    assert caught.value.why == "outside"

@@ -1,0 +1,305 @@
+"""Every target of every image once: measured, or rejected with its reason."""
+
+from __future__ import annotations
+
+import shutil
+
+import numpy as np
+import pytest
+from surveyed_field import EDGE, PULSE, SENSOR, feature, line_of, on_map, survey, written
+
+import acutance as ac
+from acutance.archive import Archive
+from acutance.errors import ArchiveError, OptionError
+
+
+def test_targets_are_found_where_the_map_is_metres_off(write_field, run, rows):
+    images = [
+        write_field(number, off_m) for number, off_m in enumerate([(0, 0), (3.1, -2.2), (-1, 4)])
+    ]
+    found = run(*images)
+    assert (found.images, found.kept, found.measured, found.rejected) == (3, 6, 6, 0)
+    measured, _ = rows()
+    truth = SENSOR.response(EDGE.normal_deg).mtf_nyquist.value
+    away = (measured["mtf_nyquist"] - truth) / measured["mtf_nyquist_std"]
+    assert (np.abs(away) < 4).all()
+    assert set(measured["sensor"]) == {"SIM-1"}
+    assert sorted({str(one)[:10] for one in measured["acquired"]}) == [
+        "2026-01-01", "2026-01-02", "2026-01-03",
+    ]  # fmt: skip
+    for number in range(len(measured)):
+        line = measured.record(number).document["line"]
+        tarp = EDGE if measured["target"][number] == "edge" else PULSE
+        assert abs(line["col"] - tarp.col) < 4
+        assert line["normal_deg"] % 180 == pytest.approx(tarp.normal_deg, abs=1)
+
+
+def test_what_is_done_is_not_done_again_and_not_even_opened(write_field, run, monkeypatch):
+    images = [write_field(number) for number in range(2)]
+    first = run(*images)
+
+    def refuse(*_, **__):
+        raise AssertionError("an image that is done was opened")
+
+    monkeypatch.setattr("acutance.batch.measure_image.open_bands", refuse)
+    monkeypatch.setattr("acutance.batch.whole_batch.content_of", refuse)
+    again = run(*images)
+    assert (again.kept, again.done_before, again.run) == (0, 4, None)
+    assert again.verdicts == first.verdicts
+    monkeypatch.undo()
+
+
+def test_what_is_not_remembered_is_found_out_again(write_field, run, monkeypatch, tmp_path):
+    image = write_field(0)
+    run(image)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "another"))
+    again = run(image)
+    assert (again.kept, again.done_before) == (0, 2)
+    (tmp_path / "another" / "acutance" / "images.db").write_bytes(b"not a database" * 100)
+    assert run(image).done_before == 2
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
+    assert run(image).done_before == 2
+
+
+def test_a_copy_is_the_same_image_and_a_changed_file_another(write_field, run, tmp_path):
+    image = write_field(0)
+    run(image)
+    copy = tmp_path / "copy.tif"
+    shutil.copy(image, copy)
+    assert (run(copy).kept, run(image, copy).kept) == (0, 0)
+    write_field(0, edit=lambda pixels: pixels + np.uint16(1))
+    assert run(image).kept == 2
+
+
+def test_other_options_are_other_rows(write_field, run, rows, tmp_path):
+    image = write_field(0)
+    run(image)
+    plan = tmp_path / "plan.toml"
+    written(tmp_path / "targets.geojson", survey())
+    plan.write_text(
+        'images = "field-*.tif"\ntargets = "targets.geojson"\narchive = "kept.db"\n'
+        '[edge]\nmethod = "iso12233"\n[pulse]\nrobust = false\n'
+        "[[stated]]\nsensor = 'QB02'\nalong_track = 'x'\n"
+    )
+    found = ac.run_batch(plan, workers=1)
+    assert (found.kept, found.done_before) == (2, 0)
+    measured, _ = rows()
+    assert sorted(set(measured["method"])) == ["iso12233", "spline"]
+    assert set(measured["sensor"]) == {"SIM-1", "QB02"}
+    other = measured["sensor"] == "QB02"
+    assert set(measured["orientation"][other]) == {"along"}
+    assert ac.run_batch(plan, workers=1).kept == 0
+
+
+def test_a_new_target_is_measured_in_old_images(write_field, run):
+    image = write_field(0)
+    run(image, targets=survey(feature("edge", "edge", "LineString", line_of(EDGE, 30.0))))
+    found = run(image)
+    assert (found.kept, found.done_before, found.measured) == (1, 1, 2)
+
+
+def test_reasons(write_field, run, rows):
+    middle = on_map(EDGE.row, EDGE.col)
+    line = line_of(EDGE, 30.0)
+    targets = survey(
+        feature("there", "edge", "LineString", line),
+        feature("outside", "edge", "LineString", [[x + 500, y] for x, y in line]),
+        feature("clipped", "edge", "Polygon", [[on_map(*c) for c in
+                ((40, -60), (40, 20), (70, 20), (70, -60))]]),
+        feature("one pixel", "edge", "LineString", line_of(EDGE, 1.0)),
+        feature("small", "star", "Point", middle, size_m=2.0, cycles=36),
+        feature("flat", "edge", "LineString", [on_map(5, 40), on_map(8, 80)]),
+        feature("turned", "edge", "LineString", [on_map(55, 35), on_map(56, 65)]),
+        feature("later", "edge", "LineString", line, valid_from="2026-06-01"),
+        feature("other band", "edge", "LineString", line, bands=["nir"]),
+        feature("anywhere", "edge", "LineString", line, position_std_m=30.0),
+        feature("no points", "points", "MultiPoint", [on_map(20, 20), on_map(90, 90)]),
+        feature("no star", "star", "Point", middle, size_m=20.0),
+        feature("no bars", "bars", "Point", middle, size_m=20.0, count=4),
+    )  # fmt: skip
+    found = run(write_field(0), targets=targets)
+    assert (found.measured, found.kept) == (1, 12)
+    _, rejected = rows()
+    why = dict(zip(rejected["target"], (one["why"] for one in rejected["values"]), strict=True))
+    assert {name: why.get(name) for name in why if name[:3] != "no "} == {
+        "outside": "outside",
+        "clipped": "clipped",
+        "one pixel": "too small",
+        "small": "too small",
+        "flat": "not found",
+        "turned": "not found",
+        "later": "not there then",
+        "anywhere": "not located",
+    }
+    assert {"no points", "no star", "no bars"} <= set(why)
+    stage = dict(zip(rejected["target"], rejected["stage"], strict=True))
+    assert (stage["outside"], stage["flat"], stage["later"]) == ("region", "find", "date")
+    assert found.failed == 9
+
+
+def test_nodata_on_the_target(write_field, run, rows):
+    def cover(pixels):
+        pixels[:, :100] = 0
+        return pixels
+
+    found = run(write_field(0, edit=cover, nodata=0))
+    assert (found.measured, found.reasons) == (1, {"NoDataError": 1})
+    _, rejected = rows()
+    assert (rejected["target"][0], rejected["stage"][0]) == ("edge", "region")
+
+
+def test_an_image_that_cannot_be_read_stops_no_other(write_field, run, rows, tmp_path):
+    whole = write_field(0)
+    cut = tmp_path / "cut.tif"
+    cut.write_bytes(whole.read_bytes()[:3000])
+    none = tmp_path / "none.tif"
+    none.write_bytes(b"no image")
+    found = run(none, cut, whole, tmp_path / "missing.tif")
+    assert found.measured == 2
+    assert str(none) in found.unreadable
+    assert found.reasons["unreadable image"] >= 2
+    again = run(none, cut, whole, tmp_path / "missing.tif")
+    assert again.kept == 0
+    _, rejected = rows()
+    assert sum(one == "image" for one in rejected["stage"]) >= 2
+
+
+def test_an_image_without_georeference_and_date(write_field, run, rows):
+    plain = write_field(0, crs=None, transform=None, tags={})
+    targets = survey(
+        feature("edge", "edge", "LineString", line_of(EDGE, 30.0)),
+        feature("at times", "edge", "LineString", line_of(EDGE, 30.0), valid_to="2030-01-01"),
+    )
+    found = run(plain, targets=targets)
+    assert found.reasons == {"no georeference": 1, "no date": 1}
+    turned = [[one.col + s, one.row + t] for one, s, t in ((EDGE, 1.5, -14), (EDGE, -1.5, 14))]
+    pixels = survey(feature("pixels", "edge", "LineString", turned), crs="pixel")
+    assert run(plain, targets=pixels).measured == 1
+    measured, _ = rows()
+    assert measured["acquired"][0] is None or str(measured["acquired"][0]) == "NaT"
+
+
+def test_bands_by_name_and_number(field_pixels, tmp_path, run, rows, write_field):
+    def three(pixels):
+        return np.stack([pixels, pixels + np.uint16(3), pixels + np.uint16(5)])
+
+    image = write_field(0, edit=three)
+    line = line_of(EDGE, 30.0)
+    targets = survey(
+        feature("all", "edge", "LineString", line),
+        feature("second", "edge", "LineString", line, bands=[2]),
+        feature("named", "edge", "LineString", line, bands=["NIR"]),
+    )
+    plan = ac.BatchPlan(
+        images=(str(image),), targets=targets, archive=str(tmp_path / "kept.db"), workers=1,
+        stated=(ac.batch.plan.StatedOfImages(band_names=("pan", "red", "nir")),),
+    )  # fmt: skip
+    assert ac.run_batch(plan).measured == 5
+    measured, _ = rows()
+    seen = sorted(zip(measured["target"], measured["band"], strict=True))
+    assert seen == [
+        ("all", "nir"), ("all", "pan"), ("all", "red"), ("named", "nir"), ("second", "red"),
+    ]  # fmt: skip
+    assert ac.run_batch(plan, bands=["red"]).kept == 0
+
+
+def test_workers_give_the_same_rows(write_field, run, rows, tmp_path):
+    images = [write_field(number) for number in range(3)]
+    run(*images)
+    numbers, _ = rows()
+    seen = []
+    found = run(
+        *images, archive=tmp_path / "other.db", workers=2,
+        progress=lambda done, total: seen.append((done, total)), kept=seen.append,
+    )  # fmt: skip
+    assert found.kept == 6
+    assert [one for one in seen if isinstance(one, tuple)] == [(0, 3), (1, 3), (2, 3), (3, 3)]
+    assert sum(len(one) for one in seen if isinstance(one, list)) == 6
+    with Archive(tmp_path / "other.db") as archive:
+        others = archive.measurements()
+        assert archive.keys() == {
+            entry.key for some in seen if isinstance(some, list) for entry in some
+        }
+    assert sorted(others["mtf_nyquist"]) == sorted(numbers["mtf_nyquist"])
+
+
+def test_a_measurement_that_fails_is_a_row(write_field, run, monkeypatch, rows):
+    def fail(*_):
+        raise np.linalg.LinAlgError("singular")
+
+    monkeypatch.setattr("acutance.batch.measure_target.measure_target", fail)
+    found = run(write_field(0))
+    assert found.reasons == {"LinAlgError": 2}
+    _, rejected = rows()
+    assert "LinAlgError: singular" in rejected["reason"][0]
+
+
+def test_a_scene_is_kept_with_its_summary(tmp_path, run, rows):
+    from acutance.simulate import landscape
+
+    pixels, _ = landscape(SENSOR, shape=(300, 300), snr=100, rng=np.random.default_rng(1))
+    path = tmp_path / "scene.tif"
+    ac.raster.write_geotiff(path, pixels.astype(np.float32), gsd_m=0.5)
+    found = run(path, targets=survey(feature("scene", "scene", None, None)))
+    assert (found.measured, found.rejected) == (1, 0)
+    measured, _ = rows()
+    assert set(measured["kind"]) == {"scene"}
+    assert sorted(measured["orientation"]) == ["across", "along"]
+
+
+def test_bad_input(write_field, run, tmp_path):
+    image = write_field(0)
+    with pytest.raises(OptionError, match=r"no file matches .*other-\*\.tif"):
+        run(tmp_path / "other-*.tif", image)
+    with pytest.raises(OptionError, match="there are no images"):
+        run()
+    with pytest.raises(OptionError, match="holds no features"):
+        run(image, targets={"type": "FeatureCollection", "features": []})
+    with pytest.raises(OptionError, match="images, archive: give them"):
+        ac.run_batch(targets=survey())
+    with pytest.raises(OptionError, match="workers is 0"):
+        run(image, workers=0)
+    with pytest.raises(OptionError, match="both given"):
+        run(image, scheduler="tcp://nowhere:1")
+    with pytest.raises(ArchiveError):
+        run(image, archive=tmp_path / "no" / "folder.db")
+
+
+def test_options_of_plan_and_targets_are_refused_together(write_field, tmp_path):
+    line = line_of(EDGE, 30.0)
+    targets = survey(
+        feature("a", "edge", "LineString", line, options={"colour": 1, "robust": True}),
+        feature("b", "edge", "LineString", line, method="magic"),
+        feature("c", "edge", "LineString", line, options={"limits": {"beauty": 1}}),
+        feature("d", "edge", "LineString", line, options={"target_softness_m": {"value": 1}}),
+    )
+    plan = ac.BatchPlan(
+        images=(str(write_field(0)),), targets=targets, archive=str(tmp_path / "kept.db"),
+        options={"pulse": {"width": 3}}, workers=1,
+    )  # fmt: skip
+    with pytest.raises(OptionError) as caught:
+        ac.run_batch(plan)
+    for words in (
+        "the plan: pulse has no option 'width'",
+        "target a: edge has no option 'colour'",
+        "target b: there is no edge method 'magic'",
+        "target c: ",
+        "target d: target_softness_m is",
+    ):
+        assert words in str(caught.value)
+
+
+def test_stated_options_enter_the_measurement(write_field, run, rows):
+    soft = {"target_softness_m": {"value": 0.1, "std": 0.02}, "level_uncertainty": 0.01}
+    line = line_of(EDGE, 30.0)
+    targets = survey(
+        feature("ideal", "edge", "LineString", line),
+        feature("soft", "edge", "LineString", line, options=soft),
+    )
+    run(write_field(0), targets=targets)
+    measured, _ = rows()
+    by_name = dict(zip(measured["target"], measured["mtf_nyquist"], strict=True))
+    expected = np.exp(0.5 * (2 * np.pi * 0.5 * 0.1 / 0.5) ** 2)
+    assert by_name["soft"] / by_name["ideal"] == pytest.approx(expected, rel=2e-2)

@@ -1,0 +1,130 @@
+"""``acutance batch``: words, files, exit codes."""
+
+import json
+
+import numpy as np
+import pytest
+
+from acutance import optics
+from acutance.raster import write_geotiff
+
+SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=0.7)
+LINE = {"type": "LineString", "coordinates": [[21.5, 8], [16.8, 52]]}
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+
+
+def targets_file(tmp_path, *features):
+    path = tmp_path / "targets.geojson"
+    document = {"type": "FeatureCollection", "crs": "pixel", "features": list(features)}
+    path.write_text(json.dumps(document))
+    return path
+
+
+def edge(name="edge", **properties):
+    return {
+        "type": "Feature",
+        "geometry": LINE,
+        "properties": {"kind": "edge", "name": name, "position_std_px": 1, **properties},
+    }
+
+
+@pytest.fixture
+def flat_image(tmp_path):
+    path = tmp_path / "flat.tif"
+    noise = np.random.default_rng(1).normal(500.0, 5.0, (60, 44))
+    write_geotiff(path, noise.astype(np.float32), gsd_m=0.7)
+    return path
+
+
+@pytest.fixture
+def given(tmp_path, edge_image):
+    """The words of a batch that measures one edge."""
+    return (
+        "batch", edge_image, "--targets", targets_file(tmp_path, edge()),
+        "--archive", tmp_path / "kept.db", "--workers", 1,
+    )  # fmt: skip
+
+
+def test_a_batch_and_the_same_again(acutance, given):
+    first = acutance(*given)
+    assert first.exit_code == 0, first.output
+    assert "1 images: 1 rows added" in first.stdout
+    assert "measured 1: 1 good" in first.stdout
+    again = acutance(*given, "--json")
+    document = json.loads(again.stdout)
+    assert document["schema"] == "acutance/batch/1"
+    assert (document["kept"], document["done_before"], document["measured"]) == (0, 1, 1)
+
+
+def test_a_log_has_a_line_for_every_row(acutance, given, tmp_path):
+    acutance(*given, "--log", tmp_path / "log.jsonl", "--sensor", "QB02")
+    (line,) = (tmp_path / "log.jsonl").read_text().splitlines()
+    found = json.loads(line)
+    assert (found["target"], found["verdict"], found["reason"]) == ("edge", "good", None)
+    assert len(found["key"]) == 64
+
+
+def test_a_plan(acutance, tmp_path, edge_image, refused):
+    targets_file(tmp_path, edge())
+    plan = tmp_path / "plan.toml"
+    plan.write_text(f'images = "{edge_image}"\ntargets = "targets.geojson"\narchive = "kept.db"\n')
+    found = acutance("batch", plan, "--workers", 1, "--json")
+    assert json.loads(found.stdout)["kept"] == 1
+    assert (tmp_path / "kept.db").exists()
+    refused(("batch", plan, edge_image), "is a plan and names its images")
+    plan.write_text('imges = "x"\ntargets = "t"\ncolour = 1\n')
+    refused(("batch", plan), "there is no key 'imges' - there is no key 'colour'")
+
+
+def test_nothing_that_can_be_measured(acutance, given, flat_image, tmp_path):
+    words = [flat_image if one == given[1] else one for one in given]
+    result = acutance(*words)
+    assert result.exit_code == 4
+    assert "rejected 1: 1 not found" in result.stdout
+    assert "nothing could be measured" in result.stderr
+
+
+def test_strict(acutance, given, flat_image):
+    assert acutance(*given, "--strict").exit_code == 0
+    result = acutance(*given, flat_image, "--strict")
+    assert result.exit_code == 3
+    assert "1 rows are rejected" in result.stderr
+    assert acutance(*given, flat_image).exit_code == 0
+
+
+def test_unreadable_images_are_named(acutance, given, tmp_path):
+    bad = tmp_path / "bad.tif"
+    bad.write_bytes(b"II*\x00")
+    result = acutance(*given, bad)
+    assert result.exit_code == 0
+    assert f"unreadable: {bad}" in result.stdout
+
+
+def test_what_is_refused(refused, given, tmp_path, edge_image):
+    refused(("batch", edge_image), "images need --targets FILE and --archive PLACE")
+    refused((*given, "--dask", "tcp://x:1"), "--workers and --dask cannot be combined")
+    refused((*given, "--band", "pan,,3"), "--band pan,,3")
+    refused((*given, "--log", tmp_path), "--log")
+    refused((*given[:-2], "--workers", 1, tmp_path / "x-*.tif"), "no file matches")
+    (tmp_path / "kept.db").write_bytes(b"not a database, but long enough to be read as one" * 50)
+    refused(given, "kept.db")
+
+
+def test_faults_of_targets_are_named_together(refused, given, tmp_path):
+    targets_file(tmp_path, edge("a", kind="wires"), edge("b", colour=1))
+    refused(given, "feature 1 (a): kind is 'wires'")
+    refused(given, "feature 2 (b): there is no property 'colour'")
+
+
+def test_ctrl_c(acutance, given, monkeypatch):
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("acutance.batch.whole_batch.run_tasks", interrupt)
+    result = acutance(*given)
+    assert result.exit_code == 130
+    assert "the same command goes on" in result.stderr
