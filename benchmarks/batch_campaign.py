@@ -17,7 +17,6 @@ import numpy as np
 import acutance as ac
 from acutance.simulate.campaign import Placed, render_site
 from acutance.simulate.points import mirror_columns
-from acutance.simulate.star import Star
 from acutance.simulate.tarps import EdgeTarps, PulseTarp
 
 GSD_M, CRS = 0.7, "EPSG:32631"
@@ -34,7 +33,7 @@ def _tarps(row: float, col: float) -> list[EdgeTarps | PulseTarp]:
         EdgeTarps(f"edge-{i + 1}", row + y, col + x, normal, 40.0, 200.0, 1200.0)
         for i, (y, x, normal) in enumerate(
             [(60, 80, 6.0), (60, 230, 96.0), (60, 400, 10.0), (190, 80, 98.0), (190, 230, 4.0),
-             (190, 400, 84.0)]
+             (190, 400, 84.0), (320, 400, 8.0)]
         )
     ]  # fmt: skip
     pulses = [
@@ -42,10 +41,6 @@ def _tarps(row: float, col: float) -> list[EdgeTarps | PulseTarp]:
         PulseTarp("pulse-2", row + 300, col + 230, 96.0, 3.0, 60.0, 1200.0),
     ]
     return [*edges, *pulses]
-
-
-def _star_place(row: float, col: float) -> tuple[float, float]:
-    return row + 400, col + 400
 
 
 def _mirrors(row: float, col: float) -> np.ndarray:
@@ -56,7 +51,6 @@ def _rendered(shift: tuple[float, float]) -> np.ndarray:
     """The field, its first pixel at a sub-pixel place."""
     row, col = shift
     placed = Placed(
-        star=Star(*_star_place(row, col), 48.0),
         mirrors=tuple((float(r), float(c)) for r, c in _mirrors(row, col)),
         mirror_peak=900.0,
     )
@@ -92,8 +86,6 @@ def target_features() -> dict[str, Any]:
         else:
             width_m = tarp.width_px * GSD_M
             features.append(feature(tarp.name, "pulse", "LineString", line, width_m=width_m))
-    star = _on_map(*_star_place(0.0, 0.0))
-    features.append(feature("star", "star", "Point", star, size_m=110 * GSD_M, cycles=36))
     mirrors = [_on_map(*one) for one in _mirrors(0.0, 0.0)]
     features.append(feature("mirrors", "points", "MultiPoint", mirrors))
     return {"type": "FeatureCollection", "crs": CRS, "features": features}
