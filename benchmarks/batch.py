@@ -1,7 +1,7 @@
 """A campaign through `acutance batch`: what it costs beside the measurements, what a kill costs.
 
 Images of 512 x 512 px show ten targets (seven edges, two pulses, twenty mirrors), with maps that
-are off by 2 m (benchmarks/batch_campaign.py). The first run is timed against the time its workers
+are off by 2 m (benchmarks/batch_campaign.py). The first run is timed against what its workers spent
 measuring; the second finds everything done. Then two batches work on one archive at once, over
 and over, and are killed at random moments: keys that were reported as kept (--log) are compared
 with the rows there are. The same with PostgreSQL stopped and started under a batch, where Debian's
