@@ -9,7 +9,8 @@ import typer
 from acutance.cli.archive_selection import PlaceArgument, SelectionOptions
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import JsonOption
-from acutance.cli.terminal import NOTHING_MEASURED, fail
+from acutance.cli.output import check_optional
+from acutance.cli.terminal import NOTHING_MEASURED, command_line, fail
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ EXAMPLE = (
     "\b\nExamples:\n"
     "  acutance archive trend campaign.db --metric mtf_nyquist --sensor QB02 --orientation across\n"
     "  acutance archive trend campaign.db --sensor QB02 --orientation along "
-    '--event "2026-03-01=refocus" --limit .09'
+    '--event "2026-03-01=refocus" --limit .09 --report trend.html'
 )
 EventOption = Annotated[
     list[str] | None,
@@ -46,6 +47,10 @@ def trend(
     limit: Annotated[
         float | None, typer.Option(metavar="VALUE", help="Tell when this value will be passed.")
     ] = None,
+    report: Annotated[str | None, typer.Option(metavar="FILE", help="Write a page: .html.")] = None,
+    figure: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write a drawing: .png, .svg or .pdf.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Tell level, drift, steps, season and scatter of one metric of one sensor.
@@ -53,8 +58,12 @@ def trend(
     Measurements count whose verdict is usable or good (--verdict). Intervals hold 95 %.
     """
     from acutance.archive import Archive
-    from acutance.report import json_text
+    from acutance.report import figure_bytes, json_text
+    from acutance.report.archive import trend_figure, trend_page
+    from acutance.report.paper import FIGURE_ENDINGS
 
+    page = check_optional("--report", report, (".html",), keep=[place])
+    drawing = check_optional("--figure", figure, FIGURE_ENDINGS, keep=[place])
     events = parse_events(event)
     with Archive(place, read_only=True) as archive:
         words = selected.words
@@ -62,6 +71,10 @@ def trend(
             fail(f"archive {place} holds nothing that is selected", NOTHING_MEASURED)
         found = archive.trend(metric, events=events, **words)
     crossing = None if limit is None else found.crosses(limit)
+    if page is not None:
+        page.deliver(trend_page(found, limit=limit, command=command_line()))
+    if drawing is not None:
+        drawing.deliver(figure_bytes(trend_figure(found, limit=limit), drawing.ending))
     if as_json:
         document = found.to_dict()
         if crossing is not None:

@@ -12,6 +12,7 @@ from acutance.cli.demo_folder import MARK, demo_folder, file_of
 from acutance.cli.demo_index import Page, index_sections
 from acutance.cli.demo_landscape import LANDSCAPE, ScannedLandscape, scan_landscape
 from acutance.cli.demo_targets import Campaign, measure_campaign
+from acutance.cli.demo_year import measure_year
 from acutance.cli.output import OutputFile, check_output
 from acutance.cli.terminal import say
 
@@ -36,6 +37,7 @@ def demo(
     Edge tarps, a pulse tarp, 20 mirrors, bars and a Siemens star on grass, in one GeoTIFF with
     its truth as JSON. An HTML report compares every method with the truth and with the others, and
     combines them into one 2-D OTF. The same sensor over a landscape without targets is scanned.
+    Another is watched for a year: a batch of images, an archive, the trend.
     """
     place = demo_folder(folder)
 
@@ -53,6 +55,7 @@ def demo(
     write_geotiff(path, scene.image.astype(np.float32), gsd_m=GSD_M)
     campaign = measure_campaign(scene, open_image(path))
     landscape = scan_landscape(scene.sensor, place / f"{LANDSCAPE}.tif", seed)
+    year = measure_year(place, seed)
     say("writing the report")
     entries = campaign.entries()
     pages = [_write_page(place, page) for page in _pages(campaign, landscape)]
@@ -62,7 +65,7 @@ def demo(
         render_page(
             "One site, every method, and the truth",
             str(path),
-            index_sections(campaign, entries, pages, landscape),
+            index_sections(campaign, entries, pages, landscape, year),
         )
     )
     typer.echo(f"open {index.path}")

@@ -32,6 +32,9 @@ FILES = (
     "landscape.truth.geojson",
     "comparison.json",
     "index.html",
+    "targets.geojson",
+    "year.html",
+    "year.db",
     *(f"{file_of(name)}{ending}" for name in _TARGETS for ending in (".html", ".json")),
 )
 """Everything that a demonstration writes."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from acutance.cli.demo_folder import file_of
 from acutance.cli.demo_landscape import LANDSCAPE, ScannedLandscape, landscape_section
 from acutance.cli.demo_targets import COMBINED, Campaign
+from acutance.cli.demo_year import SimulatedYear, year_section
 
 if TYPE_CHECKING:
     from acutance.report import Comparison
@@ -74,6 +75,7 @@ def index_sections(
     entries: Sequence[CampaignEntry],
     pages: Sequence[Page],
     landscape: ScannedLandscape,
+    year: SimulatedYear,
 ) -> tuple[Section, ...]:
     """The sections of the index page.
 
@@ -85,6 +87,7 @@ def index_sections(
     pages : sequence of Page
         Those the index leads to.
     landscape : ScannedLandscape
+    year : SimulatedYear
     """
     from acutance.report.html import Link, Section
 
@@ -103,6 +106,7 @@ def index_sections(
         _site_section(campaign),
         *_truth_sections(entries),
         landscape_section(landscape, f"{file_of(LANDSCAPE)}.html"),
+        year_section(year),
     )
 
 

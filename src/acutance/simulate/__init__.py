@@ -11,6 +11,7 @@ from acutance.simulate.landscape_layout import Waves
 from acutance.simulate.landscape_options import LandscapeOptions
 from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise
+from acutance.simulate.overflights import Overflight, overflights
 from acutance.simulate.pair import PairGround, PairTruth, pair, pair_ground
 from acutance.simulate.parcel import Border, Parcel, SideStrip
 from acutance.simulate.parcel_image import render_parcels
@@ -47,6 +48,7 @@ __all__ = [
     "LandscapeTruth",
     "NativeGrid",
     "Noise",
+    "Overflight",
     "PairGround",
     "PairTruth",
     "Parcel",
@@ -82,6 +84,7 @@ __all__ = [
     "landscape_tiles",
     "mirror_columns",
     "mirror_square",
+    "overflights",
     "pair",
     "pair_ground",
     "points",

@@ -1,0 +1,12 @@
+"""Archives on paper: what was kept of a sensor, and how it changed.
+
+- `dates`: years with decimals on the axis of a drawing; `wording`: changes in words
+- `trend_figure`, `trend_page`: one trend, its numbers, its images
+- `sensor_state`, `sensor_tables`, `sensor_curves`, `sensor_page`: what there is of a sensor
+"""
+
+from acutance.report.archive.sensor_page import sensor_page
+from acutance.report.archive.trend_figure import trend_figure
+from acutance.report.archive.trend_page import trend_page, trend_plate
+
+__all__ = ["sensor_page", "trend_figure", "trend_page", "trend_plate"]

@@ -1,0 +1,69 @@
+"""The MTF curves of a sensor's latest measurements, by direction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from acutance.report.figures.curves import COLORS, mark_frequencies
+from acutance.report.html import Plate
+from acutance.report.paper import INK, new_page, styled
+
+if TYPE_CHECKING:
+    from acutance.archive.measurements import Measurements
+    from acutance.targets.record import Record
+
+__all__ = ["LATEST", "curves_plate"]
+
+LATEST = 60
+"""So many measurements are drawn, the latest."""
+_TO_CPP = 1.0
+
+
+def curves_plate(rows: Measurements) -> Plate | None:
+    """A drawing of the latest curves; none where documents hold no curves.
+
+    Parameters
+    ----------
+    rows : Measurements
+        Oldest first, of one band.
+    """
+    ids = list(dict.fromkeys(rows["id"].tolist()))
+    chosen = set(ids[-LATEST:])
+    first = {int(number): at for at, number in enumerate(rows["id"].tolist()) if number in chosen}
+    records = [rows.record(at) for at in first.values()]
+    curves = _curves(records)
+    if not any(curves.values()):
+        return None
+    with styled():
+        figure = new_page(12.4, 4.6)
+        all_axes = figure.subplots(1, len(curves), sharey=True, squeeze=False)[0]
+        for axes, (name, several) in zip(all_axes, curves.items(), strict=True):
+            freq = np.linspace(0.0, _TO_CPP, 201)
+            drawn = np.array([np.interp(freq, at, value) for at, value in several])
+            mark_frequencies(axes, None, float(np.nanmax(drawn)))
+            for one in drawn:
+                axes.plot(freq, one, color=COLORS[name], alpha=0.15, linewidth=0.8)
+            axes.plot(freq, np.median(drawn, axis=0), color=INK, linewidth=1.8, label="median")
+            axes.set(title=f"MTF, {name}", xlabel="frequency [c/px]", xlim=(0.0, _TO_CPP))
+            axes.legend(loc="upper right")
+        all_axes[0].set_ylabel("MTF")
+    return Plate.of_figure(
+        figure,
+        "MTF of the latest measurements",
+        f"Each of the latest {len(records)} measurements, and their median at every frequency.",
+        wide=True,
+    )
+
+
+def _curves(records: Sequence[Record]) -> dict[str, list[tuple[np.ndarray, np.ndarray]]]:
+    """Frequencies and values of every curve, by direction."""
+    found: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
+    for record in records:
+        for name in record.measured_directions:
+            if record.directions[name].document.get("mtf") is not None:
+                at, value, _ = record.directions[name].curve("mtf")
+                found.setdefault(name, []).append((at, value))
+    return {name: found[name] for name in ("across", "along") if name in found}

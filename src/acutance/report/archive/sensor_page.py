@@ -1,0 +1,149 @@
+"""One page a sensor: the latest state, verdicts and drift; then curves, tables, images."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+from acutance.archive import Archive
+from acutance.errors import OptionError
+from acutance.report.archive.sensor_curves import curves_plate
+from acutance.report.archive.sensor_state import SeriesState, states_of
+from acutance.report.archive.sensor_tables import (
+    images_table,
+    means_tables,
+    rejected_table,
+    specification_table,
+    state_table,
+)
+from acutance.report.archive.trend_page import trend_plate, trend_verdict
+from acutance.report.html import Section, Verdict, render_page
+from acutance.report.labels import METRIC_WORDS, word_estimate
+
+if TYPE_CHECKING:
+    from acutance.archive.measurements import Measurements, Rejections
+    from acutance.archive.specification_check import Answer, SpecificationCheck
+    from acutance.archive.trends import Event
+
+__all__ = ["sensor_page"]
+
+Word = Literal["good", "usable", "doubtful", "invalid"]
+_ANSWERS: dict[str, Word] = {"met": "good", "not met": "invalid", "cannot be told yet": "doubtful"}
+
+
+def sensor_page(
+    archive: Archive,
+    sensor: str,
+    *,
+    metric: str = "mtf_nyquist",
+    specification: str | os.PathLike[str] | None = None,
+    events: Sequence[Event] = (),
+    verdict: str = "usable",
+    command: str | None = None,
+) -> str:
+    """What an archive holds of a sensor, as one self-contained HTML page.
+
+    Parameters
+    ----------
+    archive : Archive
+    sensor : str
+    metric : str, optional
+        What is drawn through time.
+    specification : path, optional
+        A file of requirements; its answers come first.
+    events : sequence of Event, optional
+        Dates at which the sensor may have changed.
+    verdict : str, optional
+        Measurements of this verdict or better are used; all are listed.
+    command : str, optional
+        The command line.
+
+    Raises
+    ------
+    OptionError
+        If there is no such metric, or no measurement of the sensor.
+    """
+    if metric not in METRIC_WORDS:
+        raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRIC_WORDS)}")
+    every, rejected = archive.measurements(sensor=sensor), archive.rejected(sensor=sensor)
+    rows = archive.measurements(sensor=sensor, verdict=verdict)
+    if not len(rows):
+        raise OptionError(
+            f"{archive.place} holds {len(every)} measurements of {sensor}, none of them {verdict} "
+            "or better: name another sensor, or a lower verdict"
+        )
+    states = states_of(rows, sensor, metric, events)
+    check = None
+    if specification is not None:
+        check = archive.check(specification, events=events, sensor=sensor)
+    content = (
+        _answer_section(states, check),
+        *_trend_sections(states, check),
+        *_curve_sections(rows),
+        *map(Section.of_table, means_tables(rows)),
+        *_list_sections(every, rejected, command),
+    )
+    return render_page(sensor, "What its measurements say", content, _facts(every, rejected, rows))
+
+
+def _facts(every: Measurements, rejected: Rejections, used: Measurements) -> dict[str, str]:
+    measured, taken = (len(set(part["id"].tolist())) for part in (every, used))
+    return {"measured": str(measured), "used": str(taken), "rejected": str(len(rejected))}
+
+
+def _answer_section(states: Sequence[SeriesState], check: SpecificationCheck | None) -> Section:
+    """Specification and changes first, as verdicts; then the state of every direction."""
+    answers = check.answers if check else ()
+    verdicts = (*map(_answer_verdict, answers), *map(_state_verdict, states))
+    tables = [state_table(states)]
+    if check is not None:
+        tables.insert(0, specification_table(check))
+    return Section("Result", verdicts=verdicts, tables=tuple(tables))
+
+
+def _answer_verdict(answer: Answer) -> Verdict:
+    name = f"{answer.requirement.name}: " if answer.requirement.name else ""
+    return Verdict(_ANSWERS[answer.word], f"{name}{answer.summary}")
+
+
+def _state_verdict(state: SeriesState) -> Verdict:
+    label = f"{state.name}: " if state.name else ""
+    if state.trend is not None:
+        return trend_verdict(state.trend, label=label)
+    words = word_estimate(state.level(state.metric)).value_and_std
+    return Verdict(
+        "usable",
+        f"{label}{METRIC_WORDS[state.metric].label} {words}, the mean of {state.images} images: "
+        "too few of them have dates for a trend.",
+    )
+
+
+def _trend_sections(
+    states: Sequence[SeriesState], check: SpecificationCheck | None
+) -> list[Section]:
+    plates = tuple(
+        trend_plate(one.trend, _limit_of(one, check)) for one in states if one.trend is not None
+    )
+    return [Section("Through time", plates=plates)] if plates else []
+
+
+def _limit_of(state: SeriesState, check: SpecificationCheck | None) -> float | None:
+    """The limit that a requirement sets for a series."""
+    for answer in check.answers if check else ():
+        if answer.requirement.metric == state.metric and answer.what.endswith(state.name):
+            return answer.requirement.limit
+    return None
+
+
+def _curve_sections(rows: Measurements) -> list[Section]:
+    plate = curves_plate(rows)
+    return [] if plate is None else [Section("Curves", plates=(plate,))]
+
+
+def _list_sections(every: Measurements, rejected: Rejections, command: str | None) -> list[Section]:
+    images = images_table(every, rejected)
+    reasons = rejected_table(rejected)
+    sections = [] if reasons is None else [Section.of_table(reasons)]
+    last = Section(images.title, paragraphs=images.notes, tables=(images,), command=command)
+    return [*sections, last]

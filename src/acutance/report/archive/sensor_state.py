@@ -1,0 +1,82 @@
+"""What an archive says of a sensor: for every band and direction its trends, or means."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from acutance.archive.columns import Columns
+from acutance.archive.trends import Event, Trend, fit_trend
+from acutance.archive.trends.images import mean_of_images
+from acutance.archive.trends.measured_series import all_series
+from acutance.archive.weighted_means import WeightedMean
+from acutance.curves import MAIN_NUMBERS, Estimate
+from acutance.errors import OptionError
+
+__all__ = ["SeriesState", "states_of"]
+
+
+@dataclass(frozen=True, eq=False)
+class SeriesState:
+    """One band and direction of a sensor.
+
+    Attributes
+    ----------
+    name : str
+        Band, product level, direction.
+    metric : str
+        What is drawn.
+    found : dict of str to Trend or WeightedMean
+        By metric; means where images are too few, or have no dates.
+    measurements, images : int
+    """
+
+    name: str
+    metric: str
+    found: dict[str, Trend | WeightedMean]
+    measurements: int
+    images: int
+
+    @property
+    def trend(self) -> Trend | None:
+        """The trend that is drawn."""
+        main = self.found[self.metric]
+        return main if isinstance(main, Trend) else None
+
+    def level(self, metric: str) -> Estimate:
+        """The sensor on the day of its last image, or the mean of all."""
+        one = self.found[metric]
+        return one.level if isinstance(one, Trend) else one.mean
+
+
+def states_of(
+    rows: Columns, sensor: str, metric: str, events: Sequence[Event]
+) -> list[SeriesState]:
+    """The state of every band, product level and direction.
+
+    Parameters
+    ----------
+    rows : Columns
+        Measurements of one sensor.
+    sensor : str
+    metric : str
+        What is drawn; the main numbers are tabulated with it.
+    events : sequence of Event
+    """
+    metrics = tuple(dict.fromkeys((metric, *MAIN_NUMBERS)))
+    several = {one: list(all_series(rows, one)) for one in metrics}
+    states = []
+    for at, main in enumerate(several[metric]):
+        known = main.known()
+        if known.size == 0:
+            continue
+        found: dict[str, Trend | WeightedMean] = {}
+        for one in metrics:
+            series = several[one][at]
+            try:
+                found[one] = fit_trend(series, events)
+            except OptionError:
+                found[one] = mean_of_images(series)
+        name = main.name.removeprefix(sensor).removeprefix(", ")
+        states.append(SeriesState(name, metric, found, known.size, len(set(known.image.tolist()))))
+    return states

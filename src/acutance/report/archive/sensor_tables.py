@@ -1,0 +1,165 @@
+"""Tables of a sensor: its state, means by target and method, its images, what was not measured."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from acutance.archive.columns import Columns
+from acutance.archive.specification_check import SpecificationCheck
+from acutance.archive.tables_by import MeasurementTable, table_by
+from acutance.archive.trends import Trend
+from acutance.curves import MAIN_NUMBERS
+from acutance.report.archive.sensor_state import SeriesState
+from acutance.report.archive.wording import interval_words, percent
+from acutance.report.html import Table
+from acutance.report.labels import METRIC_WORDS, MISSING, metric_words, word_estimate
+
+__all__ = ["images_table", "means_tables", "rejected_table", "specification_table", "state_table"]
+
+if TYPE_CHECKING:
+    from acutance.archive.measurements import Measurements
+
+_MAX_IMAGES, _MAX_REASONS = 400, 30
+_VERDICTS = ("good", "usable", "doubtful", "invalid")
+
+
+def state_table(states: Sequence[SeriesState]) -> Table:
+    """Every band and direction: numbers on the day of the last image, and the drift."""
+    rows: list[tuple[str, ...]] = []
+    for one in states:
+        trend = one.trend
+        rows.append((
+            one.name, str(one.images), str(one.measurements),
+            str(trend.last) if trend else MISSING,
+            *(word_estimate(one.level(metric)).value_and_std for metric in MAIN_NUMBERS),
+            percent(trend.relative_rate_per_year) if trend else MISSING,
+            "\n".join(_changes(trend)) if trend else MISSING,
+        ))  # fmt: skip
+    labels = (metric_words(name).label_with_unit for name in MAIN_NUMBERS)
+    drawn = METRIC_WORDS[states[0].metric].label
+    return Table(
+        ("", "Images", "Measurements", "On", *labels, "Drift a year", "Changes"),
+        tuple(rows), "lrrlrrrrl", title="State",
+        notes=(
+            "The sensor's mean on the day of its last image, without the season; the mean of all "
+            f"images where they have no dates. Drift and changes are those of the {drawn}.",
+        ),
+    )  # fmt: skip
+
+
+def _changes(trend: Trend) -> list[str]:
+    found = [f"{one.date} {percent(one.relative_size)}" for one in trend.changes]
+    level = trend.level.value or 1.0
+    found += [f"{one.date} {one.name} {percent((1 / level) * one.size)}" for one in trend.events]
+    return found or [f"none found ({1 - trend.step_probability:.2f})"]
+
+
+def specification_table(check: SpecificationCheck) -> Table:
+    """Every requirement with its answer."""
+    rows: list[tuple[str, ...]] = []
+    alerts = set()
+    for answer in check.answers:
+        if answer.word != "met":
+            alerts.add(len(rows))
+        mean = answer.mean
+        rows.append((
+            answer.requirement.name or answer.requirement.sentence, answer.what,
+            answer.requirement.sentence, answer.word,
+            MISSING if answer.probability is None else f"{answer.probability:.3f}",
+            MISSING if mean is None else word_estimate(mean).value_and_std,
+            MISSING if mean is None else interval_words(mean),
+            str(answer.images), MISSING if answer.more_images is None else str(answer.more_images),
+        ))  # fmt: skip
+    return Table(
+        ("Requirement", "Of", "Limit", "Answer", "Probability", "Mean", "95 %", "Images", "More"),
+        tuple(rows), "lllllrrrr", alerts=frozenset(alerts), title="Specification",
+        notes=(
+            "Probability: that the sensor's mean meets the limit. More: images that would tell, if "
+            "the mean is what it is now.",
+        ),
+    )  # fmt: skip
+
+
+def means_tables(rows: Measurements) -> list[Table]:
+    """Means by target, method and site, where there are several, for every direction."""
+    found = []
+    for by, names in (("target", ("target",)), ("method", ("kind", "method")), ("site", ("site",))):
+        if len(set(rows[by].tolist())) > 1:
+            means = table_by(rows, names, MAIN_NUMBERS)
+            directions = dict.fromkeys(direction for direction, _ in means.columns)
+            found += [_means_table(means, direction, f"By {by}") for direction in directions]
+    return found
+
+
+def _means_table(means: MeasurementTable, direction: str, title: str) -> Table:
+    """The means of one direction; groups that were not seen in it are left out."""
+    chosen = [at for at, (own, _) in enumerate(means.columns) if own == direction]
+    first = len(means.header) - len(means.columns)
+    rows = tuple(
+        (*text[:first], *(text[first + at] for at in chosen))
+        for row, text in zip(means.rows, means.texts(), strict=True)
+        if any(own == direction for own, _ in row.cells)
+    )
+    labels = (METRIC_WORDS[means.columns[at][1]].label_with_unit for at in chosen)
+    names = (name[:1].upper() + name[1:] for name in means.header[:first])
+    sides = "l" * len(means.by) + "r" * (first - len(means.by) + len(chosen))
+    return Table(
+        (*names, *labels), rows, sides, title=f"{title}, {direction}",
+        notes=("Means over images; their deviation holds the scatter between images.",),
+    )  # fmt: skip
+
+
+def images_table(rows: Columns, rejected: Columns) -> Table:
+    """Every image: what was measured in it and how it was judged, what was rejected."""
+    images: dict[tuple[Any, str], dict[str, Any]] = {}
+    for part, is_measured in ((rows, True), (rejected, False)):
+        for at in range(len(part)):
+            name = part["image"][at]
+            key = (part["acquired"][at], "" if name is None else str(name))
+            one = images.setdefault(key, {"ids": {}, "rejected": 0})
+            if is_measured:
+                one["ids"][int(part["id"][at])] = str(part["verdict"][at])
+            else:
+                one["rejected"] += 1
+    listed = []
+    for (acquired, name), one in sorted(images.items(), key=_by_date)[:_MAX_IMAGES]:
+        counts = Counter(one["ids"].values())
+        words = ", ".join(f"{counts[word]} {word}" for word in _VERDICTS if counts[word])
+        day = MISSING if np.isnat(acquired) else str(acquired.astype("datetime64[m]"))
+        listed.append((
+            day.replace("T", " "), name or MISSING, str(len(one["ids"])), words or MISSING,
+            str(one["rejected"]),
+        ))  # fmt: skip
+    left = len(images) - len(listed)
+    notes = (f"The first {len(listed)}; {left} more are not listed.",) if left else ()
+    return Table(
+        ("Acquired (UTC)", "Image", "Measured", "Verdicts", "Rejected"), tuple(listed), "llrlr",
+        title="Images", notes=notes, page_only=True,
+    )  # fmt: skip
+
+
+def _by_date(item: tuple[tuple[Any, str], Any]) -> tuple[bool, Any, str]:
+    (acquired, name), _ = item
+    return bool(np.isnat(acquired)), acquired.astype(np.int64), name
+
+
+def rejected_table(rejected: Columns) -> Table | None:
+    """Why targets were not measured, the most frequent reason first; none if all were."""
+    if not len(rejected):
+        return None
+    counts = Counter(
+        zip(rejected["stage"].tolist(), rejected["reason"].tolist(), strict=True)
+    ).most_common()
+    rows = tuple((str(count), str(stage), str(reason)) for (stage, reason), count in counts)
+    left = len(rows) - _MAX_REASONS
+    notes = (
+        (f"The {_MAX_REASONS} most frequent; {left} more are in the archive.",) if left > 0 else ()
+    )
+    return Table(
+        ("Times", "Stage", "Reason"), rows[:_MAX_REASONS], "rll", title="Not measured", notes=notes,
+        page_only=True,
+    )  # fmt: skip

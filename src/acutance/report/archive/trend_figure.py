@@ -1,0 +1,175 @@
+"""A trend drawn: images, the sensor's mean with its bands, steps, events, limit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from acutance.archive.trends import decimal_year
+from acutance.curves.grid import Floats
+from acutance.report.archive.dates import axis_days, date_axis
+from acutance.report.labels import METRIC_WORDS
+from acutance.report.paper import BLUE, FAINT, GREEN, INK, ORANGE, VERMILION, new_page, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from acutance.archive.trends import Change, Trend, TrendBands
+
+__all__ = ["draw_trend", "trend_figure"]
+
+_WIDTH_IN, _HEIGHT_IN = 12.4, 4.8
+_AHEAD = 0.15
+"""Part of the series' time that the trend is continued after its last image."""
+_DATES = 181
+_MANY = 150
+"""More images than these are drawn without their deviations."""
+_ROOM = 0.12
+_REACH = 6.0
+"""Images further from the median than so many of its absolute deviations lie on the rim."""
+
+
+def trend_figure(trend: Trend, *, limit: float | None = None) -> Figure:
+    """A trend on a page of its own.
+
+    Parameters
+    ----------
+    trend : Trend
+    limit : float, optional
+        Drawn as a line, in the units of the metric.
+    """
+    with styled():
+        figure = new_page(_WIDTH_IN, _HEIGHT_IN)
+        draw_trend(figure.subplots(), trend, limit=limit)
+    return figure
+
+
+def draw_trend(axes: Axes, trend: Trend, *, limit: float | None = None) -> None:
+    """Draw a trend on axes.
+
+    Parameters
+    ----------
+    axes : Axes
+    trend : Trend
+    limit : float, optional
+    """
+    years = trend.images.when
+    last = float(years[-1])
+    ahead = last + max(_AHEAD * (last - float(years[0])), 1 / 24)
+    bands = trend.bands(np.union1d(np.linspace(years[0], ahead, _DATES), [last]))
+    _draw_bands(axes, bands, last)
+    low, high = _range(trend, bands, limit)
+    _draw_images(axes, trend, low, high)
+    if limit is not None:
+        _draw_limit(axes, trend, limit, ahead)
+    axes.set_ylim(low, high)
+    axes.set_xlim(axis_days(years[0] - 0.02 * (ahead - years[0])), axis_days(ahead))
+    _draw_changes(axes, trend)
+    date_axis(axes)
+    words = METRIC_WORDS[trend.metric]
+    axes.set_ylabel(words.label_with_unit)
+    axes.set_title(f"{words.label}{f', {trend.name}' if trend.name else ''}")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
+def _draw_bands(axes: Axes, bands: TrendBands, last: float) -> None:
+    day, seen, later = axis_days(bands.when), bands.when <= last, bands.when >= last
+    axes.fill_between(
+        day, *bands.images95, color=FAINT, alpha=0.10, linewidth=0, label="single images, 95 %"
+    )
+    axes.fill_between(
+        day, *bands.band95, color=BLUE, alpha=0.22, linewidth=0, label="the sensor, 95 %"
+    )
+    axes.fill_between(
+        day, *bands.band50, color=BLUE, alpha=0.35, linewidth=0, label="the sensor, 50 %"
+    )
+    axes.plot(day[seen], bands.mean[seen], color=BLUE, label="the sensor, median")
+    axes.plot(day[later], bands.mean[later], color=BLUE, linestyle=":", label="if it goes on")
+
+
+def _range(trend: Trend, bands: TrendBands, limit: float | None) -> tuple[float, float]:
+    """Ends of the vertical axis: a monstrous image does not flatten all others."""
+    value = trend.images.value
+    middle = float(np.median(value))
+    spread = _REACH * float(np.median(np.abs(value - middle))) or 0.05 * abs(middle) or 1.0
+    near = value[np.abs(value - middle) <= spread]
+    ends = [
+        near.min(),
+        near.max(),
+        *(one for side in bands.band95 for one in (side.min(), side.max())),
+    ]
+    if limit is not None:
+        ends.append(limit)
+    room = _ROOM * (max(ends) - min(ends)) or 0.05 * abs(middle) or 1.0
+    return float(min(ends) - room), float(max(ends) + room)
+
+
+def _draw_images(axes: Axes, trend: Trend, low: float, high: float) -> None:
+    images = trend.images
+    day, value = axis_days(images.when), images.value
+    inside = (value >= low) & (value <= high)
+    bad = np.isin(images.when, _bad_years(trend))
+    several = "means of several images" if images.are_joined else "images"
+    for those, color, label in ((~bad, INK, several), (bad, VERMILION, "bad days")):
+        shown = those & inside
+        if not those.any():
+            continue
+        if images.size <= _MANY:
+            axes.errorbar(
+                day[shown], value[shown], yerr=np.sqrt(images.variance[shown]), fmt="o",
+                color=color, markersize=4, elinewidth=0.8, alpha=0.85, label=label,
+            )  # fmt: skip
+        else:
+            axes.plot(
+                day[shown], value[shown], ".", color=color, markersize=3, alpha=0.5, label=label,
+                rasterized=True,
+            )  # fmt: skip
+        for beyond, marker, place in ((value > high, "^", high), (value < low, "v", low)):
+            outside = those & beyond
+            if outside.any():
+                axes.plot(
+                    day[outside], np.full(outside.sum(), place), marker, color=color, clip_on=False
+                )
+
+
+def _bad_years(trend: Trend) -> Floats:
+    """Times of the images that are far from the trend."""
+    far = [day.value for day in trend.bad_days]
+    return np.asarray(trend.images.when[np.isin(trend.images.value, far)])
+
+
+def _draw_limit(axes: Axes, trend: Trend, limit: float, ahead: float) -> None:
+    axes.axhline(limit, color=VERMILION, linewidth=1.2, linestyle="--")
+    axes.annotate(
+        f"limit {limit:g}", (axis_days(ahead), limit), xytext=(-4, 3), ha="right",
+        textcoords="offset points", fontsize=8.5, color=VERMILION,
+    )  # fmt: skip
+
+
+def _draw_changes(axes: Axes, trend: Trend) -> None:
+    """Steps as the days between which they lie, events as lines, each with its words."""
+    for change in trend.changes:
+        _draw_step(axes, change)
+    top = axes.get_xaxis_transform()
+    for event in trend.events:
+        axes.axvline(
+            axis_days(decimal_year(event.date)), color=GREEN, linewidth=1.1, linestyle="-."
+        )
+        axes.text(
+            axis_days(decimal_year(event.date)), 0.02, f" {event.name}", transform=top, rotation=90,
+            ha="right", va="bottom", fontsize=8.5, color=GREEN,
+        )  # fmt: skip
+
+
+def _draw_step(axes: Axes, change: Change) -> None:
+    since, until = axis_days(decimal_year(change.since)), axis_days(decimal_year(change.until))
+    axes.axvspan(since, until, color=ORANGE, alpha=0.18, linewidth=0)
+    axes.axvline(axis_days(decimal_year(change.date)), color=ORANGE, linewidth=1.2)
+    size = 100 * change.relative_size
+    axes.text(
+        axis_days(decimal_year(change.date)), 0.98, f" step {size.value:+.1f} ± {size.std:.1f} % ",
+        transform=axes.get_xaxis_transform(), ha="left", va="top", fontsize=8.5, color=INK,
+        bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 1.0},
+    )  # fmt: skip

@@ -1,0 +1,197 @@
+"""The page of one trend: the answer, the drawing, the numbers, the images."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from acutance.archive.trends.series import date_of
+from acutance.report.archive.trend_figure import trend_figure
+from acutance.report.archive.wording import interval_words, percent
+from acutance.report.html import Plate, Section, Table, Verdict, render_page
+from acutance.report.labels import METRIC_WORDS, MISSING, format_number, word_estimate
+
+if TYPE_CHECKING:
+    from acutance.archive.trends import Trend
+    from acutance.curves import Estimate
+
+__all__ = ["trend_page", "trend_plate", "trend_verdict"]
+
+_MAX_IMAGES = 400
+_WORTH = 0.1
+_LEVEL = 0.95
+
+
+def trend_page(trend: Trend, *, limit: float | None = None, command: str | None = None) -> str:
+    """One trend as one self-contained HTML page.
+
+    Parameters
+    ----------
+    trend : Trend
+    limit : float, optional
+        When the sensor will pass it is part of the answer.
+    command : str, optional
+        The command line.
+    """
+    answer = Section(
+        "Result",
+        paragraphs=(trend.summary(),),
+        verdicts=(trend_verdict(trend, limit),),
+        plates=(trend_plate(trend, limit),),
+    )
+    tables = (_numbers_table(trend), *_changes_table(trend), _images_table(trend))
+    content = (answer, *map(Section.of_table, tables), _method_section(trend, command))
+    facts = {
+        "measurements": str(trend.measurements),
+        "images": str(trend.images.images),
+        "from": trend.first.isoformat(),
+        "to": trend.last.isoformat(),
+    }
+    return render_page(f"Trend of {METRIC_WORDS[trend.metric].label}", trend.name, content, facts)
+
+
+def trend_plate(trend: Trend, limit: float | None = None) -> Plate:
+    """The drawing with its caption."""
+    return Plate.of_figure(
+        trend_figure(trend, limit=limit),
+        f"{METRIC_WORDS[trend.metric].label} of the sensor through time",
+        "Dots: means of the measurements of an image, with their random standard deviations "
+        "(arrows lie outside the drawing). Blue: the sensor's mean with its 50 and 95 % bands; "
+        "dotted: if the drift goes on. Grey: between these lie 95 % of single images. Orange: a "
+        "step at a date that was not stated, and the days between which it lies. Green: stated "
+        "events.",
+        wide=True,
+    )
+
+
+def trend_verdict(trend: Trend, limit: float | None = None, label: str = "") -> Verdict:
+    """Whether the sensor changes, in one sentence, with what else has to be known.
+
+    Parameters
+    ----------
+    trend : Trend
+    limit : float, optional
+    label : str, optional
+        Begins the sentence.
+    """
+    words: list[str] = []
+    rate = trend.relative_rate_per_year
+    if not _holds_zero(rate):
+        words.append(
+            f"{'rises' if rate.value > 0 else 'falls'} by {percent(rate, sign=False)} a year"
+        )
+    words += [f"changed by {percent(one.relative_size)} about {one.date}" for one in trend.changes]
+    changed = bool(words)
+    if not changed:
+        words = [f"no change is found: {percent(rate)} a year"]
+    level = f"{METRIC_WORDS[trend.metric].label} {_value(trend.level)} on {trend.last}"
+    word: Literal["good", "doubtful"] = "doubtful" if changed else "good"
+    details = [("steps", text) for text in _open_steps(trend)]
+    if limit is not None:
+        details.append(("limit", f"{trend.crosses(limit).summary()}."))
+    return Verdict(word, f"{label}{level}; {', '.join(words)}.", tuple(details))
+
+
+def _holds_zero(estimate: Estimate) -> bool:
+    low, high = estimate.interval(_LEVEL)
+    return low <= 0 <= high
+
+
+def _open_steps(trend: Trend) -> list[str]:
+    if trend.changes or trend.step_probability < _WORTH:
+        return []
+    return [
+        f"a step at an unknown date cannot be ruled out (probability {trend.step_probability:.2f})."
+    ]
+
+
+def _value(estimate: Estimate) -> str:
+    words = word_estimate(estimate)
+    return f"{words.value} ± {words.std}"
+
+
+def _numbers_table(trend: Trend) -> Table:
+    words = METRIC_WORDS[trend.metric]
+    rate, relative = trend.rate_per_year, trend.relative_rate_per_year
+    rows = [
+        (
+            f"{words.label_with_unit} on {trend.last}",
+            _value(trend.level),
+            interval_words(trend.level),
+        ),
+        ("drift per year", _value(rate), interval_words(rate)),
+        (
+            "drift per year [%]",
+            percent(relative).removesuffix(" %"),
+            interval_words(relative, 100.0),
+        ),
+        ("scatter between images", _value(trend.scatter), MISSING),
+        ("season, half its range", _value(trend.season_amplitude), MISSING),
+        ("probability of a season", f"{trend.season_probability:.2f}", MISSING),
+        ("probability of no step at an unknown date", f"{1 - trend.step_probability:.2f}", MISSING),
+    ]
+    return Table(("", "Value", "95 % interval"), tuple(rows), "lrr", title="Numbers")
+
+
+def _changes_table(trend: Trend) -> tuple[Table, ...]:
+    rows = [
+        (
+            f"{one.date}\n{one.since} to {one.until}", "step, found",
+            _value(one.size), percent(one.relative_size), f"{one.probability:.2f}",
+        )
+        for one in trend.changes
+    ] + [
+        (
+            str(one.date), one.name, _value(one.size),
+            percent((1 / (trend.level.value or 1.0)) * one.size), MISSING,
+        )
+        for one in trend.events
+    ]  # fmt: skip
+    if not rows:
+        return ()
+    columns = ("Date", "What", "Size", "Relative", "Probability")
+    return (Table(columns, tuple(rows), "llrrr", title="Changes"),)
+
+
+def _images_table(trend: Trend) -> Table:
+    """Every image with its mean and how far it is from the trend, in its own deviations."""
+    images = trend.images
+    expected = trend.bands(images.when).mean
+    scale = np.sqrt(images.variance + trend.scatter.value**2)
+    bad = {day.value for day in trend.bad_days}
+    rows: list[tuple[str, ...]] = []
+    alerts = set()
+    for at in range(min(images.size, _MAX_IMAGES)):
+        if images.value[at] in bad:
+            alerts.add(len(rows))
+        std = format_number(float(np.sqrt(images.variance[at])), 2)
+        rows.append((
+            str(date_of(float(images.when[at]))), str(int(images.count[at])),
+            f"{format_number(float(images.value[at]), 4)} ± {std}",
+            f"{(images.value[at] - expected[at]) / scale[at]:+.1f}",
+        ))  # fmt: skip
+    left = images.size - len(rows)
+    notes = ["Deviation from the trend in units of the image's own standard deviation and the "
+             "scatter between images together."]  # fmt: skip
+    if left:
+        notes.append(f"The first {len(rows)}; {left} more are not listed.")
+    return Table(
+        ("Date", "Measurements", "Mean", "From the trend"), tuple(rows), "lrrr",
+        parts=2 if len(rows) > 20 else 1, alerts=frozenset(alerts), title="Images",
+        notes=tuple(notes), page_only=True,
+    )  # fmt: skip
+
+
+def _method_section(trend: Trend, command: str | None) -> Section:
+    return Section(
+        "How",
+        paragraphs=(
+            "Level, drift, steps and season are fitted together. Images scatter with heavy tails "
+            "(Student's t), so that bad days count little; steps at unknown dates have their "
+            "probability from the evidence of 0 to 3 of them, summed over all places; intervals "
+            "are those of the posterior, with the systematic part of the stated deviations, which "
+            "does not average out.",
+        ),
+        command=command,
+    )
