@@ -3,10 +3,14 @@
 import html
 import json
 import re
+from datetime import timedelta
 
 import pytest
 
+import acutance as ac
+from acutance.archive.trends import Event
 from acutance.cli.demo_folder import FILES, demo_folder, file_of
+from acutance.cli.demo_year import BEGIN, IMAGES, REFOCUS, true_nyquist
 from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS
 
@@ -39,7 +43,7 @@ def test_the_report_names_every_method_and_its_pages_exist(folder):
     for name in (*methods, *TARGETS, "all combined"):
         assert name in index
     pages = re.findall(r'href="([^"]+)"', index)
-    assert set(pages) == {f"{file_of(name)}.html" for name in PAGES}
+    assert set(pages) == {*(f"{file_of(name)}.html" for name in PAGES), "year.html"}
     for page in pages:
         assert "<svg" in (text := (folder / page).read_text(encoding="utf-8")) or "data:" in text
     assert "truth" in (folder / "pulse-tarp.html").read_text(encoding="utf-8")
@@ -82,6 +86,23 @@ def test_a_landscape_is_scanned_and_compared_with_its_truth(folder):
             one, true = found[direction][name], row[name]["truth"]
             assert abs(one["value"] - true) < 3.5 * one["std"], (direction, name)
         assert f"truth {row['mtf_nyquist']['truth']:.4f}" in section
+
+
+def test_a_year_is_measured_as_a_batch_and_its_loss_and_refocusing_are_found(folder):
+    with ac.Archive(folder / "year.db", read_only=True) as archive:
+        assert len(archive.measurements()) == 4 * IMAGES
+        assert not len(archive.rejected())
+        for direction in ("across", "along"):
+            trend = archive.trend(
+                "mtf_nyquist", orientation=direction, events=[Event(REFOCUS, "refocus")]
+            )
+            for day in (BEGIN, REFOCUS - timedelta(days=1), REFOCUS + timedelta(days=1)):
+                found = trend.at(day)
+                assert abs(found.value - true_nyquist(day)) < 3.5 * found.std
+            assert trend.rate_per_year.interval(0.95)[1] < 0 < trend.events[0].size.interval()[0]
+    page = (folder / "year.html").read_text(encoding="utf-8")
+    assert page.count(".tif</td>") == IMAGES
+    assert "refocus of 2026-09-01" in page
 
 
 def test_the_combination_agrees_and_is_the_most_exact(folder):

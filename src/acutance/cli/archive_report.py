@@ -16,7 +16,8 @@ __all__ = ["EXAMPLE", "report"]
 EXAMPLE = (
     "\b\nExamples:\n"
     "  acutance archive report campaign.db QB02 qb02.html\n"
-    '  acutance archive report campaign.db QB02 qb02.html --spec spec.toml --event "2026-03-01=refocus"'
+    "  acutance archive report campaign.db QB02 qb02.html --spec spec.toml "
+    '--event "2026-03-01=refocus"'
 )
 
 

@@ -17,7 +17,16 @@ if TYPE_CHECKING:
     from acutance.report.html import Section
     from acutance.simulate import EdgeTarps
 
-__all__ = ["YEAR", "SimulatedYear", "measure_year", "year_section"]
+__all__ = [
+    "BEGIN",
+    "IMAGES",
+    "REFOCUS",
+    "YEAR",
+    "SimulatedYear",
+    "measure_year",
+    "true_nyquist",
+    "year_section",
+]
 
 YEAR = "year"
 SENSOR = "SIM-1"
@@ -180,8 +189,8 @@ def year_section(year: SimulatedYear) -> Section:
         "A year of a sensor",
         paragraphs=(
             f"{IMAGES} images of one site with four edge tarps, one every {STEP_DAYS} days, "
-            "through air that differs. The optics lose focus until they are refocused. The images are "
-            "measured as a batch and kept in an archive; the trend finds the loss and the step. "
+            "through air that differs. The optics lose focus until they are refocused. The images "
+            "are measured as a batch and kept in an archive; the trend finds the loss and the step. "
             "The truth is that of the average air.",
         ),
         plates=(trend_plate(year.trends["across"]),),

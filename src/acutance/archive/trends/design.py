@@ -8,7 +8,7 @@ import numpy as np
 
 from acutance.archive.trends.series import Event
 from acutance.archive.trends.tuned import (
-    DRIFT_STD_PER_YEAR,
+    DRIFT_STDS_PER_YEAR,
     EVENT_STD,
     NO_STD,
     SEASON_STD,
@@ -68,13 +68,20 @@ class Design:
                 found.append(float(when >= event.year))
         return np.array(found)
 
-    def precision(self, *, drifts: bool, season: bool) -> Floats:
-        """Of the priors of all columns, relative to the level; that of the level is flat."""
-        drift = DRIFT_STD_PER_YEAR if drifts else NO_STD
+    def precision(self, *, drift_std: float, season: bool) -> Floats:
+        """Of the priors of all columns, relative to the level; that of the level is flat.
+
+        Parameters
+        ----------
+        drift_std : float
+            Of the drift per year; 0 where there is none.
+        season : bool
+        """
+        drift = max(drift_std, NO_STD)
         wave = SEASON_STD if season else NO_STD
         stds = [drift, wave, wave]
         for event in self.events:
             stds.append(EVENT_STD)
             if event.changes_drift:
-                stds.append(DRIFT_STD_PER_YEAR)
+                stds.append(max(DRIFT_STDS_PER_YEAR))
         return np.array([0.0, *(1 / std**2 for std in stds)])

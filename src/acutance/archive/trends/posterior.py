@@ -28,9 +28,9 @@ from acutance.archive.trends.steps import (
 )
 from acutance.archive.trends.tuned import (
     DEGREES,
+    DRIFT_STDS_PER_YEAR,
     SCATTER,
     SEASON_PROBABILITY,
-    STEADY_PROBABILITY,
     STEP_STD,
 )
 from acutance.curves.grid import Floats
@@ -160,12 +160,13 @@ def trend_posterior(images: ImageMeans, design: Design) -> TrendPosterior:
     design : Design
     """
     unit = _unit(images.value)
-    families = [_family(images, design, unit, drifts) for drifts in (True, False)]
-    log_odds = np.log([1 - STEADY_PROBABILITY, STEADY_PROBABILITY])
-    log_total = np.array([family.log_evidence for family in families]) + log_odds
+    prior = {**DRIFT_STDS_PER_YEAR, 0.0: 1 - sum(DRIFT_STDS_PER_YEAR.values())}
+    families = [_family(images, design, unit, drift_std) for drift_std in prior]
+    log_total = np.array([family.log_evidence for family in families]) + np.log([*prior.values()])
     weight = np.exp(log_total - log_total.max())
     weight /= weight.sum()
-    hypothesis = weight[:, None] * np.array([family.step_probability for family in families])
+    each = weight[:, None] * np.array([family.step_probability for family in families])
+    hypothesis = np.array([each[:-1].sum(axis=0), each[-1]])
     return _joined(families, weight, design, unit, hypothesis)
 
 
@@ -190,7 +191,7 @@ class _Node:
 
 @dataclass(frozen=True, eq=False)
 class _Family:
-    """All combinations with a drift, or without one."""
+    """All combinations with one prior of the drift, or without a drift."""
 
     drifts: bool
     log_evidence: float
@@ -199,14 +200,15 @@ class _Family:
 
 
 def _model(
-    images: ImageMeans, design: Design, unit: float, drifts: bool, season: bool, degrees: float
+    images: ImageMeans, design: Design, unit: float, drift_std: float, season: bool, degrees: float
 ) -> StudentModel:
     value = images.value / unit
     columns = design.columns(images.when)
     spread = 1.4826 * float(np.median(np.abs(value - np.median(value))))
     return StudentModel(
-        columns, value, images.variance / unit**2, design.precision(drifts=drifts, season=season),
-        degrees, SCATTER, float(np.log(max(0.8 * spread, 0.003))),
+        columns, value, images.variance / unit**2,
+        design.precision(drift_std=drift_std, season=season), degrees, SCATTER,
+        float(np.log(max(0.8 * spread, 0.003))),
     )  # fmt: skip
 
 
@@ -222,10 +224,10 @@ _Models = dict[tuple[bool, float], tuple[StudentModel, float]]
 """By season and degrees of freedom, with the log prior of these."""
 
 
-def _family(images: ImageMeans, design: Design, unit: float, drifts: bool) -> _Family:
+def _family(images: ImageMeans, design: Design, unit: float, drift_std: float) -> _Family:
     places = possible_places(images.when, np.array([event.year for event in design.events]))
     models = {
-        (season, degrees): (_model(images, design, unit, drifts, season, degrees), log_prior)
+        (season, degrees): (_model(images, design, unit, drift_std, season, degrees), log_prior)
         for season, degrees, log_prior in _states()
     }
     few = places._replace(most=min(places.most, 1))
@@ -244,7 +246,7 @@ def _family(images: ImageMeans, design: Design, unit: float, drifts: bool) -> _F
     total = float(weight.sum())
     nodes = [replace(node, share=float(np.exp(log_one - highest)) / total)
              for log_one, node in combinations]  # fmt: skip
-    return _Family(drifts, highest + float(np.log(total)), weight / total, nodes)
+    return _Family(drift_std > 0, highest + float(np.log(total)), weight / total, nodes)
 
 
 def _log_sum(found: list[StepSets]) -> float:

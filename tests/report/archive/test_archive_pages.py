@@ -1,0 +1,136 @@
+"""Pages of archives: the answer first, the numbers those of the archive, nothing overlaps."""
+
+from __future__ import annotations
+
+import html
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
+from acutance.archive.trends import Event, Series, fit_trend
+from acutance.errors import OptionError
+from acutance.report.archive import sensor_page, trend_figure, trend_page
+from acutance.targets import Rejected
+
+BEGIN = datetime(2024, 1, 10, 10, tzinfo=UTC)
+REFOCUS = Event("2025-01-01", "refocus")
+SPEC = """
+[[requirement]]
+name = "across track"
+metric = "mtf_nyquist"
+minimum = 0.2
+orientation = "across"
+
+[[requirement]]
+name = "sharp"
+metric = "mtf_nyquist"
+minimum = 0.9
+"""
+
+
+def series_of(count=40, step=-0.05, rate=-0.02, seed=1, outlier=None):
+    """A level of 0.3 that drifts, with a step in the middle of three years."""
+    rng = np.random.default_rng(seed)
+    when = 2023 + np.sort(3 * rng.random(count))
+    value = 0.3 * (1 + rate * (when - 2023) + step * (when > 2024.5))
+    value += 0.3 * 0.01 * rng.standard_normal(count)
+    if outlier is not None:
+        value[count // 2] = outlier
+    return Series(
+        metric="mtf_nyquist", when=when, value=value, std=np.full(count, 0.001),
+        image=np.arange(count), name="QB02, pan, across",
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def edge_record():
+    sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()], gsd_m=0.7)
+    pixels, _ = ac.simulate.edge(
+        sensor, angle_deg=6.0, shape=(60, 44), snr=100, rng=np.random.default_rng(3)
+    )
+    return ac.measure_edge(pixels, gsd_m=0.7).record
+
+
+@pytest.fixture(scope="module")
+def archive(tmp_path_factory, edge_record):
+    """Twelve images of two targets that lose 10 % a year, and a cloud."""
+    place = tmp_path_factory.mktemp("archive") / "campaign.db"
+    rng = np.random.default_rng(1)
+    with Archive(place) as made:
+        for at in range(24):
+            day = BEGIN + timedelta(days=30 * (at // 2))
+            value = 0.3 * (1 - 0.1 * (at // 2) / 12) + 0.002 * rng.standard_normal()
+            number = {**edge_record.document["mtf_nyquist"], "value": value, "std": 0.002}
+            image = ImageEntry(path=f"{at // 2:02d}.tif", sensor="QB02", acquired=day)
+            target = TargetEntry(name=f"tarp {at % 2}", kind="edge")
+            record = ac.Record({**edge_record.document, "mtf_nyquist": number})
+            made.add_entries([Entry(record=record, image=image, target=target, band="pan")])
+        cloud = Rejected("find", "a cloud <b> lies on it", {})
+        made.add_entries([Entry(rejected=cloud, image=image, target=target, band="pan")])
+        yield made
+
+
+def words_of(page):
+    return html.unescape(page)
+
+
+def test_the_page_of_a_trend_begins_with_what_has_changed():
+    page = words_of(trend_page(fit_trend(series_of()), limit=0.2))
+    assert page.index("changed by −5") < page.index("Numbers") < page.index("<h2>Images")
+    assert "falls by" in page
+    assert "<b>limit</b>" in page
+    still = words_of(trend_page(fit_trend(series_of(step=0.0, rate=0.0))))
+    assert "no change is found" in still
+    assert '<div class="verdict good">' in still
+
+
+def test_a_bad_day_is_marked_and_does_not_flatten_the_drawing():
+    trend = fit_trend(series_of(outlier=3.0))
+    axes = trend_figure(trend).axes[0]
+    low, high = axes.get_ylim()
+    assert 0.2 < low < high < 0.4
+    assert [one for one in axes.get_lines() if one.get_marker() == "^"]
+    assert '<tr class="alert">' in trend_page(trend)
+
+
+def test_steps_events_and_limits_are_drawn_where_they_are():
+    trend = fit_trend(series_of(), [REFOCUS])
+    axes = trend_figure(trend, limit=0.25).axes[0]
+    texts = [one.get_text().strip() for one in axes.texts]
+    assert "refocus" in texts
+    assert "limit 0.25" in texts
+    assert any(text.startswith(("step -5", "step −5")) for text in texts)
+    levels = [one.get_ydata()[0] for one in axes.get_lines() if one.get_linestyle() == "--"]
+    assert 0.25 in levels
+
+
+def test_the_page_of_a_sensor_has_its_state_changes_and_images(archive):
+    page = words_of(sensor_page(archive, "QB02"))
+    trend = archive.trend("mtf_nyquist", sensor="QB02", verdict="usable")
+    assert f"{trend.level.value:.4f}" in page
+    assert "falls by" in page
+    assert page.index("falls by") < page.index("Through time")
+    assert page.count(".tif</td>") == 12
+    assert "a cloud <b> lies on it" in page
+    assert "a cloud <b> lies" not in sensor_page(archive, "QB02")
+    assert "tarp 0" in page
+    assert "By target, across" in page
+
+
+def test_requirements_come_first(archive, tmp_path):
+    spec = tmp_path / "spec.toml"
+    spec.write_text(SPEC, encoding="utf-8")
+    page = words_of(sensor_page(archive, "QB02", specification=spec))
+    assert page.index("across track: ") < page.index("falls by")
+    assert '<div class="verdict good"><p>across track' in page
+    assert '<div class="verdict invalid"><p>sharp' in page
+
+
+def test_a_sensor_that_is_not_there_is_named(archive):
+    with pytest.raises(OptionError, match="0 measurements of QB03"):
+        sensor_page(archive, "QB03")
+    with pytest.raises(OptionError, match="no metric 'mtf'"):
+        sensor_page(archive, "QB02", metric="mtf")
