@@ -190,7 +190,7 @@ def year_section(year: SimulatedYear) -> Section:
         paragraphs=(
             f"{IMAGES} images of one site with four edge tarps, one every {STEP_DAYS} days, "
             "through air that differs. The optics lose focus until they are refocused. The images "
-            "are measured as a batch and kept in an archive; the trend finds the loss and the step. "
+            "are measured as a batch and kept in an archive; the trend finds loss and step. "
             "The truth is that of the average air.",
         ),
         plates=(trend_plate(year.trends["across"]),),
