@@ -27,7 +27,7 @@ from acutance.errors import OptionError
 
 __all__ = ["CHUNK", "add_entries", "add_entry"]
 
-CHUNK = 1000
+CHUNK = 2000
 """Entries of one transaction."""
 
 _Described = TypeVar("_Described", ImageEntry, TargetEntry)

@@ -155,7 +155,7 @@ class Archive(Questions):
         run: int | None = None,
         progress: Callable[[int], None] | None = None,
     ) -> int:
-        """Keep entries, measured and rejected, in transactions of a thousand.
+        """Keep entries, measured and rejected, in transactions of two thousand.
 
         Parameters
         ----------

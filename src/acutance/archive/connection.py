@@ -31,6 +31,8 @@ PATIENCE_S = 20.0
 """How long a busy file, or a server that does not answer, is waited for."""
 
 _PAUSE_S = 0.1
+_CACHE_KB = 65_536
+_LOG_PAGES = 8_000
 _WRITES = "acutance_writes"
 _DRIVER = "postgresql+psycopg"
 
@@ -163,6 +165,9 @@ def _file_database(path: Path, read_only: bool) -> Database:
         )
         connection.execute("PRAGMA foreign_keys = ON")
         connection.execute(f"PRAGMA query_only = {int(read_only)}")
+        # The keys of a chunk lie all over their index: pages wait until several chunks are written.
+        connection.execute(f"PRAGMA cache_size = {-_CACHE_KB}")
+        connection.execute(f"PRAGMA wal_autocheckpoint = {_LOG_PAGES}")
         return connection
 
     engine = create_engine("sqlite://", creator=connect, poolclass=QueuePool)
