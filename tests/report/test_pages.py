@@ -4,8 +4,11 @@ import re
 from dataclasses import replace
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
+import acutance
+from acutance import optics, simulate
 from acutance.report import compare, notebook_html, page
 from acutance.report.html import Headline, Link, Section, Table, Verdict, render_page
 from acutance.targets import Check, TargetResult
@@ -216,3 +219,18 @@ def test_a_record_shows_the_numbers_of_its_measurement(measurement, pulse, both)
 def test_measurements_and_records_show_themselves_in_notebooks(measurement):
     for one in (measurement, measurement.record):
         assert words(one._repr_html_()) == words(notebook_html(one))
+
+
+def test_several_measurements_show_their_tables_in_notebooks():
+    """All edges of a target, and the bands of a scene."""
+    sensor = optics.Sensor([optics.Gaussian(0.4), optics.Detector()])
+    site = simulate.site(sensor, np.random.default_rng(3))
+    every = acutance.measure_edges(site.image)
+    shown = words(every._repr_html_())
+    assert "measured 4" in shown
+    assert all(f"{one.mtf_nyquist}" in shown for one in every.measurements)
+    image, _ = simulate.landscape(sensor, shape=(400, 400), snr=100, rng=np.random.default_rng(1))
+    images = [acutance.Image.from_array(image), acutance.Image.from_array(image + 1)]
+    bands = acutance.scan_bands(images)
+    shown = words(bands._repr_html_())
+    assert all(f"{scene.along.rer}" in shown for scene in bands.measurements)

@@ -145,6 +145,8 @@ class Archive(Questions):
             )
         if isinstance(target, str):
             target = TargetEntry(name=target, kind=record.kind)
+        if not isinstance(target, TargetEntry | None):
+            raise OptionError(f"target is a {type(target).__name__}: give a name or a TargetEntry")
         entry = Entry(record=record, image=image, target=target, band=band, key=key)
         return add_entry(self._database, entry, run)
 

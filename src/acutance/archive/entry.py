@@ -48,6 +48,9 @@ class ImageEntry:
     sun_azimuth_deg: float | None = None
     sources: Mapping[str, Any] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        _require_texts(self, "path", "content", "sensor", "level")
+
 
 @dataclass(frozen=True, kw_only=True)
 class TargetEntry:
@@ -76,6 +79,9 @@ class TargetEntry:
     valid_to: date | None = None
     lon: float | None = None
     lat: float | None = None
+
+    def __post_init__(self) -> None:
+        _require_texts(self, "name", "kind", "site")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,6 +120,9 @@ class Entry:
             raise OptionError(
                 f"an entry has either a record or a rejection, this one has {found}: give one"
             )
+        _require_texts(self, "band", "key")
+        if self.key == "":
+            raise OptionError("the key of an entry is empty: give one, or none to have it derived")
 
 
 @dataclass(frozen=True)
@@ -132,3 +141,14 @@ class Kept:
     id: int
     key: str
     new: bool
+
+
+def _require_texts(entry: ImageEntry | TargetEntry | Entry, *names: str) -> None:
+    """Refuse names that are no texts: one database would turn them into some, another not."""
+    for name in names:
+        value = getattr(entry, name)
+        if not isinstance(value, str | None):
+            raise OptionError(
+                f"{type(entry).__name__}: {name} is {value!r:.60}, a {type(value).__name__}: give "
+                "a text"
+            )

@@ -55,7 +55,7 @@ class Measurements(Columns):
         Reads the records of some measurements by their numbers.
     """
 
-    load: Load = field(repr=False)
+    load: Load = field(repr=False, compare=False)
     shown: ClassVar[tuple[str, ...]] = (
         "id", "sensor", "band", "target", "kind", "method", "orientation", "acquired", "verdict",
         "mtf_nyquist", "mtf_nyquist_std", "rer", "rer_std", "fwhm_px", "fwhm_px_std",

@@ -11,13 +11,13 @@ from typing import Any
 from acutance.archive.dates import as_utc
 from acutance.archive.entry import Entry, ImageEntry, TargetEntry
 from acutance.archive.identity import file_name, image_identity, key_of, target_identity
-from acutance.archive.packing import json_bytes
+from acutance.archive.packing import json_bytes, plain_json
 from acutance.archive.systematic import systematic_stds
 from acutance.archive.tables import VERDICTS
 from acutance.curves import METRICS
 from acutance.errors import OptionError
 from acutance.geometry.angles import wrap_axis
-from acutance.targets.record import Record, strict_json
+from acutance.targets.record import Record
 
 __all__ = ["EntryRows", "image_row", "rows_of", "target_row"]
 
@@ -58,6 +58,8 @@ def rows_of(entry: Entry) -> EntryRows:
     OptionError
         If it holds what no table can: its message names the entry.
     """
+    if not isinstance(entry, Entry):
+        raise OptionError(f"a {type(entry).__name__} was given: add entries, Entry(record=...)")
     record, rejected, target = entry.record, entry.rejected, entry.target
     key = key_of(entry)
     row: Row = dict.fromkeys(
@@ -70,7 +72,7 @@ def rows_of(entry: Entry) -> EntryRows:
             "method": rejected.values.get("method"),
             "stage": rejected.stage,
             "reason": rejected.reason,
-            "rejected_values": strict_json(rejected.values),
+            "rejected_values": plain_json(rejected.values),
         }
         return EntryRows(key, entry.image, target, row, (), None)
     assert record is not None
@@ -102,7 +104,7 @@ def image_row(image: ImageEntry) -> Row:
         "view_azimuth_deg": _finite(image.view_azimuth_deg),
         "sun_elevation_deg": _finite(image.sun_elevation_deg),
         "sun_azimuth_deg": _finite(image.sun_azimuth_deg),
-        "sources": strict_json(image.sources),
+        "sources": plain_json(image.sources),
     }
 
 
@@ -117,7 +119,7 @@ def target_row(target: TargetEntry) -> Row:
         "valid_to": target.valid_to,
         "lon": _finite(target.lon),
         "lat": _finite(target.lat),
-        "definition": strict_json(target.definition),
+        "definition": plain_json(target.definition),
     }
 
 
@@ -168,6 +170,10 @@ def _moment(when: datetime | None) -> datetime | None:
 
 def _finite(number: float | None) -> float | None:
     """A number for a column; what is not finite is missing, as in the documents."""
-    if number is None or not math.isfinite(number):
+    if number is None:
         return None
-    return float(number)
+    try:
+        found = float(number)
+    except OverflowError:
+        return None
+    return found if math.isfinite(found) else None

@@ -10,9 +10,9 @@ from typing import Any
 from sqlalchemy import Connection, select, update
 
 from acutance.archive.connection import Database
+from acutance.archive.packing import plain_json
 from acutance.archive.tables import images, measurements, runs
 from acutance.errors import OptionError
-from acutance.targets.record import strict_json
 
 __all__ = ["end_run", "kept_keys", "start_run"]
 
@@ -25,7 +25,7 @@ def start_run(database: Database, plan: Mapping[str, Any]) -> int:
         "uid": uuid.uuid4().hex,
         "started": datetime.now(UTC),
         "software": __version__,
-        "plan": strict_json(plan),
+        "plan": plain_json(plan),
     }
     new = runs.insert().values(row).returning(runs.c.id)
     return database.write(lambda connection: int(connection.execute(new).scalar_one()))
@@ -40,7 +40,7 @@ def end_run(database: Database, run: int, summary: Mapping[str, Any]) -> None:
         If there is no such run.
     """
     ended = update(runs).where(runs.c.id == run)
-    ended = ended.values(ended=datetime.now(UTC), summary=strict_json(summary))
+    ended = ended.values(ended=datetime.now(UTC), summary=plain_json(summary))
 
     def write(connection: Connection) -> None:
         if connection.execute(ended).rowcount == 0:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from numbers import Real
 from typing import Any, TypedDict
 
 from sqlalchemy import Column, ColumnElement, or_
@@ -110,9 +111,10 @@ class Selection:
         for name in _names(self.orientation or ()):
             if name not in ("across", "along"):
                 raise OptionError(f"orientation is {name!r}: it is across or along")
-        for metric in self.limits or {}:
+        for metric, limits in (self.limits or {}).items():
             if metric not in METRICS:
                 raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRICS)}")
+            _require_limits(metric, limits)
         since = None if self.since is None else as_utc(self.since, "since")
         until = None if self.until is None else end_of(self.until, "until")
         if since is not None and until is not None and since > until:
@@ -161,5 +163,17 @@ class Selection:
         yield measurements.c.method, self.method
 
 
+def _require_limits(metric: str, limits: Any) -> None:
+    two = isinstance(limits, tuple | list) and len(limits) == 2
+    if not (two and all(one is None or isinstance(one, Real) for one in limits)):
+        raise OptionError(
+            f"limits of {metric} are {limits!r}: give the least and the largest value, (0.4, None)"
+        )
+
+
 def _names(wanted: Names) -> list[str]:
-    return [wanted] if isinstance(wanted, str) else list(wanted)
+    found = [wanted] if isinstance(wanted, str) or not isinstance(wanted, Iterable) else [*wanted]
+    for name in found:
+        if not isinstance(name, str):
+            raise OptionError(f"{name!r} is a {type(name).__name__}: select by names, as texts")
+    return found

@@ -1,9 +1,11 @@
-"""A measurement or a record as a piece of HTML, as notebooks show it: numbers, checks, figure."""
+"""Results as a piece of HTML, as notebooks show them: numbers, checks, figure."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from acutance.report.bands import bands_tables
 from acutance.report.figure import panels
 from acutance.report.figures.curves import COLORS, band_edges, mark_frequencies
 from acutance.report.html import Plate, Section, render_fragment
@@ -11,30 +13,50 @@ from acutance.report.labels import describe_image, title_of
 from acutance.report.page import verdict_of
 from acutance.report.paper import new_page, split_page, styled
 from acutance.report.tables.measurement import headline_table, numbers_of, recorded_numbers
+from acutance.report.tables.target import target_tables
+from acutance.targets.measurement import Measurement
 from acutance.targets.record import Record
+from acutance.targets.target_result import TargetResult
 
 if TYPE_CHECKING:
-    from acutance.targets.measurement import Measurement
+    from acutance.report.html import Table
+    from acutance.scan import BandScenes
 
 __all__ = ["notebook_html"]
 
 SHOWN_PANELS = 3
+SHOWN_TABLES = 2
 PANEL_HEIGHT_IN = 3.6
 
 
-def notebook_html(result: Measurement | Record) -> str:
+def notebook_html(
+    result: Measurement | Record | TargetResult[Measurement] | BandScenes,
+) -> str:
     """Main numbers, checks that failed and the first drawings of a measurement, as HTML.
 
     Parameters
     ----------
-    result : Measurement or Record
-        A record, and a measurement without details, show their curves only.
+    result : Measurement, Record, TargetResult or BandScenes
+        A record, and a measurement without details, show their curves only; several measurements
+        their tables.
 
     Returns
     -------
     str
         A ``div`` with its own style.
     """
+    if isinstance(result, Measurement | Record):
+        return _one_html(result)
+    if isinstance(result, TargetResult):
+        return _several_html(result.summary(), target_tables(result)[:SHOWN_TABLES])
+    return _several_html(result.summary(), bands_tables(result))
+
+
+def _several_html(summary: str, tables: Sequence[Table]) -> str:
+    return render_fragment([Section("", paragraphs=(summary,)), *map(Section.of_table, tables)])
+
+
+def _one_html(result: Measurement | Record) -> str:
     if isinstance(result, Record):
         numbers = headline_table(recorded_numbers(result))
         plate = _recorded_mtf(result)

@@ -77,6 +77,11 @@ class BandScenes(ShortRepr):
         """The measurements of all bands."""
         return tuple(self.scenes.values())
 
+    def _repr_html_(self) -> str:
+        from acutance.report import notebook_html
+
+        return notebook_html(self)
+
     def summary(self) -> str:
         """Which bands, and the MTF at Nyquist of each."""
         return "; ".join(

@@ -95,3 +95,8 @@ class TargetResult(ShortRepr, Generic[One]):
         """How many edges, and the main means of each group."""
         count = f"measured {len(self.measurements)}, rejected {len(self.rejected)}"
         return "; ".join((count, *(group.summary() for group in self.groups.values())))
+
+    def _repr_html_(self) -> str:
+        from acutance.report import notebook_html
+
+        return notebook_html(self)

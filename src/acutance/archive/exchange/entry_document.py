@@ -10,8 +10,9 @@ from typing import Any
 from acutance.archive.dates import as_utc
 from acutance.archive.entry import Entry, ImageEntry, TargetEntry
 from acutance.archive.identity import key_of
+from acutance.archive.packing import plain_json
 from acutance.errors import OptionError
-from acutance.targets.record import Record, strict_json
+from acutance.targets.record import Record
 from acutance.targets.target_result import Rejected
 
 __all__ = ["SCHEMA", "entry_document", "entry_of_document"]
@@ -71,8 +72,7 @@ def _document(entry: ImageEntry | TargetEntry) -> dict[str, Any]:
         name: value.isoformat() if isinstance(value, date) else value
         for name, value in found.items()
     }
-    document: dict[str, Any] = strict_json(plain)
-    return document
+    return plain_json(plain)
 
 
 def _image(document: Mapping[str, Any]) -> ImageEntry:
