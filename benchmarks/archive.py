@@ -9,6 +9,7 @@ more. The server's own processor time is not counted.
 
 from __future__ import annotations
 
+import os
 import resource
 import tempfile
 import time
@@ -158,6 +159,7 @@ def main() -> None:
             [
                 ["file of SQLite, a measurement / kB", f"{1e3 * size_mb / arguments.draws:.1f}"],
                 ["memory of the process, at most / MB", f"{memory_mb:.0f}"],
+                ["load of the machine's two cores", f"{os.getloadavg()[2]:.1f}"],
             ],
         ),
     ]

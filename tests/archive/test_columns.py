@@ -24,7 +24,7 @@ def test_rows_are_the_oldest_first_and_what_has_no_date_last(filled):
     assert np.isnat(found["acquired"]).tolist() == [False] * 6 + [True]
     assert (np.diff(found["acquired"][:6]) >= np.timedelta64(0)).all()
     assert sorted(found["mtf_nyquist"].tolist()[:2]) == [0.1, 0.101]
-    assert found["mtf_nyquist"][-1] == 0.107
+    assert found["mtf_nyquist"][-1] == pytest.approx(0.107)
     assert found["sensor"].tolist()[-1] is None
     assert len(set(found["image_id"].tolist())) == 4
 

@@ -8,6 +8,7 @@ import struct
 from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -123,7 +124,7 @@ def entries(draw, record):
 
 @given(data=st.data())
 @settings(
-    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 def test_nothing_is_lost_whatever_is_kept(data, edge_record, tmp_path_factory):
     kept = data.draw(st.lists(entries(edge_record), min_size=1, max_size=4))
@@ -220,8 +221,6 @@ def test_stac_needs_a_date_and_a_new_folder(archive, edge_record, entry_of, tmp_
 def test_documents_of_commands_are_imported(archive, edge_record, tmp_path):
     """One measurement, all edges of a target, several methods, several regions, lists of them."""
     sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()], gsd_m=0.7)
-    import numpy as np
-
     scene = ac.simulate.site(sensor, np.random.default_rng(3))
     every = ac.measure_edges(scene.image, gsd_m=0.7)
     target = report.document(every)
@@ -285,15 +284,18 @@ def test_places_that_cannot_be_written(several, tmp_path):
     assert not list(tmp_path.glob("*.part"))
 
 
-def test_scenes_are_kept(archive, tmp_path):
-    """A scan of a whole scene is a measurement of its own kind."""
-    import numpy as np
-
+@pytest.fixture(scope="module")
+def scene():
+    """A scan of a small landscape."""
     sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
     image, _ = ac.simulate.landscape(
-        sensor, shape=(400, 400), snr=100, rng=np.random.default_rng(1)
+        sensor, shape=(300, 300), snr=100, rng=np.random.default_rng(1)
     )
-    scene = ac.scan_scene(image, workers=1)
+    return ac.scan_scene(image, workers=1)
+
+
+def test_scenes_are_kept(archive, scene):
+    """A scan of a whole scene is a measurement of its own kind."""
     archive.add(scene, sensor="K3", acquired=datetime(2026, 1, 1) + timedelta(days=1))
     found = archive.measurements(kind="scene")
     assert found["orientation"].tolist() == ["across", "along"]
