@@ -185,11 +185,22 @@ def loaded_after(code: str) -> set[str]:
 def test_importing_acutance_loads_nothing_heavy() -> None:
     loaded = loaded_after("import acutance")
     assert "acutance" in loaded
-    assert not loaded & {"numpy", "scipy", "matplotlib", "rasterio", "pydantic", "jinja2", "typer"}
+    heavy = {
+        "numpy",
+        "scipy",
+        "matplotlib",
+        "rasterio",
+        "pydantic",
+        "jinja2",
+        "typer",
+        "sqlalchemy",
+    }
+    assert not loaded & heavy
 
 
 @pytest.mark.parametrize(
-    "command", [[], ["edge"], ["simulate", "edge"], ["sites"], ["study"], ["demo"]]
+    "command",
+    [[], ["edge"], ["simulate", "edge"], ["sites"], ["study"], ["demo"], ["archive", "list"]],
 )
 def test_help_loads_nothing_heavy(command: list[str]) -> None:
     arguments = [*command, "--help"]
@@ -197,7 +208,7 @@ def test_help_loads_nothing_heavy(command: list[str]) -> None:
         f"from acutance.cli.app import app\napp({arguments!r}, standalone_mode=False)"
     )
     assert "typer" in loaded
-    assert not loaded & {"scipy", "matplotlib", "rasterio", "jinja2"}
+    assert not loaded & {"scipy", "matplotlib", "rasterio", "jinja2", "sqlalchemy"}
 
 
 def test_measuring_an_array_needs_no_file_library() -> None:
