@@ -82,7 +82,7 @@ class MeasuredImage:
     day : str or None
         Of the acquisition.
     measuring_s : float
-        Spent in measurements, of all the worker did.
+        Of the processor, spent in measurements, of all the worker did.
     """
 
     entries: list[Entry]
@@ -156,7 +156,7 @@ def _unreadable(task: BatchTask, error: AcutanceError) -> Entry:
 
 
 def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[Entry, float]]:
-    """Rows that are not done, and the seconds their measurements took."""
+    """Rows that are not done, and the processor time of their measurements."""
     day = None if opened.acquired is None else opened.acquired.isoformat()
     for target, chosen, digest in zip(work.targets, work.chosen, work.digests, strict=True):
         described = None
@@ -178,7 +178,7 @@ def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[E
 def _row(
     target: SurveyedTarget, chosen: ChosenOptions, opened: _Opened, place: int
 ) -> tuple[dict[str, Any], float]:
-    """A record or a rejection, and the seconds of the measurement."""
+    """A record or a rejection, and the processor time of the measurement."""
     # The rooms of the kinds are loaded where something is measured.
     from acutance.batch.measure_target import measure_target
 
@@ -186,9 +186,9 @@ def _row(
     try:
         _require_valid(target, opened.acquired)
         placed = _placed(target, image, opened)
-        begin = time.perf_counter()
+        begin = time.thread_time()
         record = measure_target(placed, image, chosen).record
-        return {"record": record}, time.perf_counter() - begin
+        return {"record": record}, time.thread_time() - begin
     except NotHereError as error:
         rejected = _rejected(error.stage, str(error), error.why, chosen, image)
     except AcutanceError as error:
@@ -196,7 +196,7 @@ def _row(
     except Exception as error:  # one target that fails must not end a batch of thousands
         reason = f"the measurement failed, {type(error).__name__}: {str(error)[:200]}"
         rejected = _rejected("fit", reason, type(error).__name__, chosen, image)
-    return {"rejected": rejected}, 0.0 if begin is None else time.perf_counter() - begin
+    return {"rejected": rejected}, 0.0 if begin is None else time.thread_time() - begin
 
 
 def _require_valid(target: SurveyedTarget, acquired: date | None) -> None:

@@ -40,7 +40,7 @@ class BatchSummary(ShortRepr):
     reasons : mapping of str to int
         Rejected rows by their reason in a word or two.
     measuring_s : float
-        Spent in measurements, over all workers.
+        Processor time of the measurements, over all workers.
     elapsed_s : float
     run : int or None
         Number of the run in the archive; None if there was nothing to do.
