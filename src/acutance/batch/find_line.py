@@ -58,10 +58,8 @@ def edge_candidates(placed: PlacedTarget, image: Image) -> list[tuple[RegionPixe
 
     Raises
     ------
-    NotHereError
-        If there is none.
     RegionError
-        If the pixels cannot be read, or there are no data.
+        If the pixels cannot be read, or there are no data; `NotHereError` if there is no edge.
     """
     if placed.target.shape == "LineString":
         return [_recut(placed, image)]
@@ -174,8 +172,8 @@ def require_near(placed: PlacedTarget, line: Line) -> None:
 
     Raises
     ------
-    NotHereError
-        If it lies farther away than the place is uncertain, or has another direction.
+    RegionError
+        As `NotHereError`, if it lies farther away than the place is uncertain, or is turned.
     """
     segment = Segment(line, -0.5 * line.length_px, 0.5 * line.length_px, 0.0)
     offset_px, turn_deg, _ = _against(segment, *placed.points)

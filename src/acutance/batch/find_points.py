@@ -36,10 +36,8 @@ def find_points(placed: PlacedTarget, image: Image) -> tuple[Box, Floats]:
 
     Raises
     ------
-    NotHereError
-        If no spots match the survey.
     RegionError
-        If the pixels cannot be read, or there are no data.
+        If the pixels cannot be read, or there are no data; `NotHereError` if no spots match.
     """
     box = points_box(placed, image)
     region = read_region(image, box, placed.gsd)

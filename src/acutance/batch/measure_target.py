@@ -29,10 +29,8 @@ def measure_target(placed: PlacedTarget, image: Image, chosen: ChosenOptions) ->
 
     Raises
     ------
-    NotHereError
-        If it is not found near its place.
     AcutanceError
-        If it cannot be measured.
+        If it cannot be measured; `NotHereError` if it is not found near its place.
     """
     return _MEASURES[placed.target.kind](placed, image, chosen)
 

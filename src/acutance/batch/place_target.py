@@ -29,7 +29,7 @@ _SAMPLES = 101
 Georeference = Geolocation | SensorModel | None
 
 
-class NotHereError(Exception):
+class NotHereError(RegionError):
     """A target that cannot be measured in an image: in a word, and in a sentence."""
 
     def __init__(self, why: str, reason: str, stage: str = "region") -> None:
@@ -73,9 +73,9 @@ def place_target(
 
     Raises
     ------
-    NotHereError
-        If the image cannot be related to the target's coordinates, does not hold enough of it,
-        or shows it too small.
+    RegionError
+        As `NotHereError`, if the image cannot be related to the target's coordinates, does not
+        hold enough of it, or shows it too small.
     """
     if not target.points:
         return PlacedTarget(target, _outline(Box.whole(image.shape)), 0.0, gsd or image.gsd())

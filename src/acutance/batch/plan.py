@@ -183,6 +183,10 @@ def read_plan(path: str | os.PathLike[str]) -> BatchPlan:
     ----------
     path : str or path
 
+    Returns
+    -------
+    BatchPlan
+
     Raises
     ------
     OptionError

@@ -24,7 +24,7 @@ class Rejected:
 
     Attributes
     ----------
-    stage : {"image", "region", "options", "fit", "contrast"}
+    stage : {"image", "date", "region", "find", "options", "fit", "contrast"}
     reason : str
     values : dict
         Where it lies: in pixels of the whole image (``row``, ``col``) with its ``normal_deg``, or
