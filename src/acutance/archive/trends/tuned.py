@@ -56,7 +56,7 @@ MIN_SEGMENT: Final = 3
 MIN_IMAGES_BY_STEPS: Final = (8, 15, 24)
 """Images from which one, two and three steps are sought."""
 MIN_IMAGES: Final = 3
-MAX_IMAGES: Final = 400
+MAX_IMAGES: Final = 200
 """More images are joined in the order of time: steps are sought among so many at most."""
 OUTLIER_SCALES: Final = 4.5
 """An image farther than so many scales from the trend is a bad day."""
