@@ -7,6 +7,7 @@ import pytest
 
 import acutance as ac
 from acutance.targets import OtfSlices, Record
+from acutance.targets.record import DocumentFields, WrittenLater
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +28,17 @@ def test_a_pickled_record_is_the_record(record, numbers):
     sent = with_waste(record, numbers)
     assert pickle.loads(pickle.dumps(sent)) == sent
     assert pickle.loads(pickle.dumps(sent)).to_dict() == sent.to_dict()
+
+
+def test_what_is_written_later_is_written_once_in_its_place():
+    written = []
+    fields = DocumentFields({
+        "first": WrittenLater(lambda: written.append("first") or [1.0]), "second": 2.0
+    })  # fmt: skip
+    assert (fields["second"], written) == (2.0, [])
+    assert list(dict(fields).items()) == [("first", [1.0]), ("second", 2.0)]
+    assert fields["first"] is fields["first"]
+    assert written == ["first"]
 
 
 def test_it_takes_15_kilobytes_pickled_and_less_stored(record):

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Self
 
 import numpy as np
@@ -17,7 +17,14 @@ from acutance.geometry.angles import is_nearer_columns
 from acutance.geometry.line import Orientation
 from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.directions import HasDirections
-from acutance.targets.record import SCHEMA, ImageInfo, Record, rounded
+from acutance.targets.record import (
+    SCHEMA,
+    DocumentFields,
+    ImageInfo,
+    Record,
+    WrittenLater,
+    rounded,
+)
 from acutance.targets.slices import OtfSlices
 from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_stds
 
@@ -194,7 +201,7 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
     @cached_property
     def record(self) -> Record:
         """The light half: what is written, archived and combined."""
-        return Record(self._document())
+        return Record(DocumentFields(self._document()))
 
     def to_dict(self) -> dict[str, Any]:
         """The measurement as the JSON document ``acutance/measurement/1``."""
@@ -218,15 +225,21 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
         """Fields that the kind of target adds to the document; none unless overridden."""
         return {}
 
+    def plane_document(self) -> dict[str, Any] | WrittenLater:
+        """The slices of the OTF, for JSON."""
+        return self.slices.to_dict()
+
     def _document(self) -> dict[str, Any]:
         from acutance import __version__
 
         one_direction = self.normal_deg is not None
-        curves: dict[str, Any] = {
-            name: _direction_document(one) for name, one in self.directions.items()
-        }
         if one_direction:
-            curves = curves[self.orientation]
+            curves = _direction_document(self.response)
+        else:
+            curves = {
+                name: dict(DocumentFields(_direction_document(one)))
+                for name, one in self.directions.items()
+            }
         return {
             "schema": SCHEMA,
             "kind": self.kind,
@@ -237,7 +250,7 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
             "snr": self.snr if math.isfinite(self.snr) else None,
             **self.target_document(),
             **curves,
-            "plane": self.slices.to_dict(),
+            "plane": self.plane_document(),
             "checks": [check.to_dict() for check in self.checks],
             "verdict": {"word": self.verdict.word, "sentence": self.verdict.sentence},
             "budget": [term.to_dict() for term in self.budget],
@@ -267,15 +280,20 @@ def _direction_document(response: Response) -> dict[str, Any]:
         **{name: number.to_dict() for name, number in response.metrics().items()},
         "rer_centre": response.rer_centre,
         "gsd_m": response.gsd_m,
-        "mtf": _curve_document(response.mtf),
-        "lsf": _curve_document(response.lsf.every(_STEPS)),
-        "esf": _curve_document(response.esf.every(_STEPS)),
+        "mtf": _curve_field(response.mtf),
+        "lsf": _curve_field(response.lsf.every(_STEPS)),
+        "esf": _curve_field(response.esf.every(_STEPS)),
     }
 
 
-def _curve_document(curve: Mtf | Esf | Lsf) -> dict[str, list[float]]:
+def _curve_field(curve: Mtf | Esf | Lsf) -> WrittenLater:
+    """A curve, of which no more is held than is written: not its covariance."""
+    return WrittenLater(partial(_curve_document, curve.arrays()))
+
+
+def _curve_document(columns: Mapping[str, Floats]) -> dict[str, list[float]]:
     """The columns of a curve, with the digits its deviation deserves."""
     return {
         name: rounded(column, 3) if name == "std" else np.round(column, 5).tolist()
-        for name, column in curve.arrays().items()
+        for name, column in columns.items()
     }

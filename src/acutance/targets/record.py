@@ -11,7 +11,7 @@ import lzma
 import math
 import pickle
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
@@ -31,7 +31,16 @@ from acutance.targets.directions import HasDirections
 from acutance.targets.slices import OtfSlices
 from acutance.targets.uncertainty_budget import BudgetTerm
 
-__all__ = ["SCHEMA", "ImageInfo", "Record", "RecordedDirection", "rounded", "strict_json"]
+__all__ = [
+    "SCHEMA",
+    "DocumentFields",
+    "ImageInfo",
+    "Record",
+    "RecordedDirection",
+    "WrittenLater",
+    "rounded",
+    "strict_json",
+]
 
 SCHEMA = "acutance/measurement/1"
 
@@ -116,6 +125,47 @@ class ImageInfo:
         )
 
 
+@dataclass(frozen=True)
+class WrittenLater:
+    """A field of a document that is written when it is first read.
+
+    Parameters
+    ----------
+    write : function
+        Returns the field.
+    """
+
+    write: Callable[[], Any]
+
+
+class DocumentFields(Mapping[str, Any]):
+    """The fields of a document by name.
+
+    Curves and covariances are nine tenths of a document. Who reads numbers, checks and verdict of
+    thousands of records needs none of them, and to write them takes a quarter of a measurement.
+
+    Parameters
+    ----------
+    fields : mapping
+        Strict JSON types, or `WrittenLater`.
+    """
+
+    def __init__(self, fields: Mapping[str, Any]) -> None:
+        self._fields = dict(fields)
+
+    def __getitem__(self, name: str) -> Any:
+        field = self._fields[name]
+        if isinstance(field, WrittenLater):
+            field = self._fields[name] = field.write()
+        return field
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._fields)
+
+    def __len__(self) -> int:
+        return len(self._fields)
+
+
 @dataclass(frozen=True, eq=False)
 class RecordedDirection(ShortRepr):
     """Numbers and curves of one direction, as a document holds them.
@@ -175,8 +225,9 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
 
     Parameters
     ----------
-    document : mapping
-        Strict JSON types. Fields that this version does not have are kept as they are.
+    fields : mapping
+        The document, in strict JSON types. Fields that this version does not have are kept as they
+        are.
 
     Examples
     --------
@@ -184,7 +235,12 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
     >>> record.across.mtf_nyquist, record.verdict.word  # doctest: +SKIP
     """
 
-    document: Mapping[str, Any]
+    fields: Mapping[str, Any]
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """All fields."""
+        return dict(self.fields)
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> Record:
@@ -245,34 +301,34 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
     @property
     def kind(self) -> str:
         """The target."""
-        return str(self.document["kind"])
+        return str(self.fields["kind"])
 
     @property
     def method(self) -> str:
         """The estimator."""
-        return str(self.document["method"])
+        return str(self.fields["method"])
 
     @cached_property
     def image(self) -> ImageInfo:
         """Where the pixels came from."""
-        return ImageInfo.from_dict(self.document["image"])
+        return ImageInfo.from_dict(self.fields["image"])
 
     @cached_property
     def checks(self) -> tuple[Check, ...]:
         """The checks of the target."""
-        return tuple(map(Check.from_dict, self.document["checks"]))
+        return tuple(map(Check.from_dict, self.fields["checks"]))
 
     @cached_property
     def directions(self) -> dict[str, RecordedDirection]:
         """Numbers and curves by direction: "across", "along", or both."""
-        if "orientation" in self.document:
-            return {str(self.document["orientation"]): RecordedDirection(self.document)}
-        return {name: RecordedDirection(self.document[name]) for name in ("across", "along")}
+        if "orientation" in self.fields:
+            return {str(self.fields["orientation"]): RecordedDirection(self.fields)}
+        return {name: RecordedDirection(self.fields[name]) for name in ("across", "along")}
 
     @property
     def measured_directions(self) -> tuple[str, ...]:
         """The directions that the target showed; in older documents all of them."""
-        return tuple(self.document.get("measured_directions", self.directions))
+        return tuple(self.fields.get("measured_directions", self.directions))
 
     @cached_property
     def slices(self) -> OtfSlices:
@@ -283,33 +339,33 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         OptionError
             If the document does not hold them.
         """
-        if "plane" not in self.document:
+        if "plane" not in self.fields:
             raise OptionError(
                 "the document holds no slices of the OTF (plane): write it again with this version"
             )
-        return OtfSlices.from_dict(self.document["plane"])
+        return OtfSlices.from_dict(self.fields["plane"])
 
     @cached_property
     def budget(self) -> tuple[BudgetTerm, ...]:
         """The uncertainty budget; of older documents nothing."""
-        return tuple(map(BudgetTerm.from_dict, self.document.get("budget", ())))
+        return tuple(map(BudgetTerm.from_dict, self.fields.get("budget", ())))
 
     @property
     def snr(self) -> float:
         """Signal to noise ratio; ``nan`` where none is known."""
-        snr = self.document["snr"]
+        snr = self.fields["snr"]
         return math.nan if snr is None else float(snr)
 
     @property
     def options(self) -> Mapping[str, Any]:
         """The options of the measurement."""
-        options: Mapping[str, Any] = self.document["options"]
+        options: Mapping[str, Any] = self.fields["options"]
         return options
 
     @property
     def measured_at(self) -> datetime:
         """When (UTC)."""
-        return datetime.fromisoformat(self.document["measured_at"])
+        return datetime.fromisoformat(self.fields["measured_at"])
 
     def summary(self) -> str:
         """Target and method, the main numbers, and how many checks failed."""

@@ -24,14 +24,15 @@ from acutance.numerics.pivoted_root import pivoted_root
 from acutance.numerics.stacked import stacked, unstacked
 from acutance.targets.otf_likelihood import OtfLikelihood
 
-__all__ = ["SLICE_DIRECTIONS_DEG", "OtfSlices", "places_along"]
+__all__ = ["SLICE_DIRECTIONS_DEG", "SLICE_FREQ_CPP", "OtfSlices", "places_along"]
 
 Complexes = NDArray[np.complex128]
 
 SLICE_DIRECTIONS_DEG = (0.0, 45.0, 90.0, 135.0)
 """Directions in which a 2-D OTF is written, if the target has none of its own."""
 
-_FREQ_CPP: Floats = np.asarray(np.arange(1, 17) * 0.05)
+SLICE_FREQ_CPP: Floats = np.asarray(np.arange(1, 17) * 0.05)
+"""Frequencies of slices, cycles per pixel."""
 _MIN_STD = 1.5e-4
 """Columns of a covariance factor below this are left out: no method is that exact."""
 _ROUNDING = 0.05
@@ -68,8 +69,8 @@ class OtfSlices(ShortRepr):
     def of_curve(cls, mtf: Mtf, normal_deg: float) -> OtfSlices:
         """The slice along the normal of an edge or a pulse."""
         # The grid of a curve has steps of 0.01 c/px and holds these frequencies.
-        own = mtf.near(_FREQ_CPP)
-        return cls(np.array([normal_deg]), _FREQ_CPP, own.otf, _narrowed(own.otf_factor))
+        own = mtf.near(SLICE_FREQ_CPP)
+        return cls(np.array([normal_deg]), SLICE_FREQ_CPP, own.otf, _narrowed(own.otf_factor))
 
     @classmethod
     def of_otf2d(
@@ -80,7 +81,7 @@ class OtfSlices(ShortRepr):
     ) -> OtfSlices:
         """Slices of a 2-D OTF at the frequencies it was measured at."""
         low, high = band_cpp
-        freq = _FREQ_CPP[(low - 1e-9 <= _FREQ_CPP) & (high + 1e-9 >= _FREQ_CPP)]
+        freq = SLICE_FREQ_CPP[(low - 1e-9 <= SLICE_FREQ_CPP) & (high + 1e-9 >= SLICE_FREQ_CPP)]
         directions = np.asarray(directions_deg, float)
         u, v = places_along(directions, freq)
         return cls(directions, freq, otf.model.otf(u, v), _narrowed(otf.model.factor(u, v)))

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from acutance.curves import MAIN_NUMBERS, Estimate
+from acutance.curves import MAIN_NUMBERS, Estimate, Mtf
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Line
 from acutance.targets.measurement import Measurement
-from acutance.targets.otf_likelihood import OtfLikelihood
-from acutance.targets.slices import OtfSlices
+from acutance.targets.record import WrittenLater
+from acutance.targets.slices import SLICE_FREQ_CPP, OtfSlices
 from acutance.targets.straight.error_causes import FitCauses
 from acutance.targets.straight.lsf import SplineResponse
 from acutance.targets.straight.pixels_alone import PixelsAlone
@@ -103,22 +103,22 @@ class StraightMeasurement(Measurement):
         """The OTF along the normal, its covariance, and what the pixels alone say of it."""
         if self.details is None and "record" in vars(self):
             return self.record.slices
-        slices = OtfSlices.of_curve(self.mtf, self.normal_deg)
-        return replace(slices, likelihood=self._likelihood(slices.freq_cpp))
+        return _slices(self.mtf, self.normal_deg, self._pixels_alone, self.stated)
 
-    def _likelihood(self, freq_cpp: Floats) -> OtfLikelihood | None:
-        """What the pixels say of the OTF, the prior apart; published methods have no prior.
+    def plane_document(self) -> WrittenLater:
+        """The slices, worked out when they are read: no pixels are held for it."""
+        few = self.mtf.near(SLICE_FREQ_CPP)
+        return WrittenLater(
+            partial(_plane_document, few, self.normal_deg, self._pixels_alone, self.stated)
+        )
 
-        What is stated of the target, and a pulse's halo, are errors that the prior has no part in.
-        """
-        alone = None if self.details is None else self.details.pixels_alone
-        if alone is None or not isinstance(self.response, SplineResponse):
+    @property
+    def _pixels_alone(self) -> PixelsAlone | None:
+        """What the pixels say, the prior apart; published methods have no prior."""
+        if self.details is None or not isinstance(self.response, SplineResponse):
             return None
-        mtf = self.mtf
-        places = np.searchsorted(mtf.freq_cpp, freq_cpp - 1e-9)
-        others = mtf.factor[places][:, alone.columns.shape[0] :]
-        found: OtfLikelihood = alone.likelihood(freq_cpp, self.stated.gain(freq_cpp))
-        return found.with_errors(others)
+        alone: PixelsAlone | None = self.details.pixels_alone
+        return alone
 
     def _budget(self) -> tuple[BudgetTerm, ...]:
         """Causes of the fit, then what was stated of the target."""
@@ -170,3 +170,25 @@ class StraightMeasurement(Measurement):
             "bright": self.bright,
             **widths,
         }
+
+
+def _slices(
+    mtf: Mtf, normal_deg: float, alone: PixelsAlone | None, stated: StatedTarget
+) -> OtfSlices:
+    """The OTF along the normal, its covariance, and what the pixels alone say of it.
+
+    What is stated of the target, and a pulse's halo, are errors that the prior has no part in.
+    """
+    slices = OtfSlices.of_curve(mtf, normal_deg)
+    if alone is None:
+        return slices
+    freq_cpp = slices.freq_cpp
+    others = mtf.near(freq_cpp).factor[:, alone.columns.shape[0] :]
+    found = alone.likelihood(freq_cpp, stated.gain(freq_cpp)).with_errors(others)
+    return replace(slices, likelihood=found)
+
+
+def _plane_document(
+    mtf: Mtf, normal_deg: float, alone: PixelsAlone | None, stated: StatedTarget
+) -> dict[str, Any]:
+    return _slices(mtf, normal_deg, alone, stated).to_dict()
