@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import get_lapack_funcs
 
 from acutance.curves.grid import Floats
+from acutance.numerics.triangular import lower_inverse
 
 __all__ = ["IntegratedOut", "integrated_out"]
-
-(_trtri,) = get_lapack_funcs(("trtri",), (np.empty((1, 1)),))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,11 +69,10 @@ def integrated_out(
     """
     precision = information[others, others].copy()
     precision.reshape(-1)[:: std.size + 1] += std**-2.0
-    # The transpose has Fortran's order: LAPACK copies nothing. A Cholesky factor has an inverse.
-    inverse, _ = _trtri(np.linalg.cholesky(precision).T, lower=0, overwrite_c=1)
-    between, start = inverse.T @ information[others, kept], inverse.T @ projection[others]
+    root = lower_inverse(np.asarray(np.linalg.cholesky(precision), float))
+    between, start = root @ information[others, kept], root @ projection[others]
     return IntegratedOut(
         kept, others,
         information[kept, kept] - between.T @ between, projection[kept] - between.T @ start,
-        inverse @ start, inverse @ between, inverse @ inverse.T,
+        root.T @ start, root.T @ between, root.T @ root,
     )  # fmt: skip

@@ -14,11 +14,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs, solve_triangular
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
+from acutance.numerics.compiled import compiled
 from acutance.numerics.normal_equations import Normal
+from acutance.numerics.triangular import lower_inverse
 
 __all__ = [
     "LogEvidence",
@@ -38,7 +41,7 @@ _MAX_STEP_DOWN, _MAX_STEP_UP = 4.0, 1.5
 _SETTLED_NOISE = 0.02
 _SETTLED_AMPLITUDE = 0.1
 """A last step this short is taken to first order."""
-_potrf, _trtri, _syev = get_lapack_funcs(("potrf", "trtri", "syev"), (np.empty((1, 1)),))
+_potrf, _syev = get_lapack_funcs(("potrf", "syev"), (np.empty((1, 1)),))
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +78,11 @@ class Prior:
     def members(self) -> Floats:
         """(m, k): 1 where a coefficient belongs to a block, else 0."""
         return np.asarray(self.block[:, None] == np.arange(self.log_amplitude.size), float)
+
+    @cached_property
+    def own_block(self) -> NDArray[np.intp]:
+        """Block of each coefficient as integers, (m,)."""
+        return np.asarray(self.block, np.intp)
 
     @cached_property
     def sizes(self) -> Floats:
@@ -217,11 +225,10 @@ def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) ->
     precision = sigma[:, None] * normal.gram
     precision *= sigma / noise
     precision.reshape(-1)[:: sigma.size + 1] += 1.0
-    # The transpose has Fortran's order: LAPACK copies nothing.
-    lower, failed = _potrf(precision.T, lower=1, clean=1, overwrite_a=1)
+    # The transpose has Fortran's order: LAPACK copies nothing, and its upper factor is our lower.
+    upper, failed = _potrf(precision.T, lower=0, clean=1, overwrite_a=1)
     _require_solution(failed)
-    inverse, failed = _trtri(lower, lower=1, overwrite_c=1)
-    _require_solution(failed)
+    inverse = lower_inverse(upper.T)
     root = inverse.T
     covariance = root @ inverse
     mean = covariance @ (sigma * normal.projection / noise + prior.mean / sigma)
@@ -305,11 +312,41 @@ def log_evidence_slopes(white: Whitened, prior: Prior, log_amplitude: Floats) ->
                          - delta_kj (2 |m_k|^2 + 2 tr N_kk + 1 / s^2)
         d beta / d a_j = 2 sigma N E_j m
     """
-    members, precision = prior.members, 1 / np.square(prior.log_amplitude_std)
-    own = members * white.mean[:, None]
-    shifts = white.covariance @ own
-    explained = (white.mean**2 + white.variances) @ members
+    precision = 1 / np.square(prior.log_amplitude_std)
+    shifts, explained, crossed = _block_sums(
+        white.covariance, white.mean, prior.own_block, prior.sizes.size
+    )
     gradient = explained - prior.sizes - (log_amplitude - prior.log_amplitude) * precision
-    hessian = 4 * (own.T @ shifts) + 2 * (members.T @ (white.covariance**2 @ members))
+    hessian = 2 * crossed
     hessian.reshape(-1)[:: gradient.size + 1] -= 2 * explained + precision
     return LogEvidence(gradient, hessian, 2 * shifts, float(np.min(precision)) / 4)
+
+
+@compiled
+def _block_sums(
+    covariance: Floats, mean: Floats, block: NDArray[np.intp], blocks: int
+) -> tuple[Floats, Floats, Floats]:
+    """What the slopes of the log evidence consist of, block by block.
+
+    With the covariance N (m, m) and the mean m (m,), and -1 the block of what belongs to none:
+    ``N E_j m`` (m, k), ``|m_k|^2 + tr N_kk`` (k,) and ``2 m_k (N E_j m)_k + |N_kj|^2`` (k, k).
+    """
+    size = mean.size
+    shifts, explained = np.zeros((size, blocks)), np.zeros(blocks)
+    crossed = np.zeros((blocks, blocks))
+    for i in range(size):
+        own, j = block[i], 0
+        while j < size:
+            other, shift, square = block[j], 0.0, 0.0
+            # Neighbours are mostly of one block: their sums stay in registers.
+            while j < size and block[j] == other:
+                shift += covariance[i, j] * mean[j]
+                square += covariance[i, j] ** 2
+                j += 1
+            if other >= 0:
+                shifts[i, other] += shift
+                if own >= 0:
+                    crossed[own, other] += 2 * mean[i] * shift + square
+        if own >= 0:
+            explained[own] += mean[i] ** 2 + covariance[i, i]
+    return shifts, explained, crossed
