@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.triangular import lower_inverse
+from acutance.numerics.small_matrices import lower_inverse
 
 __all__ = ["IntegratedOut", "integrated_out"]
 

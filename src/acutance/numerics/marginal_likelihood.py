@@ -21,7 +21,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import TargetError
 from acutance.numerics.compiled import compiled
 from acutance.numerics.normal_equations import Normal
-from acutance.numerics.triangular import lower_inverse
+from acutance.numerics.small_matrices import lower_inverse
 
 __all__ = [
     "LogEvidence",

@@ -140,22 +140,22 @@ def _sensor_columns() -> tuple[Floats, Floats, Floats]:
 def _with_sensors(linear: Linear) -> Linear:
     """The linear model whose directions of the LSF are those of the density."""
     esf, tail, spline = _sensor_columns()
-    block = np.concatenate([linear.directions.block[: _FIRST - 1], np.full(tail.size, _DENSITY)])
-    kept = slice(0, _FIRST - 1)
+    kept, q = _FIRST - 1, tail.size
+    old, prior = linear.directions, linear.prior
     directions = lsf_prior.Directions(
-        np.hstack([linear.directions.esf[:, kept], esf]),
-        np.concatenate([linear.directions.tail[kept], tail]),
-        block,
+        np.hstack([old.esf[:, :kept], esf]),
+        np.concatenate([old.tail[:kept], tail]),
+        np.concatenate([old.block[:kept], np.full(q, _DENSITY)]),
     )
-    columns = np.zeros((linear.design.shape[0], tail.size))
-    columns[: CELLS + 3] = spline
-    columns[CELLS + 3] = tail
-    after = 1 + linear.directions.block.size
-    design = np.hstack([linear.design[:, :_FIRST], columns, linear.design[:, after:]])
-    prior = linear.prior
+    after = 1 + old.block.size
+    design = np.zeros((len(linear.design), linear.design.shape[1] + _FIRST + q - after))
+    design[:, :_FIRST] = linear.design[:, :_FIRST]
+    design[:, _FIRST + q :] = linear.design[:, after:]
+    design[: CELLS + 3, _FIRST : _FIRST + q] = spline
+    design[CELLS + 3, _FIRST : _FIRST + q] = tail
 
     def exchanged(values: Floats, new: float) -> Floats:
-        return np.concatenate([values[:_FIRST], np.full(tail.size, new), values[after:]])
+        return np.concatenate([values[:_FIRST], np.full(q, new), values[after:]])
 
     prior = replace(
         prior,
@@ -166,16 +166,32 @@ def _with_sensors(linear: Linear) -> Linear:
     return replace(linear, directions=directions, design=design, prior=prior)
 
 
+@cache
+def _prior_columns() -> tuple[Floats, Floats]:
+    """Of the directions of the prior with an amplitude: their LSF, and coordinates, (q, k)."""
+    esf, tail = lsf_prior.fixed_directions()
+    lsf = _lsf_of(esf)
+    return lsf, drawn_sensors().basis.T @ np.vstack([lsf, tail])
+
+
+def _lsf_of(esf: Floats) -> Floats:
+    """Coefficients of the LSF of those of the ESF, (SIZE, k)."""
+    return np.asarray((esf[3 : 3 + SIZE] - esf[2 : 2 + SIZE]) / CELL)
+
+
 def _normal_prior(linear: Linear, posterior: Posterior) -> Floats:
-    """Covariance of the coordinates of departures by the prior of the passes before, (q, q)."""
-    esf, tail, block = linear.directions
-    lsf = np.diff(esf, axis=0)[2 : 2 + SIZE] / CELL
-    free = np.linalg.qr(lsf[:, : _FIRST - 2])[0]
-    own = slice(_FIRST - 1, block.size)
-    left = lsf[:, own] - free @ (free.T @ lsf[:, own])
-    columns = drawn_sensors().basis.T @ np.vstack([left, tail[own]])
-    columns *= posterior.prior_std[1:][own] / linear.first_fit.height
-    return np.asarray(columns @ columns.T + KERNEL_FLOOR**2 * np.eye(columns.shape[0]))
+    """Covariance of the coordinates of departures by the prior of the passes before, (q, q).
+
+    Level, width and place of the blur are free: what they can follow is no departure.
+    """
+    lsf, coordinates = _prior_columns()
+    free = np.linalg.qr(_lsf_of(linear.directions.esf[:, : _FIRST - 2]))[0]
+    columns = coordinates - (drawn_sensors().basis[:SIZE].T @ free) @ (free.T @ lsf)
+    columns *= posterior.prior_std[_FIRST : 1 + linear.directions.block.size]
+    columns /= linear.first_fit.height
+    covariance = columns @ columns.T
+    covariance.reshape(-1)[:: len(covariance) + 1] += KERNEL_FLOOR**2
+    return np.asarray(covariance)
 
 
 def _upper_factor(covariance: Floats) -> Floats:

@@ -1,7 +1,8 @@
-"""Sums over the kernels of a density (`sensor_density`): their weights, and moments of centres.
+"""Sums over the kernels of a density (`sensor_density`): weights, moments of centres, the mixture.
 
-Loops over thousands of kernels; of most, the first few combinations tell that they have no part.
-Kernels stand in groups of one covariance: those of a family, at one size.
+Loops over thousands of kernels. They stand in groups of one covariance: those of a family, at one
+size. The groups of a family are adjacent and have the same centres; a distance from the pixels is
+worked out at the first size, and follows at the others by a small triangular matrix.
 """
 
 from __future__ import annotations
@@ -10,21 +11,78 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.numerics.compiled import compiled
+from acutance.numerics.compiled import compiled, inlined
+from acutance.numerics.small_matrices import add_product, factorize, forward_substitution
 
-__all__ = ["LANES", "forward_substitution", "kernel_moments", "kernel_weights"]
+__all__ = ["LANES", "kernel_moments", "kernel_weights", "mixture", "seen_kernels"]
 
-LANES = 16
-"""Coordinates are filled up with zeros to a multiple of this: a processor takes as many at once."""
+LANES = 4
+"""Coordinates are filled up with zeros to a multiple of this: so many are taken at once."""
+_SOME = 256
+"""Kernels whose distances are worked out side by side."""
 _NEGLIGIBLE = 9.0
 """Kernels whose log weight is less than the largest by this are left out."""
 
 
 @compiled
+def seen_kernels(
+    covariance: Floats, combinations: Floats, values: Floats
+) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+    """What combinations ``K^T c`` with an error of one tell of kernels of covariance S.
+
+    With ``V = 1 + K^T S K = L L^T``, of every group
+
+    Parameters
+    ----------
+    covariance : (g, q, q) array
+    combinations : (q, r) array
+    values : (r,) array
+
+    Returns
+    -------
+    lower : (g, r, r) array
+        L.
+    root : (g, q, r) array
+        ``S K L^-T``: ``root @ root.T`` is what the pixels take from the covariance.
+    axes : (g, r, q) array
+        ``L^-1 K^T``: independent combinations of the coordinates, of unit variance.
+    told : (g, r) array
+        What the pixels say of them.
+    log_density : (g,) array
+        Logarithm of the density of a kernel that is where the pixels say.
+    """
+    groups = len(covariance)
+    q, r = combinations.shape
+    lower, root = np.zeros((groups, r, r)), np.zeros((groups, q, r))
+    axes, told = np.zeros((groups, r, q)), np.zeros((groups, r))
+    log_density = np.zeros(groups)
+    rows = combinations.T.copy()
+    for g in range(groups):
+        half, value = np.zeros((r, q)), np.zeros((r, 1))
+        add_product(half, rows, covariance[g])
+        for i in range(r):
+            lower[g, i, i], value[i, 0] = 1.0, values[i]
+            for j in range(q):
+                axes[g, i, j] = rows[i, j]
+        add_product(lower[g], half, combinations)
+        factorize(lower[g])
+        forward_substitution(lower[g], half)
+        forward_substitution(lower[g], axes[g])
+        forward_substitution(lower[g], value)
+        for i in range(r):
+            told[g, i] = value[i, 0]
+            log_density[g] -= np.log(lower[g, i, i])
+            for j in range(q):
+                root[g, j, i] = half[i, j]
+    return lower, root, axes, told, log_density
+
+
+@compiled
 def kernel_weights(
-    centres: Floats,
+    coordinates: NDArray[np.float32],
     log_before: Floats,
     members: NDArray[np.intp],
+    lower: Floats,
     axes: Floats,
     told: Floats,
     log_density: Floats,
@@ -32,49 +90,82 @@ def kernel_weights(
 ) -> tuple[Floats, float]:
     """Logarithm of the weight of every kernel after the pixels are seen.
 
+    A centre c is off by ``x = axes c - told``, in standard deviations of a kernel of its family's
+    first size, with the factor L of `seen_kernels`; for that of another size, L', by ``L'^-1 L x``.
+
     Parameters
     ----------
-    centres : (n, p) array
-        The q coordinates, filled up with zeros.
+    coordinates : (p, n) array
+        The q coordinates of every centre, filled up with zeros.
     log_before : (n,) array
         Logarithm of the weight of a centre before.
-    members : (g, 2) int array
-        First centre of every group, and the one after its last.
-    axes : (g, r, q) array
-        Independent combinations of the coordinates, those first that the pixels tell best, in
-        units of their standard deviation under a kernel of the group.
-    told : (g, r) array
-        What the pixels say of them.
-    log_density : (g,) array
-        Logarithm of what all kernels of a group have in common.
+    members : (f, 2) int array
+        First centre of every family, and the one after its last.
+    lower, axes, told, log_density
+        Of all groups, family by family, as `seen_kernels` gives them.
     largest : float
         A lower bound of the largest logarithm.
 
     Returns
     -------
     log_weight : (g, m) array
-        Of the m or less centres of a group; minus infinity for negligible ones.
+        Of the m or less centres of a group.
     largest : float
     """
-    groups, combinations, q = axes.shape
+    families, (groups, r, q), p = len(members), axes.shape, len(coordinates)
+    sizes = groups // families
     found = np.full((groups, np.max(members[:, 1] - members[:, 0])), -np.inf)
-    for g in range(groups):
-        first, last = members[g]
-        filled = np.zeros((combinations, centres.shape[1]))
-        filled[:, :q] = axes[g]
-        for k in range(first, last):
-            weight = log_before[k] + log_density[g]
-            for j in range(combinations):
-                off = told[g, j]
-                for i in range(centres.shape[1]):
-                    off -= filled[j, i] * centres[k, i]
-                weight -= 0.5 * off * off
-                if weight < largest - _NEGLIGIBLE:
-                    break
-            else:
-                found[g, k - first] = weight
-                largest = max(largest, weight)
+    # The last columns are zeros: four products are summed at a time.
+    own, filled = np.zeros((r, p), np.float32), r + -r % LANES
+    others = np.zeros((sizes, r, filled), np.float32)
+    off, here = np.zeros((filled, _SOME), np.float32), np.empty(_SOME, np.float32)
+    for f in range(families):
+        g, (first, last) = f * sizes, members[f]
+        for size in range(1, sizes):
+            turn = lower[g].copy()
+            forward_substitution(lower[g + size], turn)
+            for j in range(r):
+                for i in range(r):
+                    others[size, j, i] = turn[j, i]
+        for j in range(r):
+            for i in range(q):
+                own[j, i] = axes[g, j, i]
+        for start in range(first, last, _SOME):
+            count = min(_SOME, last - start)
+            for size in range(sizes):
+                misfit = np.zeros(_SOME, np.float32)
+                for j in range(r):
+                    if size == 0:
+                        here[:] = -told[g, j]
+                        _add_products(here, own[j], coordinates, start, count)
+                        for k in range(count):
+                            off[j, k] = here[k]
+                    else:
+                        here[:] = 0.0
+                        _add_products(here, others[size, j, : j + LANES - j % LANES], off, 0, count)
+                    for k in range(count):
+                        misfit[k] += here[k] * here[k]
+                for k in range(count):
+                    weight = log_before[start + k] + log_density[g + size] - 0.5 * misfit[k]
+                    found[g + size, start - first + k] = weight
+                    largest = max(largest, weight)
     return found, largest
+
+
+@inlined
+def _add_products(
+    found: NDArray[np.float32],
+    factors: NDArray[np.float32],
+    rows: NDArray[np.float32],
+    start: int,
+    count: int,
+) -> None:
+    """Add factors (m,) times the same part of rows (m, n), m being a multiple of four."""
+    for i in range(0, factors.size, LANES):
+        a, b, c, d = factors[i], factors[i + 1], factors[i + 2], factors[i + 3]
+        p, q, r, s = rows[i, start:], rows[i + 1, start:], rows[i + 2, start:], rows[i + 3, start:]
+        for k in range(count):
+            found[k] += a * p[k] + b * q[k] + c * r[k] + d * s[k]
 
 
 @compiled
@@ -93,38 +184,103 @@ def kernel_moments(
     -------
     (g,), (g, q) and (g, q, q) arrays
     """
-    groups, q = members.shape[0], centres.shape[1]
+    groups, q = log_weight.shape[0], centres.shape[1]
+    sizes = groups // len(members)
     total, mean, spread = np.zeros(groups), np.zeros((groups, q)), np.zeros((groups, q, q))
+    kept, share = np.empty(log_weight.shape[1] + 3, np.intp), np.empty(log_weight.shape[1] + 3)
     for g in range(groups):
-        first, last = members[g]
-        for k in range(first, last):
-            if log_weight[g, k - first] < largest - _NEGLIGIBLE:
-                continue
-            weight = np.exp(log_weight[g, k - first] - largest)
-            total[g] += weight
+        first, last = members[g // sizes]
+        count = 0
+        for k in range(last - first):
+            if log_weight[g, k] >= largest - _NEGLIGIBLE:
+                kept[count], share[count] = first + k, np.exp(log_weight[g, k] - largest)
+                total[g] += share[count]
+                count += 1
+        if count == 0:
+            continue
+        # Four centres at a time, the last ones filled up with some of no weight.
+        for k in range(count, count + 3):
+            kept[k], share[k] = first, 0.0
+        for k in range(0, count, 4):
+            a, b, c, d = (
+                centres[kept[k]],
+                centres[kept[k + 1]],
+                centres[kept[k + 2]],
+                centres[kept[k + 3]],
+            )
             for i in range(q):
-                own = weight * centres[k, i]
-                mean[g, i] += own
+                at_a, at_b = share[k] * a[i], share[k + 1] * b[i]
+                at_c, at_d = share[k + 2] * c[i], share[k + 3] * d[i]
+                mean[g, i] += at_a + at_b + at_c + at_d
                 for j in range(i + 1):
-                    spread[g, i, j] += own * centres[k, j]
-        if total[g] > 0:
-            mean[g] /= total[g]
-            for i in range(q):
-                for j in range(i + 1):
-                    spread[g, i, j] = spread[g, i, j] / total[g] - mean[g, i] * mean[g, j]
-                    spread[g, j, i] = spread[g, i, j]
+                    spread[g, i, j] += at_a * a[j] + at_b * b[j] + at_c * c[j] + at_d * d[j]
+        for i in range(q):
+            mean[g, i] /= total[g]
+        for i in range(q):
+            for j in range(i + 1):
+                spread[g, i, j] = spread[g, i, j] / total[g] - mean[g, i] * mean[g, j]
+                spread[g, j, i] = spread[g, i, j]
     return total, mean, spread
 
 
 @compiled
-def forward_substitution(lower: Floats, right: Floats) -> Floats:
-    """Solutions of several triangular systems, (g, r, k), of matrices (g, r, r) and right sides."""
-    found = right.copy()
-    for g in range(lower.shape[0]):
-        for i in range(lower.shape[1]):
-            for j in range(i):
-                for k in range(found.shape[2]):
-                    found[g, i, k] -= lower[g, i, j] * found[g, j, k]
-            for k in range(found.shape[2]):
-                found[g, i, k] /= lower[g, i, i]
-    return found
+def mixture(
+    share: Floats,
+    centre: Floats,
+    spread: Floats,
+    covariance: Floats,
+    root: Floats,
+    axes: Floats,
+    told: Floats,
+) -> tuple[Floats, Floats]:
+    """Mean (q,) and covariance (q, q) of all kernels together: their own, and how means differ.
+
+    A kernel about c, of covariance S, is left with the mean ``c + R (t - A c)`` and the covariance
+    ``S - R R^T``, R being its root, A its axes and t what is told of them. With the covariance P of
+    the centres of a group, that of its kernels and their means is
+
+        S - R R^T + (1 - R A) P (1 - R A)^T = S + P + R C + (R C)^T,
+        C = (A P A^T - 1) R^T / 2 - A P.
+
+    Parameters
+    ----------
+    share : (g,) array
+        Probability of every group.
+    centre, spread : (g, q) and (g, q, q) arrays
+        Mean and covariance of its centres.
+    covariance, root, axes, told
+        As of `seen_kernels`.
+    """
+    groups, r, q = axes.shape
+    mean, whole, means = np.zeros(q), np.zeros((q, q)), centre.copy()
+    for g in range(groups):
+        if share[g] == 0:
+            continue
+        by_axes, left = np.zeros((r, q)), np.zeros((r, r))
+        common, crossed = np.zeros((r, q)), np.zeros((q, q))
+        add_product(by_axes, axes[g], spread[g])
+        add_product(left, by_axes, axes[g].T.copy())
+        for i in range(r):
+            left[i, i] -= 1.0
+        add_product(common, left, root[g].T.copy())
+        for i in range(r):
+            for j in range(q):
+                common[i, j] = 0.5 * common[i, j] - by_axes[i, j]
+        add_product(crossed, root[g], common)
+        for j in range(r):
+            off = told[g, j]
+            for i in range(q):
+                off -= axes[g, j, i] * centre[g, i]
+            for i in range(q):
+                means[g, i] += root[g, i, j] * off
+        for i in range(q):
+            mean[i] += share[g] * means[g, i]
+            for j in range(q):
+                own = covariance[g, i, j] + spread[g, i, j] + crossed[i, j] + crossed[j, i]
+                whole[i, j] += share[g] * own
+    for g in range(groups):
+        for i in range(q):
+            away = share[g] * (means[g, i] - mean[i])
+            for j in range(q):
+                whole[i, j] += away * (means[g, j] - mean[j])
+    return mean, whole

@@ -40,6 +40,7 @@ __all__ = [
     "Directions",
     "blur_directions",
     "directions",
+    "fixed_directions",
     "tail_spline",
 ]
 
@@ -88,6 +89,12 @@ def _fixed() -> Directions:
     every = np.hstack([np.zeros((SIZE + 1, 4)), *blocks])
     sizes = [3, 1, *(block.shape[1] for block in blocks)]
     return Directions(esf_from_lsf(every[:-1]), every[-1], np.repeat(np.arange(len(sizes)), sizes))
+
+
+def fixed_directions() -> tuple[Floats, Floats]:
+    """The directions behind the four of the mean: ESF, (CELLS + 3, k), and share of the tail."""
+    fixed = _fixed()
+    return fixed.esf[:, 4:], fixed.tail[4:]
 
 
 @cache

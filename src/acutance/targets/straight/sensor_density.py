@@ -21,22 +21,22 @@ C. M. Bishop, Pattern Recognition and Machine Learning, 2006, section 2.3.3).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.resources import files
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.pivoted_root import least_squares, pivoted_root
+from acutance.numerics.small_matrices import lower_inverse
 from acutance.targets.straight.kernel_sums import (
     LANES,
-    forward_substitution,
     kernel_moments,
     kernel_weights,
+    mixture,
+    seen_kernels,
 )
 from acutance.targets.straight.tuned import (
     FAMILY_WEIGHTS,
@@ -133,10 +133,27 @@ class Sensors:
             Covariance of the coordinates of sensors like none that was drawn, about none.
         """
         combinations, values = _told(information, projection, self.spread + other)
-        kernels = _Kernels.of(
-            np.concatenate([self.kernel_covariances, other[None]]), combinations, values
+        covariance = np.concatenate([self.kernel_covariances, other[None]])
+        lower, root, axes, told, log_density = seen_kernels(covariance, combinations, values)
+        members, log_before = self._about(width_px)
+        none = math.log(OTHER_WEIGHT) + float(log_density[-1] - 0.5 * (told[-1] @ told[-1]))
+        log_weight, largest = kernel_weights(
+            self._filled_rows, log_before, members, lower[:-1], axes[:-1], told[:-1],
+            log_density[:-1], none,
+        )  # fmt: skip
+        weight, centre, spread = kernel_moments(self._centres, members, log_weight, largest)
+        weight = np.append(weight, math.exp(none - largest))
+        # The last group is about none: its centre, and their spread, are zero.
+        centre, spread = (
+            np.concatenate([part, np.zeros_like(part[:1])]) for part in (centre, spread)
         )
-        return _mixture(self.group_names, self._seen_groups(kernels, width_px), kernels)
+        share = weight / weight.sum()
+        mean, whole = mixture(share, centre, spread, covariance, root, axes, told)
+        families: dict[str, float] = {}
+        for name, one in zip(self.group_names, share.tolist(), strict=True):
+            if one > 0:
+                families[name] = families.get(name, 0.0) + one
+        return SensorsSeen(mean, whole, families)
 
     @cached_property
     def group_names(self) -> tuple[str, ...]:
@@ -160,9 +177,10 @@ class Sensors:
         return np.concatenate([family.coordinates for family in self.families])
 
     @cached_property
-    def _filled_centres(self) -> Floats:
+    def _filled_rows(self) -> NDArray[np.float32]:
+        """The coordinates, (p, n): distances need no more digits than these have."""
         count, q = self._centres.shape
-        return np.hstack([self._centres, np.zeros((count, -q % LANES))])
+        return np.vstack([self._centres.T, np.zeros((-q % LANES, count))]).astype(np.float32)
 
     @cached_property
     def _log_width(self) -> Floats:
@@ -178,31 +196,14 @@ class Sensors:
         ])  # fmt: skip
 
     def _about(self, width_px: float) -> tuple[NDArray[np.intp], Floats]:
-        """Sensors of about that blur: first and last of every group, and all log weights."""
+        """Sensors of about that blur: first and last of every family, and all log weights."""
         away = (self._log_width - math.log(width_px)) / KERNEL_LOG_WIDTH
         start, members, ends = 0, [], np.array([-_REACH, _REACH])
         for family in self.families:
             own = away[start : start + family.log_width.size]
-            members += [start + own.searchsorted(ends)] * _SIZES
+            members.append(start + own.searchsorted(ends))
             start += own.size
         return np.array(members, np.intp), self._log_share - 0.5 * away**2
-
-    def _seen_groups(self, kernels: _Kernels, width_px: float) -> _Groups:
-        """Weight, mean and spread of the centres of every group, the one about none at the end."""
-        members, log_before = self._about(width_px)
-        last = kernels.told[-1]
-        other = math.log(OTHER_WEIGHT) + float(kernels.log_density[-1] - 0.5 * (last @ last))
-        log_weight, largest = kernel_weights(
-            self._filled_centres, log_before, members, kernels.axes[:-1], kernels.told[:-1],
-            kernels.log_density[:-1], other,
-        )  # fmt: skip
-        weight, mean, spread = kernel_moments(self._centres, members, log_weight, largest)
-        none = np.zeros_like(mean[:1])
-        return _Groups(
-            np.append(weight, math.exp(other - largest)),
-            np.concatenate([mean, none]),
-            np.concatenate([spread, np.zeros_like(spread[:1])]),
-        )
 
 
 def _told(information: Floats, projection: Floats, spread: Floats) -> tuple[Floats, Floats]:
@@ -210,72 +211,9 @@ def _told(information: Floats, projection: Floats, spread: Floats) -> tuple[Floa
 
     Those told best are first, in coordinates whose covariance `spread` is one.
     """
-    lower = np.linalg.cholesky(spread)
+    lower = np.asarray(np.linalg.cholesky(spread), float)
     root = pivoted_root(lower.T @ information @ lower, _UNTOLD)
-    return np.linalg.solve(lower.T, root), least_squares(root, lower.T @ projection)
-
-
-class _Kernels(NamedTuple):
-    """What the pixels say of the kernels of g groups.
-
-    Attributes
-    ----------
-    covariance : (g, q, q) array
-        Of a kernel before.
-    root : (g, q, r) array
-        ``root @ root.T`` is what the pixels take from it.
-    axes : (g, r, q) array
-        Independent combinations of the coordinates, of unit variance under a kernel.
-    told : (g, r) array
-        What the pixels say of them.
-    log_density : (g,) array
-        Logarithm of the density of a kernel that is where the pixels say.
-    """
-
-    covariance: Floats
-    root: Floats
-    axes: Floats
-    told: Floats
-    log_density: Floats
-
-    @classmethod
-    def of(cls, covariance: Floats, combinations: Floats, values: Floats) -> _Kernels:
-        """From the covariances, the combinations (q, r) that pixels tell, and their values."""
-        count, (q, r) = len(covariance), combinations.shape
-        half = covariance @ combinations
-        lower = np.asarray(np.linalg.cholesky(np.eye(r) + combinations.T @ half), float)
-        right = np.empty((2, count, r, q))
-        right[0], right[1] = half.transpose(0, 2, 1), combinations.T
-        root, axes = (forward_substitution(lower, one) for one in right)
-        told = forward_substitution(lower, np.tile(values[:, None], (count, 1, 1)))[..., 0]
-        log_density = -np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1)
-        return cls(covariance, root.transpose(0, 2, 1), axes, told, log_density)
-
-
-class _Groups(NamedTuple):
-    """Weight (g,), and mean (g, q) and spread (g, q, q) of the centres, of groups of kernels."""
-
-    weight: Floats
-    centre: Floats
-    spread: Floats
-
-
-def _mixture(names: Sequence[str], groups: _Groups, kernels: _Kernels) -> SensorsSeen:
-    """Mean and covariance of all kernels together: their own, and how their means differ."""
-    some = np.flatnonzero(groups.weight)
-    weight, centre, spread = (part[some] for part in groups)
-    covariance, root, axes, told, _ = (part[some] for part in kernels)
-    share = weight / weight.sum()
-    left = np.eye(centre.shape[1]) - root @ axes
-    means = (left @ centre[..., None] + root @ told[..., None])[..., 0]
-    own = covariance - root @ root.transpose(0, 2, 1) + left @ spread @ left.transpose(0, 2, 1)
-    mean = share @ means
-    away = means - mean
-    found: dict[str, float] = {}
-    for group, one in zip(some.tolist(), share.tolist(), strict=True):
-        found[names[group]] = found.get(names[group], 0.0) + one
-    whole = np.tensordot(share, own, 1) + (away * share[:, None]).T @ away
-    return SensorsSeen(mean, whole, found)
+    return lower_inverse(lower).T @ root, least_squares(root, lower.T @ projection)
 
 
 @cache
