@@ -170,7 +170,7 @@ def _add_products(
 
 @compiled
 def kernel_moments(
-    centres: Floats, members: NDArray[np.intp], log_weight: Floats, largest: float
+    centres: NDArray[np.float32], members: NDArray[np.intp], log_weight: Floats, largest: float
 ) -> tuple[Floats, Floats, Floats]:
     """Of every group the weight relative to the largest, and mean and covariance of its centres.
 

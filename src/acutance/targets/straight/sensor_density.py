@@ -138,10 +138,10 @@ class Sensors:
         members, log_before = self._about(width_px)
         none = math.log(OTHER_WEIGHT) + float(log_density[-1] - 0.5 * (told[-1] @ told[-1]))
         log_weight, largest = kernel_weights(
-            self._filled_rows, log_before, members, lower[:-1], axes[:-1], told[:-1],
+            self._columns, log_before, members, lower[:-1], axes[:-1], told[:-1],
             log_density[:-1], none,
         )  # fmt: skip
-        weight, centre, spread = kernel_moments(self._centres, members, log_weight, largest)
+        weight, centre, spread = kernel_moments(self._rows, members, log_weight, largest)
         weight = np.append(weight, math.exp(none - largest))
         # The last group is about none: its centre, and their spread, are zero.
         centre, spread = (
@@ -177,10 +177,15 @@ class Sensors:
         return np.concatenate([family.coordinates for family in self.families])
 
     @cached_property
-    def _filled_rows(self) -> NDArray[np.float32]:
-        """The coordinates, (p, n): distances need no more digits than these have."""
+    def _rows(self) -> NDArray[np.float32]:
+        """The coordinates, (n, q): the file has no more digits, and half the memory is read."""
+        return np.asarray(self._centres, np.float32)
+
+    @cached_property
+    def _columns(self) -> NDArray[np.float32]:
+        """The same, (p, n), filled up with zeros."""
         count, q = self._centres.shape
-        return np.vstack([self._centres.T, np.zeros((-q % LANES, count))]).astype(np.float32)
+        return np.vstack([self._rows.T, np.zeros((-q % LANES, count), np.float32)])
 
     @cached_property
     def _log_width(self) -> Floats:
