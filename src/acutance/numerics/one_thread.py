@@ -9,6 +9,7 @@ once.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextvars import ContextVar
 from functools import cache, wraps
 from typing import ParamSpec, TypeVar
 
@@ -18,6 +19,7 @@ __all__ = ["one_thread"]
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
+_IS_ALONE: ContextVar[bool] = ContextVar("is_alone", default=False)
 
 
 def one_thread(function: Callable[Given, Result]) -> Callable[Given, Result]:
@@ -25,8 +27,14 @@ def one_thread(function: Callable[Given, Result]) -> Callable[Given, Result]:
 
     @wraps(function)
     def alone(*args: Given.args, **options: Given.kwargs) -> Result:
-        with _libraries().limit(limits=1, user_api="blas"):
+        if _IS_ALONE.get():
             return function(*args, **options)
+        outside = _IS_ALONE.set(True)
+        try:
+            with _libraries().limit(limits=1, user_api="blas"):
+                return function(*args, **options)
+        finally:
+            _IS_ALONE.reset(outside)
 
     return alone
 
