@@ -15,7 +15,8 @@ from itertools import pairwise
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.lorentz_tail import tail_esf
+from acutance.numerics.compiled import compiled
+from acutance.numerics.lorentz_tail import tail_step
 from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import side_variances
 from acutance.targets.straight import lsf_prior
@@ -29,7 +30,6 @@ from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.rounding import Rounding, rounding_of
 from acutance.targets.straight.spline import CELLS, HALF_SUPPORT, combine
 from acutance.targets.straight.spline_equations import Stencil, step_stencils
-from acutance.targets.straight.step_profile import Profile
 from acutance.targets.straight.tuned import (
     CURVATURE_STD_PER_PX,
     NOISE_FLOOR,
@@ -131,7 +131,7 @@ class Linear:
             ground = Ground.beside_edge(beside)
         else:
             ground = Ground.beside_pulse(beside, profile.positions_px[-1] / width)
-        further = [_beyond(profile, s, width)]
+        further = [_beyond(s, profile.steps, width)]
         if not is_edge:
             # The dark level adds to every pixel once, whatever the steps.
             further.append(np.ones(s.size))
@@ -270,14 +270,17 @@ class Linear:
         return sides[0], sides[1]
 
 
-def _beyond(profile: Profile, s: Floats, width: float) -> Floats:
-    """The part of the tail beyond the spline's support, (n,)."""
+@compiled
+def _beyond(s: Floats, steps: Floats, width: float) -> Floats:
+    """The part of the tail beyond the spline's support, of all steps of a profile, (n,)."""
+    low, high = tail_step(-HALF_SUPPORT, TAIL_WIDTH)[0], tail_step(HALF_SUPPORT, TAIL_WIDTH)[0]
     total = np.zeros(s.size)
-    for distance, share in zip(profile.distances(s), profile.shares, strict=True):
-        far = np.abs(distance) > HALF_SUPPORT * width
-        u = distance[far] / width
-        end = tail_esf(np.array([-HALF_SUPPORT, HALF_SUPPORT]), TAIL_WIDTH)
-        total[far] += share * (tail_esf(u, TAIL_WIDTH) - np.where(u < 0, *end))
+    for step in range(steps.shape[1]):
+        for k in range(s.size):
+            u = (s[k] - steps[0, step]) / width
+            if abs(u) > HALF_SUPPORT:
+                end = low if u < 0 else high
+                total[k] += steps[1, step] * (tail_step(u, TAIL_WIDTH)[0] - end)
     return total
 
 
