@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.geometry.line import Line
+from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
 from acutance.targets.region import RegionPixels, undeclared_fill
@@ -200,23 +202,43 @@ def _change_along(data: CheckData, column: Floats) -> float:
     The column has a value for every near pixel.
     """
     part, parts = data.along
-    power = np.bincount(part, column * column, parts)
-    share = np.bincount(part, column * data.bounded[data.near], parts)
-    usable = power > 0.3 * median(np.asarray(power, float))
-    freedom = int(np.count_nonzero(usable)) - 1
+    power, share = _sums_of_parts(part, parts, column, data.bounded, data.near)
+    usable = power > 0.3 * median(power)
+    return _excess_rms(share[usable], power[usable], data.noise**2 * data.smoothness)
+
+
+@compiled
+def _sums_of_parts(
+    part: NDArray[np.intp], parts: int, column: Floats, residual: Floats, near: NDArray[np.intp]
+) -> tuple[Floats, Floats]:
+    """Products of a column with itself and with the near pixels' residuals, part by part."""
+    power, share = np.zeros(parts), np.zeros(parts)
+    for k in range(part.size):
+        power[part[k]] += column[k] * column[k]
+        share[part[k]] += column[k] * residual[near[k]]
+    return power, share
+
+
+@compiled
+def _excess_rms(share: Floats, power: Floats, variance: float) -> float:
+    """Root mean square of the amounts ``share / power`` about their mean, beyond their variances.
+
+    These are ``variance / power``; 0 within chance.
+    """
+    freedom = power.size - 1
     if freedom < 1:
         # Pixels lie next to one part of the edge at most.
         return 0.0
-    power = power[usable]
-    amount = share[usable] / power
-    variance = data.noise**2 * data.smoothness / power
     # The mean of all parts belongs to the fit and is no change along the edge.
-    amount -= float(amount @ power) / float(np.add.reduce(power))
-    square = amount * amount
-    chi_square = float(np.add.reduce(square / np.maximum(variance, 1e-18)))
+    mean = np.sum(share) / np.sum(power)
+    chi_square, excess = 0.0, 0.0
+    for k in range(power.size):
+        square, chance = (share[k] / power[k] - mean) ** 2, variance / power[k]
+        chi_square += square / max(chance, 1e-18)
+        excess += (square - chance) / power.size
     if chi_square <= freedom + CHANGE_SIGMAS * math.sqrt(2 * freedom):
         return 0.0
-    return math.sqrt(max(float(np.mean(square - variance)), 0.0))
+    return math.sqrt(max(excess, 0.0))
 
 
 def lsf_width(data: CheckData, limits: Limits) -> Check:

@@ -26,6 +26,7 @@ from scipy.special import ndtr
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
+from acutance.numerics.small_matrices import factorize, forward_substitution
 from acutance.targets.straight.check_data import MISFIT, CheckData
 from acutance.targets.straight.ground_steps import near_ground
 from acutance.targets.straight.tuned import NEAR_GROUND_STEPS
@@ -122,17 +123,39 @@ class MirrorSum:
     def weighed(self, curves: Floats, settings: slice = EVERY) -> Weighed:
         """Weigh the sum, and `curves` (k, n) that may be part of it, at some settings."""
         prior, log_weight = (one[settings] for one in _priors())
-        covariance = prior + np.diag(self.variance)
-        covariance += _PLACE_STD_PX**2 * np.outer(self.lsf, self.lsf)
-        lower = np.linalg.cholesky(covariance)
-        seen = np.linalg.solve(lower, np.vstack([self.value, curves]).T)
-        own, others = seen[:, :, 0], seen[:, :, 1:]
-        log_det = np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1)
-        return Weighed(
-            log_weight - log_det - 0.5 * np.sum(own * own, axis=1),
-            np.matmul(own[:, None], others)[:, 0],
-            np.sum(others * others, axis=1),
-        )
+        rows = np.vstack([self.value, curves])
+        log_density, pull, power = _weighed(prior, self.variance, self.lsf, rows)
+        return Weighed(log_weight + log_density, pull, power)
+
+
+@compiled
+def _weighed(
+    prior: Floats, variance: Floats, lsf: Floats, rows: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Of covariances S (j, n, n) the log density of the first row, and products of the others.
+
+    ``S = prior + variance + place^2 lsf lsf^T``; of rows r the products are ``r_0 S^-1 r_k`` and
+    ``r_k S^-1 r_k``, (j, k) each.
+    """
+    settings, n, curves = len(prior), len(variance), len(rows) - 1
+    log_density = np.zeros(settings)
+    pull, power = np.zeros((settings, curves)), np.zeros((settings, curves))
+    for setting in range(settings):
+        covariance, seen = np.empty((n, n)), np.empty((n, 1 + curves))
+        for i in range(n):
+            for j in range(n):
+                covariance[i, j] = prior[setting, i, j] + _PLACE_STD_PX**2 * lsf[i] * lsf[j]
+            covariance[i, i] += variance[i]
+            for k in range(1 + curves):
+                seen[i, k] = rows[k, i]
+        factorize(covariance)
+        forward_substitution(covariance, seen)
+        for i in range(n):
+            log_density[setting] -= np.log(covariance[i, i]) + 0.5 * seen[i, 0] ** 2
+            for k in range(curves):
+                pull[setting, k] += seen[i, 0] * seen[i, 1 + k]
+                power[setting, k] += seen[i, 1 + k] ** 2
+    return log_density, pull, power
 
 
 @compiled

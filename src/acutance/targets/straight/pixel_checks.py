@@ -8,6 +8,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.numerics.clipping import at_limit_share, piled_up_share
+from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median, outlier_share
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.region import RegionPixels
@@ -153,22 +154,41 @@ def _slope_outwards(data: CheckData, from_px: float) -> tuple[float, float, floa
     covariance, power, weighed = 0.0, 0.0, 0.0
     most = OUTLIER_SIGMAS * data.noise
     for outwards in (data.before, data.behind):
-        there = (outwards > from_px).nonzero()[0]
-        if there.size < MIN_SIDE_PIXELS:
+        value = data.value[outwards > from_px]
+        if value.size < MIN_SIDE_PIXELS:
             continue
-        place, value = outwards[there], data.value[there]
         middle = median(value)
         # A bright side rises to its level, a dark one falls to it.
         sign = 1.0 if middle > 0.5 else -1.0
-        mean_px = float(np.add.reduce(place)) / there.size
-        offset = place - mean_px
-        own = float(offset @ offset)
-        covariance += sign * float(offset @ np.minimum(np.maximum(value - middle, -most), most))
+        mean_px, own, rise = _rise(outwards, data.value, from_px, middle, most)
+        covariance += sign * rise
         power += own
         weighed += own * APERTURE_TAIL_PX / mean_px**2
     if power <= 0:
         return 0.0, 0.0, 1.0
     return covariance / power, max(data.noise, MISFIT) / math.sqrt(power), weighed / power
+
+
+@compiled
+def _rise(
+    outwards: Floats, value: Floats, from_px: float, middle: float, most: float
+) -> tuple[float, float, float]:
+    """Mean distance of the pixels that are far enough, its spread, and their values' along it.
+
+    Values count from `middle` on, by no more than `most`.
+    """
+    count, total = 0, 0.0
+    for k in range(outwards.size):
+        if outwards[k] > from_px:
+            count += 1
+            total += outwards[k]
+    mean_px, power, rise = total / count, 0.0, 0.0
+    for k in range(outwards.size):
+        if outwards[k] > from_px:
+            offset = outwards[k] - mean_px
+            power += offset * offset
+            rise += offset * min(max(value[k] - middle, -most), most)
+    return mean_px, power, rise
 
 
 def correlated_noise(data: CheckData, limits: Limits) -> Check:

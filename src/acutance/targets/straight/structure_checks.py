@@ -294,21 +294,38 @@ def _common_profile(data: CheckData, s: Floats, start: float, stop: float) -> tu
     bins = int((stop - start) // _BIN_PX)
     if bins < 2:
         return 0.0, 0.0
-    mean = _part_means(s, data.t, data.bounded, start, stop, bins)
-    parts = mean.shape[0]
-    if mean.shape[1] < 2:
+    return _shared(_part_means(s, data.t, data.bounded, start, stop, bins))
+
+
+@compiled
+def _shared(mean: Floats) -> tuple[float, float]:
+    """As `_common_profile`, of the mean residuals (K, B) themselves."""
+    parts, bins = mean.shape
+    if bins < 2:
         return 0.0, 0.0
-    freedom = parts - 1
-    total = np.add.reduce(mean, axis=0)
-    shared = float(total @ total) - float(np.vdot(mean, mean))
-    apart = mean - total / parts
-    covariance = apart @ apart.T / freedom
-    trace = float(np.trace(covariance))
-    squares = float(np.vdot(covariance, covariance)) - trace**2 / freedom
+    freedom, shared, trace, squares = parts - 1, 0.0, 0.0, 0.0
+    level = np.zeros(bins)
+    for column in range(bins):
+        total, own = 0.0, 0.0
+        for part in range(parts):
+            total += mean[part, column]
+            own += mean[part, column] ** 2
+        level[column] = total / parts
+        shared += total**2 - own
+    for i in range(parts):
+        for j in range(i + 1):
+            covariance = 0.0
+            for column in range(bins):
+                apart = mean[i, column] - level[column]
+                covariance += apart * (mean[j, column] - level[column])
+            covariance /= freedom
+            squares += covariance**2 if i == j else 2 * covariance**2
+            trace += covariance if i == j else 0.0
+    squares -= trace**2 / freedom
     squares *= freedom**2 / ((freedom - 1) * (freedom + 2))
     # A covariance of B bins cannot have a smaller trace of its square than an even one.
-    variance = 2 * parts * freedom * max(squares, trace**2 / mean.shape[1], 1e-24)
-    rms = math.sqrt(max(shared, 0.0) / (parts * freedom * mean.shape[1]))
+    variance = 2 * parts * freedom * max(squares, trace**2 / bins, 1e-24)
+    rms = math.sqrt(max(shared, 0.0) / (parts * freedom * bins))
     return rms, shared / math.sqrt(variance)
 
 
