@@ -251,9 +251,9 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
             **self.target_document(),
             **curves,
             "plane": self.plane_document(),
-            "checks": [check.to_dict() for check in self.checks],
+            "checks": WrittenLater(partial(_documents, tuple(self.checks))),
             "verdict": {"word": self.verdict.word, "sentence": self.verdict.sentence},
-            "budget": [term.to_dict() for term in self.budget],
+            "budget": WrittenLater(partial(_documents, self.budget)),
             "options": dict(self.options),
             "software": {"acutance": __version__},
             "measured_at": self.measured_at.isoformat(timespec="seconds"),
@@ -272,6 +272,10 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
         snr = f", snr {self.snr:.3g}" if math.isfinite(self.snr) else ""
         failed = count_failed(self.checks)
         return f"{self.kind} by {self.method}, {', '.join(named)}{snr}, {failed}"
+
+
+def _documents(parts: Sequence[Check] | Sequence[BudgetTerm]) -> list[dict[str, Any]]:
+    return [part.to_dict() for part in parts]
 
 
 def _direction_document(response: Response) -> dict[str, Any]:

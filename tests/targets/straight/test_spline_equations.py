@@ -15,7 +15,7 @@ COLUMNS = RNG.standard_normal((2, N))
 
 
 def test_sums_are_those_of_the_dense_design():
-    found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS, N)
+    found = accumulate([edge_weights(U)], Y, WEIGHT, [COLUMNS], N)
     design = np.hstack([expand(*edge_weights(U)), COLUMNS.T])
     assert np.allclose(found.gram, design.T @ (WEIGHT[:, None] * design), rtol=0, atol=1e-10)
     assert np.allclose(found.projection, design.T @ (WEIGHT * Y), rtol=0, atol=1e-10)
@@ -25,7 +25,7 @@ def test_sums_are_those_of_the_dense_design():
 
 @pytest.mark.parametrize("taken", [83, 84, 85])
 def test_combined_equations_are_those_of_the_combined_design(taken):
-    found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS, N)
+    found = accumulate([edge_weights(U)], Y, WEIGHT, [COLUMNS], N)
     directions = RNG.standard_normal((taken, 6))
     dense = np.hstack([expand(*edge_weights(U)), COLUMNS.T])
     design = np.hstack([dense[:, :taken] @ directions, dense[:, taken:]])
@@ -36,7 +36,7 @@ def test_combined_equations_are_those_of_the_combined_design(taken):
 
 
 def test_exchanged_directions_give_the_equations_of_the_new_combinations():
-    found = accumulate([edge_weights(U)], Y, WEIGHT, COLUMNS, N)
+    found = accumulate([edge_weights(U)], Y, WEIGHT, [COLUMNS], N)
     first, gone, last = (RNG.standard_normal((84, k)) for k in (2, 5, 3))
     new = RNG.standard_normal((84, 4))
     directions = np.hstack([first, new, last])
@@ -48,7 +48,7 @@ def test_exchanged_directions_give_the_equations_of_the_new_combinations():
 
 
 def test_no_further_columns():
-    found = accumulate([edge_weights(U)], Y, WEIGHT, np.empty((0, N)), N)
+    found = accumulate([edge_weights(U)], Y, WEIGHT, [], N)
     dense = expand(*edge_weights(U))
     assert np.allclose(found.gram, dense.T @ (WEIGHT[:, None] * dense), rtol=0, atol=1e-10)
 
@@ -58,7 +58,7 @@ def test_two_steps_match_the_dense_design():
     other, other_basis = edge_weights(U - 2.3)
     stencils = [(cell, basis), (other, -0.8 * other_basis)]
     dense = np.vstack([(expand(cell, basis) + expand(other, -0.8 * other_basis)).T, COLUMNS]).T
-    found = accumulate(stencils, Y, WEIGHT, COLUMNS, N)
+    found = accumulate(stencils, Y, WEIGHT, [COLUMNS], N)
     np.testing.assert_allclose(found.gram, dense.T @ (WEIGHT[:, None] * dense), atol=1e-10)
     np.testing.assert_allclose(found.projection, dense.T @ (WEIGHT * Y), atol=1e-10)
 
@@ -66,9 +66,9 @@ def test_two_steps_match_the_dense_design():
 def test_renewed_equations_are_those_of_the_new_columns():
     stencils = [edge_weights(U), (edge_weights(U - 2.3)[0], -0.8 * edge_weights(U - 2.3)[1])]
     fixed, old, new = (RNG.standard_normal((k, N)) for k in (3, 2, 2))
-    before = accumulate(stencils, Y, WEIGHT, np.vstack([fixed, old]), N)
-    columns = np.vstack([fixed, new])
-    found = renewed(before, stencils, Y, WEIGHT, columns, 2)
+    before = accumulate(stencils, Y, WEIGHT, [fixed, old], N)
+    columns = [fixed, new]
+    found = renewed(before, stencils, Y, WEIGHT, columns)
     expected = accumulate(stencils, Y, WEIGHT, columns, N)
     np.testing.assert_allclose(found.gram, expected.gram, atol=1e-10)
     np.testing.assert_allclose(found.projection, expected.projection, atol=1e-10)
@@ -78,7 +78,7 @@ def test_renewed_equations_are_those_of_the_new_columns():
 def test_all_pixels_beyond_the_support_or_in_one_cell():
     for u in (np.array([-20.0, 20.0, 21.0]), np.full(5, 0.03)):
         y, weight = RNG.standard_normal((2, u.size)) ** 2
-        found = accumulate([edge_weights(u)], y, weight, np.ones((1, u.size)), u.size)
+        found = accumulate([edge_weights(u)], y, weight, [np.ones((1, u.size))], u.size)
         dense = np.hstack([expand(*edge_weights(u)), np.ones((u.size, 1))])
         np.testing.assert_allclose(found.gram, dense.T @ (weight[:, None] * dense), atol=1e-12)
         np.testing.assert_allclose(found.projection, dense.T @ (weight * y), atol=1e-12)

@@ -9,6 +9,7 @@ those of line, width and height ratio: they are derivatives of the response, and
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -76,7 +77,7 @@ class Linear:
         The pixels minus the first fit, in image units.
     stencils : pairs of arrays
         For every step, each pixel's place in the ESF's spline; see `spline.edge_weights`.
-    fixed : (q, n) array
+    fixed : list of (q, n) arrays
         Regressors other than the spline that depend on the first fit alone.
     derivatives : int
         Number of those that depend on the LSF: rotation, curvature, width, height ratio.
@@ -98,7 +99,7 @@ class Linear:
     slope: Floats
     first_residual: Floats
     stencils: list[Stencil]
-    fixed: Floats
+    fixed: list[Floats]
     derivatives: int
     directions: lsf_prior.Directions
     design: Floats
@@ -131,10 +132,10 @@ class Linear:
             ground = Ground.beside_edge(beside)
         else:
             ground = Ground.beside_pulse(beside, profile.positions_px[-1] / width)
-        further = [_beyond(s, profile.steps, width)]
+        further = _beyond(s, profile.steps, width)[None]
         if not is_edge:
             # The dark level adds to every pixel once, whatever the steps.
-            further.append(np.ones(s.size))
+            further = np.vstack([further, np.ones(s.size)])
         derivatives = 2 if is_edge else 3 + fit_width
         directions = lsf_prior.directions(first_fit.blur)
         residual = pixels.value - first_fit.dark - first_fit.height * mean
@@ -143,7 +144,7 @@ class Linear:
         if fitted is None:
             fitted = first_fit.dark + first_fit.height * mean
         rounding = _rounding(first_fit, pixels, s, fitted)
-        fixed = [*further, trends, ground.columns]
+        fixed = [further, trends, ground.columns]
         if rounding.std.size:
             fixed.append(rounding.modes)
         # Rotation (radians), width (pixels) and height ratio are known to about one.
@@ -154,7 +155,7 @@ class Linear:
         )  # fmt: skip
         return cls(
             first_fit, s, t, seen, mean, slope, residual,
-            step_stencils(profile, s, width), np.vstack(fixed), derivatives,
+            step_stencils(profile, s, width), fixed, derivatives,
             directions, _design(directions, ground, len(further)),
             prior, rounding,
         )  # fmt: skip
@@ -186,8 +187,8 @@ class Linear:
             relative *= 1 + roughness * self.steepness
         return NoiseModel(sides / scale, scale, relative)
 
-    def columns(self, model: LsfModel | None) -> Floats:
-        """All regressors other than the spline, those that depend on the LSF at the end.
+    def columns(self, model: LsfModel | None) -> list[Floats]:
+        """All regressors other than the spline, those that depend on the LSF in the last array.
 
         The uncertainty of a pulse's width depends on the LSF itself, not on the first fit: as soon
         as there is a `model` of it, its derivatives are taken.
@@ -206,14 +207,18 @@ class Linear:
         if len(known) > 1:
             esf, lsf = known[1]
             by_parameter += [-profile.shares[1] * lsf, -esf][-(self.derivatives - 2) :]
-        return np.vstack([self.fixed, *by_parameter])
+        return [*self.fixed, np.stack(by_parameter)]
 
-    def image(self, columns: Floats, beta: Floats) -> Floats:
+    def image(self, columns: Sequence[Floats], beta: Floats) -> Floats:
         """The image of the unknowns, to be added to the first fit, (n,)."""
         r = self.design.shape[1]
         coefficients = self.design @ beta[:r]
         further = np.concatenate([coefficients[CELLS + 3 :], beta[r:]])
-        image = further @ columns
+        ends = np.cumsum([len(some) for some in columns])
+        parts = zip(np.split(further, ends[:-1]), columns, strict=True)
+        image = np.zeros(self.s.size)
+        for own, some in parts:
+            image += own @ some
         for cell, basis in self.stencils:
             image = image + combine(cell, basis, coefficients[: CELLS + 3])
         return image

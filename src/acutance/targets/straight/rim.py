@@ -213,7 +213,7 @@ class _Model:
         # The fit's own correlation of the noise, not that of the plateaus.
         weight = data.weights[near] * (data.inflation / fit.correlation.inflation)
         every = accumulate(
-            [edge_weights(s / width)], data.value[near] - seen[0], weight, trends, float(s.size)
+            [edge_weights(s / width)], data.value[near] - seen[0], weight, [trends], float(s.size)
         ).combined(design)  # fmt: skip
         is_strip = np.zeros(every.projection.size, bool)
         is_strip[design.shape[1] - len(strips) : design.shape[1]] = True

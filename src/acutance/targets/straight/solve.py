@@ -111,7 +111,7 @@ class Solution:
     linear : Linear
     weight : (n,) array
         Weights of the pixels.
-    columns : (q, n) array
+    columns : list of (q, n) arrays
         Regressors other than the spline.
     normal : Normal
         The equations of the pixels, of spline and regressors.
@@ -130,7 +130,7 @@ class Solution:
 
     linear: Linear
     weight: Floats
-    columns: Floats
+    columns: list[Floats]
     normal: Normal
     equations: Normal
     posterior: Posterior
@@ -315,7 +315,7 @@ def _pass(
 
 
 def _equations(
-    linear: Linear, weight: Floats, columns: Floats, count: float, earlier: Solution | None
+    linear: Linear, weight: Floats, columns: list[Floats], count: float, earlier: Solution | None
 ) -> Normal:
     """The pixels' equations; those that do not depend on the LSF are kept from an earlier pass."""
     stencils, residual = linear.stencils, linear.first_residual
@@ -325,7 +325,7 @@ def _equations(
         or not np.array_equal(earlier.weight, weight)
     ):
         return accumulate(stencils, residual, weight, columns, count)
-    return renewed(earlier.normal, stencils, residual, weight, columns, linear.derivatives)
+    return renewed(earlier.normal, stencils, residual, weight, columns)
 
 
 def _edge_roughness(standard: Floats, steep: Floats, assumed: float) -> float:

@@ -41,7 +41,11 @@ def step_stencils(profile: Profile, s: Floats, width_px: float) -> list[Stencil]
 
 
 def accumulate(
-    stencils: Sequence[Stencil], y: Floats, weight: Floats, columns: Floats, count: float
+    stencils: Sequence[Stencil],
+    y: Floats,
+    weight: Floats,
+    columns: Sequence[Floats],
+    count: float,
 ) -> Normal:
     """Sum the pixels into the normal equations of ``y = sum of ESFs + columns^T a``.
 
@@ -52,17 +56,20 @@ def accumulate(
         `spline.edge_weights` gives it, the weights times the step's share.
     y, weight : (n,) arrays
         Value, and inverse variance (any common scale) of the pixels.
-    columns : (q, n) array
+    columns : sequence of (q, n) arrays
         Further regressors, one row each.
     count : float
         Number of pixels; an outlier counts for less.
     """
-    m, q = CELLS + 3, columns.shape[0]
+    m, q = CELLS + 3, sum(map(len, columns))
     gram, projection = np.zeros((m + q, m + q)), np.zeros(m + q)
     root = np.sqrt(weight)
     rows = np.empty((5 + q, y.size))
     np.multiply(y, root, out=rows[4])
-    np.multiply(columns, root, out=rows[5:])
+    first = 5
+    for some in columns:
+        np.multiply(some, root, out=rows[first : first + len(some)])
+        first += len(some)
     weighted = [(cell, basis * root) for cell, basis in stencils]
     for i, (cell, basis) in enumerate(weighted):
         rows[:4] = basis
@@ -81,10 +88,9 @@ def renewed(
     stencils: Sequence[Stencil],
     y: Floats,
     weight: Floats,
-    columns: Floats,
-    changed: int,
+    columns: Sequence[Floats],
 ) -> Normal:
-    """The equations of the same pixels after the last columns have changed.
+    """The equations of the same pixels after the last of the columns' arrays has changed.
 
     Parameters
     ----------
@@ -92,18 +98,16 @@ def renewed(
         As `accumulate` made it of these pixels and weights.
     stencils, y, weight
         As they were.
-    columns : (q, n) array
-    changed : int
-        How many of the columns, from the last, are others than they were.
+    columns : sequence of (q, n) arrays
     """
-    first = normal.projection.size - changed
-    weighted = columns[-changed:] * weight
-    rows = np.zeros((changed, normal.projection.size))
+    weighted = columns[-1] * weight
+    first = normal.projection.size - len(weighted)
+    rows = np.zeros((len(weighted), normal.projection.size))
     for cell, basis in stencils:
         sums = _sums_by_cell(cell, basis, weighted)
         for a in range(4):
             rows[:, a : a + CELLS] += sums[:, a].T
-    rows[:, CELLS + 3 :] = weighted @ columns.T
+    rows[:, CELLS + 3 :] = np.hstack([weighted @ some.T for some in columns])
     gram, projection = normal.gram.copy(), normal.projection.copy()
     gram[first:], gram[:, first:], projection[first:] = rows, rows.T, weighted @ y
     return replace(normal, gram=gram, projection=projection)
