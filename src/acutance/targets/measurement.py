@@ -28,7 +28,7 @@ from acutance.targets.record import (
 from acutance.targets.slices import OtfSlices
 from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_stds
 
-__all__ = ["Measurement"]
+__all__ = ["Measurement", "direction_document"]
 
 _STEPS = 2
 """ESF and LSF are written at every second place of their grid: every 0.1 px."""
@@ -234,10 +234,10 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
 
         one_direction = self.normal_deg is not None
         if one_direction:
-            curves = _direction_document(self.response)
+            curves = direction_document(self.response)
         else:
             curves = {
-                name: dict(DocumentFields(_direction_document(one)))
+                name: dict(DocumentFields(direction_document(one)))
                 for name, one in self.directions.items()
             }
         return {
@@ -278,8 +278,13 @@ def _documents(parts: Sequence[Check] | Sequence[BudgetTerm]) -> list[dict[str, 
     return [part.to_dict() for part in parts]
 
 
-def _direction_document(response: Response) -> dict[str, Any]:
-    """Numbers and curves of one direction, for JSON."""
+def direction_document(response: Response) -> dict[str, Any]:
+    """Numbers and curves of one direction, for JSON.
+
+    Parameters
+    ----------
+    response : Response
+    """
     return {
         **{name: number.to_dict() for name, number in response.metrics().items()},
         "rer_centre": response.rer_centre,

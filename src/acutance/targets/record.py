@@ -202,6 +202,21 @@ class RecordedDirection(ShortRepr):
         """Full width of the LSF at half maximum, pixels."""
         return self.numbers["fwhm_px"]
 
+    @property
+    def overshoot(self) -> Estimate:
+        """Largest excess of the ESF over the bright plateau."""
+        return self.numbers["overshoot"]
+
+    @property
+    def undershoot(self) -> Estimate:
+        """Largest shortfall of the ESF under the dark plateau."""
+        return self.numbers["undershoot"]
+
+    @property
+    def giqe_h(self) -> Estimate:
+        """Edge height overshoot H of GIQE 4."""
+        return self.numbers["giqe_h"]
+
     def curve(self, name: str) -> tuple[Floats, Floats, Floats]:
         """Places, values and standard deviations of a curve, (n,) each.
 

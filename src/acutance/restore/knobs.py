@@ -1,0 +1,134 @@
+"""What a person turns: noise gain, MTF at Nyquist or overshoot; the weight of noise follows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from numbers import Real
+
+import numpy as np
+from scipy.optimize import brentq
+
+from acutance.curves import Otf2d, Response
+from acutance.curves.grid import Floats
+from acutance.curves.short_repr import ShortRepr
+from acutance.errors import OptionError
+from acutance.restore.filtered_otf import ExactOtf, FilteredOtf
+from acutance.restore.kernel_family import WEIGHTS, KernelFamily
+from acutance.restore.known_otf import KnownOtf
+
+__all__ = ["KNOBS", "Knob", "Turned", "chosen_knob", "weight_of", "worst_overshoot"]
+
+KNOBS = ("noise_gain", "mtf_nyquist", "overshoot")
+_WORDS = {
+    "noise_gain": "a noise gain",
+    "mtf_nyquist": "an MTF at Nyquist (mean of across and along)",
+    "overshoot": "an overshoot",
+}
+
+
+@dataclass(frozen=True)
+class Knob:
+    """The one number that was asked for.
+
+    Parameters
+    ----------
+    name : {"noise_gain", "mtf_nyquist", "overshoot"}
+    value : float
+    """
+
+    name: str
+    value: float
+
+
+def chosen_knob(**asked: float | None) -> Knob | None:
+    """The one knob of those given; ``None`` if none is: the least expected error is asked for.
+
+    Raises
+    ------
+    OptionError
+        If several are given, or one is no positive number.
+    """
+    given = {name: value for name, value in asked.items() if value is not None}
+    if len(given) > 1:
+        raise OptionError(
+            f"{' and '.join(given)} were given, and each of them determines the kernel: give one, "
+            "the others are reported"
+        )
+    for name, value in given.items():
+        if isinstance(value, bool) or not isinstance(value, Real) or not 0 < value < math.inf:
+            raise OptionError(f"{name} is {value!r}: give a finite number above 0")
+        return Knob(name, float(value))
+    return None
+
+
+@dataclass(frozen=True, eq=False)
+class Turned(ShortRepr):
+    """A family of kernels on a sensor: its numbers at any weight of the noise, without deviations.
+
+    Parameters
+    ----------
+    family : KernelFamily
+    known : KnownOtf
+    """
+
+    family: KernelFamily
+    known: KnownOtf
+
+    def responses(self, weight: float) -> tuple[Response, ...]:
+        """Curves across and along, without covariance."""
+        model = FilteredOtf(ExactOtf(self.known.otf.model), self.family.kernel(weight))
+        otf = Otf2d(model, self.known.otf.gsd_m)
+        return tuple(otf.response(angle) for angle in self.known.axes_deg.values())
+
+    @cached_property
+    def unfiltered(self) -> tuple[Response, ...]:
+        """Curves of the sensor alone, without covariance."""
+        otf = Otf2d(ExactOtf(self.known.otf.model), self.known.otf.gsd_m)
+        return tuple(otf.response(angle) for angle in self.known.axes_deg.values())
+
+    def value(self, name: str, weight: float) -> float:
+        """One of the knobs at a weight."""
+        if name == "noise_gain":
+            return self.family.noise_gain(weight)
+        responses = self.responses(weight)
+        if name == "mtf_nyquist":
+            return sum(one.mtf_nyquist.value for one in responses) / len(responses)
+        return worst_overshoot(responses)
+
+
+def worst_overshoot(responses: tuple[Response, ...]) -> float:
+    """The largest overshoot or undershoot of all directions."""
+    return max(max(one.overshoot.value, one.undershoot.value) for one in responses)
+
+
+def weight_of(knob: Knob, turned: Turned) -> float:
+    """The weight of noise whose kernel has the number asked for: the smoothest one that has it.
+
+    Raises
+    ------
+    OptionError
+        If no kernel of the family reaches it: the message has what they reach.
+    """
+    from_smooth = WEIGHTS[::-1]
+    values = np.array([turned.value(knob.name, float(weight)) for weight in from_smooth])
+    reached = np.flatnonzero((values[:-1] < knob.value) & (values[1:] >= knob.value))
+    if not reached.size:
+        raise OptionError(_out_of_reach(knob, values, turned.family.size))
+    first = int(reached[0])
+    low, high = (math.log(float(from_smooth[i])) for i in (first + 1, first))
+
+    def excess(log_weight: float) -> float:
+        return turned.value(knob.name, math.exp(log_weight)) - knob.value
+
+    return math.exp(float(brentq(excess, low, high, xtol=1e-10)))
+
+
+def _out_of_reach(knob: Knob, values: Floats, size: int) -> str:
+    digits = 2 if knob.name == "noise_gain" else 4
+    return (
+        f"{_WORDS[knob.name]} of {knob.value:g} was requested, and kernels of {size} by {size} "
+        f"pixels for this sensor reach {values.min():.{digits}f} to {values.max():.{digits}f}: "
+        "choose a value between them, or the sharper aim desired='point'"
+    )

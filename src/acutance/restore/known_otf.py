@@ -1,0 +1,215 @@
+"""What is known of a sensor's transfer: from measurements, their documents, or its description."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from acutance.curves import Otf2d, OtfModel
+from acutance.curves.short_repr import ShortRepr
+from acutance.errors import OptionError
+from acutance.numerics.one_thread import one_thread
+from acutance.optics import Sensor
+from acutance.raster import Gsd
+from acutance.raster.image import AlongTrack
+from acutance.restore.filtered_otf import RememberedOtf, SensorOtf
+from acutance.targets import Measurement, Record, TargetResult
+from acutance.targets.combine import combine
+from acutance.targets.combine.curves import OtfSamples
+from acutance.targets.combine.fit import combine_curves
+from acutance.targets.slices import SLICE_DIRECTIONS_DEG, OtfSlices
+
+__all__ = ["KnownOtf", "Measured", "known_otf"]
+
+Measured = Measurement | Record | TargetResult[Measurement] | Mapping[str, Any]
+"""A measurement, its record, or its JSON document."""
+
+ISOTROPIC = "the same blur in all directions is assumed: only one was measured"
+
+
+@dataclass(frozen=True, eq=False)
+class KnownOtf(ShortRepr):
+    """The optical transfer function (OTF) of a sensor over the plane, and what goes with it.
+
+    Parameters
+    ----------
+    otf : Otf2d
+        With its covariance; a described sensor has none.
+    snr : float or None
+        Of the measurements (their median).
+    band : int or None
+        The band of the image they share; ``None`` if they differ, or there is no image.
+    along_track : {"y", "x"}
+    sources : tuple of str
+        What it comes from, in words.
+    cautions : tuple of str
+        What has to be said of it.
+    """
+
+    otf: Otf2d
+    snr: float | None = None
+    band: int | None = None
+    along_track: AlongTrack = "y"
+    sources: tuple[str, ...] = ()
+    cautions: tuple[str, ...] = ()
+
+    @property
+    def axes_deg(self) -> dict[str, float]:
+        """Where across and along track point, from the column axis (0) to the row axis (90)."""
+        across_deg = 0.0 if self.along_track == "y" else 90.0
+        return {"across": across_deg, "along": 90.0 - across_deg}
+
+
+@one_thread
+def known_otf(
+    given: Measured | Sensor | Otf2d | Sequence[Measured],
+    *,
+    isotropic: bool = False,
+    gsd_m: float | Gsd | None = None,
+) -> KnownOtf:
+    """The OTF over the plane of frequencies, of whatever describes it.
+
+    Parameters
+    ----------
+    given : Measurement, Record, dict, Sensor, Otf2d, or a sequence of measurements
+        Several measurements are combined (`acutance.combine`).
+    isotropic : bool, optional
+        State that the blur is the same in all directions: a single edge shows one of them.
+    gsd_m : float or Gsd, optional
+        Ground sampling distance in metres, instead of theirs.
+
+    Raises
+    ------
+    OptionError
+        If it shows one direction only, or is no transfer function of a sensor.
+    """
+    found = _found(given, isotropic)
+    gsd = Gsd.given(gsd_m)
+    pixel_m = found.otf.gsd_m if gsd is None else (gsd.row_m, gsd.col_m)
+    return replace(found, otf=Otf2d(RememberedOtf(found.otf.model), pixel_m))
+
+
+def _found(given: Any, isotropic: bool) -> KnownOtf:
+    if isinstance(given, Sensor):
+        return KnownOtf(Otf2d(SensorOtf(given), given.pixel_m), sources=("a described sensor",))
+    if isinstance(given, Otf2d):
+        return KnownOtf(given, sources=("an OTF",))
+    if isinstance(given, Sequence) and not isinstance(given, str | bytes):
+        return _found(given[0], isotropic) if len(given) == 1 else _combined(given)
+    if isinstance(given, TargetResult) or _is_target(given):
+        return _combined([given])
+    if isinstance(given, Measurement | Record | Mapping):
+        return _measured(given, isotropic)
+    raise OptionError(
+        f"a {type(given).__name__} describes no sensor: give a measurement, its record or JSON "
+        "document, several of them, a Sensor or an Otf2d"
+    )
+
+
+def _is_target(given: Any) -> bool:
+    return isinstance(given, Mapping) and given.get("schema") == "acutance/target/1"
+
+
+def _combined(given: Sequence[Any]) -> KnownOtf:
+    """Measurements of several directions, combined.
+
+    Raises
+    ------
+    OptionError
+        If there is none, or they do not belong together.
+    """
+    both = combine(given)
+    records = [record for one in given for record in _records(one)]
+    bands = {one.image.band for one in records}
+    snrs = [one.snr for one in records if math.isfinite(one.snr)]
+    cautions = tuple(word for one in records for word in _cautions(one))
+    return KnownOtf(
+        both.otf,
+        median(snrs) if snrs else None,
+        bands.pop() if len(bands) == 1 else None,
+        both.image.along_track,
+        tuple(map(_in_words, records)),
+        tuple(dict.fromkeys(cautions)),
+    )
+
+
+def _records(one: Any) -> list[Record]:
+    if isinstance(one, TargetResult):
+        return [edge.record for edge in one.measurements]
+    if _is_target(one):
+        return [Record.from_dict(document) for document in one["measurements"]]
+    if isinstance(one, Mapping):
+        return [Record.from_dict(one)]
+    return [one if isinstance(one, Record) else one.record]
+
+
+def _measured(given: Measurement | Record | Mapping[str, Any], isotropic: bool) -> KnownOtf:
+    """One measurement: of all directions, or of one where the others are stated to be equal."""
+    (record,) = _records(given)
+    if record.kind == "biresolution" and not record.options.get("reference_given", True):
+        raise OptionError(
+            "the measurement is the ratio of two sensors' MTFs, since the finer one's own was not "
+            "given: measure it again with --reference"
+        )
+    one_direction = record.slices.normal_deg.size == 1
+    if one_direction and not isotropic:
+        raise OptionError(
+            f"{_in_words(record)} shows one direction, and a kernel acts in all: give a "
+            "measurement of another direction besides (across.json along.json), or state that the "
+            "blur is the same in all directions (isotropic=True, --isotropic)"
+        )
+    cautions = _cautions(record)
+    return KnownOtf(
+        Otf2d(_plane(given, record.slices), record.image.pixel_gsd_m),
+        record.snr if math.isfinite(record.snr) else None,
+        record.image.band,
+        record.image.along_track,
+        (_in_words(record),),
+        (*cautions, ISOTROPIC) if one_direction else cautions,
+    )
+
+
+def _plane(given: Any, slices: OtfSlices) -> OtfModel:
+    """The OTF over the plane: of a whole measurement its own, of a record from its slices."""
+    if isinstance(given, Measurement) and isinstance(given.transfer, Otf2d):
+        return given.transfer.model
+    likelihood = slices.likelihood
+    if slices.normal_deg.size == 1:
+        slices, likelihood = _in_all_directions(slices), None
+    u, v = slices.places
+    samples = OtfSamples("measurement", u, v, slices.otf, slices.factor, likelihood)
+    return combine_curves([samples]).otf
+
+
+def _in_all_directions(slices: OtfSlices) -> OtfSlices:
+    """One slice in every direction, its errors the same in all of them.
+
+    What is the same in all directions is symmetric: only the real part is kept.
+    """
+    every = np.asarray(SLICE_DIRECTIONS_DEG)
+    return OtfSlices(
+        every,
+        slices.freq_cpp,
+        np.tile(slices.otf.real + 0j, every.size),
+        np.tile(slices.factor.real + 0j, (every.size, 1)),
+    )
+
+
+def _in_words(record: Record) -> str:
+    """Kind, method, direction and file of a measurement."""
+    direction = " and ".join(record.measured_directions)
+    path = record.image.path
+    return f"{record.kind} by {record.method}, {direction}" + (f", {path}" if path else "")
+
+
+def _cautions(record: Record) -> tuple[str, ...]:
+    """What its verdict warns of."""
+    verdict = record.verdict
+    if verdict.word in ("good", "usable"):
+        return ()
+    return (f"{record.kind}: {verdict.word}: {verdict.sentence}",)
