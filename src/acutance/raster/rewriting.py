@@ -1,0 +1,290 @@
+"""An image file written anew with other pixels: everything else of it is kept."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+import rasterio
+from numpy.typing import NDArray
+from rasterio._err import CPLE_BaseError
+from rasterio.enums import ColorInterp, MaskFlags
+from rasterio.errors import RasterioError
+from rasterio.shutil import copy
+from rasterio.windows import Window
+
+from acutance.errors import ImageError
+from acutance.raster.dataset import CACHE_BYTES, open_quietly
+from acutance.raster.pixels import equals_nodata
+from acutance.raster.region import Box
+
+__all__ = ["StoredWindow", "rewrite_image", "stored_tags"]
+
+_WINDOW_ROWS, _WINDOW_COLS = 1024, 4096
+_BLOCK_PX = 512
+_OWN_DOMAINS = ("IMAGE_STRUCTURE", "DERIVED_SUBDATASETS", "RPC", "COLOR_PROFILE", "TIFF")
+
+
+@dataclass(frozen=True, eq=False)
+class StoredWindow:
+    """A window of one band as it is stored, with the pixels around it.
+
+    Parameters
+    ----------
+    band : int
+        From 1.
+    pixels : (rows, cols) array
+        Of the box grown by the margin; 0 beyond the image.
+    masked : (rows, cols) bool array
+        Pixels without data: nodata, masked, transparent or not finite.
+    outside : (rows, cols) bool array
+        Places beyond the image.
+    """
+
+    band: int
+    pixels: NDArray[Any]
+    masked: NDArray[np.bool_]
+    outside: NDArray[np.bool_]
+
+
+def stored_tags(path: str) -> dict[str, str]:
+    """Metadata items of a file, by name."""
+    with _read_in_our_words(path), open_quietly(path) as dataset:
+        return dict(dataset.tags())
+
+
+def rewrite_image(
+    path: str,
+    out: str | os.PathLike[str],
+    change: Callable[[StoredWindow], NDArray[Any]],
+    *,
+    bands: Sequence[int],
+    margin_px: int,
+    nodata: float | None = None,
+    tags: dict[str, str] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> None:
+    """Write a cloud optimized GeoTIFF with other pixels, whole or not at all.
+
+    Type, georeference, RPC, ground control points, metadata, scales, colour interpretation, nodata
+    and masks are those of the original; bands that are not named are copied. Memory depends on the
+    size of a window alone.
+
+    Parameters
+    ----------
+    path : str
+    out : str or path
+        An existing file is replaced when the new one is complete.
+    change : function of a StoredWindow
+        Gives the pixels of the window, without its margin, in the type they are stored in.
+    bands : sequence of int
+        Those that are changed, from 1.
+    margin_px : int
+        How many pixels around a window are read.
+    nodata : float, optional
+        The stored value of pixels without data, instead of the one the file declares.
+    tags : dict of str, optional
+        Metadata items that are added.
+    progress : function of (done, total), optional
+        Called with numbers of pixels.
+
+    Raises
+    ------
+    ImageError
+        If the file cannot be read, or the new one not be written.
+    """
+    target = Path(os.path.realpath(out))
+    with ExitStack() as stack:
+        stack.enter_context(rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES, GDAL_TIFF_INTERNAL_MASK=True))
+        with _read_in_our_words(path):
+            source = stack.enter_context(open_quietly(path))
+        with _written_in_our_words(target):
+            folder = stack.enter_context(TemporaryDirectory(prefix=".acutance-", dir=target.parent))
+            plain = os.path.join(folder, "plain.tif")
+            made = open_quietly(plain, "w", **_profile(source, nodata))
+            stack.callback(made.close)
+            _copy_descriptions(source, made, tags or {})
+        boxes = list(_boxes((source.height, source.width)))
+        done, total = 0, source.height * source.width
+        for box in boxes:
+            _rewrite_box(source, made, box, change, bands, margin_px, nodata, (path, target))
+            done += box.height * box.width
+            if progress is not None:
+                progress(done, total)
+        with _written_in_our_words(target):
+            made.close()
+            finished = os.path.join(folder, "finished.tif")
+            copy(plain, finished, driver="COG", **_cog_options(source))
+            os.replace(finished, target)
+
+
+def _rewrite_box(
+    source: Any,
+    made: Any,
+    box: Box,
+    change: Callable[[StoredWindow], NDArray[Any]],
+    bands: Sequence[int],
+    margin_px: int,
+    nodata: float | None,
+    names: tuple[str, Path],
+) -> None:
+    """One window of all bands: changed, or copied."""
+    path, target = names
+    own = Window(box.col, box.row, box.width, box.height)
+    for band in range(1, source.count + 1):
+        if band in bands:
+            with _read_in_our_words(path):
+                window = _stored_window(source, band, box, margin_px, nodata)
+            pixels = change(window)
+        else:
+            with _read_in_our_words(path):
+                pixels = source.read(band, window=own)
+        with _written_in_our_words(target):
+            made.write(pixels, band, window=own)
+    if _has_mask(source):
+        with _read_in_our_words(path):
+            mask = source.read_masks(1, window=own)
+        with _written_in_our_words(target):
+            made.write_mask(mask, window=own)
+
+
+def _stored_window(
+    source: Any, band: int, box: Box, margin_px: int, nodata: float | None
+) -> StoredWindow:
+    whole, grown = Box.whole((source.height, source.width)), box.grown(margin_px)
+    inside = grown.intersection(whole)
+    assert inside is not None
+    window = Window(inside.col, inside.row, inside.width, inside.height)
+    raw = source.read(band, window=window)
+    masked = equals_nodata(raw, source.nodatavals[band - 1] if nodata is None else nodata)
+    if _has_mask(source):
+        masked |= source.read_masks(band, window=window) == 0
+    for number, meaning in enumerate(source.colorinterp, start=1):
+        if meaning == ColorInterp.alpha and number != band:
+            masked |= source.read(number, window=window) == 0
+    if raw.dtype.kind == "f":
+        masked |= ~np.isfinite(raw)
+    return _padded(band, raw, masked, grown, inside)
+
+
+def _padded(
+    band: int, raw: NDArray[Any], masked: NDArray[np.bool_], grown: Box, inside: Box
+) -> StoredWindow:
+    """The window with places beyond the image around it."""
+    before = inside.row - grown.row, inside.col - grown.col
+    widths = [
+        (first, size - first - own)
+        for first, size, own in zip(before, grown.shape, inside.shape, strict=True)
+    ]
+    outside = np.pad(np.zeros(inside.shape, bool), widths, constant_values=True)
+    return StoredWindow(band, np.pad(raw, widths), np.pad(masked, widths), outside)
+
+
+def _boxes(shape: tuple[int, int]) -> Iterator[Box]:
+    """Windows of a whole image, row after row."""
+    for row in range(0, shape[0], _WINDOW_ROWS):
+        for col in range(0, shape[1], _WINDOW_COLS):
+            height, width = min(_WINDOW_ROWS, shape[0] - row), min(_WINDOW_COLS, shape[1] - col)
+            yield Box(row, col, height, width)
+
+
+def _has_mask(source: Any) -> bool:
+    """Whether a mask of its own lies next to the bands."""
+    flags = source.mask_flag_enums[0]
+    return MaskFlags.per_dataset in flags and MaskFlags.alpha not in flags
+
+
+def _profile(source: Any, nodata: float | None) -> dict[str, Any]:
+    types = set(source.dtypes)
+    if len(types) > 1:
+        raise ValueError(f"its bands have different types ({', '.join(sorted(types))})")
+    gcps, _ = source.gcps
+    return {
+        "driver": "GTiff",
+        "count": source.count,
+        "height": source.height,
+        "width": source.width,
+        "dtype": types.pop(),
+        "nodata": source.nodata if nodata is None else nodata,
+        "crs": None if gcps else source.crs,
+        "transform": None if gcps or source.transform.is_identity else source.transform,
+        "tiled": True,
+        "blockxsize": _BLOCK_PX,
+        "blockysize": _BLOCK_PX,
+        "bigtiff": "if_safer",
+        **({"photometric": "rgb"} if _is_rgb(source) else {}),
+        **({"nbits": _bits(source)} if _bits(source) else {}),
+    }
+
+
+def _is_rgb(source: Any) -> bool:
+    return tuple(source.colorinterp[:3]) == (ColorInterp.red, ColorInterp.green, ColorInterp.blue)
+
+
+def _bits(source: Any) -> str | None:
+    """Bits of a pixel, where the file declares fewer than its type has."""
+    bits: str | None = source.tags(1, ns="IMAGE_STRUCTURE").get("NBITS")
+    return bits
+
+
+def _cog_options(source: Any) -> dict[str, Any]:
+    bits = _bits(source)
+    return {
+        "compress": "deflate",
+        "predictor": "no" if bits else "yes",
+        "overview_resampling": "average",
+        "num_threads": "all_cpus",
+        "bigtiff": "if_safer",
+        **({"nbits": bits} if bits else {}),
+    }
+
+
+def _copy_descriptions(source: Any, made: Any, tags: dict[str, str]) -> None:
+    """Everything of a file that is no pixel."""
+    gcps, crs = source.gcps
+    if gcps:
+        made.gcps = (gcps, crs)
+    if source.rpcs is not None:
+        made.rpcs = source.rpcs
+    made.colorinterp = source.colorinterp
+    made.descriptions = source.descriptions
+    made.scales, made.offsets = source.scales, source.offsets
+    made.units = [unit or "" for unit in source.units]
+    for domain in _domains(source.tag_namespaces()):
+        made.update_tags(ns=domain, **source.tags(ns=domain))
+    made.update_tags(**{**source.tags(), **tags})
+    for band in range(1, source.count + 1):
+        made.update_tags(band, **source.tags(band))
+        for domain in _domains(source.tag_namespaces(band)):
+            made.update_tags(band, ns=domain, **source.tags(band, ns=domain))
+
+
+def _domains(names: Sequence[str]) -> list[str]:
+    """Metadata domains that are not GDAL's own account of the file."""
+    return [one for one in names if one and not one.startswith("xml:") and one not in _OWN_DOMAINS]
+
+
+@contextmanager
+def _read_in_our_words(path: str) -> Iterator[None]:
+    try:
+        yield
+    except (RasterioError, CPLE_BaseError, OSError) as error:
+        reason = error.__cause__ or error
+        raise ImageError(f"{path} cannot be read ({reason}): check that it is whole") from error
+
+
+@contextmanager
+def _written_in_our_words(target: Path) -> Iterator[None]:
+    try:
+        yield
+    except (RasterioError, CPLE_BaseError, OSError, ValueError, TypeError) as error:
+        raise ImageError(
+            f"{target} cannot be written ({error.__cause__ or error}): check that the folder "
+            "exists, may be written to and has room for twice the image"
+        ) from error

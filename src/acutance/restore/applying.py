@@ -1,0 +1,364 @@
+"""A filter applied: to an array, or to a file of any size."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from acutance.curves.short_repr import ShortRepr
+from acutance.errors import ImageError, OptionError
+from acutance.raster import Image, open_image
+from acutance.raster.pixels import equals_nodata, largest_count, require_image_array
+from acutance.restore.restoration_filter import RestorationFilter
+from acutance.restore.window_filter import PixelCounts, StoredType, reach_px, restored_window
+
+__all__ = ["RESTORED_TAG", "RestoredImage", "restore", "restore_array"]
+
+RESTORED_TAG = "ACUTANCE_RESTORATION"
+_GSD_SHARE = 0.02
+_LINES = 1024
+_Path = str | os.PathLike[str]
+
+
+@dataclass(frozen=True, eq=False)
+class RestoredImage(ShortRepr):
+    """A file that a filter was applied to.
+
+    Parameters
+    ----------
+    path : str
+        The new file.
+    bands : dict of int to PixelCounts
+        What became of the pixels of each band that was filtered.
+    """
+
+    path: str
+    bands: dict[int, PixelCounts]
+
+    def summary(self) -> str:
+        """The file, and how many pixels of all bands were special."""
+        return f"{self.path}, {count_words(sum(self.bands.values(), PixelCounts()))}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Path and counts, for JSON."""
+        return {
+            "path": self.path,
+            "bands": {str(band): one.to_dict() for band, one in self.bands.items()},
+        }
+
+
+def count_words(counts: PixelCounts) -> str:
+    """What became of pixels, in words; those that nothing happened to are left out."""
+    names = {
+        "nodata": "without data",
+        "saturated": "saturated",
+        "clipped_low": "clipped below",
+        "clipped_high": "clipped above",
+        "off_nodata": "moved off the nodata value",
+    }
+    found = [f"{getattr(counts, name)} {word}" for name, word in names.items()
+             if getattr(counts, name)]  # fmt: skip
+    return f"{counts.pixels} pixels" + (f", {', '.join(found)}" if found else "")
+
+
+@overload
+def restore(
+    image: _Path,
+    filter: RestorationFilter,
+    *,
+    out: _Path,
+    bands: int | Sequence[int] | Literal["all"] | None = None,
+    nodata: float | None = None,
+    saturation: float | None = None,
+    accept_mismatch: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> RestoredImage: ...
+@overload
+def restore(
+    image: ArrayLike,
+    filter: RestorationFilter,
+    *,
+    nodata: float | None = None,
+    saturation: float | None = None,
+) -> NDArray[Any]: ...
+def restore(
+    image: Any,
+    filter: RestorationFilter,
+    *,
+    out: _Path | None = None,
+    bands: int | Sequence[int] | Literal["all"] | None = None,
+    nodata: float | None = None,
+    saturation: float | None = None,
+    accept_mismatch: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> Any:
+    """Sharpen an image: an array, or a file of any size into another.
+
+    The stored type is kept: results are rounded, and clipped to its range. Pixels without data stay
+    so, and their neighbours are filtered as if the image went on smoothly there, as at its border.
+    Saturated pixels stay as they are, and so nearly do those next to them, which would ring.
+
+    Parameters
+    ----------
+    image : path or (rows, columns) array
+        Any raster GDAL reads, or an array of integers or floats, masked or not.
+    filter : RestorationFilter
+    out : path, optional
+        Of a file the new one, a cloud optimized GeoTIFF with everything else of the original;
+        an existing one is replaced once the new one is complete.
+    bands : int, sequence of int or "all", optional
+        Bands of a file, from 1: without it the one that was measured, or the only one. The
+        others are copied.
+    nodata : float, optional
+        The stored value of pixels without data, instead of the one the file declares.
+    saturation : float, optional
+        The stored value from which pixels are saturated, instead of the largest of their type.
+    accept_mismatch : bool, optional
+        Filter although pixel size or band are not those that were measured, or although the image
+        was restored before.
+    progress : function of (done, total), optional
+        Called with numbers of pixels.
+
+    Returns
+    -------
+    array or RestoredImage
+        Of an array one of the same shape and type, of a file what became of its pixels.
+
+    Raises
+    ------
+    OptionError
+        If the filter was made for other pixels or another band, or `out` is the input.
+    ImageError
+        If the image cannot be read or the new one not be written.
+    """
+    if not isinstance(filter, RestorationFilter):
+        raise OptionError(
+            f"the filter is a {type(filter).__name__}: give one of design_restoration, or "
+            "RestorationFilter.read(path)"
+        )
+    if not isinstance(image, str | os.PathLike):
+        if out is not None:
+            raise OptionError("out was given with an array: the result is returned")
+        array, counts = restore_array(image, filter, nodata=nodata, saturation=saturation)
+        if counts.clipped_low or counts.clipped_high:
+            warnings.warn(f"restored {count_words(counts)}", stacklevel=2)
+        return array
+    if out is None:
+        raise OptionError(f"{os.fspath(image)} is a file: name the one to be written (out)")
+    return _restore_file(
+        os.fspath(image), os.fspath(out), filter, bands, nodata, saturation, accept_mismatch,
+        progress,
+    )  # fmt: skip
+
+
+def restore_array(
+    image: ArrayLike,
+    filter: RestorationFilter,
+    *,
+    nodata: float | None = None,
+    saturation: float | None = None,
+) -> tuple[NDArray[Any], PixelCounts]:
+    """An array, sharpened, and what became of its pixels; arguments are those of `restore`."""
+    array = np.asanyarray(image)
+    require_image_array(array, "the array")
+    raw, mask = np.ma.getdata(array), np.ma.getmaskarray(array)
+    masked = mask | equals_nodata(raw, nodata)
+    if raw.dtype.kind == "f":
+        masked |= ~np.isfinite(raw)
+    kind = _stored_type(raw.dtype, nodata, saturation, largest_count(raw.dtype))
+    _require_fitting(raw.shape, filter)
+    result, counts = np.empty_like(raw), PixelCounts()
+    reach = reach_px(filter.kernel)
+    for row in range(0, raw.shape[0], _LINES):
+        last = min(row + _LINES, raw.shape[0])
+        rows = slice(max(0, row - reach), min(last + reach, raw.shape[0]))
+        around = [(max(0, reach - row), max(0, last + reach - raw.shape[0])), (reach, reach)]
+        beyond = np.pad(np.zeros(raw[rows].shape, bool), around, constant_values=True)
+        result[row:last], found = restored_window(
+            np.pad(raw[rows], around), np.pad(masked[rows], around), beyond, filter.kernel, kind
+        )
+        counts += found
+    if isinstance(array, np.ma.MaskedArray):
+        return np.ma.MaskedArray(result, mask=mask, fill_value=array.fill_value), counts
+    return result, counts
+
+
+def _restore_file(
+    path: str,
+    out: str,
+    filter: RestorationFilter,
+    bands: int | Sequence[int] | Literal["all"] | None,
+    nodata: float | None,
+    saturation: float | None,
+    accept_mismatch: bool,
+    progress: Callable[[int, int], None] | None,
+) -> RestoredImage:
+    first = open_image(path, nodata=nodata)
+    _require_other_file(path, out)
+    if path.lower().endswith(".npy"):
+        return _restore_npy(path, out, filter, first, nodata, saturation)
+    from acutance.raster.rewriting import StoredWindow, rewrite_image, stored_tags
+
+    if not out.lower().endswith((".tif", ".tiff")):
+        raise OptionError(f"out is {out}: the image is written as GeoTIFF, name a .tif")
+    chosen = _chosen_bands(first, filter, bands)
+    images = {band: open_image(path, band, nodata=nodata) for band in chosen}
+    _require_fitting(first.shape, filter)
+    if not accept_mismatch:
+        _require_match(first, filter, chosen, bands == "all")
+        _require_unrestored(path, stored_tags(path))
+    kinds = {
+        band: _stored_type(
+            np.dtype(one.dtype), getattr(one.source, "nodata", None), saturation, _count(one)
+        )
+        for band, one in images.items()
+    }
+    counts = dict.fromkeys(chosen, PixelCounts())
+
+    def change(window: StoredWindow) -> NDArray[Any]:
+        pixels, found = restored_window(
+            window.pixels, window.masked, window.outside, filter.kernel, kinds[window.band]
+        )
+        counts[window.band] += found
+        return pixels
+
+    tags = {RESTORED_TAG: _tag(filter, chosen)}
+    rewrite_image(
+        path, out, change, bands=chosen, margin_px=reach_px(filter.kernel), nodata=nodata,
+        tags=tags, progress=progress,
+    )  # fmt: skip
+    return RestoredImage(out, counts)
+
+
+def _restore_npy(
+    path: str,
+    out: str,
+    filter: RestorationFilter,
+    image: Image,
+    nodata: float | None,
+    saturation: float | None,
+) -> RestoredImage:
+    """An array in a NumPy file, into another."""
+    if not out.lower().endswith(".npy"):
+        raise OptionError(f"out is {out}: an image in a .npy file is written as one, name a .npy")
+    source: Any = image.source
+    pixels, counts = restore_array(source.map(), filter, nodata=nodata, saturation=saturation)
+    part = Path(f"{os.path.realpath(out)}.{os.getpid()}.part")
+    try:
+        with part.open("wb") as file:
+            np.save(file, pixels)
+        os.replace(part, os.path.realpath(out))
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise ImageError(f"{out} cannot be written ({error.strerror or error})") from error
+    return RestoredImage(out, {1: counts})
+
+
+def _stored_type(
+    dtype: np.dtype[Any], nodata: float | None, saturation: float | None, largest: float | None
+) -> StoredType:
+    if saturation is not None:
+        if not math.isfinite(saturation):
+            raise OptionError(f"saturation is {saturation!r}: give a finite stored value")
+        return StoredType(dtype, nodata, float(saturation))
+    return StoredType(dtype, nodata, largest)
+
+
+def _count(image: Image) -> float | None:
+    """The largest stored count, which an image has in the units it is read in."""
+    level, source = image.saturation_level, image.source
+    if level is None:
+        return None
+    return (level - getattr(source, "offset", 0.0)) / getattr(source, "scale", 1.0)
+
+
+def _require_fitting(shape: tuple[int, ...], filter: RestorationFilter) -> None:
+    if min(shape) < filter.size:
+        raise OptionError(
+            f"the image has {shape[0]} by {shape[1]} pixels, fewer than the kernel of "
+            f"{filter.size} by {filter.size}: design a smaller one (size), or give a larger image"
+        )
+
+
+def _require_other_file(path: str, out: str) -> None:
+    if os.path.exists(out) and os.path.exists(path) and os.path.samefile(path, out):
+        raise OptionError(f"out is {out}, the input itself: name another file")
+    if os.path.isdir(out):
+        raise OptionError(f"out is {out}, a folder: name a file in it")
+
+
+def _chosen_bands(
+    first: Image, filter: RestorationFilter, bands: int | Sequence[int] | Literal["all"] | None
+) -> list[int]:
+    """The bands to be filtered.
+
+    Raises
+    ------
+    OptionError
+        If none was named, and none follows from the filter.
+    """
+    if bands == "all":
+        alpha = getattr(first.source, "alpha_band", None)
+        return [one for one in range(1, first.band_count + 1) if one != alpha]
+    if isinstance(bands, str):
+        raise OptionError(f"bands is {bands!r}: give numbers from 1, or 'all'")
+    if bands is not None:
+        return [bands] if isinstance(bands, int) else list(bands)
+    if first.band_count == 1:
+        return [1]
+    if filter.band is None:
+        raise OptionError(
+            f"the image has {first.band_count} bands, and the filter was measured in none of "
+            "them: say which to filter (bands, --band N or --band all)"
+        )
+    return [filter.band]
+
+
+def _require_match(
+    image: Image, filter: RestorationFilter, bands: Sequence[int], all_stated: bool
+) -> None:
+    """Refuse pixels of another size, and another band, than those that were measured."""
+    gsd, known = image.gsd(), filter.gsd_m
+    if gsd is not None and known is not None:
+        for own, measured in zip((gsd.row_m, gsd.col_m), known, strict=True):
+            if not math.isclose(own, measured, rel_tol=_GSD_SHARE):
+                raise OptionError(
+                    f"the image has pixels of {gsd.row_m:.4g} by {gsd.col_m:.4g} m, the filter was "
+                    f"made for {known[0]:.4g} by {known[1]:.4g} m: design one for this product, or "
+                    "accept the mismatch (accept_mismatch=True, --accept-mismatch)"
+                )
+    other = [band for band in bands if band != filter.band]
+    if filter.band is not None and image.band_count > 1 and other and not all_stated:
+        raise OptionError(
+            f"the filter was measured in band {filter.band}, band {other[0]} was asked for: design "
+            "one for it, state that all bands are alike (bands='all', --band all), or accept the "
+            "mismatch (accept_mismatch=True, --accept-mismatch)"
+        )
+
+
+def _require_unrestored(path: str, tags: dict[str, str]) -> None:
+    if RESTORED_TAG in tags:
+        raise OptionError(
+            f"{path} was restored before ({tags[RESTORED_TAG]}): a second time would sharpen what "
+            "is sharp; give the original, or accept it (accept_mismatch=True, --accept-mismatch)"
+        )
+
+
+def _tag(filter: RestorationFilter, bands: Sequence[int]) -> str:
+    """What was applied, in a line: the kernel is known by the first digits of its hash."""
+    digest = hashlib.sha256(np.ascontiguousarray(filter.kernel).tobytes()).hexdigest()[:16]
+    across, along = filter.after.across.mtf_nyquist, filter.after.along.mtf_nyquist
+    return (
+        f"{filter.method} kernel {filter.size}x{filter.size} sha256:{digest}; bands "
+        f"{','.join(map(str, bands))}; noise gain {filter.noise_gain:.4g}; MTF at Nyquist "
+        f"{across.value:.4f} across, {along.value:.4f} along"
+    )
