@@ -38,6 +38,17 @@ if TYPE_CHECKING:
     from acutance.optics import Sensor
     from acutance.raster import Box, Gsd, Image, Region, open_image, sites
     from acutance.raster.metadata import ImageStatement, read_statement
+    from acutance.restoration import (
+        NaturalScene,
+        Niirs,
+        RestorationFilter,
+        RestorationProof,
+        RestoredImage,
+        design_restoration,
+        niirs,
+        restore,
+        verify_restoration,
+    )
     from acutance.scan import (
         BandScenes,
         BandShift,
@@ -113,6 +124,8 @@ _HOMES = {
     "Lsf": "acutance.curves",
     "Measurement": "acutance.targets",
     "Mtf": "acutance.curves",
+    "NaturalScene": "acutance.restoration",
+    "Niirs": "acutance.restoration",
     "PointsMeasurement": "acutance.targets.points",
     "PointsOptions": "acutance.targets.points",
     "PulseOptions": "acutance.targets.straight",
@@ -120,6 +133,9 @@ _HOMES = {
     "Region": "acutance.raster",
     "Rejected": "acutance.targets",
     "Response": "acutance.curves",
+    "RestorationFilter": "acutance.restoration",
+    "RestorationProof": "acutance.restoration",
+    "RestoredImage": "acutance.restoration",
     "ScanOptions": "acutance.scan",
     "SceneEdges": "acutance.scan",
     "SceneMeasurement": "acutance.scan",
@@ -130,6 +146,7 @@ _HOMES = {
     "TargetResult": "acutance.targets",
     "Verdict": "acutance.targets",
     "combine": "acutance.targets.combine",
+    "design_restoration": "acutance.restoration",
     "each_edge": "acutance.targets.straight",
     "each_pulse": "acutance.targets.straight",
     "measure_bars": "acutance.targets.periodic",
@@ -140,13 +157,16 @@ _HOMES = {
     "measure_pulse": "acutance.targets.straight",
     "measure_pulses": "acutance.targets.straight",
     "measure_star": "acutance.targets.periodic",
+    "niirs": "acutance.restoration",
     "open_image": "acutance.raster",
     "read_plan": "acutance.batch",
     "read_statement": "acutance.raster.metadata",
     "run_batch": "acutance.batch",
+    "restore": "acutance.restoration",
     "scan_bands": "acutance.scan",
     "scan_scene": "acutance.scan",
     "sites": "acutance.raster",
+    "verify_restoration": "acutance.restoration",
 }
 _MODULES = ("optics", "report", "simulate")
 
@@ -180,6 +200,8 @@ __all__ = [
     "Measurement",
     "ModelError",
     "Mtf",
+    "NaturalScene",
+    "Niirs",
     "NoBarsError",
     "NoDataError",
     "NoEdgeError",
@@ -194,6 +216,9 @@ __all__ = [
     "RegionError",
     "Rejected",
     "Response",
+    "RestorationFilter",
+    "RestorationProof",
+    "RestoredImage",
     "ScanOptions",
     "SceneEdges",
     "SceneMeasurement",
@@ -207,6 +232,7 @@ __all__ = [
     "Verdict",
     "__version__",
     "combine",
+    "design_restoration",
     "each_edge",
     "each_pulse",
     "measure_bars",
@@ -217,16 +243,19 @@ __all__ = [
     "measure_pulse",
     "measure_pulses",
     "measure_star",
+    "niirs",
     "open_image",
     "optics",
     "read_plan",
     "read_statement",
     "report",
     "run_batch",
+    "restore",
     "scan_bands",
     "scan_scene",
     "simulate",
     "sites",
+    "verify_restoration",
 ]
 
 

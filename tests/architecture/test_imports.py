@@ -14,7 +14,7 @@ FLOORS = (
     "cli",
     "report",
     "batch",
-    "restore",
+    "restoration",
     "studies",
     "scan",
     "archive",
@@ -38,13 +38,22 @@ FORBIDDEN = {
     ("raster", "numerics"): "files know nothing of fits",
     ("scan", "archive"): "who measures does not keep",
     ("studies", "archive"): "who simulates does not keep",
-    ("restore", "archive"): "a filter is made of one measurement",
+    ("restoration", "archive"): "a filter is made of one measurement",
 }
 
 # Libraries, and the floors that may use them.
 LIBRARIES = {
     "numpy": set(FLOORS) - {"errors"},
-    "scipy": {"archive", "restore", "scan", "targets", "simulate", "raster", "numerics", "optics"},
+    "scipy": {
+        "archive",
+        "restoration",
+        "scan",
+        "targets",
+        "simulate",
+        "raster",
+        "numerics",
+        "optics",
+    },
     "rasterio": {"raster"},
     "matplotlib": {"report"},
     "jinja2": {"report"},

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.numerics.convolution import convolve_inside
-from acutance.restore.filling import CONTEXT_PX, fill_unusable
+from acutance.restoration.filling import CONTEXT_PX, fill_unusable
 
 __all__ = ["PixelCounts", "StoredType", "reach_px", "restored_window"]
 

@@ -68,7 +68,7 @@ class GiqeInputs(ShortRepr):
     @property
     def gsd_weighted_in(self) -> float:
         """GSD between that normal to the line of sight and that on the ground, in inches."""
-        return self.gsd_m / _INCH_M / self._sine**0.25
+        return self.gsd_m / _INCH_M / float(self._sine**0.25)
 
     @property
     def _sine(self) -> float:

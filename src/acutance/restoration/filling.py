@@ -16,6 +16,7 @@ from acutance.curves.grid import Floats
 __all__ = ["CONTEXT_PX", "fill_unusable"]
 
 Mask = NDArray[np.bool_]
+Indices = NDArray[np.intp]
 
 _SIGMAS_PX = (0.7, 1.4, 2.8, 5.6)
 _TRUNCATED = 4.0
@@ -58,12 +59,12 @@ def _fill_holes(
     around = tuple(slice(max(0, one.start - _CONTEXT), one.stop + _CONTEXT) for one in inner)
     if not usable[around].any():
         return
-    found = _substitutes(source[around].astype(float), usable[around])
-    own = tuple(
+    row, col = (
         slice(one.start - outer.start, one.stop - outer.start)
         for one, outer in zip(inner, around, strict=True)
     )
-    values[inner] = np.where(usable[inner], values[inner], found[own])
+    found = _substitutes(source[around].astype(float), usable[around], (row, col))
+    values[inner] = np.where(usable[inner], values[inner], found)
 
 
 def _holes(usable: Mask, tile: tuple[slice, slice]) -> tuple[slice, slice]:
@@ -76,30 +77,30 @@ def _holes(usable: Mask, tile: tuple[slice, slice]) -> tuple[slice, slice]:
     return found[0], found[1]
 
 
-def _substitutes(values: Floats, usable: Mask) -> Floats:
-    """Both continuations' mean, (rows, cols); 0 where no usable pixel is near."""
-    mean, near = _nearby_mean(values, usable)
-    nearest = distance_transform_edt(~usable, return_distances=False, return_indices=True)
-    level = values[tuple(nearest)]
-    mirrored = [
-        2 * own - place for own, place in zip(nearest, np.indices(values.shape), strict=True)
-    ]
+def _substitutes(values: Floats, usable: Mask, own: tuple[slice, slice]) -> Floats:
+    """Both continuations' mean in a part of an array; 0 where no usable pixel is near."""
+    mean, near = _nearby_mean(values, usable, own)
+    indices: Indices = distance_transform_edt(~usable, return_distances=False, return_indices=True)
+    nearest = [one[own] for one in indices]
+    places = [one[own] for one in np.asarray(np.indices(values.shape))]
+    mirrored = [2 * one - place for one, place in zip(nearest, places, strict=True)]
     inside = [(one >= 0) & (one < size) for one, size in zip(mirrored, values.shape, strict=True)]
     there = tuple(np.where(ok, one, 0) for one, ok in zip(mirrored, inside, strict=True))
+    level = values[tuple(nearest)]
     reflected = inside[0] & inside[1] & usable[there]
     continued = np.where(reflected, 2 * level - values[there], level)
     return np.asarray(np.where(near, 0.5 * (continued + mean), 0.0))
 
 
-def _nearby_mean(values: Floats, usable: Mask) -> tuple[Floats, Mask]:
-    """Mean of the usable pixels around every place, by the narrowest window that holds some."""
+def _nearby_mean(values: Floats, usable: Mask, own: tuple[slice, slice]) -> tuple[Floats, Mask]:
+    """Mean of the usable pixels around every place of a part, by the narrowest window with some."""
     weight = usable.astype(float)
-    mean, known = np.zeros(values.shape), np.zeros(values.shape, bool)
+    mean, known = np.zeros(values[own].shape), np.zeros(values[own].shape, bool)
     for sigma in _SIGMAS_PX:
-        share = _blurred(weight, sigma)
-        own = ~known & (share > _MIN_SHARE)
-        mean[own] = (_blurred(values, sigma) / np.where(own, share, 1.0))[own]
-        known |= own
+        share = _blurred(weight, sigma)[own]
+        fresh = ~known & (share > _MIN_SHARE)
+        mean[fresh] = _blurred(values, sigma)[own][fresh] / share[fresh]
+        known |= fresh
         if known.all():
             break
     return mean, known

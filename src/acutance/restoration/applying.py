@@ -18,8 +18,8 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, OptionError
 from acutance.raster import Image, open_image
 from acutance.raster.pixels import equals_nodata, largest_count, require_image_array
-from acutance.restore.restoration_filter import RestorationFilter
-from acutance.restore.window_filter import PixelCounts, StoredType, reach_px, restored_window
+from acutance.restoration.restoration_filter import RestorationFilter
+from acutance.restoration.window_filter import PixelCounts, StoredType, reach_px, restored_window
 
 __all__ = ["RESTORED_TAG", "RestoredImage", "restore", "restore_array"]
 

@@ -26,7 +26,7 @@ from scipy.optimize import brentq
 from acutance.curves import OtfModel
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.restore.scene_spectrum import SceneSpectrum
+from acutance.restoration.scene_spectrum import SceneSpectrum
 
 __all__ = ["DESIRED", "WEIGHTS", "Desired", "KernelFamily"]
 
@@ -163,4 +163,4 @@ def _without_sum(count: int) -> Floats:
     """
     normal = np.full(count, 1 / math.sqrt(count))
     normal[0] += 1
-    return np.eye(count)[:, 1:] - np.outer(normal, normal[1:]) / normal[0]
+    return np.asarray(np.eye(count)[:, 1:] - np.outer(normal, normal[1:]) / normal[0])

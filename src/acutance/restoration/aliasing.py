@@ -6,8 +6,8 @@ import numpy as np
 
 from acutance.curves import OtfModel
 from acutance.curves.grid import Floats
-from acutance.restore.filtered_otf import kernel_otf
-from acutance.restore.scene_spectrum import NaturalScene, SceneSpectrum
+from acutance.restoration.filtered_otf import kernel_otf
+from acutance.restoration.scene_spectrum import NaturalScene, SceneSpectrum
 
 __all__ = ["aliased_share"]
 

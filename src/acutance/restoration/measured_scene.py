@@ -11,7 +11,7 @@ from acutance.curves import OtfModel
 from acutance.curves.grid import Floats
 from acutance.errors import ImageError
 from acutance.raster import Box, Image
-from acutance.restore.scene_spectrum import NaturalScene
+from acutance.restoration.scene_spectrum import NaturalScene
 
 __all__ = ["measured_scene"]
 

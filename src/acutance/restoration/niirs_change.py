@@ -9,7 +9,7 @@ import numpy as np
 
 from acutance.curves import Estimate, Response, metrics
 from acutance.curves.grid import Floats
-from acutance.restore.giqe import GiqeInputs, giqe
+from acutance.restoration.giqe import GiqeInputs, giqe
 
 __all__ = ["giqe_readings", "niirs_changes"]
 
@@ -46,9 +46,8 @@ def niirs_changes(
     found = {}
     for version in (3, 4, 5):
         centre = change(values, version)
-        slopes = np.array([
-            (change(values + _STEP * axis, version) - centre) / _STEP for axis in np.eye(values.size)
-        ])  # fmt: skip
+        moves = values + _STEP * np.eye(values.size)
+        slopes = np.array([(change(moved, version) - centre) / _STEP for moved in moves])
         found[version] = Estimate(centre, float(np.linalg.norm(slopes @ rows)))
     return found
 

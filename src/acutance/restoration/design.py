@@ -16,16 +16,16 @@ from acutance.errors import OptionError
 from acutance.numerics.one_thread import one_thread
 from acutance.optics import Sensor
 from acutance.raster import Gsd, Image
-from acutance.restore.aliasing import aliased_share
-from acutance.restore.filtered_otf import FilteredOtf
-from acutance.restore.kernel_family import DESIRED, Desired, KernelFamily
-from acutance.restore.knobs import Knob, Turned, chosen_knob, weight_of
-from acutance.restore.known_otf import KnownOtf, Measured, known_otf
-from acutance.restore.measured_scene import measured_scene
-from acutance.restore.niirs_change import niirs_changes
-from acutance.restore.restoration_filter import SCHEMA, RestorationFilter
-from acutance.restore.scene_spectrum import NaturalScene, SceneSpectrum, StiffScene
-from acutance.restore.trade import trade_rows
+from acutance.restoration.aliasing import aliased_share
+from acutance.restoration.filtered_otf import FilteredOtf
+from acutance.restoration.kernel_family import DESIRED, Desired, KernelFamily
+from acutance.restoration.knobs import Knob, Turned, chosen_knob, weight_of
+from acutance.restoration.known_otf import KnownOtf, Measured, known_otf
+from acutance.restoration.measured_scene import measured_scene
+from acutance.restoration.niirs_change import niirs_changes
+from acutance.restoration.restoration_filter import SCHEMA, RestorationFilter
+from acutance.restoration.scene_spectrum import NaturalScene, SceneSpectrum, StiffScene
+from acutance.restoration.trade import trade_rows
 from acutance.targets.measurement import direction_document
 from acutance.targets.record import strict_json
 from acutance.targets.slices import OtfSlices

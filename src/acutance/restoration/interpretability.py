@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from acutance.curves import Estimate
 from acutance.errors import OptionError
-from acutance.restore.giqe import EQUATION_STD, JUMP_RER, GiqeInputs, giqe, giqe4_jump
+from acutance.restoration.giqe import EQUATION_STD, JUMP_RER, GiqeInputs, giqe, giqe4_jump
 from acutance.targets import Measurement, Record
 
 __all__ = ["GiqeVersion", "Niirs", "Note", "niirs", "read_niirs_inputs"]

@@ -18,7 +18,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.raster.image import AlongTrack
-from acutance.restore.filtered_otf import kernel_otf
+from acutance.restoration.filtered_otf import kernel_otf
 from acutance.targets.record import RecordedDirection
 
 __all__ = ["SCHEMA", "RestorationFilter", "Sharpness"]

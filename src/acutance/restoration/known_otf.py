@@ -17,7 +17,7 @@ from acutance.numerics.one_thread import one_thread
 from acutance.optics import Sensor
 from acutance.raster import Gsd
 from acutance.raster.image import AlongTrack
-from acutance.restore.filtered_otf import RememberedOtf, SensorOtf
+from acutance.restoration.filtered_otf import RememberedOtf, SensorOtf
 from acutance.targets import Measurement, Record, TargetResult
 from acutance.targets.combine import combine
 from acutance.targets.combine.curves import OtfSamples

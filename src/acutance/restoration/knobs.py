@@ -14,9 +14,9 @@ from acutance.curves import Otf2d, Response
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
-from acutance.restore.filtered_otf import ExactOtf, FilteredOtf
-from acutance.restore.kernel_family import WEIGHTS, KernelFamily
-from acutance.restore.known_otf import KnownOtf
+from acutance.restoration.filtered_otf import ExactOtf, FilteredOtf
+from acutance.restoration.kernel_family import WEIGHTS, KernelFamily
+from acutance.restoration.known_otf import KnownOtf
 
 __all__ = ["KNOBS", "Knob", "Turned", "chosen_knob", "weight_of", "worst_overshoot"]
 

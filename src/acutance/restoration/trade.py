@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from acutance.restore.kernel_family import WEIGHTS
-from acutance.restore.knobs import Turned, worst_overshoot
-from acutance.restore.niirs_change import niirs_changes
+from acutance.restoration.kernel_family import WEIGHTS
+from acutance.restoration.knobs import Turned, worst_overshoot
+from acutance.restoration.niirs_change import niirs_changes
 
 __all__ = ["trade_rows"]
 
