@@ -9,8 +9,8 @@ measurements of one target, which is compared (`compare` adds the truth):
 - `text` writes for a terminal, `csv` the MTF, `document` JSON (with its schema)
 
 `labels.py` has what numbers, kinds and methods are called, `paper.py` colours, type and saving.
-Bands of a scene, studies, plans and budgets have outputs of their own (`bands.py`, ``studies/``,
-`budget.py`).
+Bands of a scene, filters, studies, plans and budgets have outputs of their own (`bands.py`,
+`restoration.py`, ``studies/``, `budget.py`).
 """
 
 from acutance.report.bands import bands_document, bands_page, bands_tables, bands_text
@@ -24,14 +24,22 @@ from acutance.report.comparison import Comparison, compare
 from acutance.report.csv import csv
 from acutance.report.figure import draw, panels
 from acutance.report.figures.panel import Panel
+from acutance.report.figures.restoration import before_after_figure, restoration_figure
 from acutance.report.html import Table
 from acutance.report.json import document, json_text, measurement_schema
 from acutance.report.notebook import notebook_html
 from acutance.report.page import page, rejection_page
 from acutance.report.paper import figure_bytes, save_figure
+from acutance.report.restoration import (
+    niirs_text,
+    proof_text,
+    restoration_page,
+    restoration_text,
+)
 from acutance.report.studies.mirrors import mirror_plan_figure, mirror_plan_text
 from acutance.report.studies.study import plan_text, study_figure, study_text
 from acutance.report.tables.points import sources_csv
+from acutance.report.tables.restoration import restoration_tables
 from acutance.report.tables.result import tables
 from acutance.report.text import text
 from acutance.report.truth import (
@@ -49,6 +57,7 @@ __all__ = [
     "bands_page",
     "bands_tables",
     "bands_text",
+    "before_after_figure",
     "budget_document",
     "budget_figure",
     "budget_text",
@@ -62,11 +71,17 @@ __all__ = [
     "measurement_schema",
     "mirror_plan_figure",
     "mirror_plan_text",
+    "niirs_text",
     "notebook_html",
     "page",
     "panels",
     "plan_text",
+    "proof_text",
     "rejection_page",
+    "restoration_figure",
+    "restoration_page",
+    "restoration_tables",
+    "restoration_text",
     "save_figure",
     "scene_document",
     "sensor_document",

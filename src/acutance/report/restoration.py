@@ -1,0 +1,147 @@
+"""A restoration filter, its proof and NIIRS: text, JSON and page."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from acutance.report.figures.restoration import restoration_panels
+from acutance.report.html import Headline, Section, Table, Verdict, render_page
+from acutance.report.labels import format_number, word_estimate
+from acutance.report.page import panel_plate
+from acutance.report.tables.restoration import niirs_table, proof_table, restoration_tables
+from acutance.report.text import table_text
+
+if TYPE_CHECKING:
+    from acutance.restoration import RestorationFilter, RestorationProof
+    from acutance.restoration.interpretability import Niirs
+
+__all__ = ["niirs_text", "proof_text", "restoration_page", "restoration_text"]
+
+_KNOBS = {
+    "noise_gain": "noise gain",
+    "mtf_nyquist": "MTF at Nyquist",
+    "overshoot": "overshoot",
+}
+
+
+def restoration_text(filter: RestorationFilter) -> str:
+    """A filter for a terminal: what it is, sharpness before and after, what it costs.
+
+    Parameters
+    ----------
+    filter : RestorationFilter
+    """
+    tables = [one for one in restoration_tables(filter) if not one.page_only]
+    notes = [f"note: {note}" for note in filter.notes]
+    return "\n\n".join(
+        (
+            f"restoration, {_title(filter)}\n  of {'; '.join(filter.sources)}",
+            *map(table_text, tables),
+            *(["\n".join(notes)] if notes else []),
+        )
+    )
+
+
+def restoration_page(filter: RestorationFilter, *, command: str | None = None) -> str:
+    """A filter as one self-contained HTML page: the sheet.
+
+    Parameters
+    ----------
+    filter : RestorationFilter
+    command : str, optional
+        The command line.
+    """
+    plates = tuple(map(panel_plate, restoration_panels(filter)))
+    sharpness, cost, trade, kernel = restoration_tables(filter)
+    content = (
+        Section("Result", headlines=_headlines(filter), verdicts=_verdicts(filter)),
+        Section("Before and after", plates=plates[:3]),
+        Section("Noise and kernel", plates=plates[3:]),
+        *map(Section.of_table, (sharpness, cost, trade, kernel)),
+        Section("How it was designed", tables=(_provenance(filter),), command=command),
+    )
+    return render_page("Restoration filter", _title(filter), content, _facts(filter))
+
+
+def proof_text(proof: RestorationProof) -> str:
+    """Edges before and after for a terminal.
+
+    Parameters
+    ----------
+    proof : RestorationProof
+    """
+    refused = [f"{one}" for one in proof.rejected]
+    return "\n".join((table_text(proof_table(proof)), *refused))
+
+
+def niirs_text(found: Niirs) -> str:
+    """A NIIRS for a terminal: the number, what it was computed from, its notes.
+
+    Parameters
+    ----------
+    found : Niirs
+    """
+    return table_text(niirs_table(found))
+
+
+def _title(filter: RestorationFilter) -> str:
+    asked = filter.document.get("asked") or {}
+    for name, value in asked.items():
+        return (
+            f"{filter.method} kernel of {filter.size} by {filter.size} pixels, {_KNOBS[name]} "
+            f"{format_number(value)} asked for"
+        )
+    aim = "a stated MTF" if filter.method == "target" else "least expected error"
+    return f"{filter.method} kernel of {filter.size} by {filter.size} pixels, {aim}"
+
+
+def _headlines(filter: RestorationFilter) -> tuple[Headline, ...]:
+    """MTF at Nyquist of both directions, noise gain, overshoot, NIIRS."""
+    cards = []
+    for name, after in filter.after.directions.items():
+        words, before = word_estimate(after.mtf_nyquist), filter.before.directions[name].mtf_nyquist
+        details = (f"± {words.std}", f"before {word_estimate(before).value_and_std}")
+        cards.append(Headline(f"MTF at Nyquist, {name}", words.value, details=details))
+    snr = () if filter.snr is None else (f"SNR {filter.snr:.3g} → {filter.snr_after:.3g}",)
+    cards.append(Headline("Noise gain", f"{filter.noise_gain:.2f}", details=snr))
+    words = word_estimate(100 * filter.after.overshoot)
+    cards.append(Headline("Overshoot", words.value, "%", details=(f"± {words.std}",)))
+    if filter.niirs_change:
+        words = word_estimate(filter.niirs_change[4])
+        low, high = words.low, words.high
+        cards.append(
+            Headline("NIIRS, GIQE 4", f"{filter.niirs_change[4].value:+.2f}".replace("-", "−"),
+                     details=(f"{low} … {high}",))
+        )  # fmt: skip
+    return tuple(cards)
+
+
+def _verdicts(filter: RestorationFilter) -> tuple[Verdict, ...]:
+    if not filter.notes:
+        return (Verdict("good", "Nothing has to be said against it."),)
+    return tuple(Verdict("usable", f"{note[:1].upper()}{note[1:]}.") for note in filter.notes)
+
+
+def _provenance(filter: RestorationFilter) -> Table:
+    scene = filter.document.get("scene", {})
+    rows = [("measured", "; ".join(filter.sources)), ("scene", str(scene.get("kind", "")))]
+    rows += [
+        (name.replace("_", " "), format_number(scene[name]))
+        for name in ("contrast_to_noise", "exponent")
+        if name in scene
+    ]
+    rows.append(("weight of the noise", format_number(float(filter.document["noise_weight"]))))
+    software = filter.document.get("software", {})
+    rows += [(name, str(version)) for name, version in software.items()]
+    return Table(("What", "Value"), tuple(rows), "ll")
+
+
+def _facts(filter: RestorationFilter) -> dict[str, str]:
+    facts = {"size": f"{filter.size} × {filter.size} px"}
+    if filter.gsd_m is not None:
+        row, col = filter.gsd_m
+        facts["GSD"] = f"{col:g} m" if row == col else f"{row:g} × {col:g} m"
+    if filter.band is not None:
+        facts["band"] = str(filter.band)
+    designed = str(filter.document.get("designed_at", ""))
+    return facts | {"designed": designed[:16].replace("T", " ") + " UTC"}

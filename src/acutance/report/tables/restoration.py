@@ -1,0 +1,193 @@
+"""A restoration filter in tables: what it does, what it costs, its kernel."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from acutance.report.html import Table
+from acutance.report.labels import MISSING, format_number, metric_words, word_estimate, write_fixed
+
+if TYPE_CHECKING:
+    from acutance.restoration import RestorationFilter, RestorationProof
+    from acutance.restoration.interpretability import Niirs
+
+__all__ = ["niirs_table", "proof_table", "restoration_tables"]
+
+_SHOWN = (
+    "mtf_nyquist", "rer", "fwhm_px", "fwhm_m", "mtf50_cpp", "mtf_area", "edge_slope_per_px",
+    "overshoot", "undershoot", "giqe_h",
+)  # fmt: skip
+_MANY_STDS = 2.0
+
+
+def restoration_tables(filter: RestorationFilter) -> tuple[Table, ...]:
+    """Sharpness before and after, noise and interpretability, the trade, the kernel.
+
+    Parameters
+    ----------
+    filter : RestorationFilter
+    """
+    return _sharpness(filter), _cost(filter), _trade(filter), _kernel(filter)
+
+
+def _sharpness(filter: RestorationFilter) -> Table:
+    rows = []
+    for name in _SHOWN:
+        words = metric_words(name)
+        numbers = [
+            sharpness.directions[direction].numbers.get(name)
+            for direction in ("across", "along")
+            for sharpness in (filter.before, filter.after)
+        ]
+        if any(number is not None for number in numbers):
+            cells = (
+                MISSING if one is None else word_estimate(one).value_and_std for one in numbers
+            )
+            rows.append((words.label_with_unit, *cells))
+    return Table(
+        ("Number", "Across before", "after", "Along before", "after"), tuple(rows), "lrrrr",
+        title="Sharpness before and after",
+        notes=(
+            "After: as predicted, with the deviation of the measurement; that of the kernel is 0.",
+        ),
+    )  # fmt: skip
+
+
+def _cost(filter: RestorationFilter) -> Table:
+    """Noise, SNR, MTF times SNR, aliasing, NIIRS."""
+    snr, after = filter.snr, filter.snr_after
+    before_share, after_share = (f"{100 * share:.1f}" for share in filter.aliased_share)
+    near = filter.noise_correlation
+    middle = near.shape[0] // 2
+    rows = [
+        ("Noise, of that before", "1", write_fixed(filter.noise_gain, 3)),
+        ("SNR", _number(snr), _number(after)),
+        *(
+            (f"MTF at Nyquist × SNR, {name}", *_products(filter, name))
+            for name in ("across", "along")
+        ),
+        ("Correlation of the noise of neighbours, across", "0",
+         write_fixed(float(near[middle, middle + 1]), 3)),
+        ("Correlation of the noise of neighbours, along", "0",
+         write_fixed(float(near[middle + 1, middle]), 3)),
+        ("Share of fine detail that is aliased [%]", before_share, after_share),
+        *(
+            (f"Change of NIIRS, GIQE {version}", "", word_estimate(one).value_and_std)
+            for version, one in filter.niirs_change.items()
+        ),
+    ]  # fmt: skip
+    return Table(
+        ("Cost", "Before", "After"), tuple(rows), "lrr", title="Noise and interpretability",
+        notes=(
+            "Noise before is taken to be white; where a product was resampled it is not, and its "
+            "gain is another. Detail beyond Nyquist is amplified like the frequency it was folded "
+            "to: no filter tells them apart. A change of NIIRS has the deviation of the "
+            "measurement; GIQE 5 was made for images before sharpening.",
+        ),
+    )  # fmt: skip
+
+
+def _number(value: float | None) -> str:
+    return MISSING if value is None else format_number(value, 3)
+
+
+def _products(filter: RestorationFilter, direction: str) -> tuple[str, str]:
+    """MTF at Nyquist times SNR, before and after."""
+    found = []
+    for sharpness, snr in ((filter.before, filter.snr), (filter.after, filter.snr_after)):
+        number = sharpness.directions[direction].mtf_nyquist
+        found.append(MISSING if snr is None else word_estimate(number * snr).value_and_std)
+    return found[0], found[1]
+
+
+def _trade(filter: RestorationFilter) -> Table:
+    rows = tuple(
+        (
+            write_fixed(row["noise_gain"], 2),
+            write_fixed(row["mtf_nyquist_across"], 3),
+            write_fixed(row["mtf_nyquist_along"], 3),
+            write_fixed(100 * row["overshoot"], 1),
+            MISSING if row["niirs_change"] is None else write_fixed(row["niirs_change"], 2),
+        )
+        for row in filter.trade
+    )
+    return Table(
+        ("Noise gain", "MTF at Nyquist across", "along", "Overshoot [%]", "NIIRS (GIQE 4)"), rows,
+        "rrrrr", title="The trade", page_only=True,
+        notes=("What other kernels of this size and kind would give for their noise.",),
+    )  # fmt: skip
+
+
+def _kernel(filter: RestorationFilter) -> Table:
+    kernel = filter.kernel
+    rows = tuple(tuple(write_fixed(float(one), 5) for one in row) for row in kernel)
+    reach = filter.margin_px
+    columns = tuple(f"{place:+d}" if place else "0" for place in range(-reach, reach + 1))
+    return Table(
+        columns, rows, "r" * kernel.shape[0], title="The kernel", page_only=True,
+        notes=(
+            f"{kernel.shape[0]} by {kernel.shape[0]} weights that sum to 1; rows run downwards. "
+            "The image is convolved with it: the weight to the right of the middle is that of the "
+            "pixel to the left. All digits are in the JSON document.",
+        ),
+    )  # fmt: skip
+
+
+def proof_table(proof: RestorationProof) -> Table:
+    """Edges before and after a filter, beside the prediction.
+
+    Parameters
+    ----------
+    proof : RestorationProof
+    """
+    rows, alerts = [], set()
+    for i, one in enumerate(proof.edges):
+        scatter = float(np.hypot(one.after.std, one.predicted.std))
+        if abs(one.off) > _MANY_STDS * scatter:
+            alerts.add(i)
+        gain = one.noise_gain
+        rows.append((
+            one.name, f"{one.normal_deg:.1f}", word_estimate(one.before).value_and_std,
+            word_estimate(one.predicted).value_and_std, word_estimate(one.after).value_and_std,
+            write_fixed(one.off), word_estimate(one.overshoot).value_and_std,
+            write_fixed(gain, 2) if np.isfinite(gain) else MISSING,
+        ))  # fmt: skip
+    return Table(
+        (
+            "Edge", "Normal [°]", "MTF at Nyquist before", "predicted", "measured", "difference",
+            "Overshoot", "SNR before/after",
+        ),
+        tuple(rows), "lrrrrrrr", alerts=frozenset(alerts), title="Edges before and after",
+        notes=(
+            "Predicted: the edge before, times the filter's transfer along its normal. Both "
+            "measurements see the same pixels, so their difference is smaller than the deviations.",
+        ),
+    )  # fmt: skip
+
+
+def niirs_table(found: Niirs) -> Table:
+    """A NIIRS with what it was computed from.
+
+    Parameters
+    ----------
+    found : Niirs
+    """
+    own = found.inputs
+    assert own is not None
+    low, high = found.interval(0.95)
+    rows = (
+        (f"NIIRS (GIQE {found.version})", word_estimate(found).value_and_std),
+        ("95 % interval", f"{low:.2f} … {high:.2f}"),
+        ("of the measurement", write_fixed(found.inputs_std, 3)),
+        ("of the equation", write_fixed(found.equation_std, 1)),
+        ("GSD [m]", format_number(own.gsd_m)),
+        ("RER across, along", f"{own.rer_across:.4f}, {own.rer_along:.4f}"),
+        ("SNR", format_number(own.snr)),
+        ("elevation [°]", format_number(own.elevation_deg)),
+        ("overshoot H", format_number(own.giqe_h)),
+        ("noise gain", format_number(own.noise_gain)),
+    )
+    notes = tuple(str(note) for note in found.notes)
+    return Table(("Number", "Value"), rows, "lr", title="Interpretability", notes=notes)
