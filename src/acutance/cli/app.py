@@ -20,9 +20,11 @@ from acutance.cli import (
     demo,
     edge,
     image,
+    niirs,
     plan_mirrors,
     points,
     pulse,
+    restore,
     scan,
     simulate,
     sites,
@@ -117,6 +119,7 @@ for _name, _module, _words in (
     ("scan", scan, "Measure a sensor from all edges of a scene."),
     ("batch", batch, "Measure all targets of many images into an archive."),
     ("image", image, "Show what an image says of itself."),
+    ("niirs", niirs, "Interpretability of an image (NIIRS)."),
     ("sites", sites, "List the edge targets that --site knows."),
     ("study", study, "Run a study of targets and estimators."),
     ("demo", demo, "Measure a simulated campaign by every method."),
@@ -125,6 +128,7 @@ for _name, _module, _words in (
     _epilog = f"{EXIT_CODES}\n\n{_module.EXAMPLE}" if _measures else _module.EXAMPLE
     app.command(_name, epilog=_epilog, short_help=_words)(getattr(_module, _name))
 app.add_typer(archive.app, name="archive")
+app.add_typer(restore.app, name="restore")
 app.add_typer(simulate.app, name="simulate")
 app.add_typer(plan_mirrors.app, name="plan")
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from acutance.cli.choices import numbers_of
+from acutance.cli.documents import read_json
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import GsdOption, ResultOptions, parse_gsd
 from acutance.cli.results import Outputs, Shown
@@ -47,7 +46,7 @@ def combine(
     together by a parametric sensor; a chi-square shows whether they agree.
     """
     outputs = Outputs.checked(wanted, files)
-    documents = [_read(name) for name in files]
+    documents = [read_json(name) for name in files]
 
     from acutance.targets.combine import CombineOptions
     from acutance.targets.combine import combine as combine_measurements
@@ -57,21 +56,6 @@ def combine(
         documents, names=files, gsd_m=parse_gsd(gsd), options=options
     )
     outputs.deliver(Shown(measurement))
-
-
-def _read(name: str) -> Any:
-    try:
-        return json.loads(Path(name).read_text(encoding="utf-8"))
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise OptionError(
-            f"{name} cannot be read ({reason}): give files that a measuring command wrote "
-            "with --json"
-        ) from error
-    except ValueError as error:
-        raise OptionError(
-            f"{name} holds no JSON ({error}): write it with a measuring command and --json"
-        ) from error
 
 
 def _parse_detector(text: str) -> tuple[float, float]:

@@ -46,7 +46,7 @@ class RestoredImage(ShortRepr):
 
     def summary(self) -> str:
         """The file, and how many pixels of all bands were special."""
-        return f"{self.path}, {count_words(sum(self.bands.values(), PixelCounts()))}"
+        return f"{self.path}, {sum(self.bands.values(), PixelCounts()).in_words()}"
 
     def to_dict(self) -> dict[str, Any]:
         """Path and counts, for JSON."""
@@ -54,20 +54,6 @@ class RestoredImage(ShortRepr):
             "path": self.path,
             "bands": {str(band): one.to_dict() for band, one in self.bands.items()},
         }
-
-
-def count_words(counts: PixelCounts) -> str:
-    """What became of pixels, in words; those that nothing happened to are left out."""
-    names = {
-        "nodata": "without data",
-        "saturated": "saturated",
-        "clipped_low": "clipped below",
-        "clipped_high": "clipped above",
-        "off_nodata": "moved off the nodata value",
-    }
-    found = [f"{getattr(counts, name)} {word}" for name, word in names.items()
-             if getattr(counts, name)]  # fmt: skip
-    return f"{counts.pixels} pixels" + (f", {', '.join(found)}" if found else "")
 
 
 @overload
@@ -150,7 +136,7 @@ def restore(
             raise OptionError("out was given with an array: the result is returned")
         array, counts = restore_array(image, filter, nodata=nodata, saturation=saturation)
         if counts.clipped_low or counts.clipped_high:
-            warnings.warn(f"restored {count_words(counts)}", stacklevel=2)
+            warnings.warn(f"restored {counts.in_words()}", stacklevel=2)
         return array
     if out is None:
         raise OptionError(f"{os.fspath(image)} is a file: name the one to be written (out)")

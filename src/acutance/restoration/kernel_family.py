@@ -28,7 +28,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.restoration.scene_spectrum import SceneSpectrum
 
-__all__ = ["DESIRED", "WEIGHTS", "Desired", "KernelFamily"]
+__all__ = ["DESIRED", "Desired", "KernelFamily"]
 
 Complexes = NDArray[np.complex128]
 Desired = Callable[[Floats, Floats], Complexes]
@@ -39,8 +39,8 @@ _VARIANCE_STEP_CPP = 1 / 24
 _ORDERS = (-1, 0, 1)
 """Multiples of the sampling frequency that are folded back: further ones hold no light."""
 
-WEIGHTS: Floats = np.geomspace(1e-5, 1e7, 121)
-"""Weights of the noise that are tried, 1 being the noise there is."""
+_TRIED: Floats = np.geomspace(1e-8, 1e5, 131)
+"""Weights of the noise that are tried, shares of the scene's mean power."""
 
 
 def _pixel(u_cpp: Floats, v_cpp: Floats) -> Complexes:
@@ -108,13 +108,21 @@ class KernelFamily(ShortRepr):
         weights = self.wanted / (self.power + weight)
         return math.sqrt(1 / self.size**2 + float(weights @ weights))
 
+    @property
+    def weights(self) -> Floats:
+        """Weights of the noise from next to none to a flat kernel, rising; 1 is the noise there is.
+
+        Where little is known of the noise, or there is next to none, 1 may lie beyond them.
+        """
+        return float(self.power.mean()) * _TRIED
+
     def weight_of_gain(self, noise_gain: float) -> float:
         """The weight whose kernel has a noise gain: the gain falls with every weight."""
 
         def excess(log_weight: float) -> float:
             return self.noise_gain(math.exp(log_weight)) - noise_gain
 
-        low, high = math.log(WEIGHTS[0]), math.log(WEIGHTS[-1])
+        low, high = (math.log(float(self.weights[i])) for i in (0, -1))
         return math.exp(float(brentq(excess, low, high, xtol=1e-12)))
 
 

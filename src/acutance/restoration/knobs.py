@@ -15,7 +15,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.restoration.filtered_otf import ExactOtf, FilteredOtf
-from acutance.restoration.kernel_family import WEIGHTS, KernelFamily
+from acutance.restoration.kernel_family import KernelFamily
 from acutance.restoration.known_otf import KnownOtf
 
 __all__ = ["KNOBS", "Knob", "Turned", "chosen_knob", "weight_of", "worst_overshoot"]
@@ -111,7 +111,7 @@ def weight_of(knob: Knob, turned: Turned) -> float:
     OptionError
         If no kernel of the family reaches it: the message has what they reach.
     """
-    from_smooth = WEIGHTS[::-1]
+    from_smooth = turned.family.weights[::-1]
     values = np.array([turned.value(knob.name, float(weight)) for weight in from_smooth])
     reached = np.flatnonzero((values[:-1] < knob.value) & (values[1:] >= knob.value))
     if not reached.size:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from acutance.restoration.kernel_family import WEIGHTS
 from acutance.restoration.knobs import Turned, worst_overshoot
 from acutance.restoration.niirs_change import niirs_changes
 
@@ -24,7 +23,7 @@ def trade_rows(turned: Turned, snr: float | None) -> list[dict[str, float | None
         Without it the change of NIIRS is None.
     """
     family = turned.family
-    low, high = (family.noise_gain(float(weight)) for weight in (WEIGHTS[-1], WEIGHTS[0]))
+    low, high = (family.noise_gain(float(family.weights[i])) for i in (-1, 0))
     return [_row(turned, float(gain), snr) for gain in _GAINS if low < gain < high]
 
 

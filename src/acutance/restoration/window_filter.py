@@ -50,6 +50,20 @@ class PixelCounts:
     def __add__(self, other: PixelCounts) -> PixelCounts:
         return PixelCounts(*(getattr(self, name) + getattr(other, name) for name in vars(self)))
 
+    def in_words(self) -> str:
+        """How many were special; what happened to none is left out."""
+        words = {
+            "nodata": "without data",
+            "saturated": "saturated",
+            "clipped_low": "clipped below",
+            "clipped_high": "clipped above",
+            "off_nodata": "moved off the nodata value",
+        }
+        found = [
+            f"{getattr(self, name)} {word}" for name, word in words.items() if getattr(self, name)
+        ]
+        return f"{self.pixels} pixels" + (f", {', '.join(found)}" if found else "")
+
     def to_dict(self) -> dict[str, int]:
         """All by name."""
         return dict(vars(self))

@@ -160,9 +160,9 @@ def _draw_esf(axes: Axes, filter: RestorationFilter) -> None:
         axes.fill_between(place, low, high, color=COLORS[name], alpha=0.22, linewidth=0)
         axes.plot(place, value, color=COLORS[name], dashes=(9, 3) if i else (1, 0))
         axes.text(
-            0.03, 0.94 - 0.155 * i, f"{name}, overshoot\n"
+            0.97, 0.46 - 0.155 * i, f"{name}, overshoot\n"
             f"{word_estimate(100 * after.overshoot).value_and_std} %",
-            transform=axes.transAxes, va="top", color=COLORS[name],
+            transform=axes.transAxes, ha="right", va="top", color=COLORS[name],
         )  # fmt: skip
     worst = filter.after.overshoot.value
     for low_level, high_level in ((1.0, 1.0 + worst), (-worst, 0.0)):
