@@ -7,7 +7,7 @@ import numpy as np
 from acutance.curves import OtfModel
 from acutance.curves.grid import Floats
 from acutance.restoration.filtered_otf import kernel_otf
-from acutance.restoration.scene_spectrum import NaturalScene, SceneSpectrum
+from acutance.restoration.scene_spectrum import NaturalScene, SceneSpectrum, StiffScene
 
 __all__ = ["aliased_share"]
 
@@ -29,7 +29,7 @@ def aliased_share(model: OtfModel, scene: SceneSpectrum, kernel: Floats) -> tupl
         One that ends at Nyquist is replaced by a natural one.
     kernel : (m, m) array
     """
-    own = scene if isinstance(scene, NaturalScene) else NaturalScene(_ANY_CONTRAST)
+    own = NaturalScene(_ANY_CONTRAST) if isinstance(scene, StiffScene) else scene
     grid = (np.arange(_FREQUENCIES) + 0.5) / _FREQUENCIES - 0.5
     u, v = (axis.ravel() for axis in np.meshgrid(grid, grid))
     fine = np.hypot(u, v) > _LOWEST_CPP
@@ -41,5 +41,5 @@ def aliased_share(model: OtfModel, scene: SceneSpectrum, kernel: Floats) -> tupl
     return before, float(np.sum(gain * folded) / np.sum(gain * (true + folded)))
 
 
-def _power(model: OtfModel, scene: NaturalScene, u: Floats, v: Floats) -> Floats:
+def _power(model: OtfModel, scene: SceneSpectrum, u: Floats, v: Floats) -> Floats:
     return np.asarray(scene.power(u, v) * np.abs(model.otf(u, v)) ** 2)

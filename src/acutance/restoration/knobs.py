@@ -104,7 +104,9 @@ def worst_overshoot(responses: tuple[Response, ...]) -> float:
 
 
 def weight_of(knob: Knob, turned: Turned) -> float:
-    """The weight of noise whose kernel has the number asked for: the smoothest one that has it.
+    """The weight of noise whose kernel has the number asked for: the sharpest that has it.
+
+    Overshoot does not always rise with sharpness: a kernel that smooths may overshoot too.
 
     Raises
     ------
@@ -116,8 +118,8 @@ def weight_of(knob: Knob, turned: Turned) -> float:
     reached = np.flatnonzero((values[:-1] < knob.value) & (values[1:] >= knob.value))
     if not reached.size:
         raise OptionError(_out_of_reach(knob, values, turned.family.size))
-    first = int(reached[0])
-    low, high = (math.log(float(from_smooth[i])) for i in (first + 1, first))
+    last = int(reached[-1])
+    low, high = (math.log(float(from_smooth[i])) for i in (last + 1, last))
 
     def excess(log_weight: float) -> float:
         return turned.value(knob.name, math.exp(log_weight)) - knob.value
@@ -130,5 +132,6 @@ def _out_of_reach(knob: Knob, values: Floats, size: int) -> str:
     return (
         f"{_WORDS[knob.name]} of {knob.value:g} was requested, and kernels of {size} by {size} "
         f"pixels for this sensor reach {values.min():.{digits}f} to {values.max():.{digits}f}: "
-        "choose a value between them, or the sharper aim desired='point'"
+        "choose a value between them, or the sharper aim (desired='point', "
+        "--desired point)"
     )
