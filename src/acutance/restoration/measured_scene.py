@@ -26,8 +26,8 @@ _LOWEST_CPP = 3 / _WINDOW_PX
 _MIN_USABLE = 0.999
 _EXPONENTS = (1.0, 5.0)
 _SMOOTHED = 4.0
-"""Standard deviation, in steps of 1/128 c/px, over which departures from the power law are averaged:
-on landscapes half or twice of it gives larger errors, by 1 to 3 % twice."""
+"""Standard deviation, in steps of 1/128 c/px, of the mean over departures from the power law: with
+7 the errors on landscapes are 1 to 3 % larger, with 12 they are 1 to 5 % larger."""
 _TRUSTED = 0.02
 """Mean share of the signal below which a departure counts half: the power law then stands."""
 _DEPARTURES = (0.2, 5.0)

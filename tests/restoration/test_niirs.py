@@ -1,0 +1,140 @@
+"""The General Image Quality Equation: test vectors, guard rails, deviations."""
+
+import math
+
+import pytest
+
+import acutance as ac
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        ({"gsd_m": 0.52832, "rer": 0.35, "snr": 50, "version": 5}, 5.0152),
+        ({"gsd_m": 0.7, "rer": (0.45, 0.42), "snr": 80, "elevation_deg": 70, "version": 5}, 4.6786),
+        (
+            {"gsd_m": 39.37 * 0.0254, "rer": 0.9, "snr": 50, "giqe_h": 1.3, "noise_gain": 10,
+             "version": 4},
+            3.9621,
+        ),
+    ],
+)  # fmt: skip
+def test_vectors(arguments, expected):
+    assert ac.niirs(**arguments).value == pytest.approx(expected, abs=5e-5)
+
+
+def test_version_3_is_the_equation_written_out():
+    found = ac.niirs(gsd_m=1.0, rer=0.5, snr=40, giqe_h=1.2, noise_gain=2, version=3)
+    inches = 1 / 0.0254
+    expected = 11.81 + 3.32 * math.log10(0.5 / inches) - 1.48 * 1.2 - 2 / 40
+    assert found.value == pytest.approx(expected)
+
+
+def test_the_noise_term_of_version_4_is_344_thousandths():
+    quiet, loud = (ac.niirs(gsd_m=1, rer=0.5, snr=snr, version=4).value for snr in (100, 10))
+    assert quiet - loud == pytest.approx(0.344 * (1 / 10 - 1 / 100))
+
+
+@pytest.mark.parametrize(("version", "power"), [(3, 0.5), (4, 0.5), (5, 0.25)])
+def test_a_low_elevation_stretches_pixels_on_the_ground(version, power):
+    high, low = (
+        ac.niirs(gsd_m=1, rer=0.5, snr=50, elevation_deg=one, version=version).value
+        for one in (90, 30)
+    )
+    by_gsd = 3.16 if version == 4 else 3.32
+    assert high - low == pytest.approx(by_gsd * power * math.log10(2))
+
+
+def test_the_smaller_rer_counts_twice_in_version_5():
+    mixed = ac.niirs(gsd_m=1, rer=(0.6, 0.3), snr=20).value
+    turned = ac.niirs(gsd_m=1, rer=(0.3, 0.6), snr=20).value
+    mean = ac.niirs(gsd_m=1, rer=math.sqrt(0.18), snr=20).value
+    assert mixed == turned
+    assert mixed < mean
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ({"rer": 0.4, "snr": 4}, "low SNR"),
+        ({"rer": 0.1, "snr": 50}, "RER out of range"),
+        ({"rer": (0.5, 1.4), "snr": 50, "version": 4}, "RER out of range"),
+        ({"rer": 0.9, "snr": 50, "version": 4}, "jump at RER 0.9"),
+        ({"rer": ac.Estimate(0.86, 0.03), "snr": 50, "version": 4}, "jump at RER 0.9"),
+        ({"rer": 0.6, "snr": 50, "noise_gain": 2.0}, "sharpened image"),
+    ],
+)
+def test_guard_rails_are_notes_of_the_result(arguments, name):
+    found = ac.niirs(gsd_m=0.7, **arguments)
+    assert name in [note.name for note in found.notes]
+    assert name in str(found)
+    assert found.to_dict()["notes"][0]["message"]
+
+
+def test_an_ordinary_image_has_no_note():
+    for version in (3, 4, 5):
+        found = ac.niirs(gsd_m=0.7, rer=0.45, snr=80, version=version)
+        assert found.notes == ()
+        assert str(found).endswith(f"(GIQE {version})")
+
+
+def test_the_jump_of_version_4_is_told():
+    low, high = (ac.niirs(gsd_m=0.7, rer=one, snr=50, version=4) for one in (0.89999999, 0.9))
+    told = float(high.notes[0].message.split("by ")[1])
+    assert high.value - low.value == pytest.approx(told, abs=0.005)
+
+
+def test_deviations_of_the_inputs_and_of_the_equation_add_in_squares():
+    found = ac.niirs(
+        gsd_m=0.7, rer=(ac.Estimate(0.45, 0.02), ac.Estimate(0.45, 0.02)), snr=50, version=3
+    )
+    slope = 3.32 / math.log(10) / 2 / 0.45
+    assert found.inputs_std == pytest.approx(math.sqrt(2) * slope * 0.02, rel=1e-3)
+    assert found.std == pytest.approx(math.hypot(found.inputs_std, 0.3))
+    exact = ac.niirs(gsd_m=0.7, rer=0.45, snr=50)
+    assert exact.inputs_std == 0
+    assert exact.std == exact.equation_std
+
+
+def test_a_measurement_gives_what_is_not_stated(edges):
+    found = ac.niirs(edges[0], elevation_deg=80)
+    assert found.inputs.rer_across == found.inputs.rer_along == edges[0].rer.value
+    assert found.inputs.gsd_m == pytest.approx(0.7)
+    assert found.inputs.snr == pytest.approx(edges[0].snr)
+    assert found.inputs_std > 0
+    assert ac.niirs(edges[0].record, snr=20).inputs.snr == 20
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"rer": 0.5, "snr": 50}, "gsd_m"),
+        ({"gsd_m": 0.7, "snr": 50}, "RER"),
+        ({"gsd_m": 0.7, "rer": 0.5}, "SNR"),
+        ({"gsd_m": 0.7, "rer": -0.5, "snr": 50}, "above 0"),
+        ({"gsd_m": 0.7, "rer": 0.5, "snr": "high"}, "give a number"),
+        ({"gsd_m": 0.7, "rer": (0.5, 0.4, 0.3), "snr": 50}, "3 values"),
+        ({"gsd_m": 0.7, "rer": 0.5, "snr": 50, "version": 2}, "versions 3, 4 and 5"),
+        ({"gsd_m": 0.7, "rer": 0.5, "snr": 50, "elevation_deg": 0}, "elevation_deg"),
+        ({"gsd_m": 0.7, "rer": 0.5, "snr": 50, "noise_gain": 0}, "noise_gain"),
+    ],
+)
+def test_what_is_missing_or_no_number_is_refused(arguments, message):
+    with pytest.raises(ac.OptionError, match=message):
+        ac.niirs(**arguments)
+
+
+def test_a_change_has_the_sign_of_the_numbers_it_is_made_of(sharpening):
+    change = sharpening.niirs_change
+    assert set(change) == {3, 4, 5}
+    before, after = sharpening.before, sharpening.after
+
+    def mean(sharpness, name):
+        numbers = (one.numbers[name].value for one in sharpness.directions.values())
+        return math.prod(numbers) ** 0.5
+
+    expected = 2.817 * math.log10(mean(after, "rer") / mean(before, "rer"))
+    expected -= 0.656 * (mean(after, "giqe_h") - mean(before, "giqe_h"))
+    expected -= 0.344 * (sharpening.noise_gain - 1) / sharpening.snr
+    assert change[4].value == pytest.approx(expected, abs=1e-3)
+    assert 0 < change[4].std < 0.1
