@@ -23,6 +23,7 @@ PANELS = {
     "plot_7_mirrors": 1,
     "plot_8_two_resolutions": 1,
     "plot_b_scene": 1,
+    "plot_c_restoration": 1,
 }
 MARGIN_IN = 0.08
 

@@ -174,6 +174,7 @@ def test_everything_else_of_a_file_is_kept(sharpening, tmp_path):
     with open_quietly(path, "r+") as dataset:
         dataset.update_tags(MISSION="one", TIFFTAG_DATETIME="2026:01:02 03:04:05")
         dataset.update_tags(ns="IMD", cloudCover="0.1")
+        dataset.update_tags(ns="VENDOR", ORBIT="17")
         dataset.update_tags(2, GAIN="7")
         dataset.descriptions = ("pan", "red", "alpha")
         dataset.scales, dataset.offsets = (0.1, 0.1, 1.0), (5.0, 5.0, 0.0)
@@ -191,6 +192,7 @@ def test_everything_else_of_a_file_is_kept(sharpening, tmp_path):
         assert new.tags()["MISSION"] == "one"
         assert new.tags()["TIFFTAG_DATETIME"] == "2026:01:02 03:04:05"
         assert new.tags(ns="IMD")["cloudCover"] == "0.1"
+        assert new.tags()["VENDOR.ORBIT"] == "17"
         assert new.tags(2)["GAIN"] == "7"
         assert "bands 2; noise gain 1.8" in new.tags()["ACUTANCE_RESTORATION"]
         assert new.tags(ns="IMAGE_STRUCTURE")["LAYOUT"] == "COG"

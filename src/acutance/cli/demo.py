@@ -11,6 +11,7 @@ import typer
 from acutance.cli.demo_folder import MARK, demo_folder, file_of
 from acutance.cli.demo_index import Page, index_sections
 from acutance.cli.demo_landscape import LANDSCAPE, ScannedLandscape, scan_landscape
+from acutance.cli.demo_restoration import RESTORATION, RESTORED_SITE, RestoredSite, restore_site
 from acutance.cli.demo_targets import Campaign, measure_campaign
 from acutance.cli.demo_year import measure_year
 from acutance.cli.output import OutputFile, check_output
@@ -38,6 +39,7 @@ def demo(
     its truth as JSON. An HTML report compares every method with the truth and with the others, and
     combines them into one 2-D OTF. The same sensor over a landscape without targets is scanned.
     Another is watched for a year: a batch of images, an archive, the trend.
+    The site is sharpened by a filter made from the combination, and shown before and after.
     """
     place = demo_folder(folder)
 
@@ -54,11 +56,13 @@ def demo(
     path = place / "site.tif"
     write_geotiff(path, scene.image.astype(np.float32), gsd_m=GSD_M)
     campaign = measure_campaign(scene, open_image(path))
+    restored = restore_site(campaign, path, place / RESTORED_SITE)
     landscape = scan_landscape(scene.sensor, place / f"{LANDSCAPE}.tif", seed)
     year = measure_year(place, seed)
     say("writing the report")
     entries = campaign.entries()
     pages = [_write_page(place, page) for page in _pages(campaign, landscape)]
+    _write_restoration(place, restored)
     _write_documents(place, campaign, entries, landscape)
     index = _output(place, "index.html")
     index.write(
@@ -66,6 +70,7 @@ def demo(
             "One site, every method, and the truth",
             str(path),
             index_sections(campaign, entries, pages, landscape, year),
+            index_sections(campaign, entries, pages, landscape, restored),
         )
     )
     typer.echo(f"open {index.path}")
@@ -101,6 +106,14 @@ def _write_page(place: Path, page: Page) -> Page:
 
     _output(place, page.file).write(report.page(page.result))
     return page
+
+
+def _write_restoration(place: Path, restored: RestoredSite) -> None:
+    """The filter as JSON and as a page."""
+    from acutance.report import json_text, restoration_page
+
+    _output(place, f"{RESTORATION}.json").write(json_text(restored.filter.to_dict()))
+    _output(place, f"{RESTORATION}.html").write(restoration_page(restored.filter))
 
 
 def _write_documents(

@@ -35,6 +35,9 @@ FILES = (
     "targets.geojson",
     "year.html",
     "year.db",
+    "site-restored.tif",
+    "restoration.json",
+    "restoration.html",
     *(f"{file_of(name)}{ending}" for name in _TARGETS for ending in (".html", ".json")),
 )
 """Everything that a demonstration writes."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from acutance.cli.demo_folder import file_of
 from acutance.cli.demo_landscape import LANDSCAPE, ScannedLandscape, landscape_section
+from acutance.cli.demo_restoration import RESTORATION, RestoredSite, restoration_section
 from acutance.cli.demo_targets import COMBINED, Campaign
 from acutance.cli.demo_year import SimulatedYear, year_section
 
@@ -76,6 +77,7 @@ def index_sections(
     pages: Sequence[Page],
     landscape: ScannedLandscape,
     year: SimulatedYear,
+    restored: RestoredSite,
 ) -> tuple[Section, ...]:
     """The sections of the index page.
 
@@ -88,6 +90,7 @@ def index_sections(
         Those the index leads to.
     landscape : ScannedLandscape
     year : SimulatedYear
+    restored : RestoredSite
     """
     from acutance.report.html import Link, Section
 
@@ -105,6 +108,7 @@ def index_sections(
         ),
         _site_section(campaign),
         *_truth_sections(entries),
+        restoration_section(restored, f"{RESTORATION}.html"),
         landscape_section(landscape, f"{file_of(LANDSCAPE)}.html"),
         year_section(year),
     )

@@ -28,7 +28,7 @@ __all__ = ["StoredWindow", "rewrite_image", "stored_tags"]
 
 _WINDOW_ROWS, _WINDOW_COLS = 1024, 4096
 _BLOCK_PX = 512
-_OWN_DOMAINS = ("IMAGE_STRUCTURE", "DERIVED_SUBDATASETS", "RPC", "COLOR_PROFILE", "TIFF")
+_OWN_DOMAINS = ("IMAGE_STRUCTURE", "DERIVED_SUBDATASETS", "RPC", "IMD", "COLOR_PROFILE", "TIFF")
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +73,9 @@ def rewrite_image(
     """Write a cloud optimized GeoTIFF with other pixels, whole or not at all.
 
     Type, georeference, RPC, ground control points, metadata, scales, colour interpretation, nodata
-    and masks are those of the original; bands that are not named are copied. Memory depends on the
-    size of a window alone.
+    and masks are those of the original; bands that are not named are copied. An image description
+    of DigitalGlobe's (IMD) goes into a file next to the image. Memory depends on the size of a
+    window alone.
 
     Parameters
     ----------
@@ -121,6 +122,9 @@ def rewrite_image(
             made.close()
             finished = os.path.join(folder, "finished.tif")
             copy(plain, finished, driver="COG", **_cog_options(source))
+            description = Path(folder, "finished.IMD")
+            if description.exists():
+                os.replace(description, target.with_suffix(".IMD"))
             os.replace(finished, target)
 
 
@@ -256,18 +260,24 @@ def _copy_descriptions(source: Any, made: Any, tags: dict[str, str]) -> None:
     made.descriptions = source.descriptions
     made.scales, made.offsets = source.scales, source.offsets
     made.units = [unit or "" for unit in source.units]
-    for domain in _domains(source.tag_namespaces()):
-        made.update_tags(ns=domain, **source.tags(ns=domain))
-    made.update_tags(**{**source.tags(), **tags})
+    if "IMD" in source.tag_namespaces():
+        made.update_tags(ns="IMD", **source.tags(ns="IMD"))
+    made.update_tags(**_items(source), **tags)
     for band in range(1, source.count + 1):
-        made.update_tags(band, **source.tags(band))
-        for domain in _domains(source.tag_namespaces(band)):
-            made.update_tags(band, ns=domain, **source.tags(band, ns=domain))
+        made.update_tags(band, **_items(source, band))
 
 
-def _domains(names: Sequence[str]) -> list[str]:
-    """Metadata domains that are not GDAL's own account of the file."""
-    return [one for one in names if one and not one.startswith("xml:") and one not in _OWN_DOMAINS]
+def _items(source: Any, band: int = 0) -> dict[str, str]:
+    """Metadata of a file or a band; items of vendors' own domains are named DOMAIN.NAME.
+
+    A cloud optimized GeoTIFF has no other place for them.
+    """
+    items: dict[str, str] = dict(source.tags(band))
+    for domain in source.tag_namespaces(band):
+        if domain and not domain.startswith("xml:") and domain not in _OWN_DOMAINS:
+            named = source.tags(band, ns=domain).items()
+            items |= {f"{domain}.{name}": value for name, value in named}
+    return items
 
 
 @contextmanager
