@@ -78,8 +78,7 @@ def restoration_section(restored: RestoredSite, page: str) -> Section:
         paragraphs=(
             f"A kernel of {filter.size} by {filter.size} pixels, made from all methods combined, "
             f"sharpens the site at a noise gain of {filter.noise_gain:.2f}: SNR {filter.snr:.0f} "
-            f"becomes {filter.snr_after:.0f}. Edges measured before and after stand beside what was "
-            "predicted.",
+            f"becomes {filter.snr_after:.0f}. Its edges were measured before and after.",
         ),
         plates=(
             Plate.of_figure(

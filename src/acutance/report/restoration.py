@@ -81,7 +81,7 @@ def niirs_text(found: Niirs) -> str:
     ----------
     found : Niirs
     """
-    return table_text(niirs_table(found))
+    return "\n".join((table_text(niirs_table(found)), *(f"  {note}" for note in found.notes)))
 
 
 def _title(filter: RestorationFilter) -> str:

@@ -125,6 +125,10 @@ def verify_restoration(
         aims at points (``desired="point"``) its expectation of sensors draws the MTF at Nyquist up
         by some hundredths, and "iso12233", which expects nothing, is off by less.
 
+    Returns
+    -------
+    RestorationProof
+
     Raises
     ------
     NoEdgeError
