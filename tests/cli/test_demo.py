@@ -34,7 +34,9 @@ def test_one_image_holds_every_target_and_its_truth_lies_beside_it(folder):
     assert {one["kind"] for one in truth["targets"].values()} == {
         "pulse", "bars", "star", "points",
     }  # fmt: skip
-    assert sorted(path.name for path in folder.glob("*.tif")) == ["landscape.tif", "site.tif"]
+    assert sorted(path.name for path in folder.glob("*.tif")) == [
+        "landscape.tif", "site-restored.tif", "site.tif",
+    ]  # fmt: skip
 
 
 def test_the_report_names_every_method_and_its_pages_exist(folder):
@@ -44,6 +46,7 @@ def test_the_report_names_every_method_and_its_pages_exist(folder):
         assert name in index
     pages = re.findall(r'href="([^"]+)"', index)
     assert set(pages) == {*(f"{file_of(name)}.html" for name in PAGES), "year.html"}
+    assert set(pages) == {f"{file_of(name)}.html" for name in (*PAGES, "restoration")}
     for page in pages:
         assert "<svg" in (text := (folder / page).read_text(encoding="utf-8")) or "data:" in text
     assert "truth" in (folder / "pulse-tarp.html").read_text(encoding="utf-8")
@@ -103,6 +106,17 @@ def test_a_year_is_measured_as_a_batch_and_its_loss_and_refocusing_are_found(fol
     page = (folder / "year.html").read_text(encoding="utf-8")
     assert page.count(".tif</td>") == IMAGES
     assert "refocus of 2026-09-01" in page
+def test_the_site_is_restored_as_predicted(folder):
+    filter = ac.RestorationFilter.read(folder / "restoration.json")
+    assert filter.noise_gain == pytest.approx(1.8)
+    index = (folder / "index.html").read_text(encoding="utf-8")
+    assert "The star before and after" in index
+    truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
+    regions = [tuple(one["region"]) for one in truth["edges"].values()]
+    images = (ac.open_image(folder / name) for name in ("site.tif", "site-restored.tif"))
+    for edge in ac.verify_restoration(*images, filter, regions).edges:
+        assert abs(edge.off) < 3 * edge.after.std
+        assert edge.noise_gain == pytest.approx(1.8, rel=0.05)
 
 
 def test_the_combination_agrees_and_is_the_most_exact(folder):

@@ -18,7 +18,6 @@ __all__ = ["RESTORATION", "RESTORED_SITE", "RestoredSite", "restoration_section"
 
 RESTORATION, RESTORED_SITE = "restoration", "site-restored.tif"
 NOISE_GAIN = 1.8
-_MARGIN_PX = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +30,7 @@ class RestoredSite:
     proof : RestorationProof
         Its edges before and after.
     before, after : (rows, cols) array
-        The part of the image that holds the edges.
+        The star.
     """
 
     filter: RestorationFilter
@@ -52,12 +51,8 @@ def restore_site(campaign: Campaign, path: Path, out: Path) -> RestoredSite:
     restore(path, filter, out=out)
     before, after = open_image(path), open_image(out)
     regions = [Region(one.region) for one in edges]
-    boxes = [one.box(before.shape) for one in regions]
-    top, left = (min(getattr(box, name) for box in boxes) for name in ("row", "col"))
-    bottom = max(box.row + box.height for box in boxes)
-    right = max(box.col + box.width for box in boxes)
-    part = Box(top, left, bottom - top, right - left).grown(_MARGIN_PX)
-    shown = part.intersection(Box.whole(before.shape))
+    star = next(one for one in campaign.scene.targets if one.kind == "star")
+    shown = Region(star.region).box(before.shape).intersection(Box.whole(before.shape))
     return RestoredSite(
         filter,
         verify_restoration(before, after, filter, regions),
@@ -83,7 +78,7 @@ def restoration_section(restored: RestoredSite, page: str) -> Section:
         plates=(
             Plate.of_figure(
                 before_after_figure(restored.before, restored.after, ("as taken", "restored")),
-                "The edge tarps before and after",
+                "The star before and after",
                 "The same pixels in the same greys.",
                 wide=True,
             ),

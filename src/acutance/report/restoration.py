@@ -55,8 +55,7 @@ def restoration_page(filter: RestorationFilter, *, command: str | None = None) -
     sharpness, cost, trade, kernel = restoration_tables(filter)
     content = (
         Section("Result", headlines=_headlines(filter), verdicts=_verdicts(filter)),
-        Section("Before and after", plates=plates[:3]),
-        Section("Noise and kernel", plates=plates[3:]),
+        Section("What it does and what it costs", plates=plates),
         *map(Section.of_table, (sharpness, cost, trade, kernel)),
         Section("How it was designed", tables=(_provenance(filter),), command=command),
     )
@@ -107,12 +106,10 @@ def _headlines(filter: RestorationFilter) -> tuple[Headline, ...]:
     words = word_estimate(100 * filter.after.overshoot)
     cards.append(Headline("Overshoot", words.value, "%", details=(f"± {words.std}",)))
     if filter.niirs_change:
-        words = word_estimate(filter.niirs_change[4])
-        low, high = words.low, words.high
-        cards.append(
-            Headline("NIIRS, GIQE 4", f"{filter.niirs_change[4].value:+.2f}".replace("-", "−"),
-                     details=(f"{low} … {high}",))
-        )  # fmt: skip
+        change = filter.niirs_change[4]
+        shown = f"{change.value:+.2f}".replace("-", "−")
+        interval = word_estimate(change).short_interval
+        cards.append(Headline("Change of NIIRS, GIQE 4", shown, details=(interval,)))
     return tuple(cards)
 
 

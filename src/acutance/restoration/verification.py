@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,17 +15,19 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import AcutanceError, NoEdgeError
 from acutance.raster import Box, Image, Region
 from acutance.restoration.restoration_filter import RestorationFilter
-from acutance.scan import scan_scene
+from acutance.scan import SceneEdges, scan_scene
 from acutance.targets.straight import StraightMeasurement, measure_edge
 
 __all__ = ["RestorationProof", "VerifiedEdge", "verify_restoration"]
+
+_MAX_EDGES, _MIN_LENGTH_PX, _HALF_WIDTH_PX = 80, 20.0, 9.0
 
 RegionLike = Region | Box | tuple[int, int, int, int]
 
 
 @dataclass(frozen=True, eq=False)
 class VerifiedEdge(ShortRepr):
-    """An edge, or all edges of a scene in one direction, before and after a filter.
+    """An edge, or the mean of a scene's edges in one direction, before and after a filter.
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ class VerifiedEdge(ShortRepr):
     predicted : Estimate
         That before, times the filter's own transfer there.
     snr_before, snr_after : float
-        As measured; ``nan`` of a scene.
+        As measured; of a scene the medians.
     overshoot : Estimate
         After, as measured.
     """
@@ -119,11 +120,11 @@ def verify_restoration(
     before, after : Image
     filter : RestorationFilter
     regions : sequence of Region, Box or (row, column, height, width), optional
-        One edge each. Without them all edges of the scene are measured (`acutance.scan_scene`).
+        One edge each. Without them the longest edges that `acutance.scan_scene` uses are measured.
     method : str, optional
-        Of `acutance.measure_edge`. The reference states all of its uncertainty; where a filter
-        aims at points (``desired="point"``) its expectation of sensors draws the MTF at Nyquist up
-        by some hundredths, and "iso12233", which expects nothing, is off by less.
+        Of `acutance.measure_edge`. The reference states all of its uncertainty, but where a filter
+        aims at points (``desired="point"``) no sensor it expects falls so steeply at Nyquist, and
+        it reads some hundredths too much; "iso12233" expects nothing.
 
     Returns
     -------
@@ -135,7 +136,7 @@ def verify_restoration(
         If no edge can be measured in both.
     """
     if not regions:
-        return RestorationProof(tuple(_of_scene(before, after, filter)))
+        return RestorationProof(tuple(_of_scene(before, after, filter, method)))
     edges, rejected = [], []
     for number, region in enumerate(regions, start=1):
         try:
@@ -162,16 +163,84 @@ def _of_edge(
     )  # fmt: skip
 
 
-def _of_scene(before: Image, after: Image, filter: RestorationFilter) -> Iterable[VerifiedEdge]:
-    """Across and along of a scene, all of its edges together."""
-    scenes = scan_scene(before), scan_scene(after)
+def _of_scene(
+    before: Image, after: Image, filter: RestorationFilter, method: str
+) -> list[VerifiedEdge]:
+    """The longest edges of a scene, found before the filter: weighted means across and along.
+
+    Raises
+    ------
+    NoEdgeError
+        If none can be measured in both images.
+    """
+    found = [
+        edge
+        for region in _regions_of(scan_scene(before).edges)
+        if (edge := _tried(before, after, region, filter, method)) is not None
+    ]
+    if not found:
+        raise NoEdgeError(
+            "no edge of the scene could be measured before and after: name regions with edges "
+            "(--roi)"
+        )
     across_deg = 0.0 if before.along_track == "y" else 90.0
-    for name, normal_deg in (("across", across_deg), ("along", 90.0 - across_deg)):
-        one, other = (scene.directions[name] for scene in scenes)  # type: ignore[index]
-        yield VerifiedEdge(
-            name, normal_deg, one.mtf_nyquist, other.mtf_nyquist,
-            one.mtf_nyquist * _gain(filter, normal_deg), math.nan, math.nan, other.overshoot,
-        )  # fmt: skip
+    groups: dict[str, list[VerifiedEdge]] = {"across": [], "along": []}
+    for edge in found:
+        is_across = (edge.normal_deg - across_deg + 45.0) % 180.0 < 90.0
+        groups["across" if is_across else "along"].append(edge)
+    return [_mean_edge(f"{name}, {len(own)} edges", own) for name, own in groups.items() if own]
+
+
+def _regions_of(edges: SceneEdges) -> list[Region]:
+    """Boxes around the longest used edges, turned with them."""
+    used = np.flatnonzero(edges.used & (edges.length_px >= _MIN_LENGTH_PX))
+    longest = used[np.argsort(-edges.length_px[used])][:_MAX_EDGES]
+    regions = []
+    for i in longest:
+        x, y = unit_vector(float(edges.normal_deg[i]))
+        half = 0.5 * float(edges.length_px[i])
+        corners = [
+            (
+                float(edges.row[i]) + along * half * x + over * _HALF_WIDTH_PX * y,
+                float(edges.col[i]) - along * half * y + over * _HALF_WIDTH_PX * x,
+            )
+            for along, over in ((-1, -1), (-1, 1), (1, 1), (1, -1))
+        ]
+        regions.append(Region(np.array(corners)))
+    return regions
+
+
+def _tried(
+    before: Image, after: Image, region: Region, filter: RestorationFilter, method: str
+) -> VerifiedEdge | None:
+    """An edge before and after; ``None`` where one of them cannot be measured."""
+    try:
+        pair = [measure_edge(image, region, method=method) for image in (before, after)]
+    except AcutanceError:
+        return None
+    return _of_edge("", pair[0], pair[1], filter)
+
+
+def _mean_edge(name: str, edges: Sequence[VerifiedEdge]) -> VerifiedEdge:
+    """Weighted mean of edges of one direction; the weights are those after the filter."""
+    weight = np.array([edge.after.std**-2 for edge in edges])
+    share = weight / weight.sum()
+
+    def mean(numbers: Sequence[Estimate]) -> Estimate:
+        value = sum(one * number.value for one, number in zip(share, numbers, strict=True))
+        error = [one * number.std for one, number in zip(share, numbers, strict=True)]
+        return Estimate(float(value), float(np.linalg.norm(error)), 0.0)
+
+    return VerifiedEdge(
+        name,
+        float(np.median([edge.normal_deg for edge in edges])),
+        mean([edge.before for edge in edges]),
+        mean([edge.after for edge in edges]),
+        mean([edge.predicted for edge in edges]),
+        float(np.median([edge.snr_before for edge in edges])),
+        float(np.median([edge.snr_after for edge in edges])),
+        mean([edge.overshoot for edge in edges]),
+    )
 
 
 def _gain(filter: RestorationFilter, normal_deg: float) -> float:
