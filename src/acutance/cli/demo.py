@@ -37,9 +37,9 @@ def demo(
 
     Edge tarps, a pulse tarp, 20 mirrors, bars and a Siemens star on grass, in one GeoTIFF with
     its truth as JSON. An HTML report compares every method with the truth and with the others, and
-    combines them into one 2-D OTF. The same sensor over a landscape without targets is scanned.
-    Another is watched for a year: a batch of images, an archive, the trend.
-    The site is sharpened by a filter made from the combination, and shown before and after.
+    combines them into one 2-D OTF. The site is sharpened by a filter made from that, and shown
+    before and after. The same sensor over a landscape without targets is scanned. Another is
+    watched for a year: a batch of images, an archive, the trend.
     """
     place = demo_folder(folder)
 
@@ -69,8 +69,7 @@ def demo(
         render_page(
             "One site, every method, and the truth",
             str(path),
-            index_sections(campaign, entries, pages, landscape, year),
-            index_sections(campaign, entries, pages, landscape, restored),
+            index_sections(campaign, entries, pages, landscape, year, restored),
         )
     )
     typer.echo(f"open {index.path}")

@@ -7,7 +7,7 @@ September they are refocused. The measurements are kept in an archive, which is 
 sensor changes.
 """
 
-# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_c_sensor_year.png"
+# sphinx_gallery_thumbnail_path = "generated/thumbnail-plot_d_sensor_year.png"
 
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -61,4 +61,3 @@ for change in unaware.changes:
 
 figure = trend_figure(trend, limit=0.2)
 folder.cleanup()
-figure
