@@ -28,7 +28,7 @@ class Crossing(ShortRepr):
     ----------
     limit : float
     falls : bool
-        Whether it is above the limit now, so that it would fall below.
+        Whether it passes the limit when it falls below; else when it rises above.
     when : (n,) array
         Years with decimals, monthly, from the last image on.
     probability : (n,) array
@@ -95,8 +95,9 @@ class Crossing(ShortRepr):
 
 
 def find_crossing(
-    posterior: TrendPosterior, systematic_std: float, now: float, limit: float, years: float
-) -> Crossing:
+    posterior: TrendPosterior, systematic_std: float, now: float, limit: float, falls: bool,
+    years: float,
+) -> Crossing:  # fmt: skip
     """The probabilities of having passed a limit, month by month.
 
     Parameters
@@ -107,6 +108,8 @@ def find_crossing(
     now : float
         Year with decimals from which the drift is continued.
     limit : float
+    falls : bool
+        Whether below the limit is beyond it, or above.
     years : float
         How far ahead.
     """
@@ -118,13 +121,12 @@ def find_crossing(
     level, level_std = posterior.of(rows)
     rate, rate_std = posterior.of(np.broadcast_to(slope, rows.shape))
     both = posterior.unit**2 * np.einsum("qi,qij,j->q", rows[:, 0], posterior.covariance, slope)
-    falls = float(posterior.share @ level[:, 0]) >= limit
     sign = 1.0 if falls else -1.0
     room = sign * (level[:, 0] - limit)
     sloped = sign * rate[:, 0]
     total_std = np.hypot(level_std[:, 0], systematic_std)
     probability = _passed(posterior.share, room, total_std, sloped, rate_std[:, 0], both, ahead)
-    return Crossing(limit, bool(falls), now + ahead, np.maximum.accumulate(probability))
+    return Crossing(limit, falls, now + ahead, np.maximum.accumulate(probability))
 
 
 def _passed(

@@ -33,6 +33,7 @@ SCHEMA: Final = "acutance/trend/1"
 _LEVELS: Final = (0.5, 0.95)
 _DATES: Final = 121
 _HORIZON_YEARS: Final = 20.0
+_LESS_IS_SHARPER: Final = ("fwhm", "half_extent", "overshoot", "undershoot", "giqe_h")
 
 
 @dataclass(frozen=True)
@@ -223,13 +224,18 @@ class Trend(ShortRepr):
         noise = self.images.typical_std if std is None else std
         return self._estimate(with_scatter(found, *self._scales(noise)))
 
-    def crosses(self, limit: float, *, within_years: float = _HORIZON_YEARS) -> Crossing:
+    def crosses(
+        self, limit: float, *, is_minimum: bool | None = None, within_years: float = _HORIZON_YEARS
+    ) -> Crossing:
         """When the mean of the sensor, over the year, will pass a limit.
 
         Parameters
         ----------
         limit : float
             In the units of the metric.
+        is_minimum : bool, optional
+            Whether the sensor has to be above it; without it true of the MTF and the relative edge
+            response, false of widths and overshoots.
         within_years : float, optional
             How far ahead of the last image is looked.
         """
@@ -238,9 +244,10 @@ class Trend(ShortRepr):
                 f"the limit is {limit:g} and the time {within_years:g} years: give a number, and "
                 "a time above 0"
             )
+        falls = not self.metric.startswith(_LESS_IS_SHARPER) if is_minimum is None else is_minimum
         return find_crossing(
             self._drifting, self.images.systematic_std, float(self.images.when[-1]), limit,
-            within_years,
+            falls, within_years,
         )  # fmt: skip
 
     def bands(self, years: Floats | None = None) -> TrendBands:

@@ -1,0 +1,144 @@
+"""Requirements: read from TOML, judged with probabilities that are true."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance.archive.specification import Requirement, Specification, read_specification
+from acutance.archive.specification_check import check_requirement
+from acutance.archive.trends import Series
+
+DRAWS = 240
+
+
+def series(
+    seed: int, *, images: int = 10, scatter: float = 0.03, std: float = 0.01, days: bool = True
+) -> Series:
+    """A steady sensor whose MTF at Nyquist is .1."""
+    rng = np.random.default_rng(seed)
+    when = 2022 + np.sort(rng.uniform(0, 2, images)) if days else np.full(images, np.nan)
+    value = 0.1 * (1 + scatter * rng.normal(size=images) + std * rng.normal(size=images))
+    return Series(
+        metric="mtf_nyquist", name="S1", when=when, value=value,
+        std=np.full(images, 0.1 * std), image=np.arange(images),
+    )  # fmt: skip
+
+
+def at_least(limit: float, **changes: object) -> Requirement:
+    return Requirement(metric="mtf_nyquist", minimum=limit, **changes)  # type: ignore[arg-type]
+
+
+def test_probabilities_are_true() -> None:
+    """Deviations 0.8 or 1.25 times the true ones leave these bounds."""
+    rng = np.random.default_rng(5)
+    squares, said, right = [], 0, 0
+    for seed in range(DRAWS):
+        limit = 0.1 * (1 + rng.uniform(-0.04, 0.04))
+        found = check_requirement(at_least(limit), series(seed))
+        assert found.mean is not None
+        squares.append(((found.mean.value - 0.1) / found.mean.std) ** 2)
+        if found.word != "cannot be told yet":
+            said += 1
+            right += (found.word == "met") == (limit <= 0.1)
+    assert 0.84 < np.sqrt(np.mean(squares)) < 1.08
+    assert said > DRAWS / 4
+    assert right / said > 0.95
+
+
+def test_the_three_words() -> None:
+    made = series(1, images=20)
+    met, missed, near = (check_requirement(at_least(one), made) for one in (0.09, 0.11, 0.1))
+    assert (met.word, missed.word, near.word) == ("met", "not met", "cannot be told yet")
+    assert met.more_images == 0
+    assert met.probability is not None
+    assert met.probability > 0.99
+    below = check_requirement(Requirement(metric="mtf_nyquist", maximum=0.09), made)
+    assert below.word == "not met"
+    assert below.probability == pytest.approx(1 - met.probability)
+    assert "is met (probability of being met > 0.999)" in met.summary
+    json.dumps([one.to_dict() for one in (met, missed, near, below)], allow_nan=False)
+
+
+def test_so_many_more_images_would_tell() -> None:
+    few = series(3, images=8, scatter=0.04)
+    found = check_requirement(at_least(0.097), few)
+    assert found.word == "cannot be told yet"
+    assert found.more_images is not None
+    assert 3 <= found.more_images <= 500
+    assert f"About {found.more_images} more images would tell." in found.summary
+
+
+def test_what_is_shared_cannot_be_averaged_out() -> None:
+    made = series(3, images=40)
+    shared = Series(**{**vars(made), "systematic_std": np.full(made.size, 0.005)})
+    found = check_requirement(at_least(0.098), shared)
+    assert found.word == "cannot be told yet"
+    assert found.more_images is None
+    assert "More images alone would not tell" in found.summary
+
+
+def test_without_dates_the_mean_stands_in() -> None:
+    found = check_requirement(at_least(0.09), series(1, days=False))
+    assert found.word == "met"
+    assert found.day is None
+    assert "the mean of the images stands in" in found.summary
+
+
+def test_one_image_tells_nothing() -> None:
+    found = check_requirement(at_least(0.01), series(1, images=1))
+    assert (found.word, found.probability) == ("cannot be told yet", None)
+    assert "one image" in found.summary
+
+
+def test_a_window_leaves_out_what_is_older() -> None:
+    made = series(1, images=40)
+    found = check_requirement(at_least(0.09, window_days=180), made)
+    inside = np.count_nonzero(made.when >= made.when.max() - 180 / 365.25)
+    assert found.images == inside < 40
+
+
+def test_the_day_asked_is_the_day_of_the_answer() -> None:
+    found = check_requirement(at_least(0.09, on="2023-06-01"), series(1))
+    assert str(found.day) == "2023-06-01"
+
+
+def test_a_file_of_requirements(tmp_path: Path) -> None:
+    path = tmp_path / "spec.toml"
+    path.write_text(
+        'title = "T"\n[[requirement]]\nmetric = "rer"\nminimum = 0.4\nband = ["pan", "blue"]\n'
+        'orientation = "across"\nconfidence = 0.9\nsince = 2023-01-01\n'
+    )
+    (found,) = read_specification(path).requirement
+    assert found.sentence == "rer >= 0.4"
+    assert found.selection["band"] == ["pan", "blue"]
+    assert found.selection["verdict"] == "usable"
+    assert str(found.selection["since"]) == "2023-01-01"
+
+
+def test_all_that_is_wrong_is_named_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "spec.toml"
+    path.write_text(
+        'titel = "T"\n[[requirement]]\nmetric = "mtf"\nminimum = 1\nlimits = 2\n'
+        '[[requirement]]\nmetric = "rer"\n'
+    )
+    with pytest.raises(ac.OptionError) as error:
+        read_specification(path)
+    for part in ("titel: is no key", "requirement.1.limits: is no key", "'mtf' is none of",
+                 "requirement.2: give a minimum or a maximum"):  # fmt: skip
+        assert part in str(error.value)
+
+
+def test_files_that_are_no_specification(tmp_path: Path) -> None:
+    with pytest.raises(ac.OptionError, match="cannot be read"):
+        read_specification(tmp_path / "missing.toml")
+    path = tmp_path / "spec.toml"
+    path.write_text("requirement = [")
+    with pytest.raises(ac.OptionError, match="is no TOML"):
+        read_specification(path)
+    with pytest.raises(ac.OptionError, match="requirement: field required"):
+        Specification.of({})

@@ -1,0 +1,96 @@
+"""acutance archive trend, check, table: text, JSON and exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from acutance.archive import Archive
+from acutance.archive.published import published_entries
+from acutance.archive.trends import Trend
+
+ONE = ["--sensor", "KOMPSAT-3", "--orientation", "across"]
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> str:
+    path: Path = tmp_path_factory.mktemp("archive") / "published.db"
+    with Archive(path) as archive:
+        archive.add_entries(published_entries("kompsat3-2014"))
+    return str(path)
+
+
+def spec_file(folder: Path, *requirements: str) -> str:
+    path = folder / "spec.toml"
+    path.write_text("".join(f'[[requirement]]\nmetric = "rer"\n{one}\n' for one in requirements))
+    return str(path)
+
+
+def test_a_trend_in_words(acutance, place):
+    done = acutance("archive", "trend", place, "--metric", "rer", *ONE, "--limit", "0.35",
+                    "--event", "2014-02-01=refocus")  # fmt: skip
+    assert done.exit_code == 0
+    for part in ("rer of KOMPSAT-3, across", "drift a year", "2014-02-01 refocus",
+                 "Bad days: 2014-01-17", "The sensor's mean falls below 0.35"):  # fmt: skip
+        assert part in done.stdout
+
+
+def test_a_trend_as_json_is_read_back(acutance, place):
+    done = acutance("archive", "trend", place, "--metric", "rer", *ONE, "--limit", ".4", "--json")
+    document = json.loads(done.stdout)
+    assert document["crossing"]["limit"] == 0.4
+    assert Trend.from_dict(document).images.images == 12
+
+
+def test_what_is_no_series_is_refused(acutance, place):
+    done = acutance("archive", "trend", place, "--metric", "rer")
+    assert done.exit_code == 2
+    assert "of 2 orientations, across, along: select one" in done.stderr
+    assert acutance("archive", "trend", place, "--sensor", "other").exit_code == 4
+    done = acutance("archive", "trend", place, *ONE, "--event", "refocus")
+    assert done.exit_code == 2
+    assert "write DATE=NAME" in done.stderr
+    done = acutance("archive", "trend", place, *ONE, "--event", "soon=refocus")
+    assert done.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("limit", "strict", "code"),
+    [("minimum = 0.35", [], 0), ("minimum = 0.5", [], 3), ("minimum = 0.43", [], 0),
+     ("minimum = 0.43", ["--strict"], 3)],
+)  # fmt: skip
+def test_exit_codes_of_a_specification(acutance, place, tmp_path, limit, strict, code):
+    spec = spec_file(tmp_path, f'{limit}\norientation = "across"')
+    done = acutance("archive", "check", place, "--spec", spec, *strict)
+    assert done.exit_code == code
+    assert "KOMPSAT-3, across: rer >= 0." in done.stdout
+
+
+def test_a_specification_as_json(acutance, place, tmp_path):
+    spec = spec_file(tmp_path, "minimum = 0.35", "maximum = 0.3")
+    done = acutance("archive", "check", place, "--spec", spec, "--json")
+    assert done.exit_code == 3
+    document = json.loads(done.stdout)
+    assert document["word"] == "not met"
+    assert [one["word"] for one in document["answers"]] == ["met", "met", "not met", "not met"]
+
+
+def test_a_wrong_specification_is_refused(acutance, place, tmp_path):
+    spec = spec_file(tmp_path, "minimum = 0.3\nfoo = 1")
+    done = acutance("archive", "check", place, "--spec", spec)
+    assert done.exit_code == 2
+    assert "requirement.1.foo: is no key" in done.stderr
+
+
+def test_tables(acutance, place):
+    done = acutance("archive", "table", place, "--by", "site,date,target")
+    assert done.exit_code == 0
+    assert "Salon    2013-06-25  checkerboard, edge 1" in done.stdout
+    assert "average" in done.stdout
+    done = acutance("archive", "table", place, "--by", "site", "--metric", "fwhm_m", "--json")
+    rows = json.loads(done.stdout)["rows"]
+    assert [row["site"] for row in rows] == ["Penghu", "Salon", "Stennis", "average"]
+    assert rows[-1]["across"]["fwhm_m"]["value"] == pytest.approx(0.7 * 1.631, abs=1e-3)
+    assert acutance("archive", "table", place, "--by", "moon").exit_code == 2
