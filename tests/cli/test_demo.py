@@ -5,6 +5,7 @@ import json
 import re
 from datetime import timedelta
 
+import numpy as np
 import pytest
 
 import acutance as ac
@@ -113,7 +114,7 @@ def test_the_site_is_restored_as_predicted(folder):
     index = (folder / "index.html").read_text(encoding="utf-8")
     assert "The star before and after" in index
     truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
-    regions = [tuple(one["region"]) for one in truth["edges"].values()]
+    regions = [ac.Region(np.array(one["region"])) for one in truth["edges"].values()]
     images = (ac.open_image(folder / name) for name in ("site.tif", "site-restored.tif"))
     for edge in ac.verify_restoration(*images, filter, regions).edges:
         assert abs(edge.off) < 3 * edge.after.std

@@ -33,6 +33,25 @@ def test_an_image_that_was_not_filtered_does_not_pass(pair):
     assert abs(edge.off) > 10 * edge.after.std
 
 
+def test_a_scene_is_verified_by_its_own_edges():
+    sensor = ac.Sensor([ac.optics.Gaussian(0.5), ac.optics.Detector()])
+    plain = dict.fromkeys(
+        ("roofs", "roads", "discs", "rims", "gutters", "shadows", "side_roads", "neighbours"), 0.0
+    )
+    options = ac.simulate.LandscapeOptions(**plain, texture=(0.0, 0.0), curved=0.0, soft=0.0)
+    pixels, _ = ac.simulate.landscape(
+        sensor, shape=(320, 320), options=options, snr=200, rng=np.random.default_rng(3)
+    )
+    filter = ac.design_restoration(sensor, snr=200, noise_gain=1.6)
+    before, after = (
+        ac.Image.from_array(one.astype(float)) for one in (pixels, ac.restore(pixels, filter))
+    )
+    for edge in ac.verify_restoration(before, after, filter).edges:
+        assert edge.name.endswith("edges")
+        assert abs(edge.off) < 0.02
+        assert edge.predicted.value > 1.3 * edge.before.value
+
+
 def test_a_region_without_an_edge_is_named(pair):
     filter, before, after = pair
     proof = ac.verify_restoration(before, after, filter, [(15, 15, 90, 90), (0, 0, 20, 8)])
