@@ -209,7 +209,18 @@ def test_importing_acutance_loads_nothing_heavy() -> None:
 
 @pytest.mark.parametrize(
     "command",
-    [[], ["edge"], ["simulate", "edge"], ["sites"], ["study"], ["demo"], ["archive", "list"]],
+    [
+        [],
+        ["edge"],
+        ["simulate", "edge"],
+        ["sites"],
+        ["study"],
+        ["demo"],
+        ["restore", "apply"],
+        ["niirs"],
+        ["archive", "list"],
+        ["batch"],
+    ],
 )
 def test_help_loads_nothing_heavy(command: list[str]) -> None:
     arguments = [*command, "--help"]

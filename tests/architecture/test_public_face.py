@@ -31,6 +31,7 @@ PACKAGES = (
     "targets.periodic",
     "targets.combine",
     "studies",
+    "restoration",
     "report",
 )
 LONGEST = 400
