@@ -7,7 +7,7 @@ import pytest
 
 import acutance as ac
 from acutance.targets import OtfSlices, Record
-from acutance.targets.record import DocumentFields, WrittenLater
+from acutance.targets.document_fields import DocumentFields, WrittenLater
 
 
 @pytest.fixture(scope="module")

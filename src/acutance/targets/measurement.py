@@ -17,12 +17,11 @@ from acutance.geometry.angles import is_nearer_columns
 from acutance.geometry.line import Orientation
 from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.directions import HasDirections
+from acutance.targets.document_fields import DocumentFields, WrittenLater
 from acutance.targets.record import (
     SCHEMA,
-    DocumentFields,
     ImageInfo,
     Record,
-    WrittenLater,
     rounded,
 )
 from acutance.targets.slices import OtfSlices

@@ -11,7 +11,7 @@ import lzma
 import math
 import pickle
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
@@ -33,11 +33,9 @@ from acutance.targets.uncertainty_budget import BudgetTerm
 
 __all__ = [
     "SCHEMA",
-    "DocumentFields",
     "ImageInfo",
     "Record",
     "RecordedDirection",
-    "WrittenLater",
     "rounded",
     "strict_json",
 ]
@@ -123,47 +121,6 @@ class ImageInfo:
             None if sides is None else (float(sides[0]), float(sides[1])),
             document.get("linearized"),
         )
-
-
-@dataclass(frozen=True)
-class WrittenLater:
-    """A field of a document that is written when it is first read.
-
-    Parameters
-    ----------
-    write : function
-        Returns the field.
-    """
-
-    write: Callable[[], Any]
-
-
-class DocumentFields(Mapping[str, Any]):
-    """The fields of a document by name.
-
-    Curves and covariances are nine tenths of a document. Who reads numbers, checks and verdict of
-    thousands of records needs none of them, and to write them takes a quarter of a measurement.
-
-    Parameters
-    ----------
-    fields : mapping
-        Strict JSON types, or `WrittenLater`.
-    """
-
-    def __init__(self, fields: Mapping[str, Any]) -> None:
-        self._fields = dict(fields)
-
-    def __getitem__(self, name: str) -> Any:
-        field = self._fields[name]
-        if isinstance(field, WrittenLater):
-            field = self._fields[name] = field.write()
-        return field
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._fields)
-
-    def __len__(self) -> int:
-        return len(self._fields)
 
 
 @dataclass(frozen=True, eq=False)

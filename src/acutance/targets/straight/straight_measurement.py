@@ -14,8 +14,8 @@ from acutance.curves import MAIN_NUMBERS, Estimate, Mtf
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Line
+from acutance.targets.document_fields import WrittenLater
 from acutance.targets.measurement import Measurement
-from acutance.targets.record import WrittenLater
 from acutance.targets.slices import SLICE_FREQ_CPP, OtfSlices
 from acutance.targets.straight.error_causes import FitCauses
 from acutance.targets.straight.lsf import SplineResponse
