@@ -12,7 +12,12 @@ Sees records only, never pixels. In the order the data take:
 - `selection`, `columns`, `measurements`: which rows are meant, and what they hold as columns
 - `stored_entries`, `overview`: rows become entries again, and are counted
 - `exchange`: files of documents and tables, in and out
-- `archive`: all of it under one name, `Archive`
+- `weighted_means`: means of measurements that disagree
+- `trends`: drift, steps, season and scatter of a sensor through the years
+- `specification`, `specification_check`: requirements, and whether they are met
+- `tables_by`: tables across and along by sensor, band, site, date
+- `published`: the tables that publications print, as entries
+- `questions`, `archive`: all of it under one name, `Archive`
 """
 
 from __future__ import annotations
@@ -24,26 +29,40 @@ if TYPE_CHECKING:
     from acutance.archive.archive import Archive
     from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
     from acutance.archive.measurements import Measurements, Rejections
+    from acutance.archive.published.read import published_entries
+    from acutance.archive.trends.series import Event
+    from acutance.archive.trends.trend import Trend
+    from acutance.archive.weighted_means import WeightedMean, weighted_mean
 
 __all__ = [
     "Archive",
     "Entry",
+    "Event",
     "ImageEntry",
     "Kept",
     "Measurements",
     "Rejections",
     "TargetEntry",
+    "Trend",
+    "WeightedMean",
+    "published_entries",
+    "weighted_mean",
 ]
 
 # The modules are loaded when a name is first used: an entry costs no SQLAlchemy.
 _HOMES = {
     "Archive": "archive",
     "Entry": "entry",
+    "Event": "trends.series",
     "ImageEntry": "entry",
     "Kept": "entry",
     "Measurements": "measurements",
     "Rejections": "measurements",
     "TargetEntry": "entry",
+    "Trend": "trends.trend",
+    "WeightedMean": "weighted_means",
+    "published_entries": "published.read",
+    "weighted_mean": "weighted_means",
 }
 
 
