@@ -27,8 +27,8 @@ class SelectionWords(TypedDict, total=False):
     """The fields of `Selection` as keywords."""
 
     sensor: Names | None
-    level: Names | None
     band: Names | None
+    level: Names | None
     site: Names | None
     target: Names | None
     kind: Names | None
@@ -48,7 +48,7 @@ class Selection:
 
     Parameters
     ----------
-    sensor, level, band, site, target, kind, method, orientation : str or sequence of str, optional
+    sensor, band, level, site, target, kind, method, orientation : str or sequence of str, optional
         Whole names, as they were written; of several, any.
     since, until : datetime, date or str, optional
         Of the acquisition, both included; a day is all of the day, and without a zone UTC. What has
@@ -63,8 +63,8 @@ class Selection:
     """
 
     sensor: Names | None = None
-    level: Names | None = None
     band: Names | None = None
+    level: Names | None = None
     site: Names | None = None
     target: Names | None = None
     kind: Names | None = None
