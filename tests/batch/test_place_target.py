@@ -96,3 +96,35 @@ def test_targets_that_reach_the_border():
     with pytest.raises(NotHereError) as caught:
         placed(at((50, 300), (50, 400)), image)
     assert caught.value.why == "outside"
+
+
+def test_an_image_located_by_rpc_needs_a_height_of_the_targets_it_may_show():
+    from rasterio.rpc import RPC
+
+    from acutance.raster.sensor_model import SensorModel
+
+    def polynomial(**terms):
+        places = {"one": 0, "lon": 1, "lat": 2, "height": 3}
+        found = [0.0] * 20
+        for name, value in terms.items():
+            found[places[name]] = value
+        return found
+
+    rpc = RPC(
+        height_off=200.0, height_scale=100.0, lat_off=43.0, lat_scale=0.01, long_off=5.0,
+        long_scale=0.01, line_off=100.0, line_scale=500.0, samp_off=100.0, samp_scale=500.0,
+        line_num_coeff=polynomial(lat=-1.0), line_den_coeff=polynomial(one=1.0),
+        samp_num_coeff=polynomial(lon=1.0, height=0.05), samp_den_coeff=polynomial(one=1.0),
+        err_bias=None, err_rand=None,
+    )  # fmt: skip
+    image, model = Image.from_array(np.zeros((200, 200))), SensorModel("OGC:CRS84", rpc=rpc)
+
+    def why(lon):
+        survey = target([[lon, 43.0], [lon + 0.0005, 43.0]], position_std_m=5)
+        with pytest.raises(NotHereError) as caught:
+            place_target(survey, image, model)
+        return caught.value.why
+
+    assert why(5.0) == "no height"
+    assert why(4.9977) == "no height"
+    assert (why(4.99), why(5.01), why(80.0)) == ("outside",) * 3

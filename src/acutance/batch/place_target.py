@@ -107,6 +107,7 @@ def _in_pixels(target: SurveyedTarget, image: Image, georeference: Georeference)
             f'{target.crs} by: give the target in pixels ("crs": "pixel")',
         )
     if isinstance(georeference, SensorModel) and georeference.needs_height:
+        _require_near(points, target.crs, image, georeference)
         raise NotHereError(
             "no height",
             "the image is located by RPC, which need the height of the ground: give the target's "
@@ -120,6 +121,20 @@ def _in_pixels(target: SurveyedTarget, image: Image, georeference: Georeference)
     if not np.isfinite(found).all():
         raise NotHereError("outside", "the target lies where the image's map has no place for it")
     return _near_image(found, image, georeference)
+
+
+def _require_near(points: Floats, crs: str, image: Image, model: SensorModel) -> None:
+    """Refuse a target that lies outside the image whatever the height of the ground."""
+    try:
+        seen = [one.from_crs(points[:, 0], points[:, 1], crs) for one in model.at_extremes]
+    except RegionError:
+        return
+    places = np.concatenate([np.column_stack(one) for one in seen])
+    beyond = places.max(axis=0) < 0.0, places.min(axis=0) > np.array(image.shape)
+    if not np.isfinite(places).all() or np.any(beyond):
+        raise NotHereError(
+            "outside", "the target lies outside the image, however high the ground is there"
+        )
 
 
 def _near_image(points: Floats, image: Image, georeference: Georeference) -> Floats:

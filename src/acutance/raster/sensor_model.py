@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -50,6 +50,13 @@ class SensorModel:
     def needs_height(self) -> bool:
         """Whether it has no answer because the height of the ground is not known."""
         return self.rpc is not None and self.height_m is None
+
+    @property
+    def at_extremes(self) -> tuple[SensorModel, SensorModel]:
+        """The model for the lowest and the highest ground that its RPC are made for."""
+        low = self.rpc.height_off - self.rpc.height_scale
+        high = self.rpc.height_off + self.rpc.height_scale
+        return replace(self, height_m=low), replace(self, height_m=high)
 
     def from_crs(self, x: ArrayLike, y: ArrayLike, crs: str) -> tuple[Floats, Floats]:
         """Pixel positions (row, col) of coordinates in any CRS; integers are pixel centres.
