@@ -21,7 +21,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import TargetError
 from acutance.numerics.compiled import compiled
 from acutance.numerics.normal_equations import Normal
-from acutance.numerics.small_matrices import lower_inverse
+from acutance.numerics.small_matrices import lower_inverse, lower_square
 
 __all__ = [
     "LogEvidence",
@@ -229,10 +229,9 @@ def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) ->
     upper, failed = _potrf(precision.T, lower=0, clean=1, overwrite_a=1)
     _require_solution(failed)
     inverse = lower_inverse(upper.T)
-    root = inverse.T
-    covariance = root @ inverse
+    covariance = lower_square(inverse)
     mean = covariance @ (sigma * normal.projection / noise + prior.mean / sigma)
-    return Whitened(sigma, mean, covariance, root)
+    return Whitened(sigma, mean, covariance, inverse.T)
 
 
 def _require_solution(failed: int) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 
-__all__ = ["add_product", "factorize", "forward_substitution", "lower_inverse"]
+__all__ = ["add_product", "factorize", "forward_substitution", "lower_inverse", "lower_square"]
 
 
 @compiled
@@ -78,3 +78,24 @@ def lower_inverse(lower: Floats) -> Floats:
             row[j] /= lower[i, i]
         row[i] = 1 / lower[i, i]
     return inverse
+
+
+@compiled
+def lower_square(lower: Floats) -> Floats:
+    """The product ``L^T L`` of a lower triangular matrix, (n, n), four of its rows at a time."""
+    n = len(lower)
+    found, fours = np.zeros((n, n)), n - n % 4
+    for k in range(0, fours, 4):
+        p, q, r, s = lower[k], lower[k + 1], lower[k + 2], lower[k + 3]
+        for i in range(k + 4):
+            a, b, c, d, row = p[i], q[i], r[i], s[i], found[i]
+            for j in range(i + 1):
+                row[j] += a * p[j] + b * q[j] + c * r[j] + d * s[j]
+    for k in range(fours, n):
+        for i in range(k + 1):
+            for j in range(i + 1):
+                found[i, j] += lower[k, i] * lower[k, j]
+    for i in range(n):
+        for j in range(i):
+            found[j, i] = found[i, j]
+    return found

@@ -214,11 +214,10 @@ class Linear:
         r = self.design.shape[1]
         coefficients = self.design @ beta[:r]
         further = np.concatenate([coefficients[CELLS + 3 :], beta[r:]])
-        ends = np.cumsum([len(some) for some in columns])
-        parts = zip(np.split(further, ends[:-1]), columns, strict=True)
-        image = np.zeros(self.s.size)
-        for own, some in parts:
-            image += own @ some
+        image, first = np.zeros(self.s.size), 0
+        for some in columns:
+            image += further[first : first + len(some)] @ some
+            first += len(some)
         for cell, basis in self.stencils:
             image = image + combine(cell, basis, coefficients[: CELLS + 3])
         return image
