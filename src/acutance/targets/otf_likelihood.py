@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.numerics.pivoted_root import least_squares, pivoted_root
+from acutance.numerics.small_matrices import lower_inverse, lower_square
 from acutance.numerics.stacked import stacked, unstacked
 
 __all__ = ["OtfLikelihood"]
@@ -167,7 +168,8 @@ class OtfLikelihood(ShortRepr):
 
 def _inverse(factor: Complexes) -> Floats:
     wide = stacked(factor)
-    return np.asarray(np.linalg.inv(wide @ wide.T + _EXACT**2 * np.eye(len(wide))))
+    covariance = wide @ wide.T + _EXACT**2 * np.eye(len(wide))
+    return lower_square(lower_inverse(np.asarray(np.linalg.cholesky(covariance), float)))
 
 
 def _triangular(root: Floats) -> Floats:

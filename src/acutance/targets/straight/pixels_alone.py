@@ -14,6 +14,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.numerics.gaussian_pixel import GaussianPixel
+from acutance.numerics.small_matrices import lower_inverse, lower_square
 from acutance.targets.otf_likelihood import OtfLikelihood
 from acutance.targets.straight.lsf import LsfModel
 
@@ -61,8 +62,10 @@ class PixelsAlone(ShortRepr):
         gain : (n,) array
             By how much the OTF of the sensor exceeds that of the image.
         """
-        known = np.linalg.inv(self.prior)
-        root = np.linalg.inv(np.linalg.cholesky(self.information + known)).T
+        prior_root = np.asarray(np.linalg.cholesky(self.prior), float)
+        known = lower_square(lower_inverse(prior_root))
+        lower = np.asarray(np.linalg.cholesky(self.information + known), float)
+        root = lower_inverse(lower).T
         unknowns = root @ (root.T @ (self.projection + known @ self.prior_mean))
         own, latent = self.columns @ unknowns, self.columns @ root
         model = LsfModel(self.blur, self.level, own[:-1], float(own[-1]), latent)
@@ -73,5 +76,5 @@ class PixelsAlone(ShortRepr):
             raised * spectrum,
             rows @ (own - self.columns @ self.prior_mean),
             rows @ latent,
-            rows @ (self.columns @ np.linalg.cholesky(self.prior)),
+            rows @ (self.columns @ prior_root),
         )
