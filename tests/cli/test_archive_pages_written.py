@@ -41,7 +41,7 @@ def test_the_page_of_a_sensor_ends_with_the_command(acutance, archive, tmp_path)
     done = acutance("archive", "report", archive, "QB02", page)
     assert done.exit_code == 0, done.stderr
     text = page.read_text(encoding="utf-8")
-    assert "<pre>acutance " in text
+    assert "<pre>acutance" in text
     assert "Through time" in text
 
 

@@ -103,6 +103,9 @@ def test_a_measurement_gives_what_is_not_stated(edges):
     assert found.inputs.snr == pytest.approx(edges[0].snr)
     assert found.inputs_std > 0
     assert ac.niirs(edges[0].record, snr=20).inputs.snr == 20
+    assert "one direction" in [note.name for note in found.notes]
+    both = ac.niirs(edges[0], rer=(edges[0].rer, edges[1].rer))
+    assert "one direction" not in [note.name for note in both.notes]
 
 
 @pytest.mark.parametrize(

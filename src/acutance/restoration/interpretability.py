@@ -142,7 +142,10 @@ def niirs(
         inputs_std=spread,
         equation_std=EQUATION_STD,
         inputs=inputs,
-        notes=_notes(inputs, version, float(known["rer_std"])),
+        notes=(
+            *_notes(inputs, version, float(known["rer_std"])),
+            *((ONE_DIRECTION,) if known.get("one_direction") else ()),
+        ),
     )
 
 
@@ -170,6 +173,7 @@ def read_niirs_inputs(
             "rer_across": both[0],
             "rer_along": both[1],
             "correlated": len({*map(id, both)}) == 1,
+            "one_direction": False,
         }
     sides = gsd_m if isinstance(gsd_m, tuple) else (gsd_m, gsd_m)
     if sides[0] is not None and sides[1] is not None:
@@ -195,6 +199,7 @@ def _of_record(record: Record) -> dict[str, Any]:
         "rer_along": last.rer,
         "giqe_h": Estimate(mean_h, max((one.std for one in heights), default=0.0)),
         "correlated": True,
+        "one_direction": len(directions) == 1,
     }
     if pixel_m is not None:
         found["gsd_m"] = math.sqrt(pixel_m[0] * pixel_m[1])
@@ -279,6 +284,13 @@ def _notes(inputs: GiqeInputs, version: GiqeVersion, rer_std: float) -> tuple[No
         )
         if note is not None
     )
+
+
+ONE_DIRECTION = Note(
+    "one direction",
+    "the measurement shows one direction, whose RER stands for both: state the other (rer, --rer), "
+    "or give a combination",
+)
 
 
 def _low_snr(inputs: GiqeInputs) -> Note | None:
