@@ -52,7 +52,7 @@ def test_names_of_many_images_at_once(filled):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({"senser": "K3"}, "there are sensor, level"),
+        ({"senser": "K3"}, "there are sensor, band"),
         ({"sensor": 5}, "as texts"),
         ({"sensor": [5]}, "as texts"),
         ({"verdict": "excellent"}, "one of good"),

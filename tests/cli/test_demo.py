@@ -149,7 +149,7 @@ def test_a_folder_that_cannot_be_made_is_exit_2(acutance, tmp_path):
 
 
 def test_the_folder_holds_what_was_announced_and_may_be_written_again(folder):
-    assert {path.name for path in folder.iterdir()} == set(FILES)
+    assert {path.name for path in folder.iterdir()} == {*FILES, "images"}
     assert demo_folder(str(folder)) == folder
     (folder / "index.html").unlink()
     assert demo_folder(str(folder)) == folder

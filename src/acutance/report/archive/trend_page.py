@@ -82,6 +82,11 @@ def trend_verdict(trend: Trend, limit: float | None = None, label: str = "") -> 
             f"{'rises' if rate.value > 0 else 'falls'} by {percent(rate, sign=False)} a year"
         )
     words += [f"changed by {percent(one.relative_size)} about {one.date}" for one in trend.changes]
+    words += [
+        f"{one.name} of {one.date}: {percent((1 / (trend.level.value or 1.0)) * one.size)}"
+        for one in trend.events
+        if not _holds_zero(one.size)
+    ]
     changed = bool(words)
     if not changed:
         words = [f"no change is found: {percent(rate)} a year"]
