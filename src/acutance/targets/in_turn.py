@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -72,11 +71,13 @@ def in_turn(
 def _results(
     measure: Measure, pairs: Iterator[tuple[int, Any, Any]], workers: int
 ) -> Iterator[Record | Rejected]:
-    with ExitStack() as stack:
-        if workers > 1:
-            folder = Path(stack.enter_context(TemporaryDirectory(prefix="acutance-")))
-            pairs = _on_disk(pairs, folder)
-        yield from results_in_turn(partial(_record, measure), pairs, workers=workers)
+    if workers == 1:
+        yield from map(partial(_record, measure), pairs)
+        return
+    with TemporaryDirectory(prefix="acutance-") as folder:
+        there = _on_disk(pairs, Path(folder))
+        for found in results_in_turn(partial(_fields, measure), there, workers=workers):
+            yield found if isinstance(found, Rejected) else Record(found)
 
 
 def are_many(image: Any, roi: Any) -> bool:
@@ -136,6 +137,12 @@ def _record(measure: Measure, numbered: tuple[int, Any, Any]) -> Record | Reject
         return measure(image, roi).record
     except AcutanceError as error:
         return Rejected(_stage(error), str(error), _where(place, image, roi))
+
+
+def _fields(measure: Measure, numbered: tuple[int, Any, Any]) -> Mapping[str, Any] | Rejected:
+    """The record's fields, on their way to another process: curves go as arrays, unwritten."""
+    found = _record(measure, numbered)
+    return found if isinstance(found, Rejected) else found.fields
 
 
 def _stage(error: AcutanceError) -> str:
