@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+import acutance as ac
 from acutance import optics, simulate
 from acutance.raster import open_image, write_geotiff
 
@@ -56,6 +57,20 @@ def test_an_image_is_filtered_and_verified(acutance, folder):
     off = edge["mtf_nyquist_after"]["value"] - edge["mtf_nyquist_predicted"]["value"]
     assert abs(off) < 0.05
     assert open_image(out).gsd().col_m == pytest.approx(0.7)
+
+
+def test_edges_are_verified_by_a_method_that_expects_no_sensor(acutance, folder, tmp_path):
+    words = ["restore", "apply", folder / "across.tif", "--filter", folder / "filter.json"]
+    words += ["--out", tmp_path / "sharp.tif", "--method", "iso12233"]
+    result = acutance(*words, "--verify", "--roi", "5,5,60,60", "--json")
+    assert result.exit_code == 0, result.stderr
+    proof = json.loads(result.stdout)["proof"]
+    (edge,) = proof["edges"]
+    before = ac.measure_edge(open_image(folder / "across.tif"), (5, 5, 60, 60), method="iso12233")
+    assert edge["mtf_nyquist_before"]["value"] == pytest.approx(before.mtf_nyquist.value)
+    result = acutance(*words)
+    assert result.exit_code == 2
+    assert "--method measures edges for --verify" in result.stderr
 
 
 def test_a_described_sensor_and_an_image_make_a_filter(acutance, folder, tmp_path):

@@ -30,20 +30,16 @@ if TYPE_CHECKING:
     from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
     from acutance.archive.measurements import Measurements, Rejections
     from acutance.archive.published.read import published_entries
-    from acutance.archive.trends.series import Event
-    from acutance.archive.trends.trend import Trend
     from acutance.archive.weighted_means import WeightedMean, weighted_mean
 
 __all__ = [
     "Archive",
     "Entry",
-    "Event",
     "ImageEntry",
     "Kept",
     "Measurements",
     "Rejections",
     "TargetEntry",
-    "Trend",
     "WeightedMean",
     "published_entries",
     "weighted_mean",
@@ -53,13 +49,11 @@ __all__ = [
 _HOMES = {
     "Archive": "archive",
     "Entry": "entry",
-    "Event": "trends.series",
     "ImageEntry": "entry",
     "Kept": "entry",
     "Measurements": "measurements",
     "Rejections": "measurements",
     "TargetEntry": "entry",
-    "Trend": "trends.trend",
     "WeightedMean": "weighted_means",
     "published_entries": "published.read",
     "weighted_mean": "weighted_means",

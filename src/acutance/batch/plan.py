@@ -131,7 +131,7 @@ class BatchPlan:
     Parameters
     ----------
     images : tuple of str
-        Paths and patterns of paths ("images/**/*.tif").
+        Paths and patterns of paths (``"images/**/*.tif"``).
     targets : str or mapping
         A GeoJSON file, or its document.
     archive : str

@@ -64,7 +64,7 @@ def run_batch(
     plan : BatchPlan or path, optional
         A plan, or the TOML file of one. The arguments below go before it, and are enough without.
     images : str or sequence of str, optional
-        Paths, and patterns such as "images/*.tif".
+        Paths, and patterns such as ``"images/*.tif"``.
     targets : path or mapping, optional
         GeoJSON features: see the documentation of batches.
     archive : path or str, optional

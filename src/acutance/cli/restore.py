@@ -12,12 +12,19 @@ import typer
 from acutance.cli.choices import parse_band
 from acutance.cli.documents import read_json
 from acutance.cli.option_groups import with_groups
-from acutance.cli.options import GsdOption, ImageArgument, JsonOption, parse_gsd
+from acutance.cli.options import (
+    GsdOption,
+    ImageArgument,
+    JsonOption,
+    method_option,
+    parse_gsd,
+)
 from acutance.cli.output import OutputFile, check_optional, check_output
 from acutance.cli.sensor import named_sensor
 from acutance.cli.study import progress_bar
 from acutance.cli.terminal import command_line, say
 from acutance.errors import OptionError
+from acutance.targets.kinds import KINDS
 
 if TYPE_CHECKING:
     from acutance.raster import Region
@@ -199,6 +206,7 @@ def apply(
             metavar="REGION", help="Where --verify finds edges, one a region; else it scans."
         ),
     ] = None,
+    method: Annotated[str, method_option("edge")] = KINDS["edge"].methods[0],
     as_json: JsonOption = False,
 ) -> None:
     """Sharpen an image of any size.
@@ -207,6 +215,8 @@ def apply(
     """
     if roi is not None and not verify:
         raise OptionError("--roi names edges for --verify: add it")
+    if method != KINDS["edge"].methods[0] and not verify:
+        raise OptionError("--method measures edges for --verify: add it")
     ending = ".npy" if image.lower().endswith(".npy") else ".tif"
     place = check_output("--out", out, (ending, ".tiff") if ending == ".tif" else (ending,),
                          keep=(image, filter, roi))  # fmt: skip
@@ -224,7 +234,7 @@ def apply(
     lines = [f"band {number}: {counts.in_words()}" for number, counts in restored.bands.items()]
     if verify:
         first = next(iter(restored.bands))
-        proof = _verified(image, str(place.place), first, chosen, roi, nodata)
+        proof = _verified(image, str(place.place), first, chosen, roi, nodata, method)
         document["proof"] = proof.to_dict()
         from acutance.report import proof_text
 
@@ -238,7 +248,13 @@ def apply(
 
 
 def _verified(
-    image: str, restored: str, band: int, chosen: Any, roi: str | None, nodata: float | None
+    image: str,
+    restored: str,
+    band: int,
+    chosen: Any,
+    roi: str | None,
+    nodata: float | None,
+    method: str,
 ) -> Any:
     """Edges of a band before and after."""
     from acutance.raster import open_image, parse_rois
@@ -249,9 +265,8 @@ def _verified(
         for name in (image, restored)
     )
     regions: Mapping[str, Region | None] = {} if roi is None else parse_rois(roi, before)
-    return verify_restoration(
-        before, after, chosen, [one for one in regions.values() if one is not None]
-    )
+    given = [one for one in regions.values() if one is not None]
+    return verify_restoration(before, after, chosen, given, method=method)
 
 
 def _bands(text: str | None) -> Any:
