@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 import acutance as ac
+from acutance.geometry import Line
 from acutance.simulate.campaign import Placed, render_site
 from acutance.simulate.points import mirror_columns
 from acutance.simulate.tarps import EdgeTarps, PulseTarp
@@ -61,9 +62,8 @@ def _rendered(shift: tuple[float, float]) -> np.ndarray:
 def _ends(tarp: EdgeTarps | PulseTarp) -> list[tuple[float, float]]:
     """The ends of an edge, or of a pulse's axis, as (row, col)."""
     length = 0.9 * (tarp.side_px if isinstance(tarp, EdgeTarps) else tarp.length_px)
-    angle = np.radians(tarp.normal_deg)
-    step = 0.5 * length * np.array([np.cos(angle), -np.sin(angle)])
-    return [(tarp.row - step[0], tarp.col - step[1]), (tarp.row + step[0], tarp.col + step[1])]
+    edge = Line(tarp.row, tarp.col, tarp.normal_deg)
+    return [(end.row, end.col) for end in (edge.slid(-0.5 * length), edge.slid(0.5 * length))]
 
 
 def _on_map(row: float, col: float) -> list[float]:

@@ -13,6 +13,7 @@
     │   ├── PhaseError                    the edge is aligned with the grid: no sub-pixel phases
     │   └── SupportError                  too few rows or too narrow plateaus
     ├── OptionError         (ValueError)  an option has a value out of its range
+    │   └── NothingSelectedError          the filters of an archive let no measurement pass
     ├── ModelError          (ValueError)  a sensor or a scene is described in contradiction
     └── ArchiveError        (OSError)     an archive is missing, of another program, not reachable,
                                           or cannot be written
@@ -30,6 +31,7 @@ __all__ = [
     "NoDataError",
     "NoEdgeError",
     "NoStarError",
+    "NothingSelectedError",
     "OptionError",
     "PhaseError",
     "RegionError",
@@ -80,6 +82,10 @@ class SupportError(TargetError):
 
 class OptionError(AcutanceError, ValueError):
     """An option has a value that means nothing."""
+
+
+class NothingSelectedError(OptionError):
+    """The filters of an archive let no measurement pass."""
 
 
 class ModelError(AcutanceError, ValueError):

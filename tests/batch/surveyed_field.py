@@ -6,9 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 import acutance as ac
+from acutance.geometry import Line
 from acutance.simulate.tarps import EdgeTarps, PulseTarp
 
 SENSOR = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()], gsd_m=0.5)
@@ -25,10 +24,9 @@ def on_map(row: float, col: float) -> list[float]:
 
 def line_of(tarp: Any, length_px: float) -> list[list[float]]:
     """A surveyed line along a tarp."""
-    angle = np.radians(tarp.normal_deg)
-    step = 0.5 * length_px * np.array([np.cos(angle), -np.sin(angle)])
-    ends = ((tarp.row - step[0], tarp.col - step[1]), (tarp.row + step[0], tarp.col + step[1]))
-    return [on_map(*end) for end in ends]
+    edge = Line(tarp.row, tarp.col, tarp.normal_deg)
+    ends = (edge.slid(-0.5 * length_px), edge.slid(0.5 * length_px))
+    return [on_map(end.row, end.col) for end in ends]
 
 
 def feature(name: str, kind: str, shape: str | None, points: Any, **more: Any) -> dict[str, Any]:

@@ -31,10 +31,7 @@ def as_utc(when: When, name: str = "the date") -> datetime:
     OptionError
         If it is no date.
     """
-    found = _parsed(when, name)
-    if not isinstance(found, datetime):
-        found = datetime.combine(found, time.min)
-    return _in_utc(found, name)
+    return _moment(when, name, time.min)
 
 
 def end_of(when: When, name: str = "the date") -> datetime:
@@ -45,9 +42,14 @@ def end_of(when: When, name: str = "the date") -> datetime:
     OptionError
         If it is no date.
     """
+    return _moment(when, name, time.max)
+
+
+def _moment(when: When, name: str, of_day: time) -> datetime:
+    """In UTC; a day without a time is at this time of it."""
     found = _parsed(when, name)
     if not isinstance(found, datetime):
-        found = datetime.combine(found, time.max)
+        found = datetime.combine(found, of_day)
     return _in_utc(found, name)
 
 

@@ -20,7 +20,7 @@ from acutance.archive.trends.images import image_means
 from acutance.archive.trends.series import Series
 from acutance.archive.weighted_means import weighted_mean
 from acutance.curves import METRICS, Estimate
-from acutance.errors import OptionError
+from acutance.errors import NothingSelectedError, OptionError
 
 __all__ = ["GROUPS", "MeasurementTable", "TableRow", "table_by"]
 
@@ -162,7 +162,7 @@ def _require(rows: Columns, by: Sequence[str], metrics: Sequence[str]) -> None:
             f"{', '.join((*METRICS, *PRINTED))}"
         )
     if not len(rows):
-        raise OptionError("nothing is selected: widen the filters")
+        raise NothingSelectedError("the archive holds nothing that is selected: widen the filters")
 
 
 def _with_printed(rows: Measurements, names: Sequence[str]) -> Columns:

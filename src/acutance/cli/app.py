@@ -40,7 +40,7 @@ from acutance.cli.terminal import (
     stop,
     stop_printing,
 )
-from acutance.errors import AcutanceError, NoDataError, TargetError
+from acutance.errors import AcutanceError, NoDataError, NothingSelectedError, TargetError
 from acutance.targets.kinds import KINDS
 
 __all__ = ["app", "run"]
@@ -58,7 +58,7 @@ class _Commands(TyperGroup):
         try:
             with _stdout_needed():
                 return super().invoke(ctx)
-        except (TargetError, NoDataError) as error:
+        except (TargetError, NoDataError, NothingSelectedError) as error:
             fail(str(error), NOTHING_MEASURED)
         except AcutanceError as error:
             fail(str(error))

@@ -9,7 +9,7 @@ import typer
 from acutance.cli.archive_selection import PlaceArgument
 from acutance.cli.archive_trend import EventOption, parse_events
 from acutance.cli.output import check_output
-from acutance.cli.terminal import NOTHING_MEASURED, command_line, fail
+from acutance.cli.terminal import command_line
 
 __all__ = ["EXAMPLE", "report"]
 
@@ -44,15 +44,6 @@ def report(
 
     events = parse_events(event)
     with Archive(place, read_only=True) as archive:
-        if not len(archive.measurements(sensor=sensor, verdict=verdict)):
-            known = sorted(
-                {one.sensor for one in archive.overview().sensors if one.sensor is not None}
-            )
-            fail(
-                f"archive {place} holds no {verdict} measurement of {sensor}; its sensors are "
-                f"{', '.join(known) or 'not known'}",
-                NOTHING_MEASURED,
-            )
         page = sensor_page(
             archive, sensor, metric=metric, specification=spec, events=events, verdict=verdict,
             command=command_line(),

@@ -9,7 +9,6 @@ import typer
 from acutance.cli.archive_selection import PlaceArgument, SelectionOptions
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import JsonOption
-from acutance.cli.terminal import NOTHING_MEASURED, fail
 
 __all__ = ["EXAMPLE", "table"]
 
@@ -49,11 +48,8 @@ def table(
 
     groups = [name.strip() for name in by.split(",") if name.strip()]
     with Archive(place, read_only=True) as archive:
-        words = selected.words
-        if not len(archive.measurements(**words)):
-            fail(f"archive {place} holds nothing that is selected", NOTHING_MEASURED)
         chosen = tuple(metric or ("rer", "fwhm_px", "mtf_nyquist"))
-        found = archive.table(groups, chosen, **words)
+        found = archive.table(groups, chosen, **selected.words)
     if as_json:
         typer.echo(json_text(found.to_dict()))
         return

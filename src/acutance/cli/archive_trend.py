@@ -10,7 +10,7 @@ from acutance.cli.archive_selection import PlaceArgument, SelectionOptions
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import JsonOption
 from acutance.cli.output import check_optional
-from acutance.cli.terminal import NOTHING_MEASURED, command_line, fail
+from acutance.cli.terminal import command_line
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -66,10 +66,7 @@ def trend(
     drawing = check_optional("--figure", figure, FIGURE_ENDINGS, keep=[place])
     events = parse_events(event)
     with Archive(place, read_only=True) as archive:
-        words = selected.words
-        if not len(archive.measurements(**words)):
-            fail(f"archive {place} holds nothing that is selected", NOTHING_MEASURED)
-        found = archive.trend(metric, events=events, **words)
+        found = archive.trend(metric, events=events, **selected.words)
     crossing = None if limit is None else found.crosses(limit)
     if page is not None:
         page.deliver(trend_page(found, limit=limit, command=command_line()))

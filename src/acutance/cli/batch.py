@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from acutance.cli.options import JsonOption
-from acutance.cli.study import WorkersOption, progress_bar
+from acutance.cli.study import WorkersOption, dask_option, progress_bar
 from acutance.cli.terminal import FAILED_CHECK, NOTHING_MEASURED, say
 from acutance.errors import OptionError
 
@@ -54,14 +54,7 @@ def batch(
         typer.Option(metavar="NAME", help="The sensor of all images, whatever they say."),
     ] = None,
     workers: WorkersOption = None,
-    dask: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="Use the workers of this dask scheduler instead of processes: tcp://HOST:8786. "
-            "They have to see the images under the same names.",
-        ),
-    ] = None,
+    dask: Annotated[str | None, dask_option("the images under the same names")] = None,
     log: Annotated[
         str | None,
         typer.Option(

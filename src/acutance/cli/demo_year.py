@@ -150,15 +150,12 @@ def _survey() -> dict[str, Any]:
 
 
 def _ends(tarp: EdgeTarps) -> list[list[float]]:
-    half, angle = 0.45 * tarp.side_px, math.radians(tarp.normal_deg)
-    row, col = half * math.cos(angle), -half * math.sin(angle)
-    return [
-        [
-            _WEST_M + GSD_M * (tarp.col + way * col + 0.5),
-            _NORTH_M - GSD_M * (tarp.row + way * row + 0.5),
-        ]
-        for way in (-1, 1)
-    ]
+    """Both ends of the edge on the map."""
+    from acutance.geometry import Line
+
+    edge = Line(tarp.row, tarp.col, tarp.normal_deg)
+    ends = (edge.slid(way * 0.45 * tarp.side_px) for way in (-1, 1))
+    return [[_WEST_M + GSD_M * (end.col + 0.5), _NORTH_M - GSD_M * (end.row + 0.5)] for end in ends]
 
 
 def true_nyquist(when: datetime) -> float:

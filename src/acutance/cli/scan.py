@@ -16,7 +16,7 @@ from acutance.cli.option_groups import with_groups
 from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions
 from acutance.cli.output import OutputFile, check_optional
 from acutance.cli.results import Outputs, Shown
-from acutance.cli.study import WorkersOption, progress_bar
+from acutance.cli.study import WorkersOption, dask_option, progress_bar
 from acutance.cli.terminal import command_line
 from acutance.errors import OptionError
 
@@ -88,14 +88,7 @@ def scan(
         ),
     ] = "3x3",
     workers: WorkersOption = None,
-    dask: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="Use the workers of this dask scheduler instead of processes: tcp://HOST:8786. "
-            "They have to see IMAGE under the same name.",
-        ),
-    ] = None,
+    dask: Annotated[str | None, dask_option("IMAGE under the same name")] = None,
     wanted: ResultOptions,
 ) -> None:
     """Measure a sensor from all straight edges of a scene: roofs, fields, roads, coasts.

@@ -18,7 +18,15 @@ from acutance.errors import OptionError
 if TYPE_CHECKING:
     from acutance.studies import Execution, StudyResult
 
-__all__ = ["EXAMPLE", "WorkersOption", "execution_of", "progress_bar", "study", "write_result"]
+__all__ = [
+    "EXAMPLE",
+    "WorkersOption",
+    "dask_option",
+    "execution_of",
+    "progress_bar",
+    "study",
+    "write_result",
+]
 
 EXAMPLE = "\b\nExample:\n  acutance study angle --out studies --set places=3"
 STUDIES_HELP = "snr, ground-noise, angle, width, width-correction or all"
@@ -28,6 +36,15 @@ _KINDS = {int: "a whole number", float: "a number", tuple: "several numbers"}
 WorkersOption = Annotated[
     int | None, typer.Option(metavar="N", min=1, help="Processes; all cores if not given.")
 ]
+
+
+def dask_option(seen: str) -> Any:
+    """The option ``--dask``; `seen` is what its workers have to see."""
+    return typer.Option(
+        metavar="ADDRESS",
+        help="Use the workers of this dask scheduler instead of processes: tcp://HOST:8786. "
+        f"They have to see {seen}.",
+    )
 
 
 def study(

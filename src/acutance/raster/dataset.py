@@ -142,9 +142,19 @@ def open_quietly(path: str, mode: str = "r", **profile: Any) -> Any:
 @contextmanager
 def opened_dataset(path: str) -> Iterator[Any]:
     """A dataset open for reading, with a small block cache and errors in our own words."""
+    with (
+        read_in_our_words(path),
+        rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES),
+        open_quietly(path) as dataset,
+    ):
+        yield dataset
+
+
+@contextmanager
+def read_in_our_words(path: str) -> Iterator[None]:
+    """What GDAL cannot read, as an error that tells what to do."""
     try:
-        with rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES), open_quietly(path) as dataset:
-            yield dataset
+        yield
     except (RasterioError, CPLE_BaseError) as error:
         reason = str(error.__cause__ or error)
         raise ImageError(f"{path} cannot be read ({reason}): {_advice(path)}") from error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,21 +13,25 @@ from typing import Any
 import numpy as np
 import rasterio
 from numpy.typing import NDArray
-from rasterio._err import CPLE_BaseError
 from rasterio.enums import ColorInterp, MaskFlags
-from rasterio.errors import RasterioError
 from rasterio.shutil import copy
 from rasterio.windows import Window
 
-from acutance.errors import ImageError
-from acutance.raster.dataset import CACHE_BYTES, open_quietly
+from acutance.raster.dataset import (
+    CACHE_BYTES,
+    open_quietly,
+    opened_dataset,
+    read_in_our_words,
+)
 from acutance.raster.pixels import equals_nodata
 from acutance.raster.region import Box
+from acutance.raster.writing import written_in_our_words
 
 __all__ = ["StoredWindow", "rewrite_image", "stored_tags"]
 
 _WINDOW_ROWS, _WINDOW_COLS = 1024, 4096
 _BLOCK_PX = 512
+_ADVICE = "check that the folder exists, may be written to and has room for twice the image"
 _OWN_DOMAINS = ("IMAGE_STRUCTURE", "DERIVED_SUBDATASETS", "RPC", "IMD", "COLOR_PROFILE", "TIFF")
 
 
@@ -55,7 +59,7 @@ class StoredWindow:
 
 def stored_tags(path: str) -> dict[str, str]:
     """Metadata items of a file, by name."""
-    with _read_in_our_words(path), open_quietly(path) as dataset:
+    with opened_dataset(path) as dataset:
         return dict(dataset.tags())
 
 
@@ -103,9 +107,9 @@ def rewrite_image(
     target = Path(os.path.realpath(out))
     with ExitStack() as stack:
         stack.enter_context(rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES, GDAL_TIFF_INTERNAL_MASK=True))
-        with _read_in_our_words(path):
+        with read_in_our_words(path):
             source = stack.enter_context(open_quietly(path))
-        with _written_in_our_words(target):
+        with written_in_our_words(target, _ADVICE):
             folder = stack.enter_context(TemporaryDirectory(prefix=".acutance-", dir=target.parent))
             plain = os.path.join(folder, "plain.tif")
             made = open_quietly(plain, "w", **_profile(source, nodata))
@@ -118,7 +122,7 @@ def rewrite_image(
             done += box.height * box.width
             if progress is not None:
                 progress(done, total)
-        with _written_in_our_words(target):
+        with written_in_our_words(target, _ADVICE):
             made.close()
             finished = os.path.join(folder, "finished.tif")
             copy(plain, finished, driver="COG", **_cog_options(source))
@@ -143,18 +147,18 @@ def _rewrite_box(
     own = Window(box.col, box.row, box.width, box.height)
     for band in range(1, source.count + 1):
         if band in bands:
-            with _read_in_our_words(path):
+            with read_in_our_words(path):
                 window = _stored_window(source, band, box, margin_px, nodata)
             pixels = change(window)
         else:
-            with _read_in_our_words(path):
+            with read_in_our_words(path):
                 pixels = source.read(band, window=own)
-        with _written_in_our_words(target):
+        with written_in_our_words(target, _ADVICE):
             made.write(pixels, band, window=own)
     if _has_mask(source):
-        with _read_in_our_words(path):
+        with read_in_our_words(path):
             mask = source.read_masks(1, window=own)
-        with _written_in_our_words(target):
+        with written_in_our_words(target, _ADVICE):
             made.write_mask(mask, window=own)
 
 
@@ -278,23 +282,3 @@ def _items(source: Any, band: int = 0) -> dict[str, str]:
             named = source.tags(band, ns=domain).items()
             items |= {f"{domain}.{name}": value for name, value in named}
     return items
-
-
-@contextmanager
-def _read_in_our_words(path: str) -> Iterator[None]:
-    try:
-        yield
-    except (RasterioError, CPLE_BaseError, OSError) as error:
-        reason = error.__cause__ or error
-        raise ImageError(f"{path} cannot be read ({reason}): check that it is whole") from error
-
-
-@contextmanager
-def _written_in_our_words(target: Path) -> Iterator[None]:
-    try:
-        yield
-    except (RasterioError, CPLE_BaseError, OSError, ValueError, TypeError) as error:
-        raise ImageError(
-            f"{target} cannot be written ({error.__cause__ or error}): check that the folder "
-            "exists, may be written to and has room for twice the image"
-        ) from error

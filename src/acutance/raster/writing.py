@@ -16,7 +16,7 @@ from acutance.errors import ImageError
 from acutance.raster.gsd import GSD_TAGS, Gsd
 from acutance.raster.region import Box
 
-__all__ = ["write_geotiff", "write_geotiff_tiles"]
+__all__ = ["write_geotiff", "write_geotiff_tiles", "written_in_our_words"]
 
 Transform = tuple[float, float, float, float, float, float]
 """Geotransform (a, b, c, d, e, f)."""
@@ -148,7 +148,7 @@ def _write(
     written = 0
     with ExitStack() as stack:
         # Errors of what makes the parts are its own, so the loop stands outside.
-        with _in_our_words(target, dtype):
+        with written_in_our_words(target, _advice(dtype)):
             folder = stack.enter_context(TemporaryDirectory(prefix=".acutance-", dir=target.parent))
             stack.enter_context(Env(GDAL_CACHEMAX=CACHE_BYTES))
             partial = os.path.join(folder, "image.tif")
@@ -156,14 +156,14 @@ def _write(
             dataset.update_tags(**tags)
         for box, bands in parts:
             written += box.height * box.width
-            with _in_our_words(target, dtype):
+            with written_in_our_words(target, _advice(dtype)):
                 dataset.write(bands, window=Window(box.col, box.row, box.width, box.height))
         if written != shape[0] * shape[1]:
             raise ImageError(
                 f"{target} is not written: its parts hold {written} pixels, the image of "
                 f"{shape[0]} by {shape[1]} has {shape[0] * shape[1]}; give each of them once"
             )
-        with _in_our_words(target, dtype):
+        with written_in_our_words(target, _advice(dtype)):
             dataset.close()
             os.replace(partial, target)
 
@@ -173,8 +173,16 @@ def _gsd_tags(gsd: Gsd | None) -> dict[str, str]:
     return {} if gsd is None else {GSD_TAGS[0]: repr(gsd.row_m), GSD_TAGS[1]: repr(gsd.col_m)}
 
 
+def _advice(dtype: np.dtype[Any]) -> str:
+    return (
+        "check that the folder exists and may be written to, and that GeoTIFF has the type "
+        f"{dtype.name}"
+    )
+
+
 @contextmanager
-def _in_our_words(target: Path, dtype: np.dtype[Any]) -> Iterator[None]:
+def written_in_our_words(target: Path, advice: str) -> Iterator[None]:
+    """What cannot be written, as an error that tells what to do."""
     from rasterio._err import CPLE_BaseError
     from rasterio.errors import RasterioError
 
@@ -182,8 +190,7 @@ def _in_our_words(target: Path, dtype: np.dtype[Any]) -> Iterator[None]:
         yield
     except (RasterioError, CPLE_BaseError, OSError, ValueError, TypeError) as error:
         raise ImageError(
-            f"{target} cannot be written ({error.__cause__ or error}): check that the folder "
-            f"exists and may be written to, and that GeoTIFF has the type {dtype.name}"
+            f"{target} cannot be written ({error.__cause__ or error}): {advice}"
         ) from error
 
 

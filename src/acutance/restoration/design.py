@@ -26,7 +26,6 @@ from acutance.restoration.niirs_change import niirs_changes
 from acutance.restoration.restoration_filter import SCHEMA, RestorationFilter
 from acutance.restoration.scene_spectrum import NaturalScene, SceneSpectrum, StiffScene
 from acutance.restoration.trade import trade_rows
-from acutance.targets.document_fields import DocumentFields
 from acutance.targets.measurement import direction_document
 from acutance.targets.record import strict_json
 from acutance.targets.slices import OtfSlices
@@ -233,12 +232,8 @@ def _described(
         "snr": snr,
         "noise_gain": gain,
         "snr_after": None if snr is None else snr / gain,
-        "before": {
-            name: dict(DocumentFields(direction_document(one))) for name, one in before.items()
-        },
-        "after": {
-            name: dict(DocumentFields(direction_document(one))) for name, one in after.items()
-        },
+        "before": {name: direction_document(one) for name, one in before.items()},
+        "after": {name: direction_document(one) for name, one in after.items()},
         "plane": OtfSlices.of_otf2d(sensor).to_dict(),
         "niirs_change": {str(version): one.to_dict() for version, one in changes.items()},
         "aliased_share": list(aliased_share(sensor.model, scene, kernel)),

@@ -19,6 +19,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.raster.image import AlongTrack
 from acutance.restoration.filtered_otf import kernel_otf
+from acutance.targets.document_fields import require_document
 from acutance.targets.record import RecordedDirection
 
 __all__ = ["SCHEMA", "RestorationFilter", "Sharpness"]
@@ -87,15 +88,8 @@ class RestorationFilter(ShortRepr):
         OptionError
             If it is none of a filter, or damaged.
         """
-        schema = document.get("schema") if isinstance(document, Mapping) else None
-        if schema != SCHEMA:
-            raise OptionError(
-                f"this is no document {SCHEMA} (its schema is {schema!r}): write one with "
-                "'acutance restore design', or with to_dict()"
-            )
-        missing = [name for name in _REQUIRED if name not in document]
-        if missing:
-            raise OptionError(f"the filter lacks {', '.join(missing)}: it was cut or changed")
+        advice = "write one with 'acutance restore design', or with to_dict()"
+        require_document(document, SCHEMA, _REQUIRED, name="the filter", advice=advice)
         found = cls(document)
         try:
             _require_kernel(found.kernel, float(document["noise_gain"]))

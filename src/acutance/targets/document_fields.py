@@ -1,12 +1,14 @@
-"""Fields of a document that are written when they are first read."""
+"""Documents: what schema they have to be of, and fields that are written when first read."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["DocumentFields", "WrittenLater"]
+from acutance.errors import OptionError
+
+__all__ = ["DocumentFields", "WrittenLater", "require_document"]
 
 
 @dataclass(frozen=True)
@@ -48,3 +50,32 @@ class DocumentFields(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return len(self._fields)
+
+
+def require_document(
+    document: Any, schema: str, required: Sequence[str], *, name: str, advice: str
+) -> None:
+    """Refuse what is no document of a schema, or lacks fields.
+
+    Parameters
+    ----------
+    document : object
+    schema : str
+    required : sequence of str
+        Names of fields.
+    name : str
+        What the document is called: "the filter".
+    advice : str
+        How one is made: "write one with ...".
+
+    Raises
+    ------
+    OptionError
+        If it is none, or fields are missing.
+    """
+    found = document.get("schema") if isinstance(document, Mapping) else None
+    if found != schema:
+        raise OptionError(f"this is no document {schema} (its schema is {found!r}): {advice}")
+    missing = [field for field in required if field not in document]
+    if missing:
+        raise OptionError(f"{name} lacks {', '.join(missing)}: it was cut or changed")

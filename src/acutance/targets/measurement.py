@@ -233,12 +233,9 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
 
         one_direction = self.normal_deg is not None
         if one_direction:
-            curves = direction_document(self.response)
+            curves = _direction_fields(self.response)
         else:
-            curves = {
-                name: dict(DocumentFields(direction_document(one)))
-                for name, one in self.directions.items()
-            }
+            curves = {name: direction_document(one) for name, one in self.directions.items()}
         return {
             "schema": SCHEMA,
             "kind": self.kind,
@@ -284,6 +281,11 @@ def direction_document(response: Response) -> dict[str, Any]:
     ----------
     response : Response
     """
+    return dict(DocumentFields(_direction_fields(response)))
+
+
+def _direction_fields(response: Response) -> dict[str, Any]:
+    """The same, curves to be written later."""
     return {
         **{name: number.to_dict() for name, number in response.metrics().items()},
         "rer_centre": response.rer_centre,

@@ -28,6 +28,7 @@ from acutance.errors import OptionError
 from acutance.raster.image import AlongTrack
 from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.directions import HasDirections
+from acutance.targets.document_fields import require_document
 from acutance.targets.slices import OtfSlices
 from acutance.targets.uncertainty_budget import BudgetTerm
 
@@ -223,15 +224,8 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         OptionError
             If it is none of a measurement, or damaged.
         """
-        schema = document.get("schema") if isinstance(document, Mapping) else None
-        if schema != SCHEMA:
-            raise OptionError(
-                f"this is no document {SCHEMA} (its schema is {schema!r}): write one with a "
-                "measuring command and --json, or with to_dict()"
-            )
-        missing = [name for name in _REQUIRED if name not in document]
-        if missing:
-            raise OptionError(f"the document lacks {', '.join(missing)}: it was cut or changed")
+        advice = "write one with a measuring command and --json, or with to_dict()"
+        require_document(document, SCHEMA, _REQUIRED, name="the document", advice=advice)
         record = cls(document)
         try:
             _ = record.image, record.checks, record.directions, record.budget

@@ -129,6 +129,17 @@ def test_requirements_come_first(archive, tmp_path):
     assert '<div class="verdict invalid"><p>sharp' in page
 
 
+def test_curves_of_bands_are_drawn_apart(tmp_path, edge_record):
+    with Archive(tmp_path / "bands.db") as made:
+        for at, band in enumerate(("red", "blue", "red")):
+            day = BEGIN + timedelta(days=30 * at)
+            image = ImageEntry(path=f"{at}.tif", sensor="QB02", acquired=day)
+            made.add_entries([Entry(record=edge_record, image=image, band=band)])
+        page = words_of(sensor_page(made, "QB02"))
+    assert "red: each of the latest 2 measurements" in page
+    assert "blue: each of the latest 1 measurements" in page
+
+
 def test_a_sensor_that_is_not_there_is_named(archive):
     with pytest.raises(OptionError, match="0 measurements of QB03"):
         sensor_page(archive, "QB03")

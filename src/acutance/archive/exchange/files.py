@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from acutance.errors import OptionError
+from acutance.errors import AcutanceError, OptionError
 
-__all__ = ["whole_file"]
+__all__ = ["refusals_in_words", "whole_file"]
 
 
 @contextmanager
@@ -23,12 +23,26 @@ def whole_file(place: Path) -> Iterator[Path]:
     """
     part = place.with_name(f"{place.name}.part")
     try:
-        yield part
-        os.replace(part, place)
+        with refusals_in_words(place):
+            yield part
+            os.replace(part, place)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextmanager
+def refusals_in_words(place: Path) -> Iterator[None]:
+    """What the file system refuses, as an error that tells what to do.
+
+    Raises
+    ------
+    OptionError
+        If it refuses something.
+    """
+    try:
+        yield
     except OSError as error:
-        if isinstance(error, OptionError):
+        if isinstance(error, AcutanceError):
             raise
         reason = error.strerror or str(error)
         raise OptionError(f"{place} cannot be written ({reason}): choose another place") from error
-    finally:
-        part.unlink(missing_ok=True)

@@ -18,6 +18,7 @@ from acutance.archive.columns import require_library
 from acutance.archive.dates import as_utc
 from acutance.archive.entry import Entry, ImageEntry
 from acutance.archive.exchange.entry_document import entry_document
+from acutance.archive.exchange.files import refusals_in_words
 from acutance.archive.exchange.stac_item import (
     EXTENSION,
     VIEW,
@@ -60,14 +61,10 @@ def write_stac(entries: Iterable[Entry], place: Path) -> int:
     part = place.with_name(f"{place.name}-part".replace(".", "-"))
     shutil.rmtree(part, ignore_errors=True)
     try:
-        items, count = _write_lines(entries, part)
-        _write_items(items, part)
-        os.replace(part, place)
-    except OSError as error:
-        if isinstance(error, OptionError):
-            raise
-        reason = error.strerror or str(error)
-        raise OptionError(f"{place} cannot be written ({reason}): choose another place") from error
+        with refusals_in_words(place):
+            items, count = _write_lines(entries, part)
+            _write_items(items, part)
+            os.replace(part, place)
     finally:
         shutil.rmtree(part, ignore_errors=True)
     return count

@@ -11,7 +11,7 @@ from acutance.archive.columns import Columns
 from acutance.archive.trends.series import Series
 from acutance.curves import MAIN_NUMBERS, METRICS
 from acutance.curves.grid import Floats
-from acutance.errors import OptionError
+from acutance.errors import NothingSelectedError, OptionError
 
 __all__ = ["all_series", "one_series"]
 
@@ -38,7 +38,7 @@ def one_series(rows: Columns, metric: str) -> Series:
     """
     _require_metric(metric)
     if not len(rows):
-        raise OptionError("nothing is selected: widen the filters")
+        raise NothingSelectedError("the archive holds nothing that is selected: widen the filters")
     for name in _ONE_OF:
         found = _words(rows, name)
         if len(found) > 1:

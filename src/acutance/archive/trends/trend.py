@@ -26,10 +26,12 @@ from acutance.curves import METRICS, Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
+from acutance.targets.document_fields import require_document
 
 __all__ = ["SCHEMA", "BadDay", "Trend"]
 
 SCHEMA: Final = "acutance/trend/1"
+_REQUIRED: Final = ("metric", "name", "measurements", "images", "posterior", "bad_days", "notes")
 _LEVELS: Final = (0.5, 0.95)
 _DATES: Final = 121
 _HORIZON_YEARS: Final = 20.0
@@ -324,11 +326,8 @@ class Trend(ShortRepr):
         OptionError
             If the document is none of a trend.
         """
-        if document.get("schema") != SCHEMA:
-            raise OptionError(
-                f"this is no document {SCHEMA} (its schema is {document.get('schema')!r}): write "
-                "one with acutance archive trend and --json"
-            )
+        advice = "write one with acutance archive trend and --json"
+        require_document(document, SCHEMA, _REQUIRED, name="the trend", advice=advice)
         return cls(
             metric=document["metric"], name=document["name"],
             measurements=document["measurements"],

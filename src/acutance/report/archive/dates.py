@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import date
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from acutance.curves.grid import Floats
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["axis_days", "date_axis"]
+__all__ = ["axis_days", "date_axis", "day_on_axis"]
 
 _DAYS_FROM_1970 = "datetime64[D]"
 
@@ -23,6 +24,11 @@ def axis_days(years: Floats | float) -> Any:
     begin, end = ((whole + more - 1970).astype("datetime64[Y]") for more in (0, 1))
     first, last = (day.astype(_DAYS_FROM_1970).astype(float) for day in (begin, end))
     return first + (years - whole) * (last - first)
+
+
+def day_on_axis(day: date) -> float:
+    """A date in the unit of the axis: days since 1970."""
+    return float((day - date(1970, 1, 1)).days)
 
 
 def date_axis(axes: Axes) -> None:

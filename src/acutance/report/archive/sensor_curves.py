@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,45 +15,55 @@ if TYPE_CHECKING:
     from acutance.archive.measurements import Measurements
     from acutance.targets.record import Record
 
-__all__ = ["LATEST", "curves_plate"]
+__all__ = ["LATEST", "curves_plates"]
 
 LATEST = 60
 """So many measurements are drawn, the latest."""
+_ONE_OF = ("band", "level")
+"""Curves of different ones are not drawn over one another."""
 _TO_CPP = 1.0
 
 
-def curves_plate(rows: Measurements) -> Plate | None:
-    """A drawing of the latest curves; none where documents hold no curves.
+def curves_plates(rows: Measurements) -> Iterator[Plate]:
+    """Drawings of the latest curves, one a band and product level that has any.
 
     Parameters
     ----------
     rows : Measurements
-        Oldest first, of one band.
+        Oldest first.
     """
-    ids = list(dict.fromkeys(rows["id"].tolist()))
-    chosen = set(ids[-LATEST:])
-    first = {int(number): at for at, number in enumerate(rows["id"].tolist()) if number in chosen}
-    records = [rows.record(at) for at in first.values()]
+    latest: dict[tuple[str | None, str | None], dict[int, None]] = {}
+    for number, *key in zip(*(rows[name].tolist() for name in ("id", *_ONE_OF)), strict=True):
+        latest.setdefault((key[0], key[1]), {})[number] = None
+    for words, numbers in latest.items():
+        plate = _plate(rows.load(list(numbers)[-LATEST:]), ", ".join(filter(None, words)))
+        if plate is not None:
+            yield plate
+
+
+def _plate(records: Sequence[Record], name: str) -> Plate | None:
+    """A drawing of curves; none where documents hold none."""
     curves = _curves(records)
-    if not any(curves.values()):
+    if not curves:
         return None
     with styled():
         figure = new_page(12.4, 4.6)
         all_axes = figure.subplots(1, len(curves), sharey=True, squeeze=False)[0]
-        for axes, (name, several) in zip(all_axes, curves.items(), strict=True):
+        for axes, (direction, several) in zip(all_axes, curves.items(), strict=True):
             freq = np.linspace(0.0, _TO_CPP, 201)
             drawn = np.array([np.interp(freq, at, value) for at, value in several])
             mark_frequencies(axes, None, float(np.nanmax(drawn)))
             for one in drawn:
-                axes.plot(freq, one, color=COLORS[name], alpha=0.15, linewidth=0.8)
+                axes.plot(freq, one, color=COLORS[direction], alpha=0.15, linewidth=0.8)
             axes.plot(freq, np.median(drawn, axis=0), color=INK, linewidth=1.8, label="median")
-            axes.set(title=f"MTF, {name}", xlabel="frequency [c/px]", xlim=(0.0, _TO_CPP))
+            axes.set(title=f"MTF, {direction}", xlabel="frequency [c/px]", xlim=(0.0, _TO_CPP))
             axes.legend(loc="upper right")
         all_axes[0].set_ylabel("MTF")
     return Plate.of_figure(
         figure,
         "MTF of the latest measurements",
-        f"Each of the latest {len(records)} measurements, and their median at every frequency.",
+        f"{f'{name}: each' if name else 'Each'} of the latest {len(records)} measurements, and "
+        "their median at every frequency.",
         wide=True,
     )
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 from acutance.archive import Archive
-from acutance.errors import OptionError
-from acutance.report.archive.sensor_curves import curves_plate
+from acutance.errors import NothingSelectedError, OptionError
+from acutance.report.archive.sensor_curves import curves_plates
 from acutance.report.archive.sensor_state import SeriesState, states_of
 from acutance.report.archive.sensor_tables import (
     images_table,
@@ -62,16 +62,20 @@ def sensor_page(
     Raises
     ------
     OptionError
-        If there is no such metric, or no measurement of the sensor.
+        If there is no such metric.
+    NothingSelectedError
+        If there is no measurement of the sensor with such a verdict.
     """
     if metric not in METRIC_WORDS:
         raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRIC_WORDS)}")
     every, rejected = archive.measurements(sensor=sensor), archive.rejected(sensor=sensor)
     rows = archive.measurements(sensor=sensor, verdict=verdict)
     if not len(rows):
-        raise OptionError(
-            f"{archive.place} holds {len(every)} measurements of {sensor}, none of them {verdict} "
-            "or better: name another sensor, or a lower verdict"
+        known = [one.sensor for one in archive.overview().sensors if one.sensor is not None]
+        raise NothingSelectedError(
+            f"archive {archive.place} holds {len(every)} measurements of {sensor}, none of them "
+            f"{verdict} or better; its sensors are {', '.join(known) or 'not known'}: name another "
+            "sensor, or a lower verdict"
         )
     states = states_of(rows, sensor, metric, events)
     check = None
@@ -137,8 +141,8 @@ def _limit_of(state: SeriesState, check: SpecificationCheck | None) -> float | N
 
 
 def _curve_sections(rows: Measurements) -> list[Section]:
-    plate = curves_plate(rows)
-    return [] if plate is None else [Section("Curves", plates=(plate,))]
+    plates = tuple(curves_plates(rows))
+    return [Section("Curves", plates=plates)] if plates else []
 
 
 def _list_sections(every: Measurements, rejected: Rejections, command: str | None) -> list[Section]:

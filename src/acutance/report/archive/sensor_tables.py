@@ -14,7 +14,7 @@ from acutance.archive.tables_by import MeasurementTable, table_by
 from acutance.archive.trends import Trend
 from acutance.curves import MAIN_NUMBERS
 from acutance.report.archive.sensor_state import SeriesState
-from acutance.report.archive.wording import interval_words, percent
+from acutance.report.archive.wording import event_percent, interval_words, percent
 from acutance.report.html import Table
 from acutance.report.labels import METRIC_WORDS, MISSING, metric_words, word_estimate
 
@@ -53,8 +53,7 @@ def state_table(states: Sequence[SeriesState]) -> Table:
 
 def _changes(trend: Trend) -> list[str]:
     found = [f"{one.date} {percent(one.relative_size)}" for one in trend.changes]
-    level = trend.level.value or 1.0
-    found += [f"{one.date} {one.name} {percent((1 / level) * one.size)}" for one in trend.events]
+    found += [f"{one.date} {one.name} {event_percent(trend, one)}" for one in trend.events]
     return found or [f"none found ({1 - trend.step_probability:.2f})"]
 
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from acutance.archive.trends import decimal_year
-from acutance.curves.grid import Floats
-from acutance.report.archive.dates import axis_days, date_axis
+from acutance.report.archive.dates import axis_days, date_axis, day_on_axis
 from acutance.report.labels import METRIC_WORDS
 from acutance.report.paper import BLUE, FAINT, GREEN, INK, ORANGE, VERMILION, new_page, styled
 
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
     from acutance.archive.trends import Change, Trend, TrendBands
 
-__all__ = ["draw_trend", "trend_figure"]
+__all__ = ["are_bad", "draw_trend", "trend_figure"]
 
 _WIDTH_IN, _HEIGHT_IN = 12.4, 4.8
 _AHEAD = 0.15
@@ -110,7 +109,7 @@ def _draw_images(axes: Axes, trend: Trend, low: float, high: float) -> None:
     images = trend.images
     day, value = axis_days(images.when), images.value
     inside = (value >= low) & (value <= high)
-    bad = np.isin(images.when, _bad_years(trend))
+    bad = are_bad(trend)
     several = "means of several images" if images.are_joined else "images"
     for those, color, label in ((~bad, INK, several), (bad, VERMILION, "bad days")):
         shown = those & inside
@@ -134,10 +133,9 @@ def _draw_images(axes: Axes, trend: Trend, low: float, high: float) -> None:
                 )
 
 
-def _bad_years(trend: Trend) -> Floats:
-    """Times of the images that are far from the trend."""
-    far = [day.value for day in trend.bad_days]
-    return np.asarray(trend.images.when[np.isin(trend.images.value, far)])
+def are_bad(trend: Trend) -> NDArray[np.bool_]:
+    """Which images are far from the trend, (j,)."""
+    return np.isin(trend.images.value, [day.value for day in trend.bad_days])
 
 
 def _draw_limit(axes: Axes, trend: Trend, limit: float, ahead: float) -> None:
@@ -154,22 +152,21 @@ def _draw_changes(axes: Axes, trend: Trend) -> None:
         _draw_step(axes, change)
     top = axes.get_xaxis_transform()
     for event in trend.events:
-        axes.axvline(
-            axis_days(decimal_year(event.date)), color=GREEN, linewidth=1.1, linestyle="-."
-        )
+        day = day_on_axis(event.date)
+        axes.axvline(day, color=GREEN, linewidth=1.1, linestyle="-.")
         axes.text(
-            axis_days(decimal_year(event.date)), 0.02, f" {event.name}", transform=top, rotation=90,
+            day, 0.02, f" {event.name}", transform=top, rotation=90,
             ha="right", va="bottom", fontsize=8.5, color=GREEN,
         )  # fmt: skip
 
 
 def _draw_step(axes: Axes, change: Change) -> None:
-    since, until = axis_days(decimal_year(change.since)), axis_days(decimal_year(change.until))
+    day, since, until = map(day_on_axis, (change.date, change.since, change.until))
     axes.axvspan(since, until, color=ORANGE, alpha=0.18, linewidth=0)
-    axes.axvline(axis_days(decimal_year(change.date)), color=ORANGE, linewidth=1.2)
+    axes.axvline(day, color=ORANGE, linewidth=1.2)
     size = 100 * change.relative_size
     axes.text(
-        axis_days(decimal_year(change.date)), 0.98, f" step {size.value:+.1f} ± {size.std:.1f} % ",
+        day, 0.98, f" step {size.value:+.1f} ± {size.std:.1f} % ",
         transform=axes.get_xaxis_transform(), ha="left", va="top", fontsize=8.5, color=INK,
         bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 1.0},
     )  # fmt: skip

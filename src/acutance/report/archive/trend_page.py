@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from acutance.archive.trends.series import date_of
-from acutance.report.archive.trend_figure import trend_figure
-from acutance.report.archive.wording import interval_words, percent
+from acutance.report.archive.trend_figure import are_bad, trend_figure
+from acutance.report.archive.wording import event_percent, interval_words, percent
 from acutance.report.html import Plate, Section, Table, Verdict, render_page
 from acutance.report.labels import METRIC_WORDS, MISSING, format_number, word_estimate
 
@@ -83,7 +83,7 @@ def trend_verdict(trend: Trend, limit: float | None = None, label: str = "") -> 
         )
     words += [f"changed by {percent(one.relative_size)} about {one.date}" for one in trend.changes]
     words += [
-        f"{one.name} of {one.date}: {percent((1 / (trend.level.value or 1.0)) * one.size)}"
+        f"{one.name} of {one.date}: {event_percent(trend, one)}"
         for one in trend.events
         if not _holds_zero(one.size)
     ]
@@ -112,8 +112,7 @@ def _open_steps(trend: Trend) -> list[str]:
 
 
 def _value(estimate: Estimate) -> str:
-    words = word_estimate(estimate)
-    return f"{words.value} ± {words.std}"
+    return word_estimate(estimate).value_and_std
 
 
 def _numbers_table(trend: Trend) -> Table:
@@ -148,8 +147,7 @@ def _changes_table(trend: Trend) -> tuple[Table, ...]:
         for one in trend.changes
     ] + [
         (
-            str(one.date), one.name, _value(one.size),
-            percent((1 / (trend.level.value or 1.0)) * one.size), MISSING,
+            str(one.date), one.name, _value(one.size), event_percent(trend, one), MISSING,
         )
         for one in trend.events
     ]  # fmt: skip
@@ -164,11 +162,11 @@ def _images_table(trend: Trend) -> Table:
     images = trend.images
     expected = trend.bands(images.when).mean
     scale = np.sqrt(images.variance + trend.scatter.value**2)
-    bad = {day.value for day in trend.bad_days}
+    bad = are_bad(trend)
     rows: list[tuple[str, ...]] = []
     alerts = set()
     for at in range(min(images.size, _MAX_IMAGES)):
-        if images.value[at] in bad:
+        if bad[at]:
             alerts.add(len(rows))
         std = format_number(float(np.sqrt(images.variance[at])), 2)
         rows.append((
