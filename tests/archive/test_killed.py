@@ -16,13 +16,13 @@ from acutance.archive.packing import json_bytes
 
 WRITER = """
 import sys
-from pydantic_core import from_json
+from orjson import loads
 from acutance.archive import Archive, adding
 from acutance.archive.exchange.entry_document import entry_of_document
 
 adding.CHUNK = 4
 place, lines, first = sys.argv[1:]
-entries = [entry_of_document(from_json(line)) for line in open(lines, "rb")]
+entries = [entry_of_document(loads(line)) for line in open(lines, "rb")]
 entries = entries[int(first):] + entries[: int(first)]
 print("ready", flush=True)
 sys.stdin.readline()

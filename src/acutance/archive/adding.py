@@ -20,7 +20,6 @@ from sqlalchemy.sql.dml import ReturningInsert
 
 from acutance.archive.connection import Database
 from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
-from acutance.archive.packing import packed
 from acutance.archive.rows import EntryRows, image_row, rows_of, target_row
 from acutance.archive.tables import directions, documents, images, measurements, runs, targets
 from acutance.errors import OptionError
@@ -76,10 +75,9 @@ def add_entries(
     """
     added, read = 0, 0
     with ThreadPoolExecutor(1) as writer:
-        # While one chunk is compressed and written, the next is put into rows.
+        # While one chunk is written, the next is put into rows.
         writing: Future[int] | None = None
-        for chunk in _chunks(entries):
-            rows = [rows_of(entry) for entry in chunk]
+        for rows in _chunks(entries):
             if writing is not None:
                 added += writing.result()
                 _tell(progress, read)
@@ -92,9 +90,7 @@ def add_entries(
 
 def _write(database: Database, rows: Sequence[EntryRows], run: int | None) -> int:
     """Write rows in one transaction, in the order of their keys, and count those that are new."""
-    by_key = {
-        one.key: (one, None if one.document is None else packed(one.document)) for one in rows
-    }
+    by_key = {one.key: one for one in rows}
     chunk = {key: by_key[key] for key in sorted(by_key)}
     return database.write(partial(_add_chunk, chunk=chunk, run=run))
 
@@ -104,24 +100,23 @@ def _tell(progress: Callable[[int], None] | None, read: int) -> None:
         progress(read)
 
 
-def _chunks(entries: Iterable[Entry]) -> Iterator[list[Entry]]:
-    left = iter(entries)
+def _chunks(entries: Iterable[Entry]) -> Iterator[list[EntryRows]]:
+    """Rows of so many entries; no entry is held longer than it takes to make its rows."""
+    left = map(rows_of, entries)
     while chunk := list(islice(left, CHUNK)):
         yield chunk
 
 
-def _add_chunk(
-    connection: Connection, chunk: Mapping[str, tuple[EntryRows, bytes | None]], run: int | None
-) -> int:
+def _add_chunk(connection: Connection, chunk: Mapping[str, EntryRows], run: int | None) -> int:
     _require_run(connection, run)
     there = select(measurements.c.key).where(measurements.c.key.in_(list(chunk)))
     known = set(connection.execute(there).scalars())
     new = [one for key, one in chunk.items() if key not in known]
     if not new:
         return 0
-    image_ids = _ids(connection, images, image_row, [rows.image for rows, _ in new])
+    image_ids = _ids(connection, images, image_row, [rows.image for rows in new])
     target_ids = _ids(
-        connection, targets, target_row, [rows.target for rows, _ in new if rows.target is not None]
+        connection, targets, target_row, [rows.target for rows in new if rows.target is not None]
     )
     now = datetime.now(UTC)
     written = [
@@ -132,7 +127,7 @@ def _add_chunk(
             "run_id": run,
             "added": now,
         }
-        for rows, _ in new
+        for rows in new
     ]
     inserted = connection.execute(_insert_new(connection, measurements, "key", "id"), written).all()
     ids: dict[str, int] = {row.key: row.id for row in inserted}
@@ -141,7 +136,7 @@ def _add_chunk(
         directions,
         [
             {"measurement_id": ids[rows.key], **row}
-            for rows, _ in new
+            for rows in new
             if rows.key in ids
             for row in rows.directions
         ],
@@ -150,9 +145,9 @@ def _add_chunk(
         connection,
         documents,
         [
-            {"measurement_id": ids[rows.key], "document": stored}
-            for rows, stored in new
-            if rows.key in ids and stored is not None
+            {"measurement_id": ids[rows.key], "document": rows.document}
+            for rows in new
+            if rows.key in ids and rows.document is not None
         ],
     )
     return len(ids)

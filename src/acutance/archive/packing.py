@@ -1,4 +1,4 @@
-"""Documents as the bytes an archive stores: JSON, compressed by zlib."""
+"""Documents as the bytes an archive stores: JSON, compressed in the format of zlib."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ import zlib
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic_core import PydanticSerializationError, from_json, to_json
+import orjson
+from isal import isal_zlib
 
 from acutance.errors import OptionError
 
 __all__ = ["json_bytes", "packed", "plain_json", "unpacked"]
 
 _LEVEL = 1
-"""The quickest: a third of the JSON, where the slowest leaves a quarter at ten times the time."""
+"""A third of the JSON, where the slowest of zlib leaves a quarter at fifty times the time."""
 
 
 def json_bytes(document: Mapping[str, Any]) -> bytes:
@@ -25,8 +26,8 @@ def json_bytes(document: Mapping[str, Any]) -> bytes:
         If it holds what JSON cannot.
     """
     try:
-        return to_json(document, inf_nan_mode="null", fallback=_plain)
-    except (PydanticSerializationError, TypeError, ValueError) as error:
+        return orjson.dumps(document, default=_plain, option=orjson.OPT_NON_STR_KEYS)
+    except (TypeError, ValueError) as error:
         raise OptionError(f"the document cannot be written as JSON: {error}") from error
 
 
@@ -38,7 +39,7 @@ def plain_json(value: Mapping[str, Any]) -> dict[str, Any]:
     OptionError
         If it holds what JSON cannot.
     """
-    found: dict[str, Any] = from_json(json_bytes(value))
+    found: dict[str, Any] = orjson.loads(json_bytes(value))
     return found
 
 
@@ -51,12 +52,19 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"a {type(value).__name__} has no form in JSON")
 
 
-def packed(text: bytes) -> bytes:
-    """The bytes to store; other threads go on meanwhile."""
-    return zlib.compress(text, _LEVEL)
+def packed(document: Mapping[str, Any]) -> bytes:
+    """The bytes to store of a document.
+
+    Raises
+    ------
+    OptionError
+        If it holds what JSON cannot.
+    """
+    stored: bytes = isal_zlib.compress(json_bytes(document), _LEVEL)
+    return stored
 
 
 def unpacked(stored: bytes) -> dict[str, Any]:
     """The document that was stored."""
-    document: dict[str, Any] = from_json(zlib.decompress(stored))
+    document: dict[str, Any] = orjson.loads(zlib.decompress(stored))
     return document

@@ -11,7 +11,7 @@ from typing import Any
 from acutance.archive.dates import as_utc
 from acutance.archive.entry import Entry, ImageEntry, TargetEntry
 from acutance.archive.identity import file_name, image_identity, key_of, target_identity
-from acutance.archive.packing import json_bytes, plain_json
+from acutance.archive.packing import packed, plain_json
 from acutance.archive.systematic import systematic_stds
 from acutance.archive.tables import VERDICTS
 from acutance.curves import METRICS
@@ -39,7 +39,7 @@ class EntryRows:
         The row of measurements, without the numbers of other rows.
     directions : tuple of dict
     document : bytes or None
-        The document as JSON.
+        The document as it is stored.
     """
 
     key: str
@@ -84,7 +84,7 @@ def rows_of(entry: Entry) -> EntryRows:
         "measured_at": as_utc(record.document["measured_at"], "measured_at"),
     }
     directions = tuple(_direction_rows(record))
-    return EntryRows(key, entry.image, target, row, directions, json_bytes(record.document))
+    return EntryRows(key, entry.image, target, row, directions, packed(record.document))
 
 
 def image_row(image: ImageEntry) -> Row:

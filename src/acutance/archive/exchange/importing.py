@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pydantic_core import from_json
+import orjson
 
 from acutance.archive.adding import add_entries
 from acutance.archive.connection import Database
@@ -97,7 +97,7 @@ def _readable(path: Path, stated: Stated, refused: dict[str, str]) -> Iterator[E
 def _entries(place: str, text: bytes | str, stated: Stated, refused: dict[str, str]) -> list[Entry]:
     """Entries of one text of JSON: all of them, or none."""
     try:
-        return list(entries_of(from_json(text), stated))
+        return list(entries_of(orjson.loads(text), stated))
     except OptionError as error:
         refused[place] = str(error)
     except ValueError as error:
