@@ -96,3 +96,25 @@ def test_tables(acutance, place):
     assert [row["site"] for row in rows] == ["Penghu", "Salon", "Stennis", "average"]
     assert rows[-1]["across"]["fwhm_m"]["value"] == pytest.approx(0.7 * 1.631, abs=1e-3)
     assert acutance("archive", "table", place, "--by", "moon").exit_code == 2
+
+
+def test_across_and_along_are_compared(acutance, place):
+    done = acutance("archive", "compare", place, "--metric", "rer", "--metric", "fwhm_px")
+    assert done.exit_code == 0
+    first, second = done.stdout.splitlines()
+    assert first.startswith("KOMPSAT-3: across is sharper than along by ")
+    assert "(fwhm_px, 95 %: " in second
+    done = acutance("archive", "compare", place, "--metric", "rer", "--metric", "fwhm_px", "--json")
+    assert [one["metric"] for one in json.loads(done.stdout)["comparisons"]] == ["rer", "fwhm_px"]
+    done = acutance("archive", "compare", place, "--json", "--metric", "rer")
+    answer = json.loads(done.stdout)["comparisons"][0]["differences"][0]
+    assert answer["answer"] == "differ"
+    assert answer["images"] == [12, 12]
+
+
+def test_what_cannot_be_compared(acutance, place):
+    done = acutance("archive", "compare", place, "--by", "method")
+    assert done.exit_code == 4
+    assert "There are no two methods" in done.stderr
+    assert acutance("archive", "compare", place, "--by", "moon").exit_code == 2
+    assert acutance("archive", "compare", place, "--sensor", "other").exit_code == 4

@@ -1,4 +1,4 @@
-"""The questions that are asked of an archive: means, trends, specifications, tables."""
+"""The questions asked of an archive: means, trends, specifications, comparisons, tables."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from acutance.archive.measurements import Measurements
 from acutance.archive.selection import SelectionWords
 
 if TYPE_CHECKING:
+    from acutance.archive.comparisons import Comparison
     from acutance.archive.specification import Specification
     from acutance.archive.specification_check import SpecificationCheck
     from acutance.archive.tables_by import MeasurementTable
@@ -124,6 +125,38 @@ class Questions(ABC):
             lambda words: self.measurements(**{**selection, **words}),
             events,
         )
+
+    def compare(
+        self,
+        metric: str,
+        by: str = "orientation",
+        *,
+        margin: float = 0.05,
+        **selection: Unpack[SelectionWords],
+    ) -> Comparison:
+        """Whether across and along differ, or methods, kinds, bands agree.
+
+        Groups that were measured in the same images are compared there, so that what an image does
+        to both cancels; others by their means, with a drift of the sensor allowed for.
+
+        Parameters
+        ----------
+        metric : str
+            "mtf_nyquist".
+        by : {"orientation", "method", "kind", "band", "level", "sensor", "site", "target"}
+            What is compared; sensors, bands, product levels and directions are not mixed else.
+        margin : float, optional
+            Relative difference below which groups are said to agree.
+        **selection
+            Filters, as of `measurements`.
+
+        Returns
+        -------
+        Comparison
+        """
+        from acutance.archive.comparisons import compare_groups
+
+        return compare_groups(self._trusted(selection), metric, by, margin=margin)
 
     def table(
         self,

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli import archive_check, archive_report, archive_table, archive_trend
+from acutance.cli import (
+    archive_check,
+    archive_compare,
+    archive_report,
+    archive_table,
+    archive_trend,
+)
 from acutance.cli.archive_selection import PlaceArgument, SelectionOptions
 from acutance.cli.archive_tables import (
     entry_text,
@@ -233,6 +239,7 @@ def export(
 
 app.command("trend", epilog=archive_trend.EXAMPLE)(archive_trend.trend)
 app.command("check", epilog=archive_check.EXAMPLE)(archive_check.check)
+app.command("compare", epilog=archive_compare.EXAMPLE)(archive_compare.compare)
 app.command("table", epilog=archive_table.EXAMPLE)(archive_table.table)
 app.command("report", epilog=archive_report.EXAMPLE)(archive_report.report)
 

@@ -120,6 +120,29 @@ def test_the_page_of_a_sensor_has_its_state_changes_and_images(archive):
     assert "By target, across" in page
 
 
+def test_across_and_along_are_compared_at_the_top(tmp_path, edge_record):
+    rng = np.random.default_rng(2)
+    with Archive(tmp_path / "both.db") as made:
+        for at in range(24):
+            number = dict(edge_record.document["mtf_nyquist"])
+            number["value"] = 0.3 + 0.03 * (at % 2) + 0.001 * rng.standard_normal()
+            direction = "across" if at % 2 else "along"
+            shown = {"orientation": direction, "measured_directions": [direction], "budget": []}
+            document = {**edge_record.document, "mtf_nyquist": number, **shown}
+            day = BEGIN + timedelta(days=30 * (at // 2))
+            image = ImageEntry(path=f"{at // 2:02d}.tif", sensor="QB02", acquired=day)
+            target = TargetEntry(name=direction, kind="edge")
+            made.add_entries([Entry(record=ac.Record(document), image=image, target=target)])
+        page = words_of(sensor_page(made, "QB02"))
+        answer = made.compare("mtf_nyquist").differences[0]
+    assert answer.sentence.removeprefix("QB02: ") in page
+    assert "across is sharper than along by 9." in page
+    assert page.index("across is sharper") < page.index("Through time")
+    assert "across − along" in page
+    assert "One target of each group" in page
+    assert "First minus second" in page
+
+
 def test_requirements_come_first(archive, tmp_path):
     spec = tmp_path / "spec.toml"
     spec.write_text(SPEC, encoding="utf-8")

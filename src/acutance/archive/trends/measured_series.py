@@ -13,7 +13,7 @@ from acutance.curves import MAIN_NUMBERS, METRICS
 from acutance.curves.grid import Floats
 from acutance.errors import NothingSelectedError, OptionError
 
-__all__ = ["all_series", "one_series"]
+__all__ = ["all_series", "one_series", "random_and_systematic", "years_of"]
 
 _ONE_OF = ("sensor", "band", "level", "orientation")
 """What a trend is of one of."""
@@ -76,12 +76,12 @@ def _words(rows: Columns, name: str) -> list[str]:
 
 def _series(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Series:
     value = rows[metric][mask]
-    std, systematic = _parts(rows, metric, mask)
+    std, systematic = random_and_systematic(rows, metric, mask)
     image = rows["image_id"][mask]
     names = dict(zip(image.tolist(), rows["image"][mask].tolist(), strict=True))
     title = [rows[name][mask][0] for name in _ONE_OF]
     return Series(
-        metric=metric, when=_years(rows["acquired"][mask]), value=value, std=std,
+        metric=metric, when=years_of(rows["acquired"][mask]), value=value, std=std,
         systematic_std=systematic, image=image, gsd_m=rows["gsd_m"][mask],
         image_names={number: name for number, name in names.items() if name is not None},
         name=", ".join(str(part) for part in title if part is not None),
@@ -89,10 +89,19 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Series:
     )  # fmt: skip
 
 
-def _parts(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """Random and systematic parts of the stated deviations.
+def random_and_systematic(
+    rows: Columns, metric: str, mask: NDArray[np.bool_]
+) -> tuple[Floats, Floats]:
+    """Random and systematic parts of the stated deviations, (n,) each.
 
     Budgets are of the main numbers; the largest of their systematic shares stands in for others.
+
+    Parameters
+    ----------
+    rows : Columns
+    metric : str
+    mask : (m,) bool array
+        Which n of the rows.
     """
     std = rows[f"{metric}_std"][mask]
     if metric in MAIN_NUMBERS:
@@ -107,7 +116,7 @@ def _parts(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> tuple[Floats,
     return np.sqrt(np.maximum(std**2 - systematic**2, 0.0)), systematic
 
 
-def _years(acquired: NDArray[np.datetime64]) -> Floats:
+def years_of(acquired: NDArray[np.datetime64]) -> Floats:
     """Years with decimals; ``nan`` where there is no date."""
     year = acquired.astype("datetime64[Y]")
     begin, end = (one.astype("datetime64[us]") for one in (year, year + 1))

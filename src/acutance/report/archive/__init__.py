@@ -2,7 +2,8 @@
 
 - `dates`: years with decimals on the axis of a drawing; `wording`: changes in words
 - `trend_figure`, `trend_page`: one trend, its numbers, its images
-- `sensor_state`, `sensor_tables`, `sensor_curves`, `sensor_page`: what there is of a sensor
+- `sensor_state`, `sensor_comparisons`, `sensor_tables`, `sensor_curves`, `sensor_page`: what there
+  is of a sensor
 """
 
 from acutance.report.archive.sensor_page import sensor_page

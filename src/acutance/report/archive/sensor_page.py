@@ -8,6 +8,11 @@ from typing import TYPE_CHECKING, Literal
 
 from acutance.archive import Archive
 from acutance.errors import NothingSelectedError, OptionError
+from acutance.report.archive.sensor_comparisons import (
+    SensorComparisons,
+    comparison_tables,
+    comparisons_of,
+)
 from acutance.report.archive.sensor_curves import curves_plates
 from acutance.report.archive.sensor_state import SeriesState, states_of
 from acutance.report.archive.sensor_tables import (
@@ -81,9 +86,11 @@ def sensor_page(
     check = None
     if specification is not None:
         check = archive.check(specification, events=events, sensor=sensor)
+    comparisons = comparisons_of(rows, sensor, metric)
     content = (
-        _answer_section(states, check),
+        _answer_section(states, check, comparisons),
         *_trend_sections(states, check),
+        *map(Section.of_table, comparison_tables(comparisons)),
         *_curve_sections(rows),
         *map(Section.of_table, means_tables(rows)),
         *_list_sections(every, rejected, command),
@@ -96,10 +103,16 @@ def _facts(every: Measurements, rejected: Rejections, used: Measurements) -> dic
     return {"measured": str(measured), "used": str(taken), "rejected": str(len(rejected))}
 
 
-def _answer_section(states: Sequence[SeriesState], check: SpecificationCheck | None) -> Section:
-    """Specification and changes first, as verdicts; then the state of every direction."""
+def _answer_section(
+    states: Sequence[SeriesState], check: SpecificationCheck | None, comparisons: SensorComparisons
+) -> Section:
+    """Specification, changes and comparisons first; then the state of every direction."""
     answers = check.answers if check else ()
-    verdicts = (*map(_answer_verdict, answers), *map(_state_verdict, states))
+    verdicts = (
+        *map(_answer_verdict, answers),
+        *map(_state_verdict, states),
+        *(Verdict("usable", sentence) for sentence in comparisons.sentences),
+    )
     tables = [state_table(states)]
     if check is not None:
         tables.insert(0, specification_table(check))

@@ -1,0 +1,18 @@
+"""Comparisons: do across and along differ, do methods, kinds or bands agree?
+
+In the order the data take:
+
+- `groups`: rows of an archive become groups to be compared, each of one sensor, band, direction
+- `pairing`: what two groups measured of the same thing, so that what is common to both cancels
+- `same_images`: their difference from these pairs; `means`: from different images, the drift
+  between them allowed for
+- `target_part`: what is peculiar to a target and does not average out over images
+- `degrees`: parts of a deviation with few degrees of freedom, joined
+- `compare_groups`: all of it; `difference`, `comparison`: the answers, as sentences and as JSON
+"""
+
+from acutance.archive.comparisons.compare_groups import compare_groups
+from acutance.archive.comparisons.comparison import Comparison, GroupScatter
+from acutance.archive.comparisons.difference import Difference
+
+__all__ = ["Comparison", "Difference", "GroupScatter", "compare_groups"]

@@ -1,0 +1,100 @@
+"""The answers of a comparison: every pair of groups, and the scatter between all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+from acutance.archive.comparisons.difference import Difference
+from acutance.curves import Estimate
+
+__all__ = ["Comparison", "GroupScatter"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class GroupScatter:
+    """How three or more groups scatter about their mean.
+
+    Attributes
+    ----------
+    of : str
+        Sensor, band, product level and direction, as far as they are not compared.
+    by : str
+    offsets : dict of str to Estimate
+        Of every group from the mean of all, over that mean.
+    scatter : Estimate
+        Between the groups, over their mean, beyond the deviations of the offsets.
+    interval : (float, float)
+        95 % interval of the scatter.
+    """
+
+    of: str
+    by: str
+    offsets: dict[str, Estimate]
+    scatter: Estimate
+    interval: tuple[float, float]
+
+    @property
+    def sentence(self) -> str:
+        """The scatter in one sentence."""
+        low, high = (100 * end for end in self.interval)
+        return (
+            f"{f'{self.of}: ' if self.of else ''}{len(self.offsets)} {self.by}s scatter by "
+            f"{100 * self.scatter.value:.1f} % (95 %: {low:.1f} to {high:.1f} %)."
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """All fields for JSON."""
+        return {
+            "of": self.of,
+            "by": self.by,
+            "offsets": {name: one.to_dict() for name, one in self.offsets.items()},
+            "scatter": self.scatter.to_dict(),
+            "interval": list(self.interval),
+            "sentence": self.sentence,
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """Whether groups of measurements differ.
+
+    Attributes
+    ----------
+    metric, by : str
+    differences : tuple of Difference
+        Of every two groups of one sensor, band, product level and direction; empty where there
+        are no two.
+    scatters : tuple of GroupScatter
+        Where there are three groups or more.
+    """
+
+    metric: str
+    by: str
+    differences: tuple[Difference, ...]
+    scatters: tuple[GroupScatter, ...]
+
+    @property
+    def summary(self) -> str:
+        """All answers, a line each."""
+        return "\n".join(self._lines()) or f"There are no two {self.by}s to be compared."
+
+    def _lines(self) -> Iterator[str]:
+        for one in self.differences:
+            yield one.summary
+        for scatter in self.scatters:
+            yield scatter.sentence
+
+    def to_dict(self) -> dict[str, Any]:
+        """All answers as strict JSON types."""
+        return {
+            "metric": self.metric,
+            "by": self.by,
+            "differences": [one.to_dict() for one in self.differences],
+            "scatters": [one.to_dict() for one in self.scatters],
+        }
+
+    def _repr_html_(self) -> str:
+        return "".join(f"<p>{escape(line)}</p>" for line in self.summary.splitlines())

@@ -1,0 +1,140 @@
+"""How much two groups differ, and whether they do, in numbers and in a sentence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+from acutance.archive.comparisons.degrees import LEVEL
+from acutance.archive.comparisons.pairing import Basis
+from acutance.curves import Estimate
+
+__all__ = ["Answer", "Difference"]
+
+Answer = Literal["differ", "agree", "cannot be told"]
+
+_BASIS_WORDS: Final[dict[str, str]] = {
+    "measurement": "measured together in",
+    "target": "measured on the same targets of",
+    "image": "measured in the same",
+}
+_FALLS_WITH_SHARPNESS: Final = ("fwhm_px", "fwhm_m", "half_extent_dark_px", "half_extent_bright_px")
+_RISES_WITH_SHARPNESS: Final = (
+    "mtf_nyquist", "rer", "mtf50_cpp", "mtf30_cpp", "mtf_area", "edge_slope_per_px",
+)  # fmt: skip
+_OF_PROCEDURE: Final = ("method", "kind")
+"""What differs here is the number, and not how sharp something is."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Difference:
+    """The first group minus the second.
+
+    Attributes
+    ----------
+    of : str
+        Sensor, band, product level and direction, as far as they are not compared.
+    metric, by, first, second : str
+    difference : Estimate
+        With what does not average out: that of both groups, as independent.
+    relative : Estimate
+        The same over the mean of both.
+    probability : float
+        That the first is larger; ``nan`` where no deviation is known.
+    systematic_std : float
+        Part of the deviation of `difference` that does not average out.
+    scatter : float or None
+        Of the differences between images, beyond their stated deviations; None of means.
+    basis : {"measurement", "target", "image", "means"}
+        What both have in common: one measurement, the targets, the images, nothing.
+    images : (int, int)
+        Of the first and of the second; the same ones but for means.
+    measurements : (int, int)
+    margin : float
+        Relative difference below which groups are said to agree.
+    notes : tuple of str
+        What has to be known of it, in sentences.
+    """
+
+    of: str
+    metric: str
+    by: str
+    first: str
+    second: str
+    difference: Estimate
+    relative: Estimate
+    probability: float
+    systematic_std: float
+    scatter: float | None
+    basis: Basis
+    images: tuple[int, int]
+    measurements: tuple[int, int]
+    margin: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def answer(self) -> Answer:
+        """Differ: the 95 % interval does not hold 0. Agree: it lies within the margin."""
+        low, high = self.relative.interval(LEVEL)
+        if low > 0 or high < 0:
+            return "differ"
+        return "agree" if max(-low, high) <= self.margin else "cannot be told"
+
+    @property
+    def sentence(self) -> str:
+        """The answer in one sentence."""
+        return f"{f'{self.of}: ' if self.of else ''}{self._answer_words}; {self._basis_words}."
+
+    @property
+    def summary(self) -> str:
+        """The answer, and what has to be known of it."""
+        return " ".join((self.sentence, *self.notes))
+
+    @property
+    def _answer_words(self) -> str:
+        low, high = (100 * end for end in self.relative.interval(LEVEL))
+        ends = f"95 %: {low:+.1f} to {high:+.1f} %"
+        sign = -1 if self.relative.value < 0 else 1
+        size = f"{100 * sign * self.relative} %"
+        if self.answer == "differ":
+            less = f", less than {100 * self.margin:g} %" if max(-low, high) / 100 <= self.margin \
+                else ""  # fmt: skip
+            return f"{self._larger_words} by {size}{less} ({self.metric}, {ends})"
+        pair = f"{self.first} and {self.second}"
+        if self.answer == "agree":
+            return f"{pair} agree within {100 * self.margin:g} % ({self.metric}, {ends})"
+        if low != low:
+            return f"whether {pair} differ cannot be told ({self.metric}, one measurement of each)"
+        return f"whether {pair} differ cannot be told yet ({self.metric}, {ends})"
+
+    @property
+    def _larger_words(self) -> str:
+        larger, smaller = self.first, self.second
+        if self.relative.value < 0:
+            larger, smaller = smaller, larger
+        if self.by in _OF_PROCEDURE:
+            return f"{larger} is above {smaller}"
+        if self.metric in _RISES_WITH_SHARPNESS:
+            return f"{larger} is sharper than {smaller}"
+        if self.metric in _FALLS_WITH_SHARPNESS:
+            return f"{smaller} is sharper than {larger}"
+        return f"{larger} is larger than {smaller}"
+
+    @property
+    def _basis_words(self) -> str:
+        one, other = self.images
+        if self.basis == "means":
+            return f"means of {one} and of {other} other images"
+        return f"{_BASIS_WORDS[self.basis]} {one} image{'s' if one > 1 else ''}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """All fields for JSON."""
+        return {
+            "of": self.of, "metric": self.metric, "by": self.by, "first": self.first,
+            "second": self.second, "answer": self.answer, "difference": self.difference.to_dict(),
+            "relative": self.relative.to_dict(),
+            "probability": None if self.probability != self.probability else self.probability,
+            "systematic_std": self.systematic_std, "scatter": self.scatter, "basis": self.basis,
+            "images": list(self.images), "measurements": list(self.measurements),
+            "margin": self.margin, "sentence": self.sentence, "notes": list(self.notes),
+        }  # fmt: skip

@@ -1,0 +1,157 @@
+"""Pairs: what two groups measured of the same thing.
+
+The finest pairs cancel the most. One measurement across and along (points, stars) shares its
+pixels and its atmosphere; two methods on one target of one image share them too; two targets of
+one image share the atmosphere. Where too few images hold both groups there are no pairs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.archive.comparisons.groups import MeasuredGroup
+from acutance.archive.trends.images import image_means
+from acutance.archive.trends.series import Series
+from acutance.curves.grid import Floats
+
+__all__ = ["Basis", "Pairs", "find_pairs"]
+
+Basis = Literal["measurement", "target", "image", "means"]
+"""What two groups have in common: one measurement, one target of one image, one image, nothing."""
+
+MIN_IMAGES: Final = 3
+"""Images that must hold both groups: the scatter of two differences is hardly known."""
+
+_Keys = list[Hashable | None]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Pairs:
+    """Differences of pairs, n of them.
+
+    Attributes
+    ----------
+    basis : "measurement", "target" or "image"
+    value, std : (n,) array
+        First minus second. No deviation is stated (``nan``) where both are of the same pixels:
+        their errors are partly the same, and only the scatter of the differences shows how much.
+    level : float
+        Mean of both.
+    image : (n,) int array
+    target : list of str or None
+        Of pairs on one target.
+    first, second : MeasuredGroup
+        The measurements of the pairs.
+    """
+
+    basis: Basis
+    value: Floats
+    std: Floats
+    level: float
+    image: NDArray[np.int64]
+    target: list[str | None]
+    first: MeasuredGroup
+    second: MeasuredGroup
+
+
+def find_pairs(first: MeasuredGroup, second: MeasuredGroup, by: str) -> Pairs | None:
+    """The finest pairs that at least half of the common images hold; None if there are none.
+
+    Parameters
+    ----------
+    first, second : MeasuredGroup
+    by : str
+        What is compared: methods may be measured on the same pixels, directions together.
+    """
+    shared = np.intersect1d(first.image, second.image).size
+    alone = np.union1d(first.image, second.image).size - shared
+    if shared == 0:
+        return None
+    found = [
+        pairs
+        for basis in _bases(by)
+        if (pairs := _pairs(basis, first, second, by)) is not None
+    ]  # fmt: skip
+    for pairs in found:
+        images = np.unique(pairs.image).size
+        if images >= MIN_IMAGES and 2 * images >= shared:
+            return pairs
+    # One image with many pairs says something, two among forty others do not.
+    return found[0] if found and alone == 0 else None
+
+
+def _bases(by: str) -> tuple[Basis, ...]:
+    if by == "orientation":
+        return ("measurement", "image")
+    if by in ("site", "target"):
+        return ("image",)
+    return ("target", "image")
+
+
+def _pairs(
+    basis: Basis, first: MeasuredGroup, second: MeasuredGroup, by: str
+) -> Pairs | None:  # fmt: skip
+    keys = _keys(basis, first, by), _keys(basis, second, by)
+    common = sorted((set(keys[0]) & set(keys[1])) - {None}, key=str)
+    if not common:
+        return None
+    index = {key: at for at, key in enumerate(common)}
+    groups, labels = [], []
+    for group, own in zip((first, second), keys, strict=True):
+        label = np.array([index.get(key, -1) for key in own])
+        groups.append(_of(group, label >= 0))
+        labels.append(label[label >= 0])
+    (value_1, variance_1), (value_2, variance_2) = (
+        _means(group, label) for group, label in zip(groups, labels, strict=True)
+    )
+    at = np.array([np.flatnonzero(labels[0] == one)[0] for one in range(len(common))])
+    same_pixels = basis == "measurement" or (basis == "target" and by == "method")
+    stated = np.full(len(common), np.nan) if same_pixels else np.sqrt(variance_1 + variance_2)
+    return Pairs(
+        basis=basis, value=value_1 - value_2, std=stated,
+        level=float(np.mean(value_1 + value_2)) / 2,
+        image=groups[0].image[at], target=[groups[0].target[one] for one in at.tolist()],
+        first=groups[0], second=groups[1],
+    )  # fmt: skip
+
+
+def _keys(basis: Basis, group: MeasuredGroup, by: str) -> _Keys:
+    """What has to be equal in both measurements of a pair; None where that is not known."""
+    if basis == "measurement":
+        return list(group.measurement.tolist())
+    images = group.image.tolist()
+    if by in ("method", "kind"):
+        procedures: Sequence[str | None] = [None] * len(images)
+    else:
+        procedures = group.procedure
+    if basis == "image":
+        return list(zip(images, procedures, strict=True))
+    return [
+        None if target is None else (image, target, procedure)
+        for image, target, procedure in zip(images, group.target, procedures, strict=True)
+    ]
+
+
+def _of(group: MeasuredGroup, mask: NDArray[np.bool_]) -> MeasuredGroup:
+    return MeasuredGroup(
+        name=group.name, value=group.value[mask], std=group.std[mask],
+        systematic_std=group.systematic_std[mask], when=group.when[mask], image=group.image[mask],
+        measurement=group.measurement[mask],
+        target=[one for one, own in zip(group.target, mask, strict=True) if own],
+        procedure=[one for one, own in zip(group.procedure, mask, strict=True) if own],
+    )  # fmt: skip
+
+
+def _means(group: MeasuredGroup, label: NDArray[np.int64]) -> tuple[Floats, Floats]:
+    """Means and variances of the measurements of each label, in the order of the labels."""
+    means = image_means(
+        Series(
+            metric="", when=label.astype(float), value=group.value, std=group.std, image=label
+        )
+    )  # fmt: skip
+    return means.value, means.variance
