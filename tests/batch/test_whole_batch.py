@@ -9,7 +9,7 @@ import pytest
 from surveyed_field import EDGE, PULSE, SENSOR, feature, line_of, on_map, survey, written
 
 import acutance as ac
-from acutance.archive import Archive
+from acutance.archive import Archive, ImageCorrection
 from acutance.errors import ArchiveError, OptionError
 
 
@@ -47,6 +47,23 @@ def test_what_is_done_is_not_done_again_and_not_even_opened(write_field, run, mo
     assert (again.kept, again.done_before, again.run) == (0, 4, None)
     assert again.verdicts == first.verdicts
     monkeypatch.undo()
+
+
+def test_a_corrected_image_is_not_measured_again(write_field, run, rows, tmp_path):
+    images = [write_field(number) for number in range(2)]
+    edge, pulse = survey()["features"]
+    run(*images, targets=survey(edge))
+    wrong = ImageCorrection(image="field-0.tif", sensor="SIM-2", acquired="2025-07-01")
+    with Archive(tmp_path / "kept.db") as archive:
+        assert len(archive.correct_images([wrong])) == 1
+    again = run(*images, targets=survey(edge))
+    assert (again.kept, again.done_before) == (0, 2)
+    # Another target of the same image is measured, and belongs to the corrected one.
+    assert run(*images, targets=survey(pulse)).kept == 2
+    measured, _ = rows()
+    assert sorted(measured["sensor"]) == ["SIM-1", "SIM-1", "SIM-2", "SIM-2"]
+    assert str(measured["acquired"].min())[:10] == "2025-07-01"
+    assert len(set(measured["image_id"].tolist())) == 2
 
 
 def test_what_is_not_remembered_is_found_out_again(write_field, run, monkeypatch, tmp_path):

@@ -152,3 +152,32 @@ def test_nothing_there_is_4(acutance, campaign, tmp_path):
     ):
         assert acutance("archive", *words).exit_code == 4
     assert not (tmp_path / "o.csv").exists()
+
+
+def test_an_image_is_corrected(acutance, campaign, tmp_path):
+    name = json.loads(acutance("archive", "list", campaign, "--json").stdout)["rows"][0]["image"]
+    words = ("archive", "correct", campaign, "--image", f"{name[:-3]}*", "--level", "L1R")
+    told = acutance(*words, "--gsd", ".72,.7", "--dry-run")
+    assert told.exit_code == 0
+    assert "2 images would be corrected" in told.stdout
+    assert acutance("archive", "list", campaign, "--level", "L1R").exit_code == 4
+    done = acutance(*words, "--gsd", ".72,.7", "--reason", "header", "--json")
+    images = json.loads(done.stdout)["images"]
+    assert [one["changes"]["gsd_row_m"][1] for one in images] == [0.72, 0.72]
+    assert acutance("archive", "list", campaign, "--level", "L1R").exit_code == 0
+    table = tmp_path / "corrections.csv"
+    table.write_text(f"image,sensor\n{name[:-3]}*,K9\n")
+    assert "level" not in acutance("archive", "correct", campaign, "--from", table).stdout
+    assert acutance("archive", "list", campaign, "--sensor", "K9").exit_code == 0
+
+
+def test_corrections_that_cannot_be(acutance, campaign):
+    assert acutance("archive", "correct", campaign).exit_code == 2
+    assert acutance("archive", "correct", campaign, "--image", "x.tif").exit_code == 2
+    done = acutance("archive", "correct", campaign, "--image", "x.tif", "--sensor", "S")
+    assert done.exit_code == 2
+    assert "no image x.tif" in done.stderr
+    done = acutance("archive", "correct", campaign, "--from", "x.csv", "--sensor", "S")
+    assert "give it alone" in done.stderr
+    done = acutance("archive", "correct", campaign, "--image", "x.tif", "--gsd", "a")
+    assert "--gsd a" in done.stderr

@@ -11,6 +11,7 @@ Sees records only, never pixels. In the order the data take:
 - `runs`, `outcomes`: batches that wrote into the archive; how what they ask for came out
 - `selection`, `columns`, `measurements`: which rows are meant, and what they hold as columns
 - `stored_entries`, `overview`: rows become entries again, and are counted
+- `image_corrections`: dates, sensors, GSD, angles of images that are kept already
 - `exchange`: files of documents and tables, in and out
 - `weighted_means`: means of measurements that disagree
 - `trends`: drift, steps, season and scatter of a sensor through the years
@@ -29,13 +30,16 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from acutance.archive.archive import Archive
     from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
+    from acutance.archive.image_corrections import CorrectedImage, ImageCorrection
     from acutance.archive.measurements import Measurements, Rejections
     from acutance.archive.published.read import published_entries
     from acutance.archive.weighted_means import WeightedMean, weighted_mean
 
 __all__ = [
     "Archive",
+    "CorrectedImage",
     "Entry",
+    "ImageCorrection",
     "ImageEntry",
     "Kept",
     "Measurements",
@@ -49,7 +53,9 @@ __all__ = [
 # The modules are loaded when a name is first used: an entry costs no SQLAlchemy.
 _HOMES = {
     "Archive": "archive",
+    "CorrectedImage": "image_corrections",
     "Entry": "entry",
+    "ImageCorrection": "image_corrections",
     "ImageEntry": "entry",
     "Kept": "entry",
     "Measurements": "measurements",

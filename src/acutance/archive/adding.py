@@ -20,6 +20,7 @@ from sqlalchemy.sql.dml import ReturningInsert
 
 from acutance.archive.connection import Database
 from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
+from acutance.archive.image_corrections import with_corrections
 from acutance.archive.rows import EntryRows, image_row, rows_of, target_row
 from acutance.archive.tables import directions, documents, images, measurements, runs, targets
 from acutance.errors import OptionError
@@ -186,6 +187,8 @@ def _ids(
     found = _found_ids(connection, table, list(rows))
     missing = [rows[identity] for identity in sorted(set(rows) - set(found))]
     if missing:
+        if table is images:
+            missing = with_corrections(connection, missing)
         connection.execute(_insert_new(connection, table, "identity", "id"), missing)
         found = _found_ids(connection, table, list(rows))
     return {place: found[row["identity"]] for place, row in each.items()}

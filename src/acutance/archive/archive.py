@@ -11,6 +11,7 @@ from acutance.archive.adding import add_entries, add_entry
 from acutance.archive.connection import open_database
 from acutance.archive.dates import When, as_utc
 from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
+from acutance.archive.image_corrections import CorrectedImage, ImageCorrection, correct_images
 from acutance.archive.measurements import (
     Measurements,
     Rejections,
@@ -178,6 +179,39 @@ class Archive(Questions):
             If one cannot be kept; transactions before stay.
         """
         return add_entries(self._database, entries, run, progress)
+
+    def correct_images(
+        self, corrections: Iterable[ImageCorrection], *, dry_run: bool = False
+    ) -> list[CorrectedImage]:
+        """Correct what is known of images that are kept already, all of them or none.
+
+        Measurements stay as they are, and batches do not make them again.
+
+        Parameters
+        ----------
+        corrections : iterable of ImageCorrection
+            Later ones go before earlier ones.
+        dry_run : bool, optional
+            Only tell what would change.
+
+        Returns
+        -------
+        list of CorrectedImage
+            Images of which something changes.
+
+        Raises
+        ------
+        OptionError
+            If a correction means no image, or a file name that several have.
+
+        Examples
+        --------
+        >>> from acutance.archive import ImageCorrection
+        >>> archive.correct_images(
+        ...     [ImageCorrection(image="scene.tif", acquired="2026-05-01")]
+        ... )  # doctest: +SKIP
+        """
+        return correct_images(self._database, corrections, dry_run=dry_run)
 
     def keys(self, *, run: int | None = None, images: Iterable[str] | None = None) -> set[str]:
         """Keys of what is kept, measured or rejected.

@@ -10,6 +10,7 @@ import typer
 from acutance.cli import (
     archive_check,
     archive_compare,
+    archive_correct,
     archive_report,
     archive_table,
     archive_trend,
@@ -238,6 +239,7 @@ def export(
 
 
 app.command("trend", epilog=archive_trend.EXAMPLE)(archive_trend.trend)
+app.command("correct", epilog=archive_correct.EXAMPLE)(archive_correct.correct)
 app.command("check", epilog=archive_check.EXAMPLE)(archive_check.check)
 app.command("compare", epilog=archive_compare.EXAMPLE)(archive_compare.compare)
 app.command("table", epilog=archive_table.EXAMPLE)(archive_table.table)

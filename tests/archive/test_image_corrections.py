@@ -1,0 +1,157 @@
+"""Images are corrected afterwards: noted, whole or not at all, and never measured twice."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from datetime import UTC, date, datetime
+from typing import Any
+
+import pytest
+
+from acutance.archive import Archive, ImageCorrection
+from acutance.archive.exchange.image_statements import read_image_corrections
+from acutance.errors import ArchiveError, OptionError
+
+DAY = datetime(2027, 3, 1, 9, 30, tzinfo=UTC)
+
+
+@pytest.fixture
+def filled(archive: Archive, entry_of: Any) -> Archive:
+    """Three images, 0.tif to 2.tif, with two measurements each."""
+    archive.add_entries([entry_of(at) for at in range(6)])
+    return archive
+
+
+def test_a_date_and_a_sensor_are_corrected_and_noted(filled: Archive) -> None:
+    wrong = ImageCorrection(image="1.tif", acquired=DAY, sensor="K3A", reason="clock")
+    told = filled.correct_images([wrong], dry_run=True)
+    assert list(filled.measurements(sensor="K3A")["id"]) == []
+    done = filled.correct_images([wrong])
+    assert done == told
+    assert done[0].measurements == 2
+    assert done[0].changes["sensor"] == ("QB02", "K3A")
+    assert "sensor QB02 → K3A" in done[0].summary
+    found = filled.measurements(sensor="K3A", since="2027-03-01", until="2027-03-01")
+    assert len(found) == 2
+    sources = next(iter(filled.entries(image="1.tif"))).image.sources
+    assert sources["sensor"].startswith("corrected on ")
+    note = {one["column"]: one for one in sources["corrections"]}["acquired"]
+    assert (note["before"][:10], note["after"][:10]) == ("2026-01-02", "2027-03-01")
+    assert note["reason"] == "clock"
+    assert filled.correct_images([wrong]) == []
+
+
+def test_what_is_corrected_is_not_added_again(filled: Archive, entry_of: Any) -> None:
+    filled.correct_images([ImageCorrection(image="1.tif", sensor="K3A", view_zenith_deg=12.0)])
+    assert filled.add_entries([entry_of(at) for at in range(6)]) == 0
+    # More of the same image, known as it was before, and known otherwise.
+    more = entry_of(2, key="more")
+    other = replace(entry_of(3, key="other"), image=replace(more.image, path="/copy/1.tif"))
+    assert filled.add_entries([more, other]) == 2
+    found = filled.measurements(sensor="K3A")
+    assert len(found) == 4
+    assert len(set(found["image_id"].tolist())) == 1
+    assert filled.overview().images == 4
+    image = filled.entry(int(filled.measurements(image="/copy/1.tif")["id"][0])).image
+    assert image.view_zenith_deg == 12.0
+    assert [one["column"] for one in image.sources["corrections"]] == ["sensor", "view_zenith_deg"]
+
+
+def test_corrected_images_are_exported_and_come_back(
+    filled: Archive, tmp_path: Any, entry_of: Any
+) -> None:
+    filled.correct_images([ImageCorrection(image="*.tif", gsd_m=(0.61, 0.6))])
+    lines = tmp_path / "all.jsonl"
+    filled.export(lines, to="jsonl")
+    with Archive(tmp_path / "other.db") as other:
+        assert other.import_documents(lines).new == 6
+        assert list(other.entries()) == list(filled.entries())
+        assert other.add_entries([entry_of(at) for at in range(6)]) == 0
+
+
+def test_numbers_in_metres_stay_as_they_were_measured(filled: Archive) -> None:
+    before = filled.measurements()["fwhm_m"]
+    done = filled.correct_images([ImageCorrection(image="0.tif", gsd_m=0.61)])
+    assert done[0].other_gsd == 2
+    same = filled.correct_images([ImageCorrection(image="2.tif", gsd_m=0.7)])
+    assert same[0].other_gsd == 0
+    assert list(filled.measurements()["fwhm_m"]) == list(before)
+
+
+def test_all_are_corrected_or_none(filled: Archive, entry_of: Any) -> None:
+    other = entry_of(9, key="x")
+    filled.add_entries([replace(other, image=replace(other.image, path="/elsewhere/0.tif"))])
+    several = [
+        ImageCorrection(image="1.tif", sensor="K3A"),
+        ImageCorrection(image="7.tif", sensor="K3A"),
+        ImageCorrection(image="0.tif", sensor="K3A"),
+    ]
+    with pytest.raises(OptionError, match=r"no image 7\.tif; 0\.tif names several images"):
+        filled.correct_images(several)
+    assert len(filled.measurements(sensor="K3A")) == 0
+    pattern = filled.correct_images([ImageCorrection(image="0.ti*", sensor="K3A")])
+    assert len(pattern) == 2
+    assert len(filled.correct_images([ImageCorrection(image=f"{1:064x}", level="L1")])) == 1
+
+
+def test_an_archive_that_is_read_only_tells_what_would_change(tmp_path: Any, entry_of: Any) -> None:
+    with Archive(tmp_path / "a.db") as made:
+        made.add_entries([entry_of(0)])
+    wanted = [ImageCorrection(image="0.tif", sensor="S")]
+    with Archive(tmp_path / "a.db", read_only=True) as archive:
+        assert len(archive.correct_images(wanted, dry_run=True)) == 1
+        with pytest.raises(ArchiveError, match="opened to be read"):
+            archive.correct_images(wanted)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [({}, "nothing is corrected"), ({"acquired": "soon"}, "no date"), ({"gsd_m": -1}, "metres"),
+     ({"gsd_m": (1.0, 2.0, 3.0)}, "metres"), ({"view_zenith_deg": 91}, "from 0 to 90"),
+     ({"sensor": ""}, "write a text"), ({"sun_azimuth_deg": "x"}, "degrees")],
+)  # fmt: skip
+def test_values_that_cannot_be_are_refused(values: dict[str, Any], message: str) -> None:
+    with pytest.raises(OptionError, match=message):
+        ImageCorrection(image="0.tif", **values)
+
+
+def test_corrections_of_a_file(tmp_path: Any) -> None:
+    table = tmp_path / "corrections.csv"
+    table.write_text(
+        "image,sensor,acquired,gsd_row_m,gsd_col_m,view_zenith_deg\n"
+        "0.tif,K3A,2026-05-01,0.72,0.7,\n\n1.tif,,,,,12.5\n"
+    )
+    expected = [
+        ImageCorrection(image="0.tif", sensor="K3A", acquired="2026-05-01", gsd_m=(0.72, 0.7)),
+        ImageCorrection(image="1.tif", view_zenith_deg=12.5),
+    ]
+    assert read_image_corrections(table) == expected
+    lines = tmp_path / "corrections.json"
+    lines.write_text(json.dumps([
+        {"image": "0.tif", "sensor": "K3A", "acquired": "2026-05-01", "gsd_m": [0.72, 0.7]},
+        {"image": "1.tif", "view_zenith_deg": 12.5, "sensor": None},
+    ]))  # fmt: skip
+    assert read_image_corrections(lines) == expected
+    assert expected[0].columns["acquired"].date() == date(2026, 5, 1)
+
+
+def test_all_faults_of_a_file_are_named(tmp_path: Any) -> None:
+    table = tmp_path / "corrections.csv"
+    table.write_text("image,sensor,moon,gsd_row_m\n0.tif,K3,full,\n,K3,,\n1.tif,K3,,0.7\n")
+    with pytest.raises(OptionError) as refused:
+        read_image_corrections(table)
+    for part in (
+        "line 2: there is no moon",
+        "line 3: the image is not named",
+        "line 4: give gsd_m",
+    ):
+        assert part in str(refused.value)
+    table.write_text("image,sensor\n")
+    with pytest.raises(OptionError, match="are empty"):
+        read_image_corrections(table)
+    with pytest.raises(OptionError, match="cannot be read"):
+        read_image_corrections(tmp_path / "none.csv")
+    (tmp_path / "bad.json").write_text("[1]")
+    with pytest.raises(OptionError, match="entry 1 is no object"):
+        read_image_corrections(tmp_path / "bad.json")
