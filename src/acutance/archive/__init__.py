@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from acutance.archive.archive import Archive
-    from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
+    from acutance.archive.entry import Entry, ImageEntry, Kept, RunEntry, TargetEntry
     from acutance.archive.image_corrections import CorrectedImage, ImageCorrection
     from acutance.archive.measurements import Measurements, Rejections
     from acutance.archive.published.read import published_entries
@@ -44,6 +44,7 @@ __all__ = [
     "Kept",
     "Measurements",
     "Rejections",
+    "RunEntry",
     "TargetEntry",
     "WeightedMean",
     "published_entries",
@@ -60,6 +61,7 @@ _HOMES = {
     "Kept": "entry",
     "Measurements": "measurements",
     "Rejections": "measurements",
+    "RunEntry": "entry",
     "TargetEntry": "entry",
     "WeightedMean": "weighted_means",
     "published_entries": "published.read",

@@ -22,6 +22,7 @@ from acutance.archive.connection import Database
 from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
 from acutance.archive.image_corrections import with_corrections
 from acutance.archive.rows import EntryRows, image_row, rows_of, target_row
+from acutance.archive.runs import ids_of_runs, with_whole_runs
 from acutance.archive.tables import directions, documents, images, measurements, runs, targets
 from acutance.errors import OptionError
 
@@ -63,7 +64,7 @@ def add_entries(
     database : Database
     entries : iterable of Entry
     run : int, optional
-        What wrote them.
+        What wrote them, instead of what they say themselves.
     progress : callable, optional
         Told after each transaction how many entries were read.
 
@@ -103,7 +104,7 @@ def _tell(progress: Callable[[int], None] | None, read: int) -> None:
 
 def _chunks(entries: Iterable[Entry]) -> Iterator[list[EntryRows]]:
     """Rows of so many entries; no entry is held longer than it takes to make its rows."""
-    left = map(rows_of, entries)
+    left = map(rows_of, with_whole_runs(entries))
     while chunk := list(islice(left, CHUNK)):
         yield chunk
 
@@ -119,13 +120,14 @@ def _add_chunk(connection: Connection, chunk: Mapping[str, EntryRows], run: int 
     target_ids = _ids(
         connection, targets, target_row, [rows.target for rows in new if rows.target is not None]
     )
+    run_ids = {} if run is not None else ids_of_runs(connection, [rows.run for rows in new])
     now = datetime.now(UTC)
     written = [
         rows.measurement
         | {
             "image_id": image_ids[id(rows.image)],
             "target_id": None if rows.target is None else target_ids[id(rows.target)],
-            "run_id": run,
+            "run_id": run if rows.run is None or run is not None else run_ids[rows.run.uid],
             "added": now,
         }
         for rows in new

@@ -1,4 +1,4 @@
-"""What an archive keeps at a time: a measurement or a rejection, its image and its target."""
+"""What an archive keeps at a time: a measurement or a rejection, its image, target and run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from acutance.errors import OptionError
 from acutance.targets.record import Record
 from acutance.targets.target_result import Rejected
 
-__all__ = ["Entry", "ImageEntry", "Kept", "TargetEntry"]
+__all__ = ["Entry", "ImageEntry", "Kept", "RunEntry", "TargetEntry"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,6 +85,36 @@ class TargetEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
+class RunEntry:
+    """The batch or import that wrote something.
+
+    Parameters
+    ----------
+    uid : str
+        Of this run among those of all archives.
+    started : datetime
+    software : str
+        Version of acutance.
+    ended : datetime, optional
+    plan : mapping, optional
+        Empty where only the run is named: files of many entries have it once.
+    summary : mapping, optional
+    """
+
+    uid: str
+    started: datetime
+    software: str
+    ended: datetime | None = None
+    plan: Mapping[str, Any] = field(default_factory=dict)
+    summary: Mapping[str, Any] | None = None
+
+    @property
+    def named_only(self) -> RunEntry:
+        """The same without plan, summary and end."""
+        return RunEntry(uid=self.uid, started=self.started, software=self.software)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Entry:
     """A measurement, or the reason why there is none, with its image and target.
 
@@ -100,6 +130,8 @@ class Entry:
     key : str, optional
         What makes the entry the same as one that is kept already; derived from the rest without
         it (`acutance.archive.identity`).
+    run : RunEntry, optional
+        What wrote it; it makes no other entry of it.
 
     Raises
     ------
@@ -113,6 +145,7 @@ class Entry:
     target: TargetEntry | None = None
     band: str | None = None
     key: str | None = None
+    run: RunEntry | None = None
 
     def __post_init__(self) -> None:
         if (self.record is None) == (self.rejected is None):

@@ -9,7 +9,7 @@ from datetime import datetime
 from typing import Any
 
 from acutance.archive.dates import as_utc
-from acutance.archive.entry import Entry, ImageEntry, TargetEntry
+from acutance.archive.entry import Entry, ImageEntry, RunEntry, TargetEntry
 from acutance.archive.identity import file_name, image_identity, key_of, target_identity
 from acutance.archive.packing import packed, plain_json
 from acutance.archive.systematic import systematic_stds
@@ -40,6 +40,7 @@ class EntryRows:
     directions : tuple of dict
     document : bytes or None
         The document as it is stored.
+    run : RunEntry or None
     """
 
     key: str
@@ -48,6 +49,7 @@ class EntryRows:
     measurement: Row
     directions: tuple[Row, ...]
     document: bytes | None
+    run: RunEntry | None
 
 
 def rows_of(entry: Entry) -> EntryRows:
@@ -74,7 +76,7 @@ def rows_of(entry: Entry) -> EntryRows:
             "reason": rejected.reason,
             "rejected_values": plain_json(rejected.values),
         }
-        return EntryRows(key, entry.image, target, row, (), None)
+        return EntryRows(key, entry.image, target, row, (), None, entry.run)
     assert record is not None
     row |= {
         "kind": record.kind,
@@ -84,7 +86,9 @@ def rows_of(entry: Entry) -> EntryRows:
         "measured_at": as_utc(record.document["measured_at"], "measured_at"),
     }
     directions = tuple(_direction_rows(record))
-    return EntryRows(key, entry.image, target, row, directions, packed(record.document))
+    return EntryRows(
+        key, entry.image, target, row, directions, packed(record.document), entry.run
+    )  # fmt: skip
 
 
 def image_row(image: ImageEntry) -> Row:

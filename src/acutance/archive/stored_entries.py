@@ -8,8 +8,9 @@ from functools import partial
 from sqlalchemy import Connection, RowMapping, exists, select
 
 from acutance.archive.connection import Database
-from acutance.archive.entry import Entry, ImageEntry, TargetEntry
+from acutance.archive.entry import Entry, ImageEntry, RunEntry, TargetEntry
 from acutance.archive.packing import unpacked
+from acutance.archive.runs import runs_by_id
 from acutance.archive.selection import Selection
 from acutance.archive.tables import directions, documents, images, measurements, targets
 from acutance.targets.record import Record
@@ -56,6 +57,7 @@ def _read(connection: Connection, ids: Sequence[int]) -> list[Entry]:
     )
     asked = select(
         *(measurements.c[name] for name in ("key", "band", "stage", "reason", "rejected_values")),
+        measurements.c.run_id,
         documents.c.document,
         images.c.gsd_row_m,
         images.c.gsd_col_m,
@@ -63,10 +65,12 @@ def _read(connection: Connection, ids: Sequence[int]) -> list[Entry]:
         *(targets.c[name].label(f"target_{name}") for name in _OF_TARGET),
     )
     asked = asked.select_from(joined).where(measurements.c.id.in_(ids)).order_by(measurements.c.id)
-    return [_entry(row) for row in connection.execute(asked).mappings()]
+    rows = connection.execute(asked).mappings().all()
+    runs = runs_by_id(connection, (row["run_id"] for row in rows))
+    return [_entry(row, runs.get(row["run_id"])) for row in rows]
 
 
-def _entry(row: RowMapping) -> Entry:
+def _entry(row: RowMapping, run: RunEntry | None) -> Entry:
     gsd_m = None if row["gsd_row_m"] is None else (row["gsd_row_m"], row["gsd_col_m"])
     image = ImageEntry(gsd_m=gsd_m, **{name: row[f"image_{name}"] for name in _OF_IMAGE})
     target = None
@@ -79,5 +83,5 @@ def _entry(row: RowMapping) -> Entry:
         rejected = Rejected(row["stage"], row["reason"], row["rejected_values"])
     return Entry(
         record=record, rejected=rejected, image=image, target=target, band=row["band"],
-        key=row["key"],
+        key=row["key"], run=run,
     )  # fmt: skip

@@ -101,6 +101,9 @@ def entry_text(entry: Entry) -> str:
         "target": None if target is None else target.name,
         "site": None if target is None else target.site,
         "key": entry.key,
+        "run": None
+        if entry.run is None
+        else f"{entry.run.started:%Y-%m-%d %H:%M} UTC, acutance {entry.run.software}",
     }
     lines += [f"  {name:<9} {value}" for name, value in known.items() if value is not None]
     return "\n".join(lines)

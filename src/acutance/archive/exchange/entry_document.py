@@ -8,7 +8,7 @@ from datetime import date
 from typing import Any
 
 from acutance.archive.dates import as_utc
-from acutance.archive.entry import Entry, ImageEntry, TargetEntry
+from acutance.archive.entry import Entry, ImageEntry, RunEntry, TargetEntry
 from acutance.archive.identity import key_of
 from acutance.archive.packing import plain_json
 from acutance.errors import OptionError
@@ -33,6 +33,7 @@ def entry_document(entry: Entry) -> dict[str, Any]:
         "rejected": None if rejected is None else {
             "stage": rejected.stage, "reason": rejected.reason, "values": dict(rejected.values)
         },
+        "run": None if entry.run is None else _document(entry.run),
     }  # fmt: skip
 
 
@@ -55,6 +56,7 @@ def entry_of_document(document: Mapping[str, Any]) -> Entry:
             target=None if target is None else _target(target),
             band=document["band"],
             key=document["key"],
+            run=None if document.get("run") is None else _run(document["run"]),
         )  # fmt: skip
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         if isinstance(error, OptionError):
@@ -64,7 +66,7 @@ def entry_of_document(document: Mapping[str, Any]) -> Entry:
         ) from error
 
 
-def _document(entry: ImageEntry | TargetEntry) -> dict[str, Any]:
+def _document(entry: ImageEntry | TargetEntry | RunEntry) -> dict[str, Any]:
     found = {one.name: getattr(entry, one.name) for one in fields(entry)}
     if isinstance(entry, ImageEntry) and entry.acquired is not None:
         found["acquired"] = as_utc(entry.acquired, "acquired")
@@ -91,6 +93,14 @@ def _target(document: Mapping[str, Any]) -> TargetEntry:
         if found.get(name) is not None:
             found[name] = date.fromisoformat(found[name])
     return TargetEntry(**found)
+
+
+def _run(document: Mapping[str, Any]) -> RunEntry:
+    found = _known(document, RunEntry)
+    for name in ("started", "ended"):
+        if found.get(name) is not None:
+            found[name] = as_utc(found[name], name)
+    return RunEntry(**found)
 
 
 def _known(document: Mapping[str, Any], kind: type[Any]) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from acutance.archive.exchange.csv_tables import write_csv
 from acutance.archive.exchange.jsonl import write_jsonl
 from acutance.archive.exchange.parquet import write_parquet
 from acutance.archive.exchange.stac import write_stac
+from acutance.archive.runs import named_once
 from acutance.archive.selection import Selection
 from acutance.archive.stored_entries import select_ids, stored_entries
 from acutance.errors import OptionError
@@ -63,7 +64,7 @@ def export_entries(
     if not path.absolute().parent.is_dir():
         raise OptionError(f"{path} cannot be written, there is no folder {path.parent}")
     ids = select_ids(database, selection)
-    entries = _told(stored_entries(database, ids), len(ids), progress)
+    entries = _told(named_once(stored_entries(database, ids)), len(ids), progress)
     return FORMATS[to](entries, path)
 
 

@@ -22,7 +22,7 @@ _OF_IMAGE_TEXTS = ("path", "content", "sensor", "level")
 
 TEXTS = (
     "key", "sensor", "level", "band", "site", "target", "target_kind", "kind", "method",
-    "orientation", "path", "content", "verdict", "stage", "reason",
+    "orientation", "path", "content", "verdict", "stage", "reason", "run_uid",
 )  # fmt: skip
 MOMENTS = ("acquired", "measured_at")
 NUMBERS = (
@@ -55,6 +55,7 @@ def flat_rows(entry: Entry) -> Iterator[dict[str, Any]]:
         "lon": target.get("lon"),
         "lat": target.get("lat"),
         "verdict": None if own["verdict"] is None else VERDICTS[own["verdict"]],
+        "run_uid": None if entry.run is None else entry.run.uid,
         "acquired": image["acquired"],
         "measured_at": None if own["measured_at"] is None else own["measured_at"].astimezone(UTC),
     }
