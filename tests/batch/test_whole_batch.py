@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ from surveyed_field import EDGE, PULSE, SENSOR, feature, line_of, on_map, survey
 
 import acutance as ac
 from acutance.archive import Archive, ImageCorrection
-from acutance.errors import ArchiveError, OptionError
+from acutance.batch.image_list import content_of
+from acutance.errors import ArchiveError, NoEdgeError, OptionError
 
 
 def test_targets_are_found_where_the_map_is_metres_off(write_field, run, rows):
@@ -264,6 +266,61 @@ def test_a_scene_is_kept_with_its_summary(tmp_path, run, rows):
     measured, _ = rows()
     assert set(measured["kind"]) == {"scene"}
     assert sorted(measured["orientation"]) == ["across", "along"]
+
+
+def test_scenes_that_are_left_over_use_all_processes(tmp_path, run, monkeypatch):
+    """Three images and two processes: two side by side, then one over both."""
+    tried = []
+
+    def spread(work, tasks, keep, **how):
+        tried.append([getattr(task, "path", task) for task in tasks])
+        for place, task in enumerate(tasks):
+            keep(place, work(task))
+
+    def scan(image, *_, workers, **__):
+        tried.append((image.path, workers))
+        raise NoEdgeError("no scan here")
+
+    monkeypatch.setattr("acutance.batch.whole_batch.run_tasks", spread)
+    monkeypatch.setattr("acutance.scan.scan_scene", scan)
+    paths = [tmp_path / f"{at}.tif" for at in range(3)]
+    for at, path in enumerate(paths):
+        ac.raster.write_geotiff(path, np.full((40, 40), at, np.float32), gsd_m=0.5)
+    first, second, third = map(str, paths)
+    scene = survey(feature("scene", "scene", None, None))
+    found = run(*paths, targets=scene, workers=2)
+    assert tried[-4:] == [[first, second], (first, 1), (second, 1), (third, 2)]
+    assert found.rejected == 3
+
+
+def test_a_scene_is_the_same_over_several_processes(tmp_path, run):
+    from acutance.simulate import landscape
+
+    pixels, _ = landscape(SENSOR, shape=(300, 700), snr=100, rng=np.random.default_rng(1))
+    path = tmp_path / "scene.tif"
+    ac.raster.write_geotiff(path, pixels.astype(np.float32), gsd_m=0.5)
+    scene = survey(feature("scene", "scene", None, None))
+    records = []
+    for workers in (1, 2):
+        found = run(path, targets=scene, workers=workers, archive=tmp_path / f"{workers}.db")
+        assert found.measured == 1
+        assert found.measuring_s > 0
+        with Archive(tmp_path / f"{workers}.db") as archive:
+            records.append(archive.measurements().records()[0])
+            assert set(archive.keys()) == set(archive.keys(images=[content_of(path)]))
+    assert records[0].across.mtf_nyquist == records[1].across.mtf_nyquist
+
+
+def test_killed_processes_of_a_scene_are_no_rejection(tmp_path, run, rows, monkeypatch):
+    def broken(*_, **__):
+        raise BrokenProcessPool("killed")
+
+    path = tmp_path / "scene.tif"
+    ac.raster.write_geotiff(path, np.ones((40, 40), np.float32), gsd_m=0.5)
+    monkeypatch.setattr("acutance.scan.scan_scene", broken)
+    with pytest.raises(BrokenProcessPool):
+        run(path, targets=survey(feature("scene", "scene", None, None)), workers=2)
+    assert len(rows()[1]) == 0
 
 
 def test_bad_input(write_field, run, tmp_path):

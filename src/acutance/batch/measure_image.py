@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import BrokenExecutor
 from dataclasses import dataclass
 from datetime import date
 from typing import Any
@@ -38,12 +40,15 @@ class BatchWork:
         Of every target with its options.
     bands : tuple of (str or int), or None
         Names or numbers; all without it.
+    scan_workers : int
+        Processes of a scene, where images are measured one after the other.
     """
 
     targets: Sequence[SurveyedTarget]
     chosen: Sequence[ChosenOptions]
     digests: Sequence[str]
     bands: tuple[str | int, ...] | None
+    scan_workers: int = 1
 
 
 @dataclass(frozen=True)
@@ -168,7 +173,7 @@ def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[E
                 continue
             if described is None:
                 described = target_entry(target)
-            found, seconds = _row(target, chosen, opened, place)
+            found, seconds = _row(target, chosen, opened, place, work.scan_workers)
             yield (
                 Entry(**found, image=opened.entry, target=described, band=band.name, key=key),
                 seconds,
@@ -176,7 +181,7 @@ def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[E
 
 
 def _row(
-    target: SurveyedTarget, chosen: ChosenOptions, opened: _Opened, place: int
+    target: SurveyedTarget, chosen: ChosenOptions, opened: _Opened, place: int, scan_workers: int
 ) -> tuple[dict[str, Any], float]:
     """A record or a rejection, and the processor time of the measurement."""
     # The rooms of the kinds are loaded where something is measured.
@@ -186,17 +191,26 @@ def _row(
     try:
         _require_valid(target, opened.acquired)
         placed = _placed(target, image, opened)
-        begin = time.thread_time()
-        record = measure_target(placed, image, chosen).record
-        return {"record": record}, time.thread_time() - begin
+        begin = _processor_s()
+        record = measure_target(placed, image, chosen, scan_workers).record
+        return {"record": record}, _processor_s() - begin
     except NotHereError as error:
         rejected = _rejected(error.stage, str(error), error.why, chosen, image)
     except AcutanceError as error:
         rejected = _rejected(_stage(error), str(error), type(error).__name__, chosen, image)
+    except BrokenExecutor:
+        # The processes of a scene were killed: that says nothing about the image.
+        raise
     except Exception as error:  # one target that fails must not end a batch of thousands
         reason = f"the measurement failed, {type(error).__name__}: {str(error)[:200]}"
         rejected = _rejected("fit", reason, type(error).__name__, chosen, image)
-    return {"rejected": rejected}, 0.0 if begin is None else time.thread_time() - begin
+    return {"rejected": rejected}, 0.0 if begin is None else _processor_s() - begin
+
+
+def _processor_s() -> float:
+    """Processor time of this thread, and of the processes it has started and that have ended."""
+    times = os.times()
+    return time.thread_time() + times.children_user + times.children_system
 
 
 def _require_valid(target: SurveyedTarget, acquired: date | None) -> None:

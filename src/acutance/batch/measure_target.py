@@ -18,7 +18,9 @@ __all__ = ["measure_target"]
 
 
 @one_thread
-def measure_target(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measurement:
+def measure_target(
+    placed: PlacedTarget, image: Image, chosen: ChosenOptions, scan_workers: int = 1
+) -> Measurement:
     """Measure a target where it lies in an image.
 
     Parameters
@@ -26,12 +28,16 @@ def measure_target(placed: PlacedTarget, image: Image, chosen: ChosenOptions) ->
     placed : PlacedTarget
     image : Image
     chosen : ChosenOptions
+    scan_workers : int, optional
+        Processes of a scene.
 
     Raises
     ------
     AcutanceError
         If it cannot be measured; `NotHereError` if it is not found near its place.
     """
+    if placed.target.kind == "scene":
+        return _scene(placed, image, chosen, scan_workers)
     return _MEASURES[placed.target.kind](placed, image, chosen)
 
 
@@ -116,11 +122,13 @@ def _bars(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measurem
     )
 
 
-def _scene(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measurement:
+def _scene(
+    placed: PlacedTarget, image: Image, chosen: ChosenOptions, workers: int
+) -> Measurement:  # fmt: skip
     from acutance.scan import scan_scene
 
     region = grown(placed) if placed.target.points else None
-    return scan_scene(image, region, gsd_m=placed.gsd, options=chosen.build())
+    return scan_scene(image, region, gsd_m=placed.gsd, options=chosen.build(), workers=workers)
 
 
 _MEASURES: dict[str, Callable[[PlacedTarget, Image, ChosenOptions], Measurement]] = {
@@ -129,5 +137,4 @@ _MEASURES: dict[str, Callable[[PlacedTarget, Image, ChosenOptions], Measurement]
     "points": _points,
     "star": _star,
     "bars": _bars,
-    "scene": _scene,
 }

@@ -264,7 +264,7 @@ def _run(
     if progress is not None:
         progress(0, len(todo))
     try:
-        _spread(partial(measure_image, work), tasks, keep, plan)
+        _spread(work, tasks, keep, plan)
     except BaseException:
         # Why the run ended is to be told, and not that this could not be written down.
         with suppress(ArchiveError):
@@ -275,13 +275,24 @@ def _run(
 
 
 def _spread(
-    measure: Callable[[BatchTask], MeasuredImage],
+    work: BatchWork,
     tasks: Sequence[BatchTask],
     keep: Callable[[int, MeasuredImage], None],
     plan: BatchPlan,
 ) -> None:
-    """All images over processes, or over the workers of a cluster."""
+    """All images over processes, or over the workers of a cluster.
+
+    A scene occupies one process for long. Images with scenes are spread as far as every process has
+    as many; those left over come one after the other, each scene over all processes.
+    """
+    measure = partial(measure_image, work)
     if plan.dask is not None:
         run_on_cluster(measure, tasks, keep, scheduler=plan.dask)
-    else:
-        run_tasks(measure, tasks, keep, workers=plan.workers, chunk=1)
+        return
+    workers = plan.workers or os.cpu_count() or 1
+    has_scenes = any(target.kind == "scene" for target in work.targets)
+    left = len(tasks) % workers if has_scenes else 0
+    even = len(tasks) - left
+    run_tasks(measure, tasks[:even], keep, workers=workers, chunk=1)
+    for place, task in enumerate(tasks[even:], start=even):
+        keep(place, measure_image(replace(work, scan_workers=workers), task))
