@@ -66,7 +66,7 @@ def test_all_faults_at_once():
         "target": "targets.geojson",
         "colour": 1,
         "workers": 0,
-        "stated": {"sensr": "QB02", "acquired": 20260105, "gsd_m": -1.0},
+        "stated": {"sensr": "QB02", "acquired": 20260105, "gsd_m": -1.0, "height_m": 1e5},
         "edge": "spline",
     }
     with pytest.raises(OptionError) as caught:
@@ -81,6 +81,7 @@ def test_all_faults_at_once():
         "there is no key 'stated.0.sensr'",
         "stated.0.acquired is 20260105",
         "stated.0.gsd_m is -1.0",
+        "stated.0.height_m is 100000.0",
         "edge is 'spline'",
     ):
         assert words in str(caught.value)

@@ -7,12 +7,17 @@ from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
 import pytest
+import rasterio
+from rasterio.rpc import RPC
 from surveyed_field import EDGE, PULSE, SENSOR, feature, line_of, on_map, survey, written
 
 import acutance as ac
 from acutance.archive import Archive, ImageCorrection
+from acutance.batch import BatchPlan
 from acutance.batch.image_list import content_of
+from acutance.batch.plan import StatedOfImages
 from acutance.errors import ArchiveError, NoEdgeError, OptionError
+from acutance.geometry import Line
 
 
 def test_targets_are_found_where_the_map_is_metres_off(write_field, run, rows):
@@ -266,6 +271,48 @@ def test_a_scene_is_kept_with_its_summary(tmp_path, run, rows):
     measured, _ = rows()
     assert set(measured["kind"]) == {"scene"}
     assert sorted(measured["orientation"]) == ["across", "along"]
+
+
+def by_rpc(path):
+    """Locate an image by RPC: at a height of 200 m row 50 and column 40 lie at 43 N, 5 E.
+
+    100 m more move columns by 100.
+    """
+    one, lon, lat, height = (np.eye(20)[at].tolist() for at in (0, 1, 2, 3))
+    columns = [a + 0.2 * b for a, b in zip(lon, height, strict=True)]
+    with rasterio.open(path, "r+") as dataset:
+        dataset.rpcs = RPC(
+            height_off=200.0, height_scale=100.0, lat_off=43.0, lat_scale=0.01, long_off=5.0,
+            long_scale=0.01, line_off=50.0, line_scale=500.0, samp_off=40.0, samp_scale=500.0,
+            line_num_coeff=[-a for a in lat], line_den_coeff=one, samp_num_coeff=columns,
+            samp_den_coeff=one, err_bias=None, err_rand=None,
+        )  # fmt: skip
+    return path
+
+
+@pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+def test_heights_of_images_located_by_rpc(write_field, run, rows, tmp_path):
+    image = by_rpc(write_field(0, crs=None, transform=None))
+    edge = Line(EDGE.row, EDGE.col, EDGE.normal_deg)
+    ends = edge.slid(-15.0), edge.slid(15.0)
+    points = [[5 + 2e-5 * (end.col - 40), 43 - 2e-5 * (end.row - 50)] for end in ends]
+    one = feature("eave", "edge", "LineString", points)
+    found = run(image, targets=survey(one, crs="OGC:CRS84"))
+    assert found.reasons == {"no height": 1}
+    assert "eave states none: give the target height_m" in rows()[1]["reason"][0]
+
+    def run_plan(height_m, target):
+        targets = written(tmp_path / "targets.geojson", survey(target, crs="OGC:CRS84"))
+        stated = (StatedOfImages(height_m=height_m),)
+        plan = BatchPlan((str(image),), str(targets), str(tmp_path / "kept.db"), stated=stated,
+                         workers=1)  # fmt: skip
+        return ac.run_batch(plan)
+
+    assert run_plan(200.0, one).measured == 1
+    assert run_plan(200.0, one).done_before == 1
+    assert run_plan(230.0, one).reasons == {"not found": 1}
+    own = feature("eave", "edge", "LineString", points, height_m=200)
+    assert run_plan(230.0, own).measured == 1
 
 
 def test_scenes_that_are_left_over_use_all_processes(tmp_path, run, monkeypatch):

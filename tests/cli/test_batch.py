@@ -60,6 +60,13 @@ def test_a_batch_and_the_same_again(acutance, given):
     assert (document["kept"], document["done_before"], document["measured"]) == (0, 1, 1)
 
 
+def test_a_height_is_stated_of_all_images(acutance, given):
+    acutance(*given)
+    done = acutance(*given, "--height", "120", "--json")
+    assert (json.loads(done.stdout)["kept"], done.exit_code) == (1, 0)
+    assert acutance(*given, "--height", "120000").exit_code == 2
+
+
 def test_a_log_has_a_line_for_every_row(acutance, given, tmp_path):
     acutance(*given, "--log", tmp_path / "log.jsonl", "--sensor", "QB02")
     (line,) = (tmp_path / "log.jsonl").read_text().splitlines()

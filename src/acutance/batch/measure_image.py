@@ -105,6 +105,7 @@ class _Opened:
     statement: ImageStatement
     entry: ImageEntry
     acquired: date | None
+    height_m: float | None
 
 
 def measure_image(work: BatchWork, task: BatchTask) -> MeasuredImage:
@@ -151,7 +152,7 @@ def _opened(task: BatchTask) -> _Opened:
     )
     entry = image_entry(task, statement)
     acquired = None if entry.acquired is None else entry.acquired.date()
-    return _Opened(images, bands, statement, entry, acquired)
+    return _Opened(images, bands, statement, entry, acquired, stated.height_m)
 
 
 def _unreadable(task: BatchTask, error: AcutanceError) -> Entry:
@@ -234,7 +235,8 @@ def _require_valid(target: SurveyedTarget, acquired: date | None) -> None:
 
 
 def _placed(target: SurveyedTarget, image: Image, opened: _Opened) -> PlacedTarget:
-    georeference = None if target.in_pixels else georeference_of(image, target.height_m)
+    height_m = opened.height_m if target.height_m is None else target.height_m
+    georeference = None if target.in_pixels else georeference_of(image, height_m)
     stated = opened.entry.gsd_m
     gsd = None
     if image.own_gsd is None and image.geolocation is None and stated is not None:

@@ -110,8 +110,9 @@ def _in_pixels(target: SurveyedTarget, image: Image, georeference: Georeference)
         _require_near(points, target.crs, image, georeference)
         raise NotHereError(
             "no height",
-            "the image is located by RPC, which need the height of the ground: give the target's "
-            "height above the ellipsoid (height_m)",
+            f"the image is located by RPC, which need the height of the ground, and {target.name} "
+            "states none: give the target height_m, or the images ([[stated]] height_m, --height), "
+            "in metres above the ellipsoid (the height above sea level and the geoid's)",
         )
     try:
         row, col = georeference.from_crs(points[:, 0], points[:, 1], target.crs)

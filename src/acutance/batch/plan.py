@@ -32,6 +32,7 @@ class _Stated(_Model):
     acquired: datetime | None = None
     band_names: list[str] | None = Field(default=None, min_length=1)
     gsd_m: float | list[float] | None = None
+    height_m: float | None = Field(default=None, ge=-1000, le=10000)
     view_zenith_deg: float | None = Field(default=None, ge=0, le=90)
     view_azimuth_deg: float | None = Field(default=None, ge=-180, le=360)
     sun_elevation_deg: float | None = Field(default=None, ge=-90, le=90)
@@ -99,6 +100,9 @@ class StatedOfImages:
     band_names : tuple of str or None
         In the order of the file.
     gsd_m : (row, col) or None
+    height_m : float or None
+        Of the ground above the ellipsoid, at targets that state none of their own; for images
+        located by RPC.
     view_zenith_deg, view_azimuth_deg, sun_elevation_deg, sun_azimuth_deg : float or None
     metadata : tuple of str or None
         Documents to read instead of those beside the image.
@@ -114,6 +118,7 @@ class StatedOfImages:
     acquired: datetime | None = None
     band_names: tuple[str, ...] | None = None
     gsd_m: tuple[float, float] | None = None
+    height_m: float | None = None
     view_zenith_deg: float | None = None
     view_azimuth_deg: float | None = None
     sun_elevation_deg: float | None = None

@@ -35,7 +35,7 @@ __all__ = ["run_batch"]
 Progress = Callable[[int, int], None]
 KeptEntries = Callable[[Sequence[Entry]], None]
 
-_READING = ("gsd_m", "nodata", "along_track", "linearize", "band_names")
+_READING = ("gsd_m", "height_m", "nodata", "along_track", "linearize", "band_names")
 _MANY_BYTES = 2 * 10**9
 """So many are read for their checksums by all processes."""
 

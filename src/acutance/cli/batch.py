@@ -53,6 +53,16 @@ def batch(
         str | None,
         typer.Option(metavar="NAME", help="The sensor of all images, whatever they say."),
     ] = None,
+    height: Annotated[
+        float | None,
+        typer.Option(
+            metavar="METRES",
+            min=-1000,
+            max=10000,
+            help="Of the ground above the ellipsoid, at targets that state none; for images "
+            "located by RPC.",
+        ),
+    ] = None,
     workers: WorkersOption = None,
     dask: Annotated[str | None, dask_option("the images under the same names")] = None,
     log: Annotated[
@@ -75,7 +85,7 @@ def batch(
     none. What is done is not done again: a batch that was interrupted goes on when it is called
     again. An image that cannot be read stops no other.
     """
-    plan = _plan(images, targets, archive, band, sensor, workers, dask)
+    plan = _plan(images, targets, archive, band, sensor, height, workers, dask)
 
     from acutance.batch import run_batch
 
@@ -101,6 +111,7 @@ def _plan(
     archive: str | None,
     band: str | None,
     sensor: str | None,
+    height: float | None,
     workers: int | None,
     dask: str | None,
 ) -> BatchPlan:
@@ -132,6 +143,9 @@ def _plan(
         plan = replace(plan, workers=None)
     if sensor is not None:
         plan = replace(plan, stated=(*plan.stated, StatedOfImages(sensor=sensor)))
+    if height is not None:
+        # Heights of the plan are of some images, and go before.
+        plan = replace(plan, stated=(StatedOfImages(height_m=height), *plan.stated))
     return plan
 
 
