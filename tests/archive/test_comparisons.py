@@ -176,7 +176,7 @@ def test_answers_in_words() -> None:
     one = only(compare_groups(edges(rng, 40), "mtf_nyquist"))
     assert one.sentence.startswith("QB02, pan: across is sharper than along by ")
     assert "less than 5 %" in one.sentence
-    assert one.sentence.endswith("measured in the same 40 images.")
+    assert one.sentence.endswith("measured side by side in 40 images.")
     assert one.probability > 0.975
     assert one.summary.endswith(
         "One target of each group: what is peculiar to it is part of the difference."
@@ -227,6 +227,7 @@ def test_one_measurement_of_each_tells_nothing_without_deviations() -> None:
     assert one.answer == "cannot be told"
     assert one.to_dict()["probability"] is None
     assert "One image" in one.summary
+    assert "edge a and edge b differ cannot be told (mtf_nyquist, without" in one.sentence
 
 
 def test_what_cannot_be_compared_is_refused() -> None:

@@ -203,13 +203,6 @@ class Archive(Questions):
         ------
         OptionError
             If a correction means no image, or a file name that several have.
-
-        Examples
-        --------
-        >>> from acutance.archive import ImageCorrection
-        >>> archive.correct_images(
-        ...     [ImageCorrection(image="scene.tif", acquired="2026-05-01")]
-        ... )  # doctest: +SKIP
         """
         return correct_images(self._database, corrections, dry_run=dry_run)
 

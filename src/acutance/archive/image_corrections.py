@@ -67,6 +67,11 @@ class ImageCorrection:
     ------
     OptionError
         If a value cannot be one, or nothing is corrected.
+
+    Examples
+    --------
+    >>> wrong = ImageCorrection(image="scene.tif", acquired="2026-05-01", reason="clock")
+    >>> archive.correct_images([wrong], dry_run=True)  # doctest: +SKIP
     """
 
     image: str

@@ -16,7 +16,7 @@ Answer = Literal["differ", "agree", "cannot be told"]
 _BASIS_WORDS: Final[dict[str, str]] = {
     "measurement": "measured together in",
     "target": "measured on the same targets of",
-    "image": "measured in the same",
+    "image": "measured side by side in",
 }
 _FALLS_WITH_SHARPNESS: Final = ("fwhm_px", "fwhm_m", "half_extent_dark_px", "half_extent_bright_px")
 _RISES_WITH_SHARPNESS: Final = (
@@ -104,7 +104,7 @@ class Difference:
         if self.answer == "agree":
             return f"{pair} agree within {100 * self.margin:g} % ({self.metric}, {ends})"
         if low != low:
-            return f"whether {pair} differ cannot be told ({self.metric}, one measurement of each)"
+            return f"whether {pair} differ cannot be told ({self.metric}, without deviations)"
         return f"whether {pair} differ cannot be told yet ({self.metric}, {ends})"
 
     @property
