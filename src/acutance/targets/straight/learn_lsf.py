@@ -39,8 +39,8 @@ DENSITY_COUNTS = {
     "halo": 1000,
     "trail": 700,
     "smear": 500,
-    "sharpened": 800,
-    "restored": 1000,
+    "sharpened": 1600,
+    "restored": 2000,
     "resampled": 1000,
     "plain": 400,
 }

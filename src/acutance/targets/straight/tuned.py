@@ -101,7 +101,7 @@ MAX_SENSOR_MISFIT: Final = 20.0
 which has some five more degrees of freedom."""
 OTHER_WEIGHT: Final = 0.05
 """How often a sensor is like none of the families: those are counted in units of one family."""
-KERNEL_SCALES: Final = (0.2, 0.7)
+KERNEL_SCALES: Final = (0.3, 0.7)
 """Size of the kernels of the density of sensors relative to its family: that of a sensor like those
 that were drawn, and of one unlike them."""
 KERNEL_LOG_WIDTH: Final = 0.12
