@@ -213,7 +213,7 @@ def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain
         before = otf
         combined = _combined(edges.freq_cpp, normal_deg, otf, information, projection, forms)
         # Forms without any weight have none in the next turn, either.
-        forms = tuple({form.form.terms: None for form in combined.forms})
+        forms = tuple({form.form.oblique_terms: None for form in combined.forms})
         stepped = _along(combined, normal_deg, edges.freq_cpp)
         otf, along = stacked(stepped.T).T, _along_bins(edges, normal_deg, combined)
     return _State(otf, share, forms, along, turns + _MAX_TURNS, settled=False)

@@ -21,6 +21,8 @@ PARAMETERS = {
     "major_axis_deg": ("direction of the longer axis", "deg"),
     "smear_px": ("smear", "px"),
     "smear_direction_deg": ("direction of the smear", "deg"),
+    "smear_across_px": ("smear, across", "px"),
+    "smear_along_px": ("smear, along", "px"),
     "halo_share": ("light in the halo", ""),
     "halo_sigma_px": ("Gaussian of the halo", "px"),
     "trail_across_px": ("charge trail, across", "px"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
@@ -25,8 +25,11 @@ _SHARES = (0.0, 0.01, 0.03, 0.1, 0.3)
 
 _MAX_CORRECTED = 3
 _STARTS_TRIED = 2
-_SMEAR_STARTS = ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7))
-_TRAIL_STARTS = ((0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3))
+_STARTS: Mapping[str, Sequence[tuple[float, float]]] = {
+    "smear": ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7)),
+    "upright smear": ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7)),
+    "trail": ((0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3)),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,8 +108,13 @@ def combine_curves(
     first = min(plain, key=lambda one: one.score)
     correction = Correction(first.form, tuple(first.parameters.tolist()))
     ways = data.of(correction.directions(data.u_cpp, data.v_cpp))
-    likely = sorted(plain, key=lambda one: one.score)[:_MAX_CORRECTED]
-    fits = plain + [
+    aligned = [
+        _fit_form(data, form, None, 0.0, nowhere)
+        for one in _weighted(plain)
+        for form in one.form.aligned()
+    ]
+    likely = sorted(plain + aligned, key=lambda one: one.score)[:_MAX_CORRECTED]
+    fits = [*plain, *aligned] + [
         _fit_form(data, start.form, start, share, share * ways)
         for share in _SHARES[1:]
         for start in likely
@@ -189,7 +197,7 @@ def _likely(form: SensorForm, residual: Callable[[Floats], Floats]) -> list[Floa
 def _starts(form: SensorForm) -> list[Floats]:
     """First guesses: a smear or trail of 0 is stationary, and both have directions."""
     found = [form.mean]
-    for name, ways in (("smear", _SMEAR_STARTS), ("trail", _TRAIL_STARTS)):
+    for name, ways in _STARTS.items():
         if name in form.terms:
             at = SensorForm(form.terms[: form.terms.index(name)]).mean.size
             found = [_with(start, at, way) for start in found for way in ways]
@@ -230,6 +238,8 @@ def _span(ways: Floats) -> Floats:
     """Orthonormal axes of the directions some vectors span, the faint ones left out, (n, k)."""
     # A curve exactly across does not depend on a smear along.
     length = np.linalg.norm(ways, axis=0)
+    if not length.any():  # A curve whose pixels tell nothing.
+        return np.zeros((len(ways), 0))
     seen = length > 1e-9 * length.max()
     left, size, _ = np.linalg.svd(ways[:, seen] / length[seen], full_matrices=False)
     return np.asarray(left[:, size > _MIN_SINGULAR * size[0]])
@@ -243,7 +253,10 @@ def _shapes(data: WhitenedCurves, simplest: FormFit) -> Floats:
     """
     form = SensorForm(("gaussian", "smear", "halo", "trail"), simplest.form.detector_px)
     at = form.mean.copy()
-    at[:3] = simplest.parameters[:3]
+    found = simplest.form.numbers(simplest.parameters)
+    if "sigma_across_px" in found:
+        at[:2] = math.log(found["sigma_across_px"]), math.log(found["sigma_along_px"])
+        at[2] = math.atanh(found.get("correlation", 0.0))
     at[3:5] = 0.5
     return data.of(form.slopes(at, data.u_cpp, data.v_cpp))
 

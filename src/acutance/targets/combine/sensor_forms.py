@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -75,8 +75,26 @@ def _gaussian_numbers(p: Floats) -> dict[str, float]:
     }
 
 
+def _upright(p: Floats, u: Floats, v: Floats) -> Floats:
+    """A Gaussian whose axes are those of the image; of a single parameter it is round."""
+    return _gaussian(np.array([p[0], p[-1], 0.0]), u, v)
+
+
+def _upright_numbers(p: Floats) -> dict[str, float]:
+    return {"sigma_across_px": math.exp(p[0]), "sigma_along_px": math.exp(p[-1])}
+
+
 def _smear(p: Floats, u: Floats, v: Floats) -> Floats:
     return np.asarray(np.sinc(p[0] * u + p[1] * v))
+
+
+def _upright_smear(p: Floats, u: Floats, v: Floats) -> Floats:
+    """Smears along both axes of the image, one after the other."""
+    return np.asarray(np.sinc(p[0] * u) * np.sinc(p[1] * v))
+
+
+def _upright_smear_numbers(p: Floats) -> dict[str, float]:
+    return {"smear_across_px": abs(p[0]), "smear_along_px": abs(p[1])}
 
 
 def _smear_numbers(p: Floats) -> dict[str, float]:
@@ -195,14 +213,16 @@ def _interpolation_numbers(p: Floats) -> dict[str, float]:
     return {"cubic_a": _cubic(p)}
 
 
+_SIGMA_MEAN, _SIGMA_STD = (math.log(0.4),), (0.7,)
 _TAP_MEAN = (0.4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _TAP_STD = (0.5, 0.25, 0.12, 0.07, 0.05, 0.03, 0.02)
 
 TERMS: dict[str, Term] = {
-    "gaussian": Term(
-        _gaussian, (math.log(0.4), math.log(0.4), 0.0), (0.7, 0.7, 0.3), _gaussian_numbers
-    ),
+    "gaussian": Term(_gaussian, (*_SIGMA_MEAN * 2, 0.0), (*_SIGMA_STD * 2, 0.3), _gaussian_numbers),
+    "upright gaussian": Term(_upright, _SIGMA_MEAN * 2, _SIGMA_STD * 2, _upright_numbers),
+    "round gaussian": Term(_upright, _SIGMA_MEAN, _SIGMA_STD, _upright_numbers),
     "smear": Term(_smear, (0.0, 0.0), (1.2, 1.2), _smear_numbers),
+    "upright smear": Term(_upright_smear, (0.0, 0.0), (1.2, 1.2), _upright_smear_numbers),
     "halo": Term(_halo, (-2.2, math.log(2.0)), (1.0, 0.5), _halo_numbers),
     "trail": Term(_trail, (0.0, 0.0), (0.4, 0.4), _trail_numbers),
     "sharpening": Term(_sharpening, (0.4, 0.4), (0.4, 0.4), _sharpening_numbers),
@@ -217,6 +237,10 @@ of up to a third, masks of a quarter to the whole of what is missing, a quarter 
 defocus, kernels as those of Wiener filters, cubic convolutions of -.35 to
 -.65."""
 
+_OBLIQUE = {
+    "upright gaussian": "gaussian", "round gaussian": "gaussian", "upright smear": "smear",
+}  # fmt: skip
+_GAUSSIAN_WIDTHS = ("sigma_across_px", "sigma_along_px", "sigma_minor_px")
 _FILL_STD = 0.12
 """Of the logarithm of a detector's width over the stated one: fill factors are near one."""
 
@@ -294,7 +318,23 @@ class SensorForm:
 
     def min_sigma_px(self, p: Floats) -> float:
         """Smallest standard deviation of the Gaussian: it limits the band."""
-        return self.numbers(p)["sigma_minor_px"] if "gaussian" in self.terms else 0.0
+        widths = (one for name, one in self.numbers(p).items() if name in _GAUSSIAN_WIDTHS)
+        return min(widths, default=0.0)
+
+    @property
+    def oblique_terms(self) -> tuple[str, ...]:
+        """Terms of the form in any direction that this one is a case of."""
+        return tuple(_OBLIQUE.get(name, name) for name in self.terms)
+
+    def aligned(self) -> tuple[SensorForm, ...]:
+        """The same along the axes of the image, its Gaussian elliptical or round."""
+        first, *others = self.terms
+        if first != "gaussian":
+            return ()
+        upright = ["upright smear" if one == "smear" else one for one in others]
+        return tuple(
+            replace(self, terms=(f"{kind} gaussian", *upright)) for kind in ("upright", "round")
+        )
 
     def _factors(self, p: Floats) -> list[tuple[Transfer, Floats]]:
         """The factors of the product, each with its parameters, in their order."""
