@@ -30,6 +30,7 @@ from acutance.optics import Detector, Gaussian, Resampling, Smear
 from acutance.optics.processing import interpolation_weight
 from acutance.restoration.filtered_otf import FilteredOtf, SensorOtf
 from acutance.restoration.knobs import worst_overshoot
+from acutance.targets.uncertainty_budget import std_of_mean, systematic_share
 
 SENSORS = {
     "Gaussian .5 px": ac.Sensor([Gaussian(0.5), Detector()]),
@@ -72,31 +73,34 @@ def one_scene(
 ) -> tuple[float, float, float, bool, float]:
     """A scene of four edges (two across, two along), restored and measured again: weighted means.
 
-    Off the prediction, off the truth, the deviation of that, whether its interval holds, and the
-    noise after over that before.
+    Off the prediction, off the truth, the deviation of that (what the edges have in common does
+    not average out), whether its interval holds, and the noise after over that before.
     """
     rng = np.random.default_rng(seed)
-    off, error, weight = [], [], []
+    off, error, std, common = [], [], [], []
     for number in range(4):
         orientation = ("across", "along")[number % 2]
         image, truth = ac.simulate.edge(
             sensor, shape=(150, 150), angle_deg=float(rng.uniform(3, 15)), snr=snr,
             orientation=orientation, rng=rng,
         )  # fmt: skip
-        sharp = ac.restore(image, filter)
-        pair = ac.Image.from_array(image), ac.Image.from_array(sharp)
-        (edge,) = ac.verify_restoration(*pair, filter, [(20, 20, 110, 110)], method=method).edges
-        normal = math.radians(edge.normal_deg)
+        before, after = (
+            ac.measure_edge(one, (20, 20, 110, 110), method=method)
+            for one in (image, ac.restore(image, filter))
+        )
+        normal = math.radians(before.normal_deg)
         gain = abs(complex(filter.otf(0.5 * math.cos(normal), 0.5 * math.sin(normal))))
-        off.append(edge.off)
-        error.append(edge.after.value - gain * truth.mtf_nyquist.value)
-        weight.append(edge.after.std**-2)
-    shares = np.array(weight) / np.sum(weight)
-    std = np.sum(weight) ** -0.5
+        found = after.mtf_nyquist
+        off.append(found.value - gain * before.mtf_nyquist.value)
+        error.append(found.value - gain * truth.mtf_nyquist.value)
+        std.append(found.std)
+        common.append(systematic_share(after.budget, orientation, "mtf_nyquist"))
+    shares = np.array(std) ** -2 / np.sum(np.array(std) ** -2)
+    stated = std_of_mean(shares, np.array(std), np.array(common))
     miss = float(shares @ error)
     noise = rng.normal(0, 1, (300, 300))
     measured = float(np.std(ac.restore(noise, filter)[BORDER]) / np.std(noise[BORDER]))
-    return float(shares @ off), miss, float(std), abs(miss) < TWO_SIDED_95 * std, measured
+    return float(shares @ off), miss, stated, abs(miss) < TWO_SIDED_95 * stated, measured
 
 
 def deviations(draws: int, seed: int) -> str:

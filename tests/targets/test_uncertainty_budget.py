@@ -9,7 +9,12 @@ import pytest
 
 import acutance as ac
 from acutance.report import page, text
-from acutance.targets.uncertainty_budget import MAIN_NUMBERS, TERMS
+from acutance.targets.uncertainty_budget import (
+    MAIN_NUMBERS,
+    TERMS,
+    std_of_mean,
+    systematic_share,
+)
 
 SENSOR = ac.simulate.reference_systems()["diffraction"]
 FITTED = ["pixel_noise", "prior_shape", "background", "line"]
@@ -118,6 +123,24 @@ def test_noise_shrinks_with_the_signal_but_a_statement_does_not():
     weak, strong = edge(snr=50.0, **STATED), edge(snr=500.0, **STATED)
     assert std("pixel_noise", weak) > 4 * std("pixel_noise", strong)
     assert std("target_softness", weak) == pytest.approx(std("target_softness", strong), rel=0.2)
+
+
+def test_what_is_common_does_not_average_out():
+    std, weight = np.full(4, 0.01), np.full(4, 0.25)
+    assert std_of_mean(weight, std, np.zeros(4)) == pytest.approx(0.005)
+    assert std_of_mean(weight, std, np.ones(4)) == pytest.approx(0.01)
+    assert std_of_mean(weight, std, np.ones(4), widened=3.0) == pytest.approx(0.01)
+    assert std_of_mean(weight, std, np.zeros(4), widened=3.0) == pytest.approx(0.015)
+
+
+def test_the_common_part_is_that_of_prior_and_statements():
+    m = edge(**STATED)
+    terms = {term.name: term.share["rer"] for term in m.budget}
+    common = terms["prior_shape"] + terms["target_softness"] + terms["level_uncertainty"]
+    assert systematic_share(m.budget, "across", "rer") == pytest.approx(common)
+    assert systematic_share(m.budget, "along", "rer") == 0
+    others = [systematic_share(m.budget, "across", name) for name in ("rer", "mtf_nyquist")]
+    assert systematic_share(m.budget, "across", "mtf50_cpp") >= max(others)
 
 
 def test_page_and_text_show_it():

@@ -12,13 +12,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from acutance.curves import MAIN_NUMBERS
+from acutance.targets.uncertainty_budget import SYSTEMATIC_TERMS
 
-__all__ = ["SYSTEMATIC_TERMS", "systematic_stds"]
-
-SYSTEMATIC_TERMS = frozenset(
-    ("prior_shape", "halo", "kernel_shape", "reference_mtf", "target_softness", "level_uncertainty")
-)
-"""Terms of uncertainty budgets that measurements of a sensor by one method share."""
+__all__ = ["systematic_stds"]
 
 
 def systematic_stds(document: Mapping[str, Any], orientation: str) -> dict[str, float | None]:

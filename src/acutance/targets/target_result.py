@@ -45,8 +45,10 @@ class EdgeGroup(ShortRepr, Generic[One]):
     orientation : {"across", "along"}
     measurements : tuple of Measurement
     metrics : dict of Estimate
-        Means weighted by 1 / std^2. Where the edges disagree beyond their standard deviations,
-        that of the mean is widened by the square root of chi-square per degree of freedom.
+        Means weighted by 1 / std^2. What their uncertainty budgets have in common (the shape left
+        to the prior, what was stated) does not average out. Where the edges disagree beyond their
+        standard deviations, the rest is widened by the square root of chi-square per degree of
+        freedom.
     chi_square, p_value : dict of float
         Consistency: chi-square of the edges about the mean, and the chance of a larger one; ``nan``
         for a single edge, and where it is not defined (below).

@@ -9,14 +9,27 @@ of the pixels, "B" by anything else, a prior or a statement.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
+import numpy as np
+
 from acutance.curves import MAIN_NUMBERS, Response
+from acutance.curves.grid import Floats
 from acutance.geometry.line import Orientation
 
-__all__ = ["MAIN_NUMBERS", "TERMS", "BudgetTerm", "TermWords", "budget_rows", "main_stds"]
+__all__ = [
+    "MAIN_NUMBERS",
+    "SYSTEMATIC_TERMS",
+    "TERMS",
+    "BudgetTerm",
+    "TermWords",
+    "budget_rows",
+    "main_stds",
+    "std_of_mean",
+    "systematic_share",
+]
 
 _DIGITS = 4
 
@@ -75,6 +88,11 @@ TERMS = {
     ),
 }  # fmt: skip
 """Every term by the name that budgets and documents have."""
+
+SYSTEMATIC_TERMS = frozenset(
+    ("prior_shape", "halo", "kernel_shape", "reference_mtf", "target_softness", "level_uncertainty")
+)
+"""Terms that measurements of one sensor share: a mean of a hundred has them in full."""
 
 
 @dataclass(frozen=True)
@@ -149,6 +167,42 @@ def budget_rows(
 def main_stds(response: Response) -> dict[str, float]:
     """Standard deviations of `MAIN_NUMBERS` of some curves."""
     return {number: getattr(response, number).std for number in MAIN_NUMBERS}
+
+
+def systematic_share(budget: Iterable[BudgetTerm], direction: Orientation, number: str) -> float:
+    """Part of a number's variance that does not average out over measurements of one sensor.
+
+    Of a number without a budget it is the largest of those that have one.
+    """
+    rows = [row for row in budget if row.direction == direction and row.name in SYSTEMATIC_TERMS]
+
+    def share(name: str) -> float:
+        found = sum(row.share[name] for row in rows)
+        return found if math.isfinite(found) else 1.0
+
+    return share(number) if number in MAIN_NUMBERS else max(map(share, MAIN_NUMBERS))
+
+
+def std_of_mean(weight: Floats, std: Floats, share: Floats, widened: float = 1.0) -> float:
+    """Standard deviation of a weighted mean of measurements whose errors are common in part.
+
+    Parameters
+    ----------
+    weight : (n,) array
+        With a sum of 1.
+    std : (n,) array
+    share : (n,) array
+        Part of every variance that all have in common (`systematic_share`).
+    widened : float, optional
+        Factor on what they do not have in common.
+
+    Returns
+    -------
+    float
+        ``sqrt(widened^2 sum w^2 s^2 (1 - c) + (sum w s sqrt(c))^2)``.
+    """
+    own = widened * float(np.linalg.norm(weight * std * np.sqrt(1 - share)))
+    return math.hypot(own, float(weight @ (std * np.sqrt(share))))
 
 
 def _rounded(numbers: Mapping[str, float]) -> dict[str, float | None]:

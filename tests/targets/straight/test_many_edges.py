@@ -64,32 +64,34 @@ def test_an_image_without_edges_gives_an_empty_result():
 
 
 def test_weighted_mean_and_chi_square():
-    mean, chi_square = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.3, 0.2)])
+    mean, chi_square = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.3, 0.2)], np.zeros(2))
     assert mean.value == pytest.approx((1.0 / 0.01 + 1.3 / 0.04) / (1 / 0.01 + 1 / 0.04))
     assert chi_square == pytest.approx(
         (1.0 - mean.value) ** 2 / 0.01 + (1.3 - mean.value) ** 2 / 0.04
     )
     # chi-square 1.8 with one degree of freedom: the Birge ratio widens the mean's deviation.
     assert mean.std == pytest.approx(math.sqrt(chi_square) / math.sqrt(125))
-    agreeing, small = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)])
+    agreeing, small = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)], np.zeros(2))
     assert small < 1
     assert agreeing.std == pytest.approx(0.1 / math.sqrt(2))
+    common, _ = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)], np.full(2, 0.5))
+    assert common.std == pytest.approx(0.1 * math.sqrt(0.25 + 0.5))
 
 
 def test_numbers_at_zero_are_not_averaged_as_if_gaussian():
     clipped = [Estimate(0.0, 0.017), Estimate(0.0, 0.015), Estimate(0.0, 0.017), Estimate(0, 0.011)]
-    mean, chi_square = _weighted_mean(clipped)
+    mean, chi_square = _weighted_mean(clipped, np.zeros(4))
     assert mean.value == 0.0
     assert 0.011 < mean.std < 0.017
     assert math.isnan(chi_square)
     # Two overshoots that are not there, with next to no deviation, and one that is.
     mean, chi_square = _weighted_mean(
-        [Estimate(0, 0.0007), Estimate(0, 0.0009), Estimate(0.042, 0.012)]
+        [Estimate(0, 0.0007), Estimate(0, 0.0009), Estimate(0.042, 0.012)], np.zeros(3)
     )
     assert mean.value == pytest.approx(0.014)
     assert mean.std == pytest.approx(0.014)
     assert math.isnan(chi_square)
-    alone, _ = _weighted_mean([Estimate(0.0, 0.017)])
+    alone, _ = _weighted_mean([Estimate(0.0, 0.017)], np.zeros(1))
     assert alone == Estimate(0.0, 0.017)
 
 

@@ -32,6 +32,7 @@ from acutance.targets.straight.options import EdgeOptions
 from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.tuned import MIN_CONTRAST_SHARE, MIN_STRENGTH_SHARE
 from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
+from acutance.targets.uncertainty_budget import std_of_mean, systematic_share
 
 __all__ = ["combine_edges", "each_edge", "measure_edges"]
 
@@ -236,15 +237,19 @@ def _group(own: tuple[StraightMeasurement, ...]) -> EdgeGroup[StraightMeasuremen
     metrics, chi_square, p_value = {}, {}, {}
     for name in own[0].metrics():
         numbers = [one.metrics().get(name, Estimate(math.nan)) for one in own]
-        mean, scatter = _weighted_mean(numbers)
+        common = [systematic_share(one.budget, one.orientation, name) for one in own]
+        mean, scatter = _weighted_mean(numbers, np.array(common))
         metrics[name] = mean
         chi_square[name] = scatter
         p_value[name] = _chance(scatter, len(own) - 1)
     return EdgeGroup(own[0].orientation, own, metrics, chi_square, p_value, len(own) - 1)
 
 
-def _weighted_mean(numbers: Sequence[Estimate]) -> tuple[Estimate, float]:
-    """Mean weighted by 1 / std^2, and chi-square about it; the Birge ratio widens the std."""
+def _weighted_mean(numbers: Sequence[Estimate], common: Floats) -> tuple[Estimate, float]:
+    """Mean weighted by 1 / std^2, and chi-square about it; the Birge ratio widens the std.
+
+    Of every variance a part is common to all, (n,).
+    """
     value = np.array([number.value for number in numbers])
     std = np.array([number.std for number in numbers])
     lowest = numbers[0].lowest
@@ -252,12 +257,12 @@ def _weighted_mean(numbers: Sequence[Estimate]) -> tuple[Estimate, float]:
         return Estimate(float(np.mean(value)), math.nan, lowest), math.nan
     if len(numbers) > 1 and (value < std).any():
         return Estimate(*_plain_mean(value, std), lowest), math.nan
-    weight = 1 / std**2
-    mean = float(weight @ value / weight.sum())
-    scatter = float(weight @ (value - mean) ** 2)
+    weight = std**-2 / np.sum(std**-2)
+    mean = float(weight @ value)
+    scatter = float(np.sum(((value - mean) / std) ** 2))
     freedom = len(numbers) - 1
     widened = max(1.0, math.sqrt(scatter / freedom)) if freedom else 1.0
-    return Estimate(mean, widened / math.sqrt(weight.sum()), lowest), scatter
+    return Estimate(mean, std_of_mean(weight, std, common, widened), lowest), scatter
 
 
 def _plain_mean(value: Floats, std: Floats) -> tuple[float, float]:
