@@ -13,7 +13,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.optics import Sensor
 
-__all__ = ["ExactOtf", "FilteredOtf", "RememberedOtf", "SensorOtf", "kernel_otf"]
+__all__ = ["FilteredOtf", "RememberedOtf", "SensorOtf", "kernel_otf"]
 
 Complexes = NDArray[np.complex128]
 
@@ -98,31 +98,6 @@ class RememberedOtf(ShortRepr):
         if key not in self._factor:
             self._factor[key] = self.model.factor(u_cpp, v_cpp)
         return self._factor[key]
-
-
-@dataclass(frozen=True, eq=False)
-class ExactOtf(ShortRepr):
-    """The mean of a model, its covariance left out: numbers without deviations are quick.
-
-    Parameters
-    ----------
-    model : OtfModel
-    """
-
-    model: OtfModel
-
-    @property
-    def band_cpp(self) -> float:
-        """Frequency beyond which nothing is transferred."""
-        return self.model.band_cpp
-
-    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """OTF, (n,)."""
-        return self.model.otf(u_cpp, v_cpp)
-
-    def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """A factor without columns, (n, 0)."""
-        return np.zeros((u_cpp.size, 0), complex)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from acutance.curves import Otf2d, Response
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
-from acutance.restoration.filtered_otf import ExactOtf, FilteredOtf
+from acutance.restoration.filtered_otf import FilteredOtf
 from acutance.restoration.kernel_family import KernelFamily
 from acutance.restoration.known_otf import KnownOtf
 
@@ -65,7 +65,7 @@ def chosen_knob(**asked: float | None) -> Knob | None:
 
 @dataclass(frozen=True, eq=False)
 class Turned(ShortRepr):
-    """A family of kernels on a sensor: its numbers at any weight of the noise, without deviations.
+    """A family of kernels on a sensor: its numbers at any weight of the noise.
 
     Parameters
     ----------
@@ -77,16 +77,15 @@ class Turned(ShortRepr):
     known: KnownOtf
 
     def responses(self, weight: float) -> tuple[Response, ...]:
-        """Curves across and along, without covariance."""
-        model = FilteredOtf(ExactOtf(self.known.otf.model), self.family.kernel(weight))
+        """Curves across and along."""
+        model = FilteredOtf(self.known.otf.model, self.family.kernel(weight))
         otf = Otf2d(model, self.known.otf.gsd_m)
         return tuple(otf.response(angle) for angle in self.known.axes_deg.values())
 
     @cached_property
     def unfiltered(self) -> tuple[Response, ...]:
-        """Curves of the sensor alone, without covariance."""
-        otf = Otf2d(ExactOtf(self.known.otf.model), self.known.otf.gsd_m)
-        return tuple(otf.response(angle) for angle in self.known.axes_deg.values())
+        """Curves of the sensor alone."""
+        return tuple(self.known.otf.response(angle) for angle in self.known.axes_deg.values())
 
     def value(self, name: str, weight: float) -> float:
         """One of the knobs at a weight."""
