@@ -358,3 +358,48 @@ def test_a_window_needs_no_more_than_its_reach(sharpening):
     inner = np.s_[reach:-reach, reach:-reach]
     expected = whole[60 : 200 + 2 * reach, 40 : 180 + 2 * reach][inner]
     assert cut[inner] == pytest.approx(expected, abs=1e-9, nan_ok=True)
+
+
+@pytest.fixture(scope="module")
+def swath(landscape):
+    """Zeros beyond a slanted border, which nothing declares."""
+    rows, cols = np.indices(landscape.shape)
+    outside = cols > 200 + 0.2 * rows - 30
+    return np.where(outside, 0, np.rint(landscape)).astype(np.uint16), outside
+
+
+def test_undeclared_fill_is_no_data(tmp_path, monkeypatch, swath, sharpening):
+    image, outside = swath
+    expected = ac.restore(image, sharpening, nodata=0)
+    assert not expected[outside].any()
+    with pytest.warns(UserWarning, match=f"{np.count_nonzero(outside)} of them fill that is not"):
+        assert np.array_equal(ac.restore(image, sharpening), expected)
+    write(tmp_path / "a.tif", image)
+    monkeypatch.setattr(rewriting, "_WINDOW_ROWS", 70)
+    monkeypatch.setattr(rewriting, "_WINDOW_COLS", 90)
+    done = ac.restore(tmp_path / "a.tif", sharpening, out=tmp_path / "b.tif")
+    counts = done.bands[1]
+    assert counts.fill == counts.nodata == np.count_nonzero(outside)
+    with open_quietly(tmp_path / "b.tif") as dataset:
+        assert np.array_equal(dataset.read(1), expected)
+        assert dataset.nodata is None
+
+
+def test_every_value_can_be_stated_to_be_data(tmp_path, swath, sharpening):
+    image, outside = swath
+    write(tmp_path / "a.tif", image)
+    done = ac.restore(tmp_path / "a.tif", sharpening, out=tmp_path / "b.tif", nodata=np.nan)
+    assert done.bands[1].nodata == 0
+    with open_quietly(tmp_path / "b.tif") as dataset:
+        assert dataset.read(1)[outside].any()
+        assert dataset.nodata is None
+
+
+def test_dark_data_do_not_become_fill(swath, sharpening):
+    """A pixel with data that the kernel would make zero is moved by one."""
+    image, outside = swath
+    image = image.copy()
+    image[100:103, 50:53] = 3
+    found, counts = restore_array(image, sharpening)
+    assert (found[~outside] > 0).all()
+    assert counts.off_nodata > 0

@@ -179,7 +179,10 @@ def apply(
     ] = None,
     nodata: Annotated[
         float | None,
-        typer.Option(metavar="DN", help="Stored value without data, instead of the file's."),
+        typer.Option(
+            metavar="DN",
+            help="Stored value without data, instead of the file's; nan: every value is data.",
+        ),
     ] = None,
     saturation: Annotated[
         float | None,
@@ -232,6 +235,11 @@ def apply(
     say(f"wrote {place.path}")
     document: dict[str, Any] = {"schema": "acutance/restored/1", **restored.to_dict()}
     lines = [f"band {number}: {counts.in_words()}" for number, counts in restored.bands.items()]
+    if any(counts.fill for counts in restored.bands.values()):
+        lines.append(
+            "fill: the constant beyond the swath was left as it is; --nodata DN states another "
+            "value, --nodata nan that every value is data"
+        )
     if verify:
         first = next(iter(restored.bands))
         proof = _verified(image, str(place.place), first, chosen, roi, nodata, method)

@@ -10,6 +10,7 @@ from acutance.raster.positions import read_positions
 from acutance.raster.region import Box, Region
 from acutance.raster.roi import parse_roi, parse_rois
 from acutance.raster.site import Site, find_site, site_region, sites
+from acutance.raster.swath_fill import SwathFill, find_swath_fill
 from acutance.raster.writing import write_geotiff, write_geotiff_tiles
 
 __all__ = [
@@ -23,9 +24,11 @@ __all__ = [
     "Region",
     "Site",
     "SrgbCurve",
+    "SwathFill",
     "TableCurve",
     "find_fill",
     "find_site",
+    "find_swath_fill",
     "open_bands",
     "open_image",
     "parse_roi",

@@ -21,7 +21,7 @@ from acutance.raster.region import Box
 if TYPE_CHECKING:
     from acutance.raster.image import Image
 
-__all__ = ["Fill", "find_fill"]
+__all__ = ["Fill", "blended_px", "find_fill", "grown"]
 
 _CONTEXT_PX: Final = 16
 """How far around a region its constant parts are looked at."""
@@ -109,12 +109,12 @@ def find_fill(image: Image, box: Box, pixels: Floats) -> Fill | None:
     around = pixels if frame == box else image.read(frame)
     for value in _frequent_values(around):
         parts = _parts_at_the_frame(around == value)
-        growth_px = _blended_px(around, parts > 0, value)
+        growth_px = blended_px(around, parts > 0, value)
         if growth_px is None:
             continue
         constant = _to_the_border(image, frame, parts, value)
         row, col = box.row - frame.row, box.col - frame.col
-        mask = _grown(constant, growth_px)[row : row + box.height, col : col + box.width]
+        mask = grown(constant, growth_px)[row : row + box.height, col : col + box.width]
         if mask.any():
             return Fill(value, mask)
     return None
@@ -181,11 +181,11 @@ def _pieces(line: int, start: int, stop: int, *, by_rows: bool) -> Iterator[Box]
         start, length = end, min(2 * length, _READ_PX[1])
 
 
-def _blended_px(around: Floats, constant: NDArray[np.bool_], value: float) -> int | None:
+def blended_px(around: Floats, constant: NDArray[np.bool_], value: float) -> int | None:
     """How many pixels next to constant parts are mixed with them; `None` if a sensor blurred them.
 
-    The pixels outside, at one, two, three and six pixels from the border, are compared by their
-    difference from the constant.
+    It is `None` too where the border is too short to be judged. The pixels outside, at one, two,
+    three and six pixels from the border, are compared by their difference from the constant.
     """
     if _equal_share(around, constant) > _MAX_EQUAL:
         return None
@@ -276,7 +276,8 @@ def _smallest_step(difference: Floats) -> float:
     return float(np.diff(values).min() * difference.max()) if values.size > 1 else 1.0
 
 
-def _grown(mask: NDArray[np.bool_], by_px: int) -> NDArray[np.bool_]:
+def grown(mask: NDArray[np.bool_], by_px: int) -> NDArray[np.bool_]:
+    """A mask with the pixels around it, so many on every side."""
     if by_px == 0:
         return mask
     from scipy import ndimage

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
@@ -43,8 +44,10 @@ class StoredWindow:
     ----------
     band : int
         From 1.
+    box : Box
+        Its place; with the margin it may reach beyond the image.
     pixels : (rows, cols) array
-        Of the box grown by the margin; 0 beyond the image.
+        0 beyond the image.
     masked : (rows, cols) bool array
         Pixels without data: nodata, masked, transparent or not finite.
     outside : (rows, cols) bool array
@@ -52,6 +55,7 @@ class StoredWindow:
     """
 
     band: int
+    box: Box
     pixels: NDArray[Any]
     masked: NDArray[np.bool_]
     outside: NDArray[np.bool_]
@@ -191,7 +195,7 @@ def _padded(
         for first, size, own in zip(before, grown.shape, inside.shape, strict=True)
     ]
     outside = np.pad(np.zeros(inside.shape, bool), widths, constant_values=True)
-    return StoredWindow(band, np.pad(raw, widths), np.pad(masked, widths), outside)
+    return StoredWindow(band, grown, np.pad(raw, widths), np.pad(masked, widths), outside)
 
 
 def _boxes(shape: tuple[int, int]) -> Iterator[Box]:
@@ -219,7 +223,7 @@ def _profile(source: Any, nodata: float | None) -> dict[str, Any]:
         "height": source.height,
         "width": source.width,
         "dtype": types.pop(),
-        "nodata": source.nodata if nodata is None else nodata,
+        "nodata": _declared(source, nodata),
         "crs": None if gcps else source.crs,
         "transform": None if gcps or source.transform.is_identity else source.transform,
         "tiled": True,
@@ -229,6 +233,14 @@ def _profile(source: Any, nodata: float | None) -> dict[str, Any]:
         **({"photometric": "rgb"} if _is_rgb(source) else {}),
         **({"nbits": _bits(source)} if _bits(source) else {}),
     }
+
+
+def _declared(source: Any, nodata: float | None) -> float | None:
+    """The value of nodata for the new file: NaN was given where every value is data."""
+    if nodata is None:
+        return None if source.nodata is None else float(source.nodata)
+    is_float = np.dtype(source.dtypes[0]).kind == "f"
+    return nodata if is_float or not math.isnan(nodata) else None
 
 
 def _is_rgb(source: Any) -> bool:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, OptionError
-from acutance.raster import Image, open_image
+from acutance.raster import Box, Image, SwathFill, find_swath_fill, open_image
 from acutance.raster.pixels import equals_nodata, largest_count, require_image_array
 from acutance.restoration.restoration_filter import RestorationFilter
 from acutance.restoration.window_filter import PixelCounts, StoredType, reach_px, restored_window
@@ -91,7 +91,8 @@ def restore(
 
     The stored type is kept: results are rounded, and clipped to its range. Pixels without data stay
     so, and their neighbours are filtered as if the image went on smoothly there, as at its border.
-    Saturated pixels stay as they are, and so nearly do those next to them, which would ring.
+    A constant beyond a swath counts as no data even where the file does not declare it. Saturated
+    pixels stay as they are, and so nearly do those next to them, which would ring.
 
     Parameters
     ----------
@@ -105,7 +106,8 @@ def restore(
         Bands of a file, from 1: without it the one that was measured, or the only one. The
         others are copied.
     nodata : float, optional
-        The stored value of pixels without data, instead of the one the file declares.
+        The stored value of pixels without data, instead of the one the file declares. NaN: every
+        value is data, also a constant beyond a swath.
     saturation : float, optional
         The stored value from which pixels are saturated, instead of the largest of their type.
     accept_mismatch : bool, optional
@@ -135,7 +137,7 @@ def restore(
         if out is not None:
             raise OptionError("out was given with an array: the result is returned")
         array, counts = restore_array(image, filter, nodata=nodata, saturation=saturation)
-        if counts.clipped_low or counts.clipped_high:
+        if counts.clipped_low or counts.clipped_high or counts.fill:
             warnings.warn(f"restored {counts.in_words()}", stacklevel=2)
         return array
     if out is None:
@@ -160,9 +162,18 @@ def restore_array(
     masked = mask | equals_nodata(raw, nodata)
     if raw.dtype.kind == "f":
         masked |= ~np.isfinite(raw)
-    kind = _stored_type(raw.dtype, nodata, saturation, largest_count(raw.dtype))
     _require_fitting(raw.shape, filter)
-    result, counts = np.empty_like(raw), PixelCounts()
+    view = Image.from_array(array, nodata=nodata)
+    fill = find_swath_fill(view)
+    kind = _stored_type(
+        raw.dtype, _left_alone(view, nodata, fill), saturation, largest_count(raw.dtype)
+    )
+    counts = PixelCounts()
+    if fill is not None:
+        own = fill.mask(Box.whole(view.shape)) & ~masked
+        masked |= own
+        counts += PixelCounts(fill=int(np.count_nonzero(own)))
+    result = np.empty_like(raw)
     reach = reach_px(filter.kernel)
     for row in range(0, raw.shape[0], _LINES):
         last = min(row + _LINES, raw.shape[0])
@@ -202,24 +213,35 @@ def _restore_file(
     if not accept_mismatch:
         _require_match(first, filter, chosen, bands == "all")
         _require_unrestored(path, stored_tags(path))
+    fills = {band: find_swath_fill(one) for band, one in images.items()}
     kinds = {
         band: _stored_type(
-            np.dtype(one.dtype), getattr(one.source, "nodata", None), saturation, _count(one)
+            np.dtype(one.dtype),
+            _left_alone(one, getattr(one.source, "nodata", None), fills[band]),
+            saturation,
+            _count(one),
         )
         for band, one in images.items()
     }
     counts = dict.fromkeys(chosen, PixelCounts())
+    reach = reach_px(filter.kernel)
 
     def change(window: StoredWindow) -> NDArray[Any]:
+        masked, fill = window.masked, fills[window.band]
+        if fill is not None:
+            own = fill.mask(window.box) & ~masked
+            masked = masked | own
+            inner = own[reach:-reach, reach:-reach]
+            counts[window.band] += PixelCounts(fill=int(np.count_nonzero(inner)))
         pixels, found = restored_window(
-            window.pixels, window.masked, window.outside, filter.kernel, kinds[window.band]
+            window.pixels, masked, window.outside, filter.kernel, kinds[window.band]
         )
         counts[window.band] += found
         return pixels
 
     tags = {RESTORED_TAG: _tag(filter, chosen)}
     rewrite_image(
-        path, out, change, bands=chosen, margin_px=reach_px(filter.kernel), nodata=nodata,
+        path, out, change, bands=chosen, margin_px=reach, nodata=nodata,
         tags=tags, progress=progress,
     )  # fmt: skip
     return RestoredImage(out, counts)
@@ -259,12 +281,25 @@ def _stored_type(
     return StoredType(dtype, nodata, largest)
 
 
+def _left_alone(image: Image, nodata: float | None, fill: SwathFill | None) -> float | None:
+    """The stored value that no pixel with data becomes: that of nodata, else that of fill."""
+    if nodata is not None or fill is None:
+        return nodata
+    return (
+        round(_stored(image, fill.value)) if image.dtype[0] in "iu" else _stored(image, fill.value)
+    )
+
+
+def _stored(image: Image, value: float) -> float:
+    """How a value, in the units an image is read in, is stored."""
+    source = image.source
+    return float((value - getattr(source, "offset", 0.0)) / getattr(source, "scale", 1.0))
+
+
 def _count(image: Image) -> float | None:
     """The largest stored count, which an image has in the units it is read in."""
-    level, source = image.saturation_level, image.source
-    if level is None:
-        return None
-    return (level - getattr(source, "offset", 0.0)) / getattr(source, "scale", 1.0)
+    level = image.saturation_level
+    return None if level is None else _stored(image, level)
 
 
 def _require_fitting(shape: tuple[int, ...], filter: RestorationFilter) -> None:

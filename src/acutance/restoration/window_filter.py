@@ -38,6 +38,8 @@ class PixelCounts:
         Would have left the range of the stored type.
     off_nodata : int
         Would have become the value of nodata, and were moved by one step.
+    fill : int
+        Of those without data: a constant beyond the swath, which the image does not declare.
     """
 
     pixels: int = 0
@@ -46,6 +48,7 @@ class PixelCounts:
     clipped_low: int = 0
     clipped_high: int = 0
     off_nodata: int = 0
+    fill: int = 0
 
     def __add__(self, other: PixelCounts) -> PixelCounts:
         return PixelCounts(*(getattr(self, name) + getattr(other, name) for name in vars(self)))
@@ -54,6 +57,7 @@ class PixelCounts:
         """How many were special; what happened to none is left out."""
         words = {
             "nodata": "without data",
+            "fill": "of them fill that is not declared",
             "saturated": "saturated",
             "clipped_low": "clipped below",
             "clipped_high": "clipped above",
