@@ -19,6 +19,16 @@ GiqeVersion = Literal[3, 4, 5]
 _MIN_SNR = 5.0
 _RER_RANGE = (0.2, 1.3)
 """Outside of these an equation is extrapolated: few images are that soft or that sharpened."""
+_POSSIBLE = {
+    "gsd_m": (1e-3, 1e5),
+    "rer_across": (1e-3, 10.0),
+    "rer_along": (1e-3, 10.0),
+    "snr": (1e-3, 1e9),
+    "giqe_h": (1e-3, 100.0),
+    "noise_gain": (1e-3, 1e3),
+    "elevation_deg": (0.1, 90.0),
+}
+"""What any image may have; the equations have no meaning beyond."""
 _NEAR_JUMP_STDS = 2.0
 _STEP = 1e-4
 
@@ -130,8 +140,8 @@ def niirs(
     OptionError
         If GSD, RER or SNR is missing or out of the range of any image.
     """
-    known = read_niirs_inputs(measurement, gsd_m, rer, snr, giqe_h)
     _require(version, elevation_deg, noise_gain)
+    known = read_niirs_inputs(measurement, gsd_m, rer, snr, giqe_h)
     values = [float(known[name]) for name in ("rer_across", "rer_along", "snr", "giqe_h")]
     inputs = _inputs(values, float(known["gsd_m"]), elevation_deg, noise_gain)
     spread = _inputs_std(inputs, values, known, version)
@@ -175,9 +185,12 @@ def read_niirs_inputs(
             "correlated": len({*map(id, both)}) == 1,
             "one_direction": False,
         }
-    sides = gsd_m if isinstance(gsd_m, tuple) else (gsd_m, gsd_m)
-    if sides[0] is not None and sides[1] is not None:
-        found["gsd_m"] = math.sqrt(sides[0] * sides[1])
+    if gsd_m is not None:
+        sides = list(gsd_m) if isinstance(gsd_m, Sequence) else [gsd_m, gsd_m]
+        if len(sides) != 2:
+            raise OptionError(f"gsd_m has {len(sides)} values: give one, or those of both sides")
+        row_m, col_m = (_possible("gsd_m", side) for side in sides)
+        found["gsd_m"] = math.sqrt(row_m * col_m)
     for name, value in (("snr", snr), ("giqe_h", giqe_h)):
         if value is not None:
             found[name] = value
@@ -216,23 +229,32 @@ def _require_numbers(found: dict[str, Any]) -> None:
         named = " and ".join(words.get(name, "the RER (rer, --rer)") for name in missing)
         raise OptionError(f"NIIRS needs {named}: state it, or give a measurement that has it")
     for name in ("gsd_m", "rer_across", "rer_along", "snr", "giqe_h"):
-        try:
-            value = float(found[name])
-        except (TypeError, ValueError):
-            raise OptionError(f"{name} is {found[name]!r}: give a number") from None
-        if not 0 < value < math.inf:
-            raise OptionError(f"{name} is {value:g}: it has to be finite and above 0")
+        _possible(name, found[name])
+
+
+def _possible(name: str, given: Any) -> float:
+    """A number that an image may have.
+
+    Raises
+    ------
+    OptionError
+        If it is none.
+    """
+    low, high = _POSSIBLE[name]
+    try:
+        value = float(given)
+    except (TypeError, ValueError):
+        raise OptionError(f"{name} is {given!r}: give a number") from None
+    if isinstance(given, bool) or not low <= value <= high:
+        raise OptionError(f"{name} is {value:g}: it has to be from {low:g} to {high:g}")
+    return value
 
 
 def _require(version: int, elevation_deg: float, noise_gain: float) -> None:
     if version not in (3, 4, 5):
         raise OptionError(f"version is {version!r}: there are versions 3, 4 and 5 of the GIQE")
-    if not 0 < elevation_deg <= 90:
-        raise OptionError(
-            f"elevation_deg is {elevation_deg:g}: it has to be above 0 and at most 90 (nadir)"
-        )
-    if not 0 < noise_gain < math.inf:
-        raise OptionError(f"noise_gain is {noise_gain:g}: it has to be finite and above 0")
+    _possible("elevation_deg", elevation_deg)
+    _possible("noise_gain", noise_gain)
 
 
 def _inputs(
