@@ -144,3 +144,80 @@ def test_niirs_of_a_measurement_and_of_numbers(acutance, folder):
     assert "4.68 ± 0.30" in stated.stdout
     assert acutance("niirs", "--gsd-m", "0.7", "--snr", "80").exit_code == 2
     assert acutance("niirs", "--rer", "0.4", "--gsd-m", "0.7").exit_code == 2
+
+
+@pytest.mark.parametrize("gsd", ["-0.7", "-1,1", "-1,-1", "nan", "0"])
+def test_a_gsd_that_no_image_has_is_refused(acutance, gsd):
+    result = acutance("niirs", "--rer", "0.4", "--snr", "80", "--gsd-m", gsd)
+    assert result.exit_code == 2
+    assert "gsd_m is" in result.stderr
+
+
+@pytest.fixture(scope="module")
+def two_regions(folder, acutance):
+    """Edges across and along in one image, and the document of both polygons."""
+    both = np.concatenate([open_image(folder / f"{one}.tif").read() for one in ("across", "along")])
+    write_geotiff(folder / "both.tif", both.astype(np.float32), gsd_m=0.7)
+    squares = {"north": (2, 2, 66, 66), "south": (72, 2, 66, 66)}
+    features = [
+        {"type": "Feature", "properties": {"name": name}, "geometry": {"type": "Polygon",
+         "coordinates": [[[c, r], [c + w, r], [c + w, r + h], [c, r + h], [c, r]]]}}
+        for name, (r, c, h, w) in squares.items()
+    ]  # fmt: skip
+    (folder / "two.geojson").write_text(
+        json.dumps({"type": "FeatureCollection", "crs": "pixel", "features": features})
+    )
+    result = acutance("edge", folder / "both.tif", "--roi", folder / "two.geojson", "--json")
+    assert result.exit_code == 0, result.stderr
+    (folder / "two.json").write_text(result.stdout)
+    return folder / "two.json"
+
+
+def test_several_measurements_of_a_file_are_read(acutance, two_regions, tmp_path):
+    words = ["--noise-gain", "1.5", "--size", "5", "--out", tmp_path / "f.json", "--json"]
+    result = acutance("restore", "design", two_regions, *words)
+    assert result.exit_code == 0, result.stderr
+    assert len(json.loads(result.stdout)["sources"]) == 2
+    result = acutance("niirs", two_regions, "--json")
+    assert result.exit_code == 0, result.stderr
+    assert json.loads(result.stdout)["inputs"]["gsd_m"] == pytest.approx(0.7)
+    result = acutance("combine", two_regions, "--json")
+    assert result.exit_code == 0, result.stderr
+    alone = json.loads(two_regions.read_text())["results"][:1]
+    target = {"schema": "acutance/target/1", "measurements": alone, "groups": {}, "rejected": []}
+    (tmp_path / "target.json").write_text(json.dumps(target))
+    assert acutance("niirs", tmp_path / "target.json").exit_code == 0
+    result = acutance("restore", "design", tmp_path / "target.json", *words)
+    assert result.exit_code == 2
+    assert "target.json (edge" in result.stderr
+    assert "shows one direction" in result.stderr
+
+
+def test_the_file_that_is_no_measurement_is_named(acutance, folder, tmp_path):
+    for command in (["niirs"], ["restore", "design", folder / "across.json"]):
+        out = ["--out", tmp_path / "f.json"] if len(command) > 1 else []
+        result = acutance(*command, folder / "filter.json", *out)
+        assert result.exit_code == 2
+        assert "filter.json is a document acutance/restoration/1" in result.stderr
+
+
+def test_notes_name_the_file_and_the_failed_checks_of_the_combination(acutance, folder, tmp_path):
+    document = json.loads((folder / "along.json").read_text())
+    del document["image"]["gsd_m"], document["image"]["pixel_gsd_m"]
+    document["checks"][0] |= {"passed": False, "severity": "caution", "message": "it is bent"}
+    (tmp_path / "bent.json").write_text(json.dumps(document))
+    result = acutance(
+        "restore", "design", folder / "across.json", tmp_path / "bent.json", "--noise-gain", "1.5",
+        "--size", "5", "--out", tmp_path / "f.json", "--report", tmp_path / "f.html",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.stderr
+    filter = json.loads((tmp_path / "f.json").read_text())
+    notes = "\n".join(filter["notes"])
+    assert "bent.json: doubtful: it is bent" in notes
+    assert "the combination: 2 directions were measured" in notes
+    assert "without a GSD" in notes
+    assert filter["verdict"] == "doubtful"
+    page = (tmp_path / "f.html").read_text()
+    assert "Doubtful: Bent.json" not in page
+    assert "bent.json: doubtful: it is bent" in page
+    assert "Nothing has to be said" not in page

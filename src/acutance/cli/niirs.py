@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import math
+from statistics import median
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -10,6 +12,9 @@ from acutance.cli.choices import numbers_of
 from acutance.cli.documents import read_json
 from acutance.cli.options import JsonOption
 from acutance.errors import OptionError
+
+if TYPE_CHECKING:
+    from acutance.targets import Record
 
 __all__ = ["EXAMPLE", "niirs"]
 
@@ -23,7 +28,10 @@ EXAMPLE = (
 def niirs(
     file: Annotated[
         str | None,
-        typer.Argument(metavar="FILE", help="A measurement as JSON; without it state --rer."),
+        typer.Argument(
+            metavar="FILE",
+            help="A measurement as JSON, or several of one sensor; without it state --rer.",
+        ),
     ] = None,
     gsd_m: Annotated[
         str | None,
@@ -59,13 +67,13 @@ def niirs(
 
     from acutance.report import json_text, niirs_text
     from acutance.restoration import niirs as niirs_of
-    from acutance.targets import Record
 
+    record, own_snr = (None, None) if file is None else _measured(file)
     found = niirs_of(
-        None if file is None else Record.from_dict(read_json(file)),
+        record,
         gsd_m=_gsd(gsd_m),
         rer=None if rer is None else _one_or_two("--rer", rer),
-        snr=snr,
+        snr=own_snr if snr is None else snr,
         elevation_deg=elevation_deg,
         version=version,  # type: ignore[arg-type]
         giqe_h=giqe_h,
@@ -75,6 +83,22 @@ def niirs(
         typer.echo(json_text({"schema": "acutance/niirs/1", **found.to_dict()}))
     else:
         typer.echo(niirs_text(found))
+
+
+def _measured(name: str) -> tuple[Record, float | None]:
+    """The measurement of a file, several combined, and their SNR."""
+    from acutance.targets.combine import combine
+    from acutance.targets.combine.inputs import records_of
+
+    records = records_of(read_json(name), name)
+    snrs = [one.snr for one in records if math.isfinite(one.snr)]
+    snr = median(snrs) if snrs else None
+    if len(records) == 1:
+        return records[0], snr
+    try:
+        return combine(records).record, snr
+    except OptionError as error:
+        raise OptionError(f"{name}: {error}") from error
 
 
 def _gsd(text: str | None) -> tuple[float, float] | None:

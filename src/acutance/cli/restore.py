@@ -151,7 +151,7 @@ def design(
         overshoot=knob.overshoot,
         target=None if knob.target is None else named_sensor(knob.target),
         size=size, method=method, scene=_scene(scene), desired=desired,  # type: ignore[arg-type]
-        isotropic=isotropic, gsd_m=parse_gsd(gsd),
+        isotropic=isotropic, gsd_m=parse_gsd(gsd), names=inputs or None,
     )  # fmt: skip
     text = json_text(found.to_dict())
     target_file.deliver(text)

@@ -14,6 +14,7 @@ from acutance.report.text import table_text
 if TYPE_CHECKING:
     from acutance.restoration import RestorationFilter, RestorationProof
     from acutance.restoration.interpretability import Niirs
+    from acutance.targets.check import VerdictWord
 
 __all__ = ["niirs_text", "proof_text", "restoration_page", "restoration_text"]
 
@@ -116,7 +117,9 @@ def _headlines(filter: RestorationFilter) -> tuple[Headline, ...]:
 def _verdicts(filter: RestorationFilter) -> tuple[Verdict, ...]:
     if not filter.notes:
         return (Verdict("good", "Nothing has to be said against it."),)
-    return tuple(Verdict("usable", f"{note[:1].upper()}{note[1:]}.") for note in filter.notes)
+    word: VerdictWord = "usable" if filter.verdict == "good" else filter.verdict
+    first, *others = [note.rstrip(".") for note in filter.notes]
+    return tuple(Verdict(word, f"{note}.") for note in (f"{word.capitalize()}: {first}", *others))
 
 
 def _provenance(filter: RestorationFilter) -> Table:

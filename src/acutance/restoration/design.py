@@ -62,6 +62,7 @@ def design_restoration(
     desired: Literal["pixel", "point"] = "pixel",
     isotropic: bool = False,
     gsd_m: float | Gsd | None = None,
+    names: Sequence[str] | None = None,
 ) -> RestorationFilter:
     """Design the kernel that sharpens the images of a measured sensor.
 
@@ -99,6 +100,8 @@ def design_restoration(
         State that the blur is the same in all directions, where one was measured.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the measurement's.
+    names : sequence of str, optional
+        What to call the measurements in notes: the names of their files.
 
     Returns
     -------
@@ -118,7 +121,7 @@ def design_restoration(
     knob = chosen_knob(noise_gain=noise_gain, mtf_nyquist=mtf_nyquist, overshoot=overshoot)
     chosen = _method(method, target, knob)
     _require_size(size)
-    known = known_otf(otf, isotropic=isotropic, gsd_m=gsd_m)
+    known = known_otf(otf, isotropic=isotropic, gsd_m=gsd_m, names=names)
     own_snr = _snr(snr, known, needed=knob is None and not isinstance(scene, NaturalScene | Image))
     expected = _scene(scene, known, own_snr, chosen)
     family = KernelFamily.of(known.otf.model, expected, size, _desired(desired, target))
@@ -245,6 +248,7 @@ def _described(
         },
         "sources": list(known.sources),
         "notes": list(_notes(known, before, after, snr, target)),
+        "verdict": known.verdict,
         "software": {"acutance": __version__},
         "designed_at": datetime.now(UTC).isoformat(timespec="seconds"),
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import PurePath
 from statistics import median
 from typing import Any
 
@@ -19,9 +20,11 @@ from acutance.raster import Gsd
 from acutance.raster.image import AlongTrack
 from acutance.restoration.filtered_otf import RememberedOtf, SensorOtf
 from acutance.targets import Measurement, Record, TargetResult
+from acutance.targets.check import VerdictWord
 from acutance.targets.combine import combine
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import combine_curves
+from acutance.targets.combine.inputs import records_of
 from acutance.targets.slices import SLICE_DIRECTIONS_DEG, OtfSlices
 
 __all__ = ["KnownOtf", "Measured", "known_otf"]
@@ -49,6 +52,8 @@ class KnownOtf(ShortRepr):
         What it comes from, in words.
     cautions : tuple of str
         What has to be said of it.
+    verdict : {"good", "usable", "doubtful", "invalid"}
+        Of the measurement, or of the combination.
     """
 
     otf: Otf2d
@@ -57,6 +62,7 @@ class KnownOtf(ShortRepr):
     along_track: AlongTrack = "y"
     sources: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
+    verdict: VerdictWord = "good"
 
     @property
     def axes_deg(self) -> dict[str, float]:
@@ -71,6 +77,7 @@ def known_otf(
     *,
     isotropic: bool = False,
     gsd_m: float | Gsd | None = None,
+    names: Sequence[str] | None = None,
 ) -> KnownOtf:
     """The OTF over the plane of frequencies, of whatever describes it.
 
@@ -82,40 +89,61 @@ def known_otf(
         State that the blur is the same in all directions: a single edge shows one of them.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of theirs.
+    names : sequence of str, optional
+        What to call the measurements: the names of their files.
 
     Raises
     ------
     OptionError
         If it shows one direction only, or is no transfer function of a sensor.
     """
-    found = _found(given, isotropic)
+    found = _found(given, isotropic, names, gsd_m)
     gsd = Gsd.given(gsd_m)
     pixel_m = found.otf.gsd_m if gsd is None else (gsd.row_m, gsd.col_m)
     return replace(found, otf=Otf2d(RememberedOtf(found.otf.model), pixel_m))
 
 
-def _found(given: Any, isotropic: bool) -> KnownOtf:
+def _found(
+    given: Any, isotropic: bool, names: Sequence[str] | None, gsd_m: float | Gsd | None
+) -> KnownOtf:
     if isinstance(given, Sensor):
         return KnownOtf(Otf2d(SensorOtf(given), given.pixel_m), sources=("a described sensor",))
     if isinstance(given, Otf2d):
         return KnownOtf(given, sources=("an OTF",))
-    if isinstance(given, Sequence) and not isinstance(given, str | bytes):
-        return _found(given[0], isotropic) if len(given) == 1 else _combined(given)
-    if isinstance(given, TargetResult) or _is_target(given):
-        return _combined([given])
-    if isinstance(given, Measurement | Record | Mapping):
-        return _measured(given, isotropic)
-    raise OptionError(
-        f"a {type(given).__name__} describes no sensor: give a measurement, its record or JSON "
-        "document, several of them, a Sensor or an Otf2d"
-    )
+    several = isinstance(given, Sequence) and not isinstance(given, str | bytes)
+    inputs: list[Any] = list(given) if several else [given]
+    for one in inputs:
+        if not isinstance(one, Measurement | Record | TargetResult | Mapping):
+            raise OptionError(
+                f"a {type(one).__name__} describes no sensor: give a measurement, its record or "
+                "JSON document, several of them, a Sensor or an Otf2d"
+            )
+    if names is not None and len(names) != len(inputs):
+        raise OptionError(
+            f"{len(names)} names were given for {len(inputs)} measurements: give one for each"
+        )
+    records = _named_records(inputs, names)
+    if len(records) == 1:
+        ((name, record),) = records.items()
+        return _measured(inputs[0], name, record, isotropic)
+    return _combined(records, gsd_m)
 
 
-def _is_target(given: Any) -> bool:
-    return isinstance(given, Mapping) and given.get("schema") == "acutance/target/1"
+def _named_records(inputs: Sequence[Any], names: Sequence[str] | None) -> dict[str, Record]:
+    """Every single measurement, by the name of its file and region, or by its number and kind."""
+    found: dict[str, Record] = {}
+    for number, one in enumerate(inputs, start=1):
+        origin = f"measurement {number}" if names is None else PurePath(names[number - 1]).name
+        own = records_of(one, origin)
+        for place, record in enumerate(own, start=1):
+            name = origin if names is not None else f"{origin} ({record.kind})"
+            if len(own) > 1:
+                name = f"{name}, {record.document.get('region') or place}"
+            found[f"{name} ({number})" if name in found else name] = record
+    return found
 
 
-def _combined(given: Sequence[Any]) -> KnownOtf:
+def _combined(records: Mapping[str, Record], gsd_m: float | Gsd | None) -> KnownOtf:
     """Measurements of several directions, combined.
 
     Raises
@@ -123,47 +151,40 @@ def _combined(given: Sequence[Any]) -> KnownOtf:
     OptionError
         If there is none, or they do not belong together.
     """
-    both = combine(given)
-    records = [record for one in given for record in _records(one)]
-    bands = {one.image.band for one in records}
-    snrs = [one.snr for one in records if math.isfinite(one.snr)]
-    cautions = tuple(word for one in records for word in _cautions(one))
+    both = combine(list(records.values()), names=list(records), gsd_m=gsd_m)
+    bands = {one.image.band for one in records.values()}
+    snrs = [one.snr for one in records.values() if math.isfinite(one.snr)]
+    # Each input that failed a check has a caution of its own.
+    own = [one for one in both.failed_checks if one.name != "failed_inputs"]
     return KnownOtf(
         both.otf,
         median(snrs) if snrs else None,
         bands.pop() if len(bands) == 1 else None,
         both.image.along_track,
-        tuple(map(_in_words, records)),
-        tuple(dict.fromkeys(cautions)),
+        tuple(_in_words(one) for one in records.values()),
+        (
+            *(word for name, one in records.items() for word in _cautions(name, one)),
+            *(f"the combination: {check.message}" for check in own),
+        ),
+        both.verdict.word,
     )
 
 
-def _records(one: Any) -> list[Record]:
-    if isinstance(one, TargetResult):
-        return [edge.record for edge in one.measurements]
-    if _is_target(one):
-        return [Record.from_dict(document) for document in one["measurements"]]
-    if isinstance(one, Mapping):
-        return [Record.from_dict(one)]
-    return [one if isinstance(one, Record) else one.record]
-
-
-def _measured(given: Measurement | Record | Mapping[str, Any], isotropic: bool) -> KnownOtf:
+def _measured(given: Any, name: str, record: Record, isotropic: bool) -> KnownOtf:
     """One measurement: of all directions, or of one where the others are stated to be equal."""
-    (record,) = _records(given)
     if record.kind == "biresolution" and not record.options.get("reference_given", True):
         raise OptionError(
-            "the measurement is the ratio of two sensors' MTFs, since the finer one's own was not "
+            f"{name} is the ratio of two sensors' MTFs, since the finer one's own was not "
             "given: measure it again with --reference"
         )
     one_direction = record.slices.normal_deg.size == 1
     if one_direction and not isotropic:
         raise OptionError(
-            f"{_in_words(record)} shows one direction, and a kernel acts in all: give a "
+            f"{name} ({_in_words(record)}) shows one direction, and a kernel acts in all: give a "
             "measurement of another direction besides (across.json along.json), or state that the "
             "blur is the same in all directions (isotropic=True, --isotropic)"
         )
-    cautions = _cautions(record)
+    cautions = _cautions(name, record)
     return KnownOtf(
         Otf2d(_plane(given, record.slices), record.image.pixel_gsd_m),
         record.snr if math.isfinite(record.snr) else None,
@@ -171,6 +192,7 @@ def _measured(given: Measurement | Record | Mapping[str, Any], isotropic: bool) 
         record.image.along_track,
         (_in_words(record),),
         (*cautions, ISOTROPIC) if one_direction else cautions,
+        record.verdict.word,
     )
 
 
@@ -207,9 +229,14 @@ def _in_words(record: Record) -> str:
     return f"{record.kind} by {record.method}, {direction}" + (f", {path}" if path else "")
 
 
-def _cautions(record: Record) -> tuple[str, ...]:
-    """What its verdict warns of."""
-    verdict = record.verdict
-    if verdict.word in ("good", "usable"):
+def _cautions(name: str, record: Record) -> tuple[str, ...]:
+    """What its verdict warns of: of a combination each check that failed."""
+    failed = record.failed_checks
+    if not failed:
         return ()
-    return (f"{record.kind}: {verdict.word}: {verdict.sentence}",)
+    if record.kind == "combined":
+        return tuple(f"{name}: {check.message}" for check in failed)
+    verdict = record.verdict
+    others = [check.name for check in failed if check.message != verdict.sentence]
+    also = f" (failed too: {', '.join(others)})" if others else ""
+    return (f"{name}: {verdict.word}: {verdict.sentence}{also}",)

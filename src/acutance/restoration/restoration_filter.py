@@ -19,6 +19,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.raster.image import AlongTrack
 from acutance.restoration.filtered_otf import kernel_otf
+from acutance.targets.check import VerdictWord
 from acutance.targets.document_fields import require_document
 from acutance.targets.record import RecordedDirection
 
@@ -233,6 +234,12 @@ class RestorationFilter(ShortRepr):
     def notes(self) -> tuple[str, ...]:
         """What has to be said of it."""
         return tuple(self.document["notes"])
+
+    @property
+    def verdict(self) -> VerdictWord:
+        """That of the measurement, or of the combination it was made of; "usable" of older ones."""
+        word: VerdictWord = self.document.get("verdict", "usable")
+        return word
 
     def summary(self) -> str:
         """Method, size, and what it does."""

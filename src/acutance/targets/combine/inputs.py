@@ -26,6 +26,7 @@ __all__ = [
     "common_flight",
     "direction_in_words",
     "read_inputs",
+    "records_of",
 ]
 
 Combinable = Measurement | Record | TargetResult[Measurement] | Mapping[str, Any]
@@ -124,7 +125,7 @@ def read_inputs(
     found: list[MeasuredInput] = []
     for i, one in enumerate(measurements):
         name = None if names is None else names[i]
-        records = _records(one, name or f"measurement {i + 1}")
+        records = records_of(one, name or f"measurement {i + 1}")
         several = [f"{name or 'edge'} {k + 1}" for k in range(len(records))]
         called = [name] if len(records) == 1 else several
         found += [
@@ -134,8 +135,14 @@ def read_inputs(
     return _distinctly_named(found)
 
 
-def _records(one: Combinable, origin: str) -> tuple[Record, ...]:
-    """The records of a result or a document."""
+def records_of(one: Combinable, origin: str) -> tuple[Record, ...]:
+    """The records of a result or a document.
+
+    Raises
+    ------
+    OptionError
+        If it is none of measurements; it names `origin`.
+    """
     if isinstance(one, TargetResult):
         return tuple(edge.record for edge in one.measurements)
     if isinstance(one, Measurement):
@@ -154,9 +161,11 @@ def _documents(document: Mapping[str, Any], origin: str) -> list[Mapping[str, An
     schema = document.get("schema")
     if schema == SCHEMA:
         return [document]
-    inside = document.get("measurements")
-    if schema == "acutance/target/1" and isinstance(inside, Sequence):
-        return [one for one in inside if isinstance(one, Mapping)]
+    part = {"acutance/target/1": "measurements", "acutance/regions/1": "results"}.get(str(schema))
+    inside = document.get(part) if part else None
+    if isinstance(inside, Sequence):
+        found = [one for one in inside if isinstance(one, Mapping)]
+        return [single for one in found for single in _documents(one, origin)]
     if schema == "acutance/comparison/1":
         raise OptionError(
             f"{origin} holds one target measured by several methods: the same pixels count only "
