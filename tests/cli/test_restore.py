@@ -221,3 +221,81 @@ def test_notes_name_the_file_and_the_failed_checks_of_the_combination(acutance, 
     assert "Doubtful: Bent.json" not in page
     assert "bent.json: doubtful: it is bent" in page
     assert "Nothing has to be said" not in page
+
+
+def test_regions_beyond_the_image_are_refused_before_anything_is_written(
+    acutance, folder, tmp_path
+):
+    out = tmp_path / "o.tif"
+    words = ["restore", "apply", folder / "across.tif", "--filter", folder / "filter.json"]
+    words += ["--out", out, "--verify"]
+    for more, message in (
+        (["--roi", "500,500,40,40"], "outside the image"),
+        (["--roi", "1,1,40,40", "--method", "none"], "none"),
+    ):
+        result = acutance(*words, *more)
+        assert result.exit_code == 2
+        assert message in result.stderr
+        assert "wrote" not in result.stderr
+        assert not out.exists()
+
+
+def test_a_proof_names_its_edges_and_fails_where_it_does_not_agree(
+    acutance, folder, two_regions, tmp_path, monkeypatch
+):
+    words = ["restore", "apply", folder / "both.tif", "--filter", folder / "filter.json", "--out",
+             tmp_path / "o.tif", "--verify", "--roi", folder / "two.geojson"]  # fmt: skip
+    result = acutance(*words)
+    assert result.exit_code == 0, result.stderr
+    assert "north" in result.stdout
+    assert "The image agrees with the prediction: 2 edges" in result.stdout
+    assert "Overshoot after" in result.stdout
+    # A file that was not filtered by what is told to have been.
+    other = json.loads((folder / "filter.json").read_text())
+    kernel = np.zeros((9, 9))
+    kernel[4, 4] = 1.0
+    other |= {"kernel": kernel.tolist(), "noise_gain": 1.0}
+    identity = ac.RestorationFilter.from_dict(other)
+    real = ac.restoration.applying.restored_window
+    monkeypatch.setattr(
+        ac.restoration.applying, "restored_window",
+        lambda *window: real(*window[:3], identity.kernel, window[4]),
+    )  # fmt: skip
+    result = acutance(*words, "--json")
+    assert result.exit_code == 3
+    proof = json.loads(result.stdout)["proof"]
+    assert proof["band"] == 1
+    assert not proof["agrees"]
+    assert proof["sentence"].startswith("does not agree")
+
+
+def test_an_interrupted_proof_does_not_advise_what_is_not_there(
+    acutance, folder, tmp_path, monkeypatch
+):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt("name a file that keeps them (keep, --keep)")
+
+    monkeypatch.setattr("acutance.restoration.verify_restoration", interrupted)
+    result = acutance(
+        "restore", "apply", folder / "across.tif", "--filter", folder / "filter.json",
+        "--out", tmp_path / "o.tif", "--verify",
+    )  # fmt: skip
+    assert result.exit_code == 130
+    assert "--keep" not in result.stderr
+    assert "o.tif is written" in result.stderr
+
+
+def test_the_proof_is_of_the_band_the_filter_is_of(acutance, folder, tmp_path):
+    pixels = open_image(folder / "across.tif").read()
+    flat = 100 + np.random.default_rng(2).normal(size=pixels.shape)
+    write_geotiff(tmp_path / "two.tif", np.stack([flat, pixels]).astype(np.float32), gsd_m=0.7)
+    document = json.loads((folder / "filter.json").read_text())
+    document["image"]["band"] = 2
+    (tmp_path / "f.json").write_text(json.dumps(document))
+    result = acutance(
+        "restore", "apply", tmp_path / "two.tif", "--filter", tmp_path / "f.json", "--band", "all",
+        "--out", tmp_path / "o.tif", "--verify", "--roi", "5,5,60,60",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.stderr
+    assert "band 2:\nEdges before and after" in result.stdout
+    assert "filtered though the filter is of band 2: band 1" in result.stdout

@@ -403,3 +403,30 @@ def test_dark_data_do_not_become_fill(swath, sharpening):
     found, counts = restore_array(image, sharpening)
     assert (found[~outside] > 0).all()
     assert counts.off_nodata > 0
+
+
+def test_an_image_without_data_is_not_written(tmp_path, sharpening):
+    write(tmp_path / "a.tif", np.full((60, 60), np.nan, np.float32))
+    with pytest.raises(ac.NoDataError, match="no pixel of"):
+        ac.restore(tmp_path / "a.tif", sharpening, out=tmp_path / "b.tif")
+    assert [one.name for one in tmp_path.iterdir()] == ["a.tif"]
+    (tmp_path / "a.tif").unlink()
+    np.save(tmp_path / "a.npy", np.zeros((60, 60)))
+    with pytest.raises(ac.NoDataError, match="no pixel of"):
+        ac.restore(tmp_path / "a.npy", sharpening, out=tmp_path / "b.npy", nodata=0)
+    assert [one.name for one in tmp_path.iterdir()] == ["a.npy"]
+
+
+def test_what_was_not_compared_is_told(tmp_path, landscape, sharpening):
+    image = np.rint(landscape).astype(np.uint16)
+    write(tmp_path / "a.tif", np.stack([image] * 3))
+    (done, every) = (
+        ac.restore(tmp_path / "a.tif", sharpening, out=tmp_path / "b.tif", bands=bands)
+        for bands in (1, "all")
+    )
+    assert done.notes == (
+        "the pixel size was not compared: that of the image is not known",
+        "copied unfiltered: bands 2, 3",
+    )
+    assert "filtered though the filter is of band 1: bands 2, 3" in every.notes
+    assert every.to_dict()["notes"] == list(every.notes)

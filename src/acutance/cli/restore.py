@@ -22,12 +22,13 @@ from acutance.cli.options import (
 from acutance.cli.output import OutputFile, check_optional, check_output
 from acutance.cli.sensor import named_sensor
 from acutance.cli.study import progress_bar
-from acutance.cli.terminal import command_line, say
+from acutance.cli.terminal import FAILED_CHECK, command_line, say
 from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS
 
 if TYPE_CHECKING:
     from acutance.raster import Region
+    from acutance.restoration import RestorationFilter, RestorationProof
 
 __all__ = ["EXAMPLE", "app", "apply", "design"]
 
@@ -225,8 +226,11 @@ def apply(
                          keep=(image, filter, roi))  # fmt: skip
 
     from acutance.restoration import RestorationFilter, restore
+    from acutance.targets.straight.edge import require_method
 
+    require_method(method)
     chosen = RestorationFilter.read(filter)
+    regions = _regions(image, roi, nodata)
     with progress_bar(f"restore {Path(image).name}") as progress:
         restored = restore(
             image, chosen, out=place.place, bands=_bands(band), nodata=nodata,
@@ -240,41 +244,63 @@ def apply(
             "fill: the constant beyond the swath was left as it is; --nodata DN states another "
             "value, --nodata nan that every value is data"
         )
+    lines += [f"note: {note}" for note in restored.notes]
+    proof = None
     if verify:
-        first = next(iter(restored.bands))
-        proof = _verified(image, str(place.place), first, chosen, roi, nodata, method)
-        document["proof"] = proof.to_dict()
-        from acutance.report import proof_text
-
-        lines.append(f"\n{proof_text(proof)}")
+        of = chosen.band if chosen.band in restored.bands else next(iter(restored.bands))
+        proof = _verified((image, str(place.place)), of, chosen, regions, nodata, method)
+        document["proof"] = {"band": of, **proof.to_dict()}
+        lines.append(f"\n{_proof_text(proof, of, len(restored.bands))}")
     if as_json:
         from acutance.report import json_text
 
         typer.echo(json_text(document))
     else:
         typer.echo("\n".join(lines))
+    if proof is not None and not proof.agrees:
+        raise typer.Exit(FAILED_CHECK)
+
+
+def _regions(image: str, roi: str | None, nodata: float | None) -> Mapping[str, Region]:
+    """The regions of ``--roi`` by their names, each in the image."""
+    from acutance.raster import open_image, parse_rois
+
+    if roi is None:
+        return {}
+    before = open_image(image, nodata=nodata)
+    regions = parse_rois(roi, before)
+    for region in regions.values():
+        region.box(before.shape)
+    return regions
 
 
 def _verified(
-    image: str,
-    restored: str,
+    files: tuple[str, str],
     band: int,
-    chosen: Any,
-    roi: str | None,
+    chosen: RestorationFilter,
+    regions: Mapping[str, Region],
     nodata: float | None,
     method: str,
-) -> Any:
+) -> RestorationProof:
     """Edges of a band before and after."""
-    from acutance.raster import open_image, parse_rois
+    from acutance.raster import open_image
     from acutance.restoration import verify_restoration
 
     before, after = (
-        open_image(name, band, nodata=nodata, along_track=chosen.along_track)
-        for name in (image, restored)
+        open_image(name, band, nodata=nodata, along_track=chosen.along_track) for name in files
     )
-    regions: Mapping[str, Region | None] = {} if roi is None else parse_rois(roi, before)
-    given = [one for one in regions.values() if one is not None]
-    return verify_restoration(before, after, chosen, given, method=method)
+    try:
+        return verify_restoration(before, after, chosen, regions, method=method)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(
+            f"interrupted: {files[1]} is written, its edges were not all measured"
+        ) from None
+
+
+def _proof_text(proof: RestorationProof, band: int, filtered: int) -> str:
+    from acutance.report import proof_text
+
+    return f"band {band}:\n{proof_text(proof)}" if filtered > 1 else proof_text(proof)
 
 
 def _bands(text: str | None) -> Any:

@@ -71,7 +71,8 @@ def proof_text(proof: RestorationProof) -> str:
     proof : RestorationProof
     """
     refused = [f"{one}" for one in proof.rejected]
-    return "\n".join((table_text(proof_table(proof)), *refused))
+    verdict = f"The image {proof.sentence}."
+    return "\n".join((table_text(proof_table(proof)), *refused, verdict))
 
 
 def niirs_text(found: Niirs) -> str:

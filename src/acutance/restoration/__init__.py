@@ -14,6 +14,7 @@ An image, filtered:
 
 - `filling.py` what stands in the place of pixels without data
 - `window_filter.py` one window; `applying.py` an array or a file (windows and files: ``raster/``)
+- `filter_match.py` whether a filter is of such pixels and bands
 - `verification.py` edges before and after, beside the prediction
 """
 

@@ -15,16 +15,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.short_repr import ShortRepr
-from acutance.errors import ImageError, OptionError
+from acutance.errors import ImageError, NoDataError, OptionError
 from acutance.raster import Box, Image, SwathFill, find_swath_fill, open_image
 from acutance.raster.pixels import equals_nodata, largest_count, require_image_array
+from acutance.restoration.filter_match import (
+    RESTORED_TAG,
+    chosen_bands,
+    match_notes,
+    require_match,
+    require_unrestored,
+)
 from acutance.restoration.restoration_filter import RestorationFilter
 from acutance.restoration.window_filter import PixelCounts, StoredType, reach_px, restored_window
 
-__all__ = ["RESTORED_TAG", "RestoredImage", "restore", "restore_array"]
+__all__ = ["RestoredImage", "restore", "restore_array"]
 
-RESTORED_TAG = "ACUTANCE_RESTORATION"
-_GSD_SHARE = 0.02
 _LINES = 1024
 _Path = str | os.PathLike[str]
 
@@ -39,20 +44,24 @@ class RestoredImage(ShortRepr):
         The new file.
     bands : dict of int to PixelCounts
         What became of the pixels of each band that was filtered.
+    notes : tuple of str
+        What was not compared with the filter, and what was copied as it is.
     """
 
     path: str
     bands: dict[int, PixelCounts]
+    notes: tuple[str, ...] = ()
 
     def summary(self) -> str:
         """The file, and how many pixels of all bands were special."""
         return f"{self.path}, {sum(self.bands.values(), PixelCounts()).in_words()}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Path and counts, for JSON."""
+        """Path, counts and notes, for JSON."""
         return {
             "path": self.path,
             "bands": {str(band): one.to_dict() for band, one in self.bands.items()},
+            "notes": list(self.notes),
         }
 
 
@@ -127,6 +136,8 @@ def restore(
         If the filter was made for other pixels or another band, or `out` is the input.
     ImageError
         If the image cannot be read or the new one not be written.
+    NoDataError
+        If no pixel of a file has data; an array without any, the tile of an image, stays so.
     """
     if not isinstance(filter, RestorationFilter):
         raise OptionError(
@@ -207,12 +218,12 @@ def _restore_file(
 
     if not out.lower().endswith((".tif", ".tiff")):
         raise OptionError(f"out is {out}: the image is written as GeoTIFF, name a .tif")
-    chosen = _chosen_bands(first, filter, bands)
+    chosen = chosen_bands(first, filter, bands)
     images = {band: open_image(path, band, nodata=nodata) for band in chosen}
     _require_fitting(first.shape, filter)
     if not accept_mismatch:
-        _require_match(first, filter, chosen, bands == "all")
-        _require_unrestored(path, stored_tags(path))
+        require_match(first, filter, chosen, bands == "all")
+        require_unrestored(path, stored_tags(path))
     fills = {band: find_swath_fill(one) for band, one in images.items()}
     kinds = {
         band: _stored_type(
@@ -237,6 +248,7 @@ def _restore_file(
             window.pixels, masked, window.outside, filter.kernel, kinds[window.band]
         )
         counts[window.band] += found
+        _require_data(counts, first)
         return pixels
 
     tags = {RESTORED_TAG: _tag(filter, chosen)}
@@ -244,7 +256,7 @@ def _restore_file(
         path, out, change, bands=chosen, margin_px=reach, nodata=nodata,
         tags=tags, progress=progress,
     )  # fmt: skip
-    return RestoredImage(out, counts)
+    return RestoredImage(out, counts, match_notes(first, filter, chosen))
 
 
 def _restore_npy(
@@ -260,6 +272,7 @@ def _restore_npy(
         raise OptionError(f"out is {out}: an image in a .npy file is written as one, name a .npy")
     source: Any = image.source
     pixels, counts = restore_array(source.map(), filter, nodata=nodata, saturation=saturation)
+    _require_data({1: counts}, image)
     part = Path(f"{os.path.realpath(out)}.{os.getpid()}.part")
     try:
         with part.open("wb") as file:
@@ -268,7 +281,20 @@ def _restore_npy(
     except OSError as error:
         part.unlink(missing_ok=True)
         raise ImageError(f"{out} cannot be written ({error.strerror or error})") from error
-    return RestoredImage(out, {1: counts})
+    return RestoredImage(out, {1: counts}, match_notes(image, filter, [1]))
+
+
+def _require_data(counts: dict[int, PixelCounts], image: Image) -> None:
+    """Refuse an image without any data, once all of it was read and before it gets its name.
+
+    Raises
+    ------
+    NoDataError
+        If no pixel of any band has data.
+    """
+    whole = image.shape[0] * image.shape[1]
+    if all(one.pixels == one.nodata == whole for one in counts.values()):
+        raise NoDataError(f"no pixel of {image.path} has data: nothing was written")
 
 
 def _stored_type(
@@ -315,63 +341,6 @@ def _require_other_file(path: str, out: str) -> None:
         raise OptionError(f"out is {out}, the input itself: name another file")
     if os.path.isdir(out):
         raise OptionError(f"out is {out}, a folder: name a file in it")
-
-
-def _chosen_bands(
-    first: Image, filter: RestorationFilter, bands: int | Sequence[int] | Literal["all"] | None
-) -> list[int]:
-    """The bands to be filtered.
-
-    Raises
-    ------
-    OptionError
-        If none was named, and none follows from the filter.
-    """
-    if bands == "all":
-        alpha = getattr(first.source, "alpha_band", None)
-        return [one for one in range(1, first.band_count + 1) if one != alpha]
-    if isinstance(bands, str):
-        raise OptionError(f"bands is {bands!r}: give numbers from 1, or 'all'")
-    if bands is not None:
-        return [bands] if isinstance(bands, int) else list(bands)
-    if first.band_count == 1:
-        return [1]
-    if filter.band is None:
-        raise OptionError(
-            f"the image has {first.band_count} bands, and the filter was measured in none of "
-            "them: say which to filter (bands, --band N or --band all)"
-        )
-    return [filter.band]
-
-
-def _require_match(
-    image: Image, filter: RestorationFilter, bands: Sequence[int], all_stated: bool
-) -> None:
-    """Refuse pixels of another size, and another band, than those that were measured."""
-    gsd, known = image.gsd(), filter.gsd_m
-    if gsd is not None and known is not None:
-        for own, measured in zip((gsd.row_m, gsd.col_m), known, strict=True):
-            if not math.isclose(own, measured, rel_tol=_GSD_SHARE):
-                raise OptionError(
-                    f"the image has pixels of {gsd.row_m:.4g} by {gsd.col_m:.4g} m, the filter was "
-                    f"made for {known[0]:.4g} by {known[1]:.4g} m: design one for this product, or "
-                    "accept the mismatch (accept_mismatch=True, --accept-mismatch)"
-                )
-    other = [band for band in bands if band != filter.band]
-    if filter.band is not None and image.band_count > 1 and other and not all_stated:
-        raise OptionError(
-            f"the filter was measured in band {filter.band}, band {other[0]} was asked for: design "
-            "one for it, state that all bands are alike (bands='all', --band all), or accept the "
-            "mismatch (accept_mismatch=True, --accept-mismatch)"
-        )
-
-
-def _require_unrestored(path: str, tags: dict[str, str]) -> None:
-    if RESTORED_TAG in tags:
-        raise OptionError(
-            f"{path} was restored before ({tags[RESTORED_TAG]}): a second time would sharpen what "
-            "is sharp; give the original, or accept it (accept_mismatch=True, --accept-mismatch)"
-        )
 
 
 def _tag(filter: RestorationFilter, bands: Sequence[int]) -> str:
