@@ -24,6 +24,13 @@ def sharpening():
     return ac.design_restoration(sensor, snr=80, noise_gain=1.6, size=7)
 
 
+@pytest.fixture(scope="module")
+def large():
+    """As large a kernel, and one that amplifies much."""
+    sensor = ac.Sensor([ac.optics.Gaussian(0.62), ac.optics.Detector()])
+    return ac.design_restoration(sensor, snr=200, noise_gain=2.6, size=21)
+
+
 def test_the_text_has_both_sides_of_the_bargain(sharpening):
     text = restoration_text(sharpening)
     after = sharpening.after.across
@@ -36,9 +43,45 @@ def test_the_text_has_both_sides_of_the_bargain(sharpening):
 
 def test_the_kernel_is_a_table_with_all_its_weights(sharpening):
     kernel = restoration_tables(sharpening)[-1]
-    assert len(kernel.rows) == len(kernel.columns) == 7
-    middle = float(kernel.rows[3][3].replace("−", "-"))
-    assert middle == pytest.approx(sharpening.kernel[3, 3], abs=1e-5)
+    assert len(kernel.rows) == len(kernel.columns) - 1 == 7
+    assert [row[0] for row in kernel.rows] == list(kernel.columns[1:])
+    middle = float(kernel.rows[3][4].replace("−", "-"))
+    assert middle == pytest.approx(1000 * sharpening.kernel[3, 3], abs=0.01)
+
+
+def test_of_a_large_kernel_the_middle_is_shown(large):
+    kernel = restoration_tables(large)[-1]
+    assert len(kernel.rows) == len(kernel.columns) - 1 == 15
+    assert float(kernel.rows[7][8]) == pytest.approx(1000 * large.kernel[10, 10], abs=0.01)
+    assert "the middle 15 by 15 are shown" in kernel.notes[0]
+
+
+def test_nothing_lies_over_curves_or_other_numbers(large):
+    """The legend of the noise, and the weights in the drawing of the kernel."""
+    figure = restoration_figure(large)
+    figure.canvas.draw()
+    (noise,) = [one for one in figure.axes if one.get_title(loc="left") == "Noise spectrum"]
+    box = noise.get_legend().get_window_extent()
+    for line in noise.get_lines():
+        places = line.get_transform().transform(line.get_xydata())
+        assert not box.count_contains(places)
+    (kernel,) = [one for one in figure.axes if one.get_title(loc="left") == "The kernel"]
+    boxes = [text.get_window_extent() for text in kernel.texts if text.get_text()]
+    assert len(boxes) == 25
+    for i, one in enumerate(boxes):
+        assert not one.count_overlaps(boxes[:i])
+
+
+def test_the_head_names_the_sources_and_numbers_without_deviations_have_none(sharpening, large):
+    html = restoration_page(sharpening)
+    head = html[: html.index("</header>")]
+    assert "a described sensor" in head
+    assert "± –" not in html
+    overshoot = f"{100 * sharpening.after.overshoot.value:.1f}"
+    assert f'<div class="value">{overshoot} <span class="unit">%' in html
+    many = dict(large.document) | {"sources": [f"edge {i}" for i in range(9)]}
+    html = restoration_page(ac.RestorationFilter.from_dict(many))
+    assert "edge 3; and 5 more" in html[: html.index("</header>")]
 
 
 def test_the_page_is_whole_and_holds_every_drawing(sharpening):

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from acutance.report.figures.restoration import restoration_panels
 from acutance.report.html import Headline, Section, Table, Verdict, render_page
-from acutance.report.labels import format_number, word_estimate
+from acutance.report.labels import format_number, word_estimate, write_fixed
 from acutance.report.page import panel_plate
 from acutance.report.tables.restoration import niirs_table, proof_table, restoration_tables
 from acutance.report.text import table_text
 
 if TYPE_CHECKING:
+    from acutance.curves import Estimate
     from acutance.restoration import RestorationFilter, RestorationProof
     from acutance.restoration.interpretability import Niirs
     from acutance.targets.check import VerdictWord
 
 __all__ = ["niirs_text", "proof_text", "restoration_page", "restoration_text"]
 
+_MAX_SOURCES = 4
 _KNOBS = {
     "noise_gain": "noise gain",
     "mtf_nyquist": "MTF at Nyquist",
@@ -100,19 +103,32 @@ def _headlines(filter: RestorationFilter) -> tuple[Headline, ...]:
     """MTF at Nyquist of both directions, noise gain, overshoot, NIIRS."""
     cards = []
     for name, after in filter.after.directions.items():
-        words, before = word_estimate(after.mtf_nyquist), filter.before.directions[name].mtf_nyquist
-        details = (f"± {words.std}", f"before {word_estimate(before).value_and_std}")
-        cards.append(Headline(f"MTF at Nyquist, {name}", words.value, details=details))
+        before = filter.before.directions[name].mtf_nyquist
+        value, details = _value_and_details(after.mtf_nyquist, 3)
+        was = (
+            word_estimate(before).value_and_std if before.std > 0 else write_fixed(before.value, 3)
+        )
+        cards.append(
+            Headline(f"MTF at Nyquist, {name}", value, details=(*details, f"before {was}"))
+        )
     snr = () if filter.snr is None else (f"SNR {filter.snr:.3g} → {filter.snr_after:.3g}",)
     cards.append(Headline("Noise gain", f"{filter.noise_gain:.2f}", details=snr))
-    words = word_estimate(100 * filter.after.overshoot)
-    cards.append(Headline("Overshoot", words.value, "%", details=(f"± {words.std}",)))
+    value, details = _value_and_details(100 * filter.after.overshoot, 1)
+    cards.append(Headline("Overshoot", value, "%", details=details))
     if filter.niirs_change:
         change = filter.niirs_change[4]
         shown = f"{change.value:+.2f}".replace("-", "−")
-        interval = word_estimate(change).short_interval
-        cards.append(Headline("Change of NIIRS, GIQE 4", shown, details=(interval,)))
+        interval = (word_estimate(change).short_interval,) if change.std > 0 else ()
+        cards.append(Headline("Change of NIIRS, GIQE 4", shown, details=interval))
     return tuple(cards)
+
+
+def _value_and_details(number: Estimate, digits: int) -> tuple[str, tuple[str, ...]]:
+    """A number and its deviation; of one without a deviation so many decimals, and no line."""
+    if number.std == 0:
+        return write_fixed(number.value, digits), ()
+    words = word_estimate(number)
+    return words.value, (f"± {words.std}",)
 
 
 def _verdicts(filter: RestorationFilter) -> tuple[Verdict, ...]:
@@ -138,11 +154,18 @@ def _provenance(filter: RestorationFilter) -> Table:
 
 
 def _facts(filter: RestorationFilter) -> dict[str, str]:
-    facts = {"size": f"{filter.size} × {filter.size} px"}
+    facts = {"made of": _listed(filter.sources), "size": f"{filter.size} × {filter.size} px"}
     if filter.gsd_m is not None:
-        row, col = filter.gsd_m
-        facts["GSD"] = f"{col:g} m" if row == col else f"{row:g} × {col:g} m"
+        row, col = (format_number(side) for side in filter.gsd_m)
+        facts["GSD"] = f"{col} m" if row == col else f"{row} × {col} m"
     if filter.band is not None:
         facts["band"] = str(filter.band)
     designed = str(filter.document.get("designed_at", ""))
     return facts | {"designed": designed[:16].replace("T", " ") + " UTC"}
+
+
+def _listed(sources: Sequence[str]) -> str:
+    """The first of many."""
+    more = len(sources) - _MAX_SOURCES
+    named = "; ".join(sources[:_MAX_SOURCES])
+    return f"{named}; and {more} more" if more > 0 else named

@@ -10,7 +10,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.report.figures.curves import COLORS, band_edges, mark_frequencies
 from acutance.report.figures.panel import Panel
-from acutance.report.labels import word_estimate
+from acutance.report.labels import word_estimate, write_fixed
 from acutance.report.paper import (
     BLUE,
     FAINT,
@@ -28,11 +28,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, FigureBase
 
+    from acutance.curves import Estimate
     from acutance.restoration import RestorationFilter
 
 __all__ = ["before_after_figure", "restoration_figure", "restoration_panels"]
 
 _ESF_REACH_PX = 6.0
+_KERNEL_REACH_PX = 7
+_HEADROOM = 1.12
+_LEGEND_ROOM = 1.3
 _WIDTH_IN, _ROW_IN = 13.0, 4.4
 
 
@@ -78,7 +82,8 @@ def restoration_panels(filter: RestorationFilter) -> tuple[Panel, ...]:
         ),
         Panel(
             "The kernel",
-            "Its weights; blue is positive, red negative. Colours follow the square root.",
+            "Its weights, of a large one the middle; blue is positive, red negative. Colours "
+            "follow the square root.",
             on_axes(_draw_kernel),
         ),
     )
@@ -129,7 +134,9 @@ def _draw_mtf(axes: Axes, filter: RestorationFilter) -> None:
         for _, value, std in [one.curve("mtf")]
     )
     gsd = filter.gsd_m
-    mark_frequencies(axes, gsd[0] if gsd is not None and gsd[0] == gsd[1] else None, top)
+    # Room for the words above the curves.
+    square = gsd[0] if gsd is not None and gsd[0] == gsd[1] else None
+    mark_frequencies(axes, square, _HEADROOM * max(1.0, top))
     lines = []
     for i, (name, after) in enumerate(filter.after.directions.items()):
         before = filter.before.directions[name]
@@ -161,7 +168,7 @@ def _draw_esf(axes: Axes, filter: RestorationFilter) -> None:
         axes.plot(place, value, color=COLORS[name], dashes=(9, 3) if i else (1, 0))
         axes.text(
             0.97, 0.46 - 0.155 * i, f"{name}, overshoot\n"
-            f"{word_estimate(100 * after.overshoot).value_and_std} %",
+            f"{_percent(after.overshoot)} %",
             transform=axes.transAxes, ha="right", va="top", color=COLORS[name],
         )  # fmt: skip
     worst = filter.after.overshoot.value
@@ -173,6 +180,12 @@ def _draw_esf(axes: Axes, filter: RestorationFilter) -> None:
         xlim=(-_ESF_REACH_PX, _ESF_REACH_PX), xlabel="distance along the normal [px]",
         ylabel="ESF", title="Edge before and after",
     )  # fmt: skip
+
+
+def _percent(share: Estimate) -> str:
+    """A share in percent; without a deviation one decimal has to do."""
+    percent = 100 * share
+    return word_estimate(percent).value_and_std if share.std > 0 else write_fixed(percent.value, 1)
 
 
 def _draw_trade(page: FigureBase, filter: RestorationFilter) -> None:
@@ -214,15 +227,15 @@ def _draw_noise(axes: Axes, filter: RestorationFilter) -> None:
     diagonal = np.abs(filter.otf(freq, freq))
     axes.plot(freq, diagonal, color=FAINT, linewidth=1.2, label="both (diagonal)")
     axes.axhline(1.0, color=FAINT, linewidth=0.8)
-    axes.axhline(filter.noise_gain, color=INK, linewidth=1, dashes=(4, 3))
-    axes.text(0.005, filter.noise_gain, f"noise gain {filter.noise_gain:.2f}", va="bottom",
-              fontsize=8.5)  # fmt: skip
-    axes.legend(loc="lower right")
+    axes.axhline(filter.noise_gain, color=INK, linewidth=1, dashes=(4, 3),
+                 label=f"noise gain {filter.noise_gain:.2f}")  # fmt: skip
+    top = max(float(np.max(line.get_ydata())) for line in axes.get_lines())
+    axes.legend(loc="upper left", ncols=2)
     axes.set(
         xlim=(0, 0.5), xlabel="frequency [cycles/pixel]", ylabel="noise, after / before",
         title="Noise spectrum",
     )  # fmt: skip
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, _LEGEND_ROOM * top)
 
 
 def _draw_correlation(axes: Axes, filter: RestorationFilter) -> None:
@@ -244,16 +257,17 @@ def _draw_correlation(axes: Axes, filter: RestorationFilter) -> None:
 
 
 def _draw_kernel(axes: Axes, filter: RestorationFilter) -> None:
-    kernel = filter.kernel
+    middle, reach = filter.margin_px, min(filter.margin_px, _KERNEL_REACH_PX)
+    kernel = filter.kernel[middle - reach : middle + reach + 1, middle - reach : middle + reach + 1]
     shown = np.sign(kernel) * np.sqrt(np.abs(kernel))
-    top, reach = float(np.abs(shown).max()), filter.margin_px + 0.5
-    axes.imshow(shown, cmap="RdBu", vmin=-top, vmax=top, extent=(-reach, reach, reach, -reach))
-    middle = filter.margin_px
-    for row in range(max(0, middle - 2), min(kernel.shape[0], middle + 3)):
-        for col in range(max(0, middle - 2), min(kernel.shape[0], middle + 3)):
-            value = float(kernel[row, col])
+    top, side = float(np.abs(shown).max()), reach + 0.5
+    axes.imshow(shown, cmap="RdBu", vmin=-top, vmax=top, extent=(-side, side, side, -side))
+    for row in range(max(0, reach - 2), min(kernel.shape[0], reach + 3)):
+        for col in range(max(0, reach - 2), min(kernel.shape[0], reach + 3)):
+            # Without the zero before the point two neighbours do not touch.
+            number = write_fixed(float(kernel[row, col]), 2).replace("0.", ".", 1)
             color = "white" if abs(shown[row, col]) > 0.6 * top else INK
-            axes.text(col - middle, row - middle, f"{value:.2f}".replace("-", "−"), ha="center",
-                      va="center", fontsize=5.5, color=color)  # fmt: skip
+            axes.text(col - reach, row - reach, number, ha="center", va="center", fontsize=5.2,
+                      color=color)  # fmt: skip
     axes.grid(visible=False)
     axes.set(xlabel="columns [px]", ylabel="rows [px]", title="The kernel")

@@ -10,6 +10,7 @@ from acutance.report.html import Table
 from acutance.report.labels import MISSING, format_number, metric_words, word_estimate, write_fixed
 
 if TYPE_CHECKING:
+    from acutance.curves import Estimate
     from acutance.restoration import RestorationFilter, RestorationProof
     from acutance.restoration.interpretability import Niirs
 
@@ -19,6 +20,7 @@ _SHOWN = (
     "mtf_nyquist", "rer", "fwhm_px", "fwhm_m", "mtf50_cpp", "mtf_area", "edge_slope_per_px",
     "overshoot", "undershoot", "giqe_h",
 )  # fmt: skip
+_KERNEL_REACH_PX = 7
 
 
 def restoration_tables(filter: RestorationFilter) -> tuple[Table, ...]:
@@ -73,7 +75,7 @@ def _cost(filter: RestorationFilter) -> Table:
          write_fixed(float(near[middle + 1, middle]), 3)),
         ("Share of fine detail that is aliased [%]", before_share, after_share),
         *(
-            (f"Change of NIIRS, GIQE {version}", "", word_estimate(one).value_and_std)
+            (f"Change of NIIRS, GIQE {version}", "", _in_words(one))
             for version, one in filter.niirs_change.items()
         ),
     ]  # fmt: skip
@@ -97,8 +99,13 @@ def _products(filter: RestorationFilter, direction: str) -> tuple[str, str]:
     found = []
     for sharpness, snr in ((filter.before, filter.snr), (filter.after, filter.snr_after)):
         number = sharpness.directions[direction].mtf_nyquist
-        found.append(MISSING if snr is None else word_estimate(number * snr).value_and_std)
+        found.append(MISSING if snr is None else _in_words(number * snr))
     return found[0], found[1]
+
+
+def _in_words(number: Estimate) -> str:
+    """A number with its deviation; without one three digits have to do."""
+    return word_estimate(number).value_and_std if number.std > 0 else format_number(number.value, 3)
 
 
 def _trade(filter: RestorationFilter) -> Table:
@@ -120,16 +127,26 @@ def _trade(filter: RestorationFilter) -> Table:
 
 
 def _kernel(filter: RestorationFilter) -> Table:
-    kernel = filter.kernel
-    rows = tuple(tuple(write_fixed(float(one), 5) for one in row) for row in kernel)
-    reach = filter.margin_px
-    columns = tuple(f"{place:+d}" if place else "0" for place in range(-reach, reach + 1))
+    """The weights, of a large kernel the middle ones: a page is no wider."""
+    reach = min(filter.margin_px, _KERNEL_REACH_PX)
+    inner = slice(filter.margin_px - reach, filter.margin_px + reach + 1)
+    shown = filter.kernel[inner, inner]
+    places = [
+        f"{place:+d}".replace("-", "−") if place else "0" for place in range(-reach, reach + 1)
+    ]
+    rows = tuple(
+        (place, *(write_fixed(1000 * float(one), 2) for one in row))
+        for place, row in zip(places, shown, strict=True)
+    )
+    size = filter.size
+    part = f", of which the middle {2 * reach + 1} by {2 * reach + 1} are shown"
     return Table(
-        columns, rows, "r" * kernel.shape[0], title="The kernel", page_only=True,
+        ("", *places), rows, "l" + "r" * len(places), title="The kernel", page_only=True,
         notes=(
-            f"{kernel.shape[0]} by {kernel.shape[0]} weights that sum to 1; rows run downwards. "
-            "The image is convolved with it: the weight to the right of the middle is that of the "
-            "pixel to the left. All digits are in the JSON document.",
+            f"{size} by {size} weights that sum to 1{part if size > len(places) else ''}, in "
+            "thousandths; rows run downwards. The image is convolved with it: the weight to the "
+            "right of the middle is that of the pixel to the left. All digits are in the JSON "
+            "document.",
         ),
     )  # fmt: skip
 
