@@ -1,5 +1,7 @@
 """Edges measured before and after a filter, beside the prediction."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -77,6 +79,16 @@ def test_what_agrees_is_said_to_and_what_does_not_is_not(pair, method):
     assert not wrong.to_dict()["agrees"]
     for edge in (*proof.edges, *wrong.edges):
         assert edge.difference.value == pytest.approx(edge.after.value - edge.predicted.value)
+
+
+def test_two_lines_share_no_error(pair):
+    filter, before, after = pair
+    regions = [(15, 15, 90, 90)]
+    (edge,) = ac.verify_restoration(before, after, filter, regions, method="iso12233").edges
+    assert edge.turned_deg < 0.1
+    moved = dataclasses.replace(edge, turned_deg=1.5)
+    apart = np.hypot(edge.after.std, edge.predicted.std)
+    assert edge.difference.std < apart < moved.difference.std
 
 
 def test_more_edges_may_be_farther_off(pair):
