@@ -66,6 +66,7 @@ def require_match(
 
 
 def require_unrestored(path: str, tags: dict[str, str]) -> None:
+    """Refuse an image whose tags say that a filter was applied to it."""
     if RESTORED_TAG in tags:
         raise OptionError(
             f"{path} was restored before ({tags[RESTORED_TAG]}): a second time would sharpen what "
