@@ -171,8 +171,6 @@ def _fit_form(
     normal += np.diag(np.concatenate([std**-2.0, np.ones(ways.shape[1])]))
     inverse = np.linalg.inv(normal)
     moved = design @ inverse
-    value, vector = np.linalg.eigh(inverse + moved.T @ data.shared @ moved)
-    root = vector * np.sqrt(np.maximum(value, 0.0))
     # The directions' weights are counted in units of the share.
     scale = np.concatenate([np.ones(p.size), np.full(ways.shape[1], share)])
     amounts = np.linalg.solve(normal[p.size :, p.size :], ways.T @ off)
@@ -181,10 +179,10 @@ def _fit_form(
     narrowed = np.linalg.slogdet(whole[:, None] * normal * whole)[1]
     score = 2 * float(found.cost) + float(narrowed)
     nothing = Correction(form, tuple(p.tolist()))
-    # A triangular factor of the same covariance is half as large.
-    lower = np.asarray(np.linalg.qr((scale[:, None] * root).T, mode="r")).T
+    covariance = scale[:, None] * (inverse + moved.T @ data.shared @ moved) * scale
+    root = np.asarray(np.linalg.cholesky(0.5 * (covariance + covariance.T)))
     return FormFit(
-        form, share, nothing, p, share * amounts, lower, 1.0,
+        form, share, nothing, p, share * amounts, root, 1.0,
         inverse=scale[:, None] * inverse * scale, score=score,
     )  # fmt: skip
 
