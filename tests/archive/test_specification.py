@@ -12,6 +12,7 @@ import acutance as ac
 from acutance.archive.specification import Requirement, Specification, read_specification
 from acutance.archive.specification_check import check_requirement
 from acutance.archive.trends import Series
+from acutance.archive.trends.series import date_of
 
 DRAWS = 240
 
@@ -142,3 +143,16 @@ def test_files_that_are_no_specification(tmp_path: Path) -> None:
         read_specification(path)
     with pytest.raises(ac.OptionError, match="requirement: field required"):
         Specification.of({})
+
+
+def test_on_a_day_far_from_the_images_no_number_of_images_is_told() -> None:
+    """It would depend on when they are taken."""
+    made = series(1, scatter=0.05)
+    found = check_requirement(at_least(0.08, on="2040-01-01"), made)
+    assert found.word == "cannot be told yet"
+    assert found.more_images is None
+    assert found.nearest == date_of(float(made.when.max()))
+    assert f"The nearest image is of {found.nearest}" in found.summary
+    assert "would tell" not in found.summary
+    inside = check_requirement(at_least(0.1, on="2023-01-01"), made)
+    assert (inside.word, inside.nearest) == ("cannot be told yet", None)

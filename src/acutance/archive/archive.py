@@ -12,6 +12,7 @@ from acutance.archive.connection import open_database
 from acutance.archive.dates import When, as_utc
 from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
 from acutance.archive.image_corrections import CorrectedImage, ImageCorrection, correct_images
+from acutance.archive.known_names import require_known_names
 from acutance.archive.measurements import (
     Measurements,
     Rejections,
@@ -250,6 +251,21 @@ class Archive(Questions):
             If there is no such filter, or a value it cannot have.
         """
         return select_measurements(self._database, Selection.of(selection))
+
+    def require_known_names(self, *selections: SelectionWords) -> None:
+        """Refuse filters by names that occur nowhere, all of them at once.
+
+        Parameters
+        ----------
+        *selections : mapping
+            Filters, as of `measurements`.
+
+        Raises
+        ------
+        NothingSelectedError
+            Tells the names that occur.
+        """
+        require_known_names(self._database, map(Selection.of, selections))
 
     def entries(self, **selection: Unpack[SelectionWords]) -> Iterator[Entry]:
         """Measurements and rejections as they were added, with their images and targets.

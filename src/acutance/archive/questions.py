@@ -33,6 +33,21 @@ class Questions(ABC):
     def measurements(self, **selection: Unpack[SelectionWords]) -> Measurements:
         """Measurements as columns."""
 
+    @abstractmethod
+    def require_known_names(self, *selections: SelectionWords) -> None:
+        """Refuse filters by names that occur nowhere, all of them at once.
+
+        Parameters
+        ----------
+        *selections : mapping
+            Filters, as of `measurements`.
+
+        Raises
+        ------
+        NothingSelectedError
+            Tells the names that occur.
+        """
+
     def series(self, metric: str, **selection: Unpack[SelectionWords]) -> Series:
         """One metric of one sensor, band and direction through time.
 
@@ -114,12 +129,19 @@ class Questions(ABC):
         Returns
         -------
         SpecificationCheck
+
+        Raises
+        ------
+        NothingSelectedError
+            If sensors, bands, sites or other names of a requirement occur nowhere.
         """
         from acutance.archive.specification import Specification, read_specification
         from acutance.archive.specification_check import check_specification
 
         if not isinstance(specification, Specification):
             specification = read_specification(specification)
+        asked = [{**selection, **one.selection} for one in specification.requirement]
+        self.require_known_names(*asked)  # type: ignore[arg-type]
         return check_specification(
             specification,
             lambda words: self.measurements(**{**selection, **words}),
@@ -185,4 +207,7 @@ class Questions(ABC):
     def _trusted(self, selection: SelectionWords) -> Measurements:
         if selection.get("verdict") is None:
             selection = {**selection, "verdict": _VERDICT}
-        return self.measurements(**selection)
+        found = self.measurements(**selection)
+        if not len(found):
+            self.require_known_names(selection)
+        return found

@@ -13,11 +13,14 @@ from acutance.archive.dates import When, as_utc, end_of
 from acutance.archive.tables import VERDICTS, directions, images, measurements, targets
 from acutance.curves import METRICS
 from acutance.errors import OptionError
+from acutance.targets.kinds import KINDS
 
-__all__ = ["Limits", "Selection", "SelectionWords"]
+__all__ = ["Limits", "Selection", "SelectionWords", "names_of"]
 
 Names = str | Sequence[str]
 """A name, or several any of which may be the one."""
+
+_KINDS = (*KINDS, "scene")
 
 Limits = Mapping[str, tuple[float | None, float | None]]
 """By metric the least and the largest value; ``None`` where there is no limit."""
@@ -108,7 +111,10 @@ class Selection:
             raise OptionError(
                 f"verdict is {self.verdict!r}: it is one of {', '.join(reversed(VERDICTS))}"
             )
-        for name in _names(self.orientation or ()):
+        for name in names_of(self.kind or ()):
+            if name not in _KINDS:
+                raise OptionError(f"kind is {name!r}: it is one of {', '.join(_KINDS)}")
+        for name in names_of(self.orientation or ()):
             if name not in ("across", "along"):
                 raise OptionError(f"orientation is {name!r}: it is across or along")
         for metric, limits in (self.limits or {}).items():
@@ -128,7 +134,7 @@ class Selection:
     def of_directions(self) -> Iterator[ColumnElement[bool]]:
         """Conditions on rows of directions alone."""
         if self.orientation is not None:
-            yield directions.c.orientation.in_(_names(self.orientation))
+            yield directions.c.orientation.in_(names_of(self.orientation))
         for metric, (low, high) in (self.limits or {}).items():
             if low is not None:
                 yield directions.c[metric] >= low
@@ -137,9 +143,9 @@ class Selection:
 
     def of_entries(self) -> Iterator[ColumnElement[bool]]:
         """Conditions on measurements and rejections, with their images and targets."""
-        for column, wanted in self._named():
+        for _, column, wanted in self.by_name():
             if wanted is not None:
-                yield column.in_(_names(wanted))
+                yield column.in_(names_of(wanted))
         if self.since is not None:
             yield images.c.acquired >= as_utc(self.since)
         if self.until is not None:
@@ -147,20 +153,21 @@ class Selection:
         if self.verdict is not None:
             yield measurements.c.verdict >= VERDICTS.index(self.verdict)
         if self.image is not None:
-            named = _names(self.image)
+            named = names_of(self.image)
             columns = (images.c.path, images.c.name, images.c.content)
             yield or_(*(column.in_(named) for column in columns))
         if self.run is not None:
             yield measurements.c.run_id == self.run
 
-    def _named(self) -> Iterator[tuple[Column[Any], Names | None]]:
-        yield images.c.sensor, self.sensor
-        yield images.c.level, self.level
-        yield measurements.c.band, self.band
-        yield targets.c.site, self.site
-        yield targets.c.name, self.target
-        yield measurements.c.kind, self.kind
-        yield measurements.c.method, self.method
+    def by_name(self) -> Iterator[tuple[str, Column[Any], Names | None]]:
+        """Filters by whole names: what each is called, its column, and what is wanted."""
+        yield "sensor", images.c.sensor, self.sensor
+        yield "level", images.c.level, self.level
+        yield "band", measurements.c.band, self.band
+        yield "site", targets.c.site, self.site
+        yield "target", targets.c.name, self.target
+        yield "kind", measurements.c.kind, self.kind
+        yield "method", measurements.c.method, self.method
 
 
 def _require_limits(metric: str, limits: Any) -> None:
@@ -171,7 +178,14 @@ def _require_limits(metric: str, limits: Any) -> None:
         )
 
 
-def _names(wanted: Names) -> list[str]:
+def names_of(wanted: Names) -> list[str]:
+    """The names of a filter as a list.
+
+    Raises
+    ------
+    OptionError
+        If they are no texts.
+    """
     found = [wanted] if isinstance(wanted, str) or not isinstance(wanted, Iterable) else [*wanted]
     for name in found:
         if not isinstance(name, str):

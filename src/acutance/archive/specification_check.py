@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import datetime
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 from typing import Any, Final
 
@@ -59,7 +59,9 @@ class Answer:
     images : int
     more_images : int or None
         How many more would tell, if the mean is what it is now; 0 where it is told, ``None`` where
-        none of a reasonable number would.
+        none of a reasonable number would, or where the day asked is before or after all images.
+    nearest : date or None
+        Where the day asked is before the first or after the last image: the day of that image.
     reason : str
         Why it cannot be told, or what to know of it.
     """
@@ -73,6 +75,7 @@ class Answer:
     images: int
     more_images: int | None
     reason: str = ""
+    nearest: datetime.date | None = None
 
     @property
     def summary(self) -> str:
@@ -87,7 +90,7 @@ class Answer:
         text += f" (probability of being met {_written(self.probability)}): {self.mean}"
         if self.day is not None:
             text += f" on {self.day}"
-        text += f", {self.images} images."
+        text += f", {self.images} image{'' if self.images == 1 else 's'}."
         if self.word == OPEN:
             text += f" {self.advice}"
         return f"{text} {self.reason}".rstrip()
@@ -95,6 +98,11 @@ class Answer:
     @property
     def advice(self) -> str:
         """How many more images would tell."""
+        if self.nearest is not None:
+            return (
+                f"The nearest image is of {self.nearest}: until there are some of about "
+                f"{self.day}, the drift is continued, and the deviation grows with it."
+            )
         if self.more_images is None:
             return "More images alone would not tell: the mean is too near the limit."
         count = self.more_images
@@ -111,6 +119,7 @@ class Answer:
             "day": None if self.day is None else self.day.isoformat(),
             "images": self.images,
             "more_images": self.more_images,
+            "nearest": None if self.nearest is None else self.nearest.isoformat(),
             "summary": self.summary,
         }
 
@@ -235,9 +244,8 @@ def _untold(requirement: Requirement, series: Series, images: int) -> Answer:
 
 
 def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
-    year = float(trend.images.when[-1])
-    if requirement.on is not None:
-        year = decimal_year(requirement.on)
+    first, last = float(trend.images.when[0]), float(trend.images.when[-1])
+    year = last if requirement.on is None else decimal_year(requirement.on)
     density = trend.mean(year, season=False)
     below = density.probability_below(requirement.limit)
     met = 1 - below if requirement.is_minimum else below
@@ -246,10 +254,15 @@ def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
     square = trend.scatter.value**2 + trend.images.typical_std**2
     lost = float(posterior.share @ ((posterior.degrees + 3) / (posterior.degrees + 1)))
     mean = density.estimate(0.0 if trend.metric in METRICS else None)
-    return _answer(
+    found = _answer(
         requirement, trend.name, met, mean, date_of(year), trend.images.images, square * lost,
         trend.images.systematic_std, " ".join(trend.notes),
     )  # fmt: skip
+    nearest = date_of(min(max(year, first), last))
+    if found.word != OPEN or found.day is None or nearest == found.day:
+        return found
+    # How many would tell depends on when they are taken.
+    return replace(found, more_images=None, nearest=nearest)
 
 
 def _by_mean(requirement: Requirement, series: Series) -> Answer:
@@ -264,7 +277,8 @@ def _by_mean(requirement: Requirement, series: Series) -> Answer:
     square = found.scatter.value**2 + float(np.median(stated**2))
     return _answer(
         requirement, series.name, met, found.mean, None, found.count, square,
-        found.systematic_std, "No trend: too few dates; the mean of the images stands in.",
+        found.systematic_std,
+        " ".join(("No trend: too few dates; the mean of the images stands in.", *series.notes)),
     )  # fmt: skip
 
 

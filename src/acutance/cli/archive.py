@@ -102,6 +102,8 @@ def list_rows(
             found = archive.rejected(**selected.words)
         else:
             found = archive.measurements(**selected.words)
+        if not len(found):
+            archive.require_known_names(selected.words)
     if as_json:
         document = {"schema": "acutance/archive-list/1", "rows": list(map(_dated, found.rows()))}
         typer.echo(json_text(document))
@@ -230,6 +232,7 @@ def export(
 
     with Archive(place, read_only=True) as archive:
         if not any(True for _ in archive.entries(**selected.words)):
+            archive.require_known_names(selected.words)
             fail(f"archive {place} holds nothing that is selected", NOTHING_MEASURED)
         with progress_bar(f"export {Path(out).name}") as progress:
             count = archive.export(

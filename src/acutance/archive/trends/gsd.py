@@ -10,14 +10,32 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.archive.trends.series import Event, Series, date_of
+from acutance.curves.grid import Floats
 
-__all__ = ["gsd_events", "gsd_range"]
+__all__ = ["gsd_classes", "gsd_events", "gsd_range"]
 
 _SAME: Final = 0.02
 """GSDs that differ by less are those of one product."""
 _MAX_CHANGES: Final = 3
+_OTHER_CLASS: Final = 1.4
+"""A gap so wide between GSDs is one between products: bands of 10 and 20 m, of 20 and 30 m."""
+
+
+def gsd_classes(gsd_m: Floats) -> NDArray[np.int64]:
+    """Labels of GSDs with a gap between them, (n,): 0 for the finest, -1 where it is not known.
+
+    Parameters
+    ----------
+    gsd_m : (n,) array
+        ``nan`` where it is not known.
+    """
+    known = np.unique(gsd_m[np.isfinite(gsd_m)])
+    firsts = known[1:][known[1:] > _OTHER_CLASS * known[:-1]]
+    label = np.searchsorted(firsts, gsd_m, side="right")
+    return np.where(np.isfinite(gsd_m), label, -1)
 
 
 def gsd_range(series: Series) -> tuple[float, float] | None:

@@ -1,13 +1,19 @@
-"""From rows of an archive to series: one metric of one sensor, band, product level, direction."""
+"""From rows of an archive to series: one metric of one sensor, band, product level, direction.
+
+Where GSDs lie apart as those of products do, a series is of one of them, too: images that do not
+tell their sensor would else be joined to one.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.archive.columns import Columns
+from acutance.archive.trends.gsd import gsd_classes
 from acutance.archive.trends.series import Series
 from acutance.curves import MAIN_NUMBERS, METRICS
 from acutance.curves.grid import Floats
@@ -22,7 +28,7 @@ _MIXED = ("method", "kind")
 
 
 def one_series(rows: Columns, metric: str) -> Series:
-    """The series of rows that are of one sensor, band, product level and direction.
+    """The series of rows that are of one sensor, band, product level, direction and class of GSD.
 
     Parameters
     ----------
@@ -46,11 +52,17 @@ def one_series(rows: Columns, metric: str) -> Series:
                 f"the measurements are of {len(found)} {name}s, {', '.join(found)}: select one "
                 f"({name}=..., --{name})"
             )
+    sizes = [_gsd_words(rows["gsd_m"][mask]) for mask in _by_gsd(rows)]
+    if len(sizes) > 1:
+        raise OptionError(
+            f"the measurements are of {len(sizes)} GSDs, {', '.join(sizes)}: select one, by "
+            "sensor, band, image or date"
+        )
     return _series(rows, metric, np.ones(len(rows), bool))
 
 
 def all_series(rows: Columns, metric: str) -> Iterator[Series]:
-    """A series for each sensor, band, product level and direction that rows are of.
+    """A series for each sensor, band, product level, direction and class of GSD of rows.
 
     Parameters
     ----------
@@ -62,7 +74,38 @@ def all_series(rows: Columns, metric: str) -> Iterator[Series]:
     index = {key: at for at, key in enumerate(dict.fromkeys(keys))}
     label = np.array([index[key] for key in keys], int)
     for key in sorted(index, key=lambda one: tuple(str(part) for part in one)):
-        yield _series(rows, metric, label == index[key])
+        ours = label == index[key]
+        classes = _by_gsd(rows, ours)
+        for mask in classes:
+            found = _series(rows, metric, mask)
+            if len(classes) > 1:
+                size = _gsd_words(rows["gsd_m"][mask])
+                found = replace(found, name=f"{found.name}, {size}".removeprefix(", "))
+            yield found
+
+
+def _by_gsd(rows: Columns, mask: NDArray[np.bool_] | None = None) -> list[NDArray[np.bool_]]:
+    """Masks of the classes of GSD among some rows, the finest first; unknown GSDs apart.
+
+    Where all known GSDs are of one class, the unknown ones are taken to be of it.
+    """
+    ours = np.ones(len(rows), bool) if mask is None else mask
+    label = np.full(len(rows), -1)
+    label[ours] = gsd_classes(rows["gsd_m"][ours])
+    known = np.unique(label[ours & (label >= 0)]).tolist()
+    if len(known) < 2:
+        return [ours]
+    masks = [ours & (label == one) for one in (*known, -1)]
+    return [one for one in masks if one.any()]
+
+
+def _gsd_words(gsd_m: Floats) -> str:
+    """The GSD of a class: "30 m", or from smallest to largest."""
+    known = gsd_m[np.isfinite(gsd_m)]
+    if known.size == 0:
+        return "GSD unknown"
+    low, high = f"{known.min():.3g}", f"{known.max():.3g}"
+    return f"GSD {low} m" if low == high else f"GSD {low} to {high} m"
 
 
 def _require_metric(metric: str) -> None:
@@ -85,7 +128,7 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Series:
         systematic_std=systematic, image=image, gsd_m=rows["gsd_m"][mask],
         image_names={number: name for number, name in names.items() if name is not None},
         name=", ".join(str(part) for part in title if part is not None),
-        notes=tuple(_mixed(rows, mask)),
+        notes=(*_unnamed(rows, mask), *_mixed(rows, mask)),
     )  # fmt: skip
 
 
@@ -121,6 +164,13 @@ def years_of(acquired: NDArray[np.datetime64]) -> Floats:
     year = acquired.astype("datetime64[Y]")
     begin, end = (one.astype("datetime64[us]") for one in (year, year + 1))
     return np.asarray(1970 + year.astype(float) + (acquired - begin) / (end - begin))
+
+
+def _unnamed(rows: Columns, mask: NDArray[np.bool_]) -> Iterator[str]:
+    images = np.unique(rows["image_id"][mask]).size
+    missing = [name for name in ("sensor", "band") if rows[name][mask][0] is None]
+    if missing and images > 1:
+        yield f"No {' and no '.join(missing)} is named: {images} images are taken to be of one."
 
 
 def _mixed(rows: Columns, mask: NDArray[np.bool_]) -> Iterator[str]:

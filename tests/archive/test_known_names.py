@@ -1,0 +1,67 @@
+"""Filters by names that occur nowhere; series of what is not of one sensor or GSD."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+from acutance.archive import Archive, Entry, ImageEntry
+from acutance.archive.specification import Specification
+from acutance.errors import NothingSelectedError, OptionError
+from acutance.targets.record import Record
+
+
+def specification(**words: Any) -> Specification:
+    return Specification.of({"requirement": [{"metric": "rer", "minimum": 0.1, **words}]})
+
+
+def test_names_of_a_requirement_that_occur_nowhere_are_refused(
+    archive: Archive, entry_of: Any
+) -> None:
+    archive.add_entries(entry_of(i) for i in range(4))
+    assert archive.check(specification(sensor="QB02", band="pan")).answers
+    with pytest.raises(NothingSelectedError) as error:
+        archive.check(specification(sensor=["QB02", "NOPE"], band="pam"), site="Stenis")
+    for part in ("no sensor is called 'NOPE', only K3, QB02", "no band is called 'pam', only pan",
+                 "no site is called 'Stenis', only Stennis"):  # fmt: skip
+        assert part in str(error.value)
+
+
+def test_an_empty_selection_names_what_there_is(archive: Archive, entry_of: Any) -> None:
+    archive.add_entries(entry_of(i) for i in range(4))
+    with pytest.raises(NothingSelectedError, match="no sensor is called 'K4', only K3, QB02"):
+        archive.mean("rer", sensor="K4", orientation="across")
+    with pytest.raises(NothingSelectedError, match="no target is called 'x', only tarp 0, tarp 1"):
+        archive.table(target="x")
+    # What occurs, but not together, is no misspelling.
+    with pytest.raises(NothingSelectedError, match="holds nothing that is selected"):
+        archive.table(sensor="K3", since="2030-01-01")
+
+
+def test_kinds_are_those_that_there_are(archive: Archive) -> None:
+    with pytest.raises(OptionError, match="kind is 'egde': it is one of edge, pulse"):
+        archive.measurements(kind="egde")
+    with pytest.raises(OptionError, match="kind is 'egde'"):
+        archive.rejected(kind=["edge", "egde"])
+
+
+def of_gsd(entry_of: Any, i: int, gsd_m: float) -> Entry:
+    """An entry of an image that tells neither its sensor nor its date."""
+    changed = {**entry_of(i).record.document, "gsd_m": gsd_m}
+    image = ImageEntry(path=f"/images/{i}.tif", content=f"{i:064x}")
+    return entry_of(i, record=Record(changed), image=image, band=None)
+
+
+def test_images_of_several_gsds_are_not_joined(archive: Archive, entry_of: Any) -> None:
+    sizes = (10.0, 10.3, 20.0, 30.0)
+    archive.add_entries(of_gsd(entry_of, i, sizes[i // 2]) for i in range(8))
+    found = archive.check(specification())
+    assert [(one.what, one.images) for one in found.answers] == [
+        ("across, GSD 10 to 10.3 m", 4), ("across, GSD 20 m", 2), ("across, GSD 30 m", 2),
+    ]  # fmt: skip
+    assert "No sensor and no band is named: 4 images are taken" in found.answers[0].summary
+    refused = "of 3 GSDs, GSD 10 to 10.3 m, GSD 20 m, GSD 30 m: select one"
+    with pytest.raises(OptionError, match=re.escape(refused)):
+        archive.mean("rer")
