@@ -424,3 +424,15 @@ def test_stated_options_enter_the_measurement(write_field, run, rows):
     by_name = dict(zip(measured["target"], measured["mtf_nyquist"], strict=True))
     expected = np.exp(0.5 * (2 * np.pi * 0.5 * 0.1 / 0.5) ** 2)
     assert by_name["soft"] / by_name["ideal"] == pytest.approx(expected, rel=2e-2)
+
+
+def test_an_image_is_left_between_two_targets_when_its_run_ends(write_field, run, monkeypatch):
+    """What was measured by then is kept, and the next batch does the rest."""
+    path, asked = write_field(0), []
+    monkeypatch.setattr(
+        "acutance.batch.measure_image.is_ending", lambda: asked.append(1) or len(asked) > 1
+    )
+    assert run(path).kept == 1
+    monkeypatch.undo()
+    found = run(path)
+    assert (found.done_before, found.kept) == (1, 1)

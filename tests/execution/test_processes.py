@@ -100,3 +100,21 @@ def test_few_long_tasks_occupy_all_processes(tmp_path):
     run_tasks(waits_for_company, [tmp_path] * 4, found.__setitem__, workers=2, chunk=1)
     assert len(set(found.values())) == 2
     assert set(found) == {0, 1, 2, 3}
+
+
+def fails_or_takes_long(task):
+    place, folder = task
+    (folder / f"begun {place}").touch()
+    if place == 0:
+        while not (folder / "begun 1").exists():
+            time.sleep(0.01)
+        raise ValueError("zero")
+    time.sleep(20)
+    (folder / "finished").touch()
+
+
+def test_a_task_that_takes_longer_than_a_user_waits_is_left(tmp_path):
+    tasks = [(place, tmp_path) for place in range(3)]
+    with pytest.raises(ValueError, match="zero"):
+        run_tasks(fails_or_takes_long, tasks, lambda place, result: None, workers=2, chunk=1)
+    assert {one.name for one in tmp_path.iterdir()} == {"begun 0", "begun 1"}

@@ -113,6 +113,36 @@ def test_all_faults_of_all_features_at_once():
     )
 
 
+def test_no_fault_hides_another():
+    document = collection(
+        feature("LineString", [["x", 60], [5, 60]], name="a", kind="wires", size_px=-4),
+        feature("Point", [5.0, 60.0], name="b", kind="star", width_m=3, colour="red"),
+        feature("MultiPoint", [[5.0, 60.0]], name="b", kind="star", valid_from="soon"),
+        feature("Circle", [5.0, 60.0], name="a", kind="wires"),
+    )
+    refused(
+        document,
+        "feature 1 (a): kind is 'wires'",
+        "feature 1 (a): size_px is -4",
+        "feature 1 (a): its coordinates are not pairs",
+        "feature 2 (b): there is no property 'colour'",
+        "feature 2 (b): width_m is no property of the kind 'star'",
+        "feature 2 (b): a Point needs size_m",
+        "feature 3 (b): valid_from is 'soon'",
+        "feature 3 (b): its geometry is 'MultiPoint'",
+        "feature 4 (a): its geometry is 'Circle': targets take LineString or Polygon",
+        "2 features have the name 'a'",
+        "2 features have the name 'b'",
+    )
+
+
+def test_an_unknown_crs_is_named_with_all_else_and_gdal_is_silent(capfd):
+    unknown = "the coordinate reference system 'EPSG:99999999' is not known"
+    with pytest.raises(OptionError, match=rf"{unknown}(.|\n)*colour"):
+        targets_of(collection(feature(name="a", colour=1)), "targets.geojson", "EPSG:99999999")
+    assert "PROJ" not in capfd.readouterr().err
+
+
 def test_properties_of_other_kinds():
     refused(feature(width_m=3.0), "width_m is no property of the kind 'edge'")
     refused(feature(kind="pulse", cycles=36), "cycles is no property of the kind 'pulse'")

@@ -25,13 +25,33 @@ from acutance.archive.rows import EntryRows, image_row, rows_of, target_row
 from acutance.archive.runs import ids_of_runs, with_whole_runs
 from acutance.archive.tables import directions, documents, images, measurements, runs, targets
 from acutance.errors import OptionError
+from acutance.targets.measurement import Measurement
+from acutance.targets.record import Record
 
-__all__ = ["CHUNK", "add_entries", "add_entry"]
+__all__ = ["CHUNK", "add_entries", "add_entry", "record_of"]
 
 CHUNK = 2000
 """Entries of one transaction."""
 
 _Described = TypeVar("_Described", ImageEntry, TargetEntry)
+
+
+def record_of(measurement: Measurement | Record) -> Record:
+    """The record of a measurement.
+
+    Raises
+    ------
+    OptionError
+        If it is none.
+    """
+    if isinstance(measurement, Measurement):
+        return measurement.record
+    if isinstance(measurement, Record):
+        return measurement
+    raise OptionError(
+        f"a {type(measurement).__name__} was given: add measurements or their records, those of a "
+        "target one by one (result.measurements)"
+    )
 
 
 def add_entry(database: Database, entry: Entry, run: int | None = None) -> Kept:

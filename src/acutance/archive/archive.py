@@ -7,12 +7,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, Unpack
 
-from acutance.archive.adding import add_entries, add_entry
+from acutance.archive.adding import add_entries, add_entry, record_of
 from acutance.archive.connection import open_database
 from acutance.archive.dates import When, as_utc
 from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
 from acutance.archive.image_corrections import CorrectedImage, ImageCorrection, correct_images
-from acutance.archive.known_names import require_known_names
 from acutance.archive.measurements import (
     Measurements,
     Rejections,
@@ -135,7 +134,7 @@ class Archive(Questions):
         ArchiveError
             If it cannot be kept.
         """
-        record = _record_of(measurement)
+        record = record_of(measurement)
         if image is not None and (sensor is not None or acquired is not None):
             raise OptionError("sensor and acquired are part of image: give them there")
         if image is None:
@@ -251,21 +250,6 @@ class Archive(Questions):
             If there is no such filter, or a value it cannot have.
         """
         return select_measurements(self._database, Selection.of(selection))
-
-    def require_known_names(self, *selections: SelectionWords) -> None:
-        """Refuse filters by names that occur nowhere, all of them at once.
-
-        Parameters
-        ----------
-        *selections : mapping
-            Filters, as of `measurements`.
-
-        Raises
-        ------
-        NothingSelectedError
-            Tells the names that occur.
-        """
-        require_known_names(self._database, map(Selection.of, selections))
 
     def entries(self, **selection: Unpack[SelectionWords]) -> Iterator[Entry]:
         """Measurements and rejections as they were added, with their images and targets.
@@ -401,14 +385,3 @@ class Archive(Questions):
             Filters, as of `measurements`; not those of directions, verdicts and numbers.
         """
         return select_rejections(self._database, Selection.of(selection))
-
-
-def _record_of(measurement: Measurement | Record) -> Record:
-    if isinstance(measurement, Measurement):
-        return measurement.record
-    if isinstance(measurement, Record):
-        return measurement
-    raise OptionError(
-        f"a {type(measurement).__name__} was given: add measurements or their records, those of a "
-        "target one by one (result.measurements)"
-    )

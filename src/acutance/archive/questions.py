@@ -7,8 +7,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Unpack
 
+from acutance.archive.connection import Database
 from acutance.archive.measurements import Measurements
-from acutance.archive.selection import SelectionWords
+from acutance.archive.selection import Selection, SelectionWords
 
 if TYPE_CHECKING:
     from acutance.archive.comparisons import Comparison
@@ -29,11 +30,12 @@ class Questions(ABC):
     Measurements count that are usable or good; ``verdict="doubtful"`` takes more.
     """
 
+    _database: Database
+
     @abstractmethod
     def measurements(self, **selection: Unpack[SelectionWords]) -> Measurements:
         """Measurements as columns."""
 
-    @abstractmethod
     def require_known_names(self, *selections: SelectionWords) -> None:
         """Refuse filters by names that occur nowhere, all of them at once.
 
@@ -47,6 +49,9 @@ class Questions(ABC):
         NothingSelectedError
             Tells the names that occur.
         """
+        from acutance.archive.known_names import require_known_names
+
+        require_known_names(self._database, map(Selection.of, selections))
 
     def series(self, metric: str, **selection: Unpack[SelectionWords]) -> Series:
         """One metric of one sensor, band and direction through time.

@@ -18,6 +18,7 @@ from acutance.batch.plan_options import ChosenOptions
 from acutance.batch.row_key import day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
 from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
+from acutance.execution import is_ending
 from acutance.raster import Gsd, Image, open_bands
 from acutance.raster.metadata import ImageStatement, read_statement
 from acutance.raster.sensor_model import georeference_of
@@ -172,6 +173,9 @@ def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[E
             key = row_key(str(task.content), task.reading, digest, band.number, day_of(target, day))
             if key in task.done:
                 continue
+            if is_ending():
+                # What was measured is kept, the next batch does the rest.
+                return
             if described is None:
                 described = target_entry(target)
             found, seconds = _row(target, chosen, opened, place, work.scan_workers)

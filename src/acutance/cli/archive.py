@@ -25,7 +25,7 @@ from acutance.cli.archive_tables import (
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import JsonOption
 from acutance.cli.output import check_output
-from acutance.cli.study import progress_bar
+from acutance.cli.progress import progress_bar
 from acutance.cli.terminal import BAD_USAGE, NOTHING_MEASURED, fail, say
 from acutance.errors import OptionError
 
@@ -180,7 +180,7 @@ def import_documents(
     with Archive(place) as archive, progress_bar(f"import {Path(place).name}") as progress:
         done = archive.import_documents(
             files, sensor=sensor, level=level, band=band, target=target, acquired=acquired,
-            progress=None if progress is None else lambda read: progress(read, None),
+            progress=lambda read: progress(read, None),
         )  # fmt: skip
     if as_json:
         numbers = {"read": done.read, "new": done.new, "refused": dict(done.refused)}

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from acutance.cli.options import JsonOption
-from acutance.cli.study import WorkersOption, dask_option, progress_bar
+from acutance.cli.progress import progress_bar
+from acutance.cli.study import WorkersOption, dask_option
 from acutance.cli.terminal import FAILED_CHECK, NOTHING_MEASURED, say
 from acutance.errors import OptionError
 

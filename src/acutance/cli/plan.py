@@ -9,8 +9,9 @@ import typer
 from acutance.cli.choices import numbers_of
 from acutance.cli.options import JsonOption
 from acutance.cli.output import check_optional
+from acutance.cli.progress import progress_bar
 from acutance.cli.sensor import SensorName, named_sensor
-from acutance.cli.study import WorkersOption, execution_of, progress_bar
+from acutance.cli.study import WorkersOption, execution_of
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:

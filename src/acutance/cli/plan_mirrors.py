@@ -10,8 +10,9 @@ from acutance.cli.options import JsonOption
 from acutance.cli.output import check_optional
 from acutance.cli.plan import EXAMPLE as TARGETS_EXAMPLE
 from acutance.cli.plan import plan
+from acutance.cli.progress import progress_bar
 from acutance.cli.sensor import SensorName, named_sensor
-from acutance.cli.study import WorkersOption, execution_of, progress_bar
+from acutance.cli.study import WorkersOption, execution_of
 from acutance.errors import OptionError
 
 __all__ = ["EXAMPLE", "app", "plan_mirrors"]

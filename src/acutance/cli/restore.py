@@ -20,8 +20,8 @@ from acutance.cli.options import (
     parse_gsd,
 )
 from acutance.cli.output import OutputFile, check_optional, check_output
+from acutance.cli.progress import progress_bar
 from acutance.cli.sensor import named_sensor
-from acutance.cli.study import progress_bar
 from acutance.cli.terminal import FAILED_CHECK, command_line, say
 from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS

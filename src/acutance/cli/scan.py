@@ -15,8 +15,9 @@ from acutance.cli.choices import parse_band, parse_grid
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions
 from acutance.cli.output import OutputFile, check_optional
+from acutance.cli.progress import progress_bar
 from acutance.cli.results import Outputs, Shown
-from acutance.cli.study import WorkersOption, dask_option, progress_bar
+from acutance.cli.study import WorkersOption, dask_option
 from acutance.cli.terminal import command_line
 from acutance.errors import OptionError
 

@@ -13,9 +13,9 @@ import typer
 from acutance.cli.choices import parse_pair
 from acutance.cli.noise import NoiseOptions
 from acutance.cli.option_groups import with_groups
+from acutance.cli.progress import progress_bar
 from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
 from acutance.cli.sensor import SensorName, named_sensor
-from acutance.cli.study import progress_bar
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from acutance.cli.output import OutputFile, check_output, make_folder
+from acutance.cli.progress import progress_bar
 from acutance.cli.terminal import warnings_said
 from acutance.errors import OptionError
 
@@ -23,7 +23,6 @@ __all__ = [
     "WorkersOption",
     "dask_option",
     "execution_of",
-    "progress_bar",
     "study",
     "write_result",
 ]
@@ -101,31 +100,6 @@ def execution_of(
     from acutance.studies import Execution
 
     return Execution(seed=seed, workers=workers, folder=folder, progress=progress)
-
-
-def progress_bar(title: str) -> AbstractContextManager[Callable[[int, int | None], None] | None]:
-    """A bar of what is finished, of how much, on stderr; nothing where stderr is no terminal."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    return _Bar(title, console) if console.is_terminal else nullcontext()
-
-
-class _Bar(AbstractContextManager[Callable[[int, int | None], None]]):
-    def __init__(self, title: str, console: Any) -> None:
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-        from rich.progress import TimeRemainingColumn as Remaining
-
-        columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), Remaining())
-        self._progress = Progress(*columns, console=console, transient=True)
-
-    def __enter__(self) -> Callable[[int, int | None], None]:
-        self._progress.start()
-        task = self._progress.add_task("", total=None)
-        return lambda done, total: self._progress.update(task, completed=done, total=total)
-
-    def __exit__(self, *_: object) -> None:
-        self._progress.stop()
 
 
 def _options(kind: type[Any], changes: Sequence[str]) -> Any:

@@ -5,6 +5,6 @@ here: dask).
 """
 
 from acutance.execution.cluster import run_on_cluster
-from acutance.execution.processes import require_workers, results_in_turn, run_tasks
+from acutance.execution.processes import is_ending, require_workers, results_in_turn, run_tasks
 
-__all__ = ["require_workers", "results_in_turn", "run_on_cluster", "run_tasks"]
+__all__ = ["is_ending", "require_workers", "results_in_turn", "run_on_cluster", "run_tasks"]

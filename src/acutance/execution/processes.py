@@ -6,25 +6,29 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import islice
 from multiprocessing import get_context, parent_process
-from multiprocessing.synchronize import Event
+from multiprocessing.connection import Connection
 from typing import TypeVar
 
 from acutance.errors import OptionError
 
-__all__ = ["require_workers", "results_in_turn", "run_tasks"]
+__all__ = ["is_ending", "require_workers", "results_in_turn", "run_tasks"]
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
 _LIBRARIES = ("OPENBLAS", "OMP", "MKL")
+_LEAKS = "ignore:resource_tracker:UserWarning"
 _CHUNKS_PER_WORKER = 8
 _MAX_CHUNK = 16
+_GRACE_S = 2.0
+"""For the tasks in work when a run is ended."""
 _WAITING_PER_WORKER = 4
 """Chunks that are handed out before the first of them is waited for."""
 
@@ -51,8 +55,9 @@ def run_tasks(
 ) -> None:
     """Hand the result of every task to `keep` as soon as it is there, in any order.
 
-    An exception of a task, or Ctrl-C, ends the run; results that were finished by then have been
-    handed to `keep`. The one at which `keep` itself was interrupted is handed to it again.
+    An exception of a task, or Ctrl-C, ends the run; results that were finished by then, or within
+    two seconds, have been handed to `keep`. The one at which `keep` itself was interrupted is
+    handed to it again.
 
     Parameters
     ----------
@@ -118,17 +123,20 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     """A pool of processes on one core each, which begin no further task once a run has failed."""
     # Fresh processes read the number of threads when they load the libraries.
     context = get_context("spawn")
-    stop = context.Event()
+    # Its end is the sign to stop: nothing that a killed process could hold locked.
+    heard, held = context.Pipe(duplex=False)
     with (
-        _one_thread_each(),
+        heard,
+        held,
+        _environment_of_processes(),
         ProcessPoolExecutor(
-            workers, mp_context=context, initializer=_obey_parent, initargs=(stop,)
+            workers, mp_context=context, initializer=_obey_parent, initargs=(heard,)
         ) as pool,
     ):
         try:
             yield pool
         except BaseException:
-            stop.set()
+            held.close()
             pool.shutdown(cancel_futures=True)
             raise
 
@@ -190,16 +198,23 @@ def _interrupts_held_back() -> Iterator[None]:
         signal.raise_signal(signal.SIGINT)
 
 
-_stop: Event | None = None
+_stop = threading.Event()
 """In a worker process: set when no further task is to be begun."""
+_at_work = False
+_work_lock = threading.Lock()
+"""Of `_at_work`: a process never ends between its work and the sending of the result."""
 
 
-def _obey_parent(stop: Event) -> None:
+def is_ending() -> bool:
+    """In a worker process: whether its run has ended, and a task is to come to its end."""
+    return _stop.is_set()
+
+
+def _obey_parent(heard: Connection) -> None:
     """Leave interrupts to the parent process, and end when it has ended, however it did."""
-    global _stop
-    _stop = stop
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    threading.Thread(target=_end_with_run, daemon=True, args=(heard,)).start()
 
 
 def _end_with_parent() -> None:
@@ -209,22 +224,48 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
+def _end_with_run(heard: Connection) -> None:
+    """Leave a task that takes longer than a user waits after Ctrl-C."""
+    with suppress(EOFError, OSError):
+        heard.recv()
+    _stop.set()
+    time.sleep(_GRACE_S)
+    with _work_lock:
+        if _at_work:
+            os._exit(1)
+
+
+def _set_at_work(value: bool) -> None:
+    global _at_work
+    with _work_lock:
+        _at_work = value
+
+
 def _work_through(work: Callable[[Task], Result], chunk: Sequence[Task]) -> list[Result]:
     """Results of a chunk's tasks, up to the one at which the parent process ended the run."""
     finished: list[Result] = []
-    for task in chunk:
-        if _stop is not None and _stop.is_set():
-            break
-        finished.append(work(task))
+    _set_at_work(True)
+    try:
+        for task in chunk:
+            if is_ending():
+                break
+            finished.append(work(task))
+    finally:
+        _set_at_work(False)
     return finished
 
 
 @contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """The environment in which processes keep to one core each; afterwards as it was."""
-    names = [f"{library}_NUM_THREADS" for library in _LIBRARIES]
-    earlier = {name: os.environ.get(name) for name in names}
-    os.environ.update(dict.fromkeys(names, "1"))
+def _environment_of_processes() -> Iterator[None]:
+    """The environment in which processes keep to one core each; afterwards as it was.
+
+    Where this process is killed, what it shared with them is cleared away without a word.
+    """
+    changes = {f"{library}_NUM_THREADS": "1" for library in _LIBRARIES}
+    warnings = os.environ.get("PYTHONWARNINGS")
+    changes["PYTHONWARNINGS"] = f"{warnings},{_LEAKS}" if warnings else _LEAKS
+    earlier = {name: os.environ.get(name) for name in changes}
+    os.environ.update(changes)
     try:
         yield
     finally:

@@ -19,7 +19,14 @@ from acutance.errors import RegionError
 from acutance.geometry.angles import wrap_direction
 from acutance.raster.gsd import Gsd
 
-__all__ = ["LONLAT_CRS", "Geolocation", "ground_gsd", "is_geographic", "transform_points"]
+__all__ = [
+    "LONLAT_CRS",
+    "Geolocation",
+    "ground_gsd",
+    "is_geographic",
+    "require_known_crs",
+    "transform_points",
+]
 
 LONLAT_CRS = "OGC:CRS84"
 
@@ -216,6 +223,17 @@ def transform_points(
     return np.reshape(moved[0], xs.shape), np.reshape(moved[1], xs.shape)
 
 
+def require_known_crs(crs: str) -> None:
+    """Refuse a CRS that is not known.
+
+    Raises
+    ------
+    RegionError
+        Names it.
+    """
+    _parse_crs(crs)
+
+
 def is_geographic(crs: str) -> bool:
     """Whether the coordinates of a CRS are longitude and latitude.
 
@@ -228,10 +246,13 @@ def is_geographic(crs: str) -> bool:
 
 
 def _parse_crs(crs: str) -> Any:
+    from rasterio import Env
     from rasterio.crs import CRS
 
     try:
-        return CRS.from_user_input(crs)
+        # Outside of an Env GDAL prints its errors by itself.
+        with Env():
+            return CRS.from_user_input(crs)
     except ValueError as error:
         raise RegionError(
             f"the coordinate reference system {_short(crs)!r} is not known ({error}): "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from typing import Any, Literal
@@ -16,7 +16,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError, RegionError
 from acutance.raster.coordinates import PIXELS
 from acutance.raster.geojson import declared_crs, load_geojson
-from acutance.raster.geolocation import LONLAT_CRS
+from acutance.raster.geolocation import LONLAT_CRS, require_known_crs
 from acutance.raster.site import find_site
 
 __all__ = ["KINDS", "SurveyedTarget", "read_targets", "targets_of"]
@@ -40,6 +40,8 @@ _GEOMETRY = {
     "bars": ("Polygon", "Point"),
     "scene": ("Polygon",),
 }
+_SHAPES = tuple(dict.fromkeys(sum(_GEOMETRY.values(), ())))
+_NO_SIZE = "a Point needs size_m (or size_px), the side of the square around it"
 _STD_M, _CATALOGUE_STD_M = 5.0, 15.0
 """Of a position by a satellite receiver in an image located by its vendor; of our catalogue, which
 has seconds of arc."""
@@ -197,17 +199,37 @@ def targets_of(
     if not features:
         raise OptionError(f"{name} holds no features: write one for every target")
     found: list[SurveyedTarget] = []
-    faults: list[str] = []
+    faults = _faults_of_crs(crs)
     for number, feature in enumerate(features, start=1):
         try:
             found.append(_target(feature, number, crs or LONLAT_CRS))
         except _FaultsError as error:
             faults.extend(error.faults)
-    count = Counter(one.name for one in found)
+    count = Counter(_title(one, number) for number, one in enumerate(features, start=1))
     faults.extend(f"{count[one]} features have the name {one!r}" for one in count if count[one] > 1)
     if faults:
         raise OptionError(f"{name} cannot be used:\n" + "\n".join(f"  - {one}" for one in faults))
     return tuple(found)
+
+
+def _faults_of_crs(crs: str | None) -> list[str]:
+    if crs is None or crs.lower() == PIXELS:
+        return []
+    try:
+        require_known_crs(crs)
+    except RegionError as error:
+        return [str(error)]
+    return []
+
+
+def _title(feature: Any, number: int) -> str:
+    """What a feature is called, well formed or not: its name, its site, its id, else its number."""
+    if not isinstance(feature, Mapping):
+        return str(number)
+    given = feature.get("properties")
+    given = given if isinstance(given, Mapping) else {}
+    title = given.get("name") or given.get("site") or feature.get("id") or number
+    return str(title) if isinstance(title, str | int) else str(number)
 
 
 class _FaultsError(ValueError):
@@ -224,14 +246,33 @@ def _target(feature: Any, number: int, crs: str) -> SurveyedTarget:
         raise _FaultsError(label, ["it is no GeoJSON Feature"])
     given = feature.get("properties")
     given = dict(given) if isinstance(given, Mapping) else {}
-    title = given.get("name") or given.get("site") or feature.get("id")
-    label = f"{label} ({title})" if isinstance(title, str | int) else label
+    title = _title(feature, number)
+    label = f"{label} ({title})" if title != str(number) else label
     known = {key: value for key, value in given.items() if key not in _FREE}
     try:
         properties = _Properties.model_validate(known)
     except ValidationError as error:
-        raise _FaultsError(label, [_fault(one) for one in error.errors()]) from None
-    return _checked(feature, properties, label, str(title or number), crs)
+        faults = [_fault(one) for one in error.errors()]
+        raise _FaultsError(label, [*faults, *_faults_beside(feature, known, crs)]) from None
+    return _checked(feature, properties, label, title, crs)
+
+
+def _faults_beside(feature: Mapping[str, Any], given: Mapping[str, Any], crs: str) -> list[str]:
+    """What is wrong with a feature besides properties that are not well formed."""
+    kind = given.get("kind") if given.get("kind") in KINDS else None
+    shape, _, faults = _geometry(feature.get("geometry"), kind, crs)
+    faults += _of_other_kinds(given, kind)
+    if shape == "Point" and not given.keys() & {"size_m", "size_px"}:
+        faults.append(_NO_SIZE)
+    return faults
+
+
+def _of_other_kinds(names: Iterable[str], kind: str | None) -> list[str]:
+    """Properties that belong to some kinds, and not to this one."""
+    if kind is None:
+        return []
+    others = set(sum(_OF_KIND.values(), ())) - set(_OF_KIND[kind])
+    return [f"{one} is no property of the kind {kind!r}" for one in sorted(others & set(names))]
 
 
 def _fault(error: Any) -> str:
@@ -252,11 +293,10 @@ def _checked(
     if feature.get("geometry") is None and given.kind != "scene":
         shape, points, crs, size_m, faults = _of_catalogue(given, size_m)
         std_m = _CATALOGUE_STD_M if std_m is None else std_m
-    own = {name for name in given.model_fields_set if name in sum(_OF_KIND.values(), ())}
-    for one in sorted(own - set(_OF_KIND[given.kind])):
-        faults.append(f"{one} is no property of the kind {given.kind!r}")
+    own = {name for name in given.model_fields_set if name in _OF_KIND[given.kind]}
+    faults += _of_other_kinds(given.model_fields_set, given.kind)
     if shape == "Point" and size_m is None and given.size_px is None:
-        faults.append("a Point needs size_m (or size_px), the side of the square around it")
+        faults.append(_NO_SIZE)
     if given.valid_from and given.valid_to and given.valid_to < given.valid_from:
         faults.append(f"valid_to {given.valid_to} is before valid_from {given.valid_from}")
     if given.width_m is not None and given.width_px is not None:
@@ -288,14 +328,18 @@ def _checked(
 Shape = tuple[str | None, tuple[tuple[float, float], ...], list[str]]
 
 
-def _geometry(geometry: Any, kind: str, crs: str) -> Shape:
-    """The shape and the points of a feature, or what is wrong with them."""
+def _geometry(geometry: Any, kind: str | None, crs: str) -> Shape:
+    """The shape and the points of a feature, or what is wrong with them.
+
+    Of a kind that is not known all shapes are right.
+    """
     if geometry is None:
         return None, (), []
     shape = geometry.get("type") if isinstance(geometry, Mapping) else None
-    if shape not in _GEOMETRY[kind]:
-        allowed = " or ".join(_GEOMETRY[kind])
-        return None, (), [f"its geometry is {shape!r}: the kind {kind!r} takes {allowed}"]
+    shapes = _SHAPES if kind is None else _GEOMETRY[kind]
+    if shape not in shapes:
+        what = "targets take" if kind is None else f"the kind {kind!r} takes"
+        return None, (), [f"its geometry is {shape!r}: {what} {' or '.join(shapes)}"]
     coordinates = geometry.get("coordinates")
     if shape == "Point":
         coordinates = [coordinates]

@@ -1,0 +1,32 @@
+"""What long commands show: a line now and then where stderr is no terminal, and Ctrl-C."""
+
+import os
+import signal
+
+import pytest
+
+from acutance.cli import progress
+
+
+def test_lines_come_no_more_often_than_they_may(capsys, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    with progress.progress_bar("batch") as show:
+        for done in range(5):
+            now[0] += 4
+            show(done, 20)
+        now[0] += 30
+        show(5, None)
+    assert capsys.readouterr().err.splitlines() == ["batch: 2 of 20", "batch: 5"]
+
+
+def test_ctrl_c_is_answered_at_once(capsys):
+    usual = signal.getsignal(signal.SIGINT)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt), progress.progress_bar("batch"):
+            os.kill(os.getpid(), signal.SIGINT)
+        assert capsys.readouterr().err == "stopping ...\n"
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, usual)
