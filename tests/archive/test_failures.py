@@ -85,11 +85,29 @@ def test_a_password_is_not_told(short_patience):
     assert "cannot be reached for 0.5 s" in str(found.value)
 
 
-def test_an_empty_file_becomes_an_archive(tmp_path, edge_record):
-    path = tmp_path / "a name?with #signs%20.db"
+def test_an_empty_file_is_no_archive(tmp_path):
+    """It may be an image that was never written."""
+    path = tmp_path / "image.tif"
     path.touch()
-    with pytest.raises(ArchiveError, match="is empty"):
-        Archive(path, read_only=True)
+    os.utime(path, (1, 1))
+    for read_only in (True, False):
+        with pytest.raises(ArchiveError, match="is no archive: the file is empty"):
+            Archive(path, read_only=read_only)
+    assert path.stat().st_size == 0
+
+
+def test_an_empty_file_that_another_process_makes_is_waited_for(tmp_path, edge_record):
+    path = tmp_path / "kept.db"
+    with Archive(tmp_path / "made.db") as archive:
+        archive.add(edge_record)
+    path.touch()
+    threading.Timer(0.5, (tmp_path / "made.db").rename, [path]).start()
+    with Archive(path) as archive:
+        assert len(archive.measurements()) == 1
+
+
+def test_names_with_signs(tmp_path, edge_record):
+    path = tmp_path / "a name?with #signs%20.db"
     with Archive(path) as archive:
         assert archive.add(edge_record).new
     assert [one.name for one in tmp_path.iterdir()] == [path.name]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 
 import pytest
 
@@ -181,3 +182,24 @@ def test_corrections_that_cannot_be(acutance, campaign):
     assert "give it alone" in done.stderr
     done = acutance("archive", "correct", campaign, "--image", "x.tif", "--gsd", "a")
     assert "--gsd a" in done.stderr
+
+
+def test_an_import_of_nothing_makes_no_archive(acutance, tmp_path):
+    place, text = tmp_path / "new.db", tmp_path / "text.json"
+    text.write_text("no JSON")
+    done = acutance("archive", "import", place, text, tmp_path / "missing.csv")
+    assert done.exit_code == 2
+    assert "text.json: it is no JSON" in done.stderr
+    assert "missing.csv: No such file" in done.stderr
+    assert not place.exists()
+
+
+def test_an_empty_file_is_no_archive(acutance, tmp_path):
+    place = tmp_path / "image.tif"
+    place.touch()
+    os.utime(place, (1, 1))
+    for words in (("info", place), ("import", place, tmp_path)):
+        done = acutance("archive", *words)
+        assert done.exit_code == 2
+        assert "is no archive: the file is empty" in done.stderr
+    assert place.stat().st_size == 0

@@ -135,3 +135,17 @@ def test_ctrl_c(acutance, given, monkeypatch):
     result = acutance(*given)
     assert result.exit_code == 130
     assert "the same command goes on" in result.stderr
+
+
+def test_all_faults_of_options_are_named_and_no_archive_is_made(acutance, given, tmp_path):
+    plan = tmp_path / "plan.toml"
+    plan.write_text(
+        f'images = ["{given[1]}"]\ntargets = "{given[3]}"\narchive = "new.db"\n[edge]\nfoo = 1\n'
+        "target_softness_m = {value = 1}\n[edge.limits]\nrowz = 3\ncolour = 2\n"
+    )
+    done = acutance("batch", plan)
+    assert done.exit_code == 2
+    for part in ("edge has no option 'foo'", "the plan: there is no check 'rowz'",
+                 "there is no check 'colour'", "target_softness_m is {'value': 1}"):  # fmt: skip
+        assert part in done.stderr
+    assert not (tmp_path / "new.db").exists()

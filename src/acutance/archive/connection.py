@@ -23,7 +23,7 @@ from sqlalchemy.pool import QueuePool
 from acutance.archive.failures import explained, is_passing
 from acutance.errors import ArchiveError
 
-__all__ = ["PATIENCE_S", "Database", "open_database"]
+__all__ = ["PATIENCE_S", "Database", "is_there", "open_database"]
 
 Done = TypeVar("Done")
 
@@ -31,6 +31,8 @@ PATIENCE_S = 20.0
 """How long a busy file, or a server that does not answer, is waited for."""
 
 _PAUSE_S = 0.1
+_MAKING_S = 5.0
+"""A new file is empty until its tables are made."""
 _CACHE_KB = 65_536
 _LOG_PAGES = 8_000
 _WRITES = "acutance_writes"
@@ -112,6 +114,15 @@ class Database:
         self.engine.dispose()
 
 
+def is_there(place: str | os.PathLike[str]) -> bool:
+    """Whether a place is a file that exists already, or a server's: those are not made here."""
+    text = os.fspath(place)
+    if "://" not in text:
+        return Path(text).exists()
+    url = _url(text)
+    return url.get_backend_name() != "sqlite" or Path(url.database or "").exists()
+
+
 def open_database(place: str | os.PathLike[str], *, read_only: bool = False) -> Database:
     """The database of a place; nothing is read yet.
 
@@ -180,10 +191,23 @@ def _require_file_place(path: Path, read_only: bool) -> None:
         raise ArchiveError(f"archive {path} is a folder: name a file in it")
     if read_only and not path.exists():
         raise ArchiveError(f"archive {path} is not there: correct its name")
+    if path.exists() and _is_empty(path):
+        raise ArchiveError(
+            f"archive {path} is no archive: the file is empty; remove it, or name another"
+        )
     if not path.parent.is_dir():
         raise ArchiveError(
             f"archive {path} cannot be made, there is no folder {path.parent}: make it first"
         )
+
+
+def _is_empty(path: Path) -> bool:
+    """Whether a file holds nothing, and is not just being made by another process."""
+    while (about := path.stat()).st_size == 0:
+        if not 0 <= time.time() - about.st_mtime < _MAKING_S:
+            return True
+        time.sleep(_PAUSE_S)
+    return False
 
 
 def _file_address(path: Path, read_only: bool) -> str:

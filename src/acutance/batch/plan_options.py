@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from acutance.errors import OptionError
@@ -132,12 +132,27 @@ def _faults(whose: str, chosen: ChosenOptions) -> list[str]:
     if chosen.method not in methods:
         named = ", ".join(methods)
         found.append(f"{whose}: there is no {chosen.kind} method {chosen.method!r}: {named}")
-    if not found:
-        try:
-            chosen.build()
-        except OptionError as error:
-            found.append(f"{whose}: {error}")
-    return found
+    usable = {name: one for name, one in chosen.given.items() if name in known}
+    return found + [f"{whose}: {one}" for one in _bad_values(replace(chosen, given=usable))]
+
+
+def _bad_values(chosen: ChosenOptions) -> list[str]:
+    """What is wrong with values, each by itself if it is wrong by itself."""
+    whole = _refusal(chosen)
+    if whole is None:
+        return []
+    single = [{name: one} for name, one in chosen.given.items() if name != "limits"]
+    single += [{"limits": {name: one}} for name, one in _limits(chosen.given).items()]
+    alone = (_refusal(replace(chosen, given=one)) for one in single)
+    return list(dict.fromkeys(one for one in alone if one is not None)) or [whole]
+
+
+def _refusal(chosen: ChosenOptions) -> str | None:
+    try:
+        chosen.build()
+    except OptionError as error:
+        return str(error).removeprefix(f"{_of_kind(chosen.kind)[1]}: ")
+    return None
 
 
 def _of_kind(kind: str) -> tuple[str, str, tuple[str, ...]]:

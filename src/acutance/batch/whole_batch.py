@@ -11,6 +11,7 @@ from functools import partial
 from typing import Any
 
 from acutance.archive import Archive, Entry
+from acutance.archive.connection import is_there
 from acutance.archive.outcomes import Outcome
 from acutance.batch.image_list import ImageFile, content_of, list_images, stated_of
 from acutance.batch.measure_image import BatchTask, BatchWork, MeasuredImage, measure_image
@@ -102,6 +103,9 @@ def run_batch(
     wanted = _wanted(plan, images, targets, archive, bands, workers, scheduler)
     work = _work(wanted)
     files = list_images(wanted.images)
+    if not is_there(wanted.archive):
+        # No new archive is made for a plan that cannot be done.
+        require_options(work.targets, work.chosen, wanted.options)
     with Archive(wanted.archive) as place:
         known = _known_images(files, wanted)
         tally = Tally()

@@ -168,20 +168,29 @@ def import_documents(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Add measurements to an archive, each once. The archive is made if it is not there.
+    """Add measurements to an archive, each once. It is made where something can be read.
 
     What was exported has its own image and target; the options are for documents of measuring
     commands, which do not know them. A file that cannot be read stops no other; exit code 2 tells
     of it.
     """
     from acutance.archive import Archive
+    from acutance.archive.connection import is_there
+    from acutance.archive.dates import as_utc
+    from acutance.archive.exchange.documents import Stated
+    from acutance.archive.exchange.importing import Imported, refused_files
     from acutance.report import json_text
 
-    with Archive(place) as archive, progress_bar(f"import {Path(place).name}") as progress:
-        done = archive.import_documents(
-            files, sensor=sensor, level=level, band=band, target=target, acquired=acquired,
-            progress=lambda read: progress(read, None),
-        )  # fmt: skip
+    day = None if acquired is None else as_utc(acquired, "acquired")
+    stated = Stated(sensor=sensor, level=level, band=band, target=target, acquired=day)
+    refused = None if is_there(place) else refused_files(files, stated)
+    if refused is not None:
+        done = Imported(0, 0, refused)
+    else:
+        with Archive(place) as archive, progress_bar(f"import {Path(place).name}") as progress:
+            done = archive.import_documents(
+                files, **vars(stated), progress=lambda read: progress(read, None)
+            )
     if as_json:
         numbers = {"read": done.read, "new": done.new, "refused": dict(done.refused)}
         typer.echo(json_text({"schema": "acutance/archive-import/1", **numbers}))

@@ -18,7 +18,7 @@ from acutance.archive.exchange.jsonl import read_jsonl
 from acutance.archive.exchange.parquet import read_parquet
 from acutance.errors import OptionError
 
-__all__ = ["Imported", "import_files"]
+__all__ = ["Imported", "import_files", "refused_files"]
 
 _CATALOG = "catalog.json"
 
@@ -80,6 +80,21 @@ def import_files(
 
     new = add_entries(database, entries(), run, progress)
     return Imported(count, new, refused)
+
+
+def refused_files(paths: Iterable[str | os.PathLike[str]], stated: Stated) -> dict[str, str] | None:
+    """Why nothing of some files can be read; ``None`` where something can.
+
+    Parameters
+    ----------
+    paths : iterable of path
+    stated : Stated
+    """
+    refused: dict[str, str] = {}
+    for path in paths:
+        for _ in _readable(Path(path), stated, refused):
+            return None
+    return refused
 
 
 def _readable(path: Path, stated: Stated, refused: dict[str, str]) -> Iterator[Entry]:
