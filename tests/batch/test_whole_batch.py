@@ -169,7 +169,7 @@ def test_nodata_on_the_target(write_field, run, rows):
         return pixels
 
     found = run(write_field(0, edit=cover, nodata=0))
-    assert (found.measured, found.reasons) == (1, {"NoDataError": 1})
+    assert (found.measured, found.reasons) == (1, {"no data": 1})
     _, rejected = rows()
     assert (rejected["target"][0], rejected["stage"][0]) == ("edge", "region")
 

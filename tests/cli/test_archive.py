@@ -89,7 +89,8 @@ def test_old_rows_are_counted(acutance, campaign):
 
 def test_one_is_shown(acutance, campaign, measured):
     shown = acutance("archive", "show", campaign, "1").stdout
-    assert "mtf_nyquist" in shown
+    for part in ("mtf_nyquist", "band 1, rows 0–", "GSD 0.7 m", "° to the grid, measured 20"):
+        assert part in shown
     assert "2026-05-01 00:00 UTC" in shown
     document = json.loads(acutance("archive", "show", campaign, "1", "--json").stdout)
     assert document == json.loads(measured.read_text(encoding="utf-8"))
@@ -203,3 +204,18 @@ def test_an_empty_file_is_no_archive(acutance, tmp_path):
         assert done.exit_code == 2
         assert "is no archive: the file is empty" in done.stderr
     assert place.stat().st_size == 0
+
+
+def test_images_are_listed_and_reasons_are_not_cut(acutance, tmp_path, measured, monkeypatch):
+    place = tmp_path / "undated.db"
+    reason = "the target lies outside the image: " + ", ".join(f"word {i}" for i in range(40))
+    image = ImageEntry(path="/images/field-of-may.tif")
+    assert acutance("archive", "import", place, measured).exit_code == 0
+    with Archive(place) as archive:
+        archive.add_entries([Entry(rejected=Rejected("region", reason, {}), image=image, key="a")])
+    for width in ("80", "130"):
+        monkeypatch.setenv("COLUMNS", width)
+        assert "edge.tif" in acutance("archive", "list", place).stdout
+        shown = acutance("archive", "list", place, "--rejected").stdout
+        assert "field-of-may.tif" in shown
+        assert "word 39" in " ".join(shown.split())

@@ -52,7 +52,7 @@ def given(tmp_path, edge_image):
 def test_a_batch_and_the_same_again(acutance, given):
     first = acutance(*given)
     assert first.exit_code == 0, first.output
-    assert "1 images: 1 rows added" in first.stdout
+    assert "1 image: 1 row added" in first.stdout
     assert "measured 1: 1 good" in first.stdout
     again = acutance(*given, "--json")
     document = json.loads(again.stdout)
@@ -99,7 +99,8 @@ def test_strict(acutance, given, flat_image):
     assert acutance(*given, "--strict").exit_code == 0
     result = acutance(*given, flat_image, "--strict")
     assert result.exit_code == 3
-    assert "1 rows are rejected" in result.stderr
+    assert "1 row is rejected" in result.stderr
+    assert "rejected 1: 1 not found" in result.stdout
     assert acutance(*given, flat_image).exit_code == 0
 
 

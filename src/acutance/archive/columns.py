@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.archive.counted import counted
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 
@@ -101,7 +102,7 @@ class Columns(ShortRepr):
 
     def summary(self) -> str:
         """How many rows."""
-        return f"{len(self)} rows"
+        return counted(len(self), "row")
 
     def _repr_html_(self) -> str:
         names = [name for name in self.shown if name in self.columns]

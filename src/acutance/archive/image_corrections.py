@@ -20,6 +20,7 @@ from typing import Any, Final
 from sqlalchemy import Connection, RowMapping, func, select, update
 
 from acutance.archive.connection import Database
+from acutance.archive.counted import counted
 from acutance.archive.dates import When, as_utc
 from acutance.archive.packing import plain_json
 from acutance.archive.tables import directions, images, measurements
@@ -163,7 +164,7 @@ class CorrectedImage:
             f"{name} {_word(before)} → {_word(after)}"
             for name, (before, after) in self.changes.items()
         )
-        return f"{self.image}: {listed} ({self.measurements} measurements)"
+        return f"{self.image}: {listed} ({counted(self.measurements, 'measurement')})"
 
     def to_dict(self) -> dict[str, Any]:
         """All fields for JSON."""

@@ -14,6 +14,7 @@ from sqlalchemy import Column, Connection, Select, select
 
 from acutance.archive.columns import Columns
 from acutance.archive.connection import Database
+from acutance.archive.counted import counted
 from acutance.archive.packing import unpacked
 from acutance.archive.selection import Selection
 from acutance.archive.tables import (
@@ -72,7 +73,8 @@ class Measurements(Columns):
     def summary(self) -> str:
         """How many measurements, of which sensors."""
         sensors = sorted({name for name in self.columns["sensor"].tolist() if name is not None})
-        count = f"{len(set(self.columns['id'].tolist()))} measurements, {len(self)} rows"
+        number = len(set(self.columns["id"].tolist()))
+        count = f"{counted(number, 'measurement')}, {counted(len(self), 'row')}"
         return f"{count}, {', '.join(sensors)}" if sensors else count
 
 

@@ -16,6 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from acutance.archive.columns import Columns
+from acutance.archive.counted import counted
 from acutance.archive.specification import Requirement, Specification
 from acutance.archive.trends.fit_trend import fit_trend
 from acutance.archive.trends.images import mean_of_images
@@ -90,7 +91,7 @@ class Answer:
         text += f" (probability of being met {_written(self.probability)}): {self.mean}"
         if self.day is not None:
             text += f" on {self.day}"
-        text += f", {self.images} image{'' if self.images == 1 else 's'}."
+        text += f", {counted(self.images, 'image')}."
         if self.word == OPEN:
             text += f" {self.advice}"
         return f"{text} {self.reason}".rstrip()
@@ -106,7 +107,7 @@ class Answer:
         if self.more_images is None:
             return "More images alone would not tell: the mean is too near the limit."
         count = self.more_images
-        return f"About {count} more image{'' if count == 1 else 's'} would tell."
+        return f"About {counted(count, 'more image')} would tell."
 
     def to_dict(self) -> dict[str, Any]:
         """All fields for JSON; the requirement as it was written."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from acutance.archive.counted import counted
 from acutance.curves.short_repr import ShortRepr
 
 if TYPE_CHECKING:
@@ -15,6 +16,20 @@ if TYPE_CHECKING:
 
 __all__ = ["BatchSummary", "Tally"]
 
+_WORDS = {
+    "ImageError": "unreadable image",
+    "RegionError": "outside or too small",
+    "NoDataError": "no data",
+    "TargetError": "no target found",
+    "NoEdgeError": "no edge found",
+    "NoBarsError": "no bars found",
+    "NoStarError": "no star found",
+    "PhaseError": "aligned with the pixel grid",
+    "SupportError": "too few rows or plateau",
+    "OptionError": "option not usable",
+    "ModelError": "target described in contradiction",
+}
+"""Reasons that are names of errors, in words."""
 VERDICTS = ("good", "usable", "doubtful", "invalid")
 _ELSEWHERE = ("outside", "not there then")
 """Rejections of targets that the image does not show: nothing went wrong."""
@@ -78,7 +93,8 @@ class BatchSummary(ShortRepr):
         """Rows, and how they came out."""
         by_verdict = ", ".join(f"{self.verdicts[one]} {one}" for one in self.verdicts)
         return (
-            f"{self.images} images, {self.kept} rows added, {self.done_before} there before; "
+            f"{counted(self.images, 'image')}, {counted(self.kept, 'row')} added, "
+            f"{self.done_before} there before; "
             f"measured {self.measured} ({by_verdict or 'none'}), rejected {self.rejected}"
         )
 
@@ -133,7 +149,7 @@ class Tally:
         if verdict is not None:
             self.verdicts[verdict] += 1
         else:
-            self.reasons[why or "rejected"] += 1
+            self.reasons[_WORDS.get(why or "", why or "rejected")] += 1
 
     def to_dict(self) -> dict[str, Any]:
         """Counts so far, for JSON."""

@@ -247,7 +247,7 @@ def export(
             count = archive.export(
                 out, to="csv-documents" if documents else to, progress=progress, **selected.words
             )
-    say(f"wrote {out}, {count} entries")
+    say(f"wrote {out}, {count} {'entry' if count == 1 else 'entries'}")
 
 
 app.command("trend", epilog=archive_trend.EXAMPLE)(archive_trend.trend)
@@ -262,6 +262,7 @@ app.command("report", epilog=archive_report.EXAMPLE)(archive_report.report)
 def info(place: PlaceArgument, as_json: JsonOption = False) -> None:
     """Tell what an archive holds, by sensor."""
     from acutance.archive import Archive
+    from acutance.archive.counted import counted
     from acutance.report import json_text
 
     with Archive(place, read_only=True) as archive:
@@ -270,9 +271,9 @@ def info(place: PlaceArgument, as_json: JsonOption = False) -> None:
         typer.echo(json_text({"schema": "acutance/archive-info/1", **found.to_dict()}))
         return
     typer.echo(
-        f"{found.place}: {found.measured} measurements, {found.rejected} rejected, {found.images} "
-        f"images, {found.targets} targets, {found.runs} runs; tables of version "
-        f"{found.schema_version}"
+        f"{found.place}: {counted(found.measured, 'measurement')}, {found.rejected} rejected, "
+        f"{counted(found.images, 'image')}, {counted(found.targets, 'target')}, "
+        f"{counted(found.runs, 'run')}; tables of version {found.schema_version}"
     )
     print_sensors(found.sensors)
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from acutance.archive import Entry
+    from acutance.archive import Entry, TargetEntry
     from acutance.archive.overview import SensorCount
     from acutance.targets.record import Record
 
@@ -18,28 +18,41 @@ _WIDE = 110
 _GAP = 2
 _NARROWEST = 6
 _UNKNOWN = "–"
+_TITLES = {"acquired": "date", "orientation": "dir."}
 _NUMBERS = {"mtf_nyquist": "MTF(0.5)", "rer": "RER", "fwhm_px": "FWHM [px]"}
-_SHRINKS = ("sensor", "band", "target", "kind", "reason")
-"""Columns of names and sentences, cut off where the terminal is too narrow."""
+_SHRINKS = ("sensor", "band", "target", "kind", "image", "reason")
+"""Columns of names and sentences, narrower where the terminal is: names are cut off there."""
+_WRAPPED = ("reason",)
+"""Columns whose sentences go on in the next line."""
 
 
 def print_measurements(rows: Sequence[Mapping[str, Any]]) -> None:
-    """Print rows of measurements; eighty columns have neither kind, band nor deviations."""
+    """Print rows of measurements; eighty columns have neither kind, band nor deviations.
+
+    They have the image only where no date tells which it is.
+    """
     wide = _width() >= _WIDE
     names = ["id", "acquired", "sensor", "target", "orientation", "verdict"]
     if wide:
-        names[3:4] = ["band", "target", "kind"]
+        names[3:4] = ["band", "target", "kind", "image"]
+    elif all(row["acquired"] is None for row in rows):
+        names[1:2] = ["image"]
+    names = _known(names, rows)
     cells = [[*(_cell(row, name) for name in names), *_estimates(row, wide)] for row in rows]
-    titles = {"acquired": "date", "orientation": "dir."}
-    header = [*(titles.get(name, name) for name in names), *_NUMBERS.values()]
+    header = [*(_TITLES.get(name, name) for name in names), *_NUMBERS.values()]
     print_table(header, cells, numbers=("id", *_NUMBERS.values()))
 
 
 def print_rejections(rows: Sequence[Mapping[str, Any]]) -> None:
     """Print what was not measured, and why."""
-    names = ("id", "acquired", "sensor", "target", "stage", "reason")
+    names = _known(["id", "acquired", "sensor", "image", "target", "stage", "reason"], rows)
     cells = [[_cell(row, name) for name in names] for row in rows]
-    print_table(["id", "date", *names[2:]], cells, numbers=("id",))
+    print_table([_TITLES.get(name, name) for name in names], cells, numbers=("id",))
+
+
+def _known(names: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Columns without those of which nothing is known."""
+    return [name for name in names if any(row[name] is not None for row in rows)]
 
 
 def print_sensors(sensors: Iterable[SensorCount]) -> None:
@@ -76,7 +89,7 @@ def print_table(
     for name, width in zip(header, _widths(header, rows), strict=True):
         table.add_column(
             Text(name), justify="right" if name in numbers else "left", width=width,
-            no_wrap=True, overflow="ellipsis",
+            no_wrap=name not in _WRAPPED, overflow="fold" if name in _WRAPPED else "ellipsis",
         )  # fmt: skip
     for row in rows:
         table.add_row(*map(Text, row))
@@ -98,7 +111,9 @@ def entry_text(entry: Entry) -> str:
         "image": image.path,
         "content": image.content,
         "level": image.level,
+        "GSD": None if image.gsd_m is None else _gsd_words(image.gsd_m),
         "target": None if target is None else target.name,
+        "place": _place(target),
         "site": None if target is None else target.site,
         "key": entry.key,
         "run": None
@@ -109,12 +124,24 @@ def entry_text(entry: Entry) -> str:
     return "\n".join(lines)
 
 
+def _place(target: TargetEntry | None) -> str | None:
+    if target is None or target.lon is None or target.lat is None:
+        return None
+    return f"longitude {target.lon:.5f}, latitude {target.lat:.5f}"
+
+
+def _gsd_words(sides_m: tuple[float, float]) -> str:
+    row_m, col_m = (f"{side:.4g}" for side in sides_m)
+    return f"{row_m} m" if row_m == col_m else f"rows {row_m} m, columns {col_m} m"
+
+
 def _record_lines(record: Record) -> Iterable[str]:
     from acutance.curves import METRICS
     from acutance.report.labels import title_of
     from acutance.report.text import align_columns
 
     yield title_of(record)
+    yield f"  {_measured_words(record)}"
     yield f"  {record.verdict}"
     numbers = {name: one.numbers for name, one in record.directions.items()}
     rows = [
@@ -122,6 +149,21 @@ def _record_lines(record: Record) -> Iterable[str]:
         for metric in METRICS
     ]
     yield align_columns([("", *numbers), *rows], "l" + "r" * len(numbers))
+
+
+def _measured_words(record: Record) -> str:
+    """Band, region and GSD of the pixels, the angle, and when it was measured."""
+    from acutance.curves import Estimate
+    from acutance.report.labels import provenance
+
+    found = provenance(record)
+    del found["image"]
+    measured = found.pop("measured")
+    words = [one if name == "region" else f"{name} {one}" for name, one in found.items()]
+    angle = record.document.get("angle_deg")
+    if angle is not None:
+        words.append(f"{Estimate(angle['value'], angle['std'])}° to the grid")
+    return ", ".join([*words, f"measured {measured}"])
 
 
 def _widths(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[int]:

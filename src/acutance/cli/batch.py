@@ -88,6 +88,7 @@ def batch(
     """
     plan = _plan(images, targets, archive, band, sensor, height, workers, dask)
 
+    from acutance.archive.counted import counted
     from acutance.batch import run_batch
 
     try:
@@ -102,7 +103,8 @@ def batch(
         say("acutance: nothing could be measured")
         raise typer.Exit(NOTHING_MEASURED)
     if strict and found.failed:
-        say(f"acutance: {found.failed} rows are rejected, doubtful or invalid")
+        verb = "is" if found.failed == 1 else "are"
+        say(f"acutance: {counted(found.failed, 'row')} {verb} rejected, doubtful or invalid")
         raise typer.Exit(FAILED_CHECK)
 
 
@@ -194,9 +196,12 @@ def _line(entry: Entry) -> dict[str, Any]:
 
 def _text(found: BatchSummary) -> str:
     """Counts, then verdicts and reasons, and where to read on."""
+    from acutance.archive.counted import counted
+
+    there = f"{found.done_before} {'was' if found.done_before == 1 else 'were'} there"
     lines = [
-        f"{found.images} images: {found.kept} rows added to {found.archive}, "
-        f"{found.done_before} were there",
+        f"{counted(found.images, 'image')}: {counted(found.kept, 'row')} added to "
+        f"{found.archive}, {there}",
         _counts("measured", found.measured, found.verdicts),
         _counts("rejected", found.rejected, found.reasons),
         *(f"unreadable: {path}" for path in found.unreadable[:_NAMED]),

@@ -9,6 +9,7 @@ from datetime import UTC, date, datetime, timedelta
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.archive.counted import counted
 from acutance.archive.dates import as_utc
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
@@ -152,4 +153,6 @@ class Series(ShortRepr):
         found = self.when[np.isfinite(self.when)]
         span = f", {date_of(found.min())} to {date_of(found.max())}" if found.size else ""
         images = np.unique(self.image).size
-        return f"{self.title}, {self.size} measurements in {images} images{span}"
+        return (
+            f"{self.title}, {counted(self.size, 'measurement')} in {counted(images, 'image')}{span}"
+        )

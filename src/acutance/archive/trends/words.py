@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from acutance.archive.counted import counted
 from acutance.archive.trends.tuned import CHANGED, MIN_IMAGES_BY_STEPS
 from acutance.curves import Estimate
 
@@ -28,7 +29,7 @@ def percent(estimate: Estimate) -> str:
 
 def trend_text(trend: Trend) -> str:
     """What a trend is, in a few sentences."""
-    count = f"{trend.images.images} images"
+    count = counted(trend.images.images, "image")
     parts = [
         f"{trend.title}: {trend.level} on {trend.last} ({trend.measurements} measurements in "
         f"{count}, {trend.first} to {trend.last}).",

@@ -129,11 +129,11 @@ def _state_verdict(state: SeriesState) -> Verdict:
     if state.trend is not None:
         return trend_verdict(state.trend, label=label)
     words = word_estimate(state.level(state.metric)).value_and_std
-    return Verdict(
-        "usable",
-        f"{label}{METRIC_WORDS[state.metric].label} {words}, the mean of {state.images} images: "
-        "too few of them have dates for a trend.",
-    )
+    what = f"{label}{METRIC_WORDS[state.metric].label} {words}"
+    if state.images == 1:
+        return Verdict("usable", f"{what}: of one image, which shows no trend.")
+    days = "too few of them have dates, or they are of one day, for a trend"
+    return Verdict("usable", f"{what}, the mean of {state.images} images: {days}.")
 
 
 def _trend_sections(
