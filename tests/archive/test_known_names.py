@@ -59,7 +59,7 @@ def test_images_of_several_gsds_are_not_joined(archive: Archive, entry_of: Any) 
     archive.add_entries(of_gsd(entry_of, i, sizes[i // 2]) for i in range(8))
     found = archive.check(specification())
     assert [(one.what, one.images) for one in found.answers] == [
-        ("across, GSD 10 to 10.3 m", 4), ("across, GSD 20 m", 2), ("across, GSD 30 m", 2),
+        ("GSD 10 to 10.3 m, across", 4), ("GSD 20 m, across", 2), ("GSD 30 m, across", 2),
     ]  # fmt: skip
     assert "No sensor and no band is named: 4 images are taken" in found.answers[0].summary
     refused = "of 3 GSDs, GSD 10 to 10.3 m, GSD 20 m, GSD 30 m: select one"

@@ -95,7 +95,7 @@ def test_the_specification_of_the_data_purchase(archive: Archive) -> None:
     spec = Specification.of({"requirement": [
         {"metric": "mtf_nyquist", "minimum": 0.09, "sensor": "QB02", "band": "pan", "level": "CC"},
         {"metric": "mtf_nyquist", "minimum": 0.2, "sensor": "QB02", "band": "NIR", "level": "CC"},
-        {"metric": "mtf_nyquist", "minimum": 0.2, "sensor": "other"},
+        {"metric": "mtf_nyquist", "minimum": 0.2, "sensor": "KOMPSAT-3", "band": "NIR"},
     ]})  # fmt: skip
     found = archive.check(spec)
     assert [answer.word for answer in found.answers] == [

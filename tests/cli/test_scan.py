@@ -1,7 +1,9 @@
 """``acutance scan``: the answer, tables of the edges, and what is refused."""
 
+import base64
 import csv
 import json
+import re
 
 import numpy as np
 import pytest
@@ -91,6 +93,9 @@ def test_several_bands_are_one_run(acutance, colours, tmp_path, shown, keeps_to_
     page = (tmp_path / "scan.html").read_text()
     assert "Band 2: result" in page
     assert "Shifts relative to band 1" in page
+    # Drawings are images in the page; each map of edges has one more, its quick look.
+    maps = [base64.b64decode(one) for one in re.findall(r"svg\+xml;base64,([^\"]+)", page)]
+    assert sum(b"Edges of the scene" in one and b"<image" in one for one in maps) == 2
 
 
 def test_edges_of_a_map_have_longitude_and_latitude(acutance, scene, tmp_path):

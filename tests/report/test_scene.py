@@ -25,8 +25,15 @@ RNG = np.random.default_rng(7)
 
 
 @pytest.fixture(scope="module")
-def measured():
+def constant():
+    """Of too few edges to ask how sharpness changes."""
     return scene()
+
+
+@pytest.fixture(scope="module")
+def measured(constant):
+    root = 1e-3 * np.eye(constant.field.amount.size)[:, :3]
+    return replace(constant, field=replace(constant.field, root=root))
 
 
 def some_edges(edges, which):
@@ -233,3 +240,11 @@ def test_the_page_of_a_scene_says_what_its_numbers_are(measured):
         assert words in whole
     names = [row[0] for row in scene_tables(measured)[1].rows]
     assert names == ["ideal", "soft", "strange"]
+
+
+def test_of_too_few_edges_nothing_is_shown_over_the_field(constant):
+    assert not constant.field.is_fitted
+    assert tuple(one.title for one in panels(constant)[-3:]) == PANELS[:3]
+    whole = html.unescape(page(constant))
+    assert "Sharpness over the field" not in whole
+    assert "too few to show how sharpness changes over the field" in whole

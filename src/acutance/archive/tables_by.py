@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from acutance.archive.columns import Columns
 from acutance.archive.measurements import Measurements
-from acutance.archive.trends.images import image_means
+from acutance.archive.natural_order import natural_key
+from acutance.archive.trends.images import mean_of_images
+from acutance.archive.trends.measured_series import random_and_systematic
 from acutance.archive.trends.series import Series
-from acutance.archive.weighted_means import weighted_mean
 from acutance.curves import METRICS, Estimate
 from acutance.errors import NothingSelectedError, OptionError
 
@@ -141,7 +142,8 @@ def table_by(
     lead = [name for name in _NEVER_MIXED if name not in by and len(set(words[name])) > 1]
     names = (*lead, *by)
     keys = list(zip(*(words[name] for name in names), strict=True))
-    found = [_row(numbers, key, _mask(keys, key), metrics) for key in sorted(set(keys))]
+    ordered = sorted(set(keys), key=lambda key: tuple(map(natural_key, key)))
+    found = [_row(numbers, key, _mask(keys, key), metrics) for key in ordered]
     fixed = max(len(lead), max((names.index(one) + 1 for one in _NEVER_MIXED if one in by
                                 and len(set(words[one])) > 1), default=0))  # fmt: skip
     return MeasurementTable(
@@ -218,12 +220,12 @@ def _cell(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Estimate | Non
         return None
     if value.size == 1:
         return Estimate(float(value[0]), float(std[0]))
-    image = rows["image_id"][mask]
-    if np.unique(image).size == 1:
-        return weighted_mean(value, std).mean
-    series = Series(metric=metric, when=np.zeros(value.size), value=value, std=std, image=image)
-    images = image_means(series)
-    return weighted_mean(images.value, np.sqrt(images.variance)).mean
+    random, systematic = random_and_systematic(rows, metric, mask)
+    series = Series(
+        metric=metric, when=np.zeros(value.size), value=value, std=random,
+        systematic_std=systematic, image=rows["image_id"][mask],
+    )  # fmt: skip
+    return mean_of_images(series).mean
 
 
 def _with_averages(

@@ -131,7 +131,7 @@ def scan(
     if table is not None:
         _write_edges(table, found.edges, images[0])
     if isinstance(found, BandScenes):
-        _deliver_bands(outputs, found, kept)
+        _deliver_bands(outputs, found, kept, images)
     else:
         is_drawn = outputs.figure is not None or outputs.report is not None
         outputs.deliver(Shown(found, _backdrop(images[0], found) if is_drawn else {}))
@@ -159,16 +159,28 @@ def _write_edges(table: OutputFile, edges: EdgeTable, image: Image) -> None:
         table.deliver(json_text(edges.to_geojson(lonlat)))
 
 
-def _deliver_bands(outputs: Outputs, found: BandScenes, kept: tuple[str | None, ...]) -> None:
+def _deliver_bands(
+    outputs: Outputs, found: BandScenes, kept: tuple[str | None, ...], images: Sequence[Image]
+) -> None:
     """One page and one document of all bands; figures and curves in files of their own."""
     from acutance import report
 
     names = [f"band-{name}" for name in found.scenes]
-    each = [Shown(scene) for scene in found.measurements]
+    looks: dict[str, dict[str, Any]] = {name: {} for name in found.scenes}
+    if outputs.figure is not None or outputs.report is not None:
+        by_band = {one.band: one for one in images}
+        looks = {
+            name: _backdrop(by_band[scene.image.band], scene)
+            for name, scene in found.scenes.items()
+        }
+    each = [Shown(scene, looks[name]) for name, scene in found.scenes.items()]
     for own, shown in zip(outputs.of_regions(names, kept), each, strict=True):
         replace(own, report=None).write_files(shown)
     if outputs.report is not None:
-        outputs.report.deliver(report.bands_page(found, command=command_line()))
+        backdrops = {name: look["backdrop"] for name, look in looks.items()}
+        outputs.report.deliver(
+            report.bands_page(found, command=command_line(), backdrops=backdrops)
+        )
     if outputs.as_json:
         document = report.bands_document(found, covariance=outputs.covariance)
         typer.echo(report.json_text(document))

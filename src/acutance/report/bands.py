@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from acutance.report.page import sections, verdict_of
 from acutance.report.text import table_text
 
 if TYPE_CHECKING:
+    from acutance.curves.grid import Floats
     from acutance.scan import BandScenes
 
 __all__ = ["bands_document", "bands_page", "bands_tables", "bands_text"]
@@ -121,7 +123,12 @@ def bands_document(found: BandScenes, covariance: bool = False) -> dict[str, Any
     }
 
 
-def bands_page(found: BandScenes, *, command: str | None = None) -> str:
+def bands_page(
+    found: BandScenes,
+    *,
+    command: str | None = None,
+    backdrops: Mapping[str, Floats] | None = None,
+) -> str:
     """Several bands as one page: the tables and all MTFs first, then every band.
 
     Parameters
@@ -129,7 +136,10 @@ def bands_page(found: BandScenes, *, command: str | None = None) -> str:
     found : BandScenes
     command : str, optional
         The command line.
+    backdrops : mapping of str to (rows, cols) array, optional
+        By band a quick look at what was scanned.
     """
+    shown = backdrops or {}
     names = tuple(f"band {name}" for name in found.scenes)
     curves = Plate.of_figure(
         comparison_figure(Comparison(found.measurements, names=names), on_page=True),
@@ -146,7 +156,7 @@ def bands_page(found: BandScenes, *, command: str | None = None) -> str:
     each = [
         replace(section, title=f"Band {name}: {section.title[:1].lower()}{section.title[1:]}")
         for name, scene in found.scenes.items()
-        for section in sections(scene)
+        for section in sections(scene, backdrop=shown.get(name))
     ]
     content = (
         Section("Result", verdicts=tuple(verdicts)),

@@ -120,6 +120,11 @@ class Field(ShortRepr):
     root: Floats
     chance_constant: float
 
+    @property
+    def is_fitted(self) -> bool:
+        """Whether there were edges enough to ask how sharpness changes."""
+        return self.root.size > 0
+
     def mean_of(self, base: OtfModel) -> FieldOtf:
         """The mean over the field of a sensor that is `base` in the middle of the edges."""
         return FieldOtf(base, -self.middle, self.amount, self.root)

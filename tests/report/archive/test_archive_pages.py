@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import re
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -13,6 +14,7 @@ from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
 from acutance.archive.trends import Event, Series, fit_trend
 from acutance.errors import OptionError
 from acutance.report.archive import sensor_page, trend_figure, trend_page
+from acutance.report.archive.wording import signed, with_minus
 from acutance.targets import Rejected
 
 BEGIN = datetime(2024, 1, 10, 10, tzinfo=UTC)
@@ -159,8 +161,53 @@ def test_curves_of_bands_are_drawn_apart(tmp_path, edge_record):
             image = ImageEntry(path=f"{at}.tif", sensor="QB02", acquired=day)
             made.add_entries([Entry(record=edge_record, image=image, band=band)])
         page = words_of(sensor_page(made, "QB02"))
-    assert "red: each of the latest 2 measurements" in page
-    assert "blue: each of the latest 1 measurements" in page
+    assert "red: the latest 2 measurements across, and their median" in page
+    assert "blue: the latest 1 measurement across." in page
+
+
+def test_undated_images_of_bands_that_are_not_named(tmp_path, edge_record):
+    """One row an image, and bands of different GSDs apart, everywhere on the page."""
+    document = edge_record.document
+    with Archive(tmp_path / "undated.db") as made:
+        for at in range(6):
+            gsd_m = 10.0 if at < 4 else 20.0
+            image = ImageEntry(path=f"{at // 2}.tif", content=f"{at // 2:064x}", sensor="S2")
+            record = ac.Record({**document, "gsd_m": gsd_m})
+            target = TargetEntry(name=f"field {at % 2}", kind="edge")
+            made.add_entries([Entry(record=record, image=image, target=target, key=str(at))])
+        page = sensor_page(made, "S2")
+    images = page[page.index("<h2>Images</h2>") :]
+    assert [images.count(f"{at}.tif<") for at in range(3)] == [1, 1, 1]
+    assert '<td class="r">2</td><td class="l">2 good</td>' in images
+    for size in ("10", "20"):
+        assert f"GSD {size} m: the latest" in page
+        assert f'<td class="l">GSD {size} m</td><td class="l">field 0</td>' in page
+    assert "GSD 20 m, across: MTF at Nyquist" in page
+    assert "of one image, which shows no trend" in page
+
+
+def test_bands_are_in_the_order_of_their_numbers(tmp_path, edge_record):
+    with Archive(tmp_path / "bands.db") as made:
+        for band in ("B11", "B8A", "B2"):
+            image = ImageEntry(path=f"{band}.tif", sensor="S2", acquired=BEGIN)
+            made.add_entries([Entry(record=edge_record, image=image, band=band)])
+        page = sensor_page(made, "S2")
+    for before in ('<td class="l">', "<figcaption>"):
+        places = [page.index(f"{before}{band}") for band in ("B2", "B8A", "B11")]
+        assert places == sorted(places)
+    assert f'<td class="l">{BEGIN:%Y-%m-%d}</td>' in page
+
+
+def test_numbers_of_a_table_have_the_digits_of_their_deviations(archive):
+    assert signed(-0.04) == "0.0"
+    assert signed(-1.26) == "−1.3"
+    assert with_minus("2026-01-04: -31.4 to -.5 %") == "2026-01-04: −31.4 to −.5 %"
+    trend = archive.trend("mtf_nyquist", sensor="QB02", orientation="across")
+    page = trend_page(trend)
+    images = page[page.index("<h2>Images</h2>") :]
+    shown = re.findall(r">(0\.\d+) ± (0\.\d+)<", images)
+    assert shown
+    assert all(len(value) == len(std) for value, std in shown)
 
 
 def test_a_sensor_that_is_not_there_is_named(archive):

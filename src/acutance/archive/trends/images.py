@@ -183,8 +183,15 @@ def mean_of_images(series: Series) -> WeightedMean:
     series : Series
     """
     known = series.known()
-    images = image_means(replace(known, when=np.zeros(known.size)))
     lowest = 0.0 if series.metric in METRICS else None
+    if np.unique(known.image).size == 1:
+        # No other image shows how much they scatter: the targets of this one stand in.
+        systematic = 0.0
+        if known.systematic_std is not None:
+            systematic = float(np.nan_to_num(known.systematic_std).mean())
+        found = weighted_mean(known.value, known.std, systematic_std=systematic, lowest=lowest)
+        return replace(found, count=1)
+    images = image_means(replace(known, when=np.zeros(known.size)))
     return weighted_mean(
         images.value, np.sqrt(images.variance), systematic_std=images.systematic_std, lowest=lowest
     )

@@ -7,19 +7,26 @@ tell their sensor would else be joined to one.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.archive.columns import Columns
+from acutance.archive.natural_order import natural_key
 from acutance.archive.trends.gsd import gsd_classes
 from acutance.archive.trends.series import Series
 from acutance.curves import MAIN_NUMBERS, METRICS
 from acutance.curves.grid import Floats
 from acutance.errors import NothingSelectedError, OptionError
 
-__all__ = ["all_series", "one_series", "random_and_systematic", "years_of"]
+__all__ = [
+    "all_series",
+    "by_gsd",
+    "gsd_words",
+    "one_series",
+    "random_and_systematic",
+    "years_of",
+]
 
 _ONE_OF = ("sensor", "band", "level", "orientation")
 """What a trend is of one of."""
@@ -52,7 +59,7 @@ def one_series(rows: Columns, metric: str) -> Series:
                 f"the measurements are of {len(found)} {name}s, {', '.join(found)}: select one "
                 f"({name}=..., --{name})"
             )
-    sizes = [_gsd_words(rows["gsd_m"][mask]) for mask in _by_gsd(rows)]
+    sizes = [gsd_words(rows["gsd_m"][mask]) for mask in by_gsd(rows)]
     if len(sizes) > 1:
         raise OptionError(
             f"the measurements are of {len(sizes)} GSDs, {', '.join(sizes)}: select one, by "
@@ -73,18 +80,15 @@ def all_series(rows: Columns, metric: str) -> Iterator[Series]:
     keys = [tuple(one) for one in zip(*(rows[name].tolist() for name in _ONE_OF), strict=True)]
     index = {key: at for at, key in enumerate(dict.fromkeys(keys))}
     label = np.array([index[key] for key in keys], int)
-    for key in sorted(index, key=lambda one: tuple(str(part) for part in one)):
+    for key in sorted(index, key=lambda one: tuple(map(natural_key, one))):
         ours = label == index[key]
-        classes = _by_gsd(rows, ours)
+        classes = by_gsd(rows, ours)
         for mask in classes:
-            found = _series(rows, metric, mask)
-            if len(classes) > 1:
-                size = _gsd_words(rows["gsd_m"][mask])
-                found = replace(found, name=f"{found.name}, {size}".removeprefix(", "))
-            yield found
+            size = gsd_words(rows["gsd_m"][mask]) if len(classes) > 1 else None
+            yield _series(rows, metric, mask, size)
 
 
-def _by_gsd(rows: Columns, mask: NDArray[np.bool_] | None = None) -> list[NDArray[np.bool_]]:
+def by_gsd(rows: Columns, mask: NDArray[np.bool_] | None = None) -> list[NDArray[np.bool_]]:
     """Masks of the classes of GSD among some rows, the finest first; unknown GSDs apart.
 
     Where all known GSDs are of one class, the unknown ones are taken to be of it.
@@ -99,8 +103,8 @@ def _by_gsd(rows: Columns, mask: NDArray[np.bool_] | None = None) -> list[NDArra
     return [one for one in masks if one.any()]
 
 
-def _gsd_words(gsd_m: Floats) -> str:
-    """The GSD of a class: "30 m", or from smallest to largest."""
+def gsd_words(gsd_m: Floats) -> str:
+    """The GSD of a class, from smallest to largest: "GSD 30 m"."""
     known = gsd_m[np.isfinite(gsd_m)]
     if known.size == 0:
         return "GSD unknown"
@@ -117,17 +121,17 @@ def _words(rows: Columns, name: str) -> list[str]:
     return sorted({"unknown" if one is None else str(one) for one in rows[name].tolist()})
 
 
-def _series(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Series:
+def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | None = None) -> Series:
     value = rows[metric][mask]
     std, systematic = random_and_systematic(rows, metric, mask)
     image = rows["image_id"][mask]
     names = dict(zip(image.tolist(), rows["image"][mask].tolist(), strict=True))
-    title = [rows[name][mask][0] for name in _ONE_OF]
+    *title, orientation = (rows[name][mask][0] for name in _ONE_OF)
     return Series(
         metric=metric, when=years_of(rows["acquired"][mask]), value=value, std=std,
         systematic_std=systematic, image=image, gsd_m=rows["gsd_m"][mask],
         image_names={number: name for number, name in names.items() if name is not None},
-        name=", ".join(str(part) for part in title if part is not None),
+        name=", ".join(str(part) for part in (*title, size, orientation) if part is not None),
         notes=(*_unnamed(rows, mask), *_mixed(rows, mask)),
     )  # fmt: skip
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from acutance.archive.counted import counted
+from acutance.archive.natural_order import natural_key
 from acutance.report.figures.curves import COLORS, mark_frequencies
 from acutance.report.html import Plate
 from acutance.report.paper import INK, new_page, styled
@@ -22,6 +24,7 @@ LATEST = 60
 _ONE_OF = ("band", "level")
 """Curves of different ones are not drawn over one another."""
 _TO_CPP = 1.0
+_FEW = 10
 
 
 def curves_plates(rows: Measurements) -> Iterator[Plate]:
@@ -35,7 +38,7 @@ def curves_plates(rows: Measurements) -> Iterator[Plate]:
     latest: dict[tuple[str | None, str | None], dict[int, None]] = {}
     for number, *key in zip(*(rows[name].tolist() for name in ("id", *_ONE_OF)), strict=True):
         latest.setdefault((key[0], key[1]), {})[number] = None
-    for words, numbers in latest.items():
+    for words, numbers in sorted(latest.items(), key=lambda one: tuple(map(natural_key, one[0]))):
         plate = _plate(rows.load(list(numbers)[-LATEST:]), ", ".join(filter(None, words)))
         if plate is not None:
             yield plate
@@ -48,24 +51,38 @@ def _plate(records: Sequence[Record], name: str) -> Plate | None:
         return None
     with styled():
         figure = new_page(12.4, 4.6)
-        all_axes = figure.subplots(1, len(curves), sharey=True, squeeze=False)[0]
-        for axes, (direction, several) in zip(all_axes, curves.items(), strict=True):
+        # Two places on every plate: those of several bands are compared.
+        all_axes = figure.subplots(1, 2, sharey=True)
+        for axes in all_axes[len(curves) :]:
+            axes.set_visible(False)
+        for axes, (direction, several) in zip(all_axes, curves.items(), strict=False):
             freq = np.linspace(0.0, _TO_CPP, 201)
             drawn = np.array([np.interp(freq, at, value) for at, value in several])
             mark_frequencies(axes, None, float(np.nanmax(drawn)))
             for one in drawn:
-                axes.plot(freq, one, color=COLORS[direction], alpha=0.15, linewidth=0.8)
-            axes.plot(freq, np.median(drawn, axis=0), color=INK, linewidth=1.8, label="median")
+                axes.plot(freq, one, color=COLORS[direction], alpha=_alpha(len(drawn)),
+                          linewidth=0.8 if len(drawn) > _FEW else 1.4)  # fmt: skip
+            if len(drawn) > 1:
+                axes.plot(freq, np.median(drawn, axis=0), color=INK, linewidth=1.8, label="median")
+                axes.legend(loc="upper right")
             axes.set(title=f"MTF, {direction}", xlabel="frequency [c/px]", xlim=(0.0, _TO_CPP))
-            axes.legend(loc="upper right")
         all_axes[0].set_ylabel("MTF")
+    counts = " and ".join(
+        f"{counted(len(several), 'measurement')} {direction}"
+        for direction, several in curves.items()
+    )
+    median = ", and their median at every frequency" if max(map(len, curves.values())) > 1 else ""
     return Plate.of_figure(
         figure,
         "MTF of the latest measurements",
-        f"{f'{name}: each' if name else 'Each'} of the latest {len(records)} measurements, and "
-        "their median at every frequency.",
+        f"{f'{name}: the' if name else 'The'} latest {counts}{median}.",
         wide=True,
     )
+
+
+def _alpha(count: int) -> float:
+    """Few curves are seen one by one, many as a cloud."""
+    return float(np.clip(3 / count, 0.15, 0.8))
 
 
 def _curves(records: Sequence[Record]) -> dict[str, list[tuple[np.ndarray, np.ndarray]]]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from acutance.archive import Archive
 from acutance.errors import NothingSelectedError, OptionError
+from acutance.report.archive.gsd_bands import with_gsd_bands
 from acutance.report.archive.sensor_comparisons import (
     SensorComparisons,
     comparison_tables,
@@ -82,6 +83,7 @@ def sensor_page(
             f"{verdict} or better; its sensors are {', '.join(known) or 'not known'}: name another "
             "sensor, or a lower verdict"
         )
+    rows = with_gsd_bands(rows)
     states = states_of(rows, sensor, metric, events)
     check = None
     if specification is not None:

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import date
+
+import numpy as np
 
 from acutance.archive.columns import Columns
 from acutance.archive.trends import Event, Trend, fit_trend
 from acutance.archive.trends.images import mean_of_images
 from acutance.archive.trends.measured_series import all_series
+from acutance.archive.trends.series import date_of
 from acutance.archive.weighted_means import WeightedMean
 from acutance.curves import MAIN_NUMBERS, Estimate
 from acutance.errors import OptionError
@@ -29,6 +33,8 @@ class SeriesState:
     found : dict of str to Trend or WeightedMean
         By metric; means where images are too few, or have no dates.
     measurements, images : int
+    days : tuple of date
+        Of the first and of the last image; empty where none has a date.
     """
 
     name: str
@@ -36,6 +42,7 @@ class SeriesState:
     found: dict[str, Trend | WeightedMean]
     measurements: int
     images: int
+    days: tuple[date, ...] = ()
 
     @property
     def trend(self) -> Trend | None:
@@ -78,5 +85,8 @@ def states_of(
             except OptionError:
                 found[one] = mean_of_images(series)
         name = main.name.removeprefix(sensor).removeprefix(", ")
-        states.append(SeriesState(name, metric, found, known.size, len(set(known.image.tolist()))))
+        when = known.when[np.isfinite(known.when)]
+        days = (date_of(float(when.min())), date_of(float(when.max()))) if when.size else ()
+        images = len(set(known.image.tolist()))
+        states.append(SeriesState(name, metric, found, known.size, images, days))
     return states

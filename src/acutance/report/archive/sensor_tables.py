@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from datetime import date
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,7 +35,7 @@ def state_table(states: Sequence[SeriesState]) -> Table:
         trend = one.trend
         rows.append((
             one.name, str(one.images), str(one.measurements),
-            str(trend.last) if trend else MISSING,
+            str(trend.last) if trend else _span(one.days),
             *(word_estimate(one.level(metric)).value_and_std for metric in MAIN_NUMBERS),
             percent(trend.relative_rate_per_year) if trend else MISSING,
             "\n".join(_changes(trend)) if trend else MISSING,
@@ -45,10 +46,15 @@ def state_table(states: Sequence[SeriesState]) -> Table:
         ("", "Images", "Measurements", "On", *labels, "Drift a year", "Changes"),
         tuple(rows), "lrrlrrrrl", title="State",
         notes=(
-            "The sensor's mean on the day of its last image, without the season; the mean of all "
-            f"images where they have no dates. Drift and changes are those of the {drawn}.",
+            "The sensor's mean on the day of its last image, without the season; where there is no "
+            f"trend the mean of all images. Drift and changes are those of the {drawn}.",
         ),
     )  # fmt: skip
+
+
+def _span(days: tuple[date, ...]) -> str:
+    """The days of a mean, the first and the last in a line each."""
+    return "\n".join(map(str, dict.fromkeys(days))) or MISSING
 
 
 def _changes(trend: Trend) -> list[str]:
@@ -114,18 +120,20 @@ def _means_table(means: MeasurementTable, direction: str, title: str) -> Table:
 
 def images_table(rows: Columns, rejected: Columns) -> Table:
     """Every image: what was measured in it and how it was judged, what was rejected."""
-    images: dict[tuple[Any, str], dict[str, Any]] = {}
+    images: dict[int, dict[str, Any]] = {}
     for part, is_measured in ((rows, True), (rejected, False)):
         for at in range(len(part)):
-            name = part["image"][at]
-            key = (part["acquired"][at], "" if name is None else str(name))
-            one = images.setdefault(key, {"ids": {}, "rejected": 0})
+            described = (part["acquired"][at], str(part["image"][at] or ""))
+            one = images.setdefault(
+                int(part["image_id"][at]), {"what": described, "ids": {}, "rejected": 0}
+            )
             if is_measured:
                 one["ids"][int(part["id"][at])] = str(part["verdict"][at])
             else:
                 one["rejected"] += 1
     listed = []
-    for (acquired, name), one in sorted(images.items(), key=_by_date)[:_MAX_IMAGES]:
+    for one in sorted(images.values(), key=_by_date)[:_MAX_IMAGES]:
+        acquired, name = one["what"]
         counts = Counter(one["ids"].values())
         words = ", ".join(f"{counts[word]} {word}" for word in _VERDICTS if counts[word])
         day = MISSING if np.isnat(acquired) else str(acquired.astype("datetime64[m]"))
@@ -141,8 +149,8 @@ def images_table(rows: Columns, rejected: Columns) -> Table:
     )  # fmt: skip
 
 
-def _by_date(item: tuple[tuple[Any, str], Any]) -> tuple[bool, Any, str]:
-    (acquired, name), _ = item
+def _by_date(image: dict[str, Any]) -> tuple[bool, Any, str]:
+    acquired, name = image["what"]
     return bool(np.isnat(acquired)), acquired.astype(np.int64), name
 
 

@@ -7,14 +7,20 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from acutance.archive.trends.series import date_of
+from acutance.curves import Estimate
 from acutance.report.archive.trend_figure import are_bad, trend_figure
-from acutance.report.archive.wording import event_percent, interval_words, percent
+from acutance.report.archive.wording import (
+    event_percent,
+    interval_words,
+    percent,
+    signed,
+    with_minus,
+)
 from acutance.report.html import Plate, Section, Table, Verdict, render_page
-from acutance.report.labels import METRIC_WORDS, MISSING, format_number, word_estimate
+from acutance.report.labels import METRIC_WORDS, MISSING, word_estimate
 
 if TYPE_CHECKING:
     from acutance.archive.trends import Trend
-    from acutance.curves import Estimate
 
 __all__ = ["trend_page", "trend_plate", "trend_verdict"]
 
@@ -36,7 +42,7 @@ def trend_page(trend: Trend, *, limit: float | None = None, command: str | None 
     """
     answer = Section(
         "Result",
-        paragraphs=(trend.summary(),),
+        paragraphs=(with_minus(trend.summary()),),
         verdicts=(trend_verdict(trend, limit),),
         plates=(trend_plate(trend, limit),),
     )
@@ -128,7 +134,7 @@ def _numbers_table(trend: Trend) -> Table:
         (
             "drift per year [%]",
             percent(relative).removesuffix(" %"),
-            interval_words(relative, 100.0),
+            interval_words(100.0 * relative),
         ),
         ("scatter between images", _value(trend.scatter), MISSING),
         ("season, half its range", _value(trend.season_amplitude), MISSING),
@@ -168,11 +174,10 @@ def _images_table(trend: Trend) -> Table:
     for at in range(min(images.size, _MAX_IMAGES)):
         if bad[at]:
             alerts.add(len(rows))
-        std = format_number(float(np.sqrt(images.variance[at])), 2)
+        mean = Estimate(float(images.value[at]), float(np.sqrt(images.variance[at])))
         rows.append((
             str(date_of(float(images.when[at]))), str(int(images.count[at])),
-            f"{format_number(float(images.value[at]), 4)} ± {std}",
-            f"{(images.value[at] - expected[at]) / scale[at]:+.1f}",
+            _value(mean), signed((images.value[at] - expected[at]) / scale[at]),
         ))  # fmt: skip
     left = images.size - len(rows)
     notes = ["Deviation from the trend in units of the image's own standard deviation and the "

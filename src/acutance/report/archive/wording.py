@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
-from acutance.report.labels import format_number
+from acutance.report.labels import MISSING, word_estimate
 
 if TYPE_CHECKING:
     from acutance.archive.trends import EventEffect, Trend
     from acutance.curves import Estimate
 
-__all__ = ["event_percent", "interval_words", "percent"]
+__all__ = ["event_percent", "interval_words", "percent", "signed", "with_minus"]
 
-_LEVEL = 0.95
+_NEGATIVE = re.compile(r"(?<![\w.])-(?=[\d.])")
 
 
 def percent(estimate: Estimate, *, sign: bool = True) -> str:
@@ -26,7 +27,18 @@ def event_percent(trend: Trend, event: EventEffect) -> str:
     return percent((1 / (trend.level.value or 1.0)) * event.size)
 
 
-def interval_words(estimate: Estimate, scale: float = 1.0) -> str:
-    """The 95 % interval."""
-    low, high = estimate.interval(_LEVEL)
-    return f"{format_number(scale * low, 3)} to {format_number(scale * high, 3)}".replace("-", "−")
+def interval_words(estimate: Estimate) -> str:
+    """The 95 % interval, with the digits of the standard deviation."""
+    words = word_estimate(estimate)
+    return words.low if words.low == MISSING else f"{words.low} to {words.high}"
+
+
+def signed(value: float) -> str:
+    """A number with its sign and one decimal; 0 has none."""
+    text = f"{value:+.1f}".replace("-", "−")
+    return text if text[1:] != "0.0" else "0.0"
+
+
+def with_minus(text: str) -> str:
+    """A text whose negative numbers have a minus, and no hyphen."""
+    return _NEGATIVE.sub("−", text)

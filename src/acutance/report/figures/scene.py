@@ -49,7 +49,7 @@ def scene_panels(
             ),
         ),
         population_panel(measurement),
-        field_panel(measurement),
+        *((field_panel(measurement),) if measurement.field.is_fitted else ()),
     )
 
 

@@ -36,8 +36,9 @@ def word_chance(chance: float) -> str:
 
 def scene_tables(measurement: SceneMeasurement) -> tuple[Table, ...]:
     """Edges by verdict, the shares of the objects, sharpness over the field, what was left out."""
+    over_field = (_field_table(measurement),) if measurement.field.is_fitted else ()
     return (
-        _edges_table(measurement), _objects_table(measurement), _field_table(measurement),
+        _edges_table(measurement), _objects_table(measurement), *over_field,
         reasons_table(measurement.edges),
     )  # fmt: skip
 
@@ -53,10 +54,16 @@ def _edges_table(measurement: SceneMeasurement) -> Table:
                 word, str(int(own.sum())), f"{np.median(edges.length_px[own]):.0f}",
                 f"{np.median(snr):.0f}" if snr.size else "", meaning,
             ))  # fmt: skip
+    notes = [f"{edges.size} were found, {int(edges.used.sum())} are used. Medians."]
+    if not measurement.field.is_fitted:
+        notes.append(
+            "They are too few to show how sharpness changes over the field: one sensor is taken "
+            "for all of it."
+        )
     return Table(
         ("verdict", "edges", "length / px", "SNR", "meaning"), tuple(rows), "lrrrl",
         title="Edges of the scene",
-        notes=(f"{edges.size} were found, {int(edges.used.sum())} are used. Medians.",),
+        notes=tuple(notes),
     )  # fmt: skip
 
 
