@@ -117,4 +117,6 @@ def test_a_task_that_takes_longer_than_a_user_waits_is_left(tmp_path):
     tasks = [(place, tmp_path) for place in range(3)]
     with pytest.raises(ValueError, match="zero"):
         run_tasks(fails_or_takes_long, tasks, lambda place, result: None, workers=2, chunk=1)
-    assert {one.name for one in tmp_path.iterdir()} == {"begun 0", "begun 1"}
+    found = {one.name for one in tmp_path.iterdir()}
+    # The process that failed may take another task before it is told to stop.
+    assert {"begun 0", "begun 1"} <= found <= {"begun 0", "begun 1", "begun 2"}
