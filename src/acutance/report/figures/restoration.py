@@ -149,11 +149,11 @@ def _draw_mtf(axes: Axes, filter: RestorationFilter) -> None:
         )
         axes.plot(freq, value, color=COLORS[name], dashes=(9, 3) if i else (1, 0))
         lines.append((
-            f"{name}, at Nyquist\n{word_estimate(before.mtf_nyquist).value} → "
+            f"{name}, at Nyquist\n{word_estimate(before.mtf_nyquist).value} →\n"
             f"{word_estimate(after.mtf_nyquist).value_and_std}", COLORS[name],
         ))  # fmt: skip
     for i, (text, color) in enumerate(lines):
-        axes.text(0.985, 0.955 - 0.155 * i, text, transform=axes.transAxes, ha="right", va="top",
+        axes.text(0.985, 0.955 - 0.2 * i, text, transform=axes.transAxes, ha="right", va="top",
                   color=color)  # fmt: skip
     axes.set_title("MTF before and after")
 
