@@ -76,12 +76,25 @@ def _gaussian_numbers(p: Floats) -> dict[str, float]:
 
 
 def _upright(p: Floats, u: Floats, v: Floats) -> Floats:
-    """A Gaussian whose axes are those of the image; of a single parameter it is round."""
-    return _gaussian(np.array([p[0], p[-1], 0.0]), u, v)
+    """A Gaussian whose axes are those of the image."""
+    return _gaussian(np.append(p, 0.0), u, v)
 
 
 def _upright_numbers(p: Floats) -> dict[str, float]:
-    return {"sigma_across_px": math.exp(p[0]), "sigma_along_px": math.exp(p[-1])}
+    return {"sigma_across_px": math.exp(p[0]), "sigma_along_px": math.exp(p[1])}
+
+
+def _round(p: Floats, u: Floats, v: Floats) -> Floats:
+    """A Gaussian that is nearly round: of one width, a small difference, a small correlation."""
+    return _gaussian(_nearly_round(p), u, v)
+
+
+def _round_numbers(p: Floats) -> dict[str, float]:
+    return _gaussian_numbers(_nearly_round(p))
+
+
+def _nearly_round(p: Floats) -> Floats:
+    return np.array([p[0] + p[1], p[0] - p[1], p[2]])
 
 
 def _smear(p: Floats, u: Floats, v: Floats) -> Floats:
@@ -214,13 +227,18 @@ def _interpolation_numbers(p: Floats) -> dict[str, float]:
 
 
 _SIGMA_MEAN, _SIGMA_STD = (math.log(0.4),), (0.7,)
+_NEARLY_ROUND_STD = (0.03, 0.06)
+"""No sensor is exactly round: half the logarithm of the ratio of its widths, and its correlation,
+the same ellipse in any direction."""
 _TAP_MEAN = (0.4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _TAP_STD = (0.5, 0.25, 0.12, 0.07, 0.05, 0.03, 0.02)
 
 TERMS: dict[str, Term] = {
     "gaussian": Term(_gaussian, (*_SIGMA_MEAN * 2, 0.0), (*_SIGMA_STD * 2, 0.3), _gaussian_numbers),
     "upright gaussian": Term(_upright, _SIGMA_MEAN * 2, _SIGMA_STD * 2, _upright_numbers),
-    "round gaussian": Term(_upright, _SIGMA_MEAN, _SIGMA_STD, _upright_numbers),
+    "round gaussian": Term(
+        _round, (*_SIGMA_MEAN, 0.0, 0.0), (*_SIGMA_STD, *_NEARLY_ROUND_STD), _round_numbers
+    ),
     "smear": Term(_smear, (0.0, 0.0), (1.2, 1.2), _smear_numbers),
     "upright smear": Term(_upright_smear, (0.0, 0.0), (1.2, 1.2), _upright_smear_numbers),
     "halo": Term(_halo, (-2.2, math.log(2.0)), (1.0, 0.5), _halo_numbers),
