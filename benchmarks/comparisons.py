@@ -126,6 +126,8 @@ def _columns(
     return {
         **{name: np.full(size, word, object) for name, word in words.items()},
         "target": np.array(names * year.size, object),
+        "site": np.full(size, "S", object),
+        "gsd_m": np.full(size, 0.6),
         "image_id": np.repeat(images, case.targets),
         "id": first + np.arange(size),
         "acquired": np.repeat(np.datetime64("2020-01-01", "us") + microseconds, case.targets),

@@ -21,8 +21,8 @@ def rows_of(*parts: dict[str, Any]) -> Columns:
     """Rows of an archive; every part has columns of n, or one value for all of them."""
     fixed = {
         "sensor": "QB02", "band": "pan", "level": None, "orientation": "across", "kind": "edge",
-        "method": "spline", "target": "tarp", "mtf_nyquist_std": 0.003,
-        "mtf_nyquist_systematic_std": 0.0,
+        "method": "spline", "target": "tarp", "site": "Salon", "gsd_m": 0.6,
+        "mtf_nyquist_std": 0.003, "mtf_nyquist_systematic_std": 0.0,
     }  # fmt: skip
     filled = []
     for number, part in enumerate(parts):
@@ -61,12 +61,11 @@ def edges(rng: np.random.Generator, images: int) -> Columns:
 
 def methods(rng: np.random.Generator, images: int) -> Columns:
     """Two methods on the same edges: nine tenths of the variance of their errors are the same."""
-    shape = (images, 2)
+    shape = (images, 1)
     common = 0.04 * LEVEL * rng.standard_normal((images, 1)) + 0.003 * rng.standard_normal(shape)
     parts = [
         {
-            "method": name, "image_id": np.repeat(np.arange(images), 2),
-            "target": np.array(["a", "b"] * images, object),
+            "method": name, "image_id": np.arange(images), "target": "a",
             "mtf_nyquist": (level + common + 0.001 * rng.standard_normal(shape)).ravel(),
         }
         for name, level in (("one", 1.02 * LEVEL), ("other", LEVEL))

@@ -24,14 +24,14 @@ from acutance.curves.estimate import normal_quantile
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 
-__all__ = ["WeightedMean", "weighted_mean"]
+__all__ = ["TRUSTED", "WeightedMean", "student_std", "weighted_mean"]
 
 _LEVEL: Final = 0.95
 _WEIGHT_LEVEL: Final = 0.25
 """Weights are those of the scatter at which Q has this probability of being less: coverage of 93
 to 97 % for 2 to 40 measurements of unequal deviations (benchmarks/trends.py), .91 with that of
 Paule and Mandel."""
-_TRUSTED: Final = 0.8
+TRUSTED: Final = 0.8
 """Stated deviations are taken to be no more than a quarter too large."""
 _HALVINGS: Final = 60
 
@@ -64,9 +64,8 @@ class WeightedMean:
         """How probable it is that the mean is below `limit`; ``nan`` of one measurement."""
         if self.count < 2 or not self.mean.std > 0:
             return float("nan")
-        degrees = self.count - 1
-        own = self.mean.std * normal_quantile(_LEVEL) / float(stdtrit(degrees, 0.5 + _LEVEL / 2))
-        return float(stdtr(degrees, (limit - self.mean.value) / own))
+        own = student_std(self.mean.std, self.count - 1)
+        return float(stdtr(self.count - 1, (limit - self.mean.value) / own))
 
     def to_dict(self) -> dict[str, Any]:
         """All fields for JSON."""
@@ -78,6 +77,11 @@ class WeightedMean:
             "systematic_std": self.systematic_std,
             "count": self.count,
         }
+
+
+def student_std(std: float, degrees: float) -> float:
+    """The deviation of Student's t whose 95 % interval is that of a normal density of `std`."""
+    return std * normal_quantile(_LEVEL) / float(stdtrit(degrees, 0.5 + _LEVEL / 2))
 
 
 def weighted_mean(
@@ -132,7 +136,7 @@ def weighted_mean(
     middle = float(weight @ values)
     spread = float(weight @ (values - middle) ** 2) / degrees
     half = float(stdtrit(degrees, 0.5 + _LEVEL / 2)) * np.sqrt(spread) / normal_quantile(_LEVEL)
-    floor = _TRUSTED / np.sqrt((1 / variance).sum()) if variance.min() > 0 else 0.0
+    floor = TRUSTED / np.sqrt((1 / variance).sum()) if variance.min() > 0 else 0.0
     systematic = _shared_std(weight, shared, labels)
     own = max(half, floor) or np.nan
     mean = Estimate(middle, float(np.hypot(own, systematic)), lowest)

@@ -13,13 +13,20 @@ import numpy as np
 from acutance.archive.columns import Columns
 from acutance.archive.comparisons.comparison import Comparison, GroupScatter
 from acutance.archive.comparisons.degrees import StdPart, joined_std
-from acutance.archive.comparisons.difference import Difference
+from acutance.archive.comparisons.difference import (
+    ABSOLUTE,
+    Difference,
+    gsds_differ,
+    is_of_pixels,
+)
 from acutance.archive.comparisons.groups import MeasuredGroup, Stratum, strata_of
 from acutance.archive.comparisons.means import difference_of_means
 from acutance.archive.comparisons.pairing import find_pairs
+from acutance.archive.comparisons.random_difference import RandomDifference
 from acutance.archive.comparisons.same_images import difference_of_pairs
 from acutance.archive.weighted_means import weighted_mean
 from acutance.curves import Estimate
+from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 
 __all__ = ["MARGIN", "compare_groups"]
@@ -27,6 +34,10 @@ __all__ = ["MARGIN", "compare_groups"]
 MARGIN: Final = 0.05
 """Relative difference below which groups are said to agree: what methods are trusted to."""
 _SEVERAL: Final = 3
+_MANY: Final = 2
+"""Where groups have so many times the images that hold both, means may tell more."""
+_LEAST_SHARE: Final = 0.25
+"""Of the smallest variance of a group's differences: the least that is taken for its own."""
 
 
 def compare_groups(
@@ -79,24 +90,45 @@ def _differences(stratum: Stratum, metric: str, by: str, margin: float) -> Itera
 def _difference(
     first: MeasuredGroup, second: MeasuredGroup, of: str, metric: str, by: str, margin: float
 ) -> Difference:
-    pairs = find_pairs(first, second, by)
-    if pairs is None:
-        groups = first, second
-        found = difference_of_means(first, second, one_sensor=by != "sensor")
-    else:
-        groups = pairs.first, pairs.second
-        found = difference_of_pairs(pairs)
+    found, groups = _random_difference(first, second, by)
     systematic = math.hypot(*(float(np.mean(one.systematic_std)) for one in groups))
     part = joined_std(found.part, StdPart(systematic))
-    level = abs(found.level) or 1.0
+    # Numbers that agree to the last digit, without stated deviations, show none.
+    part = part if part.std > 0 else StdPart(math.nan)
+    level = 1.0 if metric in ABSOLUTE else abs(found.level) or 1.0
     difference = part.estimate(found.value)
+    gsds = (groups[0].gsd_m, groups[1].gsd_m)
     return Difference(
         of=of, metric=metric, by=by, first=first.name, second=second.name, difference=difference,
         relative=(1 / level) * difference, probability=part.probability_above(found.value),
         systematic_std=systematic, scatter=found.scatter, basis=found.basis, images=found.images,
-        measurements=(groups[0].value.size, groups[1].value.size), margin=margin,
-        notes=(*found.notes, *_mixed(groups, by)),
+        measurements=(groups[0].value.size, groups[1].value.size), margin=margin, gsds_m=gsds,
+        notes=(*found.notes, *_mixed(groups, by), *_gsd_notes(groups, metric)),
     )  # fmt: skip
+
+
+def _random_difference(
+    first: MeasuredGroup, second: MeasuredGroup, by: str
+) -> tuple[RandomDifference, tuple[MeasuredGroup, MeasuredGroup]]:
+    """On the same images, or of means where few of many images hold both and these tell more."""
+    pairs = find_pairs(first, second, by)
+    if pairs is None:
+        return difference_of_means(first, second, one_sensor=by != "sensor"), (first, second)
+    together = difference_of_pairs(pairs)
+    if _MANY * together.images[0] < min(np.unique(one.image).size for one in (first, second)):
+        apart = difference_of_means(first, second, one_sensor=by != "sensor")
+        if apart.part.estimate(0.0).std < together.part.estimate(0.0).std:
+            return apart, (first, second)
+    return together, (pairs.first, pairs.second)
+
+
+def _gsd_notes(groups: tuple[MeasuredGroup, MeasuredGroup], metric: str) -> Iterator[str]:
+    if is_of_pixels(metric) and gsds_differ(groups[0].gsd_m, groups[1].gsd_m):
+        yield (
+            f"{groups[0].name} has a GSD of {groups[0].gsd_m:.3g} m, {groups[1].name} of "
+            f"{groups[1].gsd_m:.3g} m: numbers per pixel do not tell which is sharper on the "
+            "ground."
+        )
 
 
 def _mixed(groups: tuple[MeasuredGroup, MeasuredGroup], by: str) -> Iterator[str]:
@@ -112,25 +144,43 @@ def _mixed(groups: tuple[MeasuredGroup, MeasuredGroup], by: str) -> Iterator[str
 
 
 def _scatter(stratum: Stratum, by: str, differences: list[Difference]) -> GroupScatter:
-    """Offsets of the groups from their mean, and their scatter.
-
-    With errors of the groups that are independent the variance of a difference is the sum of two
-    of them, from which each follows.
-    """
+    """Offsets of the groups from their mean, and the scatter of those that have a deviation."""
     names = [group.name for group in stratum.groups]
     place = {name: at for at, name in enumerate(names)}
-    count = len(names)
-    value, variance = np.zeros((count, count)), np.zeros((count, count))
+    value, variance = np.zeros((len(names),) * 2), np.zeros((len(names),) * 2)
     for one in differences:
         at, other = place[one.first], place[one.second]
         value[at, other], value[other, at] = one.relative.value, -one.relative.value
-        variance[at, other] = variance[other, at] = np.nan_to_num(one.relative.std) ** 2
-    total = variance.sum() / 2 / (count - 1)
-    own = np.sqrt(np.maximum((variance.sum(axis=1) - total) / (count - 2), 0.0))
-    offset = value.sum(axis=1) / count
-    found = weighted_mean(offset, own)
+        variance[at, other] = variance[other, at] = one.relative.std**2
+    offset = value.sum(axis=1) / len(names)
+    own = _own_stds(variance)
+    known = np.isfinite(own)
+    nothing = Estimate(math.nan, math.nan), (0.0, math.inf)
+    found = weighted_mean(offset[known], own[known]) if known.sum() >= _SEVERAL else None
+    scatter, interval = nothing if found is None else (found.scatter, found.scatter_interval)
     return GroupScatter(
         of=stratum.name, by=by,
         offsets={name: Estimate(float(offset[at]), float(own[at])) for name, at in place.items()},
-        scatter=found.scatter, interval=found.scatter_interval,
+        scatter=scatter, interval=interval,
     )  # fmt: skip
+
+
+def _own_stds(variance: Floats) -> Floats:
+    """Deviations of n groups from the variances (n, n) of their differences.
+
+    With errors of the groups that are independent the variance of a difference is the sum of two
+    of them, from which each follows. ``nan`` where that is not known.
+    """
+    known = np.ones(len(variance), bool)
+    while np.isnan(variance[np.ix_(known, known)]).any():
+        unknown = np.isnan(variance[:, known]).sum(axis=1)
+        known[np.argmax(np.where(known, unknown, -1))] = False
+    own = np.full(known.size, np.nan)
+    count = int(known.sum())
+    if count >= _SEVERAL:
+        part = variance[np.ix_(known, known)]
+        total = part.sum() / 2 / (count - 1)
+        least = np.where(np.eye(count) > 0, np.inf, part).min(axis=1)
+        found = (part.sum(axis=1) - total) / (count - 2)
+        own[known] = np.sqrt(np.maximum(found, _LEAST_SHARE * least))
+    return own

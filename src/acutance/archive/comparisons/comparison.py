@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
@@ -23,9 +24,11 @@ class GroupScatter:
         Sensor, band, product level and direction, as far as they are not compared.
     by : str
     offsets : dict of str to Estimate
-        Of every group from the mean of all, over that mean.
+        Of every group from the mean of all, over that mean; without a deviation where none of its
+        differences has one.
     scatter : Estimate
-        Between the groups, over their mean, beyond the deviations of the offsets.
+        Between the groups, over their mean, beyond the deviations of the offsets; ``nan`` where
+        fewer than three have one.
     interval : (float, float)
         95 % interval of the scatter.
     """
@@ -39,9 +42,13 @@ class GroupScatter:
     @property
     def sentence(self) -> str:
         """The scatter in one sentence."""
+        of = f"{self.of}: " if self.of else ""
+        known = [one for one in self.offsets.values() if math.isfinite(one.std)]
+        if not math.isfinite(self.scatter.value):
+            return f"{of}how {len(self.offsets)} {self.by}s scatter cannot be told."
         low, high = (100 * end for end in self.interval)
         return (
-            f"{f'{self.of}: ' if self.of else ''}{len(self.offsets)} {self.by}s scatter by "
+            f"{of}{len(known)} {self.by}s scatter by "
             f"{100 * self.scatter.value:.1f} % (95 %: {low:.1f} to {high:.1f} %)."
         )
 
@@ -52,7 +59,7 @@ class GroupScatter:
             "by": self.by,
             "offsets": {name: one.to_dict() for name, one in self.offsets.items()},
             "scatter": self.scatter.to_dict(),
-            "interval": list(self.interval),
+            "interval": [end if math.isfinite(end) else None for end in self.interval],
             "sentence": self.sentence,
         }
 

@@ -8,7 +8,7 @@ from typing import Final
 
 from scipy.special import ndtr, stdtr, stdtrit
 
-from acutance.archive.weighted_means import WeightedMean
+from acutance.archive.weighted_means import WeightedMean, student_std
 from acutance.curves import Estimate
 from acutance.curves.estimate import normal_quantile
 
@@ -62,5 +62,4 @@ def part_of_mean(mean: WeightedMean) -> StdPart:
     own = math.sqrt(max(mean.mean.std**2 - mean.systematic_std**2, 0.0))
     if mean.count < 2 or math.isnan(own):
         return StdPart(mean.mean.std)
-    degrees = mean.count - 1
-    return StdPart(own * normal_quantile(LEVEL) / float(stdtrit(degrees, 0.5 + LEVEL / 2)), degrees)
+    return StdPart(student_std(own, mean.count - 1), mean.count - 1)

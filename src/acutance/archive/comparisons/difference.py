@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any, Final, Literal
 
 from acutance.archive.comparisons.degrees import LEVEL
-from acutance.archive.comparisons.pairing import Basis
+from acutance.archive.comparisons.pairing import MIN_IMAGES, Basis
 from acutance.curves import Estimate
 
-__all__ = ["Answer", "Difference"]
+__all__ = ["ABSOLUTE", "Answer", "Difference", "gsds_differ", "is_of_pixels"]
 
 Answer = Literal["differ", "agree", "cannot be told"]
 
@@ -24,6 +24,19 @@ _RISES_WITH_SHARPNESS: Final = (
 )  # fmt: skip
 _OF_PROCEDURE: Final = ("method", "kind")
 """What differs here is the number, and not how sharp something is."""
+ABSOLUTE: Final = ("overshoot", "undershoot")
+"""Numbers near 0, over which nothing can be divided: parts of the edge's height themselves."""
+_SAME_GSD: Final = 0.02
+
+
+def is_of_pixels(metric: str) -> bool:
+    """Whether a number belongs to the pixels, and not to the ground."""
+    return metric in (*_RISES_WITH_SHARPNESS, *_FALLS_WITH_SHARPNESS) and metric != "fwhm_m"
+
+
+def gsds_differ(one_m: float, other_m: float) -> bool:
+    """Whether two GSDs are known and are not those of one product."""
+    return abs(one_m / other_m - 1) > _SAME_GSD
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +51,7 @@ class Difference:
     difference : Estimate
         With what does not average out: that of both groups, as independent.
     relative : Estimate
-        The same over the mean of both.
+        The same over the mean of both; of overshoot and undershoot the difference itself.
     probability : float
         That the first is larger; ``nan`` where no deviation is known.
     systematic_std : float
@@ -52,6 +65,8 @@ class Difference:
     measurements : (int, int)
     margin : float
         Relative difference below which groups are said to agree.
+    gsds_m : (float, float)
+        Median GSDs in metres; ``nan`` where they are not known.
     notes : tuple of str
         What has to be known of it, in sentences.
     """
@@ -70,15 +85,26 @@ class Difference:
     images: tuple[int, int]
     measurements: tuple[int, int]
     margin: float
+    gsds_m: tuple[float, float]
     notes: tuple[str, ...] = ()
 
     @property
     def answer(self) -> Answer:
-        """Differ: the 95 % interval does not hold 0. Agree: it lies within the margin."""
+        """Differ: the 95 % interval does not hold 0. Agree: it lies within the margin.
+
+        One or two images that hold both do not show what an image does to one of them: the
+        interval is that of these images, and the answer that it cannot be told.
+        """
         low, high = self.relative.interval(LEVEL)
+        if self._is_of_few_images:
+            return "cannot be told"
         if low > 0 or high < 0:
             return "differ"
         return "agree" if max(-low, high) <= self.margin else "cannot be told"
+
+    @property
+    def _is_of_few_images(self) -> bool:
+        return self.basis != "means" and self.images[0] < MIN_IMAGES
 
     @property
     def sentence(self) -> str:
@@ -92,20 +118,24 @@ class Difference:
 
     @property
     def _answer_words(self) -> str:
-        low, high = (100 * end for end in self.relative.interval(LEVEL))
-        ends = f"95 %: {low:+.1f} to {high:+.1f} %"
         sign = -1 if self.relative.value < 0 else 1
-        size = f"{100 * sign * self.relative} %"
+        relative = sign * self.relative
+        low, high = (100 * end for end in relative.interval(LEVEL))
         if self.answer == "differ":
-            less = f", less than {100 * self.margin:g} %" if max(-low, high) / 100 <= self.margin \
-                else ""  # fmt: skip
-            return f"{self._larger_words} by {size}{less} ({self.metric}, {ends})"
+            less = f", less than {100 * self.margin:g} %" if high / 100 <= self.margin else ""
+            ends = f"95 %: {low:.1f} to {high:.1f} %"
+            return f"{self._larger_words} by {100 * relative} %{less} ({self.metric}, {ends})"
         pair = f"{self.first} and {self.second}"
-        if self.answer == "agree":
-            return f"{pair} agree within {100 * self.margin:g} % ({self.metric}, {ends})"
         if low != low:
             return f"whether {pair} differ cannot be told ({self.metric}, without deviations)"
-        return f"whether {pair} differ cannot be told yet ({self.metric}, {ends})"
+        first, second = (self.first, self.second) if sign > 0 else (self.second, self.first)
+        ends = f"{self.metric}, {first} minus {second}, 95 %: {low:+.1f} to {high:+.1f} %"
+        if self.answer == "agree":
+            return f"{pair} agree within {100 * self.margin:g} % ({ends})"
+        if self._is_of_few_images:
+            these = "this image" if self.images[0] == 1 else "these images"
+            return f"whether {pair} differ cannot be told of so few images ({ends} in {these})"
+        return f"whether {pair} differ cannot be told yet ({ends})"
 
     @property
     def _larger_words(self) -> str:
@@ -114,6 +144,8 @@ class Difference:
             larger, smaller = smaller, larger
         if self.by in _OF_PROCEDURE:
             return f"{larger} is above {smaller}"
+        if is_of_pixels(self.metric) and gsds_differ(*self.gsds_m):
+            return f"{larger} is larger per pixel than {smaller}"
         if self.metric in _RISES_WITH_SHARPNESS:
             return f"{larger} is sharper than {smaller}"
         if self.metric in _FALLS_WITH_SHARPNESS:
@@ -136,5 +168,7 @@ class Difference:
             "probability": None if self.probability != self.probability else self.probability,
             "systematic_std": self.systematic_std, "scatter": self.scatter, "basis": self.basis,
             "images": list(self.images), "measurements": list(self.measurements),
-            "margin": self.margin, "sentence": self.sentence, "notes": list(self.notes),
+            "margin": self.margin,
+            "gsds_m": [None if one != one else one for one in self.gsds_m],
+            "sentence": self.sentence, "notes": list(self.notes),
         }  # fmt: skip

@@ -15,7 +15,7 @@ from acutance.curves import METRICS
 from acutance.curves.grid import Floats
 from acutance.errors import NothingSelectedError, OptionError
 
-__all__ = ["COMPARED", "MeasuredGroup", "Stratum", "strata_of"]
+__all__ = ["COMPARED", "MeasuredGroup", "Stratum", "Target", "strata_of"]
 
 COMPARED: Final = ("orientation", "method", "kind", "band", "level", "sensor", "site", "target")
 """What can be compared."""
@@ -23,6 +23,9 @@ _NEVER_MIXED: Final = ("sensor", "band", "level", "orientation")
 _MAX_GROUPS: Final = 12
 """More groups have more pairs than anybody reads."""
 _UNKNOWN: Final = "unknown"
+_ALWAYS_KNOWN: Final = ("kind", "method")
+"""Of all else rows without it are left out where it is what is compared."""
+Target = tuple[str | None, str | None]
 _Word = TypeVar("_Word", str, tuple[str, ...])
 
 
@@ -38,8 +41,12 @@ class MeasuredGroup:
     when : (n,) array
         Years with decimals; ``nan`` without a date.
     image, measurement : (n,) int array
-    target, procedure : list of str or None
-        Name of the target; kind and method.
+    target : list of tuple or None
+        Site and name: targets of one name stand at many sites.
+    procedure : list of str
+        Kind and method.
+    gsd_m : float
+        Median; ``nan`` where none is known.
     """
 
     name: str
@@ -49,8 +56,9 @@ class MeasuredGroup:
     when: Floats
     image: NDArray[np.int64]
     measurement: NDArray[np.int64]
-    target: list[str | None]
+    target: list[Target | None]
     procedure: list[str]
+    gsd_m: float
 
 
 @dataclass(frozen=True)
@@ -87,6 +95,8 @@ def strata_of(rows: Columns, metric: str, by: str) -> Iterator[Stratum]:
     """
     _require(rows, metric, by)
     known = np.isfinite(rows[metric])
+    if by not in _ALWAYS_KNOWN:
+        known &= np.array([one is not None for one in rows[by].tolist()], bool)
     rows = Columns({name: column[known] for name, column in rows.columns.items()})
     fixed = [name for name in _NEVER_MIXED if name != by]
     keys = list(zip(*(_words(rows, name) for name in fixed), strict=True))
@@ -140,5 +150,16 @@ def _group(rows: Columns, metric: str, name: str, mask: NDArray[np.bool_]) -> Me
     return MeasuredGroup(
         name=name, value=own[metric], std=std, systematic_std=systematic,
         when=years_of(own["acquired"]), image=own["image_id"], measurement=own["id"],
-        target=own["target"].tolist(), procedure=_procedures(own),
+        target=_targets(own), procedure=_procedures(own), gsd_m=_median_gsd(own),
     )  # fmt: skip
+
+
+def _targets(rows: Columns) -> list[Target | None]:
+    """Site and name; what has neither is not known to come again."""
+    pairs: list[Target] = list(zip(rows["site"].tolist(), rows["target"].tolist(), strict=True))
+    return [None if pair == (None, None) else pair for pair in pairs]
+
+
+def _median_gsd(rows: Columns) -> float:
+    known = rows["gsd_m"][np.isfinite(rows["gsd_m"])]
+    return float(np.median(known)) if known.size else float("nan")

@@ -1,27 +1,32 @@
 """The difference of two groups that were measured in different images.
 
-Each has its own mean over images with random effects. A sensor that drifts looks sharper to the
-method that came first, so a drift common to both groups is fitted within the groups and taken
-out; its uncertainty counts by the time between their mean dates. What cannot be told from a drift
-(a step between two groups that follow one another) is said.
+Each has its own mean over images with random effects, of its targets too where several come again.
+A sensor that drifts looks sharper to the method that came first, so a drift common to both groups
+is fitted within the groups and taken out; its uncertainty counts by the time between their mean
+dates. Where a group has too few images to show its own scatter, levels and drift are fitted
+together and have one scatter. What cannot be told from a drift (a step between two groups that
+follow one another) is said.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from acutance.archive.comparisons.degrees import StdPart, joined_std, part_of_mean
 from acutance.archive.comparisons.groups import MeasuredGroup
-from acutance.archive.comparisons.same_images import RandomDifference
-from acutance.archive.comparisons.target_part import target_part
+from acutance.archive.comparisons.random_difference import RandomDifference
+from acutance.archive.comparisons.target_cells import mean_of_cells, target_cells
+from acutance.archive.comparisons.target_notes import target_notes
 from acutance.archive.trends.images import ImageMeans, image_means
 from acutance.archive.trends.series import Series
 from acutance.archive.trends.tuned import DRIFT_STDS_PER_YEAR
-from acutance.archive.weighted_means import WeightedMean, weighted_mean
+from acutance.archive.weighted_means import weighted_mean
+from acutance.curves.grid import Floats
 
 __all__ = ["difference_of_means"]
 
@@ -29,6 +34,21 @@ _DRIFT_STD: Final = math.sqrt(sum(part * std**2 for std, part in DRIFT_STDS_PER_
 """Of the prior of a drift, relative to the level: that of trends, as one normal density."""
 _APART_YEARS: Final = 0.02
 """Mean dates that are closer need no drift."""
+
+
+@dataclass(frozen=True)
+class _Drift:
+    """The drift a year, drawn towards none by its prior; `share` of 1 is that of the images."""
+
+    rate: float
+    variance: float
+    share: float
+    degrees: float
+
+    def part(self, years: float) -> StdPart:
+        """Its part of a difference; the more of it is the prior's, the better it is known."""
+        degrees = self.degrees / self.share**2 if self.share > 0 else math.inf
+        return StdPart(math.sqrt(self.variance) * abs(years), degrees)
 
 
 def difference_of_means(
@@ -47,22 +67,21 @@ def difference_of_means(
     dated = all(np.isfinite(one.when).all() for one in images)
     years = float(images[0].when.mean() - images[1].when.mean()) if dated else 0.0
     has_drift = one_sensor and abs(years) > _APART_YEARS
-    drift, drift_part = _drift(images, level) if has_drift else (0.0, StdPart(0.0))
-    means = [_mean(one, drift) for one in images]
-    spent = _spent_degrees(images) if drift else (0.0, 0.0)
-    parts = [
-        _part(mean, other, one)
-        for mean, other, one in zip(means, means[::-1], spent, strict=True)
-    ]  # fmt: skip
-    targets = [target_part(one.value, one.image, one.target) for one in (first, second)]
-    value = means[0].mean.value - means[1].mean.value - drift * years
+    drift = _drift(images, level) if has_drift else _Drift(0.0, 0.0, 0.0, math.inf)
+    groups = (first, second)
+    if drift.rate:
+        groups = (_without_drift(first, drift.rate), _without_drift(second, drift.rate))
+    spent = _spent_degrees(images) if drift.rate else (0.0, 0.0)
+    if all(one.size - 1 - own >= 1 for one, own in zip(images, spent, strict=True)):
+        found = [_mean(group, own) for group, own in zip(groups, spent, strict=True)]
+        part = joined_std(*(own for _, own in found), drift.part(years))
+    else:
+        found = [_over_targets(group) or (_level(group), StdPart(0.0)) for group in groups]
+        part = _part_of_one_scatter((_images(groups[0]), _images(groups[1])), drift, years)
+        part = joined_std(part, *(own for _, own in found))
     return RandomDifference(
-        "means", value,
-        joined_std(
-            *parts, *(part for part in targets if part is not None),
-            StdPart(drift_part.std * abs(years), drift_part.degrees),
-        ),
-        level, None, (images[0].size, images[1].size),
+        "means", found[0][0] - found[1][0] - drift.rate * years, part, level, None,
+        (images[0].size, images[1].size),
         tuple(_notes(images, first, second, one_sensor=one_sensor, dated=dated)),
     )  # fmt: skip
 
@@ -73,43 +92,80 @@ def _images(group: MeasuredGroup) -> ImageMeans:
     )
 
 
-def _mean(images: ImageMeans, drift: float) -> WeightedMean:
-    """The mean of a group on its mean date."""
-    away = images.when - images.when.mean() if drift else 0.0
-    return weighted_mean(images.value - drift * away, np.sqrt(images.variance))
+def _without_drift(group: MeasuredGroup, rate: float) -> MeasuredGroup:
+    """The values as they would be on the mean date of the group's images."""
+    middle = float(_images(group).when.mean())
+    return replace(group, value=group.value - rate * (group.when - middle))
+
+
+def _mean(group: MeasuredGroup, spent: float) -> tuple[float, StdPart]:
+    """The mean of a group, of whose degrees of freedom a drift has taken some."""
+    if (found := _over_targets(group)) is not None:
+        return found
+    images = _images(group)
+    mean = weighted_mean(images.value, np.sqrt(images.variance))
+    part, degrees = part_of_mean(mean), mean.count - 1 - spent
+    return mean.mean.value, StdPart(part.std * math.sqrt((mean.count - 1) / degrees), degrees)
+
+
+def _over_targets(group: MeasuredGroup) -> tuple[float, StdPart] | None:
+    """The mean of a group over targets that come again; None where there are none."""
+    cells = target_cells(group.value, group.std, group.image, group.target)
+    return mean_of_cells(cells) if cells.are_shared else None
+
+
+def _level(group: MeasuredGroup) -> float:
+    return float(_images(group).value.mean())
+
+
+def _part_of_one_scatter(
+    images: tuple[ImageMeans, ImageMeans], drift: _Drift, years: float
+) -> StdPart:
+    """The deviation of a difference of levels and of a drift that have one scatter.
+
+    The lone image of a group is taken to scatter as those of the other do, or by what is stated
+    for it if that is more.
+    """
+    sizes = [one.size for one in images]
+    if sizes == [1, 1]:
+        stated = float(np.concatenate([one.variance for one in images]).sum())
+        return StdPart(math.sqrt(stated) if min(one.variance[0] for one in images) else math.nan)
+    free = sum(sizes) - 2 - bool(drift.rate)
+    if free < 1:
+        return StdPart(math.nan)
+    pooled = sum(float(((one.value - one.value.mean()) ** 2).sum()) for one in images) / free
+    levels = sum(
+        max(pooled, float(one.variance[0]) if one.size == 1 else 0.0) / one.size for one in images
+    )
+    of_drift = drift.variance * years**2
+    # Both grow with the scatter, the drift less the more of it is the prior's.
+    doubt = (levels + drift.share * of_drift) ** 2 / free
+    variance = levels + of_drift
+    return StdPart(math.sqrt(variance), variance**2 / doubt if doubt > 0 else math.inf)
 
 
 def _spent_degrees(images: tuple[ImageMeans, ImageMeans]) -> tuple[float, float]:
     """What of the one degree of freedom of the drift each group gave."""
-    one, other = (float(((group.when - group.when.mean()) ** 2).sum()) for group in images)
+    one, other = (float((_off(group.when) ** 2).sum()) for group in images)
     return (one / (one + other), other / (one + other)) if one + other > 0 else (0.0, 0.0)
 
 
-def _part(mean: WeightedMean, other: WeightedMean, spent: float) -> StdPart:
-    """The deviation of a mean; one image scatters as those of the other group do."""
-    if mean.count > 1:
-        part, degrees = part_of_mean(mean), mean.count - 1 - spent
-        if degrees <= 0:
-            return StdPart(math.nan)
-        return StdPart(part.std * math.sqrt((mean.count - 1) / degrees), degrees)
-    stated = 0.0 if math.isnan(mean.mean.std) else mean.mean.std
-    if other.count < 2:
-        return StdPart(stated or math.nan)
-    return StdPart(math.hypot(stated, other.scatter.value), other.count - 1)
-
-
-def _drift(images: tuple[ImageMeans, ImageMeans], level: float) -> tuple[float, StdPart]:
-    """The drift a year within both groups, drawn towards none by its prior."""
-    when = np.concatenate([one.when - one.when.mean() for one in images])
-    value = np.concatenate([one.value - one.value.mean() for one in images])
+def _drift(images: tuple[ImageMeans, ImageMeans], level: float) -> _Drift:
+    """The drift within both groups."""
+    when = np.concatenate([_off(one.when) for one in images])
+    value = np.concatenate([_off(one.value) for one in images])
     prior = (_DRIFT_STD * level) ** 2
     square, free = float(when @ when), when.size - 3
     if free < 1 or square == 0:
-        return 0.0, StdPart(math.sqrt(prior))
+        return _Drift(0.0, prior, 0.0, math.inf)
     slope = float(when @ value) / square
     variance = float(((value - slope * when) ** 2).sum()) / free / square
     share = prior / (prior + variance)
-    return slope * share, StdPart(math.sqrt(share * variance), free)
+    return _Drift(slope * share, share * variance, share, free)
+
+
+def _off(number: Floats) -> Floats:
+    return np.asarray(number - number.mean())
 
 
 def _notes(
@@ -120,6 +176,7 @@ def _notes(
         lone = [group.name for group, one in zip((first, second), images, strict=True)
                 if one.size < 2]  # fmt: skip
         yield f"One image of {' and of '.join(lone)}: its own scatter is not known."
+    yield from target_notes(first, second)
     if not one_sensor:
         return
     if not dated:

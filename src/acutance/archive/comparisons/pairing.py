@@ -14,7 +14,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from acutance.archive.comparisons.groups import MeasuredGroup
+from acutance.archive.comparisons.groups import MeasuredGroup, Target
 from acutance.archive.trends.images import image_means
 from acutance.archive.trends.series import Series
 from acutance.curves.grid import Floats
@@ -43,10 +43,12 @@ class Pairs:
     level : float
         Mean of both.
     image : (n,) int array
-    target : list of str or None
+    target : list of tuple or None
         Of pairs on one target.
     first, second : MeasuredGroup
         The measurements of the pairs.
+    first_at, second_at : int array
+        Of each measurement the place of its pair.
     """
 
     basis: Basis
@@ -54,9 +56,11 @@ class Pairs:
     std: Floats
     level: float
     image: NDArray[np.int64]
-    target: list[str | None]
+    target: list[Target | None]
     first: MeasuredGroup
     second: MeasuredGroup
+    first_at: NDArray[np.int64]
+    second_at: NDArray[np.int64]
 
 
 def find_pairs(first: MeasuredGroup, second: MeasuredGroup, by: str) -> Pairs | None:
@@ -74,8 +78,8 @@ def find_pairs(first: MeasuredGroup, second: MeasuredGroup, by: str) -> Pairs | 
         return None
     found = [
         pairs
-        for basis in _bases(by)
-        if (pairs := _pairs(basis, first, second, by)) is not None
+        for basis, one_procedure in _bases(by)
+        if (pairs := _pairs(basis, first, second, by, one_procedure=one_procedure)) is not None
     ]  # fmt: skip
     for pairs in found:
         images = np.unique(pairs.image).size
@@ -85,18 +89,20 @@ def find_pairs(first: MeasuredGroup, second: MeasuredGroup, by: str) -> Pairs | 
     return found[0] if found and alone == 0 else None
 
 
-def _bases(by: str) -> tuple[Basis, ...]:
+def _bases(by: str) -> list[tuple[Basis, bool]]:
+    """What both may have in common, the finest first, and whether by one procedure."""
+    if by in ("method", "kind"):
+        return [("target", False), ("image", False)]
+    side_by_side: list[tuple[Basis, bool]] = [("image", True), ("image", False)]
     if by == "orientation":
-        return ("measurement", "image")
-    if by in ("site", "target"):
-        return ("image",)
-    return ("target", "image")
+        return [("measurement", True), *side_by_side]
+    return side_by_side if by in ("site", "target") else [("target", True), *side_by_side]
 
 
 def _pairs(
-    basis: Basis, first: MeasuredGroup, second: MeasuredGroup, by: str
+    basis: Basis, first: MeasuredGroup, second: MeasuredGroup, by: str, *, one_procedure: bool
 ) -> Pairs | None:  # fmt: skip
-    keys = _keys(basis, first, by), _keys(basis, second, by)
+    keys = tuple(_keys(basis, group, one_procedure=one_procedure) for group in (first, second))
     common = sorted((set(keys[0]) & set(keys[1])) - {None}, key=str)
     if not common:
         return None
@@ -116,19 +122,16 @@ def _pairs(
         basis=basis, value=value_1 - value_2, std=stated,
         level=float(np.mean(value_1 + value_2)) / 2,
         image=groups[0].image[at], target=[groups[0].target[one] for one in at.tolist()],
-        first=groups[0], second=groups[1],
+        first=groups[0], second=groups[1], first_at=labels[0], second_at=labels[1],
     )  # fmt: skip
 
 
-def _keys(basis: Basis, group: MeasuredGroup, by: str) -> _Keys:
+def _keys(basis: Basis, group: MeasuredGroup, *, one_procedure: bool) -> _Keys:
     """What has to be equal in both measurements of a pair; None where that is not known."""
     if basis == "measurement":
         return list(group.measurement.tolist())
     images = group.image.tolist()
-    if by in ("method", "kind"):
-        procedures: Sequence[str | None] = [None] * len(images)
-    else:
-        procedures = group.procedure
+    procedures: Sequence[str | None] = group.procedure if one_procedure else [None] * len(images)
     if basis == "image":
         return list(zip(images, procedures, strict=True))
     return [
@@ -144,6 +147,7 @@ def _of(group: MeasuredGroup, mask: NDArray[np.bool_]) -> MeasuredGroup:
         measurement=group.measurement[mask],
         target=[one for one, own in zip(group.target, mask, strict=True) if own],
         procedure=[one for one, own in zip(group.procedure, mask, strict=True) if own],
+        gsd_m=group.gsd_m,
     )  # fmt: skip
 
 
