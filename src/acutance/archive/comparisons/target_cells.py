@@ -1,7 +1,7 @@
 """Targets in images: what of a group's numbers comes again in every image.
 
-What is peculiar to a target does not average out over images. Targets that are seen in one image
-only cannot be told from that image, and are joined there.
+What is peculiar to a target, or to its site, does not average out over images. Targets that are
+seen in one image only cannot be told from that image, and are joined there.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from acutance.archive.comparisons.crossed_effects import SharedEffect, crossed_mean
 from acutance.archive.comparisons.degrees import StdPart
+from acutance.archive.comparisons.groups import Target
 from acutance.archive.trends.images import image_means
 from acutance.archive.trends.series import Series
 from acutance.curves.grid import Floats
@@ -31,7 +32,7 @@ class TargetCells:
         The variance is the stated one.
     image : (n,) int array
         In rising order.
-    target : (n,) int array
+    target, site : (n,) int array
         Below 0 for what one image alone holds: another number in each.
     """
 
@@ -39,20 +40,16 @@ class TargetCells:
     variance: Floats
     image: NDArray[np.int64]
     target: NDArray[np.int64]
-
-    @property
-    def targets(self) -> int:
-        """Number of targets that come again."""
-        return int(np.unique(self.target[self.target >= 0]).size)
+    site: NDArray[np.int64]
 
     @property
     def are_shared(self) -> bool:
-        """Whether several targets come, of which one at least comes again."""
-        return self.targets > 0 and np.unique(self.target).size > 1
+        """Whether there are several targets or sites, of which one at least comes again."""
+        return any(one.max() >= 0 and np.unique(one).size > 1 for one in (self.target, self.site))
 
 
 def target_cells(
-    value: Floats, std: Floats, image: NDArray[np.int64], target: Sequence[Hashable | None]
+    value: Floats, std: Floats, image: NDArray[np.int64], target: Sequence[Target | None]
 ) -> TargetCells:
     """The means of the targets of each image.
 
@@ -61,30 +58,42 @@ def target_cells(
     value, std : (n,) array
     image : (n,) int array
     target : sequence of n
-        None where it is not known.
+        Site and name; None where it is not known.
     """
     names, images = np.unique(image, return_inverse=True)
-    index = {one: at for at, one in enumerate(dict.fromkeys(target))}
-    known = np.array([one is not None for one in target])
-    which = np.array([index[one] for one in target], np.int64)
-    seen = np.unique(np.column_stack([which, images])[known], axis=0)[:, 0]
-    comes_again = known & (np.bincount(seen, minlength=len(index))[which] > 1)
-    which = np.where(comes_again, which, -1 - images)
-    pairs, label = np.unique(np.column_stack([images, which]), axis=0, return_inverse=True)
+    which = _coming_again(target, images)
+    site = _coming_again([None if one is None else one[0] for one in target], images)
+    cells = np.column_stack([images, which])
+    pairs, first, label = np.unique(cells, axis=0, return_index=True, return_inverse=True)
     label = label.reshape(-1)
     means = image_means(
         Series(metric="", when=label.astype(float), value=value, std=std, image=label)
     )
-    return TargetCells(means.value, means.variance, names[pairs[:, 0]], pairs[:, 1])
+    return TargetCells(
+        means.value, means.variance, names[pairs[:, 0]], pairs[:, 1], site[first]
+    )  # fmt: skip
+
+
+def _coming_again(
+    word: Sequence[Hashable | None], image: NDArray[np.intp]
+) -> NDArray[np.int64]:  # fmt: skip
+    """A number from 0 on for every word of several images; of one image -1 less its number."""
+    index = {one: at for at, one in enumerate(dict.fromkeys(word))}
+    which = np.array([index[one] for one in word], np.int64)
+    seen = np.unique(np.column_stack([which, image]), axis=0)[:, 0]
+    comes_again = np.bincount(seen)[which] > 1
+    comes_again &= np.array([one is not None for one in word])
+    return np.where(comes_again, which, -1 - image)
 
 
 def mean_of_cells(cells: TargetCells) -> tuple[float, StdPart]:
-    """The mean of one group, and its deviation by what differs between images and targets."""
+    """The mean of one group, by what differs between its images, targets and sites."""
     return crossed_mean(
         cells.value,
         (
             SharedEffect.of(cells.image),
             SharedEffect.of(cells.target),
+            SharedEffect.of(cells.site),
             SharedEffect.of(np.arange(cells.value.size), cells.variance),
         ),
     )
@@ -112,6 +121,7 @@ def difference_of_cells(
             SharedEffect.of(image[first.image[one]]),
             SharedEffect.of(first.target[one]),
             SharedEffect.of(second.target[other]),
+            SharedEffect.of(first.site[one]),
             SharedEffect.of(one, first.variance[one]),
             SharedEffect.of(other, second.variance[other]),
         ),

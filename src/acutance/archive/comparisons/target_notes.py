@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 
 from acutance.archive.comparisons.groups import MeasuredGroup
 
@@ -10,20 +10,36 @@ __all__ = ["target_notes"]
 
 
 def target_notes(first: MeasuredGroup, second: MeasuredGroup) -> Iterator[str]:
-    """Groups of one or two targets: what is peculiar to these is not told from the group."""
-    if of := _with_targets(1, first, second):
+    """Groups of one or two targets, or of two sites: what is peculiar to these stays."""
+    targets, sites = (
+        [_count(own(group)) for group in (first, second)] for own in (_targets, _sites)
+    )
+    names = first.name, second.name
+    if of := _with(1, targets, names):
         yield f"One target of {of}: what is peculiar to it is part of the difference."
-    if of := _with_targets(2, first, second):
-        yield (
-            f"Two targets of {of}: two hardly show how much targets differ, and the interval is as "
-            "wide as that makes it."
-        )
+    for what, counts in (("target", targets), ("site", sites)):
+        of = _with(2, counts, names)
+        if of:
+            yield (
+                f"Two {what}s of {of}: two hardly show how much {what}s differ, which makes the "
+                "interval wide."
+            )
+            return
 
 
-def _with_targets(count: int, first: MeasuredGroup, second: MeasuredGroup) -> str:
-    names = [
-        group.name
-        for group in (first, second)
-        if None not in group.target and len(set(group.target)) == count
-    ]
-    return "each group" if len(names) == 2 else "".join(names)
+def _targets(group: MeasuredGroup) -> list[Hashable | None]:
+    return list(group.target)
+
+
+def _sites(group: MeasuredGroup) -> list[Hashable | None]:
+    return [None if one is None else one[0] for one in group.target]
+
+
+def _count(words: list[Hashable | None]) -> int:
+    """How many there are; 0 where that is not known."""
+    return 0 if None in words else len(set(words))
+
+
+def _with(count: int, counts: list[int], names: tuple[str, str]) -> str:
+    found = [name for name, own in zip(names, counts, strict=True) if own == count]
+    return "each group" if len(found) == 2 else "".join(found)
