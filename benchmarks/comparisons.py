@@ -224,8 +224,8 @@ def main() -> None:
         f"{arguments.draws} archives each. What an image has of its own 4 % (to both groups) and "
         "1 % (to each), error of a measurement 2 %, images over 3 years, where nothing else is "
         "said. Of one or two images that hold both groups the interval is that of these images, "
-        "and the answer that it cannot be told. Held: how often 95 % intervals hold the true difference, which is none except where "
-        "it is stated. Agree: within 5 %.",
+        "and the answer that it cannot be told. Held: how often 95 % intervals hold the true "
+        "difference, which is none except where it is stated. Agree: within 5 %.",
         table(["groups", "pairs", "held / %", "said to differ / %", "said to agree / %",
                "median std / %"], case_rows(arguments.draws, arguments.seed), 2),
     ]  # fmt: skip
