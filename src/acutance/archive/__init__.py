@@ -15,7 +15,7 @@ Sees records only, never pixels. In the order the data take:
 - `exchange`: files of documents and tables, in and out
 - `weighted_means`: means of measurements that disagree
 - `trends`: drift, steps, season and scatter of a sensor through the years
-- `comparisons`: whether across and along differ, whether methods agree
+- `comparison_margin`, `comparisons`: whether across and along differ, whether methods agree
 - `specification`, `specification_check`: requirements, and whether they are met
 - `tables_by`: tables across and along by sensor, band, site, date
 - `published`: the tables that publications print, as entries

@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Unpack
 
+from acutance.archive.comparison_margin import MARGIN
 from acutance.archive.connection import Database
 from acutance.archive.measurements import Measurements
 from acutance.archive.selection import Selection, SelectionWords
@@ -158,7 +159,7 @@ class Questions(ABC):
         metric: str,
         by: str = "orientation",
         *,
-        margin: float = 0.05,
+        margin: float = MARGIN,
         **selection: Unpack[SelectionWords],
     ) -> Comparison:
         """Whether across and along differ, or methods, kinds, bands agree.

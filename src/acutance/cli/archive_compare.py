@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from acutance.archive.comparison_margin import MARGIN
 from acutance.cli.archive_selection import PlaceArgument, SelectionOptions
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import JsonOption
@@ -41,7 +42,7 @@ def compare(
         typer.Option(
             metavar="PART", help="Relative difference below which groups are said to agree."
         ),
-    ] = 0.05,
+    ] = MARGIN,
     selected: SelectionOptions,
     as_json: JsonOption = False,
 ) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 from numbers import Real
 from typing import Final
@@ -11,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from acutance.archive.columns import Columns
+from acutance.archive.comparison_margin import MARGIN
 from acutance.archive.comparisons.comparison import Comparison, GroupScatter
 from acutance.archive.comparisons.degrees import StdPart, joined_std
 from acutance.archive.comparisons.difference import (
@@ -29,10 +31,8 @@ from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 
-__all__ = ["MARGIN", "compare_groups"]
+__all__ = ["compare_groups"]
 
-MARGIN: Final = 0.05
-"""Relative difference below which groups are said to agree: what methods are trusted to."""
 _SEVERAL: Final = 3
 _MANY: Final = 2
 """Where groups have so many times the images that hold both, means may tell more."""
@@ -118,7 +118,8 @@ def _random_difference(
     if _MANY * together.images[0] < min(np.unique(one.image).size for one in (first, second)):
         apart = difference_of_means(first, second, one_sensor=by != "sensor")
         if apart.part.estimate(0.0).std < together.part.estimate(0.0).std:
-            return apart, (first, second)
+            note = f"{together.images[0]} images hold both: alone they tell less than the means."
+            return replace(apart, notes=(*apart.notes, note)), (first, second)
     return together, (pairs.first, pairs.second)
 
 

@@ -10,6 +10,7 @@ the targets with so many degrees of freedom less one, which is exact.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -204,5 +205,8 @@ def _degrees(weight: Floats, variance: Floats) -> float:
 
 def _joined_degrees(parts: Floats, degrees: Floats) -> float:
     """Satterthwaite's degrees of a sum of parts, no fewer than those of its largest part."""
-    found = float(parts.sum()) ** 2 / float((parts**2 / degrees).sum())
-    return max(found, float(degrees[parts > 0].min(initial=np.inf)) if (parts > 0).any() else 1.0)
+    doubt = float((parts**2 / degrees).sum())
+    if not doubt > 0:
+        return math.inf
+    least = float(degrees[parts > 0].min(initial=math.inf)) if (parts > 0).any() else 1.0
+    return max(float(parts.sum()) ** 2 / doubt, least)

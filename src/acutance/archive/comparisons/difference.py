@@ -156,7 +156,7 @@ class Difference:
     def _basis_words(self) -> str:
         one, other = self.images
         if self.basis == "means":
-            return f"means of {one} and of {other} other images"
+            return f"means of {one} and of {other} images"
         return f"{_BASIS_WORDS[self.basis]} {one} image{'s' if one > 1 else ''}"
 
     def to_dict(self) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from acutance.archive.comparison_margin import MARGIN
 from acutance.archive.comparisons import compare_groups
 from acutance.curves import MAIN_NUMBERS
 from acutance.errors import OptionError
@@ -124,7 +125,7 @@ def _table(
         title=_TITLES[by],
         notes=(
             "First minus second over the mean of both, with what does not average out over images; "
-            "below it whether they differ (95 %), or agree within 5 %.",
+            f"below it whether they differ (95 %), or agree within {100 * MARGIN:g} %.",
             *notes,
         ),
     )  # fmt: skip
