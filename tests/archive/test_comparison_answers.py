@@ -115,7 +115,7 @@ def test_few_images_that_drift_have_intervals_of_this_world(
 ) -> None:
     rng = np.random.default_rng(4)
     stds, held = [], []
-    for _ in range(150):
+    for _ in range(300):
         groups = [
             group(at, 1 + 0.04 * rng.standard_normal(size), method="pq"[at],
                   acquired=years(*(at + rng.random(size))))
@@ -125,7 +125,7 @@ def test_few_images_that_drift_have_intervals_of_this_world(
         stds.append(one.relative.std)
         held.append(holds(one))
     assert max(stds) < widest
-    assert np.mean(held) > 0.92
+    assert np.mean(held) > 0.915
 
 
 def test_a_lone_image_without_a_deviation_scatters_as_the_others_do() -> None:

@@ -34,6 +34,8 @@ _DRIFT_STD: Final = math.sqrt(sum(part * std**2 for std, part in DRIFT_STDS_PER_
 """Of the prior of a drift, relative to the level: that of trends, as one normal density."""
 _APART_YEARS: Final = 0.02
 """Mean dates that are closer need no drift."""
+_MIN_DEGREES: Final = 2
+"""Left to a group beside a drift, to have a scatter of its own."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,9 @@ def difference_of_means(
     if drift.rate:
         groups = (_without_drift(first, drift.rate), _without_drift(second, drift.rate))
     spent = _spent_degrees(images) if drift.rate else (0.0, 0.0)
-    if all(one.size - 1 - own >= 1 for one, own in zip(images, spent, strict=True)):
+    # What a drift leaves of one or two degrees of freedom is too uneven to be joined.
+    least = _MIN_DEGREES if drift.rate else 1
+    if all(one.size - 1 - own >= least for one, own in zip(images, spent, strict=True)):
         found = [_mean(group, own) for group, own in zip(groups, spent, strict=True)]
         part = joined_std(*(own for _, own in found), drift.part(years))
     else:
