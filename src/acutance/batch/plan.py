@@ -13,6 +13,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from acutance.errors import OptionError
+from acutance.raster.metadata.findings import ANGLES
 
 __all__ = ["BatchPlan", "StatedOfImages", "plan_of", "read_plan"]
 
@@ -21,6 +22,11 @@ Texts = str | list[str]
 
 class _Model(BaseModel):
     model_config = ConfigDict(extra="forbid")
+
+
+def _angle(name: str) -> Any:
+    low, high = ANGLES[name]
+    return Field(default=None, ge=low, le=high)
 
 
 class _Stated(_Model):
@@ -33,10 +39,10 @@ class _Stated(_Model):
     band_names: list[str] | None = Field(default=None, min_length=1)
     gsd_m: float | list[float] | None = None
     height_m: float | None = Field(default=None, ge=-1000, le=10000)
-    view_zenith_deg: float | None = Field(default=None, ge=0, le=90)
-    view_azimuth_deg: float | None = Field(default=None, ge=-180, le=360)
-    sun_elevation_deg: float | None = Field(default=None, ge=-90, le=90)
-    sun_azimuth_deg: float | None = Field(default=None, ge=-180, le=360)
+    view_zenith_deg: float | None = _angle("view_zenith_deg")
+    view_azimuth_deg: float | None = _angle("view_azimuth_deg")
+    sun_elevation_deg: float | None = _angle("sun_elevation_deg")
+    sun_azimuth_deg: float | None = _angle("sun_azimuth_deg")
     metadata: Texts | None = None
     nodata: float | None = None
     along_track: Literal["x", "y"] | None = None

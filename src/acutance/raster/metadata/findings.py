@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
-__all__ = ["FIELDS", "Findings", "Stated", "find", "lon_lat", "number", "word"]
+__all__ = ["ANGLES", "FIELDS", "Findings", "Stated", "find", "lon_lat", "number", "word"]
 
 Value = TypeVar("Value", covariant=True)
 
@@ -17,12 +17,13 @@ FIELDS = (
 )  # fmt: skip
 """What may be said of an image."""
 
-_RANGES = {
+ANGLES = {
     "view_zenith_deg": (0.0, 90.0),
     "view_azimuth_deg": (-180.0, 360.0),
     "sun_elevation_deg": (-90.0, 90.0),
     "sun_azimuth_deg": (-180.0, 360.0),
 }
+"""Angles of view and sun, with their least and greatest degrees."""
 _GSD_M = (0.005, 100_000.0)
 """No image of the Earth's surface has smaller pixels; a GSD in degrees looks like one."""
 
@@ -93,7 +94,7 @@ def find(
 def _is_possible(name: str, value: Any) -> bool:
     if name == "gsd_m":
         return all(_GSD_M[0] <= one <= _GSD_M[1] for one in value)
-    low, high = _RANGES.get(name, (None, None))
+    low, high = ANGLES.get(name, (None, None))
     return low is None or high is None or low <= value <= high
 
 
