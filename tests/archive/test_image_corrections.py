@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 
 from acutance.archive import Archive, ImageCorrection
-from acutance.archive.exchange.image_statements import read_image_corrections
+from acutance.archive.exchange.correction_files import read_correction_file
 from acutance.errors import ArchiveError, OptionError
+from acutance.targets.record import Record
 
 DAY = datetime(2027, 3, 1, 9, 30, tzinfo=UTC)
 
@@ -79,6 +80,14 @@ def test_numbers_in_metres_stay_as_they_were_measured(filled: Archive) -> None:
     assert list(filled.measurements()["fwhm_m"]) == list(before)
 
 
+def test_directions_without_metres_have_no_other_gsd(
+    archive: Archive, entry_of: Any, edge_record: Any
+) -> None:
+    bare = {**edge_record.document, "gsd_m": None, "fwhm_m": None}
+    archive.add_entries([entry_of(0, record=Record(bare))])
+    assert archive.correct_images([ImageCorrection(image="0.tif", gsd_m=0.61)])[0].other_gsd == 0
+
+
 def test_all_are_corrected_or_none(filled: Archive, entry_of: Any) -> None:
     other = entry_of(9, key="x")
     filled.add_entries([replace(other, image=replace(other.image, path="/elsewhere/0.tif"))])
@@ -93,6 +102,137 @@ def test_all_are_corrected_or_none(filled: Archive, entry_of: Any) -> None:
     pattern = filled.correct_images([ImageCorrection(image="0.ti*", sensor="K3A")])
     assert len(pattern) == 2
     assert len(filled.correct_images([ImageCorrection(image=f"{1:064x}", level="L1")])) == 1
+
+
+CONTENT = "c" * 64
+
+
+@pytest.fixture
+def copy_of(entry_of: Any) -> Any:
+    """Makes the entry of target i in an image of one content, under a path."""
+
+    def make(i: int, path: str, content: str | None = CONTENT) -> Any:
+        entry = entry_of(i, key=f"{i} {path}")
+        return replace(entry, image=replace(entry_of(0).image, path=path, content=content))
+
+    return make
+
+
+def sensors_of(archive: Archive) -> dict[str, str]:
+    found = archive.measurements()
+    return dict(zip(found["image"].tolist(), found["sensor"].tolist(), strict=True))
+
+
+def test_all_rows_of_an_image_are_corrected_by_the_name_of_one(
+    archive: Archive, copy_of: Any
+) -> None:
+    archive.add_entries([copy_of(0, "/data/a.tif"), copy_of(1, "/copy/b.tif")])
+    wrong = ImageCorrection(image="a.tif", sensor="K3A", acquired=DAY)
+    assert len(archive.correct_images([wrong], dry_run=True)) == 2
+    assert [one.measurements for one in archive.correct_images([wrong])] == [1, 1]
+    archive.add_entries([copy_of(2, "/third/c.tif")])
+    assert sensors_of(archive) == {"a.tif": "K3A", "b.tif": "K3A", "c.tif": "K3A"}
+    assert {entry.image.acquired for entry in archive.entries()} == {DAY}
+
+
+def test_a_pattern_is_of_file_names_unless_it_has_a_slash(archive: Archive, copy_of: Any) -> None:
+    paths = ["K3_2026/pan_01.tif", "K3_2026/QB02_17.tif", "img/K3_a.tif"]
+    archive.add_entries([copy_of(at, path, f"{at:064x}") for at, path in enumerate(paths)])
+
+    def images(pattern: str) -> list[str]:
+        wanted = ImageCorrection(image=pattern, sensor="S")
+        return [one.image for one in archive.correct_images([wanted], dry_run=True)]
+
+    assert images("K3_*.tif") == ["img/K3_a.tif"]
+    assert images("K3_*/*.tif") == paths[:2]
+
+
+def test_the_latest_correction_of_a_content_is_carried_over(
+    archive: Archive, copy_of: Any, tmp_path: Any
+) -> None:
+    """Rows that were corrected one by one, as in archives of before: the later one counts."""
+    separate = [copy_of(0, "/a/a.tif"), copy_of(1, "/b/b.tif")]
+    lines = tmp_path / "one.jsonl"
+    for at, sensor in ((1, "OLD"), (0, "NEW")):
+        with Archive(tmp_path / f"{at}.db") as other:
+            other.add_entries([separate[at]])
+            other.correct_images([ImageCorrection(image=CONTENT, sensor=sensor)])
+            other.export(lines.with_stem(f"{at}"), to="jsonl")
+    # The row of the older correction comes last, and has the higher number.
+    archive.import_documents([lines.with_stem("0"), lines.with_stem("1")])
+    archive.add_entries([copy_of(2, "/d/d.tif")])
+    assert set(sensors_of(archive).values()) == {"NEW"}
+    for entry in archive.entries():
+        notes = entry.image.sources["corrections"]
+        assert [one["after"] for one in notes] == ["OLD", "NEW"]
+
+
+@pytest.mark.parametrize("newer_is_imported", [True, False])
+def test_notes_of_two_archives_are_joined(
+    archive: Archive, copy_of: Any, tmp_path: Any, newer_is_imported: bool
+) -> None:
+    archive.add_entries([copy_of(0, "/a/a.tif")])
+    guess = ImageCorrection(image=CONTENT, acquired="2026-05-01", reason="guess")
+    right = ImageCorrection(image=CONTENT, acquired="2026-05-02", sensor="K3A", reason="log book")
+    with Archive(tmp_path / "other.db") as other:
+        other.add_entries([copy_of(0, "/a/a.tif"), copy_of(1, "/a/a.tif")])
+        for one in (archive, other) if newer_is_imported else (other, archive):
+            one.correct_images(
+                [guess if one is (archive if newer_is_imported else other) else right]
+            )
+        other.export(tmp_path / "other.jsonl", to="jsonl")
+    assert archive.import_documents(tmp_path / "other.jsonl").new == 1
+    for entry in archive.entries():
+        assert entry.image.sensor == "K3A"
+        assert entry.image.acquired == datetime(2026, 5, 2, tzinfo=UTC)
+        reasons = {one["reason"] for one in entry.image.sources["corrections"]}
+        assert reasons == {"guess", "log book"}
+    assert archive.overview().measured == 2
+
+
+def test_a_corrected_export_corrects_what_is_there(
+    archive: Archive, copy_of: Any, tmp_path: Any
+) -> None:
+    """Keys that are known add nothing, but their corrections count."""
+    entries = [copy_of(0, "/a/a.tif"), copy_of(1, "/a/a.tif")]
+    archive.add_entries(entries[:1])
+    lines = tmp_path / "other.jsonl"
+    with Archive(tmp_path / "other.db") as other:
+        other.add_entries(entries[:1])
+        other.correct_images([ImageCorrection(image="a.tif", sensor="K3A", gsd_m=(0.7, 0.6))])
+        other.export(lines, to="jsonl")
+        assert archive.import_documents(lines).new == 0
+        assert set(sensors_of(archive).values()) == {"K3A"}
+        assert next(iter(archive.entries())).image.gsd_m == (0.7, 0.6)
+        other.add_entries(entries)
+        other.export(lines, to="jsonl")
+    assert archive.import_documents(lines).new == 1
+    assert {entry.image.sensor for entry in archive.entries()} == {"K3A"}
+
+
+def test_a_correction_is_later_than_all_before(archive: Archive, copy_of: Any) -> None:
+    """Also than one of another machine, whose clock is ahead."""
+    ahead = {"column": "sensor", "after": "K3", "on": "2990-01-01T00:00:00+00:00"}
+    entry = copy_of(0, "/a/a.tif")
+    noted = replace(entry.image, sources={"corrections": [ahead]})
+    archive.add_entries([replace(entry, image=noted)])
+    archive.correct_images([ImageCorrection(image="a.tif", sensor="K3A")])
+    archive.add_entries([replace(copy_of(1, "/b/b.tif"), image=replace(noted, path="/b/b.tif"))])
+    assert set(sensors_of(archive).values()) == {"K3A"}
+
+
+def test_sources_may_hold_what_is_no_correction(archive: Archive, copy_of: Any) -> None:
+    entry = copy_of(0, "/a/a.tif")
+    odd = [
+        {"column": "moon", "after": 1, "on": "2026-01-01"},
+        "v2",
+        {"column": "sensor", "after": 5},
+    ]
+    noted = replace(entry.image, sources={"corrections": odd})
+    archive.add_entries([replace(entry, image=noted)])
+    archive.add_entries([copy_of(1, "/b/b.tif")])
+    assert archive.correct_images([ImageCorrection(image="b.tif", sensor="K3A")])
+    assert set(sensors_of(archive).values()) == {"K3A"}
 
 
 def test_an_archive_that_is_read_only_tells_what_would_change(tmp_path: Any, entry_of: Any) -> None:
@@ -119,20 +259,20 @@ def test_values_that_cannot_be_are_refused(values: dict[str, Any], message: str)
 def test_corrections_of_a_file(tmp_path: Any) -> None:
     table = tmp_path / "corrections.csv"
     table.write_text(
-        "image,sensor,acquired,gsd_row_m,gsd_col_m,view_zenith_deg\n"
-        "0.tif,K3A,2026-05-01,0.72,0.7,\n\n1.tif,,,,,12.5\n"
+        "image, sensor,acquired,gsd_row_m,gsd_col_m,view_zenith_deg\n"
+        "0.tif, K3A ,2026-05-01,0.72,0.7,\n\n1.tif, ,,,,12.5\n"
     )
     expected = [
         ImageCorrection(image="0.tif", sensor="K3A", acquired="2026-05-01", gsd_m=(0.72, 0.7)),
         ImageCorrection(image="1.tif", view_zenith_deg=12.5),
     ]
-    assert read_image_corrections(table) == expected
+    assert read_correction_file(table) == expected
     lines = tmp_path / "corrections.json"
     lines.write_text(json.dumps([
         {"image": "0.tif", "sensor": "K3A", "acquired": "2026-05-01", "gsd_m": [0.72, 0.7]},
         {"image": "1.tif", "view_zenith_deg": 12.5, "sensor": None},
     ]))  # fmt: skip
-    assert read_image_corrections(lines) == expected
+    assert read_correction_file(lines) == expected
     assert expected[0].columns["acquired"].date() == date(2026, 5, 1)
 
 
@@ -140,7 +280,7 @@ def test_all_faults_of_a_file_are_named(tmp_path: Any) -> None:
     table = tmp_path / "corrections.csv"
     table.write_text("image,sensor,moon,gsd_row_m\n0.tif,K3,full,\n,K3,,\n1.tif,K3,,0.7\n")
     with pytest.raises(OptionError) as refused:
-        read_image_corrections(table)
+        read_correction_file(table)
     for part in (
         "line 2: there is no moon",
         "line 3: the image is not named",
@@ -149,9 +289,9 @@ def test_all_faults_of_a_file_are_named(tmp_path: Any) -> None:
         assert part in str(refused.value)
     table.write_text("image,sensor\n")
     with pytest.raises(OptionError, match="are empty"):
-        read_image_corrections(table)
+        read_correction_file(table)
     with pytest.raises(OptionError, match="cannot be read"):
-        read_image_corrections(tmp_path / "none.csv")
+        read_correction_file(tmp_path / "none.csv")
     (tmp_path / "bad.json").write_text("[1]")
     with pytest.raises(OptionError, match="entry 1 is no object"):
-        read_image_corrections(tmp_path / "bad.json")
+        read_correction_file(tmp_path / "bad.json")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import time
 from dataclasses import replace
 from datetime import UTC, datetime
 
 import pytest
 
 from acutance.archive import Archive, RunEntry
+from acutance.errors import OptionError
 
 NAMES = {"jsonl": "out.jsonl", "parquet": "out.parquet", "csv-documents": "out.csv", "stac": "out"}
 PLAN = {"images": ["ä/*.tif"], "targets": {"features": [1, None, 2.5]}, "bands": None}
@@ -87,6 +89,71 @@ def test_a_run_that_went_on_is_completed(archive, entry_of):
     archive.add_entries([replace(entry_of(1), run=ended)])
     archive.add_entries([replace(entry_of(2), run=begun.named_only)])
     assert [entry.run for entry in archive.entries()] == [ended] * 3
+
+
+@pytest.mark.parametrize("to", NAMES)
+def test_a_run_without_a_plan_keeps_its_end_and_summary(archive, entry_of, tmp_path, to):
+    run = archive.start_run({})
+    for at, key in ((1, "9"), (0, "1")):
+        archive.add_entries([entry_of(at, key=key)], run=run)
+    archive.end_run(run, SUMMARY)
+    out = tmp_path / NAMES[to]
+    archive.export(out, to=to)
+    with Archive(tmp_path / "other.db") as other:
+        other.import_documents(out)
+        assert runs_of(other) == runs_of(archive)
+        assert {run.summary["kept"] for run in runs_of(other).values()} == {SUMMARY["kept"]}
+
+
+def test_a_run_that_was_exported_while_it_ran_is_completed(archive, entry_of, tmp_path):
+    out, run = tmp_path / "out.jsonl", archive.start_run(PLAN)
+    archive.add_entries([entry_of(at) for at in range(4)], run=run)
+    archive.export(out, to="jsonl")
+    with Archive(tmp_path / "other.db") as other:
+        other.import_documents(out)
+        archive.end_run(run, SUMMARY)
+        archive.export(out, to="jsonl")
+        assert other.import_documents(out).new == 0
+        assert runs_of(other) == runs_of(archive)
+
+
+def test_entries_that_are_there_bring_no_run_of_their_own(archive, entry_of, tmp_path):
+    out = tmp_path / "out.jsonl"
+    archive.add_entries([entry_of(0)], run=archive.start_run(PLAN))
+    archive.export(out, to="jsonl")
+    with Archive(tmp_path / "other.db") as other:
+        other.add_entries([entry_of(0)])
+        other.import_documents(out)
+        assert other.overview().runs == 0
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [({"uid": None}, "has no uid"), ({"uid": 5}, "uid is 5, a int: give a text"),
+     ({"started": "2026"}, "started is '2026', a str: give a datetime"),
+     ({"ended": "2026"}, "ended is"), ({"plan": None}, "plan is None"), ({"summary": 1}, "summary"),
+     ({"software": None}, "software is None")],
+)  # fmt: skip
+def test_a_run_that_cannot_be_is_refused(changed, message):
+    values = {"uid": "u", "started": datetime(2026, 1, 1, tzinfo=UTC), "software": "1"}
+    with pytest.raises(OptionError, match=message):
+        RunEntry(**values | changed)
+
+
+@pytest.fixture
+def in_seoul():
+    """A machine whose zone is not UTC."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TZ", "Asia/Seoul")
+        time.tzset()
+        yield
+    time.tzset()
+
+
+def test_moments_of_runs_without_a_zone_are_utc(in_seoul, archive, entry_of):
+    run = RunEntry(uid="u", started=datetime(2026, 1, 1, 5), software="1")
+    archive.add_entries([replace(entry_of(0), run=run)])
+    assert next(archive.entries()).run.started == datetime(2026, 1, 1, 5, tzinfo=UTC)
 
 
 def test_the_run_of_an_import_goes_before(written, tmp_path):

@@ -6,12 +6,14 @@ Sees records only, never pixels. In the order the data take:
 - `identity`: what makes an entry the one that is there already
 - `dates`: moments in UTC, and how dates without a time or a zone are read
 - `tables`, `migrations`: the tables of an archive, and how older ones become today's
+- `counted`: numbers with what they count
 - `connection`, `failures`: SQLite or PostgreSQL, transactions that wait, errors in words
 - `packing`, `systematic`, `rows`, `adding`: entries become rows, added once each
 - `runs`, `outcomes`: batches that wrote into the archive; how what they ask for came out
 - `selection`, `columns`, `measurements`: which rows are meant, and what they hold as columns
 - `stored_entries`, `overview`: rows become entries again, and are counted
-- `image_corrections`: dates, sensors, GSD, angles of images that are kept already
+- `image_corrections`, `named_images`, `correction_notes`: dates, sensors, GSD, angles of images that
+  are kept already, shared by all rows of a content
 - `exchange`: files of documents and tables, in and out
 - `weighted_means`: means of measurements that disagree
 - `trends`: drift, steps, season and scatter of a sensor through the years

@@ -15,14 +15,13 @@ from operator import itemgetter
 from typing import Any, TypeVar
 
 from sqlalchemy import Connection, Table, select
-from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.sql.dml import ReturningInsert
 
-from acutance.archive.connection import Database
+from acutance.archive.connection import Database, insert_missing
+from acutance.archive.correction_notes import has_notes, share_corrections
 from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
-from acutance.archive.image_corrections import with_corrections
 from acutance.archive.rows import EntryRows, image_row, rows_of, target_row
-from acutance.archive.runs import ids_of_runs, with_whole_runs
+from acutance.archive.runs import complete_runs, ids_of_runs, with_whole_runs
 from acutance.archive.tables import directions, documents, images, measurements, runs, targets
 from acutance.errors import OptionError
 from acutance.targets.measurement import Measurement
@@ -134,6 +133,10 @@ def _add_chunk(connection: Connection, chunk: Mapping[str, EntryRows], run: int 
     there = select(measurements.c.key).where(measurements.c.key.in_(list(chunk)))
     known = set(connection.execute(there).scalars())
     new = [one for key, one in chunk.items() if key not in known]
+    # Entries that are there may still have more of their run, and corrections of their image.
+    if run is None:
+        complete_runs(connection, [chunk[key].run for key in known])
+    _learn_corrections(connection, [rows.image for rows in chunk.values()])
     if not new:
         return 0
     image_ids = _ids(connection, images, image_row, [rows.image for rows in new])
@@ -192,9 +195,16 @@ def _insert_new(
     connection: Connection, table: Table, unique: str, also: str
 ) -> ReturningInsert[Any]:
     """Insert rows unless their unique column is there, and return those that were inserted."""
-    insert = sqlite.insert if connection.dialect.name == "sqlite" else postgresql.insert
     columns = table.c[unique], table.c[also]
-    return insert(table).on_conflict_do_nothing(index_elements=[unique]).returning(*columns)
+    return insert_missing(connection, table, unique).returning(*columns)
+
+
+def _learn_corrections(connection: Connection, described: Sequence[ImageEntry]) -> None:
+    """Write corrections that images come with to rows of the same content that are there."""
+    noted = [one for one in described if has_notes(one.sources)]
+    rows = [image_row(one) for one in {id(one): one for one in noted}.values()]
+    if rows:
+        share_corrections(connection, rows)
 
 
 def _ids(
@@ -210,7 +220,7 @@ def _ids(
     missing = [rows[identity] for identity in sorted(set(rows) - set(found))]
     if missing:
         if table is images:
-            missing = with_corrections(connection, missing)
+            missing = share_corrections(connection, missing)
         connection.execute(_insert_new(connection, table, "identity", "id"), missing)
         found = _found_ids(connection, table, list(rows))
     return {place: found[row["identity"]] for place, row in each.items()}

@@ -192,7 +192,7 @@ class Archive(Questions):
         corrections : iterable of ImageCorrection
             Later ones go before earlier ones.
         dry_run : bool, optional
-            Only tell what would change.
+            Change nothing, only return what would change.
 
         Returns
         -------

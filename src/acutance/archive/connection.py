@@ -16,14 +16,15 @@ from pathlib import Path
 from typing import TypeVar
 from urllib.parse import quote
 
-from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
+from sqlalchemy import URL, Connection, Engine, Table, create_engine, event, make_url
+from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError
 from sqlalchemy.pool import QueuePool
 
 from acutance.archive.failures import explained, is_passing
 from acutance.errors import ArchiveError
 
-__all__ = ["PATIENCE_S", "Database", "is_there", "open_database"]
+__all__ = ["PATIENCE_S", "Database", "insert_missing", "is_there", "open_database"]
 
 Done = TypeVar("Done")
 
@@ -146,6 +147,14 @@ def open_database(place: str | os.PathLike[str], *, read_only: bool = False) -> 
             raise ArchiveError(f"archive {text} names no file: write sqlite:///FILE, or the file")
         return _file_database(Path(url.database), read_only)
     return _server_database(url, read_only)
+
+
+def insert_missing(
+    connection: Connection, table: Table, unique: str
+) -> sqlite.Insert | postgresql.Insert:
+    """An insert that passes over rows whose unique column is there."""
+    insert = sqlite.insert if connection.dialect.name == "sqlite" else postgresql.insert
+    return insert(table).on_conflict_do_nothing(index_elements=[unique])
 
 
 def _url(text: str) -> URL:

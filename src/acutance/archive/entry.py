@@ -99,6 +99,11 @@ class RunEntry:
     plan : mapping, optional
         Empty where only the run is named: files of many entries have it once.
     summary : mapping, optional
+
+    Raises
+    ------
+    OptionError
+        If a value is none that a run can have.
     """
 
     uid: str
@@ -107,6 +112,15 @@ class RunEntry:
     ended: datetime | None = None
     plan: Mapping[str, Any] = field(default_factory=dict)
     summary: Mapping[str, Any] | None = None
+
+    def __post_init__(self) -> None:
+        if not self.uid:
+            raise OptionError("a run has no uid: give the one it was started with")
+        _require(self, str, "a text", "uid", "software")
+        _require(self, datetime, "a datetime", "started")
+        _require(self, datetime | None, "a datetime", "ended")
+        _require(self, Mapping, "a mapping", "plan")
+        _require(self, Mapping | None, "a mapping", "summary")
 
     @property
     def named_only(self) -> RunEntry:
@@ -178,10 +192,14 @@ class Kept:
 
 def _require_texts(entry: ImageEntry | TargetEntry | Entry, *names: str) -> None:
     """Refuse names that are no texts: one database would turn them into some, another not."""
+    _require(entry, str | None, "a text", *names)
+
+
+def _require(entry: object, kind: Any, needed: str, *names: str) -> None:
     for name in names:
         value = getattr(entry, name)
-        if not isinstance(value, str | None):
+        if not isinstance(value, kind):
             raise OptionError(
                 f"{type(entry).__name__}: {name} is {value!r:.60}, a {type(value).__name__}: give "
-                "a text"
+                f"{needed}"
             )

@@ -2,49 +2,45 @@
 
 The row of an image keeps the identity it was added with: a batch that adds to the image later, and
 knows it as before, finds the corrected row and measures nothing again. One that knows it otherwise
-makes another row of the same content: the corrections are carried over to it. Measurements stay as
-they are; what was there before, and since when it is another, stands in the sources of the image.
+makes another row of the same content, which shares the corrections (`correction_notes`).
+Measurements stay as they are.
 """
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from datetime import UTC, datetime
-from fnmatch import fnmatchcase
 from functools import partial
-from glob import has_magic
+from operator import itemgetter
 from typing import Any, Final
 
-from sqlalchemy import Connection, RowMapping, func, select, update
+from sqlalchemy import Connection, Select, func, select
 
 from acutance.archive.connection import Database
+from acutance.archive.correction_notes import next_moment, with_notes, write_rows
 from acutance.archive.counted import counted
 from acutance.archive.dates import When, as_utc
+from acutance.archive.named_images import ImageKey, named_images
 from acutance.archive.packing import plain_json
 from acutance.archive.tables import directions, images, measurements
 from acutance.errors import OptionError
+from acutance.raster.metadata.findings import ANGLES
 
 __all__ = [
     "CORRECTED",
     "CorrectedImage",
     "ImageCorrection",
     "correct_images",
-    "with_corrections",
 ]
 
-ANGLES: Final = (
-    "view_zenith_deg", "view_azimuth_deg", "sun_elevation_deg", "sun_azimuth_deg",
-)  # fmt: skip
 CORRECTED: Final = ("sensor", "level", "acquired", "gsd_m", *ANGLES)
 """What of an image can be corrected."""
-_LIMITS: Final = {
-    "view_zenith_deg": (0.0, 90.0), "view_azimuth_deg": (-180.0, 360.0),
-    "sun_elevation_deg": (-90.0, 90.0), "sun_azimuth_deg": (-180.0, 360.0),
-}  # fmt: skip
-_NOTED: Final = "corrections"
 _SAME_GSD: Final = 1e-6
+_CHUNK: Final = 2000
+"""Images of one question to the database."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +50,9 @@ class ImageCorrection:
     Parameters
     ----------
     image : str
-        Its path, file name or SHA-256; a pattern (``"K3_*.tif"``) means all that match.
+        Its path, file name or SHA-256; all rows of the same content are meant. A pattern means all
+        images that match: by their file names (``"K3_*.tif"``), with a slash by their paths
+        (``"/data/2026/*.tif"``, all below that folder).
     sensor, level : str, optional
     acquired : datetime, date or str, optional
         Without a time zone UTC.
@@ -103,7 +101,7 @@ class ImageCorrection:
                 yield str(error)
         if self.gsd_m is not None and not all(_is_number(one) and one > 0 for one in self._sides()):
             yield f"gsd_m is {self.gsd_m!r}: write metres, .7, or two where they differ"
-        for name, (low, high) in _LIMITS.items():
+        for name, (low, high) in ANGLES.items():
             value = getattr(self, name)
             if value is not None and not (_is_number(value) and low <= value <= high):
                 yield f"{name} is {value!r}: write degrees from {low:g} to {high:g}"
@@ -147,8 +145,8 @@ class CorrectedImage:
     measurements : int
         Of the image.
     other_gsd : int
-        Directions of them whose numbers in metres were computed with another GSD than the
-        corrected one: they stay as they were measured.
+        Directions of them with numbers in metres by another GSD than the corrected one: they stay
+        as they were measured.
     """
 
     id: int
@@ -189,7 +187,7 @@ def correct_images(
     database : Database
     corrections : iterable of ImageCorrection
     dry_run : bool, optional
-        Only tell what would change.
+        Change nothing, only return what would change.
 
     Returns
     -------
@@ -204,140 +202,105 @@ def correct_images(
         If the archive cannot be written.
     """
     listed = list(corrections)
-    work = partial(_correct, corrections=listed, dry_run=dry_run)
+    # Names are matched before the archive is locked for others.
+    named = database.read(partial(named_images, names=[one.image for one in listed]))
+    wanted: dict[ImageKey, _Wanted] = {}
+    for one in listed:
+        for key in named[one.image]:
+            values, reasons = wanted.setdefault(key, ({}, {}))
+            values |= one.columns
+            reasons |= dict.fromkeys(one.columns, one.reason)
+    work = partial(_correct, wanted=wanted, dry_run=dry_run)
     return database.read(work) if dry_run else database.write(work)
 
 
+_Wanted = tuple[dict[str, Any], dict[str, str | None]]
+"""New values and the reasons of them, by column."""
+_Row = dict[str, Any]
+
+
 def _correct(
-    connection: Connection, corrections: Sequence[ImageCorrection], dry_run: bool
+    connection: Connection, wanted: Mapping[ImageKey, _Wanted], dry_run: bool
 ) -> list[CorrectedImage]:
-    kept = list(connection.execute(select(images).order_by(images.c.id)).mappings())
-    wanted = _wanted(kept, corrections)
-    counts = _counts(connection)
-    now = datetime.now(UTC)
-    found = []
-    for row in kept:
-        values, reasons = wanted.get(row["id"], ({}, {}))
+    changed = []
+    for row in _kept_rows(connection, wanted, lock=not dry_run):
+        values, reasons = wanted[row["content"] or row["id"]]
         changes = {name: (row[name], value) for name, value in values.items() if row[name] != value}
-        if not changes:
-            continue
-        if not dry_run:
-            sources = _noted(row["sources"], changes, reasons, now)
-            new = {name: value for name, (_, value) in changes.items()}
-            changed = update(images).where(images.c.id == row["id"])
-            connection.execute(changed.values(**new, sources=sources))
-        found.append(
-            CorrectedImage(
-                row["id"], row["path"] or row["content"] or f"image {row['id']}", changes,
-                counts.get(row["id"], 0), _other_gsd(connection, row["id"], changes),
-            )
-        )  # fmt: skip
-    return found
+        if changes:
+            changed.append((row, changes, reasons))
+    ids = [row["id"] for row, _, _ in changed]
+    counts = _counts(connection, ids)
+    other_gsd = _other_gsd(connection, {row["id"]: _gsd_after(row, new) for row, new, _ in changed})
+    if not dry_run:
+        now = next_moment(row for row, _, _ in changed)
+        write_rows(connection, [with_notes(row, new, why, now) for row, new, why in changed])
+    return [
+        CorrectedImage(
+            row["id"], row["path"] or row["content"] or f"image {row['id']}", changes,
+            counts[row["id"]], other_gsd[row["id"]],
+        )
+        for row, changes, _ in changed
+    ]  # fmt: skip
 
 
-def _wanted(
-    kept: Sequence[RowMapping], corrections: Sequence[ImageCorrection]
-) -> dict[int, tuple[dict[str, Any], dict[str, str | None]]]:
-    """New values, and the reasons of them, by the number of the image."""
-    places: dict[str, list[RowMapping]] = {}
-    for row in kept:
-        for word in {row["path"], row["name"], row["content"]} - {None}:
-            places.setdefault(word, []).append(row)
-    found: dict[int, tuple[dict[str, Any], dict[str, str | None]]] = {}
-    faults = []
-    for one in corrections:
-        meant = places.get(one.image, [])
-        if not meant and has_magic(one.image):
-            meant = [row for row in kept if _matches(row, one.image)]
-        elif len({row["content"] or row["path"] for row in meant}) > 1:
-            faults.append(f"{one.image} names several images: give paths, SHA-256, or a pattern")
-            continue
-        if not meant:
-            faults.append(f"there is no image {one.image}")
-        for row in meant:
-            values, reasons = found.setdefault(row["id"], ({}, {}))
-            values |= one.columns
-            reasons |= dict.fromkeys(one.columns, one.reason)
-    if faults:
-        more = f"; and {len(faults) - 10} more" if len(faults) > 10 else ""
-        raise OptionError(f"nothing is corrected: {'; '.join(faults[:10])}{more}")
-    return found
+def _kept_rows(
+    connection: Connection, keys: Iterable[ImageKey], *, lock: bool
+) -> list[dict[str, Any]]:
+    """All rows of images, in the order of their numbers; locked, no other process writes them."""
+    contents = [key for key in keys if isinstance(key, str)]
+    ids = [key for key in keys if not isinstance(key, str)]
+    asked = [select(images).where(images.c.content.in_(some)) for some in _chunks(contents)]
+    asked += [select(images).where(images.c.id.in_(some)) for some in _chunks(ids)]
+    if lock:
+        asked = [one.with_for_update(key_share=True) for one in asked]
+    found = [dict(row) for one in asked for row in connection.execute(one).mappings()]
+    return sorted(found, key=itemgetter("id"))
 
 
-def _matches(row: RowMapping, pattern: str) -> bool:
-    return any(fnmatchcase(row[name] or "", pattern) for name in ("path", "name"))
+def _chunks(items: Sequence[Any]) -> Iterator[Sequence[Any]]:
+    for first in range(0, len(items), _CHUNK):
+        yield items[first : first + _CHUNK]
 
 
-def _counts(connection: Connection) -> dict[int, int]:
+def _counts(connection: Connection, ids: Sequence[int]) -> Counter[int]:
     """Measurements and rejections, by image."""
-    asked = select(measurements.c.image_id, func.count()).group_by(measurements.c.image_id)
-    return {row[0]: row[1] for row in connection.execute(asked)}
+    found: Counter[int] = Counter()
+    for some in _chunks(ids):
+        own = measurements.c.image_id
+        asked = select(own, func.count()).where(own.in_(some)).group_by(own)
+        for number, count in connection.execute(asked):
+            found[number] = count
+    return found
+
+
+def _gsd_after(
+    row: Mapping[str, Any], changes: Mapping[str, tuple[Any, Any]]
+) -> tuple[float, float] | None:
+    """The GSD of an image where it is corrected."""
+    names = ("gsd_row_m", "gsd_col_m")
+    if not any(name in changes for name in names):
+        return None
+    row_m, col_m = (changes[name][1] if name in changes else row[name] for name in names)
+    return row_m, col_m
 
 
 def _other_gsd(
-    connection: Connection, number: int, changes: Mapping[str, tuple[Any, Any]]
-) -> int:  # fmt: skip
-    new = [pair[1] for name, pair in changes.items() if name in ("gsd_row_m", "gsd_col_m")]
-    if not new:
-        return 0
-    # A direction between the axes has a GSD between those of rows and columns.
-    row = connection.execute(
-        select(images.c.gsd_row_m, images.c.gsd_col_m).where(images.c.id == number)
-    ).one()
-    after = [changes[name][1] if name in changes else one
-             for name, one in zip(("gsd_row_m", "gsd_col_m"), row, strict=True)]  # fmt: skip
-    low, high = min(after) * (1 - _SAME_GSD), max(after) * (1 + _SAME_GSD)
-    own = directions.c.gsd_m
-    asked = (
-        select(func.count())
-        .select_from(directions.join(measurements))
-        .where(measurements.c.image_id == number, own.is_(None) | (own < low) | (own > high))
-    )
-    return int(connection.execute(asked).scalar_one())
+    connection: Connection, after: Mapping[int, tuple[float, float] | None]
+) -> Counter[int]:
+    """Directions with numbers in metres by another GSD than the corrected one, by image."""
+    found: Counter[int] = Counter()
+    for some in _chunks([number for number, sides in after.items() if sides is not None]):
+        for number, gsd_m, count in connection.execute(_gsds_of(some)):
+            sides = after[number] or (gsd_m, gsd_m)
+            # A direction between the axes has a GSD between those of rows and columns.
+            if not min(sides) * (1 - _SAME_GSD) <= gsd_m <= max(sides) * (1 + _SAME_GSD):
+                found[number] += count
+    return found
 
 
-def _noted(
-    sources: Mapping[str, Any], changes: Mapping[str, tuple[Any, Any]],
-    reasons: Mapping[str, str | None], now: datetime,
-) -> dict[str, Any]:  # fmt: skip
-    """Sources with what was corrected, what it was before and who had said so."""
-    notes = list(sources.get(_NOTED, ()))
-    said = dict(sources)
-    for name, (before, after) in changes.items():
-        word = "gsd_m" if name.startswith("gsd_") else name
-        note = {"column": name, "before": before, "after": after, "on": now,
-                "source_before": sources.get(word), "reason": reasons.get(name)}  # fmt: skip
-        notes.append({key: value for key, value in note.items() if value is not None})
-        said[word] = f"corrected on {now:%Y-%m-%d}"
-    return plain_json({**said, _NOTED: notes})
-
-
-def with_corrections(
-    connection: Connection, rows: Sequence[Mapping[str, Any]]
-) -> list[Mapping[str, Any]]:
-    """Rows of images to be added, with what was corrected of images of the same content.
-
-    Parameters
-    ----------
-    connection : Connection
-    rows : sequence of mapping
-    """
-    contents = [row["content"] for row in rows if row["content"] is not None]
-    asked = select(images).where(images.c.content.in_(contents)).order_by(images.c.id)
-    corrected = {
-        kept["content"]: kept
-        for kept in connection.execute(asked).mappings()
-        if _NOTED in kept["sources"]
-    }
-    return [_carried_over(row, corrected.get(row["content"])) for row in rows]
-
-
-def _carried_over(row: Mapping[str, Any], kept: RowMapping | None) -> Mapping[str, Any]:
-    if kept is None:
-        return row
-    notes = kept["sources"][_NOTED]
-    names = [note["column"] for note in notes]
-    words = ("gsd_m" if name.startswith("gsd_") else name for name in names)
-    said = {word: kept["sources"][word] for word in words}
-    return {**row, **{name: kept[name] for name in names},
-            "sources": {**row["sources"], **said, _NOTED: notes}}  # fmt: skip
+def _gsds_of(ids: Sequence[int]) -> Select[Any]:
+    """How many directions of images have which GSD."""
+    columns = measurements.c.image_id, directions.c.gsd_m
+    asked = select(*columns, func.count()).select_from(directions.join(measurements))
+    asked = asked.where(measurements.c.image_id.in_(ids), directions.c.gsd_m.is_not(None))
+    return asked.group_by(*columns)

@@ -9,15 +9,16 @@ from datetime import UTC, datetime
 from typing import Any
 
 from sqlalchemy import Connection, select, update
-from sqlalchemy.dialects import postgresql, sqlite
 
-from acutance.archive.connection import Database
+from acutance.archive.connection import Database, insert_missing
+from acutance.archive.dates import as_utc
 from acutance.archive.entry import Entry, RunEntry
 from acutance.archive.packing import plain_json
 from acutance.archive.tables import images, measurements, runs
 from acutance.errors import OptionError
 
 __all__ = [
+    "complete_runs",
     "end_run",
     "ids_of_runs",
     "kept_keys",
@@ -83,6 +84,7 @@ def runs_by_id(connection: Connection, ids: Iterable[int | None]) -> dict[int, R
 
 
 _OF_RUN = ("uid", "started", "software", "ended", "plan", "summary")
+_MOMENTS = ("started", "ended")
 
 
 def ids_of_runs(connection: Connection, wanted: Sequence[RunEntry | None]) -> dict[str, int]:
@@ -90,48 +92,72 @@ def ids_of_runs(connection: Connection, wanted: Sequence[RunEntry | None]) -> di
 
     A run that was only named before, or had not ended, is completed.
     """
-    by_uid: dict[str, RunEntry] = {}
-    for run in wanted:
-        if run is not None and (run.uid not in by_uid or run.plan):
-            by_uid[run.uid] = run
+    by_uid = _by_uid(wanted)
     if not by_uid:
         return {}
-    insert = sqlite.insert if connection.dialect.name == "sqlite" else postgresql.insert
-    new = insert(runs).on_conflict_do_nothing(index_elements=["uid"])
-    connection.execute(new, [_run_row(by_uid[uid]) for uid in sorted(by_uid)])
-    found = {}
-    asked = select(runs).where(runs.c.uid.in_(by_uid))
+    rows = [_run_row(by_uid[uid]) for uid in sorted(by_uid)]
+    connection.execute(insert_missing(connection, runs, "uid"), rows)
+    complete_runs(connection, list(by_uid.values()))
+    asked = select(runs.c.uid, runs.c.id).where(runs.c.uid.in_(by_uid))
+    return {row.uid: row.id for row in connection.execute(asked)}
+
+
+def complete_runs(connection: Connection, wanted: Sequence[RunEntry | None]) -> None:
+    """Add the plan, end and summary of runs that are there without; others are passed over."""
+    by_uid = _by_uid(wanted)
+    if not by_uid:
+        return
+    asked = select(runs).where(runs.c.uid.in_(by_uid)).order_by(runs.c.id)
     for row in connection.execute(asked).mappings().all():
-        run = by_uid[row["uid"]]
-        found[run.uid] = int(row["id"])
-        is_fuller = bool(run.plan) and not row["plan"]
-        has_ended = run.ended is not None and row["ended"] is None
-        if is_fuller or has_ended:
-            connection.execute(update(runs).where(runs.c.id == row["id"]).values(_run_row(run)))
+        kept = RunEntry(**{name: row[name] for name in _OF_RUN})
+        whole = _joined(kept, by_uid[kept.uid])
+        if whole != kept:
+            connection.execute(update(runs).where(runs.c.id == row["id"]).values(_run_row(whole)))
+
+
+def _by_uid(wanted: Iterable[RunEntry | None]) -> dict[str, RunEntry]:
+    """Runs with all that is known of them."""
+    found: dict[str, RunEntry] = {}
+    for run in wanted:
+        if run is not None:
+            found[run.uid] = _joined(found.get(run.uid, run), run)
     return found
+
+
+def _joined(run: RunEntry, other: RunEntry) -> RunEntry:
+    """A run with what it lacks and another mention of it has; itself where it lacks nothing."""
+    if other is run:
+        return run
+    missing: dict[str, Any] = {
+        name: getattr(other, name)
+        for name in ("plan", "ended", "summary")
+        if not getattr(run, name) and getattr(other, name)
+    }
+    return replace(run, **missing) if missing else run
 
 
 def _run_row(run: RunEntry) -> dict[str, Any]:
     row = {name: getattr(run, name) for name in _OF_RUN}
     summary = None if run.summary is None else plain_json(run.summary)
-    return {**row, "plan": plain_json(run.plan), "summary": summary}
+    moments = {name: one and as_utc(one, name) for name, one in row.items() if name in _MOMENTS}
+    return {**row, **moments, "plan": plain_json(run.plan), "summary": summary}
 
 
 def named_once(entries: Iterable[Entry]) -> Iterator[Entry]:
     """The entries, the plan and summary of each run with the first of its entries only."""
-    told: set[str] = set()
+    written: set[str] = set()
     for entry in entries:
         run = entry.run
-        if run is None or run.uid not in told:
+        if run is None or run.uid not in written:
             yield entry
         else:
             yield replace(entry, run=run.named_only)
         if run is not None:
-            told.add(run.uid)
+            written.add(run.uid)
 
 
 def with_whole_runs(entries: Iterable[Entry]) -> Iterator[Entry]:
-    """The entries, runs that are only named as an earlier entry has told them."""
+    """The entries, each with all that was read of its run until then."""
     whole: dict[str, RunEntry] = {}
     for entry in entries:
         # What is no entry is refused where its rows are made.
@@ -139,6 +165,6 @@ def with_whole_runs(entries: Iterable[Entry]) -> Iterator[Entry]:
         if run is None:
             yield entry
             continue
-        if run.plan:
-            whole[run.uid] = run
-        yield entry if run.plan or run.uid not in whole else replace(entry, run=whole[run.uid])
+        known = _joined(whole.get(run.uid, run), run)
+        whole[run.uid] = known
+        yield entry if known is run else replace(entry, run=known)

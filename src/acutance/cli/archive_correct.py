@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from acutance.cli.archive_selection import PlaceArgument
-from acutance.cli.options import JsonOption
+from acutance.cli.options import JsonOption, parse_gsd
 from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
@@ -22,7 +22,6 @@ EXAMPLE = (
     '  acutance archive correct campaign.db --image "K3_*.tif" --sensor KOMPSAT-3 --dry-run\n'
     "  acutance archive correct campaign.db --from corrections.csv"
 )
-_Angle = Annotated[float | None, typer.Option(metavar="DEG", help="Degrees.")]
 
 
 def correct(
@@ -49,15 +48,23 @@ def correct(
         str | None,
         typer.Option("--gsd", metavar="M[,M]", help="From row to row, and from column to column."),
     ] = None,
-    view_zenith_deg: _Angle = None,
-    view_azimuth_deg: _Angle = None,
-    sun_elevation_deg: _Angle = None,
-    sun_azimuth_deg: _Angle = None,
+    view_zenith_deg: Annotated[
+        float | None, typer.Option(metavar="DEG", help="Degrees of the view from the vertical.")
+    ] = None,
+    view_azimuth_deg: Annotated[
+        float | None, typer.Option(metavar="DEG", help="Degrees of the view, clockwise from north.")
+    ] = None,
+    sun_elevation_deg: Annotated[
+        float | None, typer.Option(metavar="DEG", help="Degrees of the sun above the horizon.")
+    ] = None,
+    sun_azimuth_deg: Annotated[
+        float | None, typer.Option(metavar="DEG", help="Degrees of the sun, clockwise from north.")
+    ] = None,
     reason: Annotated[
         str | None, typer.Option(metavar="TEXT", help="Kept with the correction.")
     ] = None,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Only tell what would change.")
+        bool, typer.Option("--dry-run", help="Change nothing, list what would change.")
     ] = False,
     as_json: JsonOption = False,
 ) -> None:  # fmt: skip
@@ -67,7 +74,8 @@ def correct(
     stay as they are, and a batch does not make them again.
     """
     from acutance.archive import Archive, ImageCorrection
-    from acutance.archive.exchange.image_statements import read_image_corrections
+    from acutance.archive.counted import counted
+    from acutance.archive.exchange.correction_files import read_correction_file
     from acutance.report import json_text
 
     values = {
@@ -80,7 +88,7 @@ def correct(
     if file is not None:
         if image or any(one is not None for one in values.values()):
             raise OptionError("--from has images and values of its own: give it alone")
-        corrections = read_image_corrections(file)
+        corrections = read_correction_file(file)
     elif not image:
         raise OptionError("give --image NAME and what is to be corrected, or --from FILE")
     else:
@@ -94,22 +102,17 @@ def correct(
     else:
         for one in found:
             typer.echo(one.summary)
-        typer.echo(f"{len(found)} images {'would be ' if dry_run else ''}corrected")
+        typer.echo(f"{counted(len(found), 'image')} {'would be ' if dry_run else ''}corrected")
     other = sum(one.other_gsd for one in found)
     if other:
         say(
-            f"{other} directions have numbers in metres by another GSD: they stay as they were "
-            "measured"
+            f"{counted(other, 'direction')} with numbers in metres by another GSD: they stay as "
+            "they were measured"
         )
 
 
 def _gsd(text: str | None) -> tuple[float, float] | None:
-    if text is None:
-        return None
-    try:
-        sides = [float(part) for part in text.split(",")]
-    except ValueError:
-        sides = []
-    if len(sides) not in (1, 2):
-        raise OptionError(f"--gsd {text}: write metres, .7, or two of them, .72,.70")
-    return sides[0], sides[-1]
+    from acutance.raster import Gsd
+
+    sides = Gsd.given(parse_gsd(text))
+    return None if sides is None else (sides.row_m, sides.col_m)

@@ -14,14 +14,14 @@ import orjson
 from acutance.archive.image_corrections import CORRECTED, ImageCorrection
 from acutance.errors import OptionError
 
-__all__ = ["read_image_corrections"]
+__all__ = ["read_correction_file"]
 
 _TEXTS: Final = ("image", "sensor", "level", "acquired", "reason")
 _SIDES: Final = ("gsd_row_m", "gsd_col_m")
 _COLUMNS: Final = ("image", *CORRECTED, *_SIDES, "reason")
 
 
-def read_image_corrections(place: str | os.PathLike[str]) -> list[ImageCorrection]:
+def read_correction_file(place: str | os.PathLike[str]) -> list[ImageCorrection]:
     """The corrections of a file; empty cells leave what is there.
 
     Parameters
@@ -66,12 +66,17 @@ def _json_rows(text: str) -> Iterator[tuple[str, dict[str, Any]]]:
 def _csv_rows(text: str) -> Iterator[tuple[str, dict[str, Any]]]:
     reader = csv.DictReader(io.StringIO(text, newline=""), restkey="beyond the header")
     for row in reader:
-        cells = {key: one for key, one in row.items() if one}
+        cells = {key.strip(): text for key, one in row.items() if (text := _stripped(one))}
         if cells:
             yield (
                 f"line {reader.line_num}",
                 {key: one if key in _TEXTS else _number(one) for key, one in cells.items()},
             )
+
+
+def _stripped(cell: Any) -> Any:
+    """A cell without spaces around it; those beyond the header are a list."""
+    return cell.strip() if isinstance(cell, str) else cell
 
 
 def _number(cell: Any) -> Any:
