@@ -313,6 +313,23 @@ def test_heights_of_images_located_by_rpc(write_field, run, rows, tmp_path):
     assert run_plan(230.0, one).reasons == {"not found": 1}
     own = feature("eave", "edge", "LineString", points, height_m=200)
     assert run_plan(230.0, own).measured == 1
+    assert run_plan(None, own).done_before == 1
+    assert run_plan(100.0, own).done_before == 1
+
+
+def test_a_height_counts_only_where_targets_are_placed_by_it(write_field, run, rows, tmp_path):
+    images = [write_field(0), write_field(1)]
+    first = run(*images)
+    stated = BatchPlan(tuple(map(str, images)), survey(), str(tmp_path / "kept.db"),
+                       stated=(StatedOfImages(height_m=120.0),), workers=1)  # fmt: skip
+    again = ac.run_batch(stated)
+    assert (again.kept, again.done_before, again.run) == (0, first.kept, None)
+    # Also where nothing is remembered of the images, and they are opened again.
+    (tmp_path / "cache").mkdir()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+        assert ac.run_batch(stated).kept == 0
+    assert len(rows()[0]) == first.measured
 
 
 def test_scenes_that_are_left_over_use_all_processes(tmp_path, run, monkeypatch):
@@ -320,7 +337,7 @@ def test_scenes_that_are_left_over_use_all_processes(tmp_path, run, monkeypatch)
     tried = []
 
     def spread(work, tasks, keep, **how):
-        tried.append([getattr(task, "path", task) for task in tasks])
+        tried.append(([task.path for task in tasks], how["workers"]))
         for place, task in enumerate(tasks):
             keep(place, work(task))
 
@@ -328,7 +345,7 @@ def test_scenes_that_are_left_over_use_all_processes(tmp_path, run, monkeypatch)
         tried.append((image.path, workers))
         raise NoEdgeError("no scan here")
 
-    monkeypatch.setattr("acutance.batch.whole_batch.run_tasks", spread)
+    monkeypatch.setattr("acutance.batch.spread_images.run_tasks", spread)
     monkeypatch.setattr("acutance.scan.scan_scene", scan)
     paths = [tmp_path / f"{at}.tif" for at in range(3)]
     for at, path in enumerate(paths):
@@ -336,8 +353,39 @@ def test_scenes_that_are_left_over_use_all_processes(tmp_path, run, monkeypatch)
     first, second, third = map(str, paths)
     scene = survey(feature("scene", "scene", None, None))
     found = run(*paths, targets=scene, workers=2)
-    assert tried[-4:] == [[first, second], (first, 1), (second, 1), (third, 2)]
+    spread_over_both = ([first, second], 2)
+    assert tried == [spread_over_both, (first, 1), (second, 1), ([third], 1), (third, 2)]
     assert found.rejected == 3
+    # Other targets of an image that is left over need no more than one process each.
+    tried.clear()
+    both = survey(feature("scene", "scene", None, None),
+                  feature("edge", "edge", "LineString", line_of(EDGE, 30.0)))  # fmt: skip
+    again = run(first, targets=both, workers=2, archive=tmp_path / "both.db")
+    assert tried == [([], 2), ([first], 2), ([first], 1), (first, 2)]
+    assert (again.images, again.kept, again.rejected) == (1, 2, 2)
+
+
+def test_targets_that_are_measured_before_a_scene_fails_are_kept(
+    write_field, run, rows, monkeypatch
+):
+    def broken(*_, **__):
+        raise BrokenProcessPool("killed")
+
+    monkeypatch.setattr("acutance.scan.scan_scene", broken)
+    one, other = survey()["features"]
+    targets = survey(feature("scene", "scene", None, None), one, other)
+    image = write_field(0)
+    with pytest.raises(BrokenProcessPool):
+        run(image, targets=targets, workers=2)
+    assert len(rows()[0]) == 2
+
+
+def test_an_image_that_cannot_be_read_is_one_row_also_with_scenes(tmp_path, run):
+    (tmp_path / "text.tif").write_text("no image")
+    edge = survey()["features"][0]
+    targets = survey(feature("scene", "scene", None, None), edge)
+    found = run(tmp_path / "text.tif", targets=targets, workers=2)
+    assert (found.kept, found.rejected, len(found.unreadable)) == (1, 1, 1)
 
 
 def test_a_scene_is_the_same_over_several_processes(tmp_path, run):

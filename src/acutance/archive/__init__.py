@@ -12,8 +12,8 @@ Sees records only, never pixels. In the order the data take:
 - `runs`, `outcomes`: batches that wrote into the archive; how what they ask for came out
 - `selection`, `columns`, `measurements`: which rows are meant, and what they hold as columns
 - `stored_entries`, `overview`: rows become entries again, and are counted
-- `image_corrections`, `named_images`, `correction_notes`: dates, sensors, GSD, angles of images that
-  are kept already, shared by all rows of a content
+- `image_corrections`, `named_images`, `correction_notes`: dates, sensors, GSD, angles of images
+  that are kept already, shared by all rows of a content
 - `exchange`: files of documents and tables, in and out
 - `weighted_means`: means of measurements that disagree
 - `trends`: drift, steps, season and scatter of a sensor through the years

@@ -15,13 +15,13 @@ from acutance.batch.entries import image_entry, target_entry
 from acutance.batch.place_target import NotHereError, PlacedTarget, place_target
 from acutance.batch.plan import StatedOfImages
 from acutance.batch.plan_options import ChosenOptions
-from acutance.batch.row_key import day_of, row_key, unreadable_key
+from acutance.batch.row_key import Reading, day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
 from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
 from acutance.execution import is_ending
 from acutance.raster import Gsd, Image, open_bands
 from acutance.raster.metadata import ImageStatement, read_statement
-from acutance.raster.sensor_model import georeference_of
+from acutance.raster.sensor_model import SensorModel, georeference_of
 from acutance.raster.surveyed_targets import SurveyedTarget
 from acutance.targets.target_result import Rejected
 
@@ -63,8 +63,8 @@ class BatchTask:
         SHA-256; None if it cannot be read.
     stated : StatedOfImages
         Of this image.
-    reading : str
-        Digest of how it is read.
+    reading : Reading
+        Digests of how it is read.
     done : frozenset of str
         Keys of its rows that the archive has.
     """
@@ -72,7 +72,7 @@ class BatchTask:
     path: str
     content: str | None
     stated: StatedOfImages
-    reading: str
+    reading: Reading
     done: frozenset[str]
 
 
@@ -89,12 +89,15 @@ class MeasuredImage:
         Of the acquisition.
     measuring_s : float
         Of the processor, spent in measurements, of all the worker did.
+    by_rpc : bool
+        Whether its RPC locate it, and need the height of the ground.
     """
 
     entries: list[Entry]
     bands: tuple[Band, ...] | None
     day: str | None
     measuring_s: float
+    by_rpc: bool = False
 
 
 @dataclass(frozen=True)
@@ -107,6 +110,7 @@ class _Opened:
     entry: ImageEntry
     acquired: date | None
     height_m: float | None
+    by_rpc: bool
 
 
 def measure_image(work: BatchWork, task: BatchTask) -> MeasuredImage:
@@ -123,9 +127,9 @@ def measure_image(work: BatchWork, task: BatchTask) -> MeasuredImage:
         return MeasuredImage([_unreadable(task, error)], None, None, 0.0)
     found = list(_rows(work, task, opened))
     day = None if opened.acquired is None else opened.acquired.isoformat()
-    return MeasuredImage(
-        [entry for entry, _ in found], opened.bands, day, sum(seconds for _, seconds in found)
-    )
+    measuring_s = sum(seconds for _, seconds in found)
+    entries = [entry for entry, _ in found]
+    return MeasuredImage(entries, opened.bands, day, measuring_s, opened.by_rpc)
 
 
 def _opened(task: BatchTask) -> _Opened:
@@ -153,7 +157,9 @@ def _opened(task: BatchTask) -> _Opened:
     )
     entry = image_entry(task, statement)
     acquired = None if entry.acquired is None else entry.acquired.date()
-    return _Opened(images, bands, statement, entry, acquired, stated.height_m)
+    model = georeference_of(images[0])
+    by_rpc = isinstance(model, SensorModel) and model.needs_height
+    return _Opened(images, bands, statement, entry, acquired, stated.height_m, by_rpc)
 
 
 def _unreadable(task: BatchTask, error: AcutanceError) -> Entry:
@@ -170,7 +176,8 @@ def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[E
         for place, band in enumerate(opened.bands):
             if not selected(band, work.bands, target.bands):
                 continue
-            key = row_key(str(task.content), task.reading, digest, band.number, day_of(target, day))
+            reading = task.reading.of(target, opened.by_rpc)
+            key = row_key(str(task.content), reading, digest, band.number, day_of(target, day))
             if key in task.done:
                 continue
             if is_ending():

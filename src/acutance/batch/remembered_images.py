@@ -37,11 +37,14 @@ class KnownImage:
         None where the image has not been opened, empty where it cannot be.
     day : str or None
         Of the acquisition.
+    by_rpc : bool
+        Whether its RPC locate it, and need the height of the ground.
     """
 
     content: str
     bands: tuple[tuple[int, str | None], ...] | None = None
     day: str | None = None
+    by_rpc: bool = False
 
 
 class RememberedImages:
@@ -105,6 +108,6 @@ def _known_image(text: str) -> KnownImage | None:
         found = json.loads(text)
         bands = found["bands"]
         named = None if bands is None else tuple((int(one), name) for one, name in bands)
-        return KnownImage(str(found["content"]), named, found["day"])
+        return KnownImage(str(found["content"]), named, found["day"], bool(found["by_rpc"]))
     except (ValueError, KeyError, TypeError):
         return None

@@ -8,12 +8,13 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from acutance.batch.plan_options import ChosenOptions
 from acutance.raster.surveyed_targets import SurveyedTarget
 
-__all__ = ["day_of", "reading_digest", "row_key", "target_digest", "unreadable_key"]
+__all__ = ["Reading", "day_of", "reading_of", "row_key", "target_digest", "unreadable_key"]
 
 _FREE = ("description", "source")
 
@@ -26,9 +27,33 @@ def target_digest(target: SurveyedTarget, chosen: ChosenOptions) -> str:
     return _digest({"name": target.name, "target": definition, "options": chosen.document})
 
 
-def reading_digest(reading: Mapping[str, Any]) -> str:
-    """Of how the pixels of an image are read."""
-    return _digest({key: one for key, one in reading.items() if one is not None})
+@dataclass(frozen=True)
+class Reading:
+    """Digests of how an image is read.
+
+    Parameters
+    ----------
+    pixels : str
+        Of how its pixels are.
+    at_height : str
+        Together with the stated height of the ground.
+    """
+
+    pixels: str
+    at_height: str
+
+    def of(self, target: SurveyedTarget, by_rpc: bool) -> str:
+        """The digest for a target: a height counts where the target is placed by it."""
+        is_placed = bool(target.points) and not target.in_pixels
+        by_height = by_rpc and is_placed and target.height_m is None
+        return self.at_height if by_height else self.pixels
+
+
+def reading_of(stated: Mapping[str, Any]) -> Reading:
+    """The digests of what is stated of an image."""
+    at_height = {key: one for key, one in stated.items() if one is not None}
+    pixels = {key: one for key, one in at_height.items() if key != "height_m"}
+    return Reading(_digest(pixels), _digest(at_height))
 
 
 def row_key(content: str, reading: str, target: str, band: int, day: str | None) -> str:

@@ -7,28 +7,29 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 from acutance.archive import Archive, Entry
 from acutance.archive.connection import is_there
 from acutance.archive.outcomes import Outcome
 from acutance.batch.image_list import ImageFile, content_of, list_images, stated_of
-from acutance.batch.measure_image import BatchTask, BatchWork, MeasuredImage, measure_image
+from acutance.batch.measure_image import BatchTask, BatchWork, MeasuredImage
 from acutance.batch.plan import BatchPlan, read_plan
 from acutance.batch.plan_options import choose_options, require_options
 from acutance.batch.remembered_images import KnownImage, RememberedImages
 from acutance.batch.row_key import (
+    Reading,
     day_of,
-    reading_digest,
+    reading_of,
     row_key,
     target_digest,
     unreadable_key,
 )
 from acutance.batch.selected_bands import Band, selected
+from acutance.batch.spread_images import spread_images
 from acutance.batch.summary import BatchSummary, Tally
 from acutance.errors import ArchiveError, OptionError
-from acutance.execution import require_workers, run_on_cluster, run_tasks
+from acutance.execution import require_workers, run_tasks
 from acutance.raster.surveyed_targets import read_targets, targets_of
 
 __all__ = ["run_batch"]
@@ -200,10 +201,10 @@ def _tasks(
     by_content: dict[str, set[str]] = {}
     for key, one in there.items():
         by_content.setdefault(str(one.content), set()).add(key)
-    found, seen = [], set[tuple[str, str]]()
+    found, seen = [], set[tuple[str, Reading]]()
     for file in files:
         stated, image = stated_of(file.path, plan.stated), known.get(file.path)
-        reading = reading_digest({name: getattr(stated, name) for name in _READING})
+        reading = reading_of({name: getattr(stated, name) for name in _READING})
         content = None if image is None else image.content
         if content is not None and (content, reading) in seen:
             continue
@@ -219,13 +220,14 @@ def _tasks(
     return found
 
 
-def _wanted_keys(image: KnownImage, reading: str, work: BatchWork) -> set[str] | None:
+def _wanted_keys(image: KnownImage, reading: Reading, work: BatchWork) -> set[str] | None:
     """The keys of all rows of an image; None while its bands are not known."""
     if image.bands is None:
         return None
     return {
-        row_key(image.content, reading, digest, band.number, day_of(target, image.day))
+        row_key(image.content, how, digest, band.number, day_of(target, image.day))
         for target, digest in zip(work.targets, work.digests, strict=True)
+        for how in (reading.of(target, image.by_rpc),)
         for band in (Band(*one) for one in image.bands)
         if selected(band, work.bands, target.bands)
     }
@@ -256,7 +258,7 @@ def _run(
         if kept is not None:
             kept(found.entries)
         if task.content is not None and found.bands is not None:
-            image = KnownImage(task.content, found.bands, found.day)
+            image = KnownImage(task.content, found.bands, found.day, found.by_rpc)
             memory.remember({file: image})
             wanted = _wanted_keys(image, task.reading, work) or set()
             tally.add_earlier([there[key] for key in wanted & task.done])
@@ -268,35 +270,11 @@ def _run(
     if progress is not None:
         progress(0, len(todo))
     try:
-        _spread(work, tasks, keep, plan)
+        spread_images(work, tasks, keep, workers=plan.workers, scheduler=plan.dask)
     except BaseException:
-        # Why the run ended is to be told, and not that this could not be written down.
+        # The error to report is the one that ended the run, not that this cannot be written down.
         with suppress(ArchiveError):
             archive.end_run(number, {**tally.to_dict(), "finished": False})
         raise
     archive.end_run(number, {**tally.to_dict(), "finished": True})
     return number
-
-
-def _spread(
-    work: BatchWork,
-    tasks: Sequence[BatchTask],
-    keep: Callable[[int, MeasuredImage], None],
-    plan: BatchPlan,
-) -> None:
-    """All images over processes, or over the workers of a cluster.
-
-    A scene occupies one process for long. Images with scenes are spread as far as every process has
-    as many; those left over come one after the other, each scene over all processes.
-    """
-    measure = partial(measure_image, work)
-    if plan.dask is not None:
-        run_on_cluster(measure, tasks, keep, scheduler=plan.dask)
-        return
-    workers = plan.workers or os.cpu_count() or 1
-    has_scenes = any(target.kind == "scene" for target in work.targets)
-    left = len(tasks) % workers if has_scenes else 0
-    even = len(tasks) - left
-    run_tasks(measure, tasks[:even], keep, workers=workers, chunk=1)
-    for place, task in enumerate(tasks[even:], start=even):
-        keep(place, measure_image(replace(work, scan_workers=workers), task))
