@@ -8,6 +8,7 @@ from datetime import UTC, date, datetime
 from typing import Any
 
 import pytest
+from sqlalchemy import event
 
 from acutance.archive import Archive, ImageCorrection
 from acutance.archive.exchange.correction_files import read_correction_file
@@ -208,6 +209,25 @@ def test_a_corrected_export_corrects_what_is_there(
         other.export(lines, to="jsonl")
     assert archive.import_documents(lines).new == 1
     assert {entry.image.sensor for entry in archive.entries()} == {"K3A"}
+
+
+def test_many_images_are_corrected_by_as_many_statements_as_one(
+    archive: Archive, entry_of: Any
+) -> None:
+    """An archive is locked for others while it is corrected."""
+    archive.add_entries([entry_of(at) for at in range(60)])
+    statements: list[str] = []
+
+    def count(*executed: Any) -> None:
+        statements.append(executed[2])
+
+    def used(image: str) -> int:
+        statements.clear()
+        archive.correct_images([ImageCorrection(image=image, gsd_m=0.61)])
+        return len(statements)
+
+    event.listen(archive._database.engine, "before_cursor_execute", count)
+    assert used("3.tif") == used("*.tif")
 
 
 def test_a_correction_is_later_than_all_before(archive: Archive, copy_of: Any) -> None:

@@ -83,9 +83,9 @@ def add_entries(
     database : Database
     entries : iterable of Entry
     run : int, optional
-        What wrote them, instead of what they say themselves.
+        What wrote them, instead of the runs that they name.
     progress : callable, optional
-        Told after each transaction how many entries were read.
+        Called after each transaction with how many entries were read.
 
     Raises
     ------
@@ -101,11 +101,11 @@ def add_entries(
         for rows in _chunks(entries):
             if writing is not None:
                 added += writing.result()
-                _tell(progress, read)
+                _report(progress, read)
             writing, read = writer.submit(_write, database, rows, run), read + len(rows)
         if writing is not None:
             added += writing.result()
-            _tell(progress, read)
+            _report(progress, read)
     return added
 
 
@@ -116,7 +116,7 @@ def _write(database: Database, rows: Sequence[EntryRows], run: int | None) -> in
     return database.write(partial(_add_chunk, chunk=chunk, run=run))
 
 
-def _tell(progress: Callable[[int], None] | None, read: int) -> None:
+def _report(progress: Callable[[int], None] | None, read: int) -> None:
     if progress is not None:
         progress(read)
 

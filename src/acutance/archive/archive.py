@@ -166,7 +166,7 @@ class Archive(Questions):
         run : int, optional
             Of `start_run`.
         progress : callable, optional
-            Told after each transaction how many were read.
+            Called after each transaction with how many were read.
 
         Returns
         -------
@@ -315,7 +315,7 @@ class Archive(Questions):
         to : {"jsonl", "parquet", "csv", "csv-documents", "stac"}
             All but "csv" lose nothing, and can be imported.
         progress : callable, optional
-            Told how many of how many were read.
+            Called with how many of how many were read.
         **selection
             Filters, as of `measurements`.
 
@@ -356,7 +356,7 @@ class Archive(Questions):
         run : int, optional
             Of `start_run`.
         progress : callable, optional
-            Told now and then how many entries were read.
+            Called now and then with how many entries were read.
 
         Returns
         -------

@@ -224,7 +224,7 @@ def _file_address(path: Path, read_only: bool) -> str:
 
     A file that is only read is opened to be written if it may be, or SQLite could not clear away
     the log beside it; `PRAGMA query_only` then refuses writing. Where not even its folder may be
-    written, nobody else writes it, and no log is needed.
+    written, no other process writes it, and no log is needed.
     """
     address = f"file:{quote(str(path))}"
     if not read_only:

@@ -33,7 +33,7 @@ class ImageEntry:
         GSD from row to row and from column to column.
     view_zenith_deg, view_azimuth_deg, sun_elevation_deg, sun_azimuth_deg : float, optional
     sources : mapping, optional
-        Which file said what.
+        Which file each value is from.
     """
 
     path: str | None = None

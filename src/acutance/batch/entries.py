@@ -36,11 +36,11 @@ def image_entry(task: BatchTask, statement: ImageStatement) -> ImageEntry:
     values: dict[str, Any] = {}
     sources: dict[str, Any] = {}
     for name in _FIELDS:
-        own, said = getattr(task.stated, name), getattr(statement, name)
+        own, found = getattr(task.stated, name), getattr(statement, name)
         if own is not None:
             values[name], sources[name] = own, "stated in the plan"
-        elif said is not None:
-            values[name], sources[name] = said.value, said.source
+        elif found is not None:
+            values[name], sources[name] = found.value, found.source
     if statement.conflicts:
         sources["conflicts"] = list(statement.conflicts)
     if statement.notes:

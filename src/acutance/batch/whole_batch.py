@@ -80,7 +80,7 @@ def run_batch(
         Address of a dask scheduler whose workers see the images under the same names.
     progress : function of (images done, images in all), optional
     kept : function of (sequence of Entry), optional
-        Told the rows of an image, each with its key, once the archive has them.
+        Called with the rows of an image, each with its key, once the archive has them.
 
     Returns
     -------

@@ -21,7 +21,7 @@ from acutance.errors import OptionError
 __all__ = ["FORMATS", "export_entries"]
 
 Progress = Callable[[int, int], None]
-_TOLD_EVERY = 500
+_REPORT_EVERY = 500
 
 FORMATS: Mapping[str, Callable[[Iterable[Entry], Path], int]] = {
     "jsonl": write_jsonl,
@@ -51,7 +51,7 @@ def export_entries(
     to : str
         A name of `FORMATS`.
     progress : callable, optional
-        Told how many of how many entries were read.
+        Called with how many of how many entries were read.
 
     Raises
     ------
@@ -64,12 +64,12 @@ def export_entries(
     if not path.absolute().parent.is_dir():
         raise OptionError(f"{path} cannot be written, there is no folder {path.parent}")
     ids = select_ids(database, selection)
-    entries = _told(named_once(stored_entries(database, ids)), len(ids), progress)
+    entries = _reported(named_once(stored_entries(database, ids)), len(ids), progress)
     return FORMATS[to](entries, path)
 
 
-def _told(entries: Iterator[Entry], total: int, progress: Progress | None) -> Iterator[Entry]:
+def _reported(entries: Iterator[Entry], total: int, progress: Progress | None) -> Iterator[Entry]:
     for number, entry in enumerate(entries, start=1):
         yield entry
-        if progress is not None and (number % _TOLD_EVERY == 0 or number == total):
+        if progress is not None and (number % _REPORT_EVERY == 0 or number == total):
             progress(number, total)

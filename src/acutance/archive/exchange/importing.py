@@ -61,7 +61,7 @@ def import_files(
     stated : Stated
     run : int, optional
     progress : callable, optional
-        Told now and then how many entries were read.
+        Called now and then with how many entries were read.
 
     Raises
     ------
