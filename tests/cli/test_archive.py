@@ -171,8 +171,14 @@ def test_an_image_is_corrected(acutance, campaign, tmp_path):
     table.write_text(f"image,sensor\n{name[:-3]}*,K9\n")
     assert "level" not in acutance("archive", "correct", campaign, "--from", table).stdout
     assert acutance("archive", "list", campaign, "--sensor", "K9").exit_code == 0
-    one = acutance("archive", "correct", campaign, "--image", name, "--sensor", "K8")
-    assert one.stdout.endswith("(1 measurement)\n1 image corrected\n")
+
+
+def test_one_image_is_one_image(acutance, measured, tmp_path):
+    acutance("archive", "import", tmp_path / "a.db", measured)
+    done = acutance("archive", "correct", tmp_path / "a.db", "--image", "*", "--sensor", "K8")
+    assert done.stdout.endswith("(1 measurement)\n1 image corrected\n")
+    help_text = acutance("archive", "correct", "--help").stdout
+    assert "of the view from the vertical" in " ".join(help_text.split())
 
 
 def test_corrections_that_cannot_be(acutance, campaign):

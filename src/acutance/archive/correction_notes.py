@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime, timedelta
+from functools import lru_cache
 from typing import Any, Final
 
 from sqlalchemy import Connection, bindparam, select, update
@@ -49,7 +50,10 @@ def with_notes(
         for name, (before, after) in changes.items()
     ]  # fmt: skip
     known = [{key: one for key, one in note.items() if one is not None} for note in notes]
-    return _corrected(row, [*_notes_of(sources), *plain_json({_NOTES: known})[_NOTES]])
+    all_notes = [*_notes_of(sources), *plain_json({_NOTES: known})[_NOTES]]
+    words = {_source_word(name): f"corrected on {now:%Y-%m-%d}" for name in changes}
+    values = {name: after for name, (_, after) in changes.items()}
+    return {**row, **values, "sources": {**sources, **words, _NOTES: all_notes}}
 
 
 def next_moment(rows: Iterable[Row]) -> datetime:
@@ -137,7 +141,13 @@ def _is_note(found: Any) -> bool:
 
 
 def _moment_of(note: Note) -> datetime:
-    return as_utc(note["on"], "the date of a correction")
+    return _moment(note["on"])
+
+
+@lru_cache
+def _moment(text: str) -> datetime:
+    """The date of a correction: thousands of images have the same."""
+    return as_utc(text, "the date of a correction")
 
 
 def _value_of(note: Note) -> Any:
