@@ -44,6 +44,7 @@ PACKAGES = (
     "scan",
     "archive",
     "archive.trends",
+    "archive.comparisons",
     "archive.published",
     "batch",
     "restoration",
