@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from acutance.archive.columns import Columns
-from acutance.archive.comparisons import Comparison, Difference, compare_groups
+from acutance.archive.comparisons import Difference, GroupComparison, compare_groups
 from acutance.curves import MAIN_NUMBERS
 
 LEVEL = 0.16
@@ -28,7 +28,7 @@ def group(number: int, relative: np.ndarray, **own: Any) -> dict[str, Any]:
 
 def compared(
     *groups: dict[str, Any], by: str = "method", metric: str = "mtf_nyquist"
-) -> Comparison:
+) -> GroupComparison:
     parts = []
     for one in groups:
         size = one["value"].size
@@ -45,7 +45,7 @@ def compared(
     return compare_groups(Columns(columns), metric, by)
 
 
-def only(found: Comparison) -> Difference:
+def only(found: GroupComparison) -> Difference:
     assert len(found.differences) == 1
     return found.differences[0]
 

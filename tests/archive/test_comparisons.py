@@ -10,7 +10,7 @@ import pytest
 import acutance as ac
 from acutance.archive import Archive, Entry, ImageEntry
 from acutance.archive.columns import Columns
-from acutance.archive.comparisons import Comparison, Difference, compare_groups
+from acutance.archive.comparisons import Difference, GroupComparison, compare_groups
 from acutance.errors import NothingSelectedError, OptionError
 
 LEVEL = 0.16
@@ -41,7 +41,7 @@ def dates(year: np.ndarray) -> np.ndarray:
     return np.datetime64("2020-01-01", "us") + (31_557_600e6 * (year - 2020)).astype("m8[us]")
 
 
-def only(found: Comparison) -> Difference:
+def only(found: GroupComparison) -> Difference:
     assert len(found.differences) == 1
     return found.differences[0]
 

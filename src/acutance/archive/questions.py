@@ -13,7 +13,7 @@ from acutance.archive.measurements import Measurements
 from acutance.archive.selection import Selection, SelectionWords
 
 if TYPE_CHECKING:
-    from acutance.archive.comparisons import Comparison
+    from acutance.archive.comparisons import GroupComparison
     from acutance.archive.specification import Specification
     from acutance.archive.specification_check import SpecificationCheck
     from acutance.archive.tables_by import MeasurementTable
@@ -161,7 +161,7 @@ class Questions(ABC):
         *,
         margin: float = MARGIN,
         **selection: Unpack[SelectionWords],
-    ) -> Comparison:
+    ) -> GroupComparison:
         """Whether across and along differ, or methods, kinds, bands agree.
 
         Groups that were measured in the same images are compared there, so that what an image does
@@ -180,7 +180,7 @@ class Questions(ABC):
 
         Returns
         -------
-        Comparison
+        GroupComparison
         """
         from acutance.archive.comparisons import compare_groups
 

@@ -19,6 +19,7 @@ from acutance.batch.row_key import Reading, day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
 from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
 from acutance.execution import is_ending
+from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image, open_bands
 from acutance.raster.metadata import ImageStatement, read_statement
 from acutance.raster.sensor_model import SensorModel, georeference_of
@@ -113,6 +114,7 @@ class _Opened:
     by_rpc: bool
 
 
+@one_thread
 def measure_image(work: BatchWork, task: BatchTask) -> MeasuredImage:
     """Measure all targets of an image that are not done.
 

@@ -13,7 +13,7 @@ In the order the data take:
 """
 
 from acutance.archive.comparisons.compare_groups import compare_groups
-from acutance.archive.comparisons.comparison import Comparison, GroupScatter
 from acutance.archive.comparisons.difference import Difference
+from acutance.archive.comparisons.group_comparison import GroupComparison, GroupScatter
 
-__all__ = ["Comparison", "Difference", "GroupScatter", "compare_groups"]
+__all__ = ["Difference", "GroupComparison", "GroupScatter", "compare_groups"]

@@ -13,7 +13,6 @@ import numpy as np
 
 from acutance.archive.columns import Columns
 from acutance.archive.comparison_margin import MARGIN
-from acutance.archive.comparisons.comparison import Comparison, GroupScatter
 from acutance.archive.comparisons.degrees import StdPart, joined_std
 from acutance.archive.comparisons.difference import (
     ABSOLUTE,
@@ -21,6 +20,7 @@ from acutance.archive.comparisons.difference import (
     gsds_differ,
     is_of_pixels,
 )
+from acutance.archive.comparisons.group_comparison import GroupComparison, GroupScatter
 from acutance.archive.comparisons.groups import MeasuredGroup, Stratum, strata_of
 from acutance.archive.comparisons.means import difference_of_means
 from acutance.archive.comparisons.pairing import find_pairs
@@ -42,7 +42,7 @@ _LEAST_SHARE: Final = 0.25
 
 def compare_groups(
     rows: Columns, metric: str, by: str = "orientation", *, margin: float = MARGIN
-) -> Comparison:
+) -> GroupComparison:
     """Whether groups of measurements differ, all else being the same.
 
     Groups that were measured in the same images are compared there, so that what an image does to
@@ -59,7 +59,7 @@ def compare_groups(
 
     Returns
     -------
-    Comparison
+    GroupComparison
 
     Raises
     ------
@@ -77,7 +77,7 @@ def compare_groups(
         differences += found
         if len(stratum.groups) >= _SEVERAL:
             scatters.append(_scatter(stratum, by, found))
-    return Comparison(
+    return GroupComparison(
         metric=metric, by=by, differences=tuple(differences), scatters=tuple(scatters)
     )
 

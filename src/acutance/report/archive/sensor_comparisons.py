@@ -15,7 +15,7 @@ from acutance.report.html import Table
 from acutance.report.labels import METRIC_WORDS, MISSING
 
 if TYPE_CHECKING:
-    from acutance.archive.comparisons import Comparison, Difference
+    from acutance.archive.comparisons import Difference, GroupComparison
     from acutance.archive.measurements import Measurements
 
 __all__ = ["SensorComparisons", "comparison_tables", "comparisons_of"]
@@ -39,13 +39,13 @@ class SensorComparisons:
         Its name is not said again.
     metric : str
         What is drawn through time.
-    found : dict of str to dict of str to Comparison
+    found : dict of str to dict of str to GroupComparison
         By what is compared and by metric.
     """
 
     sensor: str
     metric: str
-    found: dict[str, dict[str, Comparison]]
+    found: dict[str, dict[str, GroupComparison]]
 
     @property
     def sentences(self) -> list[str]:

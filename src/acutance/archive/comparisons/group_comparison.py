@@ -11,7 +11,7 @@ from typing import Any
 from acutance.archive.comparisons.difference import Difference
 from acutance.curves import Estimate
 
-__all__ = ["Comparison", "GroupScatter"]
+__all__ = ["GroupComparison", "GroupScatter"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +65,7 @@ class GroupScatter:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Comparison:
+class GroupComparison:
     """Whether groups of measurements differ.
 
     Attributes
