@@ -184,6 +184,27 @@ def test_a_field_of_view_that_is_softer_on_one_side():
     assert {check.name: check for check in scene.checks}["field_change"].value > 0.03
 
 
+def test_a_decimated_scene_is_sharper_than_any_pixel(ideal):
+    fine, _ = simulate.landscape(
+        ac.Sensor([ac.optics.Detector(0.6), ac.optics.Gaussian(0.15)]), shape=(700, 900),
+        options=LandscapeOptions(soft=0.0, **CLEAN), rng=np.random.default_rng(3),
+    )  # fmt: skip
+    scene = ac.scan_scene(fine)
+    assert "full_pixel" in {check.name for check in scene.failed_checks}
+    assert scene.verdict.word == "doubtful"
+    _, _, plain = ideal
+    assert "full_pixel" not in {check.name for check in plain.failed_checks}
+
+
+def test_a_scene_of_bare_samples_is_refused_in_words():
+    bare, _ = simulate.landscape(
+        ac.Sensor([ac.optics.Detector(0.3)]), shape=(700, 900),
+        options=LandscapeOptions(soft=0.0, **CLEAN), rng=np.random.default_rng(3),
+    )  # fmt: skip
+    with pytest.raises(ac.NoEdgeError, match="0 of them can be used"):
+        ac.scan_scene(bare)
+
+
 def test_edges_are_written_as_parquet(ideal, tmp_path, monkeypatch):
     parquet = pytest.importorskip("pyarrow.parquet")
     _, _, scene = ideal

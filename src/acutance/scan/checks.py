@@ -6,17 +6,19 @@ from itertools import product
 
 import numpy as np
 
+from acutance.curves import Otf2d
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.scan.field import Field
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.sensor_fit import SensorFit
 from acutance.targets.check import Check, Limits, answer
+from acutance.targets.full_pixel import full_pixel
 
 __all__ = ["SCENE_CHECKS", "check_scene"]
 
 SCENE_CHECKS = (
     "edges_used", "scene_directions", "ideal_share", "strange_share", "scene_settled",
-    "field_change",
+    "field_change", "full_pixel",
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -25,7 +27,7 @@ _SIGNIFICANT = 2.0
 
 
 def check_scene(
-    edges: SceneEdges, fit: SensorFit, field: Field, limits: Limits
+    edges: SceneEdges, fit: SensorFit, field: Field, transfer: Otf2d, limits: Limits
 ) -> tuple[Check, ...]:
     """All checks of a scene.
 
@@ -34,6 +36,8 @@ def check_scene(
     edges : SceneEdges
     fit : SensorFit
     field : Field
+    transfer : Otf2d
+        The mean over the field.
     limits : mapping of str to float
         Limits the caller changed.
     """
@@ -72,6 +76,7 @@ def check_scene(
             f"{100 * change_std:.0f} % from its mean; the chance that it is the same everywhere is "
             f"{field.chance_constant:.2f}", limits,
         ),
+        full_pixel([transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits),
     )  # fmt: skip
 
 

@@ -224,12 +224,13 @@ def _measurement(
     gsd = gsd or image.gsd(box.row + box.height / 2, box.col + box.width / 2)
     known = edges.with_objects(fit.member.mean_px, fit.member.part[:, 0])
     field = Field(box.as_tuple(), *fit.field[:4])
+    transfer = Otf2d(field.mean_of(fit.otf), None if gsd is None else (gsd.row_m, gsd.col_m))
     return SceneMeasurement(
         kind="scene",
         method="population",
-        transfer=Otf2d(field.mean_of(fit.otf), None if gsd is None else (gsd.row_m, gsd.col_m)),
+        transfer=transfer,
         snr=float(np.median(edges.snr[edges.used])),
-        checks=check_scene(edges, fit, field, options.limits),
+        checks=check_scene(edges, fit, field, transfer, options.limits),
         image=image_info(image, box, gsd),
         options=options.to_dict(),
         edges=known,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -31,7 +32,8 @@ __all__ = ["UsedEdge", "WindowEdges", "scan_window"]
 
 _MIN_SIDE_PX = 16
 _USED = ("good", "usable")
-_EDGE_OPTIONS = EdgeOptions()
+_EDGE_OPTIONS = EdgeOptions(limits={"full_pixel": math.inf})
+"""Whether it is too sharp for a sensor is asked of the scene: all edges of a sharpened one are."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,6 +34,11 @@ _ANY_TARGET = {
         "Which share of the pixels lies far from the fit?", "<=", 0.02,
         "objects on the target, or a fit that does not hold; choose a cleaner region",
     ),
+    "full_pixel": Question(
+        "Which MTF at Nyquist is surely exceeded?", "<=", 0.66,
+        "no sensor whose pixels touch is that sharp: the image was sharpened, decimated or drawn, "
+        "and the numbers are those of the product",
+    ),
 }  # fmt: skip
 
 _PLATEAUS = {

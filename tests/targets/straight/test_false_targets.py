@@ -52,6 +52,23 @@ def test_numbers_that_wrapped_around_are_no_edge_of_light(offset):
     assert "lsf_width_px" in failed(ac.measure_edge(wrapped))
 
 
+@pytest.mark.parametrize("step", [3, 5])
+def test_an_image_decimated_without_averaging_is_sharper_than_any_pixel(step):
+    image, _ = edge(7, shape=(240, 240))
+    decimated = ac.measure_edge(image[::step, ::step])
+    assert "full_pixel" in failed(decimated)
+    assert not decimated.trusted
+
+
+@pytest.mark.parametrize("angle_deg", [4, 20, 44])
+def test_a_full_pixel_alone_is_not_sharper_than_one(angle_deg):
+    sensor = ac.Sensor([optics.Detector()])
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        image, _ = ac.simulate.edge(sensor, angle_deg=angle_deg, snr=100, rng=rng, shape=(60, 60))
+        assert "full_pixel" not in failed(ac.measure_edge(image))
+
+
 def test_numbers_too_coarse_for_the_intervals_are_noticed():
     image, _ = edge(53, shape=(40, 40))
     coarse = np.round(image * 0.01).astype("uint8")

@@ -13,6 +13,7 @@ from acutance.geometry.line import Line
 from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
+from acutance.targets.full_pixel import full_pixel
 from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import PLACES, CheckData, ratio_in_words
 from acutance.targets.straight.ground_checks import ground_checks, rim
@@ -60,12 +61,12 @@ __all__ = [
 ]
 
 EDGE_CHECKS = (
-    "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases", "rows",
-    "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px", "lsf_narrow_px",
-    "plateau_dark_px", "plateau_bright_px", "saturation", "undeclared_fill", "quantisation",
-    "nonlinearity", "gradient", "correlated_noise", "structure", "one_sided_overshoot",
-    "double_edge", "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground",
-    "close_ground", "mirrored_ground", "rim",
+    "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases",
+    "rows", "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px",
+    "lsf_narrow_px", "full_pixel", "plateau_dark_px", "plateau_bright_px", "saturation",
+    "undeclared_fill", "quantisation", "nonlinearity", "gradient", "correlated_noise",
+    "structure", "one_sided_overshoot", "double_edge", "asymmetric_lsf", "asymmetric_wings",
+    "profile", "outliers", "ground", "close_ground", "mirrored_ground", "rim",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -98,6 +99,7 @@ def check_edge(
         edge_roughness(data, limits),
         lsf_width(data, limits),
         lsf_narrow(data, limits),
+        full_pixel([data.fit.response.mtf_nyquist], limits),
         plateau(limits, "dark", extent.dark_px),
         plateau(limits, "bright", extent.bright_px),
         saturation(region, data, limits),

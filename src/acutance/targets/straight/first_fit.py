@@ -77,7 +77,7 @@ def fit_first(
     Raises
     ------
     NoEdgeError
-        If no step survives the fit.
+        If no step survives the fit, or it leaves the pixels.
     """
     s, t = line.normal_distance(row, col), line.tangent_distance(row, col)
     # A bad pixel counts with no more than a whole height.
@@ -110,8 +110,15 @@ def fit_first(
             f"no straight target was found: the best fit is a step of {height:.3g} in noise of "
             f"{scale:.3g}; choose a region with one edge, or one pulse, between uniform plateaus"
         )
+    offset_px = float(p[2])
+    if not s.min() < offset_px < s.max():
+        raise NoEdgeError(
+            f"no straight target was found: the best fit of a step lies {abs(offset_px):.3g} px "
+            "from where one was seen; choose a region with one edge, or one pulse, between uniform "
+            "plateaus"
+        )
     found = profile if p.size == 7 else pulse_profile(float(p[7]), float(p[8]))
-    moved = line.moved(float(p[2]), math.degrees(float(p[3])))
+    moved = line.moved(offset_px, math.degrees(float(p[3])))
     return FirstFit(moved, blur, float(p[0]), height, scale, found)
 
 

@@ -10,6 +10,7 @@ from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, limit_of
+from acutance.targets.full_pixel import full_pixel
 from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
 from acutance.targets.straight.edge_checks import (
@@ -51,10 +52,10 @@ __all__ = ["PULSE_CHECKS", "check_pulse", "pulse_snr"]
 PULSE_CHECKS = (
     "contrast_snr", "uniformity_before", "uniformity_behind", "uniformity_target", "angle_deg",
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
-    "plateau_before_px", "plateau_behind_px", "saturation", "undeclared_fill", "quantisation",
-    "nonlinearity", "gradient", "correlated_noise", "profile", "outliers", "parallel_deg",
-    "background_step", "width_px", "width_sigmas", "zero_distance_cpp", "ground", "close_ground",
-    "mirrored_ground",
+    "full_pixel", "plateau_before_px", "plateau_behind_px", "saturation", "undeclared_fill",
+    "quantisation", "nonlinearity", "gradient", "correlated_noise", "profile", "outliers",
+    "parallel_deg", "background_step", "width_px", "width_sigmas", "zero_distance_cpp", "ground",
+    "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of a pulse."""
 
@@ -98,6 +99,7 @@ def check_pulse(
         straightness(data, limits),
         edge_roughness(data, limits),
         lsf_width(data, limits),
+        full_pixel([data.fit.response.mtf_nyquist], limits),
         plateau(limits, "before", extent.dark_px),
         plateau(limits, "behind", extent.bright_px),
         saturation(region, data, limits),

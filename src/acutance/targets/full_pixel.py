@@ -1,0 +1,34 @@
+"""Is an image sharper than any sensor can see whose pixels touch?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from acutance.curves.estimate import Estimate
+from acutance.targets.check import Check, Limits, answer
+
+__all__ = ["full_pixel"]
+
+_SURE = 2.0
+
+
+def full_pixel(mtf_nyquist: Sequence[Estimate], limits: Limits) -> Check:
+    """Whether an MTF at Nyquist is surely above that of a full square pixel without optics.
+
+    That pixel transfers sin(pi/2) / (pi/2) = 0.637 along its sides and 0.651 along its diagonal;
+    whatever lies before it only takes from that.
+
+    Parameters
+    ----------
+    mtf_nyquist : sequence of Estimate
+        Of every direction measured, each from 0 up.
+    limits : mapping of str to float
+        Limits the caller changed.
+    """
+    surest = max(mtf_nyquist, key=_at_least)
+    found = f"the MTF at Nyquist is {surest:.2f}, that of a full pixel without any optics .64"
+    return answer("full_pixel", _at_least(surest), found, limits)
+
+
+def _at_least(mtf: Estimate) -> float:
+    return max(mtf.value - _SURE * mtf.std, 0.0)
