@@ -186,7 +186,7 @@ def test_a_field_of_view_that_is_softer_on_one_side():
 
 def test_a_decimated_scene_is_sharper_than_any_pixel(ideal):
     fine, _ = simulate.landscape(
-        ac.Sensor([ac.optics.Detector(0.6), ac.optics.Gaussian(0.15)]), shape=(700, 900),
+        ac.Sensor([ac.optics.Detector(0.5), ac.optics.Gaussian(0.15)]), shape=(700, 900),
         options=LandscapeOptions(soft=0.0, **CLEAN), rng=np.random.default_rng(3),
     )  # fmt: skip
     scene = ac.scan_scene(fine)

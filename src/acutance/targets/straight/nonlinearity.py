@@ -73,6 +73,11 @@ _LOW_ODD_STD: Final = 0.25
 """Of linear sensors: an even LSF, any odd part, one of low order that looks like a curve, and one
 where the fit has found a charge trail; the curvature that a low one looks like: .25 is coma of .02
 waves rms or a trail of .18 px."""
+_BRIGHTENS: Final = 0.9
+"""Of the curves, those that lift the middle: gammas above 1, square roots and logarithms are made
+for the eye; what presses it down is rare."""
+_BRIGHTENS: Final = 0.9
+"""Of the curves, those that lift the middle, as gammas above 1, square roots and logarithms do."""
 _PRIOR_SHOULDER: Final = 0.5
 """Of the characteristics that are not straight, those with a shoulder."""
 _GRID: Final[Floats] = np.linspace(-4.0, 4.0, 41)
@@ -208,6 +213,7 @@ def _folded(mirrored: MirrorSum, noise: SideNoise | None, log_linear: Floats) ->
     amplitude = value[:, None] + value_std[:, None] * _GRID
     density = _densities(amplitude)
     allowed = np.sum(density, axis=1)
+    density[0] *= 2 * np.where(amplitude[0] > 0, _BRIGHTENS, 1 - _BRIGHTENS)
     if noise is not None:
         density *= noise.likelihood(_slopes(amplitude))
     total = np.sum(density, axis=1)
