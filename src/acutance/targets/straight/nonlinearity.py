@@ -74,9 +74,6 @@ _LOW_ODD_STD: Final = 0.25
 where the fit has found a charge trail; the curvature that a low one looks like: .25 is coma of .02
 waves rms or a trail of .18 px."""
 _BRIGHTENS: Final = 0.9
-"""Of the curves, those that lift the middle: gammas above 1, square roots and logarithms are made
-for the eye; what presses it down is rare."""
-_BRIGHTENS: Final = 0.9
 """Of the curves, those that lift the middle, as gammas above 1, square roots and logarithms do."""
 _PRIOR_SHOULDER: Final = 0.5
 """Of the characteristics that are not straight, those with a shoulder."""
