@@ -126,7 +126,9 @@ def test_integers_are_measured_like_floats():
 def test_clipped_sides_fail_the_saturation_check():
     image, _ = simulated(snr=50.0)
     bright_clipped = np.minimum(image, 1195.0)
-    assert "saturation" in failed(ac.measure_edge(bright_clipped))
+    found = ac.measure_edge(bright_clipped)
+    assert "saturation" in failed(found)
+    assert "of the pixels on the bright side are clipped" in found.verdict.sentence
     dark_clipped = np.maximum(image, 205.0)
     assert "saturation" in failed(ac.measure_edge(dark_clipped))
     eight_bit = np.clip(image / 4.6, 0, 255).astype(np.uint8)

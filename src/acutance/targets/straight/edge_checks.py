@@ -102,7 +102,7 @@ def check_edge(
         full_pixel([data.fit.response.mtf_nyquist], limits),
         plateau(limits, "dark", extent.dark_px),
         plateau(limits, "bright", extent.bright_px),
-        saturation(region, data, limits),
+        saturation(region, data, limits, ("dark", "bright")),
         undeclared_fill([region.fill], limits),
         quantisation(region, data, limits),
         nonlinearity(data, limits, EDGE),

@@ -43,21 +43,27 @@ __all__ = [
 _FEW = 512
 
 
-def saturation(region: RegionPixels, data: CheckData, limits: Limits) -> Check:
-    """Pixels at the detector's limit, or a side that piles up at its outer end."""
+def saturation(
+    region: RegionPixels, data: CheckData, limits: Limits, sides: tuple[str, str]
+) -> Check:
+    """Pixels at the detector's limit, or a side that piles up at its outer end.
+
+    `sides` are the names of those before and behind the target.
+    """
     values = region.pixels[data.trimmed.pixels.at]
-    share = at_limit_share(values, region.saturation_level)
+    share, where = at_limit_share(values, region.saturation_level), ""
     middle = float(np.add.reduce(values)) / values.size
     # The two plateaus and, of a pulse, the pulse itself.
-    for there in (*data.plateaus, data.outside < 0):
+    places = (*(PLACES[side] for side in sides), "of the pulse")
+    for there, place in zip((*data.plateaus, data.outside < 0), places, strict=True):
         side = values[there]
         if side.size < MIN_PILED_PIXELS:
             continue
         outwards = 1.0 if float(np.add.reduce(side)) > middle * side.size else -1.0
         piled = piled_up_share(outwards * side)
         if piled > share and not _quiet(data, side):
-            share = piled
-    found = f"{100 * share:.1f} % of the pixels are clipped at an end of the scale"
+            share, where = piled, f" {place}"
+    found = f"{100 * share:.1f} % of the pixels{where} are clipped at an end of the scale"
     return answer("saturation", share, found, limits)
 
 

@@ -102,7 +102,7 @@ def check_pulse(
         full_pixel([data.fit.response.mtf_nyquist], limits),
         plateau(limits, "before", extent.dark_px),
         plateau(limits, "behind", extent.bright_px),
-        saturation(region, data, limits),
+        saturation(region, data, limits, ("before", "behind")),
         undeclared_fill([region.fill], limits),
         quantisation(region, data, limits),
         _nonlinearity(data, limits, width.value, height_ratio.value),
