@@ -296,3 +296,13 @@ def test_document():
     assert len(document["groups"]) == 3
     assert document["groups"][0]["mtf"]["std"] > 0
     assert document["normal"]["mtf_nyquist"]["value"] == found.normal_response.mtf_nyquist.value
+
+
+@pytest.mark.parametrize(("turn_deg", "tile_px"), [(5.0, 17.0), (10.0, 28.0), (14.0, 22.0)])
+def test_a_checkerboard_is_no_bars(turn_deg, tile_px):
+    board = ac.simulate.checkerboard(
+        ac.simulate.reference_systems()["gaussian"], snr=100, tile_px=tile_px, turn_deg=turn_deg,
+        rng=np.random.default_rng(1),
+    )  # fmt: skip
+    with pytest.raises(NoBarsError, match="another pattern: bars explain"):
+        ac.measure_bars(board.image)

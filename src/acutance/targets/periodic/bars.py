@@ -76,6 +76,7 @@ def measure_bars(
     solved = solve_bars(
         region.pixels, groups, contrast=contrast, levels=chosen.levels, robust=chosen.robust
     )
+    _require_bars(solved)
     directions = common_normals(tuple(one.bars for one in solved.groups))
     return BarsMeasurement(
         kind="bars",
@@ -125,6 +126,20 @@ def _contrast(image: Floats, groups: tuple[Bars, ...]) -> float:
             "the groups are as bright as the background next to them: check their places"
         )
     return contrast
+
+
+def _require_bars(solved: BarsSolution) -> None:
+    """Refuse groups in which more of another pattern is left than bars explain."""
+    whole = float(np.var(np.concatenate([one.value for one in solved.groups])))
+    left = float(np.var(np.concatenate(solved.residuals)))
+    # Noise does not correlate from pixel to pixel; what does is a pattern.
+    if solved.correlation.strongest * left > whole - left:
+        raise NoBarsError(
+            f"what was taken for groups of bars is another pattern: bars explain "
+            f"{max(100 * (1 - left / whole), 0):.0f} % of its variance, and neighbouring pixels of "
+            f"the rest correlate by {solved.correlation.strongest:.2f}; choose a region that holds "
+            "the groups and some background around each, or state where they are (groups)"
+        )
 
 
 def common_normals(groups: tuple[Bars, ...]) -> tuple[float, ...]:
