@@ -24,6 +24,8 @@ SCENE_CHECKS = (
 
 _DIRECTION_DEG = 15.0
 _SIGNIFICANT = 2.0
+_DECIMATED = 0.8
+"""MTF at Nyquist of images that were decimated three times or more; hardly of sharpened ones."""
 
 
 def check_scene(
@@ -76,7 +78,9 @@ def check_scene(
             f"{100 * change_std:.0f} % from its mean; the chance that it is the same everywhere is "
             f"{field.chance_constant:.2f}", limits,
         ),
-        full_pixel([transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits),
+        full_pixel(
+            [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
+        ),
     )  # fmt: skip
 
 

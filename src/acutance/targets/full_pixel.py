@@ -12,7 +12,9 @@ __all__ = ["full_pixel"]
 _SURE = 2.0
 
 
-def full_pixel(mtf_nyquist: Sequence[Estimate], limits: Limits) -> Check:
+def full_pixel(
+    mtf_nyquist: Sequence[Estimate], limits: Limits, *, caution: float | None = None
+) -> Check:
     """Whether an MTF at Nyquist is surely above that of a full square pixel without optics.
 
     That pixel transfers sin(pi/2) / (pi/2) = 0.637 along its sides and 0.651 along its diagonal;
@@ -24,10 +26,12 @@ def full_pixel(mtf_nyquist: Sequence[Estimate], limits: Limits) -> Check:
         Of every direction measured, each from 0 up.
     limits : mapping of str to float
         Limits the caller changed.
+    caution : float, optional
+        From where on it is a caution.
     """
     surest = max(mtf_nyquist, key=_at_least)
     found = f"the MTF at Nyquist is {surest:.2f}, that of a full pixel without any optics .64"
-    return answer("full_pixel", _at_least(surest), found, limits)
+    return answer("full_pixel", _at_least(surest), found, limits, caution=caution)
 
 
 def _at_least(mtf: Estimate) -> float:
