@@ -27,7 +27,7 @@ _MAX_CORRECTED = 3
 _STARTS_TRIED = 2
 _STARTS: Mapping[str, Sequence[tuple[float, float]]] = {
     "smear": ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7)),
-    "upright smear": ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7)),
+    "upright smear": ((0.0, -1.5), (-1.5, 0.0), (-0.4, -0.4)),
     "trail": ((0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3)),
 }
 
