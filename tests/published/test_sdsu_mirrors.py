@@ -57,6 +57,15 @@ def test_gaussians_sampled_as_points_are_found_exactly():
     assert found.aligned.peak_over_background == pytest.approx(9.0, rel=0.01)
 
 
+def test_a_background_below_zero_has_no_ratio_in_a_document():
+    place = np.array([[12.0, 12.0]])
+    rows, cols = np.indices((24, 24))
+    bell = np.exp(-0.5 * (((cols - 12) / 0.7) ** 2 + ((rows - 12) / 0.8) ** 2))
+    below, above = (sdsu_2003_mirrors(level + 900 * bell, place) for level in (-50.0, 100.0))
+    assert below.aligned.to_dict()["peak_over_background"] is None
+    assert above.aligned.to_dict()["peak_over_background"] == pytest.approx(9.0, rel=0.01)
+
+
 def test_for_images_of_its_own_model_the_stated_deviations_are_the_scatter():
     rows, cols = np.indices((80, 32))
     u, v = np.array([0.25, 0.0]), np.array([0.0, 0.25])

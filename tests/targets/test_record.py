@@ -8,6 +8,7 @@ import pytest
 import acutance as ac
 from acutance.targets import OtfSlices, Record
 from acutance.targets.document_fields import DocumentFields, WrittenLater
+from acutance.targets.record import rounded
 
 
 @pytest.fixture(scope="module")
@@ -62,3 +63,7 @@ def test_a_covariance_has_one_document():
     )
     for part in ("factor_real", "factor_imag"):
         assert np.array(one[part]) == pytest.approx(np.array(other[part]), abs=1.1e-4)
+
+
+def test_the_smallest_of_numbers_are_written_as_zero():
+    assert rounded([1e-310, 1.23456789, 5e-324]) == [0.0, 1.23457, 0.0]

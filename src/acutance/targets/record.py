@@ -45,6 +45,8 @@ SCHEMA = "acutance/measurement/1"
 
 _REQUIRED = ("schema", "kind", "method", "image", "snr", "checks", "options", "measured_at")
 _SQUARE = 1e-9
+_NOTHING = 1e-280
+"""Numbers below it are written as zero: their digits have no power of ten to be rounded by."""
 _MAX_QUICK = 15_000
 """Bytes of a pickled record, compressed quickly; one that is larger is compressed well."""
 
@@ -347,7 +349,7 @@ def rounded(values: ArrayLike, digits: int = 6) -> list[Any]:
     """Numbers of a curve as lists, with so many significant digits: a document has no more."""
     array = np.asarray(values, float)
     size = np.abs(array)
-    scale = np.where((size > 0) & (size < np.inf), size, 1.0)
+    scale = np.where((size > _NOTHING) & (size < np.inf), size, 1.0)
     np.log10(scale, out=scale)
     np.subtract(digits - 1, np.floor(scale, out=scale), out=scale)
     np.power(10.0, scale, out=scale)

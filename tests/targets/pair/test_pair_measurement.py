@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import pickle
 from dataclasses import replace
@@ -119,6 +120,16 @@ class TestChecks:
         assert whitening.correlation.strongest == pytest.approx(0.4, abs=0.03)
         left = np.concatenate([whitening(one).ravel() for one in red])
         assert np.std(left) == pytest.approx(1.0, abs=0.03)
+
+
+def test_a_part_without_data_has_no_numbers_in_the_map() -> None:
+    low, high, _ = rendered()
+    low = low.copy()
+    low[:40, :44] = np.nan
+    document = ac.measure_biresolution(low, high, reference_mtf=REFERENCE).to_dict()
+    assert document["map"]["gain"][0][0] is None
+    assert document["map"]["gain"][2][2] == pytest.approx(1.0, abs=0.05)
+    json.dumps(document, allow_nan=False)
 
 
 def test_noise_that_cannot_be_taken_off() -> None:

@@ -200,6 +200,14 @@ def test_no_star():
         measure_star(np.full((60, 60), math.nan))
 
 
+def test_structure_only_next_to_missing_pixels_is_no_star():
+    image = np.full((60, 60), math.nan)
+    image[5:20, 5:20] = 500 + np.random.default_rng(0).standard_normal((15, 15))
+    image[30:34] = 500 + 300 * np.sign(np.sin(np.arange(60)))
+    with pytest.raises(NoStarError, match="next to pixels without data"):
+        measure_star(image, cycles=CYCLES)
+
+
 def test_clipped_star_fails_by_name():
     image, _ = star_scene(noise=Noise(read=10.0, saturation=1100.0), snr=None)
     found = measure_star(image, cycles=CYCLES)

@@ -19,7 +19,7 @@ from acutance.targets.pair.kernel_fit import KernelFit
 from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit, ResidualMap
 from acutance.targets.pair.spectral_ratio import PairSpectra
-from acutance.targets.record import ImageInfo, rounded
+from acutance.targets.record import ImageInfo, rounded, strict_json
 from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_stds
 
 __all__ = ["BiresolutionMeasurement", "Coherence", "PairDetails"]
@@ -222,6 +222,7 @@ class BiresolutionMeasurement(Measurement):
             mtf, std = self.local_mtf_nyquist(direction)
             maps |= {f"mtf_nyquist_{direction}": mtf, f"mtf_nyquist_{direction}_std": std}
         counts = {"pixels": maps.pop("pixels").tolist()}
-        return {
-            name: rounded(values, _DIGITS - ("_std" in name)) for name, values in maps.items()
-        } | counts
+        written: dict[str, Any] = strict_json(
+            {name: rounded(values, _DIGITS - ("_std" in name)) for name, values in maps.items()}
+        )
+        return written | counts

@@ -59,6 +59,11 @@ def find_star(
         )
     row, col = _gradient_centre(smooth, usable) if centre is None else centre
     lively = usable & _is_lively(smooth)
+    if not lively.any():
+        raise NoStarError(
+            "all structure of the region lies next to pixels without data: choose a region that "
+            "holds the star, with some pixels around it"
+        )
     farthest = _farthest(lively, row, col)
     local = _strengths(smooth, lively, (row, col), farthest, cycles, turns=1 / _SECTORS)
     _require_spokes(local, cycles, row, col, farthest)

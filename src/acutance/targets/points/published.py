@@ -144,9 +144,10 @@ class AlignedFit:
         """What the report calls SNR in its Figure 5.17: mean peak over the mean background."""
         return self.mean_peak / self.background_mean if self.background_mean > 0 else math.inf
 
-    def to_dict(self) -> dict[str, float]:
-        """All numbers by name, for JSON."""
-        return {**vars(self), "peak_over_background": self.peak_over_background}
+    def to_dict(self) -> dict[str, float | None]:
+        """All numbers by name, for JSON; no ratio to a background that is not above zero."""
+        ratio = self.peak_over_background
+        return {**vars(self), "peak_over_background": ratio if math.isfinite(ratio) else None}
 
 
 @dataclass(frozen=True, eq=False)
