@@ -7,7 +7,7 @@ source were set by simulation: documentation, "Edges", "Pulses", "Points" and so
 
 from __future__ import annotations
 
-from acutance.targets.question import Question
+from acutance.targets.question import PLACES, Question
 
 __all__ = ["QUESTIONS"]
 
@@ -40,20 +40,13 @@ _ANY_TARGET = {
     ),
 }  # fmt: skip
 
-_PLATEAUS = {
-    "dark": "on the dark side",
-    "bright": "on the bright side",
-    "before": "before the pulse",
-    "behind": "behind the pulse",
-}
-
 _STRAIGHT = {
     **{
         f"uniformity_{side}": Question(
             f"How uniform is the plateau {where}, contrast over variation?", ">=", 20.0,
             "the intervals allow for it", "simulated (KOMPSAT-3 draft 3b: 50)", "note",
         )
-        for side, where in _PLATEAUS.items()
+        for side, where in PLACES.items()
     },
     "uniformity_target": Question(
         "How uniform is the pulse itself, height over variation?", ">=", 50.0,
@@ -99,7 +92,7 @@ _STRAIGHT = {
             "a halo beyond it is not measured, and the intervals are wide",
             "Li et al. 4.2 (7 to 10)", "note",
         )
-        for side, where in _PLATEAUS.items()
+        for side, where in PLACES.items()
     },
     "quantisation": Question(
         "How many steps of the image's numbers is the noise?", ">=", 0.2,

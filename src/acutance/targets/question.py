@@ -5,10 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["Question", "Sense", "Severity"]
+__all__ = ["PLACES", "Question", "Sense", "Severity"]
 
 Sense = Literal[">=", "<="]
 Severity = Literal["note", "caution", "fail"]
+
+PLACES = {
+    "dark": "on the dark side",
+    "bright": "on the bright side",
+    "before": "before the pulse",
+    "behind": "behind the pulse",
+}
+"""Where a target's two plateaus lie."""
 
 
 @dataclass(frozen=True)

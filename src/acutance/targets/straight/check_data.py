@@ -23,15 +23,7 @@ from acutance.targets.check import MAX_RATIO
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.tuned import NOISE_FLOOR, STRUCTURE_OUTLIER_SIGMAS
 
-__all__ = ["MISFIT", "PLACES", "CheckData", "ratio_in_words"]
-
-PLACES = {
-    "dark": "on the dark side",
-    "bright": "on the bright side",
-    "before": "before the pulse",
-    "behind": "behind the pulse",
-}
-"""Where a target's two plateaus lie."""
+__all__ = ["MISFIT", "CheckData", "ratio_in_words"]
 
 MISFIT = 3e-4
 """Residuals below this share of the contrast are the model's own, not noise."""

@@ -14,8 +14,9 @@ from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
 from acutance.targets.full_pixel import full_pixel
+from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels, undeclared_fill
-from acutance.targets.straight.check_data import PLACES, CheckData, ratio_in_words
+from acutance.targets.straight.check_data import CheckData, ratio_in_words
 from acutance.targets.straight.ground_checks import ground_checks, rim
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,

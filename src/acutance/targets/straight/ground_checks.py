@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from acutance.targets.check import Check, Limits, answer
-from acutance.targets.straight.check_data import PLACES, CheckData
+from acutance.targets.question import PLACES
+from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.ground_steps import GroundSide
 from acutance.targets.straight.rim import find_rim

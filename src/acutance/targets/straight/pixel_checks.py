@@ -11,8 +11,9 @@ from acutance.numerics.clipping import at_limit_share, piled_up_share
 from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median, outlier_share
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
+from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels
-from acutance.targets.straight.check_data import MISFIT, PLACES, CheckData
+from acutance.targets.straight.check_data import MISFIT, CheckData
 from acutance.targets.straight.nonlinearity import find_curvature, gamma_of
 from acutance.targets.straight.rounding import level_step, smallest_step
 from acutance.targets.straight.step_profile import Profile

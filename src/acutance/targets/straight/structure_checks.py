@@ -17,7 +17,8 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median
 from acutance.targets.check import Check, Limits, answer, bounded_ratio, limit_of
-from acutance.targets.straight.check_data import PLACES, CheckData
+from acutance.targets.question import PLACES
+from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.tuned import (
     REPEATED_SIGMAS,
