@@ -36,7 +36,8 @@ _ANY_TARGET = {
     ),
     "full_pixel": Question(
         "Which MTF at Nyquist is surely exceeded?", "<=", 0.66,
-        "no sensor whose pixels touch is that sharp: it was sharpened or decimated", severity="note",
+        "no sensor whose pixels touch is that sharp: the image was sharpened, decimated or drawn",
+        severity="note",
     ),
 }  # fmt: skip
 

@@ -102,11 +102,8 @@ def _smear(p: Floats, u: Floats, v: Floats) -> Floats:
 
 
 def _upright_smear(p: Floats, u: Floats, v: Floats) -> Floats:
-    """Smears along both axes of the image, one after the other.
-
-    By the logarithms of their lengths: a length of 0 is stationary, and an expansion about it knows
-    nothing of what a little smear does that a Gaussian does not.
-    """
+    """Smears along both axes of the image, by the logarithms of their lengths."""
+    # A length of 0 is stationary: an expansion about it knows nothing of smears.
     return np.asarray(np.sinc(math.exp(p[0]) * u) * np.sinc(math.exp(p[1]) * v))
 
 
@@ -237,8 +234,6 @@ the same ellipse in any direction."""
 _TAP_MEAN = (0.4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _TAP_STD = (0.5, 0.25, 0.12, 0.07, 0.05, 0.03, 0.02)
 
-_SMEAR = (math.log(0.7),) * 2, (0.8,) * 2
-
 TERMS: dict[str, Term] = {
     "gaussian": Term(_gaussian, (*_SIGMA_MEAN * 2, 0.0), (*_SIGMA_STD * 2, 0.3), _gaussian_numbers),
     "upright gaussian": Term(_upright, _SIGMA_MEAN * 2, _SIGMA_STD * 2, _upright_numbers),
@@ -246,7 +241,7 @@ TERMS: dict[str, Term] = {
         _round, (*_SIGMA_MEAN, 0.0, 0.0), (*_SIGMA_STD, *_NEARLY_ROUND_STD), _round_numbers
     ),
     "smear": Term(_smear, (0.0, 0.0), (1.2, 1.2), _smear_numbers),
-    "upright smear": Term(_upright_smear, *_SMEAR, _upright_smear_numbers),
+    "upright smear": Term(_upright_smear, (-0.4, -0.4), (0.8, 0.8), _upright_smear_numbers),
     "halo": Term(_halo, (-2.2, math.log(2.0)), (1.0, 0.5), _halo_numbers),
     "trail": Term(_trail, (0.0, 0.0), (0.4, 0.4), _trail_numbers),
     "sharpening": Term(_sharpening, (0.4, 0.4), (0.4, 0.4), _sharpening_numbers),
