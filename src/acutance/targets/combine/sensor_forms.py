@@ -253,8 +253,7 @@ TERMS: dict[str, Term] = {
 }
 """Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear and halo of a pixel or two, taps
 of up to a third, masks of a quarter to the whole of what is missing, a quarter of a wave of
-defocus, kernels as those of Wiener filters, cubic convolutions of -.35 to
--.65."""
+defocus, kernels as those of Wiener filters, cubic convolutions of -.35 to -.65."""
 
 _OBLIQUE = {
     "upright gaussian": "gaussian", "round gaussian": "gaussian", "upright smear": "smear",
