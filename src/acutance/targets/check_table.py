@@ -136,7 +136,8 @@ _STRAIGHT = {
     ),
     "asymmetric_lsf": Question(
         "How far is the ESF from symmetric about its middle?", "<=", 0.01,
-        "a strip narrower than the blur, or a charge trail; compare other edges", severity="note",
+        "a strip narrower than the blur, an uneven pulse, or a charge trail; compare other targets",
+        severity="note",
     ),
     "rim": Question(
         "How probable is a strip along the border that moves RER or MTF at Nyquist?", "<=", 0.1,

@@ -108,6 +108,20 @@ def test_a_strip_clipped_below_the_end_of_its_type_is_noticed(seed):
     assert "saturation" not in failed(ac.measure_pulse(free))
 
 
+@pytest.mark.parametrize("seed", range(2))
+def test_a_pulse_of_two_heights_has_an_lsf_of_no_sensor(seed):
+    high, _ = ac.simulate.pulse(
+        SENSOR, angle_deg=11, width_px=2, offset_px=-2, dark=100, bright=1100, snr=60,
+        shape=(60, 60), rng=np.random.default_rng(seed),
+    )  # fmt: skip
+    low, _ = ac.simulate.pulse(
+        SENSOR, angle_deg=11, width_px=4, offset_px=1, dark=0, bright=500, shape=(60, 60)
+    )
+    found = ac.measure_pulse(high + low)
+    assert "asymmetric_lsf" in failed(found)
+    assert found.verdict.word == "doubtful"
+
+
 def test_of_a_large_region_only_the_neighbourhood_of_the_edge_is_used():
     image, truth = edge(0, shape=(500, 500))
     found = ac.measure_edge(image)

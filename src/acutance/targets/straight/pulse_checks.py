@@ -35,6 +35,7 @@ from acutance.targets.straight.published import PublishedPulse
 from acutance.targets.straight.pulse_spectrum import zeros_cpp
 from acutance.targets.straight.step_profile import pulse_profile
 from acutance.targets.straight.structure_checks import (
+    asymmetric_lsf,
     edge_roughness,
     profile,
     target_uniformity,
@@ -53,9 +54,9 @@ PULSE_CHECKS = (
     "contrast_snr", "uniformity_before", "uniformity_behind", "uniformity_target", "angle_deg",
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
     "full_pixel", "plateau_before_px", "plateau_behind_px", "saturation", "undeclared_fill",
-    "quantisation", "nonlinearity", "gradient", "correlated_noise", "profile", "outliers",
-    "parallel_deg", "background_step", "width_px", "width_sigmas", "zero_distance_cpp", "ground",
-    "close_ground", "mirrored_ground",
+    "quantisation", "nonlinearity", "gradient", "correlated_noise", "asymmetric_lsf", "profile",
+    "outliers", "parallel_deg", "background_step", "width_px", "width_sigmas", "zero_distance_cpp",
+    "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of a pulse."""
 
@@ -108,6 +109,7 @@ def check_pulse(
         _nonlinearity(data, limits, width.value, height_ratio.value),
         gradient(data, limits),
         correlated_noise(data, limits),
+        asymmetric_lsf(data, limits),
         profile(data, limits, width.value, own_misfit=by_ratio),
         outliers(data, limits),
         _parallel(data, limits, height_ratio.value),
