@@ -27,7 +27,7 @@ from acutance.scan.softness import KINDS, START
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import CombinedFit, combine_curves
 from acutance.targets.combine.sensor_forms import FORMS
-from acutance.targets.combine.weighted_forms import CombinedOtf
+from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
 from acutance.targets.otf_likelihood import OtfLikelihood
 from acutance.targets.slices import places_along
 
@@ -199,7 +199,8 @@ def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain
     """The sensor after as many turns as it needs, under a given change over the field (n, k)."""
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
     otf, share, forms, along, turns, _ = state
-    before = None
+    before: Floats | None = None
+    near: Sequence[WeightedForm] = ()
     for turn in range(_MAX_TURNS + 1):
         seen = along.turned(np.exp(log_gain))
         found = fit_modes(seen, otf, share, modes[edges.bin])
@@ -211,7 +212,8 @@ def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain
             if float(np.einsum("bk,bkl,bl", moved, information, moved)) < _SETTLED:
                 return _State(otf, share, forms, along, turns + turn, settled=True)
         before = otf
-        combined = _combined(edges.freq_cpp, normal_deg, otf, information, projection, forms)
+        combined = _combined(edges.freq_cpp, normal_deg, otf, information, projection, forms, near)
+        near = combined.forms
         # Forms without any weight have none in the next turn, either.
         forms = tuple({form.form.oblique_terms: None for form in combined.forms})
         stepped = _along(combined, normal_deg, edges.freq_cpp)
@@ -226,14 +228,15 @@ def _combined(
     information: Floats,
     projection: Floats,
     forms: Sequence[tuple[str, ...]],
+    near: Sequence[WeightedForm],
 ) -> CombinedOtf:
-    """The sensor, if it is known what the edges are."""
+    """The sensor, if it is known what the edges are; near that of the turn before."""
     curves = [
         _samples(normal_deg[[b]], freq_cpp, otf[b], own, pull - own @ otf[b])
         for b, (own, pull) in enumerate(zip(information, projection, strict=True))
         if np.trace(own) > _LEAST
     ]
-    return combine_curves(curves, forms=forms).otf
+    return combine_curves(curves, forms=forms, near=near).otf
 
 
 def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:

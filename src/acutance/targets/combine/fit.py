@@ -86,6 +86,7 @@ def combine_curves(
     *,
     detector_px: tuple[float, float] = (1.0, 1.0),
     forms: Sequence[tuple[str, ...]] = FORMS,
+    near: Sequence[WeightedForm] = (),
 ) -> CombinedFit:
     """Fit every form to all curves, with corrections of several sizes, and average.
 
@@ -101,18 +102,21 @@ def combine_curves(
         Width of the detector across and along.
     forms : sequence of tuples of str, optional
         Terms of the forms that are tried.
+    near : sequence of WeightedForm, optional
+        Of curves that hardly differed, the largest weight first: where a form begins.
     """
+    known = {one.form: one for one in reversed(near)}
     data = WhitenedCurves([one.centred() for one in curves])
     nowhere = np.zeros((data.values.size, 0))
-    plain = [_fit_form(data, SensorForm(terms, detector_px), None, 0.0, nowhere) for terms in forms]
+
+    def fitted(form: SensorForm) -> FormFit:
+        return _fit_form(data, form, known.get(form), 0.0, nowhere)
+
+    plain = [fitted(SensorForm(terms, detector_px)) for terms in forms]
     first = min(plain, key=lambda one: one.score)
     correction = Correction(first.form, tuple(first.parameters.tolist()))
     ways = data.of(correction.directions(data.u_cpp, data.v_cpp))
-    aligned = [
-        _fit_form(data, form, None, 0.0, nowhere)
-        for one in _weighted(plain)
-        for form in one.form.aligned()
-    ]
+    aligned = [fitted(form) for one in _weighted(plain) for form in one.form.aligned()]
     likely = sorted(plain + aligned, key=lambda one: one.score)[:_MAX_CORRECTED]
     fits = [*plain, *aligned] + [
         _fit_form(data, start.form, start, share, share * ways)
@@ -135,7 +139,7 @@ def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
 
 
 def _fit_form(
-    data: WhitenedCurves, form: SensorForm, start: FormFit | None, share: float, ways: Floats
+    data: WhitenedCurves, form: SensorForm, start: WeightedForm | None, share: float, ways: Floats
 ) -> FormFit:
     """The parameters of largest posterior density, the correction integrated out."""
     mean, std = form.mean, form.std
