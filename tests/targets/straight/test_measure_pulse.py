@@ -96,6 +96,24 @@ def test_a_wrong_width_is_detected_and_does_not_hurt():
     assert held.width_px.std == 0
 
 
+@pytest.mark.parametrize("method", ["spline", "sdsu-2005"])
+@pytest.mark.parametrize(("held_px", "agrees"), [(2.7, False), (3.0, True)])
+def test_a_held_width_is_judged_by_the_free_one(method, held_px, agrees):
+    image, _ = simulated()
+    m = ac.measure_pulse(image, width_px=held_px, fit_width=False, method=method)
+    width = next(check for check in m.checks if check.name == "width_sigmas")
+    assert width.passed is agrees
+    assert f"held at {held_px:.4f} px, fitted freely it is 3.0" in width.message
+    if not agrees:
+        assert "leave the width free" in width.message
+
+
+def test_a_held_width_with_which_no_pulse_fits_is_named():
+    image, _ = simulated()
+    with pytest.raises(ac.NoEdgeError, match=r"a pulse of about 3\.\d\d px where 2\.50 px"):
+        ac.measure_pulse(image, width_px=2.5, fit_width=False)
+
+
 @pytest.mark.parametrize("stated", [8.0, 20.0])
 def test_the_error_of_a_wrong_width_names_the_width_found(stated):
     image, _ = simulated(shape=(60, 60))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 from numpy.typing import ArrayLike
@@ -25,6 +26,7 @@ from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
 from acutance.targets.straight.pulse_checks import check_pulse, pulse_snr
 from acutance.targets.straight.pulse_response import prf_fwhm
+from acutance.targets.straight.pulse_width import held_width
 from acutance.targets.straight.stated_target import stated_target
 from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.trim import Extent
@@ -113,11 +115,13 @@ def measure_pulse(
     region = read_region(image, roi, gsd_m)
     stated_px = _stated_width(region, width_px, width_m)
     free = fit_width or stated_px is None
-    trimmed, extent = _find(region, stated_px, free)
+    with _naming_the_width(region, stated_px):
+        trimmed, extent = find_pulse(region.pixels, stated_px, fit_width=free)
     require_phases(trimmed, trimmed.line, limit_of("sample_phases", chosen.limits))
     if stated_px is not None and method in PUBLISHED_PULSE:
         trimmed = replace(trimmed, pulse_width_px=stated_px)
-    found = estimate(trimmed, free, chosen)
+    with _naming_the_width(region, stated_px):
+        found = estimate(trimmed, free, chosen)
     if free and stated_px is not None and _is_far(found[1].value, stated_px):
         # Far from the first guess the fit may have stopped in a local minimum: begin near the end.
         trimmed, extent = find_pulse(region.pixels, found[1].value)
@@ -125,10 +129,11 @@ def measure_pulse(
     return _measurement(region, trimmed, extent, found, method, chosen, stated_px)
 
 
-def _find(region: RegionPixels, stated_px: float | None, free: bool) -> tuple[PulsePixels, Extent]:
-    """The strongest pulse; if none has the stated width, the error names the width found."""
+@contextmanager
+def _naming_the_width(region: RegionPixels, stated_px: float | None) -> Iterator[None]:
+    """Where a stated width leads to no pulse, the error names the width found without it."""
     try:
-        return find_pulse(region.pixels, stated_px, fit_width=free)
+        yield
     except TargetError as error:
         if stated_px is None:
             raise
@@ -152,6 +157,20 @@ def _width_found(region: RegionPixels) -> float | None:
 def _is_far(found_px: float, stated_px: float) -> bool:
     """Whether a fitted width is more than a correction of the stated one."""
     return abs(found_px / stated_px - 1) > MAX_CORRECTED_WIDTH
+
+
+def _free_width(
+    region: RegionPixels, trimmed: PulsePixels, held_px: float, *, robust: bool
+) -> Estimate | None:
+    """The width that the joint fit finds where another was held; None where it finds none."""
+    try:
+        width = fit_pulse(trimmed, robust=robust).pulse_width
+        if _is_far(width.value, held_px):
+            again, _ = find_pulse(region.pixels, width.value)
+            width = fit_pulse(again, robust=robust).pulse_width
+    except TargetError:
+        return None
+    return width
 
 
 def require_pulse_method(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted]:
@@ -206,11 +225,16 @@ def _measurement(
     stated = stated_target(options, fit.response.gsd_m)
 
     def answers() -> tuple[Check, ...]:
-        return check_pulse(
+        checks = check_pulse(
             region, data, extent, options.limits,
             width=width, height_ratio=height_ratio, stated_px=stated_px,
             by_ratio=method in PUBLISHED_PULSE,
         )  # fmt: skip
+        if stated_px is None or width.std > 0:
+            return checks
+        free = _free_width(region, trimmed, stated_px, robust=options.robust)
+        held = held_width(options.limits, stated_px, free)
+        return tuple(held if one.name == held.name else one for one in checks)
 
     return StraightMeasurement(
         kind="pulse",
