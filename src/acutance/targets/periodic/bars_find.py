@@ -63,7 +63,7 @@ def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...]
     Raises
     ------
     NoBarsError
-        If nothing in the image is a group of bars.
+        If nothing in the image is a group of bars, or they have another number of bars.
     """
     known = np.isfinite(image)
     background = float(np.median(image[known]))
@@ -76,6 +76,25 @@ def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...]
             "the region is uniform, without bars: choose a region that holds the groups"
         )
     bright = sign * difference / height
+    if count is not None:
+        _require_count(_candidates(bright, None)[0], count)
+    best, parts = _candidates(bright, count)
+    if best:
+        counted = [_recounted(one, _usual_count(best)) for one in best]
+        return _of_one_kind(counted), sign * height
+    if parts > _MAX_BLOBS:
+        raise NoBarsError(
+            f"{parts} separate parts stand out of the background, more than any target has "
+            "groups: choose a region around the groups, or state where they are (groups)"
+        )
+    raise NoBarsError(
+        "no whole group of parallel bars stands out of the background: choose a region that holds "
+        "the groups and some background on all sides of them, or state where they are (groups)"
+    )
+
+
+def _candidates(bright: Floats, count: int | None) -> tuple[list[_Candidate], int]:
+    """Groups of an image of background 0 and bars 1, and how many parts stood out last."""
     best: list[_Candidate] = []
     min_alone: float = math.inf
     for close in _CLOSE_PX:
@@ -90,18 +109,20 @@ def find_bars(image: Floats, count: int | None = None) -> tuple[tuple[Bars, ...]
             best, min_alone = groups, alone
         if best and not min_alone:
             break
-    if best:
-        counted = [_recounted(one, _usual_count(best)) for one in best]
-        return _of_one_kind(counted), sign * height
-    if len(blobs) > _MAX_BLOBS:
+    return best, len(blobs)
+
+
+def _require_count(groups: list[_Candidate], count: int) -> None:
+    """Refuse a stated number of bars that explains the widest group far worse than another."""
+    if not groups:
+        return
+    widest = max(groups, key=lambda one: one.bars.period_px)
+    found = _recounted(widest, count).bars.count
+    if found != count:
         raise NoBarsError(
-            f"{len(blobs)} separate parts stand out of the background, more than any target has "
-            "groups: choose a region around the groups, or state where they are (groups)"
+            f"the widest bars stand in a group of {found}, and {count} were asked for: state the "
+            "number that a group has, or none (count), and they are counted"
         )
-    raise NoBarsError(
-        "no whole group of parallel bars stands out of the background: choose a region that holds "
-        "the groups and some background on all sides of them, or state where they are (groups)"
-    )
 
 
 @dataclass(frozen=True, eq=False)
