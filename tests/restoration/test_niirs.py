@@ -62,10 +62,13 @@ def test_the_smaller_rer_counts_twice_in_version_5():
         ({"rer": 0.9, "snr": 50, "version": 4}, "jump at RER 0.9"),
         ({"rer": ac.Estimate(0.86, 0.03), "snr": 50, "version": 4}, "jump at RER 0.9"),
         ({"rer": 0.6, "snr": 50, "noise_gain": 2.0}, "sharpened image"),
+        ({"rer": 0.5, "snr": 50, "gsd_m": 70}, "GSD out of range"),
+        ({"rer": 0.5, "snr": 50, "gsd_m": 70}, "off the scale"),
+        ({"rer": 0.5, "snr": 50, "elevation_deg": 12}, "low elevation"),
     ],
 )
 def test_guard_rails_are_notes_of_the_result(arguments, name):
-    found = ac.niirs(gsd_m=0.7, **arguments)
+    found = ac.niirs(**{"gsd_m": 0.7, **arguments})
     assert name in [note.name for note in found.notes]
     assert name in str(found)
     assert found.to_dict()["notes"][0]["message"]
@@ -114,7 +117,8 @@ def test_a_measurement_gives_what_is_not_stated(edges):
         ({"rer": 0.5, "snr": 50}, "gsd_m"),
         ({"gsd_m": 0.7, "snr": 50}, "RER"),
         ({"gsd_m": 0.7, "rer": 0.5}, "SNR"),
-        ({"gsd_m": 0.7, "rer": -0.5, "snr": 50}, "from 0.001 to 10"),
+        ({"gsd_m": 0.7, "rer": -0.5, "snr": 50}, "from 0.001 to 2"),
+        ({"gsd_m": 0.7, "rer": 5, "snr": 50}, "rer_across is 5"),
         ({"gsd_m": -0.7, "rer": 0.5, "snr": 50}, "gsd_m is -0.7"),
         ({"gsd_m": (-1, -1), "rer": 0.5, "snr": 50}, "gsd_m is -1"),
         ({"gsd_m": (1, -1), "rer": 0.5, "snr": 50}, "gsd_m is -1"),
@@ -128,7 +132,7 @@ def test_a_measurement_gives_what_is_not_stated(edges):
         ({"gsd_m": 0.7, "rer": 0.5, "snr": "high"}, "give a number"),
         ({"gsd_m": 0.7, "rer": (0.5, 0.4, 0.3), "snr": 50}, "3 values"),
         ({"gsd_m": 0.7, "rer": 0.5, "snr": 50, "version": 2}, "versions 3, 4 and 5"),
-        ({"gsd_m": 0.7, "rer": 0.5, "snr": 50, "elevation_deg": 0}, "elevation_deg"),
+        ({"gsd_m": 0.7, "rer": 0.5, "snr": 50, "elevation_deg": 1.2}, "from 5 to 90"),
         ({"gsd_m": 0.7, "rer": 0.5, "snr": 50, "noise_gain": 0}, "noise_gain"),
     ],
 )

@@ -19,16 +19,22 @@ GiqeVersion = Literal[3, 4, 5]
 _MIN_SNR = 5.0
 _RER_RANGE = (0.2, 1.3)
 """Outside of these an equation is extrapolated: few images are that soft or that sharpened."""
+_GSD_RANGE_M = (0.05, 10.0)
+"""Bounds of ours: levels 1 to 9 of the scale are those of some 9 m to .1 m."""
+_MIN_ELEVATION_DEG = 30.0
+"""A bound of ours: below it the two sides of a pixel on the ground differ by more than two."""
+_SCALE = (0.0, 9.0)
 _POSSIBLE = {
     "gsd_m": (1e-3, 1e5),
-    "rer_across": (1e-3, 10.0),
-    "rer_along": (1e-3, 10.0),
+    "rer_across": (1e-3, 2.0),
+    "rer_along": (1e-3, 2.0),
     "snr": (1e-3, 1e9),
     "giqe_h": (1e-3, 100.0),
     "noise_gain": (1e-3, 1e3),
-    "elevation_deg": (0.1, 90.0),
+    "elevation_deg": (5.0, 90.0),
 }
-"""What any image may have; the equations have no meaning beyond."""
+"""What any image may have, also one that was sharpened; the equations have no meaning beyond."""
+_EXTRAPOLATED = "the equation is extrapolated, and its own deviation is not known there"
 _NEAR_JUMP_STDS = 2.0
 _STEP = 1e-4
 
@@ -145,15 +151,16 @@ def niirs(
     values = [float(known[name]) for name in ("rer_across", "rer_along", "snr", "giqe_h")]
     inputs = _inputs(values, float(known["gsd_m"]), elevation_deg, noise_gain)
     spread = _inputs_std(inputs, values, known, version)
+    value = giqe(inputs, version)
     return Niirs(
-        giqe(inputs, version),
+        value,
         math.hypot(spread, EQUATION_STD),
         version=version,
         inputs_std=spread,
         equation_std=EQUATION_STD,
         inputs=inputs,
         notes=(
-            *_notes(inputs, version, float(known["rer_std"])),
+            *_notes(inputs, value, version, float(known["rer_std"])),
             *((ONE_DIRECTION,) if known.get("one_direction") else ()),
         ),
     )
@@ -294,13 +301,18 @@ def _std(value: float | Estimate) -> float:
     return value.std if isinstance(value, Estimate) and math.isfinite(value.std) else 0.0
 
 
-def _notes(inputs: GiqeInputs, version: GiqeVersion, rer_std: float) -> tuple[Note, ...]:
+def _notes(
+    inputs: GiqeInputs, value: float, version: GiqeVersion, rer_std: float
+) -> tuple[Note, ...]:
     """Where the equation was not made for such an image."""
     return tuple(
         note
         for note in (
             _low_snr(inputs),
             _rer_range(inputs),
+            _gsd_range(inputs),
+            _low_elevation(inputs),
+            _off_the_scale(value),
             _jump(inputs, version, rer_std),
             _sharpened(inputs, version),
         )
@@ -331,8 +343,35 @@ def _rer_range(inputs: GiqeInputs) -> Note | None:
         return None
     return Note(
         "RER out of range",
-        f"RER is {found[0]:.3g}, outside {low:g} to {high:g}: the equation is extrapolated",
+        f"RER is {found[0]:.3g}, outside {low:g} to {high:g}: {_EXTRAPOLATED}",
     )
+
+
+def _gsd_range(inputs: GiqeInputs) -> Note | None:
+    low, high = _GSD_RANGE_M
+    if low <= inputs.gsd_m <= high:
+        return None
+    return Note(
+        "GSD out of range",
+        f"GSD is {inputs.gsd_m:.3g} m, outside {low:g} to {high:g} m: {_EXTRAPOLATED}",
+    )
+
+
+def _low_elevation(inputs: GiqeInputs) -> Note | None:
+    if inputs.elevation_deg >= _MIN_ELEVATION_DEG:
+        return None
+    return Note(
+        "low elevation",
+        f"the line of sight has an elevation of {inputs.elevation_deg:.3g} degrees, below "
+        f"{_MIN_ELEVATION_DEG:g}: {_EXTRAPOLATED}",
+    )
+
+
+def _off_the_scale(value: float) -> Note | None:
+    low, high = _SCALE
+    if low <= value <= high:
+        return None
+    return Note("off the scale", f"NIIRS has levels from {low:g} to {high:g} only")
 
 
 def _jump(inputs: GiqeInputs, version: GiqeVersion, rer_std: float) -> Note | None:
