@@ -67,6 +67,11 @@ def test_a_target_lists_edges_means_rejections_and_what_failed(target):
     shown = text(target)
     assert shown.startswith("4 edges measured, 1 rejected")
     assert "blur_uniformity, edges 1 (0.08), 2 (0.08), 3 (0.08), 4 (0.08); asked <= 0.05: " in shown
+    assert "\ndoubtful: 4 of 24 checks failed.\n" in shown
+    line = target.measurements[1].line
+    row = next(one for one in shown.splitlines() if one.split()[:1] == ["2"])
+    assert row.split()[1:3] == [f"{line.row:.0f}", f"{line.col:.0f}"]
+    assert row.endswith("doubtful  blur_uniformity")
     assert "phases  <aligned> with the grid" in shown
     scatter = target.groups["along"].chi_square["mtf_nyquist"]
     assert f"{scatter:.1f} / 1" in shown

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from acutance.report.check_words import count_failed_checks, write_found
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.report.figures.bars import bars_panels
 from acutance.report.figures.biresolution import biresolution_panels
@@ -19,10 +20,8 @@ from acutance.report.figures.straight import straight_panels
 from acutance.report.figures.target import target_figure
 from acutance.report.figures.writing import FONT_SIZE, ROW_HEIGHT, write_below, write_grid
 from acutance.report.labels import (
-    count_failed_checks,
     describe_image,
     describe_measurement,
-    format_number,
     measurement_metric_words,
     spread_name,
     word_estimate,
@@ -182,7 +181,7 @@ def _check_rows(measurement: Measurement) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [("", "", "found", "asked")]
     for check in measurement.checks:
         mark = "✓" if check.passed else "✗"
-        rows.append((mark, check.name, format_number(check.value, 3), check.asked))
+        rows.append((mark, check.name, write_found(check, 3), check.asked))
     return rows
 
 

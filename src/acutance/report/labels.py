@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from acutance.targets.check_table import QUESTIONS
-
 if TYPE_CHECKING:
     from acutance.curves import Estimate
-    from acutance.targets.check import Check
     from acutance.targets.measurement import Measurement
     from acutance.targets.record import ImageInfo, Record
 
@@ -21,12 +18,10 @@ __all__ = [
     "MetricWords",
     "NumberWords",
     "count_edges",
-    "count_failed_checks",
     "csv_column",
     "describe_image",
     "describe_measurement",
     "describe_target",
-    "failed_by_check",
     "flatten_options",
     "format_number",
     "measurement_metric_words",
@@ -342,46 +337,6 @@ def describe_image(result: Measurement | Record, max_name: int | None = None) ->
     return ", ".join(value if name in plain else f"{name} {value}" for name, value in found.items())
 
 
-def failed_by_check(measurements: Sequence[Measurement]) -> tuple[tuple[str, str, str], ...]:
-    """Every check that failed: its name, the edges with what was found, what it means.
-
-    Parameters
-    ----------
-    measurements : sequence of Measurement
-        Counted from 1.
-    """
-    found: dict[str, list[tuple[int, Check]]] = {}
-    for number, one in enumerate(measurements, start=1):
-        for check in one.failed_checks:
-            found.setdefault(check.name, []).append((number, check))
-    return tuple(
-        (
-            name,
-            ", ".join(f"{number} ({format_number(check.value, 3)})" for number, check in failed)
-            + f"; asked {failed[0][1].asked}",
-            _meaning(name, [check.message for _, check in failed], len(measurements)),
-        )
-        for name, failed in found.items()
-    )
-
-
-def _meaning(name: str, messages: Sequence[str], count: int) -> str:
-    """What was found, where all edges share it, as what lies in their region; else the advice."""
-    shared = len(messages) == count > 1 and len(set(messages)) == 1
-    return messages[0] if shared or name not in QUESTIONS else QUESTIONS[name].advice
-
-
-def count_failed_checks(measurements: Sequence[Measurement | Record]) -> str:
-    """How many checks passed or failed, as a sentence."""
-    total = sum(len(one.checks) for one in measurements)
-    failed = sum(len(one.failed_checks) for one in measurements)
-    if total == 0:
-        return "No checks were made."
-    if failed:
-        return f"{failed} of {total} checks failed."
-    return "The only check passed." if total == 1 else f"All {total} checks passed."
-
-
 def word_place(values: Mapping[str, Any]) -> str:
     """Where a candidate lies, as row and column; a dash where it is not known."""
     if not {"row", "col"} <= values.keys():
@@ -396,5 +351,7 @@ def flatten_options(options: Mapping[str, Any], prefix: str = "") -> Iterator[tu
             yield from flatten_options(value, f"{prefix}{name}.")
         elif isinstance(value, float):
             yield f"{prefix}{name}", format_number(value)
+        elif value is None or isinstance(value, bool):
+            yield f"{prefix}{name}", {None: MISSING, True: "yes", False: "no"}[value]
         else:
             yield f"{prefix}{name}", str(value)

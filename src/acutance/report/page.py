@@ -6,6 +6,7 @@ import shlex
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from acutance.report.check_words import common_verdict, count_failed_checks, failed_by_check
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.report.figure import panels
 from acutance.report.figures.comparison import comparison_figure
@@ -13,9 +14,7 @@ from acutance.report.figures.target import target_figure
 from acutance.report.html import Plate, Section, Table, Verdict, render_page
 from acutance.report.labels import (
     count_edges,
-    count_failed_checks,
     describe_target,
-    failed_by_check,
     flatten_options,
     format_number,
     provenance,
@@ -237,11 +236,9 @@ def _target_sections(
 
 def _target_verdicts(result: TargetResult[Any]) -> tuple[Verdict, ...]:
     """One verdict of all edges: that of the worst."""
-    order = ("good", "usable", "doubtful", "invalid")
-    measurements = result.measurements
-    worst = max(measurements, key=lambda one: order.index(one.verdict.word))
-    word = worst.verdict.word
-    return (Verdict(word, f"{word.capitalize()}: {count_failed_checks(measurements)}"),)
+    word = common_verdict(result.measurements)
+    counted = count_failed_checks(result.measurements)
+    return (Verdict(word, f"{word.capitalize()}: {counted}"),)
 
 
 def _failed_section(result: TargetResult[Any]) -> tuple[Section, ...]:

@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from acutance.report.check_words import (
+    common_verdict,
+    count_failed_checks,
+    failed_by_check,
+    write_found,
+)
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.report.html import Table
 from acutance.report.labels import (
     count_edges,
-    count_failed_checks,
     describe_image,
     describe_measurement,
-    failed_by_check,
-    format_number,
     title_of,
 )
 from acutance.report.tables.measurement import numbers_table
@@ -54,7 +57,7 @@ def text(result: Result) -> str:
     ]
     if found.checks:
         checks = [
-            ("ok" if one.passed else one.severity.upper(), one.name, format_number(one.value),
+            ("ok" if one.passed else one.severity.upper(), one.name, write_found(one),
              one.asked)
             for one in found.checks
         ]  # fmt: skip
@@ -98,6 +101,7 @@ def _target_text(result: TargetResult[Any]) -> str:
     measurements = result.measurements
     head = f"{count_edges(len(measurements))} measured, {len(result.rejected)} rejected"
     where = f"\n  {describe_image(measurements[0])}" if measurements else ""
+    counted = count_failed_checks(measurements)
     failed = (
         f"  {name}, edges {edges}: {meaning}"
         for name, edges, meaning in failed_by_check(measurements)
@@ -106,7 +110,7 @@ def _target_text(result: TargetResult[Any]) -> str:
         (
             head + where,
             *map(table_text, tables(result)),
-            "\n".join((count_failed_checks(measurements), *failed)),
+            "\n".join((f"{common_verdict(measurements)}: {counted}", *failed)),
         )
     )
 

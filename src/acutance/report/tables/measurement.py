@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.curves import Estimate
+from acutance.report.check_words import write_found
 from acutance.report.html import Table
 from acutance.report.labels import (
     flatten_options,
-    format_number,
     measurement_metric_words,
     metric_words,
     transfer_name,
@@ -110,7 +110,7 @@ def checks_table(result: Measurement | Record) -> Table:
     rows = tuple(
         (
             f"{check.name}\n{check.question}" if check.question else check.name,
-            format_number(check.value, 3), check.asked, state_of(check), check.message,
+            write_found(check, 3), check.asked, state_of(check), check.message,
             check.source,
         )
         for check in checks

@@ -45,22 +45,24 @@ def means_headline(result: TargetResult[Any]) -> Table:
 
 
 def edges_table(result: TargetResult[Any]) -> Table:
-    """Every edge: direction, angle, SNR, main numbers, failed checks."""
+    """Every edge: place, direction, angle, SNR, main numbers, verdict, failed checks."""
     rows, alerts = [], set()
     for i, one in enumerate(result.measurements):
         failed = ", ".join(check.name for check in one.failed_checks)
+        place = (f"{one.line.row:.0f}", f"{one.line.col:.0f}")
         numbers = (word_estimate(getattr(one, name)).value_and_std for name in MAIN)
         rows.append(
             (
-                str(i + 1), one.orientation, word_estimate(one.angle_deg).value_and_std,
-                format_number(one.snr, 3), *numbers, failed or "all passed",
+                str(i + 1), *place, one.orientation, word_estimate(one.angle_deg).value_and_std,
+                format_number(one.snr, 3), *numbers, one.verdict.word, failed or "all passed",
             )
         )  # fmt: skip
         if failed:
             alerts.add(i)
     labels = (metric_words(name).label_with_unit for name in MAIN)
-    columns = ("Edge", "Direction", "Angle [°]", "SNR", *labels, "Checks")
-    return Table(columns, tuple(rows), "rlrrrrrl", alerts=frozenset(alerts), title="Edges")
+    line = ("Edge", "Row", "Column", "Direction", "Angle [°]", "SNR")
+    columns = (*line, *labels, "Verdict", "Checks")
+    return Table(columns, tuple(rows), "rrrlrrrrrll", alerts=frozenset(alerts), title="Edges")
 
 
 def _means_table(result: TargetResult[Any]) -> Table:
