@@ -56,8 +56,14 @@ def test_numbers_that_wrapped_around_are_no_edge_of_light(offset):
 def test_an_image_decimated_without_averaging_is_sharper_than_any_pixel(step):
     image, _ = edge(7, shape=(240, 240))
     decimated = ac.measure_edge(image[::step, ::step])
-    assert "full_pixel" in failed(decimated)
     assert not decimated.trusted
+    (check,) = (one for one in decimated.failed_checks if one.name == "full_pixel")
+    found = decimated.mtf_nyquist
+    assert check.value == pytest.approx(found.value - 2 * found.std)
+    assert (
+        f"is {found:.2f}, surely (by 2 standard deviations) above {check.value:.2f};"
+        in check.message
+    )
 
 
 @pytest.mark.parametrize("angle_deg", [4, 20, 44])
