@@ -83,7 +83,9 @@ def test_fermi_location_survives_a_step_within_one_pixel():
 
 
 def test_a_band_narrower_than_the_trim_is_refused_and_says_why():
-    with pytest.raises(SupportError, match=r"needs 5\.7 px .* smaller trim_px"):
+    with pytest.raises(
+        SupportError, match=r"needs 5\.7 px .* method_options with a smaller trim_px"
+    ):
         sdsu_2005(edge_band(shape=(40, 10), angle_deg=3.0, offset_px=0.0))
 
 

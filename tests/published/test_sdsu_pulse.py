@@ -133,7 +133,7 @@ def test_registered_by_the_name_of_the_edge_method():
 
 def test_narrow_region_is_refused_and_says_why():
     image, truth = simulate.pulse(SENSOR, angle_deg=3.0, shape=(40, 14))
-    with pytest.raises(SupportError, match=r"smaller trim_px"):
+    with pytest.raises(SupportError, match=r"method_options with a smaller trim_px"):
         sdsu_2005_pulse(pulse_band(image, truth))
 
 

@@ -159,7 +159,8 @@ def _require_reach(rows: LocatedRows, line: RowLine, per_row_px: float, half_px:
     if min(low, high) < half_px:
         raise SupportError(
             f"the profile needs {half_px:.1f} px on each side of the edge, found {low:.1f} on "
-            f"the dark and {high:.1f} on the bright side: use a wider region or a smaller trim_px"
+            f"the dark and {high:.1f} on the bright side: use a wider region, or "
+            "in Python method_options with a smaller trim_px"
         )
 
 

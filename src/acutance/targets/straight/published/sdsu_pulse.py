@@ -356,5 +356,6 @@ def _require_reach(rows: LocatedRows, line: RowLine, per_row_px: float, grid: Fl
     if low < -grid[0] or high < grid[-1]:
         raise SupportError(
             f"the profile needs {-grid[0]:.1f} px before and {grid[-1]:.1f} px behind the rising "
-            f"edge, found {low:.1f} and {high:.1f}: use a wider region or a smaller trim_px"
+            f"edge, found {low:.1f} and {high:.1f}: use a wider region, or "
+            "in Python method_options with a smaller trim_px"
         )
