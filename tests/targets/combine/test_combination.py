@@ -108,7 +108,10 @@ def test_a_document_without_covariance_is_used_and_said_so(edges):
     documents = [one.to_dict() for one in edges]
     del documents[0]["plane"]
     found = ac.combine(documents)
+    messages = {check.name: check.message for check in found.checks}
     assert [check.name for check in found.failed_checks] == ["assumed_covariance"]
+    assert messages["assumed_covariance"].startswith("1 measurement without covariance: ")
+    assert messages["shared_targets"] == "no pairs of the same pixels"
     assert abs(found.across.mtf_nyquist.value - SENSOR.mtf()(0.5).value) < 0.03
 
 
@@ -226,7 +229,7 @@ def test_a_gsd_that_some_lack_fails_a_check_that_names_them():
     known, unknown = _edge_of_pixels(2.0, 1), _edge_of_pixels(None, 2, 7, "along")
     found = ac.combine([known, unknown], names=["a", "b"])
     (check,) = (one for one in found.failed_checks if one.name == "unknown_gsd")
-    assert "without a GSD: b" in check.message
+    assert check.message.startswith("1 measurement without a GSD: b")
     for given, gsd_m in (([known, unknown], 2.0), ([_edge_of_pixels(None, 1), unknown], None)):
         stated = ac.combine(given, gsd_m=gsd_m)
         assert "unknown_gsd" not in [one.name for one in stated.failed_checks]

@@ -146,6 +146,6 @@ def _draw_curves(page: FigureBase, measurement: CombinedMeasurement) -> None:
         where = "all directions" if part.has_all_directions else f"normal {part.direction}"
         axes.text(
             0.97, 0.95,
-            f"{where}\nchi² {found.value:.1f} of {found.expected:.1f}",
+            f"{where}\nchi² {found.value:.1f}, expected {found.expected:.1f}",
             transform=axes.transAxes, ha="right", va="top", fontsize=8.5,
         )  # fmt: skip

@@ -38,7 +38,16 @@ PARAMETERS = {
     "cubic_a": ("cubic convolution, a", ""),
     "detector_fill": ("detector's width over the stated one", ""),
 }
-PART_COLUMNS = ("measurement", "method", "normal", "MTF at Nyquist", "combined", "chi²", "of", "p")
+PART_COLUMNS = (
+    "measurement",
+    "method",
+    "normal",
+    "MTF at Nyquist",
+    "combined",
+    "chi²",
+    "expected",
+    "p",
+)
 
 
 def combined_tables(measurement: CombinedMeasurement) -> tuple[Table, ...]:

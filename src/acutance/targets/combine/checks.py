@@ -51,15 +51,19 @@ def check_combination(
         _plain(fit, limits),
         answer("directions", directions, f"{directions} directions were measured", limits),
         _counted("failed_inputs", failed, "with a failed check of their own", limits),
-        _counted("shared_targets", _shared(inputs), "of the same pixels", limits),
+        _counted("shared_targets", _shared(inputs), "of the same pixels", limits, "pair"),
         _counted("assumed_covariance", assumed, "without covariance", limits),
         _counted("unknown_gsd", without_gsd, "without a GSD", limits),
     )
 
 
-def _counted(name: str, named: Sequence[str], what: str, limits: Limits) -> Check:
-    """A check that counts measurements, with their names."""
-    found = f"{len(named) or 'no'} measurements {what}" + (f": {'; '.join(named)}" if named else "")
+def _counted(
+    name: str, named: Sequence[str], what: str, limits: Limits, noun: str = "measurement"
+) -> Check:
+    """A check that counts measurements, or pairs of them, with their names."""
+    listed = f": {'; '.join(named)}" if named else ""
+    plural = "" if len(named) == 1 else "s"
+    found = f"{len(named) or 'no'} {noun}{plural} {what}{listed}"
     return answer(name, len(named), found, limits)
 
 
