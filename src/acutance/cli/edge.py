@@ -40,7 +40,12 @@ def edge(
     method: Annotated[str, method_option("edge")] = KIND.methods[0],
     compare: CompareOption = None,
     all_edges: Annotated[
-        bool, typer.Option("--all", help="Find and measure every edge of the region.")
+        bool,
+        typer.Option(
+            "--all",
+            help="Find and measure every edge of the region's target: those with four fifths of "
+            "the strongest edge's contrast or more. Edges of every contrast: acutance scan.",
+        ),
     ] = False,
     rer_centre: RerCentreOption = None,
     robust: RobustOption = True,

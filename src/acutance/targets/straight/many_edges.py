@@ -79,7 +79,8 @@ def measure_edges(
 
     Of one region every usable edge is measured: four of a 2 x 2 checkerboard, the sides of a tarp.
     Edges with less than four fifths of the strongest contrast are left out: they are the target's
-    border with its surroundings, or not of the target.
+    border with its surroundings, or not of the target; `acutance.scan_scene` measures edges of
+    every contrast.
 
     Of a list of regions the strongest edge of each is measured, as `acutance.measure_edge` does.
     `acutance.each_edge` gives the same results one by one.
