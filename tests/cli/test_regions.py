@@ -135,3 +135,11 @@ def test_all_edges_of_every_polygon(acutance, folder):
         measured(acutance, folder, "--all", "--json", roi="targets.geojson").stdout
     )
     assert [one["schema"] for one in document["results"]] == ["acutance/target/1"] * 2
+
+
+def test_help_names_the_files_of_several_regions(acutance):
+    shown = " ".join(acutance("edge", "--help").stdout.split())
+    for ending in (".png", ".html", ".csv"):
+        assert f"FILE-NAME{ending}" in shown
+    assert "no FILE.html" in shown
+    assert "Edges of every contrast: acutance scan." in shown

@@ -179,13 +179,27 @@ class ResultOptions:
     """What is asked of a result, and what becomes of it."""
 
     figure: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Draw the steps: .png, .svg or .pdf.")
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Draw the steps: .png, .svg or .pdf. Of several regions, or bands of a scene, one "
+            "file each: FILE-NAME.png.",
+        ),
     ] = None
     report: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write a self-contained page: .html.")
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Write a self-contained page: .html. Of several regions one page each: "
+            "FILE-NAME.html, and no FILE.html.",
+        ),
     ] = None
     csv: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write the MTF in steps of 0.02 c/px: .csv.")
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Write the MTF in steps of 0.02 c/px: .csv. Of several: FILE-NAME.csv.",
+        ),
     ] = None
     as_json: JsonOption = False
     covariance: Annotated[
