@@ -48,8 +48,9 @@ def population_panel(measurement: SceneMeasurement) -> Panel:
         ""
         if measurement.details is None
         else " Lines: how many edges the fitted population expects in every bar, dark all of them, "
-        "blue those of ideal objects, each edge scattering by "
-        f"{scatter_of(edges_seen(measurement)):.2f} of its standard deviation, as those above 0 do."
+        "blue those of ideal objects. For the lines an edge scatters by "
+        f"{scatter_of(edges_seen(measurement)):.2f} times its stated standard deviation: so much "
+        "do the edges to the right of 0, among which there are no soft objects."
     )
     return Panel(
         "Sharpness of the edges",
@@ -116,8 +117,7 @@ def _draw(axes: Axes, measurement: SceneMeasurement) -> None:
     edges = edges_seen(measurement)
     bins = _bins(edges.off)
     counts, _ = np.histogram(edges.off, bins)
-    axes.stairs(counts, bins, fill=True, color=SHADE)
-    axes.stairs(counts, bins, color=FAINT, linewidth=0.7, label="edges")
+    axes.stairs(counts, bins, fill=True, facecolor=SHADE, edgecolor=FAINT, label="edges")
     axes.axvline(0.0, color=VERMILION, linewidth=1.4, label="sensor")
     if measurement.details is not None:
         middle = 0.5 * (bins[1:] + bins[:-1])
@@ -131,6 +131,8 @@ def _draw(axes: Axes, measurement: SceneMeasurement) -> None:
     )  # fmt: skip
     axes.set_ylim(0.0, _HEADROOM * max(axes.get_ylim()[1], 1.0))
     axes.locator_params(axis="x", nbins=6)
+    # Half an edge is none.
+    axes.locator_params(axis="y", integer=True, min_n_ticks=1)
     axes.legend(loc="upper left")
     axes.grid(visible=False, axis="x")
 
