@@ -8,6 +8,7 @@ import pytest
 import acutance as ac
 from acutance import simulate
 from acutance.raster import Box
+from acutance.report.bands import bands_document, bands_page, bands_text
 from acutance.scan.all_windows import scan_windows
 from acutance.scan.band_pieces import Unseen, band_pieces, in_band
 from acutance.scan.band_shift import band_shift
@@ -151,9 +152,11 @@ def test_edges_of_one_direction_or_too_few_show_no_shift():
         for i in range(20)
     ]
     edges = SceneEdges.of_rows(rows)
-    assert band_shift(edges, edges) is None
+    with pytest.raises(ac.NoEdgeError, match="the 20 edges that both bands use have nearly one"):
+        band_shift(edges, edges)
     few = SceneEdges.of_rows([row | {"normal_deg": 50.0 * i} for i, row in enumerate(rows[:7])])
-    assert band_shift(few, few) is None
+    with pytest.raises(ac.NoEdgeError, match="share 7 edges that both use, and a shift needs 8"):
+        band_shift(few, few)
 
 
 def test_a_band_that_shows_an_edge_less_has_no_part_in_it(bands):
@@ -186,6 +189,21 @@ def test_an_edge_of_one_band_alone_is_found_once_and_cut_where_another_has_it():
     assert upright == []
     seen = list(in_band(pieces, 1, both[1], ac.ScanOptions()))
     assert any(isinstance(one, Unseen) for one in seen)
+
+
+def test_a_band_without_a_shift_has_the_reason_in_every_output(bands):
+    """Each half of the scene is seen by one of the bands."""
+    left, right = (band.copy() for band in bands)
+    left[:, 200:] = 100.0 + np.random.default_rng(5).normal(0, NOISE, left[:, 200:].shape)
+    right[:, :200] = 100.0 + np.random.default_rng(6).normal(0, NOISE, right[:, :200].shape)
+    several = ac.scan_bands([left, right])
+    assert several.shifts == {}
+    (reason,) = several.unshifted
+    assert reason.values == {"band": "2"}
+    assert "that both use, and a shift needs 8" in reason.reason
+    assert f"band 2: no shift: {reason.reason}" in bands_text(several)
+    assert f"Band 2 – No shift: {reason.reason}" in bands_page(several)
+    assert bands_document(several)["unshifted"][0]["reason"] == reason.reason
 
 
 @pytest.mark.parametrize("noise", [0.0, 1.0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ from acutance.report.text import table_text
 if TYPE_CHECKING:
     from acutance.curves.grid import Floats
     from acutance.scan import BandScenes
+    from acutance.targets import Rejected
 
 __all__ = ["bands_document", "bands_page", "bands_tables", "bands_text"]
 
@@ -90,6 +91,7 @@ def bands_text(found: BandScenes) -> str:
         for name, scene in found.scenes.items()
     ]
     lines += [f"band {one.values['band']}: not measured: {one.reason}" for one in found.rejected]
+    lines += [f"band {one.values['band']}: no shift: {one.reason}" for one in found.unshifted]
     return "\n\n".join((
         f"scene in {bands}\n  {describe_image(first)}",
         *map(table_text, bands_tables(found)),
@@ -116,11 +118,15 @@ def bands_document(found: BandScenes, covariance: bool = False) -> dict[str, Any
             {"band": name, "relative_to": found.first, **one.to_dict()}
             for name, one in found.shifts.items()
         ],
-        "rejected": [
-            {"stage": one.stage, "reason": one.reason, "values": dict(one.values)}
-            for one in found.rejected
-        ],
+        "rejected": _reasons(found.rejected),
+        "unshifted": _reasons(found.unshifted),
     }
+
+
+def _reasons(rejected: Sequence[Rejected]) -> list[dict[str, Any]]:
+    return [
+        {"stage": one.stage, "reason": one.reason, "values": dict(one.values)} for one in rejected
+    ]
 
 
 def bands_page(
@@ -152,6 +158,9 @@ def bands_page(
     ] + [
         Verdict("invalid", f"Band {one.values['band']} – Not measured: {one.reason}")
         for one in found.rejected
+    ] + [
+        Verdict("usable", f"Band {one.values['band']} – No shift: {one.reason}")
+        for one in found.unshifted
     ]  # fmt: skip
     each = [
         replace(section, title=f"Band {name}: {section.title[:1].lower()}{section.title[1:]}")

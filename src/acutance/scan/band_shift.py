@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.errors import NoEdgeError
 from acutance.geometry.angles import wrap_direction
 from acutance.scan.scene_edges import SceneEdges
 
@@ -71,20 +72,32 @@ class BandShift(ShortRepr):
         }
 
 
-def band_shift(first: SceneEdges, other: SceneEdges) -> BandShift | None:
-    """The shift of a band relative to another; None if too few edges or directions show it.
+def band_shift(first: SceneEdges, other: SceneEdges) -> BandShift:
+    """The shift of a band relative to another.
 
     Parameters
     ----------
     first, other : SceneEdges
         The same edges, in the same order.
+
+    Raises
+    ------
+    NoEdgeError
+        If too few edges or directions show it.
     """
     both = first.used & other.used
-    if both.sum() < _MIN_EDGES:
-        return None
+    shared = int(both.sum())
+    if shared < _MIN_EDGES:
+        raise NoEdgeError(
+            f"the bands share {shared} {'edge' if shared == 1 else 'edges'} that both use, and a "
+            f"shift needs {_MIN_EDGES}"
+        )
     normal, along, std = _displacements(first, other, both)
     if float(np.linalg.eigvalsh(normal.T @ normal / len(normal))[0]) < _MIN_SPREAD:
-        return None
+        raise NoEdgeError(
+            f"the {shared} edges that both bands use have nearly one direction, which shows one "
+            "component of a shift"
+        )
     scatter, shift = 0.0, np.zeros(2)
     for _ in range(_TURNS):
         whole = np.hypot(std, scatter)

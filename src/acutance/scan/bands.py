@@ -61,11 +61,14 @@ class BandScenes(ShortRepr):
         few edges with it is missing.
     rejected : tuple of Rejected
         Bands that could not be measured, and why; `values` hold the "band".
+    unshifted : tuple of Rejected
+        Bands that were measured and have no shift, and why; `values` hold the "band".
     """
 
     scenes: Mapping[str, SceneMeasurement]
     shifts: Mapping[str, BandShift]
     rejected: tuple[Rejected, ...] = ()
+    unshifted: tuple[Rejected, ...] = ()
 
     @property
     def first(self) -> str:
@@ -165,14 +168,23 @@ def scan_bands(
         raise NoEdgeError(
             f"none of the {len(images)} bands could be measured: {rejected[0].reason}"
         )
-    return BandScenes(scenes, _shifts(scenes), tuple(rejected))
+    shifts, unshifted = _shifts(scenes)
+    return BandScenes(scenes, shifts, tuple(rejected), unshifted)
 
 
-def _shifts(scenes: Mapping[str, SceneMeasurement]) -> dict[str, BandShift]:
-    """Shifts of all bands relative to the first."""
+def _shifts(
+    scenes: Mapping[str, SceneMeasurement],
+) -> tuple[dict[str, BandShift], tuple[Rejected, ...]]:
+    """Shifts of all bands relative to the first, and bands without one."""
     (_, first), *others = scenes.items()
-    every = {name: band_shift(first.edges, one.edges) for name, one in others}
-    return {name: shift for name, shift in every.items() if shift is not None}
+    shifts: dict[str, BandShift] = {}
+    unshifted: list[Rejected] = []
+    for name, one in others:
+        try:
+            shifts[name] = band_shift(first.edges, one.edges)
+        except NoEdgeError as error:
+            unshifted.append(Rejected("shift", str(error), {"band": name}))
+    return shifts, tuple(unshifted)
 
 
 def _bands(image: Any, bands: Sequence[int] | None) -> dict[str, Image]:
