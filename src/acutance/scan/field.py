@@ -111,7 +111,8 @@ class Field(ShortRepr):
     root : (20, r) array
         Factor of its covariance.
     chance_constant : float
-        Probability that sharpness is the same everywhere, 0 to 1.
+        Probability that sharpness is the same everywhere, 0 to 1; of too few edges (see
+        `is_fitted`) what it was before any was seen.
     """
 
     roi: tuple[int, int, int, int]
@@ -157,11 +158,13 @@ class Field(ShortRepr):
 
     def summary(self) -> str:
         """How likely it is that nothing changes."""
+        if not self.is_fitted:
+            return "taken for constant: too few edges to ask"
         return f"constant with a chance of {self.chance_constant:.2g}"
 
     def to_dict(self) -> dict[str, Any]:
-        """The chance of no change, for JSON."""
-        return {"chance_constant": round(self.chance_constant, 4)}
+        """The chance of no change, for JSON; None where the edges are too few to ask."""
+        return {"chance_constant": round(self.chance_constant, 4) if self.is_fitted else None}
 
 
 def _centred(values: Floats, start: int, size: int) -> Floats:

@@ -363,8 +363,8 @@ _COMBINED = {
 _SCENE = {
     "edges_used": Question(
         "How many edges of the scene are used?", ">=", 30.0,
-        "the intervals widen, and few of the objects may be ideal; scan a larger part",
-        severity="note",
+        "the intervals widen, and few of the objects may be ideal; scan a larger part, or several "
+        "scenes and combine them", severity="note",
     ),
     "scene_directions": Question(
         "In how many directions, of 15 degrees each, are there edges?", ">=", 4.0,

@@ -36,9 +36,8 @@ def word_chance(chance: float) -> str:
 
 def scene_tables(measurement: SceneMeasurement) -> tuple[Table, ...]:
     """Edges by verdict, the shares of the objects, sharpness over the field, what was left out."""
-    over_field = (_field_table(measurement),) if measurement.field.is_fitted else ()
     return (
-        _edges_table(measurement), _objects_table(measurement), *over_field,
+        _edges_table(measurement), _objects_table(measurement), _field_table(measurement),
         reasons_table(measurement.edges),
     )  # fmt: skip
 
@@ -54,16 +53,10 @@ def _edges_table(measurement: SceneMeasurement) -> Table:
                 word, str(int(own.sum())), f"{np.median(edges.length_px[own]):.0f}",
                 f"{np.median(snr):.0f}" if snr.size else "", meaning,
             ))  # fmt: skip
-    notes = [f"{edges.size} were found, {int(edges.used.sum())} are used. Medians."]
-    if not measurement.field.is_fitted:
-        notes.append(
-            "They are too few to show how sharpness changes over the field: one sensor is taken "
-            "for all of it."
-        )
     return Table(
         ("verdict", "edges", "length / px", "SNR", "meaning"), tuple(rows), "lrrrl",
         title="Edges of the scene",
-        notes=tuple(notes),
+        notes=(f"{edges.size} were found, {int(edges.used.sum())} are used. Medians.",),
     )  # fmt: skip
 
 
@@ -79,6 +72,13 @@ def _objects_table(measurement: SceneMeasurement) -> Table:
 
 
 def _field_table(measurement: SceneMeasurement) -> Table:
+    title = "Sharpness over the field"
+    if not measurement.field.is_fitted:
+        note = (
+            "The edges are too few to show how sharpness changes over the field: one sensor is "
+            "taken for all of it."
+        )
+        return Table((), (), "", title=title, notes=(note,))
     rows = []
     for place in measurement.over_field(*measurement.options["places"]):
         numbers = (
@@ -93,7 +93,7 @@ def _field_table(measurement: SceneMeasurement) -> Table:
             "row", "column", "MTF at Nyquist across", "along", "RER across", "along",
             "FWHM / px across", "along",
         ),
-        tuple(rows), "rrrrrrrr", title="Sharpness over the field",
+        tuple(rows), "rrrrrrrr", title=title,
         notes=(
             "In the middle of equal parts of the scene. The chance that sharpness is the same "
             f"everywhere is {chance}.",
