@@ -1,6 +1,7 @@
 """Bars measured against the truth of their simulation, and what is refused."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,6 +18,8 @@ import acutance as ac
 from acutance.errors import NoBarsError, OptionError
 from acutance.geometry.bar_group import Bars
 from acutance.raster import Gsd, Image
+from acutance.report import draw
+from acutance.report.tables.bars import bars_tables
 from acutance.simulate import reference_systems
 from acutance.targets.periodic import BarsOptions, measure_bars
 from acutance.targets.periodic.bars_find import find_bars
@@ -315,3 +318,13 @@ def test_a_checkerboard_is_no_bars(turn_deg, tile_px):
     )  # fmt: skip
     with pytest.raises(NoBarsError, match="another pattern: bars explain"):
         ac.measure_bars(board.image)
+
+
+def test_a_normal_of_nearly_zero_has_no_sign():
+    image, _ = bars_scene(angle_deg=0.0, periods_px=(12, 8, 5))
+    found = ac.measure_bars(image)
+    found = replace(found, directions_deg=(-0.004, 90.0))
+    (table, _) = bars_tables(found)
+    assert table.rows[0] == ("direction of the normal", "0.00°")
+    titles = [axes.get_title(loc="left") for axes in draw(found).axes]
+    assert "MTF along the normal, 0.0°" in titles

@@ -11,6 +11,7 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.report.figures.curves import TWO_SIDED_95, band_edges, mark_frequencies
 from acutance.report.figures.panel import Panel, on_axes, required
 from acutance.report.figures.pixels import draw_residual_map, show_pixels
+from acutance.report.labels import write_fixed
 from acutance.report.paper import BLUE, FAINT, GREEN, INK, ORANGE, SHADE, VERMILION
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def _draw_mtf(axes: Axes, measurement: BarsMeasurement) -> None:
         freq, [one.coltman for one in groups], "x", color=VERMILION, markersize=5,
         label="Coltman",
     )  # fmt: skip
-    axes.set_title(f"MTF along the normal, {measurement.directions_deg[0]:.1f}°")
+    axes.set_title(f"MTF along the normal, {write_fixed(measurement.directions_deg[0], 1)}°")
     axes.legend(loc="lower left")
 
 

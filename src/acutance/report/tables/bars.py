@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from acutance.curves import Estimate
 from acutance.report.html import Table
-from acutance.report.labels import metric_words, word_estimate
+from acutance.report.labels import metric_words, word_estimate, write_fixed
 
 if TYPE_CHECKING:
     from acutance.targets.periodic import BarsMeasurement
@@ -23,7 +23,7 @@ def bars_tables(measurement: BarsMeasurement) -> tuple[Table, ...]:
 
 
 def _normal_table(measurement: BarsMeasurement) -> Table:
-    rows = [("direction of the normal", f"{measurement.directions_deg[0]:.2f}°")]
+    rows = [("direction of the normal", f"{write_fixed(measurement.directions_deg[0], 2)}°")]
     for name, number in measurement.normal_response.metrics().items():
         if name in ALONG_NORMAL:
             words = metric_words(name)

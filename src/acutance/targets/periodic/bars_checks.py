@@ -67,7 +67,7 @@ def _bars(solved: BarsSolution, limits: Limits) -> Check:
 
 
 def _directions(directions_deg: tuple[float, ...], limits: Limits) -> Check:
-    named = " and ".join(f"{angle:.1f}" for angle in directions_deg)
+    named = " and ".join(f"{angle:z.1f}" for angle in directions_deg)
     found = f"the bars' normals point to {named} degrees"
     return answer("bar_directions", len(directions_deg), found, limits)
 
