@@ -107,6 +107,7 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
             )
         flags = dataset.mask_flag_enums[band - 1]
         level = _saturation_level(dataset, band)
+        declared = _declared_gsd(dataset)
         return Image(
             path=path,
             band=band,
@@ -124,7 +125,8 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
             ),
             saturation_level=None if level is None else level * scale + offset,
             geolocation=_geolocation(dataset),
-            own_gsd=_declared_gsd(dataset) if gsd is None else gsd,
+            own_gsd=declared if gsd is None else gsd,
+            declared_gsd=declared,
         )
 
 

@@ -69,6 +69,8 @@ class Image(ShortRepr):
     characteristic : Characteristic or None
         The curve that stored values are turned back through, so that `read` gives values
         proportional to light; ``None`` if they are taken as they are.
+    declared_gsd : Gsd or None
+        The GSD declared by the file, also where the caller gave another.
     every_value_is_data : bool
         If true, fill that is not declared is not looked for: see `acutance.raster.Fill`.
     """
@@ -84,6 +86,7 @@ class Image(ShortRepr):
     own_gsd: Gsd | None = None
     along_track: AlongTrack = "y"
     characteristic: Characteristic | None = None
+    declared_gsd: Gsd | None = None
     every_value_is_data: bool = False
 
     def __post_init__(self) -> None:
@@ -216,8 +219,26 @@ class Image(ShortRepr):
         Gsd or None
             ``None`` when it was not given and the image declares none.
         """
-        if self.own_gsd is not None or self.geolocation is None:
+        if self.own_gsd is not None:
             return self.own_gsd
+        return self._located_gsd(row, col)
+
+    def gsd_of_file(self, row: float | None = None, col: float | None = None) -> Gsd | None:
+        """The GSD at a pixel that the image has of itself, whatever `open_image` was given.
+
+        Parameters
+        ----------
+        row, col : float, optional
+            As of `gsd`.
+        """
+        if self.path is None and self.own_gsd is not None:
+            return self.own_gsd
+        return self.declared_gsd or self._located_gsd(row, col)
+
+    def _located_gsd(self, row: float | None, col: float | None) -> Gsd | None:
+        """The GSD by the geolocation."""
+        if self.geolocation is None:
+            return None
         at_row = (self.shape[0] - 1) / 2 if row is None else row
         at_col = (self.shape[1] - 1) / 2 if col is None else col
         return self.geolocation.gsd(at_row, at_col)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from acutance.curves import Estimate
     from acutance.targets.measurement import Measurement
-    from acutance.targets.record import ImageInfo, Record
+    from acutance.targets.record import Record
 
 __all__ = [
     "METRIC_WORDS",
@@ -312,7 +312,10 @@ def provenance(result: Measurement | Record, max_name: int | None = None) -> dic
         found["band"] = str(image.band)
         found["region"] = f"rows {row}–{row + height - 1}, columns {col}–{col + width - 1}"
     if image.pixel_gsd_m is not None:
-        found["GSD"] = _gsd_words(image)
+        found["GSD"] = _gsd_words(image.pixel_gsd_m, image.along_track)
+        if image.file_gsd_m is not None:
+            own = _gsd_words(image.file_gsd_m, image.along_track)
+            found["GSD"] += f" (stated; the image's own is {own})"
     if image.linearized is not None:
         found["linearised"] = image.linearized
     for name, title in (("sensor", "satellite"), ("acquired", "acquired")):
@@ -322,10 +325,9 @@ def provenance(result: Measurement | Record, max_name: int | None = None) -> dic
     return found
 
 
-def _gsd_words(image: ImageInfo) -> str:
-    assert image.pixel_gsd_m is not None
-    along, across = map(format_number, image.pixel_gsd_m)
-    if image.along_track == "x":
+def _gsd_words(pixel_gsd_m: tuple[float, float], along_track: str) -> str:
+    along, across = map(format_number, pixel_gsd_m)
+    if along_track == "x":
         along, across = across, along
     return f"{along} m" if along == across else f"{across} m across, {along} m along"
 

@@ -71,6 +71,8 @@ class ImageInfo:
     linearized : str or None
         The characteristic curve that stored values were turned back through, in words; ``None``
         if they were taken as they are.
+    file_gsd_m : (float, float) or None
+        GSD that the image has of itself, where the stated one is another.
     """
 
     path: str | None = None
@@ -80,6 +82,7 @@ class ImageInfo:
     along_track: AlongTrack = "y"
     pixel_gsd_m: tuple[float, float] | None = None
     linearized: str | None = None
+    file_gsd_m: tuple[float, float] | None = None
 
     @property
     def gsd_m(self) -> float | None:
@@ -106,6 +109,7 @@ class ImageInfo:
             "crs": self.crs,
             "along_track": self.along_track,
             "linearized": self.linearized,
+            "file_gsd_m": None if self.file_gsd_m is None else list(self.file_gsd_m),
         }
 
     @classmethod
@@ -113,6 +117,7 @@ class ImageInfo:
         """What `to_dict` wrote; older documents knew but one GSD, of square pixels."""
         row, col, height, width = document["roi"]
         sides, gsd_m = document.get("pixel_gsd_m"), document.get("gsd_m")
+        of_file = document.get("file_gsd_m")
         if sides is None and gsd_m is not None:
             sides = (gsd_m, gsd_m)
         return cls(
@@ -123,6 +128,7 @@ class ImageInfo:
             "x" if document.get("along_track", "y") == "x" else "y",
             None if sides is None else (float(sides[0]), float(sides[1])),
             document.get("linearized"),
+            None if of_file is None else (float(of_file[0]), float(of_file[1])),
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,6 +28,7 @@ __all__ = [
 
 _MAX_PIXELS = 9_000_000
 _MIN_SIDE_PX = 8
+_MAX_GSD_ROUNDING = 0.05
 
 RoiLike = Region | Box | tuple[int, int, int, int] | None
 
@@ -64,11 +66,19 @@ class RegionPixels:
 
 def image_info(image: Image, box: Box, gsd: Gsd | None) -> ImageInfo:
     """What a measurement records of a part of an image."""
+    of_file = image.gsd_of_file(box.row + box.height / 2, box.col + box.width / 2)
     return ImageInfo(
         image.path, image.band, box.as_tuple(), image.crs, image.along_track,
         None if gsd is None else (gsd.row_m, gsd.col_m),
         None if image.characteristic is None else image.characteristic.words,
+        (of_file.row_m, of_file.col_m) if gsd and of_file and _is_another(gsd, of_file) else None,
     )  # fmt: skip
+
+
+def _is_another(stated: Gsd, of_file: Gsd) -> bool:
+    """Whether a stated GSD is no rounding of the image's own."""
+    ratios = (stated.row_m / of_file.row_m, stated.col_m / of_file.col_m)
+    return max(abs(math.log(one)) for one in ratios) > _MAX_GSD_ROUNDING
 
 
 def read_region(
