@@ -153,8 +153,8 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, 
     if len(used) < _MIN_EDGES:
         raise NoEdgeError(
             f"{edges.size} straight edges were found, and {len(used)} of them can be used, where "
-            f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}scan a larger part of the "
-            "image, or measure single edges"
+            f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}scan a larger part, or "
+            "another image, or measure single edges"
         )
     axis_deg = np.array([one.axis_deg for one in used])
     _, number = np.unique(np.floor((axis_deg + 90.0) / _BIN_DEG), return_inverse=True)
@@ -164,7 +164,7 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, 
         raise NoEdgeError(
             f"all {len(used)} edges that can be used have nearly one direction, normals within "
             f"{gap:.0f} degrees: two that differ by {_MIN_GAP_DEG:g} are needed; scan a larger "
-            "part of the image, or measure them with measure_edges"
+            "part, or another image, or measure them with measure_edges"
         )
     guesses = [_sensor_of(used, normal_deg, quantiles) for quantiles in _SHARP]
     likelihoods = _likelihoods(used, number, axis_deg)

@@ -372,13 +372,11 @@ _SCENE = {
     ),
     "ideal_share": Question(
         "Which share of the objects is as sharp as the sensor can show?", ">=", 0.15,
-        "few objects show the sensor itself, and what they hide widens the intervals; scan "
-        "built-up areas, or several scenes",
+        "few objects show the sensor itself, the intervals widen; scan built-up areas, or more",
     ),
     "strange_share": Question(
         "Which share of the edges is neither ideal nor soft?", "<=", 0.15,
-        "the sensor may change over the scene, or rims, shadows and processing make edges that no "
-        "one sensor explains",
+        "the sensor may change over the scene, or rims, shadows and processing make other edges",
     ),
     "scene_settled": Question(
         "Did the fit of sensor and objects fail to settle?", "<=", 0.0,
@@ -386,8 +384,7 @@ _SCENE = {
     ),
     "field_change": Question(
         "By which share of its mean does sharpness surely change over the field?", "<=", 0.1,
-        "the numbers are the mean over the field: read those of the places, or scan parts of it",
-        severity="note",
+        "the numbers are means over the field: read those of the places", severity="note",
     ),
 }  # fmt: skip
 

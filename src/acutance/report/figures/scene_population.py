@@ -117,7 +117,9 @@ def _draw(axes: Axes, measurement: SceneMeasurement) -> None:
     edges = edges_seen(measurement)
     bins = _bins(edges.off)
     counts, _ = np.histogram(edges.off, bins)
-    axes.stairs(counts, bins, fill=True, facecolor=SHADE, edgecolor=FAINT, label="edges")
+    axes.stairs(
+        counts, bins, fill=True, facecolor=SHADE, edgecolor=FAINT, linewidth=0.9, label="edges"
+    )
     axes.axvline(0.0, color=VERMILION, linewidth=1.4, label="sensor")
     if measurement.details is not None:
         middle = 0.5 * (bins[1:] + bins[:-1])
