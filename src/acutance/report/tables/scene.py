@@ -67,7 +67,11 @@ def _objects_table(measurement: SceneMeasurement) -> Table:
     )
     return Table(
         ("objects", "share / %", "meaning"), rows, "lrl", title="Objects",
-        notes=("How soft the borders are on the ground, found together with the sensor.",),
+        notes=(
+            "How soft the borders are on the ground, found together with the sensor. What all of "
+            "them have in common counts as the sensor's: a softness of 0.1 px lowers the MTF at "
+            "Nyquist by 5 %, of 0.2 px by 18 %.",
+        ),
     )  # fmt: skip
 
 
