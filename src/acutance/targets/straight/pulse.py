@@ -26,7 +26,7 @@ from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
 from acutance.targets.straight.pulse_checks import check_pulse, pulse_snr
 from acutance.targets.straight.pulse_response import prf_fwhm
-from acutance.targets.straight.pulse_width import held_width
+from acutance.targets.straight.pulse_width import held_width, stated_width
 from acutance.targets.straight.stated_target import stated_target
 from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.trim import Extent
@@ -159,6 +159,20 @@ def _is_far(found_px: float, stated_px: float) -> bool:
     return abs(found_px / stated_px - 1) > MAX_CORRECTED_WIDTH
 
 
+def _width_check(
+    region: RegionPixels,
+    trimmed: PulsePixels,
+    width: Estimate,
+    stated_px: float | None,
+    options: PulseOptions,
+) -> Check:
+    """Whether the image agrees with the stated width; one that was held is fitted for it."""
+    if stated_px is None or width.std > 0:
+        return stated_width(options.limits, stated_px, width)
+    free = _free_width(region, trimmed, stated_px, robust=options.robust)
+    return held_width(options.limits, stated_px, free)
+
+
 def _free_width(
     region: RegionPixels, trimmed: PulsePixels, held_px: float, *, robust: bool
 ) -> Estimate | None:
@@ -225,16 +239,12 @@ def _measurement(
     stated = stated_target(options, fit.response.gsd_m)
 
     def answers() -> tuple[Check, ...]:
-        checks = check_pulse(
+        return check_pulse(
             region, data, extent, options.limits,
-            width=width, height_ratio=height_ratio, stated_px=stated_px,
+            width=width, height_ratio=height_ratio,
+            stated_width=_width_check(region, trimmed, width, stated_px, options),
             by_ratio=method in PUBLISHED_PULSE,
         )  # fmt: skip
-        if stated_px is None or width.std > 0:
-            return checks
-        free = _free_width(region, trimmed, stated_px, robust=options.robust)
-        held = held_width(options.limits, stated_px, free)
-        return tuple(held if one.name == held.name else one for one in checks)
 
     return StraightMeasurement(
         kind="pulse",

@@ -69,7 +69,7 @@ def check_pulse(
     *,
     width: Estimate,
     height_ratio: Estimate,
-    stated_px: float | None,
+    stated_width: Check,
     by_ratio: bool,
 ) -> tuple[Check, ...]:
     """All checks of a pulse.
@@ -84,8 +84,8 @@ def check_pulse(
         Limits the caller changed.
     width, height_ratio : Estimate
         Width of the pulse in pixels, and height of its falling side over the rising one's.
-    stated_px : float or None
-        The width as stated.
+    stated_width : Check
+        Whether the stated width agrees with the image.
     by_ratio : bool
         Whether the method divides by the pulse's spectrum.
     """
@@ -115,7 +115,7 @@ def check_pulse(
         _parallel(data, limits, height_ratio.value),
         _background_step(limits, height_ratio.value),
         _wide_enough(limits, width.value),
-        _stated_width(limits, width, stated_px),
+        stated_width,
         _zero_distance(data, limits, width.value, by_ratio=by_ratio),
         *ground_checks(data, limits, ("before", "behind")),
     )
@@ -168,20 +168,6 @@ def _background_step(limits: Limits, height_ratio: float) -> Check:
 
 def _wide_enough(limits: Limits, width_px: float) -> Check:
     return answer("width_px", width_px, f"the pulse is {width_px:.2f} px wide", limits)
-
-
-def _stated_width(limits: Limits, width: Estimate, stated_px: float | None) -> Check:
-    """Whether the stated width agrees with the data."""
-    if stated_px is None or not width.std > 0:
-        found = f"the width is {width} px; no other was stated or none was fitted"
-        return answer("width_sigmas", 0.0, found, limits)
-    away = width.value - stated_px
-    value = abs(away) / width.std
-    found = (
-        f"the fitted width is {width} px, the stated one {stated_px:.4f} px: {away:+.4f} px, "
-        f"{value:.1f} standard deviations"
-    )
-    return answer("width_sigmas", value, found, limits)
 
 
 def _zero_distance(data: CheckData, limits: Limits, width_px: float, *, by_ratio: bool) -> Check:

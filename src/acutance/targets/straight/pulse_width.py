@@ -39,6 +39,7 @@ __all__ = [
     "critical_frequencies",
     "held_width",
     "smoothest_width",
+    "stated_width",
     "width_consistency",
     "width_error_gain",
     "width_sensitivity_per_px",
@@ -137,6 +138,30 @@ def width_consistency(fit: SplinePulse, stated_width_px: float) -> WidthConsiste
     if not stated_width_px > 0:
         raise OptionError(f"a pulse has a width of {stated_width_px:g} px: give one above 0")
     return WidthConsistency(stated_width_px, fit.pulse_width.value, fit.pulse_width.std)
+
+
+def stated_width(limits: Limits, stated_px: float | None, width: Estimate) -> Check:
+    """Whether the image agrees with a width that was stated and fitted: ``width_sigmas``.
+
+    Parameters
+    ----------
+    limits : mapping of str to float
+        Limits the caller changed.
+    stated_px : float or None
+        The width as stated.
+    width : Estimate
+        As it was fitted.
+    """
+    if stated_px is None:
+        found = f"the width is {width} px; no other was stated"
+        return answer("width_sigmas", 0.0, found, limits)
+    compared = WidthConsistency(stated_px, width.value, width.std)
+    value = abs(compared.sigmas)
+    found = (
+        f"the fitted width is {width} px, the stated one {stated_px:.4f} px: "
+        f"{compared.difference_px:+.4f} px, {value:.1f} standard deviations"
+    )
+    return answer("width_sigmas", value, found, limits)
 
 
 def held_width(limits: Limits, stated_px: float, free: Estimate | None) -> Check:
