@@ -2,12 +2,14 @@
 
 import copy
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import acutance as ac
 from acutance import optics, simulate
+from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.combine.sensor_forms import FORMS
 
 SENSOR = optics.Sensor([optics.Gaussian(0.36, 0.48), optics.Detector()], gsd_m=0.7)
@@ -271,3 +273,10 @@ def test_combinations_of_points_hold_the_truth():
                 z.append((number.value - wanted.value) / number.std)
     assert np.mean(np.abs(z) < 1.96) >= 0.85
     assert np.sqrt(np.mean(np.square(z))) < 1.5
+
+
+def test_a_part_that_tells_nothing_leaves_the_document_strict(together):
+    mute = replace(together.parts[0], chi_square=ChiSquare(0.0, 0.0, 0.0))
+    document = mute.to_dict()
+    assert document["p_value"] is None
+    json.dumps(document, allow_nan=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, cast
@@ -130,9 +131,10 @@ class CombinedMeasurement(Measurement):
         }
 
 
-def _chi_square(found: ChiSquare) -> dict[str, float]:
+def _chi_square(found: ChiSquare) -> dict[str, float | None]:
+    """For JSON; what tells nothing has no chance of a larger one."""
     return {
         "chi_square": found.value,
         "degrees_of_freedom": found.expected,
-        "p_value": found.p_value,
+        "p_value": found.p_value if math.isfinite(found.p_value) else None,
     }
