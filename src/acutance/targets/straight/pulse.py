@@ -24,9 +24,8 @@ from acutance.targets.straight.lsf import of_stated_target, with_uncertain_halo
 from acutance.targets.straight.options import PulseOptions
 from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
-from acutance.targets.straight.pulse_checks import check_pulse, pulse_snr
+from acutance.targets.straight.pulse_checks import check_pulse, pulse_snr, width_check
 from acutance.targets.straight.pulse_response import prf_fwhm
-from acutance.targets.straight.pulse_width import held_width, stated_width
 from acutance.targets.straight.stated_target import stated_target
 from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.trim import Extent
@@ -168,9 +167,9 @@ def _width_check(
 ) -> Check:
     """Whether the image agrees with the stated width; one that was held is fitted for it."""
     if stated_px is None or width.std > 0:
-        return stated_width(options.limits, stated_px, width)
+        return width_check(options.limits, stated_px, width, is_held=False)
     free = _free_width(region, trimmed, stated_px, robust=options.robust)
-    return held_width(options.limits, stated_px, free)
+    return width_check(options.limits, stated_px, free, is_held=True)
 
 
 def _free_width(

@@ -33,6 +33,7 @@ from acutance.targets.straight.pixel_checks import (
 )
 from acutance.targets.straight.published import PublishedPulse
 from acutance.targets.straight.pulse_spectrum import zeros_cpp
+from acutance.targets.straight.pulse_width import WidthConsistency
 from acutance.targets.straight.step_profile import pulse_profile
 from acutance.targets.straight.structure_checks import (
     asymmetric_lsf,
@@ -48,7 +49,7 @@ from acutance.targets.straight.tuned import (
     STRUCTURE_SIGMAS,
 )
 
-__all__ = ["PULSE_CHECKS", "check_pulse", "pulse_snr"]
+__all__ = ["PULSE_CHECKS", "check_pulse", "pulse_snr", "width_check"]
 
 PULSE_CHECKS = (
     "contrast_snr", "uniformity_before", "uniformity_behind", "uniformity_target", "angle_deg",
@@ -59,6 +60,11 @@ PULSE_CHECKS = (
     "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of a pulse."""
+
+_HELD_ADVICE = (
+    "the held width, or the GSD, is wrong, and every number with it; leave the width free "
+    "(method spline without --hold-width), or measure the target again"
+)
 
 
 def check_pulse(
@@ -168,6 +174,38 @@ def _background_step(limits: Limits, height_ratio: float) -> Check:
 
 def _wide_enough(limits: Limits, width_px: float) -> Check:
     return answer("width_px", width_px, f"the pulse is {width_px:.2f} px wide", limits)
+
+
+def width_check(
+    limits: Limits, stated_px: float | None, fitted: Estimate | None, *, is_held: bool
+) -> Check:
+    """Whether the image agrees with the stated width.
+
+    Parameters
+    ----------
+    limits : mapping of str to float
+        Limits the caller changed.
+    stated_px : float or None
+        The width as stated.
+    fitted : Estimate or None
+        The width of the joint fit where nothing holds it; None if that found no pulse.
+    is_held : bool
+        Whether the measurement holds the stated width.
+    """
+    if stated_px is None:
+        found = f"the width is {fitted} px; no other was stated"
+        return answer("width_sigmas", 0.0, found, limits)
+    if fitted is None or not fitted.std > 0:
+        found = f"the width was held at {stated_px:.4f} px; freely none could be fitted"
+        return answer("width_sigmas", 0.0, found, limits)
+    compared = WidthConsistency(stated_px, fitted.value, fitted.std)
+    value = min(abs(compared.sigmas), MAX_RATIO) if is_held else abs(compared.sigmas)
+    away = f"{compared.difference_px:+.4f} px, {value:.1f} standard deviations"
+    if not is_held:
+        found = f"the fitted width is {fitted} px, the stated one {stated_px:.4f} px: {away}"
+        return answer("width_sigmas", value, found, limits)
+    found = f"the width was held at {stated_px:.4f} px, fitted freely it is {fitted} px: {away}"
+    return answer("width_sigmas", value, found, limits, advice=_HELD_ADVICE)
 
 
 def _zero_distance(data: CheckData, limits: Limits, width_px: float, *, by_ratio: bool) -> Check:

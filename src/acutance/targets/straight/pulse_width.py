@@ -17,11 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError
-from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.straight.fit_pulse import SplinePulse
 from acutance.targets.straight.published import PublishedPulse
 from acutance.targets.straight.pulse_spectrum import (
@@ -37,9 +35,7 @@ __all__ = [
     "WidthConsistency",
     "WidthSearch",
     "critical_frequencies",
-    "held_width",
     "smoothest_width",
-    "stated_width",
     "width_consistency",
     "width_error_gain",
     "width_sensitivity_per_px",
@@ -138,58 +134,6 @@ def width_consistency(fit: SplinePulse, stated_width_px: float) -> WidthConsiste
     if not stated_width_px > 0:
         raise OptionError(f"a pulse has a width of {stated_width_px:g} px: give one above 0")
     return WidthConsistency(stated_width_px, fit.pulse_width.value, fit.pulse_width.std)
-
-
-def stated_width(limits: Limits, stated_px: float | None, width: Estimate) -> Check:
-    """Whether the image agrees with a width that was stated and fitted: ``width_sigmas``.
-
-    Parameters
-    ----------
-    limits : mapping of str to float
-        Limits the caller changed.
-    stated_px : float or None
-        The width as stated.
-    width : Estimate
-        As it was fitted.
-    """
-    if stated_px is None:
-        found = f"the width is {width} px; no other was stated"
-        return answer("width_sigmas", 0.0, found, limits)
-    compared = WidthConsistency(stated_px, width.value, width.std)
-    value = abs(compared.sigmas)
-    found = (
-        f"the fitted width is {width} px, the stated one {stated_px:.4f} px: "
-        f"{compared.difference_px:+.4f} px, {value:.1f} standard deviations"
-    )
-    return answer("width_sigmas", value, found, limits)
-
-
-def held_width(limits: Limits, stated_px: float, free: Estimate | None) -> Check:
-    """Whether the image allows a width that was held: the check ``width_sigmas``.
-
-    Parameters
-    ----------
-    limits : mapping of str to float
-        Limits the caller changed.
-    stated_px : float
-        The width that was held.
-    free : Estimate or None
-        The width of the joint fit where nothing holds it; None if that found no pulse.
-    """
-    if free is None or not free.std > 0:
-        found = f"the width was held at {stated_px:.4f} px; freely none could be fitted"
-        return answer("width_sigmas", 0.0, found, limits)
-    compared = WidthConsistency(stated_px, free.value, free.std)
-    value = min(abs(compared.sigmas), MAX_RATIO)
-    found = (
-        f"the width was held at {stated_px:.4f} px, fitted freely it is {free} px: "
-        f"{compared.difference_px:+.4f} px, {value:.1f} standard deviations"
-    )
-    advice = (
-        "the held width, or the GSD, is wrong, and every number with it; leave the width free "
-        "(method spline without --hold-width), or measure the target again"
-    )
-    return answer("width_sigmas", value, found, limits, advice=advice)
 
 
 @dataclass(frozen=True, eq=False)
