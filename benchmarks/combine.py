@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from trials import METRICS, TWO_SIDED_95, command, publish, table, work_through
+from trials import METRICS, TWO_SIDED_95, command, publish, rms, table, work_through
 
 import acutance as ac
 from acutance import optics
@@ -189,14 +189,10 @@ def few_rows(arguments: Any) -> list[list[str]]:
         ]
         errors, std, single = (np.array(part) for part in zip(*own, strict=True))
         rows.append([
-            case[0], f"{case[1]}", f"{_rms(single):.4f}", f"{_rms(errors):.4f}",
+            case[0], f"{case[1]}", f"{rms(single):.4f}", f"{rms(errors):.4f}",
             f"{np.median(std):.4f}", f"{100 * np.mean(np.abs(errors) < TWO_SIDED_95 * std):.0f}",
         ])  # fmt: skip
     return rows
-
-
-def _rms(errors: Floats) -> float:
-    return float(np.sqrt(np.mean(errors**2)))
 
 
 def row(name: str, results: list[Found | str]) -> list[str]:

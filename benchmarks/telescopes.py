@@ -80,8 +80,8 @@ def row(size_px: int, snr: int, edges: list[Found]) -> list[str]:
     """Errors over the bound, and coverage."""
     measured = [edge.compared for edge in edges if edge.compared is not None]
     rms = float(root_mean_square(measured)[0])
-    bound = _rms([edge.posterior_error for edge in edges])
-    stated = _rms([edge.posterior.std for edge in edges])
+    bound = rms([edge.posterior_error for edge in edges])
+    stated = rms([edge.posterior.std for edge in edges])
     effective = np.array([edge.posterior.effective for edge in edges])
     return [
         f"{size_px}", f"{snr}", f"{rms:.4f}", f"{bound:.4f}", f"{stated:.4f}", f"{rms / bound:.2f}",
@@ -89,10 +89,6 @@ def row(size_px: int, snr: int, edges: list[Found]) -> list[str]:
         f"{np.median(effective):.0f}", f"{100 * np.mean(effective < _MIN_EFFECTIVE):.0f}",
         f"{len(edges) - len(measured)}",
     ]  # fmt: skip
-
-
-def _rms(errors: list[float]) -> float:
-    return float(np.sqrt(np.mean(np.square(errors))))
 
 
 def pooled_coverage(edges: list[Found]) -> str:

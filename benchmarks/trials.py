@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 import acutance as ac
 from acutance.curves import Estimate, Response
@@ -115,6 +116,11 @@ def bias(compared: Sequence[Compared]) -> np.ndarray:
 def root_mean_square(compared: Sequence[Compared]) -> np.ndarray:
     """Root mean square error of every metric."""
     return np.asarray(np.sqrt(np.mean(np.square([one.error for one in compared]), axis=0)))
+
+
+def rms(errors: ArrayLike) -> float:
+    """Root mean square of some numbers."""
+    return float(np.sqrt(np.mean(np.square(errors))))
 
 
 def coverage(compared: Sequence[Compared]) -> np.ndarray:
