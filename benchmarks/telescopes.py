@@ -79,12 +79,12 @@ def measure(job: Draw) -> list[Found]:
 def row(size_px: int, snr: int, edges: list[Found]) -> list[str]:
     """Errors over the bound, and coverage."""
     measured = [edge.compared for edge in edges if edge.compared is not None]
-    rms = float(root_mean_square(measured)[0])
+    found = float(root_mean_square(measured)[0])
     bound = rms([edge.posterior_error for edge in edges])
     stated = rms([edge.posterior.std for edge in edges])
     effective = np.array([edge.posterior.effective for edge in edges])
     return [
-        f"{size_px}", f"{snr}", f"{rms:.4f}", f"{bound:.4f}", f"{stated:.4f}", f"{rms / bound:.2f}",
+        f"{size_px}", f"{snr}", f"{found:.4f}", f"{bound:.4f}", f"{stated:.4f}", f"{found / bound:.2f}",
         *(f"{share:.1f}" for share in coverage(measured)),
         f"{np.median(effective):.0f}", f"{100 * np.mean(effective < _MIN_EFFECTIVE):.0f}",
         f"{len(edges) - len(measured)}",
