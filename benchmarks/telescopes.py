@@ -22,6 +22,7 @@ from trials import (
     coverage,
     publish,
     random_edge,
+    rms,
     root_mean_square,
     table,
     work_through,
@@ -84,7 +85,8 @@ def row(size_px: int, snr: int, edges: list[Found]) -> list[str]:
     stated = rms([edge.posterior.std for edge in edges])
     effective = np.array([edge.posterior.effective for edge in edges])
     return [
-        f"{size_px}", f"{snr}", f"{found:.4f}", f"{bound:.4f}", f"{stated:.4f}", f"{found / bound:.2f}",
+        f"{size_px}", f"{snr}", f"{found:.4f}", f"{bound:.4f}", f"{stated:.4f}",
+        f"{found / bound:.2f}",
         *(f"{share:.1f}" for share in coverage(measured)),
         f"{np.median(effective):.0f}", f"{100 * np.mean(effective < _MIN_EFFECTIVE):.0f}",
         f"{len(edges) - len(measured)}",
