@@ -62,6 +62,15 @@ def colours(scene):
     return path
 
 
+def test_a_softness_of_all_objects_is_stated(acutance, scene, keeps_to_schema):
+    done = acutance("scan", scene, "--json", "--workers", 1, "--target-softness-m", "0.2+-0.1")
+    assert done.exit_code == 0, done.stderr
+    document = json.loads(done.stdout)
+    keeps_to_schema(document)
+    assert document["options"]["target_softness_m"] == {"value": 0.2, "std": 0.1}
+    assert {row["term"] for row in document["budget"]} == {"fit", "target_softness"}
+
+
 def test_several_bands_are_one_run(acutance, colours, tmp_path, shown, keeps_to_schema):
     done = acutance(
         "scan", colours, "--band", "all", "--workers", 1, "--keep", tmp_path / "scan.parts",

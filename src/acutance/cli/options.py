@@ -28,6 +28,7 @@ __all__ = [
     "RerCentreOption",
     "ResultOptions",
     "RobustOption",
+    "SoftnessOptions",
     "StatedOptions",
     "method_option",
     "parse_gsd",
@@ -220,8 +221,8 @@ class ResultOptions:
 
 
 @dataclass(frozen=True)
-class StatedOptions:
-    """What is stated of a straight target because no pixel shows it."""
+class SoftnessOptions:
+    """How soft the border of a target is stated to be."""
 
     target_softness_m: Annotated[
         str | None,
@@ -235,6 +236,21 @@ class StatedOptions:
     target_softness_px: Annotated[
         str | None, typer.Option(metavar="PX[+-STD]", help="The same in pixels.")
     ] = None
+
+    @property
+    def softness(self) -> dict[str, Any]:
+        """Fields of the options of an edge, a pulse or a scan."""
+        metres, pixels = self.target_softness_m, self.target_softness_px
+        return {
+            "target_softness_m": parse_stated("--target-softness-m", metres),
+            "target_softness_px": parse_stated("--target-softness-px", pixels),
+        }
+
+
+@dataclass(frozen=True)
+class StatedOptions(SoftnessOptions):
+    """What is stated of a straight target because no pixel shows it."""
+
     level_uncertainty: Annotated[
         str | None,
         typer.Option(
@@ -246,13 +262,8 @@ class StatedOptions:
     @property
     def fields(self) -> dict[str, Any]:
         """Fields of the options of an edge or a pulse."""
-        metres, pixels = self.target_softness_m, self.target_softness_px
-        level = self.level_uncertainty
-        return {
-            "target_softness_m": parse_stated("--target-softness-m", metres),
-            "target_softness_px": parse_stated("--target-softness-px", pixels),
-            "level_uncertainty": parse_share("--level-uncertainty", level),
-        }
+        level = parse_share("--level-uncertainty", self.level_uncertainty)
+        return {**self.softness, "level_uncertainty": level}
 
 
 def parse_gsd(text: str | None) -> float | Gsd | None:

@@ -13,7 +13,7 @@ import typer
 
 from acutance.cli.choices import parse_band, parse_grid
 from acutance.cli.option_groups import with_groups
-from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions
+from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions, SoftnessOptions
 from acutance.cli.output import OutputFile, check_optional
 from acutance.cli.progress import progress_bar
 from acutance.cli.results import Outputs, Shown
@@ -33,6 +33,7 @@ EXAMPLE = (
     "  acutance scan scene.tif --report scan.html --edges edges.geojson\n"
     "  acutance scan scene.tif --band all --field 5x5 --json\n"
     "  acutance scan scene.tif --roi 0,0,4000,4000 --workers 2\n"
+    "  acutance scan fields.tif --target-softness-m 2+-1\n"
     "  acutance scan large.tif --keep large.scan --dask tcp://host:8786"
 )
 
@@ -54,6 +55,21 @@ class ScenePixelOptions(PixelOptions):
     def bands(self) -> Sequence[int] | None:
         """The numbers of the bands; None for all of them."""
         return None if self.band == "all" else [parse_band(one) for one in self.band.split(",")]
+
+
+@dataclass(frozen=True)
+class ObjectOptions(SoftnessOptions):
+    """What is stated of the objects of a scene."""
+
+    target_softness_m: Annotated[
+        str | None,
+        typer.Option(
+            metavar="M[+-STD]",
+            help="Softness that even the sharpest objects have, and no edge can show (borders of "
+            "fields, of plants): the standard deviation of its Gaussian profile in metres, and its "
+            "own (2+-1). The MTF is divided by the borders'.",
+        ),
+    ] = None
 
 
 @with_groups
@@ -88,6 +104,7 @@ def scan(
             help="Tell the sharpness in the middle of so many equal parts of the scene.",
         ),
     ] = "3x3",
+    objects: ObjectOptions,
     workers: WorkersOption = None,
     dask: Annotated[str | None, dask_option("IMAGE under the same name")] = None,
     wanted: ResultOptions,
@@ -117,7 +134,9 @@ def scan(
         require_parquet()
     with progress_bar(f"scan {Path(image).name}") as progress:
         how: dict[str, Any] = {
-            "options": ScanOptions(min_length_px=min_length, places=places, limits=wanted.limits),
+            "options": ScanOptions(
+                min_length_px=min_length, places=places, limits=wanted.limits, **objects.softness
+            ),
             "workers": workers or os.cpu_count() or 1,
             "scheduler": dask,
             "keep": keep,

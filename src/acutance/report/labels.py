@@ -33,6 +33,7 @@ __all__ = [
     "transfer_name",
     "word_estimate",
     "word_place",
+    "word_softness",
     "write_fixed",
 ]
 
@@ -318,6 +319,8 @@ def provenance(result: Measurement | Record, max_name: int | None = None) -> dic
             found["GSD"] += f" (stated; the image's own is {own})"
     if image.linearized is not None:
         found["linearised"] = image.linearized
+    if softness := word_softness(result.options):
+        found["stated softness"] = softness
     for name, title in (("sensor", "satellite"), ("acquired", "acquired")):
         if result.options.get(name):
             found[title] = str(result.options[name])
@@ -337,6 +340,17 @@ def describe_image(result: Measurement | Record, max_name: int | None = None) ->
     plain = ("image", "region")
     found = provenance(result, max_name)
     return ", ".join(value if name in plain else f"{name} {value}" for name, value in found.items())
+
+
+def word_softness(options: Mapping[str, Any]) -> str:
+    """The softness of borders that options state: "0.05 ± 0.02 m"; nothing if they state none."""
+    from acutance.curves import Estimate
+
+    for unit in ("m", "px"):
+        stated = options.get(f"target_softness_{unit}")
+        if stated is not None:
+            return f"{Estimate(stated['value'], stated['std'])} {unit}"
+    return ""
 
 
 def word_place(values: Mapping[str, Any]) -> str:

@@ -20,6 +20,7 @@ from acutance.scan.options import ScanOptions
 from acutance.scan.scene import measured_scene
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
+from acutance.scan.stated_objects import gsd_of_part, require_statement
 from acutance.targets.options import chosen_options
 from acutance.targets.region import RoiLike
 from acutance.targets.target_result import Rejected
@@ -153,6 +154,7 @@ def scan_bands(
     images = _bands(image, bands)
     first = next(iter(images.values()))
     box, region = part_of(first, roi)
+    require_statement(chosen, gsd_of_part(first, box, gsd))
     found = scan_windows(
         list(images.values()), box, region, gsd=gsd, options=chosen, workers=workers,
         scheduler=scheduler, keep=keep, progress=progress,

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.curves import Estimate
 from acutance.errors import OptionError
 from acutance.scan.checks import SCENE_CHECKS
 from acutance.targets.check import Limits, require_limits
 from acutance.targets.options import require_types
+from acutance.targets.straight.stated_target import require_softness, stated_number
 
 __all__ = ["ScanOptions"]
 
@@ -44,6 +46,10 @@ class ScanOptions:
         Rows and columns of equal parts of the scene, in the middle of which sharpness is told.
     limits : mapping of str to float
         Limits of checks to be asked instead of those of the table, by name.
+    target_softness_m, target_softness_px : Estimate or float, optional
+        Standard deviation of the Gaussian profile of the sharpest objects' borders, with its own
+        standard deviation, in metres or pixels: the sensor is the one behind it. What the scene
+        shows are objects that are softer than these.
 
     Raises
     ------
@@ -58,9 +64,12 @@ class ScanOptions:
     window_px: int = 1024
     places: tuple[int, int] = (3, 3)
     limits: Limits = field(default_factory=dict)
+    target_softness_m: Estimate | float | None = None
+    target_softness_px: Estimate | float | None = None
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_softness(self)
         require_limits(self.limits, SCENE_CHECKS, "ScanOptions")
         for name, (low, high) in _RANGES.items():
             value = getattr(self, name)
@@ -80,4 +89,10 @@ class ScanOptions:
     def to_dict(self) -> dict[str, Any]:
         """All options by name, for JSON."""
         numbers = {name: getattr(self, name) for name in _RANGES}
-        return {**numbers, "places": list(self.places), "limits": dict(self.limits)}
+        return {
+            **numbers,
+            "places": list(self.places),
+            "limits": dict(self.limits),
+            "target_softness_m": stated_number(self.target_softness_m),
+            "target_softness_px": stated_number(self.target_softness_px),
+        }

@@ -17,7 +17,7 @@ from acutance.scan.options import ScanOptions
 
 __all__ = ["difference", "scan_identity"]
 
-_OF_THE_ANSWER = ("limits", "places")
+_OF_THE_ANSWER = ("limits", "places", "target_softness_m", "target_softness_px")
 """Options that change no edge."""
 _STRIP_PIXELS = 2**21
 _WORDS = {

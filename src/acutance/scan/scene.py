@@ -22,6 +22,7 @@ from acutance.scan.population import EdgeLikelihoods
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
 from acutance.scan.sensor_fit import SensorFit, fit_sensor
+from acutance.scan.stated_objects import behind_objects, gsd_of_part, require_statement
 from acutance.scan.window_edges import UsedEdge, WindowEdges
 from acutance.targets.options import chosen_options
 from acutance.targets.region import RoiLike, image_info
@@ -90,8 +91,8 @@ def scan_scene(
     NoEdgeError
         If too few edges can be used, or all have one direction.
     OptionError
-        If an option or the number of workers means nothing, the scheduler cannot be reached, or
-        `keep` is of another scan.
+        If an option or the number of workers means nothing, a softness is stated in metres and
+        there is no GSD, the scheduler cannot be reached, or `keep` is of another scan.
 
     Examples
     --------
@@ -104,6 +105,7 @@ def scan_scene(
         image = open_image(image)
     source = Image.of(image)
     box, region = part_of(source, roi)
+    require_statement(chosen, gsd_of_part(source, box, gsd))
     found = scan_windows(
         [source], box, region, gsd=gsd, options=chosen, workers=workers, scheduler=scheduler,
         keep=keep, progress=progress,
@@ -221,10 +223,11 @@ def _measurement(
     edges: SceneEdges,
     fit: SensorFit,
 ) -> SceneMeasurement:
-    gsd = gsd or image.gsd(box.row + box.height / 2, box.col + box.width / 2)
+    gsd = gsd_of_part(image, box, gsd)
     known = edges.with_objects(fit.member.mean_px, fit.member.part[:, 0])
     field = Field(box.as_tuple(), *fit.field[:4])
-    transfer = Otf2d(field.mean_of(fit.otf), None if gsd is None else (gsd.row_m, gsd.col_m))
+    sensor = behind_objects(fit.otf, options, gsd)
+    transfer = Otf2d(field.mean_of(sensor), None if gsd is None else (gsd.row_m, gsd.col_m))
     return SceneMeasurement(
         kind="scene",
         method="population",

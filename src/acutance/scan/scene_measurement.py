@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,7 +14,9 @@ from acutance.errors import RegionError
 from acutance.geometry.line import Orientation
 from acutance.scan.field import Field, FieldOtf
 from acutance.scan.scene_edges import SceneEdges
+from acutance.scan.stated_objects import OtfBehindObjects
 from acutance.targets.measurement import Measurement
+from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_stds
 
 __all__ = ["SceneMeasurement", "ScenePlace"]
 
@@ -120,6 +123,21 @@ class SceneMeasurement(Measurement):
         """The sensor in the middle of so many equal parts of the scene, row by row."""
         row, col = self.field.grid(rows, cols)
         return tuple(self.at(float(i), float(j)) for i in row for j in col)
+
+    def _budget(self) -> tuple[BudgetTerm, ...]:
+        """One row a direction for the fit, and one for what is stated of the objects."""
+        mean = self.otf.model
+        assert isinstance(mean, FieldOtf)
+        if not isinstance(mean.base, OtfBehindObjects):
+            return super()._budget()
+        certain = Otf2d(replace(mean, base=mean.base.if_certain), self.otf.gsd_m)
+        rows: tuple[BudgetTerm, ...] = ()
+        for name, angle_deg in self.axes_deg.items():
+            total = main_stds(self.directions[name])
+            fit = main_stds(certain.response(angle_deg))
+            stated = {one: math.sqrt(max(total[one] ** 2 - fit[one] ** 2, 0.0)) for one in total}
+            rows += budget_rows(name, {"fit": fit, "target_softness": stated})
+        return rows
 
     def target_document(self) -> dict[str, Any]:
         """How many edges, their directions, the shares of the objects, and the field."""

@@ -13,6 +13,7 @@ from acutance.report.figures.scene_field import field_panel
 from acutance.report.figures.scene_map import map_panel
 from acutance.report.figures.scene_population import population_panel
 from acutance.report.figures.scene_sensor import edges_seen, sensor_along
+from acutance.report.labels import word_softness
 from acutance.report.paper import BLUE, FAINT, VERMILION
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ def scene_panels(
             "MTF at Nyquist along the normal, from dark to bright (0: along the rows, 90: down the "
             "columns). Red: the sensor with its 95 % band, the mean over the field. Dots: used "
             "edges, blue where the object is probably ideal, else grey; edges beyond the rim lie "
-            "on it.",
+            "on it." + _stated(measurement),
             lambda page: _draw_directions(
                 page.subplots(subplot_kw={"projection": "polar"}), measurement
             ),
@@ -51,6 +52,14 @@ def scene_panels(
         population_panel(measurement),
         *((field_panel(measurement),) if measurement.field.is_fitted else ()),
     )
+
+
+def _stated(measurement: SceneMeasurement) -> str:
+    """Why all edges lie below the sensor."""
+    softness = word_softness(measurement.options)
+    if not softness:
+        return ""
+    return f" The edges have the {softness} of softness that are stated of all objects."
 
 
 def _draw_directions(axes: Any, measurement: SceneMeasurement) -> None:

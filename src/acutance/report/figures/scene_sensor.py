@@ -9,9 +9,11 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.scan.blur_modes import blur_modes
-from acutance.scan.field import DEGREES, FieldOtf, field_polynomials
+from acutance.scan.field import DEGREES, Field, FieldOtf, field_polynomials
+from acutance.scan.stated_objects import as_in_image
 
 if TYPE_CHECKING:
+    from acutance.curves.otf2d import OtfModel
     from acutance.scan import SceneMeasurement
 
 __all__ = ["EdgesSeen", "edges_seen", "sensor_along", "sensor_at"]
@@ -31,7 +33,8 @@ class EdgesSeen(NamedTuple):
     ideal : array
         Probability that the object is.
     sensor : array
-        MTF at Nyquist of the sensor at the place of the edge, along its normal.
+        MTF at Nyquist of the sensor at the place of the edge, along its normal; softness that is
+        stated of all objects is part of it, as it is of the edges.
     """
 
     row: Floats
@@ -56,7 +59,7 @@ def edges_seen(measurement: SceneMeasurement) -> EdgesSeen:
     row, col, normal_deg = edges.row[own], edges.col[own], edges.normal_deg[own]
     return EdgesSeen(
         row, col, normal_deg, edges.length_px[own], edges.mtf_nyquist[own],
-        edges.mtf_nyquist_std[own], edges.ideal[own], sensor_at(measurement, row, col, normal_deg),
+        edges.mtf_nyquist_std[own], edges.ideal[own], _seen_at(measurement, row, col, normal_deg),
     )  # fmt: skip
 
 
@@ -73,9 +76,21 @@ def sensor_at(
     measurement: SceneMeasurement, row: Floats, col: Floats, normal_deg: Floats
 ) -> Floats:
     """MTF at Nyquist at places (n,) along normals (n,): that of `Field.at`, of many at once."""
-    mean, field = measurement.otf.model, measurement.field
+    mean = measurement.otf.model
     assert isinstance(mean, FieldOtf)
-    every = np.abs(mean.base.otf(*_nyquist(_EVERY_DEG)))
+    return _at(measurement.field, mean.base, row, col, normal_deg)
+
+
+def _seen_at(measurement: SceneMeasurement, row: Floats, col: Floats, normal_deg: Floats) -> Floats:
+    """The same as edges show it: behind the softness that is stated of all objects."""
+    mean = measurement.otf.model
+    assert isinstance(mean, FieldOtf)
+    return _at(measurement.field, as_in_image(mean.base), row, col, normal_deg)
+
+
+def _at(field: Field, middle: OtfModel, row: Floats, col: Floats, normal_deg: Floats) -> Floats:
+    """MTF at Nyquist at places of a field, of a sensor that is `middle` among its edges."""
+    every = np.abs(middle.otf(*_nyquist(_EVERY_DEG)))
     base = np.interp(np.mod(normal_deg, 180.0), _EVERY_DEG, every)
     weight = field_polynomials(*field.places(row, col))[:, :, None] - field.middle
     by_mode = np.sum(weight * field.amount.reshape(len(DEGREES), -1), axis=1)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from acutance.report.html import Table
+from acutance.report.labels import word_softness
 from acutance.report.tables.scene_reasons import reasons_table
 
 if TYPE_CHECKING:
@@ -68,11 +70,25 @@ def _objects_table(measurement: SceneMeasurement) -> Table:
     return Table(
         ("objects", "share / %", "meaning"), rows, "lrl", title="Objects",
         notes=(
-            "How soft the borders are on the ground, found together with the sensor. What all of "
-            "them have in common counts as the sensor's: a softness of 0.1 px lowers the MTF at "
-            "Nyquist by 5 %, of 0.2 px by 18 %.",
+            "How soft the borders are on the ground, found together with the sensor. "
+            + _in_common(measurement.options),
         ),
     )  # fmt: skip
+
+
+def _in_common(options: Mapping[str, Any]) -> str:
+    """What became of the softness that all objects have in common."""
+    softness = word_softness(options)
+    if softness:
+        return (
+            f"Of what all of them have in common {softness} are stated: the numbers are those of "
+            "the sensor behind it. The edges themselves are told as they are in the image."
+        )
+    return (
+        "What all of them have in common counts as the sensor's: a softness of 0.1 px lowers the "
+        "MTF at Nyquist by 5 %, of 0.2 px by 18 %. Where more is known, it can be stated "
+        "(--target-softness-m)."
+    )
 
 
 def _field_table(measurement: SceneMeasurement) -> Table:
@@ -92,6 +108,10 @@ def _field_table(measurement: SceneMeasurement) -> Table:
         )
         rows.append((f"{place.row:.0f}", f"{place.col:.0f}", *numbers))
     chance = word_chance(measurement.field.chance_constant)
+    where = "In the middle of equal parts of the scene."
+    if len({row[2:] for row in rows}) == 1:
+        # Equal to the last digit that is told: one row says it.
+        rows, where = [("all", "all", *rows[0][2:])], "The same in all parts of the scene."
     return Table(
         (
             "row", "column", "MTF at Nyquist across", "along", "RER across", "along",
@@ -99,7 +119,6 @@ def _field_table(measurement: SceneMeasurement) -> Table:
         ),
         tuple(rows), "rrrrrrrr", title=title,
         notes=(
-            "In the middle of equal parts of the scene. The chance that sharpness is the same "
-            f"everywhere is {chance}.",
+            f"{where} The chance that sharpness is the same everywhere is {chance}.",
         ),
     )  # fmt: skip

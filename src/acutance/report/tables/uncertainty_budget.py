@@ -47,12 +47,21 @@ def uncertainty_table(result: Measurement) -> Table:
 def uncertainty_line(result: Measurement) -> str:
     """The causes of the standard deviation of the MTF at Nyquist, the largest first."""
     name = MAIN_NUMBERS[0]
-    terms = sorted(result.budget, key=lambda term: -term.share[name])
-    large = [term for term in terms if term.share[name] >= _LEAST_SHARE]
-    if len({term.direction for term in terms}) != 1 or len(terms) < 2 or not large:
+    parts = {}
+    for direction in dict.fromkeys(term.direction for term in result.budget):
+        terms = [term for term in result.budget if term.direction == direction]
+        large = [term for term in terms if term.share[name] >= _LEAST_SHARE]
+        if len(terms) > 1 and large:
+            large.sort(key=lambda term: -term.share[name])
+            shares = (f"{term.words.label} {_percent(term.share[name])}" for term in large)
+            parts[direction] = ", ".join(shares)
+    if not parts:
         return ""
-    shares = (f"{term.words.label} {_percent(term.share[name])}" for term in large)
-    return f"std of {measurement_metric_words(result, name).label}: {', '.join(shares)}"
+    named = (
+        f"{direction}: {shares}" if len(parts) > 1 else shares
+        for direction, shares in parts.items()
+    )
+    return f"std of {measurement_metric_words(result, name).label}: {'; '.join(named)}"
 
 
 def _cells(term: BudgetTerm, name: str) -> tuple[str, str]:

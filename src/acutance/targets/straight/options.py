@@ -18,7 +18,7 @@ from acutance.targets.straight.published import (
     SdsuPulseOptions,
 )
 from acutance.targets.straight.pulse_checks import PULSE_CHECKS
-from acutance.targets.straight.stated_target import require_stated
+from acutance.targets.straight.stated_target import require_stated, stated_number
 
 __all__ = ["EdgeOptions", "MethodOptions", "PulseOptions"]
 
@@ -111,14 +111,7 @@ def _document(options: EdgeOptions | PulseOptions) -> dict[str, Any]:
         "robust": options.robust,
         "limits": dict(options.limits),
         "method_options": None if chosen is None else dict(vars(chosen)),
-        "target_softness_m": _stated(options.target_softness_m),
-        "target_softness_px": _stated(options.target_softness_px),
+        "target_softness_m": stated_number(options.target_softness_m),
+        "target_softness_px": stated_number(options.target_softness_px),
         "level_uncertainty": options.level_uncertainty,
     }
-
-
-def _stated(number: Estimate | float | None) -> dict[str, float] | None:
-    """A stated number with its standard deviation."""
-    if number is None:
-        return None
-    return {"value": float(number), "std": number.std if isinstance(number, Estimate) else 0.0}

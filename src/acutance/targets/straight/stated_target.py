@@ -32,8 +32,13 @@ from acutance.targets.straight.error_causes import with_cause
 __all__ = [
     "MAX_SOFTNESS_PX",
     "NOTHING_STATED",
+    "SoftnessOptions",
     "StatedTarget",
+    "border_gain",
+    "require_softness",
     "require_stated",
+    "stated_number",
+    "stated_softness",
     "stated_target",
     "with_stated_target",
 ]
@@ -48,13 +53,23 @@ Curve = TypeVar("Curve", Esf, Lsf)
 AnyResponse = TypeVar("AnyResponse", bound=Response)
 
 
-class _Options(Protocol):
-    """Options of a target that hold what is stated of it."""
+class SoftnessOptions(Protocol):
+    """Options that hold how soft the border of a target is stated to be."""
 
     @property
-    def target_softness_m(self) -> Estimate | float | None: ...
+    def target_softness_m(self) -> Estimate | float | None:
+        """Standard deviation of the border's profile in metres."""
+        ...
+
     @property
-    def target_softness_px(self) -> Estimate | float | None: ...
+    def target_softness_px(self) -> Estimate | float | None:
+        """The same in pixels."""
+        ...
+
+
+class _Options(SoftnessOptions, Protocol):
+    """Options of a target that hold all that is stated of it."""
+
     @property
     def level_uncertainty(self) -> float: ...
 
@@ -82,7 +97,7 @@ class StatedTarget:
 
     def gain(self, freq_cpp: Floats) -> Floats:
         """By how much the transfer function of the sensor exceeds that of the image, (n,)."""
-        return _gain(freq_cpp, self.variance_px2.value)
+        return border_gain(freq_cpp, self.variance_px2.value)[0]
 
     @property
     def variance_px2(self) -> Estimate:
@@ -96,8 +111,8 @@ class StatedTarget:
 NOTHING_STATED = StatedTarget()
 
 
-def require_stated(options: _Options) -> None:
-    """Refuse statements out of range, or one made twice.
+def require_softness(options: SoftnessOptions) -> None:
+    """Refuse a softness out of range, or one given twice.
 
     Raises
     ------
@@ -118,15 +133,26 @@ def require_stated(options: _Options) -> None:
                 f"{name}: target_softness_{unit} is {softness}: a standard deviation of the "
                 "border's profile and its own, both 0 or more, are needed"
             )
+
+
+def require_stated(options: _Options) -> None:
+    """Refuse statements out of range, or one made twice.
+
+    Raises
+    ------
+    OptionError
+    """
+    require_softness(options)
     if not 0 <= options.level_uncertainty <= _MAX_LEVEL:
         raise OptionError(
-            f"{name}: level_uncertainty is {options.level_uncertainty:g}: give a share of the "
-            f"contrast between 0 and {_MAX_LEVEL:g} (0.005 or, on the command line, 0.5%)"
+            f"{type(options).__name__}: level_uncertainty is {options.level_uncertainty:g}: give a "
+            f"share of the contrast between 0 and {_MAX_LEVEL:g} (0.005 or, on the command line, "
+            "0.5%)"
         )
 
 
-def stated_target(options: _Options, gsd_m: float | None) -> StatedTarget:
-    """What the options state, in pixels along a normal with that GSD.
+def stated_softness(options: SoftnessOptions, gsd_m: float | None) -> StatedTarget:
+    """The softness that options state, in pixels along a normal with that GSD.
 
     Raises
     ------
@@ -142,14 +168,27 @@ def stated_target(options: _Options, gsd_m: float | None) -> StatedTarget:
             )
         softness = _estimate(options.target_softness_m) * (1 / gsd_m)
     if softness is None:
-        return StatedTarget(None, options.level_uncertainty)
-    stated = StatedTarget(_estimate(softness), options.level_uncertainty)
+        return NOTHING_STATED
+    stated = StatedTarget(_estimate(softness))
     if math.sqrt(stated.variance_px2.value) > MAX_SOFTNESS_PX:
         raise OptionError(
             f"a border of standard deviation {softness} px is softer than {MAX_SOFTNESS_PX:g} px, "
             "and hides the sensor: check it and the GSD, or use a sharper target"
         )
     return stated
+
+
+def stated_target(options: _Options, gsd_m: float | None) -> StatedTarget:
+    """All that options state, in pixels along a normal with that GSD; see `stated_softness`."""
+    softness = stated_softness(options, gsd_m).softness_px
+    return StatedTarget(softness, options.level_uncertainty)
+
+
+def stated_number(number: Estimate | float | None) -> dict[str, float] | None:
+    """A stated number with its standard deviation, for JSON."""
+    if number is None:
+        return None
+    return {"value": float(number), "std": number.std if isinstance(number, Estimate) else 0.0}
 
 
 def with_stated_target(response: AnyResponse, stated: StatedTarget) -> AnyResponse:
@@ -172,21 +211,39 @@ def _without_border(response: AnyResponse, variance_px2: Estimate) -> AnyRespons
     """The curves divided by a Gaussian border's transfer function."""
     v, std = variance_px2.value, variance_px2.std
     mtf = response.mtf
-    power = 2 * np.pi**2 * mtf.freq_cpp**2
-    gain = _gain(mtf.freq_cpp, v)
-    otf = mtf.otf * gain
-    sharper = replace(mtf, otf=otf, factor=mtf.factor * gain[:, None])
+    gain, by_variance = border_gain(mtf.freq_cpp, v)
+    sharper = replace(mtf, otf=mtf.otf * gain, factor=mtf.factor * gain[:, None])
     return replace(
         response,
         esf=_sharpened(response.esf, v, std),
         lsf=_sharpened(response.lsf, v, std),
-        mtf=with_cause(sharper, power * otf * std),
+        mtf=with_cause(sharper, by_variance * mtf.otf * std),
     )
 
 
-def _gain(freq_cpp: Floats, variance_px2: float) -> Floats:
-    """What a border's transfer function is divided out by."""
-    return np.asarray(np.exp(2 * np.pi**2 * freq_cpp**2 * variance_px2))
+def border_gain(freq_cpp: Floats, variance_px2: Floats | float) -> tuple[Floats, Floats]:
+    """What a transfer function is multiplied by where a border is divided out, and its derivative.
+
+    ``exp(2 pi^2 f^2 sigma^2)`` up to 1 c/px; beyond, where hardly any light of a pixel is left, the
+    exponent grows ever less, is held from 1.5 c/px, and the gain is 1 again at 2 c/px.
+
+    Parameters
+    ----------
+    freq_cpp : (n,) array
+        0 or more.
+    variance_px2 : float or (n,) array
+        Variance of the border's profile.
+
+    Returns
+    -------
+    gain, by_variance : (n,) arrays
+    """
+    over = np.clip(freq_cpp - _FULL_CPP, 0.0, _HELD_CPP - _FULL_CPP)
+    power = 2 * np.pi**2 * (np.minimum(freq_cpp, _FULL_CPP) ** 2 + 2 * over - 2 * over**2)
+    ends = np.clip((freq_cpp - _FULL_CPP) / (_END_CPP - _FULL_CPP), 0.0, 1.0)
+    window = 0.5 + 0.5 * np.cos(np.pi * ends)
+    grown = np.exp(power * variance_px2)
+    return 1 + (grown - 1) * window, power * grown * window
 
 
 def _sharpened(curve: Curve, variance_px2: float, std: float) -> Curve:
@@ -204,14 +261,8 @@ def _filters(n: int, step_px: float, variance_px2: float) -> tuple[Floats, Float
     Beyond its ends a curve is level.
     """
     freq = np.arange(0.0, _END_CPP + _STEP_CPP / 2, _STEP_CPP)
-    over = np.clip(freq - _FULL_CPP, 0.0, _HELD_CPP - _FULL_CPP)
-    # The exponent grows as f^2 up to 1 c/px, then ever less, and is held from 1.5 c/px.
-    power = np.minimum(freq, _FULL_CPP) ** 2 + 2 * over - 2 * over**2
-    power *= 2 * np.pi**2
-    ends = np.clip((freq - _FULL_CPP) / (_END_CPP - _FULL_CPP), 0.0, 1.0)
-    window = 0.5 + 0.5 * np.cos(np.pi * ends)
-    grown = np.exp(power * variance_px2)
-    spectra = np.stack([(grown - 1) * window, power * grown * window])
+    gain, by_variance = border_gain(freq, variance_px2)
+    spectra = np.stack([gain - 1, by_variance])
     lags = np.arange(n) * step_px
     waves = np.cos(2 * np.pi * np.outer(lags, freq))
     waves[:, [0, -1]] *= 0.5
