@@ -28,7 +28,8 @@ from acutance.report import (
 from acutance.report.figure import KIND_PANELS
 from acutance.report.tables.combined import PARAMETERS
 from acutance.report.tables.result import KIND_TABLES
-from acutance.targets.combine.sensor_forms import TERMS, SensorForm
+from acutance.targets.combine.sensor_forms import SensorForm
+from acutance.targets.combine.sensor_terms import TERMS
 
 SENSOR = ac.Sensor([ac.optics.Gaussian(0.39), ac.optics.Detector()], gsd_m=0.7)
 

@@ -105,7 +105,7 @@ class SensorFit:
 
         They are one measurement: there is nothing it could disagree with.
         """
-        return CombinedOtf(self.combined.otf.forms, 1.0)
+        return self.combined.unwidened
 
 
 def fit_sensor(
@@ -125,10 +125,11 @@ def fit_sensor(
     """
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
     nothing = np.zeros((edges.size, edges.freq_cpp.size))
-    state = max(
-        (_settled(edges, normal_deg, one, nothing) for one in _starts(edges, normal_deg, guesses)),
-        key=lambda one: fit_shares(one.along, one.otf, one.share)[1].log_likelihood,
-    )
+    ends: list[_State] = []
+    for start in _starts(edges, normal_deg, guesses):
+        near = ends[-1].near if ends else ()
+        ends.append(_settled(edges, normal_deg, start._replace(near=near), nothing))
+    state = max(ends, key=lambda one: fit_shares(one.along, one.otf, one.share)[1].log_likelihood)
     field = fit_field(state.along, state.otf, state.share, x, y)
     for _ in range(_MAX_FIELD_TURNS):
         if field.chance_constant > _CONSTANT or not field.amount.any():
@@ -159,6 +160,8 @@ class _State(NamedTuple):
     share : (p,) array
     forms : sequence of tuples of str
         Forms of sensors that have some weight.
+    near : sequence of WeightedForm
+        Such forms where they were fitted last.
     along : EdgeLikelihoods
         What the edges say of the sensor along their bins.
     turns : int
@@ -168,6 +171,7 @@ class _State(NamedTuple):
     otf: Floats
     share: Floats
     forms: Sequence[tuple[str, ...]]
+    near: Sequence[WeightedForm]
     along: EdgeLikelihoods
     turns: int
     settled: bool
@@ -191,16 +195,15 @@ def _starts(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats
         otf = changed(start, free @ fit.amount)
         apart = [float(np.abs(otf - one.otf)[:, in_band].mean()) for one in found]
         if min(apart, default=np.inf) > _ALIKE:
-            found.append(_State(otf, fit.share, FORMS, edges, 0, settled=False))
+            found.append(_State(otf, fit.share, FORMS, (), edges, 0, settled=False))
     return found
 
 
 def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain: Floats) -> _State:
     """The sensor after as many turns as it needs, under a given change over the field (n, k)."""
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
-    otf, share, forms, along, turns, _ = state
+    otf, share, forms, near, along, turns, _ = state
     before: Floats | None = None
-    near: Sequence[WeightedForm] = ()
     for turn in range(_MAX_TURNS + 1):
         seen = along.turned(np.exp(log_gain))
         found = fit_modes(seen, otf, share, modes[edges.bin])
@@ -210,7 +213,7 @@ def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain
         if before is not None:
             moved = otf - before
             if float(np.einsum("bk,bkl,bl", moved, information, moved)) < _SETTLED:
-                return _State(otf, share, forms, along, turns + turn, settled=True)
+                return _State(otf, share, forms, near, along, turns + turn, settled=True)
         before = otf
         combined = _combined(edges.freq_cpp, normal_deg, otf, information, projection, forms, near)
         near = combined.forms
@@ -218,7 +221,7 @@ def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain
         forms = tuple({form.form.oblique_terms: None for form in combined.forms})
         stepped = _along(combined, normal_deg, edges.freq_cpp)
         otf, along = stacked(stepped.T).T, _along_bins(edges, normal_deg, combined)
-    return _State(otf, share, forms, along, turns + _MAX_TURNS, settled=False)
+    return _State(otf, share, forms, near, along, turns + _MAX_TURNS, settled=False)
 
 
 def _combined(
@@ -236,7 +239,7 @@ def _combined(
         for b, (own, pull) in enumerate(zip(information, projection, strict=True))
         if np.trace(own) > _LEAST
     ]
-    return combine_curves(curves, forms=forms, near=near).otf
+    return combine_curves(curves, forms=forms, near=near).unwidened
 
 
 def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:

@@ -145,6 +145,8 @@ def _measured(
     options: ScanOptions,
 ) -> WindowEdges:
     """The edges of one band."""
+    # Within a window no GSD changes that much that an edge would see it.
+    gsd = gsd or image.gsd(whole.row + whole.height / 2, whole.col + whole.width / 2)
     rows: list[dict[str, Any]] = []
     used: list[UsedEdge] = []
     for segment in segments:
@@ -179,13 +181,12 @@ def _around(
     """
     box = region_box(segment, options.half_width_px, Box.whole(whole.shape))
     at = Box(whole.row + box.row, whole.col + box.col, box.height, box.width)
-    own_gsd = gsd or image.gsd(at.row + at.height / 2, at.col + at.width / 2)
     line = segment.line
     moved = replace(line, row=line.row - box.row, col=line.col - box.col)
     _, t = line_distances(box.shape, moved)
     beside = (segment.start_px <= t) & (t <= segment.stop_px)
     own = np.where(beside, pixels[box.slices], np.nan)
-    region = RegionPixels(own, at, image.saturation_level, own_gsd, image)
+    region = RegionPixels(own, at, image.saturation_level, gsd, image)
     return region, replace(segment, line=moved)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -58,7 +59,7 @@ class RegionPixels:
     image: Image
     fill: Fill | None = None
 
-    @property
+    @cached_property
     def info(self) -> ImageInfo:
         """What a measurement records of its image: the same for every kind of target."""
         return image_info(self.image, self.box, self.gsd)

@@ -11,7 +11,8 @@ from acutance.numerics.stacked import stacked
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
 from acutance.targets.combine.fit import combine_curves
-from acutance.targets.combine.sensor_forms import FORMS, TERMS, SensorForm
+from acutance.targets.combine.sensor_forms import FORMS, SensorForm
+from acutance.targets.combine.sensor_terms import TERMS
 from acutance.targets.otf_likelihood import OtfLikelihood
 
 FREQ = np.arange(1, 17) * 0.05
@@ -56,6 +57,30 @@ def test_slopes_of_a_form_are_those_of_its_values(terms):
     move = 1e-3 * rng.standard_normal(p.size)
     change = form.otf(p + move, u, v) - form.otf(p - move, u, v)
     assert change == pytest.approx(2 * form.slopes(p, u, v) @ move, abs=2e-7)
+
+
+@pytest.mark.parametrize("name", [name for name, term in TERMS.items() if term.slopes])
+def test_slopes_in_closed_form_are_those_of_the_term(name):
+    term, step = TERMS[name], 1e-6
+    p, (u, v) = np.array(term.mean) + 0.1, np.random.default_rng(3).uniform(-1, 1, (2, 9))
+    found = term.slopes(p, u, v)
+    for column, move in zip(found.T, step * np.eye(p.size), strict=True):
+        by_difference = (term.otf(p + move, u, v) - term.otf(p - move, u, v)) / (2 * step)
+        np.testing.assert_allclose(column, by_difference, atol=1e-8)
+
+
+def test_curves_of_different_lengths_are_whitened_together():
+    whole, short = curve(OBLIQUE.otf, 6.0, 0.01), curve(OBLIQUE.otf, 97.0, 0.02)
+    short = OtfSamples("short", short.u_cpp[:9], short.v_cpp[:9], short.otf[:9], short.factor[:9])
+    data = WhitenedCurves([whole, short])
+    values = np.random.default_rng(4).normal(size=(2, 25, 3)) @ np.array([1, 1j, 0.5])
+    both = [
+        one.whitening @ stacked(own)
+        for one, own in zip(data.curves, np.split(values[0], [16]), strict=True)
+    ]
+    np.testing.assert_allclose(data.of(values[0]), np.concatenate(both))
+    columns = np.stack(values, axis=1)
+    np.testing.assert_allclose(data.of(columns)[:, 1], data.of(values[1]))
 
 
 @pytest.mark.parametrize("name", TERMS)

@@ -88,7 +88,7 @@ class OtfSamples:
         """What the pixels say of the whitened OTF, (size,)."""
         if self.likelihood is not None:
             return np.asarray(self.likelihood.values - self.likelihood.level)
-        return self.whitened(self.otf)
+        return np.asarray(self.whitening @ stacked(self.otf))
 
     @cached_property
     def whitened_factor(self) -> Floats:
@@ -101,17 +101,13 @@ class OtfSamples:
             return np.eye(self.size)
         wide = stacked(self.factor)
         value, vector = np.linalg.eigh(wide @ wide.T)
-        return np.asarray(self._whitening @ (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T)
-
-    def whitened(self, values: Complexes) -> Floats:
-        """Values (n,) or (n, p), whitened, (size, ...)."""
-        if self.likelihood is not None:
-            return self.likelihood.whitened(values)
-        return np.asarray(self._whitening @ stacked(values))
+        return np.asarray(self.whitening @ (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T)
 
     @cached_property
-    def _whitening(self) -> Floats:
-        """Matrix (2n, 2n) that gives the stacked real and imaginary errors unit variance."""
+    def whitening(self) -> Floats:
+        """Matrix (size, 2n) that gives the stacked real and imaginary errors unit variance."""
+        if self.likelihood is not None:
+            return np.asarray(stacked(self.likelihood.root).T)
         wide = stacked(np.concatenate([self.factor, self._shifts], axis=1))
         value, vector = np.linalg.eigh(wide @ wide.T + _MIN_STD**2 * np.eye(wide.shape[0]))
         return np.asarray((vector / np.sqrt(value)) @ vector.T)
@@ -225,6 +221,26 @@ class WhitenedCurves:
 
     def of(self, values: Complexes) -> Floats:
         """Values (n,) or (n, p) at all places, whitened curve by curve."""
-        ends = pairwise(self._ends)
-        parts = [one.whitened(values[a:b]) for one, (a, b) in zip(self.curves, ends, strict=True)]
-        return np.concatenate(parts)
+        matrices, places, rows = self._stack
+        wide = np.zeros((matrices.shape[0] * matrices.shape[2], *values.shape[1:]))
+        wide[places[0]], wide[places[1]] = values.real, values.imag
+        found = matrices @ wide.reshape(matrices.shape[0], matrices.shape[2], -1)
+        return np.asarray(found.reshape(-1, *values.shape[1:])[rows])
+
+    @cached_property
+    def _stack(self) -> tuple[Floats, NDArray[np.intp], NDArray[np.intp]]:
+        """What whitens each curve, (c, m, 2 n) with zeros where one has fewer values or places.
+
+        Then where the real and the imaginary parts of all places belong among the c * 2 n of the
+        stack, (2, places), and which of its c * m values there are.
+        """
+        sizes = np.array([one.size for one in self.curves])
+        counts = np.array([one.otf.size for one in self.curves])
+        most, longest = int(sizes.max()), int(counts.max())
+        matrices = np.zeros((counts.size, most, 2 * longest))
+        for own, one, size, count in zip(matrices, self.curves, sizes, counts, strict=True):
+            own[:size, :count] = one.whitening[:, :count]
+            own[:size, longest : longest + count] = one.whitening[:, count:]
+        own_places = np.flatnonzero((np.arange(2 * longest) < counts[:, None]).ravel())
+        rows = np.flatnonzero((np.arange(most) < sizes[:, None]).ravel())
+        return matrices, np.stack([own_places, own_places + longest]), rows

@@ -54,31 +54,53 @@ class CombinedFit:
 
     Parameters
     ----------
-    curves : tuple of OtfSamples
+    data : WhitenedCurves
     forms : tuple of FormFit
         The one of largest weight first.
-    total : ChiSquare
-        Of all curves together about the mean over forms, in what sensors differ by (width,
-        smear, halo, trail): whether the curves agree.
-    members : tuple of ChiSquare
-        Of each curve.
-    plain : ChiSquare
-        Of all curves about the best form without a correction: whether a plain sensor explains
-        them.
+    plain_form : FormFit
+        The best form without a correction.
+    simplest : FormFit
+        The one of fewest terms.
     """
 
-    curves: tuple[OtfSamples, ...]
+    data: WhitenedCurves
     forms: tuple[FormFit, ...]
-    total: ChiSquare
-    members: tuple[ChiSquare, ...]
-    plain: ChiSquare
+    plain_form: FormFit
+    simplest: FormFit
 
     @cached_property
     def otf(self) -> CombinedOtf:
-        """The mean over forms."""
+        """The mean over forms, widened as far as the curves disagree."""
+        return replace(self.unwidened, birge_ratio=self.total.birge_ratio)
+
+    @cached_property
+    def unwidened(self) -> CombinedOtf:
+        """The mean over forms, as of curves that agree."""
         names = [field.name for field in fields(WeightedForm)]
         light = [WeightedForm(*(getattr(one, name) for name in names)) for one in self.forms]
-        return CombinedOtf(tuple(light), self.total.birge_ratio)
+        return CombinedOtf(tuple(light), 1.0)
+
+    @property
+    def total(self) -> ChiSquare:
+        """Chi-square of all curves together about the mean over forms, in what sensors differ by.
+
+        By width, smear, halo and trail: whether the curves agree.
+        """
+        return self._agreement[0]
+
+    @property
+    def members(self) -> tuple[ChiSquare, ...]:
+        """The same of each curve."""
+        return self._agreement[1]
+
+    @cached_property
+    def _agreement(self) -> tuple[ChiSquare, tuple[ChiSquare, ...]]:
+        return _chi_squares(self.data, self.forms, _shapes(self.data, self.simplest))
+
+    @cached_property
+    def plain(self) -> ChiSquare:
+        """Of all curves about the best plain form: whether a plain sensor explains them."""
+        return _chi_squares(self.data, [self.plain_form])[0]
 
 
 def combine_curves(
@@ -109,24 +131,29 @@ def combine_curves(
     data = WhitenedCurves([one.centred() for one in curves])
     nowhere = np.zeros((data.values.size, 0))
 
-    def fitted(form: SensorForm) -> FormFit:
-        return _fit_form(data, form, known.get(form), 0.0, nowhere)
+    def fitted(form: SensorForm, start: Floats | None = None) -> FormFit:
+        begin = known[form].parameters if form in known else start
+        return _fit_form(data, form, begin, 0.0, nowhere)
 
     plain = [fitted(SensorForm(terms, detector_px)) for terms in forms]
     first = min(plain, key=lambda one: one.score)
     correction = Correction(first.form, tuple(first.parameters.tolist()))
     ways = data.of(correction.directions(data.u_cpp, data.v_cpp))
-    aligned = [fitted(form) for one in _weighted(plain) for form in one.form.aligned()]
-    likely = sorted(plain + aligned, key=lambda one: one.score)[:_MAX_CORRECTED]
-    fits = [*plain, *aligned] + [
-        _fit_form(data, start.form, start, share, share * ways)
-        for share in _SHARES[1:]
-        for start in likely
+    aligned = [
+        fitted(form, start)
+        for one in _weighted(plain)
+        for form, start in one.form.aligned(one.parameters)
     ]
+    likely = sorted(plain + aligned, key=lambda one: one.score)[:_MAX_CORRECTED]
+    fits = [*plain, *aligned]
+    for one in likely:
+        for share in _SHARES[1:]:
+            # A larger correction moves the form on from where a smaller one left it.
+            one = _fit_form(data, one.form, one.parameters, share, share * ways)
+            fits.append(one)
     weighted = _weighted([replace(one, correction=correction) for one in fits])
     simplest = min(plain, key=lambda one: len(one.form.terms))
-    total, members = _chi_squares(data, weighted, _shapes(data, simplest))
-    return CombinedFit(tuple(data.curves), weighted, total, members, _chi_squares(data, [first])[0])
+    return CombinedFit(data, weighted, first, simplest)
 
 
 def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
@@ -139,7 +166,7 @@ def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
 
 
 def _fit_form(
-    data: WhitenedCurves, form: SensorForm, start: WeightedForm | None, share: float, ways: Floats
+    data: WhitenedCurves, form: SensorForm, start: Floats | None, share: float, ways: Floats
 ) -> FormFit:
     """The parameters of largest posterior density, the correction integrated out."""
     mean, std = form.mean, form.std
@@ -163,7 +190,7 @@ def _fit_form(
             least_squares(
                 residual, first, jac=slopes, method="lm", xtol=1e-6, ftol=1e-6, max_nfev=60
             )
-            for first in ([start.parameters] if start is not None else _likely(form, residual))
+            for first in ([start] if start is not None else _likely(form, residual))
         ),
         key=lambda one: float(one.cost),
     )
