@@ -12,13 +12,14 @@ from acutance.scan.field import Field
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.sensor_fit import SensorFit
 from acutance.targets.check import Check, Limits, answer
+from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.full_pixel import full_pixel
 
 __all__ = ["SCENE_CHECKS", "check_scene"]
 
 SCENE_CHECKS = (
     "edges_used", "scene_directions", "ideal_share", "strange_share", "scene_settled",
-    "field_change", "full_pixel",
+    "parts_agree", "field_change", "full_pixel",
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -71,11 +72,29 @@ def check_scene(
             f"sensor and objects were fitted in {fit.turns} turns"
             + ("" if fit.settled else ", and did not settle"), limits,
         ),
+        _parts_agree(fit.parts, limits),
         _field_change(field, limits),
         full_pixel(
             [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
         ),
     )  # fmt: skip
+
+
+def _parts_agree(parts: ChiSquare | None, limits: Limits) -> Check:
+    """By how much the parts of the scene scatter more than their deviations say."""
+    if parts is None:
+        found = "the edges are too few to ask whether the parts of the scene agree"
+        return answer("parts_agree", 1.0, found, limits)
+    found = (
+        f"the blur of {parts.expected + 1:.0f} parts of the scene has a chi-square of "
+        f"{parts.value:.1f} with {parts.expected:.0f} degrees of freedom: all deviations "
+        + (
+            f"were widened by {parts.birge_ratio:.2f}"
+            if parts.birge_ratio > 1
+            else "are as they were stated"
+        )
+    )
+    return answer("parts_agree", parts.birge_ratio, found, limits)
 
 
 def _field_change(field: Field, limits: Limits) -> Check:

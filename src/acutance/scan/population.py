@@ -87,6 +87,11 @@ class EdgeLikelihoods:
         """Likelihoods of the sensor along the bins, of edges that see `gain` (n, k) times that."""
         return replace(self, gain=self.gain * gain)
 
+    def chosen(self, some: NDArray[np.intp]) -> EdgeLikelihoods:
+        """Some of the edges."""
+        names = ("root", "value", "rank", "bin", "normal_deg", "gain")
+        return replace(self, **{name: getattr(self, name)[some] for name in names})
+
     def seen_root(self, some: slice) -> Floats:
         """Root of the likelihoods of the sensor along the bins, of some edges, (n, 2 k, r)."""
         gain = self.gain[some]

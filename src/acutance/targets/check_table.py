@@ -382,6 +382,10 @@ _SCENE = {
         "Did the fit of sensor and objects fail to settle?", "<=", 0.0,
         "the edges do not separate the sensor from its objects", severity="fail",
     ),
+    "parts_agree": Question(
+        "By which factor were deviations widened, since parts of the scene disagree?", "<=", 1.5,
+        "the objects of some part have a softness in common; compare other scenes", severity="note",
+    ),
     "field_change": Question(
         "By which share of its mean does sharpness surely change over the field?", "<=", 0.1,
         "the numbers are means over the field: read those of the places", severity="note",
