@@ -2,24 +2,18 @@
 
 import numpy as np
 import pytest
+from bare_ground import all_of_softness
 
 import acutance as ac
 from acutance import simulate
 from acutance.scan.parts import equal_parts
-from acutance.simulate import LandscapeOptions
 
-CLEAN = {
-    "roofs": 0.0, "roads": 0.0, "discs": 0.0, "rims": 0.0, "gutters": 0.0, "shadows": 0.0,
-    "side_roads": 0.0, "neighbours": 0.0, "texture": (0.0, 0.0), "slope_per_px": 0.0,
-    "curved": 0.0, "density_per_mpx": 90,
-}  # fmt: skip
 SENSOR = simulate.reference_systems()["gaussian"]
 
 
 def half(softness_px, seed):
     """Half a scene, all of whose objects have one softness."""
-    soft = {"soft": 1.0, "softness_px": (softness_px, softness_px + 1e-9)} if softness_px else {}
-    options = LandscapeOptions(**{"soft": 0.0, **CLEAN, **soft})
+    options = all_of_softness(softness_px, density_per_mpx=90)
     rng = np.random.default_rng(seed)
     return simulate.landscape(SENSOR, shape=(900, 450), snr=100, options=options, rng=rng)[0]
 
@@ -79,7 +73,7 @@ def test_a_part_of_soft_objects_widens_all_deviations(alike):
 
 def test_of_few_edges_it_is_not_asked():
     rng = np.random.default_rng(3)
-    options = LandscapeOptions(soft=0.0, **CLEAN)
+    options = all_of_softness(0.0, density_per_mpx=90)
     image, _ = simulate.landscape(SENSOR, shape=(300, 300), snr=100, options=options, rng=rng)
     found = check_of(ac.scan_scene(image))
     assert found.value == 1.0

@@ -5,21 +5,16 @@ import sys
 
 import numpy as np
 import pytest
+from bare_ground import bare_ground
 
 import acutance as ac
 from acutance import simulate
-from acutance.simulate import LandscapeOptions
 
-CLEAN = {
-    "roofs": 0.0, "roads": 0.0, "discs": 0.0, "rims": 0.0, "gutters": 0.0, "shadows": 0.0,
-    "side_roads": 0.0, "neighbours": 0.0, "texture": (0.0, 0.0), "slope_per_px": 0.0,
-    "curved": 0.0, "density_per_mpx": 60,
-}  # fmt: skip
 SENSOR = simulate.reference_systems()["gaussian"]
 
 
 def landscape(soft, size=600, seed=3):
-    options = LandscapeOptions(soft=soft, softness_px=(0.15, 2.0), **CLEAN)
+    options = bare_ground(soft=soft, softness_px=(0.15, 2.0))
     return simulate.landscape(
         SENSOR, shape=(size, size), snr=100, options=options, rng=np.random.default_rng(seed)
     )
@@ -161,7 +156,7 @@ def test_sharpness_at_a_place(ideal):
 def test_a_field_of_view_that_is_softer_on_one_side():
     shape, added = (700, 1400), (0.0, 0.2)
     rng = np.random.default_rng(5)
-    options = LandscapeOptions(soft=0.0, **CLEAN)
+    options = bare_ground(soft=0.0)
     seed = int(rng.integers(2**31))
     sharp, soft = (
         simulate.landscape(
@@ -187,7 +182,7 @@ def test_a_field_of_view_that_is_softer_on_one_side():
 def test_a_decimated_scene_is_sharper_than_any_pixel(ideal):
     fine, _ = simulate.landscape(
         ac.Sensor([ac.optics.Detector(0.5), ac.optics.Gaussian(0.15)]), shape=(700, 900),
-        options=LandscapeOptions(soft=0.0, **CLEAN), rng=np.random.default_rng(3),
+        options=bare_ground(soft=0.0), rng=np.random.default_rng(3),
     )  # fmt: skip
     scene = ac.scan_scene(fine)
     assert "full_pixel" in {check.name for check in scene.failed_checks}
@@ -199,7 +194,7 @@ def test_a_decimated_scene_is_sharper_than_any_pixel(ideal):
 def test_a_scene_of_bare_samples_is_refused_in_words():
     bare, _ = simulate.landscape(
         ac.Sensor([ac.optics.Detector(0.3)]), shape=(700, 900),
-        options=LandscapeOptions(soft=0.0, **CLEAN), rng=np.random.default_rng(3),
+        options=bare_ground(soft=0.0), rng=np.random.default_rng(3),
     )  # fmt: skip
     with pytest.raises(ac.NoEdgeError, match="0 of them can be used"):
         ac.scan_scene(bare)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from bare_ground import all_of_softness
 
 import acutance as ac
 from acutance import simulate
@@ -11,13 +12,7 @@ from acutance.raster import Gsd
 from acutance.report.figures.scene_sensor import edges_seen, sensor_at
 from acutance.scan.scan_identity import scan_identity
 from acutance.scan.stated_objects import OtfBehindObjects, behind_objects
-from acutance.simulate import LandscapeOptions
 
-CLEAN = {
-    "roofs": 0.0, "roads": 0.0, "discs": 0.0, "rims": 0.0, "gutters": 0.0, "shadows": 0.0,
-    "side_roads": 0.0, "neighbours": 0.0, "texture": (0.0, 0.0), "slope_per_px": 0.0,
-    "curved": 0.0, "density_per_mpx": 60,
-}  # fmt: skip
 SENSOR = simulate.reference_systems()["gaussian"]
 SOFTNESS_PX = 0.25
 
@@ -76,7 +71,7 @@ def test_nothing_stated_changes_nothing():
 
 @pytest.fixture(scope="module")
 def image():
-    options = LandscapeOptions(soft=1.0, softness_px=(SOFTNESS_PX, SOFTNESS_PX + 1e-9), **CLEAN)
+    options = all_of_softness(SOFTNESS_PX)
     rng = np.random.default_rng(5)
     return simulate.landscape(SENSOR, shape=(600, 600), snr=100, options=options, rng=rng)[0]
 

@@ -1,0 +1,21 @@
+"""Landscapes of parcels on bare ground: nothing beside an edge but the two levels it separates."""
+
+from acutance.simulate import LandscapeOptions
+
+BARE = {
+    "roofs": 0.0, "roads": 0.0, "discs": 0.0, "rims": 0.0, "gutters": 0.0, "shadows": 0.0,
+    "side_roads": 0.0, "neighbours": 0.0, "texture": (0.0, 0.0), "slope_per_px": 0.0,
+    "curved": 0.0, "density_per_mpx": 60,
+}  # fmt: skip
+
+
+def bare_ground(**changed):
+    """Options of a landscape of parcels alone; 60 objects a megapixel unless changed."""
+    return LandscapeOptions(**(BARE | changed))
+
+
+def all_of_softness(softness_px, **changed):
+    """The same, all objects with one softness; ideal ones without any."""
+    if not softness_px:
+        return bare_ground(soft=0.0, **changed)
+    return bare_ground(soft=1.0, softness_px=(softness_px, softness_px + 1e-9), **changed)
