@@ -1,4 +1,4 @@
-"""Parts of a scene whose objects have a softness in common disagree, and widen its deviations."""
+"""Parts of a scene whose objects have a softness in common disagree: what that adds is stated."""
 
 import numpy as np
 import pytest
@@ -7,6 +7,7 @@ from bare_ground import all_of_softness
 import acutance as ac
 from acutance import simulate
 from acutance.scan.parts import equal_parts
+from acutance.scan.stated_objects import behind_objects
 
 SENSOR = simulate.reference_systems()["gaussian"]
 
@@ -46,29 +47,30 @@ def alike():
     return scanned(0.0, 0.0)
 
 
-def test_parts_that_agree_widen_nothing(alike):
+def test_parts_that_agree_add_nothing(alike):
     found = check_of(alike)
     assert found.passed
-    assert found.value < 1.2
-    assert alike.details.parts.expected == 8
+    assert found.value < 0.02
+    assert alike.details.parts.chi_square.expected == 8
 
 
-def test_a_part_of_soft_objects_widens_all_deviations(alike):
+def test_a_part_of_soft_objects_is_a_term_of_the_budget(alike):
     scene = scanned(0.45, 0.0)
     found = check_of(scene)
     assert not found.passed
     assert found.severity == "note"
     assert scene.verdict.word == "usable"
-    assert found.value > 1.5
-    unwidened = scene.details.combined.unwidened
-    u, v = np.array([0.5]), np.zeros(1)
-    ratio = np.linalg.norm(scene.details.otf.factor(u, v)) / np.linalg.norm(unwidened.factor(u, v))
-    assert ratio == pytest.approx(found.value)
-    expected = float(np.abs(SENSOR.otf(u, v))[0])
+    expected = float(np.abs(SENSOR.otf(np.array([0.5]), np.zeros(1)))[0])
+    terms = {(term.direction, term.name): term.std["mtf_nyquist"] for term in scene.budget}
     for name in ("across", "along"):
         number = getattr(scene, name).mtf_nyquist
         assert abs(number.value - expected) < 3 * number.std
         assert number.std > getattr(alike, name).mtf_nyquist.std
+        assert terms[name, "parts_scatter"] == pytest.approx(found.value * number.value, rel=1e-6)
+        assert np.hypot(terms[name, "parts_scatter"], terms[name, "fit"]) == pytest.approx(
+            number.std
+        )
+    assert ("across", "target_softness") not in terms
 
 
 def test_of_few_edges_it_is_not_asked():
@@ -76,5 +78,29 @@ def test_of_few_edges_it_is_not_asked():
     options = all_of_softness(0.0, density_per_mpx=90)
     image, _ = simulate.landscape(SENSOR, shape=(300, 300), snr=100, options=options, rng=rng)
     found = check_of(ac.scan_scene(image))
-    assert found.value == 1.0
+    assert found.value == 0.0
     assert "too few to ask" in found.message
+
+
+class Level:
+    """A sensor of half the light at all frequencies but zero."""
+
+    band_cpp = 1.0
+
+    def otf(self, u, v):
+        return np.where((u == 0) & (v == 0), 1.0, 0.5).astype(complex)
+
+    def factor(self, u, v):
+        return np.zeros((u.size, 1), complex)
+
+
+def test_the_scatter_is_an_error_of_the_blur_in_all_directions():
+    found = behind_objects(Level(), ac.ScanOptions(), None, scatter_px2=0.01)
+    assert not found.is_stated
+    turn = np.radians([0.0, 40.0, 90.0])
+    u, v = 0.3 * np.cos(turn), 0.3 * np.sin(turn)
+    np.testing.assert_allclose(found.otf(u, v), 0.5)
+    std = np.linalg.norm(found.factor(u, v), axis=1)
+    np.testing.assert_allclose(std, 0.5 * 2 * np.pi**2 * 0.3**2 * 0.01)
+    light = found.with_errors(stated=True, scatter=False)
+    assert not light.factor(u, v).any()

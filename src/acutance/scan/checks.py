@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import product
 
 import numpy as np
@@ -9,10 +10,10 @@ import numpy as np
 from acutance.curves import Otf2d
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.scan.field import Field
+from acutance.scan.parts import PartsFit
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.sensor_fit import SensorFit
 from acutance.targets.check import Check, Limits, answer
-from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.full_pixel import full_pixel
 
 __all__ = ["SCENE_CHECKS", "check_scene"]
@@ -80,21 +81,24 @@ def check_scene(
     )  # fmt: skip
 
 
-def _parts_agree(parts: ChiSquare | None, limits: Limits) -> Check:
-    """By how much the parts of the scene scatter more than their deviations say."""
+def _parts_agree(parts: PartsFit | None, limits: Limits) -> Check:
+    """By how much the parts of the scene scatter, as a share of the MTF at Nyquist."""
     if parts is None:
         found = "the edges are too few to ask whether the parts of the scene agree"
-        return answer("parts_agree", 1.0, found, limits)
+        return answer("parts_agree", 0.0, found, limits)
+    share = 2 * math.pi**2 * NYQUIST_CPP**2 * parts.scatter_px2
+    count, chi_square = parts.chi_square.expected + 1, parts.chi_square
     found = (
-        f"the blur of {parts.expected + 1:.0f} parts of the scene has a chi-square of "
-        f"{parts.value:.1f} with {parts.expected:.0f} degrees of freedom: all deviations "
+        f"the blur of {count:.0f} parts of the scene has a chi-square of {chi_square.value:.1f} "
+        f"with {chi_square.expected:.0f} degrees of freedom: "
         + (
-            f"were widened by {parts.birge_ratio:.2f}"
-            if parts.birge_ratio > 1
-            else "are as they were stated"
+            f"the MTF at Nyquist differs by {100 * share:.1f} % from part to part, which is a part "
+            "of all deviations"
+            if share > 0
+            else "they agree"
         )
     )
-    return answer("parts_agree", parts.birge_ratio, found, limits)
+    return answer("parts_agree", share, found, limits)
 
 
 def _field_change(field: Field, limits: Limits) -> Check:

@@ -3,14 +3,15 @@
 The objects of a scene are taken to be soft independently of one another. They are not where one
 part is fields and another a town: the softness that all objects of a part have in common passes for
 blur of the sensor there. So the blur is asked of every part by itself, its objects having shares
-of their own; as far as the parts scatter more than their deviations say, those of the sensor are
-widened (R. T. Birge, Phys. Rev. 40, 207, 1932).
+of their own. As far as the parts scatter more than their deviations say, they have a softness of
+their own (the moments of R. DerSimonian and N. Laird, Controlled Clinical Trials 7, 1986, 177), and
+what the whole scene has in common is not known any better.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ from acutance.scan.blur_modes import edge_modes, fit_modes
 from acutance.scan.population import EdgeLikelihoods
 from acutance.targets.combine.curves import ChiSquare
 
-__all__ = ["agreement_of_parts", "equal_parts"]
+__all__ = ["PartsFit", "compare_parts", "equal_parts"]
 
 _MIN_EDGES: Final = 15
 _MAX_SIDE: Final = 3
@@ -28,10 +29,25 @@ _ALL_AROUND: Final = 1
 """The first of the modes of blur alone: the one that a softness of all objects has."""
 
 
-def agreement_of_parts(
+class PartsFit(NamedTuple):
+    """The blur of the parts of a scene, each by itself.
+
+    Attributes
+    ----------
+    chi_square : ChiSquare
+        Of the blur about its mean.
+    scatter_px2 : float
+        Standard deviation of the parts' own blur, a variance in px^2: 0 where they agree.
+    """
+
+    chi_square: ChiSquare
+    scatter_px2: float
+
+
+def compare_parts(
     edges: EdgeLikelihoods, otf: Floats, share: Floats, x: Floats, y: Floats
-) -> ChiSquare | None:
-    """Chi-square of the blur of the parts about its mean; None of too few edges.
+) -> PartsFit | None:
+    """The blur of every part about its mean; None of too few edges.
 
     Parameters
     ----------
@@ -46,13 +62,15 @@ def agreement_of_parts(
     """
     modes = edge_modes(edges.normal_deg, edges.freq_cpp)[:, :, :_ALL_AROUND]
     fits = [fit_modes(edges.chosen(some), otf, share, modes[some]) for some in equal_parts(x, y)]
-    if not fits:
+    weight = np.array([max(one.information[0, 0], 0.0) for one in fits])
+    if not weight.any():
         return None
     blur = np.array([one.amount[0] for one in fits])
-    weight = np.array([max(one.information[0, 0], 0.0) for one in fits])
     off = blur - np.average(blur, weights=weight)
     freedom = len(fits) - 1
-    return ChiSquare(float(weight @ off**2), freedom, 2 * freedom)
+    chi_square = ChiSquare(float(weight @ off**2), freedom, 2 * freedom)
+    own = float(weight.sum() - weight @ weight / weight.sum())
+    return PartsFit(chi_square, math.sqrt(max(chi_square.value - freedom, 0.0) / own))
 
 
 def equal_parts(x: Floats, y: Floats) -> list[NDArray[np.intp]]:

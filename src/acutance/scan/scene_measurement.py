@@ -125,18 +125,26 @@ class SceneMeasurement(Measurement):
         return tuple(self.at(float(i), float(j)) for i in row for j in col)
 
     def _budget(self) -> tuple[BudgetTerm, ...]:
-        """One row a direction for the fit, and one for what is stated of the objects."""
+        """Rows for the fit, and for what is stated of the objects and what their parts tell."""
         mean = self.otf.model
         assert isinstance(mean, FieldOtf)
         if not isinstance(mean.base, OtfBehindObjects):
             return super()._budget()
-        certain = Otf2d(replace(mean, base=mean.base.if_certain), self.otf.gsd_m)
+        named = {
+            "fit": {"stated": False, "scatter": False},
+            **({"target_softness": {"stated": True, "scatter": False}} if mean.base.is_stated
+               else {}),
+            **({"parts_scatter": {"stated": False, "scatter": True}} if mean.base.scatter_px2
+               else {}),
+        }  # fmt: skip
         rows: tuple[BudgetTerm, ...] = ()
         for name, angle_deg in self.axes_deg.items():
-            total = main_stds(self.directions[name])
-            fit = main_stds(certain.response(angle_deg))
-            stated = {one: math.sqrt(max(total[one] ** 2 - fit[one] ** 2, 0.0)) for one in total}
-            rows += budget_rows(name, {"fit": fit, "target_softness": stated})
+            stds: dict[str, dict[str, float]] = {}
+            for term, errors in named.items():
+                model = replace(mean, base=mean.base.with_errors(**errors))
+                found = main_stds(Otf2d(model, self.otf.gsd_m).response(angle_deg))
+                stds[term] = found if term == "fit" else _beyond(found, stds["fit"])
+            rows += budget_rows(name, stds)
         return rows
 
     def target_document(self) -> dict[str, Any]:
@@ -148,3 +156,8 @@ class SceneMeasurement(Measurement):
             "objects": {name: share.to_dict() for name, share in self.objects.items()},
             "field": {**self.field.to_dict(), "places": [place.to_dict() for place in places]},
         }
+
+
+def _beyond(whole: Mapping[str, float], part: Mapping[str, float]) -> dict[str, float]:
+    """Standard deviations of what a whole has beside an independent part."""
+    return {name: math.sqrt(max(std**2 - part[name] ** 2, 0.0)) for name, std in whole.items()}

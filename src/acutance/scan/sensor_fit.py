@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -22,10 +22,10 @@ from acutance.numerics.stacked import stacked, unstacked
 from acutance.scan.blur_modes import COMMON_MODES, changed, edge_modes, fit_modes
 from acutance.scan.field_fit import FieldFit, fit_field
 from acutance.scan.information import expected_information, observed_information
-from acutance.scan.parts import agreement_of_parts
+from acutance.scan.parts import PartsFit, compare_parts
 from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares, share_covariance
 from acutance.scan.softness import KINDS, START
-from acutance.targets.combine.curves import ChiSquare, OtfSamples
+from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import CombinedFit, combine_curves
 from acutance.targets.combine.sensor_forms import FORMS
 from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
@@ -78,7 +78,7 @@ class SensorFit:
     share_covariance : (p, p) array
     member : Membership
         What every edge is.
-    parts : ChiSquare or None
+    parts : PartsFit or None
         Whether the parts of the scene agree; None of too few edges.
     turns : int
     settled : bool
@@ -90,7 +90,7 @@ class SensorFit:
     share: Floats
     share_covariance: Floats
     member: Membership
-    parts: ChiSquare | None
+    parts: PartsFit | None
     turns: int
     settled: bool
 
@@ -105,9 +105,11 @@ class SensorFit:
 
     @property
     def otf(self) -> CombinedOtf:
-        """The sensor in the middle of the edges, widened as far as parts of the scene disagree."""
-        widened = 1.0 if self.parts is None else self.parts.birge_ratio
-        return replace(self.combined.unwidened, birge_ratio=widened)
+        """The sensor in the middle of the edges, under the sharpest objects.
+
+        They are one measurement: there is nothing it could disagree with.
+        """
+        return self.combined.unwidened
 
 
 def fit_sensor(
@@ -148,7 +150,7 @@ def fit_sensor(
     samples = _samples(normal_deg, edges.freq_cpp, state.otf.ravel(), left)
     return SensorFit(
         combine_curves([samples]), field, normal_deg, share, share_covariance(member, share),
-        member, agreement_of_parts(seen, state.otf, share, x, y), state.turns, state.settled,
+        member, compare_parts(seen, state.otf, share, x, y), state.turns, state.settled,
     )  # fmt: skip
 
 

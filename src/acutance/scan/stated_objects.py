@@ -1,8 +1,9 @@
-"""What is stated of a scene because no edge shows it: a softness that all its objects have.
+"""The softness that all objects of a scene have: what is stated of it, and what its parts tell.
 
 Objects that are softer than the sharpest are found by their edges (`acutance.scan.population`).
 What even the sharpest have, every edge has: the sensor behind it is the measured one over the
-transfer function of such a border, as of a single edge (`targets.straight.stated_target`).
+transfer function of such a border, as of a single edge (`targets.straight.stated_target`). Where
+it differs from part to part of the scene (`acutance.scan.parts`), it is uncertain by as much.
 """
 
 from __future__ import annotations
@@ -41,21 +42,26 @@ def require_statement(options: ScanOptions, gsd: Gsd | None) -> None:
     _borders(options, gsd)
 
 
-def behind_objects(sensor: OtfModel, options: ScanOptions, gsd: Gsd | None) -> OtfModel:
-    """The sensor under objects of which a softness is stated; the same one if none is.
+def behind_objects(
+    sensor: OtfModel, options: ScanOptions, gsd: Gsd | None, scatter_px2: float = 0.0
+) -> OtfModel:
+    """The sensor behind the softness that all objects have; the same one if nothing is known of it.
 
     Parameters
     ----------
     sensor : OtfModel
         Under the sharpest objects of the scene.
     options : ScanOptions
+        That may state it.
     gsd : Gsd or None
         By which metres become pixels.
+    scatter_px2 : float, optional
+        How much its variance differs from part to part of the scene.
     """
     across, down = _borders(options, gsd)
-    if across.softness_px is None:
+    if across.softness_px is None and not scatter_px2:
         return sensor
-    return OtfBehindObjects(sensor, (across.variance_px2, down.variance_px2))
+    return OtfBehindObjects(sensor, (across.variance_px2, down.variance_px2), scatter_px2)
 
 
 def as_in_image(sensor: OtfModel) -> OtfModel:
@@ -71,19 +77,22 @@ def _borders(options: ScanOptions, gsd: Gsd | None) -> tuple[StatedTarget, State
 
 @dataclass(frozen=True, eq=False)
 class OtfBehindObjects(ShortRepr):
-    """The OTF of a sensor behind borders of a stated softness, an `acutance.curves.OtfModel`.
+    """The OTF of a sensor behind borders that all objects have, an `acutance.curves.OtfModel`.
 
     Parameters
     ----------
     base : OtfModel
         Sensor and borders together.
     variance_px2 : (Estimate, Estimate)
-        Of the borders' Gaussian profile along columns (u) and rows (v); one statement, whose
-        errors are the same.
+        Of the borders' Gaussian profile along columns (u) and rows (v) as it was stated; one
+        statement, whose errors are the same.
+    scatter_px2 : float
+        Its standard deviation from part to part of the scene, in all directions.
     """
 
     base: OtfModel
     variance_px2: tuple[Estimate, Estimate]
+    scatter_px2: float
 
     @property
     def band_cpp(self) -> float:
@@ -91,20 +100,31 @@ class OtfBehindObjects(ShortRepr):
         return self.base.band_cpp
 
     @property
-    def if_certain(self) -> OtfBehindObjects:
-        """The same one if the statement had no error."""
+    def is_stated(self) -> bool:
+        """Whether a softness was stated."""
+        return any(one.value > 0 or one.std > 0 for one in self.variance_px2)
+
+    def with_errors(self, *, stated: bool, scatter: bool) -> OtfBehindObjects:
+        """The same with the errors of the statement, of the scatter, of both or of neither."""
         across, down = self.variance_px2
-        return replace(self, variance_px2=(Estimate(across.value), Estimate(down.value)))
+        certain = (Estimate(across.value), Estimate(down.value))
+        return OtfBehindObjects(
+            self.base,
+            self.variance_px2 if stated else certain,
+            self.scatter_px2 if scatter else 0.0,
+        )
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF, (n,), exactly 1 at zero frequency."""
         return np.asarray(self.base.otf(u_cpp, v_cpp) * self._gain(u_cpp, v_cpp)[0])
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Factor of its covariance, (n, k): of the measurement, and of the statement."""
-        gain, error = self._gain(u_cpp, v_cpp)
-        stated = self.base.otf(u_cpp, v_cpp) * error
-        return np.column_stack([self.base.factor(u_cpp, v_cpp) * gain[:, None], stated])
+        """Factor of its covariance, (n, k): of the measurement, the statement and the scatter."""
+        gain, by_variance = self._gain(u_cpp, v_cpp)
+        change = self.base.otf(u_cpp, v_cpp) * by_variance
+        stated = self._along(u_cpp, v_cpp) @ [one.std for one in self.variance_px2]
+        measured = self.base.factor(u_cpp, v_cpp) * gain[:, None]
+        return np.column_stack([measured, change * stated, change * self.scatter_px2])
 
     def packed(self) -> OtfBehindObjects:
         """The same in fewer bytes, where the measured one has a lighter form."""
@@ -112,11 +132,12 @@ class OtfBehindObjects(ShortRepr):
         return replace(self, base=base)
 
     def _gain(self, u_cpp: Floats, v_cpp: Floats) -> tuple[Floats, Floats]:
-        """By how much the sensor exceeds what is measured, and the deviation of that, (n,) each."""
+        """By how much the sensor exceeds what is measured, and its derivative by the variance."""
+        variance = self._along(u_cpp, v_cpp) @ [one.value for one in self.variance_px2]
+        return border_gain(np.hypot(u_cpp, v_cpp), variance)
+
+    def _along(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
+        """Shares of the variances along columns and rows in that along a direction, (n, 2)."""
         squares = np.stack([u_cpp, v_cpp], axis=-1) ** 2
-        square = squares.sum(axis=-1)
         # Zero frequency has no direction, and needs none.
-        share = squares / np.maximum(square, np.finfo(float).tiny)[..., None]
-        variance = share @ [one.value for one in self.variance_px2]
-        gain, by_variance = border_gain(np.sqrt(square), variance)
-        return gain, by_variance * (share @ [one.std for one in self.variance_px2])
+        return np.asarray(squares / np.maximum(squares.sum(-1), np.finfo(float).tiny)[..., None])

@@ -383,8 +383,9 @@ _SCENE = {
         "the edges do not separate the sensor from its objects", severity="fail",
     ),
     "parts_agree": Question(
-        "By which factor were deviations widened, since parts of the scene disagree?", "<=", 1.5,
-        "the objects of some part have a softness in common; compare other scenes", severity="note",
+        "By which share does the MTF at Nyquist differ from part to part?", "<=", 0.05,
+        "their objects differ in a softness that all of them have; compare other scenes",
+        severity="note",
     ),
     "field_change": Question(
         "By which share of its mean does sharpness surely change over the field?", "<=", 0.1,

@@ -82,6 +82,10 @@ TERMS = {
     ),
     "target_softness": TermWords("softness of the target's border", "B", "stated"),
     "level_uncertainty": TermWords("levels of the target", "B", "stated"),
+    "parts_scatter": TermWords(
+        "scatter of the scene's parts", "A",
+        "blur of nine parts of the scene, or four, beyond its own deviations",
+    ),
     "row_scatter": TermWords("scatter of the rows", "A", "draws of the rows, as published"),
     "fit": TermWords(
         "noise and prior together", "A", "covariance of the fit, whose causes are not separated"
