@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from acutance.errors import (
     AcutanceError,
     ArchiveError,
+    FewEdgesError,
     ImageError,
     ModelError,
     NoBarsError,
@@ -191,6 +192,7 @@ __all__ = [
     "Esf",
     "Estimate",
     "Estimates",
+    "FewEdgesError",
     "Gsd",
     "Image",
     "ImageError",

@@ -8,6 +8,7 @@
     │   └── NoDataError                   what it holds is nodata, masked, NaN or fill
     ├── TargetError         (ValueError)  the pixels hold no target that can be measured
     │   ├── NoEdgeError                   no straight edge stands out of the noise
+    │   │   └── FewEdgesError             the edges of a scene do not tell its sensor; holds them
     │   ├── NoBarsError                   no groups of bars, or not as described
     │   ├── NoStarError                   no Siemens star, or not with that number of cycles
     │   ├── PhaseError                    the edge is aligned with the grid: no sub-pixel phases
@@ -22,9 +23,14 @@ Every message names what was asked, what was found and what to do. Every class i
 the builtin that fits, so that code which does not import acutance can catch it.
 """
 
+from __future__ import annotations
+
+from typing import Any
+
 __all__ = [
     "AcutanceError",
     "ArchiveError",
+    "FewEdgesError",
     "ImageError",
     "ModelError",
     "NoBarsError",
@@ -62,6 +68,24 @@ class TargetError(AcutanceError, ValueError):
 
 class NoEdgeError(TargetError):
     """No straight edge stands out of the noise."""
+
+
+class FewEdgesError(NoEdgeError):
+    """The edges of a scene are too few to tell its sensor, or all have one direction.
+
+    Parameters
+    ----------
+    message : str
+    edges : SceneEdges or BandEdges
+        Every edge that was found, and why it is not used.
+    """
+
+    def __init__(self, message: str, edges: Any) -> None:
+        super().__init__(message)
+        self.edges = edges
+
+    def __reduce__(self) -> tuple[type[FewEdgesError], tuple[str, Any]]:
+        return type(self), (str(self), self.edges)
 
 
 class NoBarsError(TargetError):

@@ -66,6 +66,11 @@ class _Commands(TyperGroup):
             fail(f"there is not enough memory ({error}): choose a smaller image or region")
         except KeyboardInterrupt as error:
             stop(str(error))
+        except SystemError as error:
+            # Ctrl-C inside a compiled loop: the interpreter finds a result beside the interrupt.
+            if not isinstance(error.__cause__, KeyboardInterrupt):
+                raise
+            stop("")
 
 
 @contextmanager

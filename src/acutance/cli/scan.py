@@ -19,7 +19,7 @@ from acutance.cli.progress import progress_bar
 from acutance.cli.results import Outputs, Shown
 from acutance.cli.study import WorkersOption, dask_option
 from acutance.cli.terminal import command_line
-from acutance.errors import OptionError
+from acutance.errors import FewEdgesError, OptionError
 
 if TYPE_CHECKING:
     from acutance.raster import Image
@@ -90,12 +90,17 @@ def scan(
         typer.Option(
             metavar="FILE",
             help="Keep finished windows in this file: an interrupted scan goes on from it when it "
-            "is called again, a finished one with other outputs takes seconds. Remove it when it "
-            "is no longer needed.",
+            "is called again, and a finished one with other outputs measures no edge again. Remove "
+            "it when it is no longer needed.",
         ),
     ] = None,
     min_length: Annotated[
-        float, typer.Option(metavar="PX", help="Shorter edges are left out.")
+        float,
+        typer.Option(
+            metavar="PX",
+            help="Shorter edges are left out, as they are found; of others a shorter part may be "
+            "usable.",
+        ),
     ] = 15.0,
     field: Annotated[
         str,
@@ -143,10 +148,16 @@ def scan(
             "progress": progress,
         }
         found: SceneMeasurement | BandScenes
-        if bands is None or len(bands) > 1:
-            found = scan_bands(images, roi=region, **how)
-        else:
-            found = scan_scene(images[0], region, **how)
+        try:
+            if bands is None or len(bands) > 1:
+                found = scan_bands(images, roi=region, **how)
+            else:
+                found = scan_scene(images[0], region, **how)
+        except FewEdgesError as error:
+            # The reasons in the table are what is asked for then.
+            if table is not None:
+                _write_edges(table, error.edges, images[0])
+            raise
     if table is not None:
         _write_edges(table, found.edges, images[0])
     if isinstance(found, BandScenes):

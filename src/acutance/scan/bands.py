@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves.short_repr import ShortRepr
-from acutance.errors import ImageError, NoEdgeError
+from acutance.errors import FewEdgesError, ImageError, NoEdgeError
 from acutance.raster import Gsd, Image, open_bands
 from acutance.scan.all_windows import Progress, part_of, scan_windows
 from acutance.scan.band_shift import BandShift, band_shift
@@ -140,8 +140,8 @@ def scan_bands(
     ------
     ImageError, RegionError
         If there are no pixels to scan, or the bands differ in shape.
-    NoEdgeError
-        If no band has enough edges.
+    FewEdgesError
+        If no band has enough edges; it holds them.
     OptionError
         As of `acutance.scan_scene`.
 
@@ -161,15 +161,17 @@ def scan_bands(
     )  # fmt: skip
     scenes: dict[str, SceneMeasurement] = {}
     rejected: list[Rejected] = []
+    refused: dict[str, SceneEdges] = {}
     for place, (name, one) in enumerate(images.items()):
         try:
             scenes[name] = measured_scene(one, box, gsd, chosen, [own[place] for own in found])
-        except NoEdgeError as error:
+        except FewEdgesError as error:
             rejected.append(Rejected("fit", str(error), {"band": name}))
+            refused[name] = error.edges
     if not scenes:
-        raise NoEdgeError(
-            f"none of the {len(images)} bands could be measured: {rejected[0].reason}"
-        )
+        whose = "the band" if len(images) == 1 else f"none of the {len(images)} bands"
+        not_measured = "could not be measured" if len(images) == 1 else "could be measured"
+        raise FewEdgesError(f"{whose} {not_measured}: {rejected[0].reason}", BandEdges(refused))
     shifts, unshifted = _shifts(scenes)
     return BandScenes(scenes, shifts, tuple(rejected), unshifted)
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves import Estimate, Otf2d
 from acutance.curves.grid import Floats
-from acutance.errors import NoEdgeError
+from acutance.errors import FewEdgesError
 from acutance.geometry.angles import axis_difference
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, open_image
@@ -74,7 +74,7 @@ def scan_scene(
     keep : path, optional
         File in which finished windows are kept. A scan that was interrupted, however, goes on
         where it was when it is called again; a finished one leaves the file, and the same scan
-        with other outputs is then a matter of seconds. The file of another scan (the image
+        with other outputs measures no edge again. The file of another scan (the image
         changed, other options) is refused.
     progress : function of (windows done, windows in all), optional
 
@@ -88,8 +88,8 @@ def scan_scene(
     ------
     ImageError, RegionError
         If there are no pixels to scan.
-    NoEdgeError
-        If too few edges can be used, or all have one direction.
+    FewEdgesError
+        If too few edges can be used, or all have one direction; it holds the edges.
     OptionError
         If an option or the number of workers means nothing, a softness is stated in metres and
         there is no GSD, the scheduler cannot be reached, or `keep` is of another scan.
@@ -134,7 +134,7 @@ def measured_scene(
 
     Raises
     ------
-    NoEdgeError
+    FewEdgesError
         If too few edges can be used, or all have one direction.
     """
     edges = SceneEdges.of_rows([row for window in found for row in window.rows])
@@ -149,24 +149,33 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, 
 
     Raises
     ------
-    NoEdgeError
+    FewEdgesError
         If there are too few edges, or all have one direction.
     """
+    if not edges.size:
+        raise FewEdgesError(
+            f"no straight edge stands out in the {roi[2]} x {roi[3]} pixels: they are flat, hold "
+            "no data, or nothing straight; scan a larger part, or another image",
+            edges,
+        )
     if len(used) < _MIN_EDGES:
-        raise NoEdgeError(
+        raise FewEdgesError(
             f"{edges.size} straight edges were found, and {len(used)} of them can be used, where "
             f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}scan a larger part, or "
-            "another image, or measure single edges"
+            "another image, or measure single edges; the table of the edges has every reason "
+            "(--edges FILE, the error's edges)",
+            edges,
         )
     axis_deg = np.array([one.axis_deg for one in used])
     _, number = np.unique(np.floor((axis_deg + 90.0) / _BIN_DEG), return_inverse=True)
     normal_deg = np.array([axis_deg[number == b].mean() for b in range(int(number.max()) + 1)])
     gap = max(axis_difference(float(a), float(b)) for a in normal_deg for b in normal_deg)
     if gap < _MIN_GAP_DEG:
-        raise NoEdgeError(
+        raise FewEdgesError(
             f"all {len(used)} edges that can be used have nearly one direction, normals within "
             f"{gap:.0f} degrees: two that differ by {_MIN_GAP_DEG:g} are needed; scan a larger "
-            "part, or another image, or measure them with measure_edges"
+            "part, or another image, or measure them with measure_edges",
+            edges,
         )
     guesses = [_sensor_of(used, normal_deg, quantiles) for quantiles in _SHARP]
     likelihoods = _likelihoods(used, number, axis_deg)
@@ -180,7 +189,7 @@ def _common_reason(edges: SceneEdges) -> str:
         return ""
     unused = edges.verdict[~edges.used]
     words, counts = np.unique(unused, return_counts=True)
-    return f"most others are {words[int(np.argmax(counts))]}; "
+    return f"most of the others are {words[int(np.argmax(counts))]}; "
 
 
 def _likelihoods(

@@ -9,7 +9,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.report.figures.panel import Panel
-from acutance.report.figures.scene_sensor import edges_seen
+from acutance.report.figures.scene_sensor import behind_words, edges_seen
 from acutance.report.paper import INK, SKY, VERMILION
 
 if TYPE_CHECKING:
@@ -48,7 +48,9 @@ def map_panel(measurement: SceneMeasurement, backdrop: Floats | None = None) -> 
         "Edges of the scene",
         "Edges that are used, in the colour of their MTF at Nyquist minus that of the sensor at "
         "their place along their normal, in standard deviations of the edge: pale as sharp as the "
-        "sensor, orange softer, blue sharper than it. Thin dark lines: left out." + thinned,
+        "sensor, orange softer, blue sharper than it. Thin dark lines: left out."
+        + thinned
+        + behind_words(measurement),
         lambda page: _draw(page, measurement, backdrop),
         height_in=_HEIGHT_IN,
         is_target=True,

@@ -13,7 +13,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.report.figures.panel import Panel, on_axes
-from acutance.report.figures.scene_sensor import EdgesSeen, edges_seen
+from acutance.report.figures.scene_sensor import EdgesSeen, behind_words, edges_seen
 from acutance.report.paper import BLUE, FAINT, INK, SHADE, VERMILION
 from acutance.scan.softness import KINDS, STRANGE, law_densities
 
@@ -56,7 +56,7 @@ def population_panel(measurement: SceneMeasurement) -> Panel:
         "Sharpness of the edges",
         "Grey bars: MTF at Nyquist of the used edges minus that of the sensor (red) at their place "
         "along their normal; at most one in a hundred lies beyond the ends. Soft objects lie on "
-        "the left." + expected,
+        "the left." + expected + behind_words(measurement),
         on_axes(_draw, measurement),
     )
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
+from acutance.report.labels import word_softness
 from acutance.scan.blur_modes import blur_modes
 from acutance.scan.field import DEGREES, Field, FieldOtf, field_polynomials
 from acutance.scan.stated_objects import as_in_image
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from acutance.curves.otf2d import OtfModel
     from acutance.scan import SceneMeasurement
 
-__all__ = ["EdgesSeen", "edges_seen", "sensor_along", "sensor_at"]
+__all__ = ["EdgesSeen", "behind_words", "edges_seen", "sensor_along", "sensor_at"]
 
 _EVERY_DEG = np.linspace(0.0, 180.0, 361)
 """The sensor is computed along these: a scene may have more edges than it has directions."""
@@ -61,6 +62,14 @@ def edges_seen(measurement: SceneMeasurement) -> EdgesSeen:
         row, col, normal_deg, edges.length_px[own], edges.mtf_nyquist[own],
         edges.mtf_nyquist_std[own], edges.ideal[own], _seen_at(measurement, row, col, normal_deg),
     )  # fmt: skip
+
+
+def behind_words(measurement: SceneMeasurement) -> str:
+    """Of captions that compare edges with the sensor: what was stated lies before both."""
+    softness = word_softness(measurement.options)
+    if not softness:
+        return ""
+    return f" The sensor is seen behind the {softness} of softness stated of all objects, too."
 
 
 def sensor_along(measurement: SceneMeasurement, normal_deg: Floats) -> tuple[Floats, Floats]:

@@ -24,7 +24,7 @@ VERDICTS = {
     "rejected": "not measured",
 }
 _OBJECTS = {
-    "ideal": "as sharp as the sensor shows",
+    "ideal": "as sharp as the sharpest",
     "soft": "blurred borders on the ground",
     "strange": "neither: too sharp, or of another shape",
 }

@@ -120,8 +120,10 @@ def _shared(inputs: Sequence[MeasuredInput]) -> list[str]:
 
 def _same_target(one: MeasuredInput, other: MeasuredInput) -> bool:
     """Whether two measurements took the same target of the same image."""
-    if one.image.path is None or one.kind != other.kind or one.image.path != other.image.path:
+    if one.image.path is None or one.image.path != other.image.path:
         return False
+    if one.kind != other.kind:
+        return "scene" in (one.kind, other.kind) and _overlap(one.image.roi, other.image.roi)
     if len(one.place) != len(other.place):
         return False
     if len(one.place) == 3:
@@ -129,6 +131,13 @@ def _same_target(one: MeasuredInput, other: MeasuredInput) -> bool:
         apart = np.hypot(one.place[0] - other.place[0], one.place[1] - other.place[1])
         return bool(turn < _SAME_LINE_DEG and apart < _SAME_LINE_PX)
     return one.place == other.place
+
+
+def _overlap(one: tuple[int, int, int, int], other: tuple[int, int, int, int]) -> bool:
+    """Whether two regions (row, col, height, width) share pixels: a scan uses every edge it can."""
+    return all(
+        max(one[i], other[i]) < min(one[i] + one[i + 2], other[i] + other[i + 2]) for i in (0, 1)
+    )
 
 
 def _directions(inputs: Sequence[MeasuredInput]) -> Floats:
