@@ -25,6 +25,7 @@ from acutance.targets.combine import combine
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import combine_curves
 from acutance.targets.combine.inputs import records_of
+from acutance.targets.combine.weighted_forms import CombinedOtf
 from acutance.targets.slices import SLICE_DIRECTIONS_DEG, OtfSlices
 
 __all__ = ["KnownOtf", "Measured", "known_otf"]
@@ -205,7 +206,18 @@ def _plane(given: Any, slices: OtfSlices) -> OtfModel:
         slices, likelihood = _in_all_directions(slices), None
     u, v = slices.places
     samples = OtfSamples("measurement", u, v, slices.otf, slices.factor, likelihood)
-    return combine_curves([samples]).otf
+    plane = combine_curves([samples]).otf
+    return plane if likelihood is not None else _as_stated(plane, slices)
+
+
+def _as_stated(plane: CombinedOtf, slices: OtfSlices) -> CombinedOtf:
+    """The plane through slices with the deviations they state, on the whole.
+
+    They had a prior already: what that of the parametric forms adds is not known any better.
+    """
+    u, v = slices.places
+    stated, found = (float(np.linalg.norm(one)) for one in (slices.factor, plane.factor(u, v)))
+    return replace(plane, birge_ratio=plane.birge_ratio * max(1.0, stated / found))
 
 
 def _in_all_directions(slices: OtfSlices) -> OtfSlices:
