@@ -164,7 +164,7 @@ def parse_band(text: str) -> int:
         return int(text)
     except ValueError:
         raise OptionError(
-            f"--band {text} is not the number of a band: bands are counted from 1"
+            f"--band {text or '(nothing)'} is not the number of a band: bands are counted from 1"
         ) from None
 
 

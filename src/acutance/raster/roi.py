@@ -17,6 +17,7 @@ from acutance.raster.region import Box, Region
 __all__ = ["parse_roi", "parse_rois"]
 
 _RECTANGLE = re.compile(r"^\s*-?\d+\s*(,\s*-?\d+\s*){3}$")
+_NUMBERS = re.compile(r"^[\d\s.,+-]+$")
 _FORMS = (
     "write ROW,COL,HEIGHT,WIDTH (pixels), lonlat:WEST,SOUTH,EAST,NORTH (degrees) "
     "or the path of a GeoJSON file"
@@ -97,6 +98,11 @@ def parse_rois(text: str, image: Image) -> dict[str, Region]:
         region = _lonlat_region(text.removeprefix("lonlat:"), image)
         region.box(image.shape)
         return {text.strip(): region}
+    if _NUMBERS.match(text) and not Path(text).is_file():
+        raise RegionError(
+            f"the region {text!r} is not four whole numbers of pixels, rows and columns counted "
+            f"from 0: {_FORMS}"
+        )
     if not Path(text).is_file():
         raise RegionError(
             f"the region {text!r} is neither numbers nor a file that exists: {_FORMS}"

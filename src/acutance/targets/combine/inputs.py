@@ -171,6 +171,10 @@ def _documents(document: Mapping[str, Any], origin: str) -> list[Mapping[str, An
             f"{origin} holds one target measured by several methods: the same pixels count only "
             "once, so measure with one method (without --compare)"
         )
+    if schema == "acutance/bands/1":
+        raise OptionError(
+            f"{origin} holds a measurement of every band: give that of one (scan --band N --json)"
+        )
     if isinstance(schema, str) and schema.startswith("acutance/"):
         raise OptionError(
             f"{origin} is a document {schema}, no measurement ({SCHEMA}): give the JSON "
