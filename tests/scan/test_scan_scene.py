@@ -226,6 +226,22 @@ def test_a_scene_is_combined_with_a_target(ideal):
     assert abs(both.across.mtf_nyquist.value - scene.across.mtf_nyquist.value) < 0.01
 
 
+def test_objects_that_are_all_soft_by_different_amounts_open_the_interval():
+    sensor = simulate.reference_systems()["diffraction"]
+    options = simulate.LandscapeOptions(
+        soft=1.0, softness_px=(0.0, 0.4), roofs=0.0, roads=0.0, discs=0.0, density_per_mpx=70
+    )
+    rng = np.random.default_rng(1)
+    image, _ = simulate.landscape(sensor, shape=(700, 700), snr=60, options=options, rng=rng)
+    scene = ac.scan_scene(image)
+    terms = {(term.direction, term.name): term.share["mtf_nyquist"] for term in scene.budget}
+    for name, u, v in (("across", 0.5, 0.0), ("along", 0.0, 0.5)):
+        truth = abs(sensor.otf(np.array([u]), np.array([v]))[0])
+        number = getattr(scene, name).mtf_nyquist
+        assert abs(number.value - truth) < 2.5 * number.std
+        assert terms[name, "shared_softness"] > 0.1
+
+
 def test_no_edge_and_too_few_are_errors_that_say_what_was_found():
     rng = np.random.default_rng(0)
     with pytest.raises(ac.NoEdgeError, match="no straight edge stands out"):

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy import integrate
+from scipy import stats
 
 from acutance.scan.information import edge_terms, expected_information, observed_information
 from acutance.scan.population import (
@@ -13,7 +13,7 @@ from acutance.scan.population import (
     share_covariance,
     softness_grid,
 )
-from acutance.scan.softness import PARTS, START, law_densities
+from acutance.scan.softness import KINDS, PARTS, PSEUDO_COUNTS, START, law_chances
 
 FREQ = np.array([0.1, 0.25, 0.4, 0.5])
 TRUE = np.concatenate([np.exp(-2 * (np.pi * 0.5 * FREQ) ** 2), np.zeros(4)])
@@ -32,10 +32,24 @@ def drawn(soft_share, count=600, seed=0):
     return EdgeLikelihoods(FREQ, root, seen / STD, rank, bins, normals, gain), tau
 
 
-def test_laws_are_densities():
-    for number in range(len(PARTS) - 2):
-        whole, _ = integrate.quad(lambda x, n=number: law_densities(np.array([x]))[n, 0], 0, 20)
-        assert whole == pytest.approx(1.0, abs=1e-6)
+def test_laws_are_roots_of_sums_of_squares():
+    edge = np.array([0.05, 0.3, 1.0, 6.0])
+    found = law_chances(edge[:-1], edge[1:])
+    sizes = (0.15, 0.21, 0.3, 0.42, 0.6, 0.85, 1.2, 1.7)
+    expected = [
+        np.diff(stats.chi(causes, scale=size / causes**0.5).cdf(edge))
+        for causes, first in ((1, 0), (2, 1), (4, 2))
+        for size in sizes[first:]
+    ]
+    assert found == pytest.approx(np.array(expected), abs=1e-12)
+    assert len(PARTS) == len(expected) + 2
+
+
+def test_kinds_divide_the_parts():
+    assert sum(KINDS.values()) == pytest.approx(np.ones(len(PARTS)))
+    # Of the narrowest half-normal law half of the objects are within a tenth of a pixel.
+    assert KINDS["ideal"][:2] == pytest.approx([1.0, 0.495], abs=0.001)
+    assert KINDS["strange"][-1] == 1.0
 
 
 def test_the_grid_of_an_edge_covers_its_softness():
@@ -56,7 +70,9 @@ def test_the_likelihood_is_that_of_a_fine_integral():
     edges, _ = drawn(0.6, 20)
     otf = TRUE[None] * 0.98
     share = START / START.sum()
-    fine = np.linspace(0, 6, 20001)
+    border = np.linspace(0, 6, 20001)
+    fine = 0.5 * (border[:-1] + border[1:])
+    chances = law_chances(border[:-1], border[1:])
     for one in range(20):
         alone = EdgeLikelihoods(
             FREQ, edges.root[[one]], edges.value[[one]], edges.rank[[one]], edges.bin[[one]],
@@ -66,13 +82,9 @@ def test_the_likelihood_is_that_of_a_fine_integral():
         blur = np.exp(-2 * (np.pi * np.outer(fine, FREQ)) ** 2)
         off = otf * np.hstack([blur, blur]) / STD - edges.value[one]
         likelihood = np.exp(-0.5 * np.sum(off**2, axis=1))
-        soft = np.tensordot(updated[1:-1], law_densities(fine), axes=1)
+        soft = np.tensordot(updated[1:-1], chances, axes=1)
         strange = likelihood[0] ** (1 / 100) * 100**-4.0
-        whole = (
-            updated[0] * likelihood[0]
-            + np.trapezoid(soft * likelihood, fine)
-            + updated[-1] * strange
-        )
+        whole = updated[0] * likelihood[0] + soft @ likelihood + updated[-1] * strange
         assert member.log_likelihood == pytest.approx(np.log(whole), abs=0.02)
 
 
@@ -83,7 +95,10 @@ def test_the_shares_are_found_within_their_deviations(soft_share):
     covariance = share_covariance(member, share)
     assert share.sum() == pytest.approx(1)
     assert len(share) == len(PARTS)
-    assert abs(share[0] - (1 - soft_share)) < 3 * covariance[0, 0] ** 0.5 + 0.03
+    # Of the soft ones a tenth is as sharp as ideal ones, of a half-normal of .8 px.
+    ideal = 1 - 0.9 * soft_share
+    std = (KINDS["ideal"] @ covariance @ KINDS["ideal"]) ** 0.5
+    assert abs(KINDS["ideal"] @ share - ideal) < 3 * std + 0.03
     assert share[-1] < 0.02
     assert np.abs(covariance.sum(axis=0)).max() < 1e-9
 
@@ -93,8 +108,8 @@ def test_every_edge_has_the_softness_of_its_object():
     _, member = fit_shares(edges, TRUE[None], START)
     far = tau > 0.5
     assert np.abs(member.mean_px - tau)[far].mean() < 0.05
-    assert member.part[tau == 0, 0].mean() > 0.8
-    assert member.part[far, 0].max() < 0.01
+    assert member.ideal[tau == 0].mean() > 0.8
+    assert member.ideal[far].max() < 0.01
     assert member.part.sum(axis=1) == pytest.approx(1.0)
 
 
@@ -117,8 +132,7 @@ def test_the_gradient_is_that_of_the_likelihood():
     # At the likeliest shares, with the prior of the shares, their change has no effect.
     def log_posterior(values):
         found, at = fit_shares(edges, values, share)
-        prior = np.array([1.0, *(6 * [0.2]), 0.2])
-        return at.log_likelihood + prior @ np.log(found)
+        return at.log_likelihood + PSEUDO_COUNTS @ np.log(found)
 
     for place in range(4):
         step = np.zeros((1, 8))

@@ -34,7 +34,7 @@ class GaussianOtf:
 
 def test_the_border_is_divided_out_in_every_direction():
     softness = ac.ScanOptions(target_softness_m=0.3)
-    found = behind_objects(GaussianOtf(0.5), softness, Gsd(row_m=1.0, col_m=2.0))
+    found = behind_objects(GaussianOtf(0.5), softness, Gsd(row_m=1.0, col_m=2.0), {})
     freq, still = np.array([0.1, 0.5, 1.0]), np.zeros(3)
     for (u, v), squares in (
         ((freq, still), 0.25 - 0.15**2),
@@ -49,7 +49,7 @@ def test_the_border_is_divided_out_in_every_direction():
 
 def test_its_deviation_is_that_of_draws():
     sigma = Estimate(0.2, 0.05)
-    found = behind_objects(GaussianOtf(0.5), ac.ScanOptions(target_softness_px=sigma), None)
+    found = behind_objects(GaussianOtf(0.5), ac.ScanOptions(target_softness_px=sigma), None, {})
     mtf = Otf2d(found).response(0.0).mtf
     drawn = np.random.default_rng(1).normal(sigma.value, sigma.std, 100_000)
     behind = np.exp(-2 * np.pi**2 * 0.25 * (0.25 - drawn**2))
@@ -59,14 +59,14 @@ def test_its_deviation_is_that_of_draws():
 
 
 def test_beyond_the_band_nothing_is_amplified():
-    found = behind_objects(GaussianOtf(0.3), ac.ScanOptions(target_softness_px=0.4), None)
+    found = behind_objects(GaussianOtf(0.3), ac.ScanOptions(target_softness_px=0.4), None, {})
     far, still = np.array([2.0, 2.5, 4.0]), np.zeros(3)
     np.testing.assert_allclose(found.otf(far, still), GaussianOtf(0.3).otf(far, still))
 
 
 def test_nothing_stated_changes_nothing():
     sensor = GaussianOtf(0.4)
-    assert behind_objects(sensor, ac.ScanOptions(), None) is sensor
+    assert behind_objects(sensor, ac.ScanOptions(), None, {}) is sensor
 
 
 @pytest.fixture(scope="module")
@@ -96,18 +96,14 @@ def test_the_sensor_is_the_one_behind_the_objects(image, stated):
 
 def test_the_budget_has_it_as_a_term_of_its_own(stated):
     terms = {(term.direction, term.name): term for term in stated.budget}
-    assert set(terms) == {
-        (direction, name)
-        for direction in ("across", "along")
-        for name in ("fit", "target_softness")
-    }
+    assert {name for _, name in terms} >= {"fit", "target_softness"}
     for direction in ("across", "along"):
-        own = [terms[direction, name] for name in ("fit", "target_softness")]
+        own = [term for (way, _), term in terms.items() if way == direction]
         for number in ("mtf_nyquist", "rer", "fwhm_px"):
             assert sum(one.share[number] for one in own) == pytest.approx(1)
-            total = np.hypot(*(one.std[number] for one in own))
+            total = np.linalg.norm([one.std[number] for one in own])
             assert total == pytest.approx(getattr(getattr(stated, direction), number).std)
-        nyquist = own[1].std["mtf_nyquist"]
+        nyquist = terms[direction, "target_softness"].std["mtf_nyquist"]
         value = getattr(stated, direction).mtf_nyquist.value
         assert nyquist == pytest.approx(value * 0.5 * np.pi**2 * 2 * SOFTNESS_PX * 0.03, rel=0.05)
 

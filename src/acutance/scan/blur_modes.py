@@ -15,10 +15,11 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.scan.information import edge_terms
+from acutance.scan.information import cost_of_shares, crossed_with_shares, edge_terms
 from acutance.scan.population import EdgeLikelihoods, fit_shares
 
 __all__ = [
+    "ALL_AROUND",
     "BLUR_MODES",
     "COMMON_MODES",
     "ModesFit",
@@ -32,16 +33,18 @@ __all__ = [
 BLUR_MODES: Final = ("all around", "across more than along", "oblique", "middle of the band")
 """Units are the variance of a Gaussian blur, px^2; of the last, of one of the same effect at
 a quarter of a cycle per pixel."""
+ALL_AROUND: Final = 0
+"""The mode that a softness of all objects has."""
 COMMON_MODES: Final = 3
 """The blurs: what a sensor and all of its objects have in common is none of shape."""
-_MAX_STEPS: Final = 8
+_MAX_STEPS: Final = 12
 _MAX_HALVINGS: Final = 4
 _MAX_STEP: Final = 0.03
 """Largest change of a variance in one step, px^2."""
 _LEAST: Final = 1e2
 """Curvature below which a step is not trusted."""
 _SETTLED: Final = 0.05
-"""Rise of the log likelihood that is none."""
+"""Rise of the log likelihood, expected of a step, that is none."""
 
 
 class ModesFit(NamedTuple):
@@ -53,7 +56,7 @@ class ModesFit(NamedTuple):
     share : (p,) array
         Of the parts of the population.
     information : (q, q) array
-        Of the edges alone, about the amounts.
+        Of the edges alone, about the amounts, what the objects are not being known.
     log_posterior : float
     """
 
@@ -101,7 +104,8 @@ def fit_modes(
 ) -> ModesFit:
     """How much of every mode makes the edges likeliest.
 
-    Newton's method; what the edges are is integrated out.
+    Newton's method; what the edges are is integrated out, and the shares of the parts follow every
+    step: else it would creep where a blur of the sensor may be one of the objects.
 
     Parameters
     ----------
@@ -124,11 +128,17 @@ def fit_modes(
     reached = member.log_likelihood - 0.5 * float(precision @ amount**2)
     for _ in range(_MAX_STEPS):
         pull, information = np.zeros(amount.size), np.zeros((amount.size,) * 2)
+        crossed = np.zeros((amount.size, share.size))
         for terms in edge_terms(seen, otf, member):
             slopes = mode_slopes(seen, otf, modes, terms.edges)
             pull += np.einsum("nkq,nk->q", slopes, terms.gradient)
             information += np.einsum("nkq,nkp->qp", slopes, terms.information @ slopes)
-        step = _step(information, pull - precision * amount, precision)
+            crossed += crossed_with_shares(terms, member, terms.slopes @ slopes).sum(axis=0)
+        information -= cost_of_shares(crossed, member, share)
+        upwards = pull - precision * amount
+        step = _step(information, upwards, precision)
+        if 0.5 * float(upwards @ step) < _SETTLED:
+            break
         for _ in range(_MAX_HALVINGS):
             seen = edges.turned(np.exp(modes @ (amount + step)))
             tried, member = fit_shares(seen, otf, share)
@@ -139,9 +149,7 @@ def fit_modes(
             step = step / 3
         else:
             break
-        amount, share, rise, reached = moved, tried, value - reached, value
-        if rise < _SETTLED:
-            break
+        amount, share, reached = moved, tried, value
     return ModesFit(amount, share, information, reached)
 
 

@@ -26,7 +26,7 @@ SCENE_CHECKS = (
 
 _DIRECTION_DEG = 15.0
 _SIGNIFICANT = 2.0
-_DECIMATED = 0.8
+_DECIMATED = 0.7
 """MTF at Nyquist of images that were decimated three times or more; hardly of sharpened ones."""
 
 

@@ -17,7 +17,14 @@ from acutance.curves.grid import Floats
 from acutance.scan.population import EdgeLikelihoods, Membership, share_information
 from acutance.scan.softness import FREE, STRANGE
 
-__all__ = ["EdgeTerms", "edge_terms", "expected_information", "observed_information"]
+__all__ = [
+    "EdgeTerms",
+    "cost_of_shares",
+    "crossed_with_shares",
+    "edge_terms",
+    "expected_information",
+    "observed_information",
+]
 
 
 class EdgeTerms(NamedTuple):
@@ -62,16 +69,39 @@ def edge_terms(edges: EdgeLikelihoods, otf: Floats, member: Membership) -> Itera
         yield EdgeTerms(some, slopes, mean, complete - missing)
 
 
-def _by_share(terms: EdgeTerms, member: Membership, share: Floats) -> Floats:
-    """Covariance of the gradients by the sensor and by the shares of the parts, (n, 2 k, p)."""
-    part = member.part[terms.edges]
-    weighted = terms.slopes * member.chance[terms.edges][:, :, None]
-    by_part = np.concatenate([
-        weighted[:, :1],
-        np.einsum("pnt,ntk->npk", member.within[:, terms.edges], weighted[:, 1:]),
-        (part[:, -1:] * terms.slopes[:, 0] / STRANGE)[:, None],
-    ], axis=1)  # fmt: skip
-    return np.asarray(_turned(by_part - part[:, :, None] * terms.gradient[:, None]) / share)
+def cost_of_shares(crossed: Floats, member: Membership, share: Floats) -> Floats:
+    """Information about unknowns (q, q) that not knowing the shares takes.
+
+    Parameters
+    ----------
+    crossed : (q, p) array
+        Sum over all edges of `crossed_with_shares`.
+    member : Membership
+    share : (p,) array
+    """
+    free = crossed @ FREE.T
+    return np.asarray(free @ np.linalg.solve(share_information(member, share), free.T))
+
+
+def crossed_with_shares(terms: EdgeTerms, member: Membership, slopes: Floats) -> Floats:
+    """Covariance of the gradients by unknowns and by the shares of the parts, (n, q, p).
+
+    Parameters
+    ----------
+    terms : EdgeTerms
+        Of some edges.
+    member : Membership
+        Of all of them.
+    slopes : (n, t + 1, q) array
+        Gradients of these edges by the unknowns, for every softness.
+    """
+    part, chance = member.part[terms.edges], member.chance[terms.edges]
+    weighted = slopes * chance[:, :, None]
+    strange = part[:, -1:] * slopes[:, 0] / STRANGE
+    mean = weighted.sum(axis=1) + strange
+    by_law = np.einsum("pnt,ntq->npq", member.within(terms.edges), weighted[:, 1:])
+    by_part = np.concatenate([weighted[:, :1], by_law, strange[:, None]], axis=1)
+    return np.asarray(_turned(by_part - part[:, :, None] * mean[:, None]) / member.share)
 
 
 def _complete(edges: EdgeLikelihoods, some: slice, blur: Floats, weight: Floats) -> Floats:
@@ -116,9 +146,8 @@ def observed_information(
     for terms in edge_terms(edges, otf, member):
         where = edges.bin[terms.edges]
         np.add.at(own, where, terms.information)
-        np.add.at(by_share, where, _by_share(terms, member, share))
+        np.add.at(by_share, where, crossed_with_shares(terms, member, terms.slopes))
     whole = np.zeros((bins, size, bins, size))
     whole[np.arange(bins), :, np.arange(bins)] = own
-    crossed = by_share.reshape(-1, share.size) @ FREE.T
-    cost = crossed @ np.linalg.solve(share_information(member, share), crossed.T)
+    cost = cost_of_shares(by_share.reshape(-1, share.size), member, share)
     return np.asarray(whole.reshape(bins * size, -1) - cost)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.scan.blur_modes import edge_modes, fit_modes
+from acutance.scan.blur_modes import ALL_AROUND, edge_modes, fit_modes
 from acutance.scan.population import EdgeLikelihoods
 from acutance.targets.combine.curves import ChiSquare
 
@@ -25,8 +25,6 @@ __all__ = ["PartsFit", "compare_parts", "equal_parts"]
 
 _MIN_EDGES: Final = 15
 _MAX_SIDE: Final = 3
-_ALL_AROUND: Final = 1
-"""The first of the modes of blur alone: the one that a softness of all objects has."""
 
 
 class PartsFit(NamedTuple):
@@ -60,7 +58,7 @@ def compare_parts(
     x, y : (n,) arrays
         Places of the edges.
     """
-    modes = edge_modes(edges.normal_deg, edges.freq_cpp)[:, :, :_ALL_AROUND]
+    modes = edge_modes(edges.normal_deg, edges.freq_cpp)[:, :, [ALL_AROUND]]
     fits = [fit_modes(edges.chosen(some), otf, share, modes[some]) for some in equal_parts(x, y)]
     weight = np.array([max(one.information[0, 0], 0.0) for one in fits])
     if not weight.any():

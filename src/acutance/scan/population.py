@@ -9,7 +9,8 @@ with H_b the sensor's and tau_i the softness of the object. Objects are ideal (t
 probability, else soft (`acutance.scan.softness`); a small share of the edges is of any kind (too
 sharp, as beside a bright rim). What the pixels of an edge say of f_i is normal
 (`acutance.targets.otf_likelihood`). Softness is summed over a grid, and so every edge gives a
-mixture of normal likelihoods of H_b. The grid of an edge covers the softness that its pixels allow.
+mixture of normal likelihoods of H_b. The grid of an edge covers the softness that its pixels allow;
+laws of softness have their probability of every cell of it.
 """
 
 from __future__ import annotations
@@ -22,7 +23,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.scan.softness import FREE, PSEUDO_COUNTS, STRANGE, law_densities
+from acutance.scan.softness import (
+    FREE,
+    NEARLY_IDEAL_PX,
+    PSEUDO_COUNTS,
+    STRANGE,
+    law_chances,
+)
 
 __all__ = [
     "EdgeLikelihoods",
@@ -44,6 +51,7 @@ _COARSE_PX2: Final[Floats] = np.array([
 _STEPS: Final = 4
 _LEAST_PX2, _MOST_PX2 = -0.2, 30.0
 _GRID: Final = 24
+_TINY: Final = 1e-300
 _REACH: Final = 5.0
 """The grid of an edge covers so many standard deviations of its softness."""
 
@@ -156,29 +164,42 @@ class Membership(NamedTuple):
 
     Attributes
     ----------
+    share : (p,) array
+        Of the parts.
     softness_px : (n, t + 1) array
         Softness that each may have; the first is 0, of an ideal object.
+    width_px : (n,) array
+        Of the cells about the others.
+    laws : (p - 2, n, t) array
+        Probability of the cells by every law.
     chance : (n, t + 1) array
         Probability of each softness, of edges that are not strange.
-    within : (p - 2, n, t) array
-        Probability of every law, of a soft object of some softness.
     part : (n, p) array
         Probability of `softness.PARTS`.
     log_likelihood : float
         Of all edges.
     """
 
+    share: Floats
     softness_px: Floats
+    width_px: Floats
+    laws: Floats
     chance: Floats
-    within: Floats
     part: Floats
     log_likelihood: float
 
     @property
     def mean_px(self) -> Floats:
         """Mean softness of every edge, (n,)."""
-        whole = np.maximum(self.chance.sum(axis=1), 1e-12)
+        whole = np.maximum(self.chance.sum(axis=1), _TINY)
         return np.asarray(np.sum(self.chance * self.softness_px, axis=1) / whole)
+
+    @property
+    def ideal(self) -> Floats:
+        """Probability that the object of every edge counts as ideal, (n,)."""
+        width = self.width_px[:, None]
+        below = np.clip((NEARLY_IDEAL_PX - self.softness_px[:, 1:]) / width + 0.5, 0.0, 1.0)
+        return np.asarray(self.chance[:, 0] + np.sum(below * self.chance[:, 1:], axis=1))
 
     @property
     def weight(self) -> Floats:
@@ -186,6 +207,11 @@ class Membership(NamedTuple):
         weight = self.chance.copy()
         weight[:, 0] += self.part[:, -1] / STRANGE
         return weight
+
+    def within(self, some: slice) -> Floats:
+        """Probability of every law by softness of some edges, being soft ones, (p - 2, n, t)."""
+        by_law = self.share[1:-1, None, None] * self.laws[:, some]
+        return np.asarray(by_law / np.maximum(by_law.sum(axis=0), _TINY))
 
 
 def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> tuple[Floats, Membership]:
@@ -196,37 +222,40 @@ def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> tuple[Floa
         -0.5 * np.sum(edges.off(otf, some, edges.blur(softness_px[some] ** 2)) ** 2, axis=2)
         for some in edges.chunks()
     ])  # fmt: skip
-    laws = law_densities(soft_px) * width_px[:, None]
-    lost = 0.5 * edges.rank * np.log(STRANGE)
+    log_strange = power[:, 0] / STRANGE - 0.5 * edges.rank * np.log(STRANGE)
+    largest = np.maximum(power.max(axis=1), log_strange)
+    odds = np.exp(power - largest[:, None])
+    strange = np.exp(log_strange - largest)
+    laws = _law_chances(soft_px, width_px)
+    by_law = np.einsum("pnt,nt->np", laws, odds[:, 1:])
+    by_part = np.column_stack([odds[:, 0], by_law, strange])
+    share = _likeliest_share(by_part, share)
+    whole = by_part @ share
+    soft = np.tensordot(share[1:-1], laws, axes=1)
+    chance = odds * np.hstack([np.full((edges.size, 1), share[0]), soft]) / whole[:, None]
+    member = Membership(
+        share, softness_px, width_px, laws, chance, by_part * share / whole[:, None],
+        float(np.sum(largest) + np.sum(np.log(whole))),
+    )  # fmt: skip
+    return share, member
+
+
+def _likeliest_share(by_part: Floats, share: Floats) -> Floats:
+    """Shares of the parts that make the edges likeliest; likelihoods (n, p) by part."""
     for _ in range(_MAX_PASSES):
-        member = _memberships(softness_px, power, laws, lost, share)
-        counts = member.part.sum(axis=0) + PSEUDO_COUNTS
+        counts = share * (by_part.T @ (1 / (by_part @ share))) + PSEUDO_COUNTS
         updated = counts / counts.sum()
         moved = float(np.abs(updated - share).max())
         share = updated
         if moved < _SETTLED:
             break
-    return share, member
+    return share
 
 
-def _memberships(
-    softness_px: Floats, power: Floats, laws: Floats, lost: Floats, share: Floats
-) -> Membership:
-    """What the edges are, given their log likelihoods (n, t + 1) by softness and the shares."""
-    by_law = share[1:-1, None, None] * laws
-    soft = np.maximum(by_law.sum(axis=0), 1e-300)
-    log_ideal = power[:, :1] + np.log(share[0])
-    log_strange = power[:, :1] / STRANGE + (np.log(share[-1]) - lost)[:, None]
-    every = np.hstack([log_ideal, power[:, 1:] + np.log(soft), log_strange])
-    largest = every.max(axis=1, keepdims=True)
-    odds = np.exp(every - largest)
-    whole = odds.sum(axis=1, keepdims=True)
-    odds /= whole
-    chance, strange = odds[:, :-1], odds[:, -1:]
-    within = by_law / soft
-    part = np.hstack([chance[:, :1], np.einsum("pnt,nt->np", within, chance[:, 1:]), strange])
-    log_likelihood = float(np.sum(largest) + np.sum(np.log(whole)))
-    return Membership(softness_px, chance, within, part, log_likelihood)
+def _law_chances(softness_px: Floats, width_px: Floats) -> Floats:
+    """Probability of every law in cells (n, t) about their middles, (p - 2, n, t)."""
+    half = 0.5 * width_px[:, None]
+    return law_chances(softness_px - half, softness_px + half)
 
 
 def share_information(member: Membership, share: Floats) -> Floats:

@@ -233,10 +233,9 @@ def _measurement(
     fit: SensorFit,
 ) -> SceneMeasurement:
     gsd = gsd_of_part(image, box, gsd)
-    known = edges.with_objects(fit.member.mean_px, fit.member.part[:, 0])
+    known = edges.with_objects(fit.member.mean_px, fit.member.ideal)
     field = Field(box.as_tuple(), *fit.field[:4])
-    scatter_px2 = 0.0 if fit.parts is None else fit.parts.scatter_px2
-    sensor = behind_objects(fit.otf, options, gsd, scatter_px2)
+    sensor = behind_objects(fit.otf, options, gsd, fit.common_errors_px2)
     transfer = Otf2d(field.mean_of(sensor), None if gsd is None else (gsd.row_m, gsd.col_m))
     return SceneMeasurement(
         kind="scene",

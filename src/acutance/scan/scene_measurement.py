@@ -125,23 +125,16 @@ class SceneMeasurement(Measurement):
         return tuple(self.at(float(i), float(j)) for i in row for j in col)
 
     def _budget(self) -> tuple[BudgetTerm, ...]:
-        """Rows for the fit, and for what is stated of the objects and what their parts tell."""
+        """Rows for the fit, and for the softness that all objects may have."""
         mean = self.otf.model
         assert isinstance(mean, FieldOtf)
         if not isinstance(mean.base, OtfBehindObjects):
             return super()._budget()
-        named = {
-            "fit": {"stated": False, "scatter": False},
-            **({"target_softness": {"stated": True, "scatter": False}} if mean.base.is_stated
-               else {}),
-            **({"parts_scatter": {"stated": False, "scatter": True}} if mean.base.scatter_px2
-               else {}),
-        }  # fmt: skip
         rows: tuple[BudgetTerm, ...] = ()
         for name, angle_deg in self.axes_deg.items():
             stds: dict[str, dict[str, float]] = {}
-            for term, errors in named.items():
-                model = replace(mean, base=mean.base.with_errors(**errors))
+            for term in ("fit", *mean.base.causes):
+                model = replace(mean, base=mean.base.with_errors([term]))
                 found = main_stds(Otf2d(model, self.otf.gsd_m).response(angle_deg))
                 stds[term] = found if term == "fit" else _beyond(found, stds["fit"])
             rows += budget_rows(name, stds)

@@ -19,11 +19,12 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.stacked import stacked, unstacked
-from acutance.scan.blur_modes import COMMON_MODES, changed, edge_modes, fit_modes
+from acutance.scan.blur_modes import ALL_AROUND, COMMON_MODES, changed, edge_modes, fit_modes
 from acutance.scan.field_fit import FieldFit, fit_field
 from acutance.scan.information import expected_information, observed_information
 from acutance.scan.parts import PartsFit, compare_parts
 from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares, share_covariance
+from acutance.scan.shared_blur import integrate_shared_blur
 from acutance.scan.softness import KINDS, START
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import CombinedFit, combine_curves
@@ -78,6 +79,9 @@ class SensorFit:
     share_covariance : (p, p) array
     member : Membership
         What every edge is.
+    shared_px2 : float
+        Standard deviation of a blur all around that may be the sensor's or all objects'
+        (`acutance.scan.shared_blur`), beside that of `combined`.
     parts : PartsFit or None
         Whether the parts of the scene agree; None of too few edges.
     turns : int
@@ -90,6 +94,7 @@ class SensorFit:
     share: Floats
     share_covariance: Floats
     member: Membership
+    shared_px2: float
     parts: PartsFit | None
     turns: int
     settled: bool
@@ -98,10 +103,16 @@ class SensorFit:
     def kinds(self) -> dict[str, tuple[float, float]]:
         """Shares of ideal, soft and strange edges, and their standard deviations."""
         found = {}
-        for name, some in KINDS.items():
-            variance = float(self.share_covariance[some, some].sum())
-            found[name] = float(self.share[some].sum()), math.sqrt(max(variance, 0.0))
+        for name, weight in KINDS.items():
+            variance = float(weight @ self.share_covariance @ weight)
+            found[name] = float(weight @ self.share), math.sqrt(max(variance, 0.0))
         return found
+
+    @property
+    def common_errors_px2(self) -> dict[str, float]:
+        """Standard deviations of a blur all around beside that of `combined`, by their cause."""
+        scatter = 0.0 if self.parts is None else self.parts.scatter_px2
+        return {"shared_softness": self.shared_px2, "parts_scatter": scatter}
 
     @property
     def otf(self) -> CombinedOtf:
@@ -146,11 +157,15 @@ def fit_sensor(
     seen = state.along.turned(np.exp(field.log_gain))
     share, member = fit_shares(seen, state.otf, state.share)
     left = observed_information(seen, state.otf, member, share)
-    # It is the likeliest already: a further step would follow what little is left of information.
-    samples = _samples(normal_deg, edges.freq_cpp, state.otf.ravel(), left)
+    shared = integrate_shared_blur(seen, state.otf, share, modes[:, :, ALL_AROUND], left)
+    otf = changed(state.otf, modes[:, :, ALL_AROUND] * shared.mean_px2)
+    share, member = fit_shares(seen, otf, share)
+    # It is the mean already: a further step would follow what little is left of information.
+    samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
         combine_curves([samples]), field, normal_deg, share, share_covariance(member, share),
-        member, compare_parts(seen, state.otf, share, x, y), state.turns, state.settled,
+        member, shared.excess_px2, compare_parts(seen, otf, share, x, y),
+        state.turns, state.settled,
     )  # fmt: skip
 
 

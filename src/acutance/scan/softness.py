@@ -1,56 +1,95 @@
 """How soft the objects of a scene may be: ideal, soft by some law, or none of this sensor's edges.
 
 Softness is the standard deviation of the Gaussian through which an object's border looks blurred.
-Soft objects are a mixture of laws of several sizes, some of which have many nearly ideal objects
-(half-normal) and some none (Rayleigh): the edges decide.
+Blur of several causes adds in squares: a law of softness is that of the root of the sum of the
+squares of one, two or four normal numbers, a chi distribution (of one: half-normal; of two:
+Rayleigh). The more causes, the fewer objects are nearly ideal. Soft objects are a mixture of such
+laws of many sizes: the edges decide. Few laws would be knowledge of the sensor that nobody has: a
+blur that no law allows to the objects would pass for the sensor's.
 """
 
 from __future__ import annotations
 
 import math
+from itertools import product
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.special import erf
 
 from acutance.curves.grid import Floats
 
-__all__ = ["FREE", "KINDS", "PARTS", "PSEUDO_COUNTS", "START", "STRANGE", "law_densities"]
+__all__ = [
+    "FREE",
+    "KINDS",
+    "NEARLY_IDEAL_PX",
+    "PARTS",
+    "PSEUDO_COUNTS",
+    "START",
+    "STRANGE",
+    "law_chances",
+]
 
-_HALF_NORMAL_PX: Final = (0.4, 0.8, 1.6)
-"""Narrower ones would be a sensor a little sharper under objects that are all a little soft: no
-edges tell the two apart."""
-_RAYLEIGH_PX: Final = (0.3, 0.6, 1.2)
-_LAWS: Final = len(_HALF_NORMAL_PX) + len(_RAYLEIGH_PX)
+NEARLY_IDEAL_PX: Final = 0.1
+"""Softness up to which an object counts as ideal: it takes 5 % of the MTF at Nyquist."""
+_CAUSES: Final = {1: "half-normal", 2: "Rayleigh", 4: "chi of four"}
+_SIZES_PX: Final = (0.15, 0.21, 0.3, 0.42, 0.6, 0.85, 1.2, 1.7)
+"""Root mean squares of the laws."""
+_LEAST_SPREAD_PX: Final = 0.09
+"""Least standard deviation of a law. Narrower ones are one softness that all objects have, which no
+edge tells from the sensor's; they took for softness what a field leaves (benchmarks/scenes.py,
+corners: errors of .012 at Nyquist instead of .001)."""
+
+
+def _spread(causes: int, size_px: float) -> float:
+    """Standard deviation of a law, px."""
+    mean = math.sqrt(2 / causes) * math.gamma(0.5 * (causes + 1)) / math.gamma(0.5 * causes)
+    return size_px * math.sqrt(1 - mean**2)
+
+
+_LAWS: Final = tuple(law for law in product(_CAUSES, _SIZES_PX) if _spread(*law) > _LEAST_SPREAD_PX)
 PARTS: Final = (
     "ideal",
-    *(f"half-normal {scale:g} px" for scale in _HALF_NORMAL_PX),
-    *(f"Rayleigh {scale:g} px" for scale in _RAYLEIGH_PX),
+    *(f"{_CAUSES[causes]} {size:g} px" for causes, size in _LAWS),
     "strange",
 )
 """What an edge may be."""
-KINDS: Final[dict[str, slice]] = {
-    "ideal": slice(0, 1), "soft": slice(1, -1), "strange": slice(-1, None)
-}  # fmt: skip
-"""The parts in words: which law a soft object follows is hardly told by its edges."""
 FREE: Final[Floats] = np.linalg.svd(np.ones((1, len(PARTS))))[2][1:]
 """Directions in which shares may change: their sum is one."""
 STRANGE: Final = 100.0
 """Variance of strange edges, in units of that of the pixels."""
-PSEUDO_COUNTS: Final[Floats] = np.array([1.0, *(_LAWS * [0.2]), 0.2])
+PSEUDO_COUNTS: Final[Floats] = np.array([1.0, *(len(_LAWS) * [1.2 / len(_LAWS)]), 0.2])
 """Edges that each part has before any is seen: some objects are ideal."""
-START: Final[Floats] = np.array([0.6, *(_LAWS * [0.3 / _LAWS]), 0.1])
+START: Final[Floats] = np.array([0.6, *(len(_LAWS) * [0.3 / len(_LAWS)]), 0.1])
 """Shares of the parts before any edge is seen."""
 
 
-def law_densities(softness_px: Floats) -> Floats:
-    """Probability density of softness (...) by every law, per pixel, (6, ...)."""
+def law_chances(lowest_px: Floats, highest_px: Floats) -> NDArray[np.float64]:
+    """Probability of every law between two softnesses (...), (laws, ...)."""
     return np.array(
-        [
-            math.sqrt(2 / math.pi) / scale * np.exp(-0.5 * (softness_px / scale) ** 2)
-            for scale in _HALF_NORMAL_PX
-        ]
-        + [
-            softness_px / scale**2 * np.exp(-0.5 * (softness_px / scale) ** 2)
-            for scale in _RAYLEIGH_PX
-        ]
+        [_up_to(highest_px, *law) - _up_to(lowest_px, *law) for law in _LAWS], dtype=float
     )
+
+
+def _up_to(softness_px: Floats, causes: int, size_px: float) -> Floats:
+    """Probability of no more than a softness."""
+    half_square = 0.5 * causes * (softness_px / size_px) ** 2
+    if causes == 1:
+        return np.asarray(erf(np.sqrt(half_square)))
+    beyond = np.exp(-half_square) * (1.0 if causes == 2 else 1 + half_square)
+    return np.asarray(1 - beyond)
+
+
+def _nearly_ideal() -> Floats:
+    """Share of every part whose objects count as ideal, (p,)."""
+    below = law_chances(np.zeros(1), np.full(1, NEARLY_IDEAL_PX))[:, 0]
+    return np.array([1.0, *below, 0.0])
+
+
+KINDS: Final[dict[str, Floats]] = {
+    "ideal": _nearly_ideal(),
+    "soft": 1 - _nearly_ideal() - np.eye(len(PARTS))[-1],
+    "strange": np.eye(len(PARTS))[-1],
+}
+"""The parts in words, as weights of their shares: which law an object follows is hardly told."""

@@ -3,12 +3,14 @@
 Objects that are softer than the sharpest are found by their edges (`acutance.scan.population`).
 What even the sharpest have, every edge has: the sensor behind it is the measured one over the
 transfer function of such a border, as of a single edge (`targets.straight.stated_target`). Where
-it differs from part to part of the scene (`acutance.scan.parts`), it is uncertain by as much.
+it differs from part to part of the scene (`acutance.scan.parts`), or the edges do not tell it from
+the sensor's blur (`acutance.scan.shared_blur`), it is uncertain by as much.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +26,9 @@ from acutance.targets.straight.stated_target import StatedTarget, border_gain, s
 __all__ = ["OtfBehindObjects", "as_in_image", "behind_objects", "gsd_of_part", "require_statement"]
 
 Complexes = NDArray[np.complex128]
+
+STATED = "target_softness"
+"""Name of the error of what was stated."""
 
 
 def gsd_of_part(image: Image, box: Box, stated: Gsd | None) -> Gsd | None:
@@ -43,7 +48,7 @@ def require_statement(options: ScanOptions, gsd: Gsd | None) -> None:
 
 
 def behind_objects(
-    sensor: OtfModel, options: ScanOptions, gsd: Gsd | None, scatter_px2: float = 0.0
+    sensor: OtfModel, options: ScanOptions, gsd: Gsd | None, errors_px2: Mapping[str, float]
 ) -> OtfModel:
     """The sensor behind the softness that all objects have; the same one if nothing is known of it.
 
@@ -55,13 +60,15 @@ def behind_objects(
         That may state it.
     gsd : Gsd or None
         By which metres become pixels.
-    scatter_px2 : float, optional
-        How much its variance differs from part to part of the scene.
+    errors_px2 : mapping of str to float
+        Standard deviations of its variance that the edges tell, by the name of their cause; those
+        of 0 are none.
     """
     across, down = _borders(options, gsd)
-    if across.softness_px is None and not scatter_px2:
+    errors = {name: std for name, std in errors_px2.items() if std > 0}
+    if across.softness_px is None and not errors:
         return sensor
-    return OtfBehindObjects(sensor, (across.variance_px2, down.variance_px2), scatter_px2)
+    return OtfBehindObjects(sensor, (across.variance_px2, down.variance_px2), errors)
 
 
 def as_in_image(sensor: OtfModel) -> OtfModel:
@@ -86,13 +93,14 @@ class OtfBehindObjects(ShortRepr):
     variance_px2 : (Estimate, Estimate)
         Of the borders' Gaussian profile along columns (u) and rows (v) as it was stated; one
         statement, whose errors are the same.
-    scatter_px2 : float
-        Its standard deviation from part to part of the scene, in all directions.
+    errors_px2 : mapping of str to float, optional
+        Further standard deviations of their variance, the same in all directions and independent
+        of one another, by the name of their cause.
     """
 
     base: OtfModel
     variance_px2: tuple[Estimate, Estimate]
-    scatter_px2: float
+    errors_px2: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def band_cpp(self) -> float:
@@ -104,14 +112,19 @@ class OtfBehindObjects(ShortRepr):
         """Whether a softness was stated."""
         return any(one.value > 0 or one.std > 0 for one in self.variance_px2)
 
-    def with_errors(self, *, stated: bool, scatter: bool) -> OtfBehindObjects:
-        """The same with the errors of the statement, of the scatter, of both or of neither."""
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """Names of the errors it has beside those of the measurement."""
+        return (*([STATED] if self.is_stated else []), *self.errors_px2)
+
+    def with_errors(self, causes: Collection[str]) -> OtfBehindObjects:
+        """The same with the errors of some causes only, beside those of the measurement."""
         across, down = self.variance_px2
         certain = (Estimate(across.value), Estimate(down.value))
         return OtfBehindObjects(
             self.base,
-            self.variance_px2 if stated else certain,
-            self.scatter_px2 if scatter else 0.0,
+            self.variance_px2 if STATED in causes else certain,
+            {name: std for name, std in self.errors_px2.items() if name in causes},
         )
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
@@ -119,12 +132,13 @@ class OtfBehindObjects(ShortRepr):
         return np.asarray(self.base.otf(u_cpp, v_cpp) * self._gain(u_cpp, v_cpp)[0])
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Factor of its covariance, (n, k): of the measurement, the statement and the scatter."""
+        """Factor of its covariance, (n, k): of the measurement, the statement and other errors."""
         gain, by_variance = self._gain(u_cpp, v_cpp)
         change = self.base.otf(u_cpp, v_cpp) * by_variance
         stated = self._along(u_cpp, v_cpp) @ [one.std for one in self.variance_px2]
         measured = self.base.factor(u_cpp, v_cpp) * gain[:, None]
-        return np.column_stack([measured, change * stated, change * self.scatter_px2])
+        others = [change * std for std in self.errors_px2.values()]
+        return np.column_stack([measured, change * stated, *others])
 
     def packed(self) -> OtfBehindObjects:
         """The same in fewer bytes, where the measured one has a lighter form."""

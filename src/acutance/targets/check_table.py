@@ -373,6 +373,7 @@ _SCENE = {
     "ideal_share": Question(
         "Which share of the objects is as sharp as the sensor can show?", ">=", 0.15,
         "few objects show the sensor itself, the intervals widen; scan built-up areas, or more",
+        severity="note",
     ),
     "strange_share": Question(
         "Which share of the edges is neither ideal nor soft?", "<=", 0.15,

@@ -82,6 +82,10 @@ TERMS = {
     ),
     "target_softness": TermWords("softness of the target's border", "B", "stated"),
     "level_uncertainty": TermWords("levels of the target", "B", "stated"),
+    "shared_softness": TermWords(
+        "softness that all objects may share", "A",
+        "a blur all around that is the sensor's or all objects', beyond the normal approximation",
+    ),
     "parts_scatter": TermWords(
         "scatter of the scene's parts", "A",
         "blur of nine parts of the scene, or four, beyond its own deviations",

@@ -15,7 +15,7 @@ from acutance.curves.grid import Floats
 from acutance.report.figures.panel import Panel, on_axes
 from acutance.report.figures.scene_sensor import EdgesSeen, behind_words, edges_seen
 from acutance.report.paper import BLUE, FAINT, INK, SHADE, VERMILION
-from acutance.scan.softness import KINDS, STRANGE, law_densities
+from acutance.scan.softness import NEARLY_IDEAL_PX, STRANGE, law_chances
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +33,7 @@ _HEADROOM: Final = 1.25
 """For the legend."""
 _MAX_EDGES: Final = 2000
 """More edges are represented by so many."""
-_SOFTNESS_PX: Final[Floats] = np.linspace(0.0, 1.6, 97)[1::2]
+_CELLS_PX: Final[Floats] = np.linspace(0.0, 1.6, 65)
 """Of softer objects nothing is left at Nyquist."""
 _MIN_EDGES: Final = 5
 _MEDIAN: Final = 0.6745
@@ -87,19 +87,19 @@ def expected_counts(edges: EdgesSeen, share: Floats, bins: Floats) -> tuple[Floa
     some = np.linspace(0, edges.mtf.size - 1, min(edges.mtf.size, _MAX_EDGES)).astype(int)
     sensor, std = edges.sensor[some], scatter_of(edges) * edges.std[some]
     each = edges.mtf.size / some.size
-    ideal = each * share[0] * _counted(sensor, sensor, std, bins)
     strange = each * share[-1] * _counted(sensor, sensor, math.sqrt(STRANGE) * std, bins)
-    step = _SOFTNESS_PX[1] - _SOFTNESS_PX[0]
-    weight = share[KINDS["soft"]] @ law_densities(_SOFTNESS_PX) * step
-    left = np.exp(-0.5 * (np.pi * _SOFTNESS_PX) ** 2)
-    soft = sum(
-        own * _counted(kept * sensor, sensor, std, bins)
-        for own, kept in zip(
-            [*weight, max(share[KINDS["soft"]].sum() - weight.sum(), 0.0)], [*left, 0.0],
-            strict=True,
-        )
-    )  # fmt: skip
-    return ideal, ideal + each * np.asarray(soft) + strange
+    # Softness zero, cells of others, and all that is softer.
+    weight = np.array([
+        share[0], *(share[1:-1] @ law_chances(_CELLS_PX[:-1], _CELLS_PX[1:])),
+        share[1:-1] @ (1 - law_chances(np.zeros(1), _CELLS_PX[-1:]))[:, 0],
+    ])  # fmt: skip
+    softness_px = np.array([0.0, *(0.5 * (_CELLS_PX[:-1] + _CELLS_PX[1:])), np.inf])
+    left = np.exp(-0.5 * (np.pi * softness_px) ** 2)
+    counts = np.array([
+        each * own * _counted(kept * sensor, sensor, std, bins)
+        for own, kept in zip(weight, left, strict=True)
+    ])  # fmt: skip
+    return counts[softness_px < NEARLY_IDEAL_PX].sum(axis=0), counts.sum(axis=0) + strange
 
 
 def _counted(mtf: Floats, sensor: Floats, std: Floats, bins: Floats) -> Floats:
