@@ -37,7 +37,7 @@ class SceneEdges(EdgeTable, ShortRepr):
     softness_px : float array
         Mean softness of the object, Gaussian standard deviation; NaN of edges that are not used.
     ideal : float array
-        Probability that the object is ideal, with no softness at all.
+        Probability that the object is ideal, with a softness of 0.1 px at most.
     used : bool array
         Whether the edge is part of the answer.
     verdict : str array

@@ -24,7 +24,7 @@ VERDICTS = {
     "rejected": "not measured",
 }
 _OBJECTS = {
-    "ideal": "as sharp as the sharpest",
+    "ideal": "blurred by 0.1 px at most",
     "soft": "blurred borders on the ground",
     "strange": "neither: too sharp, or of another shape",
 }
