@@ -224,10 +224,10 @@ def main() -> None:
         "errors of the MTF across and along, and how often 95 % intervals hold the truth. Soft "
         'borders: Gaussians of .15 to 2 px where not said otherwise. "Corners": the blur grows to '
         "the corners by a Gaussian of .3 px; errors are those in two corners, the median of the "
-        f"edges is compared with the middle. Found: of true edges of {MIN_LENGTH_PX:.0f} px and SNR {MIN_SNR:.0f} "
-        f"and more. Wrong: of used edges with ideal objects, those that err by more than "
-        f"{WRONG:.0f} deviations from the sensor in the middle. Processor time of one scan. "
-        f"{refused} scenes were refused.",
+        f"edges is compared with the middle. Found: of true edges of {MIN_LENGTH_PX:.0f} px and "
+        f"SNR {MIN_SNR:.0f} and more. Wrong: of used edges with ideal objects, those that err by "
+        f"more than {WRONG:.0f} deviations from the sensor in the middle. Processor time of one "
+        f"scan. {refused} scenes were refused.",
         table(head, rows),
     ]
     publish("Whole scenes", parts, arguments)

@@ -137,8 +137,7 @@ def fit_modes(
         information -= cost_of_shares(crossed, member, share)
         upwards = pull - precision * amount
         step = _step(information, upwards, precision)
-        if 0.5 * float(upwards @ step) < _SETTLED:
-            break
+        is_last = 0.5 * float(upwards @ step) < _SETTLED
         for _ in range(_MAX_HALVINGS):
             seen = edges.turned(np.exp(modes @ (amount + step)))
             tried, member = fit_shares(seen, otf, share)
@@ -150,6 +149,8 @@ def fit_modes(
         else:
             break
         amount, share, reached = moved, tried, value
+        if is_last:
+            break
     return ModesFit(amount, share, information, reached)
 
 
