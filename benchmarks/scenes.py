@@ -3,9 +3,9 @@
 Landscapes of fields (`acutance.simulate.landscape`) without anything beside them, SNR 100 of the
 middle contrast; a share of the borders is soft, Gaussians of .15 to 2 px, or all of 0 to .4 px.
 `acutance.scan_scene` measures across and along; the median of the used edges nearest to either
-direction stands beside.
-Where the blur grows over the field, every pixel is a mean of two landscapes under sensors a little
-sharper and a little softer than the one at its place; the sensor in two corners is asked for.
+direction stands beside. Where the blur grows over the field, every pixel is a mean of two
+landscapes under sensors a little sharper and a little softer than the one at its place; the sensor
+in two corners is asked for.
 """
 
 from __future__ import annotations

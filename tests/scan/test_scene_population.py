@@ -34,7 +34,7 @@ def drawn(soft_share, count=600, seed=0):
 
 def test_laws_are_roots_of_sums_of_squares():
     edge = np.array([0.05, 0.3, 1.0, 6.0])
-    found = law_chances(edge[:-1], edge[1:])
+    found = law_chances(edge)
     sizes = (0.15, 0.21, 0.3, 0.42, 0.6, 0.85, 1.2, 1.7)
     expected = [
         np.diff(stats.chi(causes, scale=size / causes**0.5).cdf(edge))
@@ -72,7 +72,7 @@ def test_the_likelihood_is_that_of_a_fine_integral():
     share = START / START.sum()
     border = np.linspace(0, 6, 20001)
     fine = 0.5 * (border[:-1] + border[1:])
-    chances = law_chances(border[:-1], border[1:])
+    chances = law_chances(border)
     for one in range(20):
         alone = EdgeLikelihoods(
             FREQ, edges.root[[one]], edges.value[[one]], edges.rank[[one]], edges.bin[[one]],
@@ -92,7 +92,7 @@ def test_the_likelihood_is_that_of_a_fine_integral():
 def test_the_shares_are_found_within_their_deviations(soft_share):
     edges, _ = drawn(soft_share)
     share, member = fit_shares(edges, TRUE[None], START)
-    covariance = share_covariance(member, share)
+    covariance = share_covariance(member)
     assert share.sum() == pytest.approx(1)
     assert len(share) == len(PARTS)
     # Of the soft ones a tenth is as sharp as ideal ones, of a half-normal of .8 px.
@@ -161,9 +161,9 @@ def test_the_information_is_the_curvature_of_the_likelihood():
 
 def test_hidden_softness_costs_information():
     edges, _ = drawn(0.6)
-    share, member = fit_shares(edges, TRUE[None], START)
+    _, member = fit_shares(edges, TRUE[None], START)
     (complete,), _ = expected_information(edges, member)
-    left = observed_information(edges, TRUE[None], member, share)
+    left = observed_information(edges, TRUE[None], member)
     assert np.linalg.eigvalsh(complete - left).min() > -1e-6 * np.trace(complete)
     nyquist = 3
     assert np.linalg.inv(left)[nyquist, nyquist] > np.linalg.inv(complete)[nyquist, nyquist]

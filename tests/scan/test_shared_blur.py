@@ -30,9 +30,9 @@ def posterior(edges):
     """Mean and deviation of the blur beyond the true one, px^2, and what the integral says."""
     fit = fit_modes(edges, TRUE, START, MODES[edges.bin])
     otf = changed(TRUE, MODES @ fit.amount)
-    share, member = fit_shares(edges, otf, fit.share)
-    information = observed_information(edges, otf, member, share)
-    shared = integrate_shared_blur(edges, otf, share, MODES[:, :, 0], information)
+    _, member = fit_shares(edges, otf, fit.share)
+    information = observed_information(edges, otf, member)
+    shared = integrate_shared_blur(edges, otf, member, MODES[:, :, 0], information)
     slope = (otf * np.hstack([MODES[:, :, 0]] * 2)).ravel()
     normal = 1 / (slope @ information @ slope)
     std = np.hypot(np.sqrt(normal), shared.excess_px2)

@@ -96,7 +96,11 @@ def test_the_sensor_is_the_one_behind_the_objects(image, stated):
 
 def test_the_budget_has_it_as_a_term_of_its_own(stated):
     terms = {(term.direction, term.name): term for term in stated.budget}
-    assert {name for _, name in terms} >= {"fit", "target_softness"}
+    assert set(terms) == {
+        (direction, name)
+        for direction in ("across", "along")
+        for name in ("fit", "target_softness", "shared_softness")
+    }
     for direction in ("across", "along"):
         own = [term for (way, _), term in terms.items() if way == direction]
         for number in ("mtf_nyquist", "rer", "fwhm_px"):

@@ -106,7 +106,7 @@ def open_bands(
     """
     numbers = _all_bands(open_image(path)) if bands is None else list(bands)
     if not numbers:
-        raise OptionError("no band is asked for: give the numbers of some, from 1, or none for all")
+        raise OptionError("no band is asked for: give numbers, from 1, or leave bands out for all")
     if len(set(numbers)) < len(numbers):
         raise OptionError(f"bands are {numbers}: give the number of every band once")
     return tuple(open_image(path, one, gsd_m, nodata, along_track, linearize) for one in numbers)

@@ -98,15 +98,13 @@ def parse_rois(text: str, image: Image) -> dict[str, Region]:
         region = _lonlat_region(text.removeprefix("lonlat:"), image)
         region.box(image.shape)
         return {text.strip(): region}
-    if _NUMBERS.match(text) and not Path(text).is_file():
-        raise RegionError(
-            f"the region {text!r} is not four whole numbers of pixels, rows and columns counted "
-            f"from 0: {_FORMS}"
-        )
     if not Path(text).is_file():
-        raise RegionError(
-            f"the region {text!r} is neither numbers nor a file that exists: {_FORMS}"
+        found = (
+            "not four whole numbers of pixels, rows and columns counted from 0"
+            if _NUMBERS.match(text)
+            else "neither numbers nor a file that exists"
         )
+        raise RegionError(f"the region {text!r} is {found}: {_FORMS}")
     return _geojson_regions(text, image)
 
 

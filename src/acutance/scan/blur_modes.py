@@ -134,7 +134,7 @@ def fit_modes(
             pull += np.einsum("nkq,nk->q", slopes, terms.gradient)
             information += np.einsum("nkq,nkp->qp", slopes, terms.information @ slopes)
             crossed += crossed_with_shares(terms, member, terms.slopes @ slopes).sum(axis=0)
-        information -= cost_of_shares(crossed, member, share)
+        information -= cost_of_shares(crossed, member)
         upwards = pull - precision * amount
         step = _step(information, upwards, precision)
         is_last = 0.5 * float(upwards @ step) < _SETTLED

@@ -69,7 +69,7 @@ def edge_terms(edges: EdgeLikelihoods, otf: Floats, member: Membership) -> Itera
         yield EdgeTerms(some, slopes, mean, complete - missing)
 
 
-def cost_of_shares(crossed: Floats, member: Membership, share: Floats) -> Floats:
+def cost_of_shares(crossed: Floats, member: Membership) -> Floats:
     """Information about unknowns (q, q) that not knowing the shares takes.
 
     Parameters
@@ -77,10 +77,9 @@ def cost_of_shares(crossed: Floats, member: Membership, share: Floats) -> Floats
     crossed : (q, p) array
         Sum over all edges of `crossed_with_shares`.
     member : Membership
-    share : (p,) array
     """
     free = crossed @ FREE.T
-    return np.asarray(free @ np.linalg.solve(share_information(member, share), free.T))
+    return np.asarray(free @ np.linalg.solve(share_information(member), free.T))
 
 
 def crossed_with_shares(terms: EdgeTerms, member: Membership, slopes: Floats) -> Floats:
@@ -133,21 +132,19 @@ def expected_information(edges: EdgeLikelihoods, member: Membership) -> tuple[Fl
     return information, projection
 
 
-def observed_information(
-    edges: EdgeLikelihoods, otf: Floats, member: Membership, share: Floats
-) -> Floats:
+def observed_information(edges: EdgeLikelihoods, otf: Floats, member: Membership) -> Floats:
     """Information about the sensor in all directions, (b * 2 k, b * 2 k).
 
     What the edges are is integrated out, and so are the shares of the parts.
     """
     bins, size = otf.shape
     own = np.zeros((bins, size, size))
-    by_share = np.zeros((bins, size, share.size))
+    by_share = np.zeros((bins, size, member.share.size))
     for terms in edge_terms(edges, otf, member):
         where = edges.bin[terms.edges]
         np.add.at(own, where, terms.information)
         np.add.at(by_share, where, crossed_with_shares(terms, member, terms.slopes))
     whole = np.zeros((bins, size, bins, size))
     whole[np.arange(bins), :, np.arange(bins)] = own
-    cost = cost_of_shares(by_share.reshape(-1, share.size), member, share)
+    cost = cost_of_shares(by_share.reshape(-1, member.share.size), member)
     return np.asarray(whole.reshape(bins * size, -1) - cost)

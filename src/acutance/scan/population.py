@@ -255,15 +255,16 @@ def _likeliest_share(by_part: Floats, share: Floats) -> Floats:
 def _law_chances(softness_px: Floats, width_px: Floats) -> Floats:
     """Probability of every law in cells (n, t) about their middles, (p - 2, n, t)."""
     half = 0.5 * width_px[:, None]
-    return law_chances(softness_px - half, softness_px + half)
+    return law_chances(np.hstack([softness_px - half, softness_px[:, -1:] + half]))
 
 
-def share_information(member: Membership, share: Floats) -> Floats:
+def share_information(member: Membership) -> Floats:
     """What the edges and the prior say of the shares, in the directions of `softness.FREE`."""
-    scaled = member.part / share
-    return np.asarray(FREE @ (scaled.T @ scaled + np.diag(PSEUDO_COUNTS / share**2)) @ FREE.T)
+    scaled = member.part / member.share
+    prior = np.diag(PSEUDO_COUNTS / member.share**2)
+    return np.asarray(FREE @ (scaled.T @ scaled + prior) @ FREE.T)
 
 
-def share_covariance(member: Membership, share: Floats) -> Floats:
+def share_covariance(member: Membership) -> Floats:
     """Covariance of the shares, the sensor being known, (p, p)."""
-    return np.asarray(FREE.T @ np.linalg.inv(share_information(member, share)) @ FREE)
+    return np.asarray(FREE.T @ np.linalg.inv(share_information(member)) @ FREE)

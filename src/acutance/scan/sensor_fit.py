@@ -156,14 +156,14 @@ def fit_sensor(
             break
     seen = state.along.turned(np.exp(field.log_gain))
     share, member = fit_shares(seen, state.otf, state.share)
-    left = observed_information(seen, state.otf, member, share)
-    shared = integrate_shared_blur(seen, state.otf, share, modes[:, :, ALL_AROUND], left)
+    left = observed_information(seen, state.otf, member)
+    shared = integrate_shared_blur(seen, state.otf, member, modes[:, :, ALL_AROUND], left)
     otf = changed(state.otf, modes[:, :, ALL_AROUND] * shared.mean_px2)
     share, member = fit_shares(seen, otf, share)
     # It is the mean already: a further step would follow what little is left of information.
     samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
-        combine_curves([samples]), field, normal_deg, share, share_covariance(member, share),
+        combine_curves([samples]), field, normal_deg, share, share_covariance(member),
         member, shared.excess_px2, compare_parts(seen, otf, share, x, y),
         state.turns, state.settled,
     )  # fmt: skip

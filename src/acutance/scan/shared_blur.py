@@ -17,7 +17,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.scan.blur_modes import changed
-from acutance.scan.population import EdgeLikelihoods, fit_shares
+from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares
 
 __all__ = ["SharedBlur", "integrate_shared_blur"]
 
@@ -28,6 +28,7 @@ _NEGLIGIBLE: Final = 7.0
 _WIDEST_PX2: Final = 0.05
 """Standard deviation of places of a likelihood without curvature."""
 _MOST_PX2: Final = 0.4
+"""How far places are tried: more hides the sensor."""
 
 
 class SharedBlur(NamedTuple):
@@ -46,7 +47,7 @@ class SharedBlur(NamedTuple):
 
 
 def integrate_shared_blur(
-    edges: EdgeLikelihoods, otf: Floats, share: Floats, mode: Floats, information: Floats
+    edges: EdgeLikelihoods, otf: Floats, member: Membership, mode: Floats, information: Floats
 ) -> SharedBlur:
     """The posterior of a blur all around, the objects' laws being the likeliest of every place.
 
@@ -55,7 +56,8 @@ def integrate_shared_blur(
     edges : EdgeLikelihoods
     otf : (b, 2 k) array
         The likeliest sensor along the bins.
-    share : (p,) array
+    member : Membership
+        What every edge is under it.
     mode : (b, k) array
         Change of the logarithm of the OTF by a variance of 1 px^2.
     information : (b * 2 k, b * 2 k) array
@@ -66,18 +68,16 @@ def integrate_shared_blur(
     std = 1 / math.sqrt(curvature) if curvature > _WIDEST_PX2**-2 else _WIDEST_PX2
 
     def log_likelihood(blur_px2: float) -> float:
-        return fit_shares(edges, changed(otf, mode * blur_px2), share)[1].log_likelihood
+        return fit_shares(edges, changed(otf, mode * blur_px2), member.share)[1].log_likelihood
 
-    top = log_likelihood(0.0)
-    found = {0.0: top}
+    found = {0.0: member.log_likelihood}
     for side in (-std, std):
-        for place in side * _STEPS[_STEPS * std < _MOST_PX2]:
-            found[float(place)] = log_likelihood(float(place))
-            if found[float(place)] < top - _NEGLIGIBLE:
+        for place in (side * _STEPS[_STEPS * std < _MOST_PX2]).tolist():
+            found[place] = log_likelihood(place)
+            if found[place] < member.log_likelihood - _NEGLIGIBLE:
                 break
-    places = np.array(sorted(found))
-    weight = np.exp([found[float(one)] - max(found.values()) for one in places])
-    weight = weight * np.gradient(places)
+    places, height = (np.array(column) for column in zip(*sorted(found.items()), strict=True))
+    weight = np.exp(height - height.max()) * np.gradient(places)
     mean = float(np.average(places, weights=weight))
     variance = float(np.average((places - mean) ** 2, weights=weight))
     return SharedBlur(mean, math.sqrt(max(variance - std**2, 0.0)))

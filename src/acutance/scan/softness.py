@@ -15,7 +15,6 @@ from itertools import product
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import erf
 
 from acutance.curves.grid import Floats
@@ -65,11 +64,9 @@ START: Final[Floats] = np.array([0.6, *(len(_LAWS) * [0.3 / len(_LAWS)]), 0.1])
 """Shares of the parts before any edge is seen."""
 
 
-def law_chances(lowest_px: Floats, highest_px: Floats) -> NDArray[np.float64]:
-    """Probability of every law between two softnesses (...), (laws, ...)."""
-    return np.array(
-        [_up_to(highest_px, *law) - _up_to(lowest_px, *law) for law in _LAWS], dtype=float
-    )
+def law_chances(borders_px: Floats) -> Floats:
+    """Probability of every law in cells between borders (..., t + 1), (laws, ..., t)."""
+    return np.array([np.diff(_up_to(borders_px, *law)) for law in _LAWS])
 
 
 def _up_to(softness_px: Floats, causes: int, size_px: float) -> Floats:
@@ -81,15 +78,11 @@ def _up_to(softness_px: Floats, causes: int, size_px: float) -> Floats:
     return np.asarray(1 - beyond)
 
 
-def _nearly_ideal() -> Floats:
-    """Share of every part whose objects count as ideal, (p,)."""
-    below = law_chances(np.zeros(1), np.full(1, NEARLY_IDEAL_PX))[:, 0]
-    return np.array([1.0, *below, 0.0])
-
-
+_IDEAL: Final[Floats] = np.array([1.0, *law_chances(np.array([0.0, NEARLY_IDEAL_PX]))[:, 0], 0.0])
+_STRANGE: Final[Floats] = np.eye(len(PARTS))[-1]
 KINDS: Final[dict[str, Floats]] = {
-    "ideal": _nearly_ideal(),
-    "soft": 1 - _nearly_ideal() - np.eye(len(PARTS))[-1],
-    "strange": np.eye(len(PARTS))[-1],
+    "ideal": _IDEAL,
+    "soft": 1 - _IDEAL - _STRANGE,
+    "strange": _STRANGE,
 }
 """The parts in words, as weights of their shares: which law an object follows is hardly told."""

@@ -27,7 +27,7 @@ __all__ = ["OtfBehindObjects", "as_in_image", "behind_objects", "gsd_of_part", "
 
 Complexes = NDArray[np.complex128]
 
-STATED = "target_softness"
+_STATED = "target_softness"
 """Name of the error of what was stated."""
 
 
@@ -115,7 +115,7 @@ class OtfBehindObjects(ShortRepr):
     @property
     def causes(self) -> tuple[str, ...]:
         """Names of the errors it has beside those of the measurement."""
-        return (*([STATED] if self.is_stated else []), *self.errors_px2)
+        return (*([_STATED] if self.is_stated else []), *self.errors_px2)
 
     def with_errors(self, causes: Collection[str]) -> OtfBehindObjects:
         """The same with the errors of some causes only, beside those of the measurement."""
@@ -123,7 +123,7 @@ class OtfBehindObjects(ShortRepr):
         certain = (Estimate(across.value), Estimate(down.value))
         return OtfBehindObjects(
             self.base,
-            self.variance_px2 if STATED in causes else certain,
+            self.variance_px2 if _STATED in causes else certain,
             {name: std for name, std in self.errors_px2.items() if name in causes},
         )
 

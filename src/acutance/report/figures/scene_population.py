@@ -89,10 +89,8 @@ def expected_counts(edges: EdgesSeen, share: Floats, bins: Floats) -> tuple[Floa
     each = edges.mtf.size / some.size
     strange = each * share[-1] * _counted(sensor, sensor, math.sqrt(STRANGE) * std, bins)
     # Softness zero, cells of others, and all that is softer.
-    weight = np.array([
-        share[0], *(share[1:-1] @ law_chances(_CELLS_PX[:-1], _CELLS_PX[1:])),
-        share[1:-1] @ (1 - law_chances(np.zeros(1), _CELLS_PX[-1:]))[:, 0],
-    ])  # fmt: skip
+    cells = share[1:-1] @ law_chances(_CELLS_PX)
+    weight = np.array([share[0], *cells, share[1:-1].sum() - cells.sum()])
     softness_px = np.array([0.0, *(0.5 * (_CELLS_PX[:-1] + _CELLS_PX[1:])), np.inf])
     left = np.exp(-0.5 * (np.pi * softness_px) ** 2)
     counts = np.array([

@@ -10,6 +10,7 @@ import numpy as np
 from acutance.report.html import Table
 from acutance.report.labels import word_softness
 from acutance.report.tables.scene_reasons import reasons_table
+from acutance.scan.softness import NEARLY_IDEAL_PX
 
 if TYPE_CHECKING:
     from acutance.scan import SceneMeasurement
@@ -24,7 +25,7 @@ VERDICTS = {
     "rejected": "not measured",
 }
 _OBJECTS = {
-    "ideal": "blurred by 0.1 px at most",
+    "ideal": f"blurred by {NEARLY_IDEAL_PX:g} px at most",
     "soft": "blurred borders on the ground",
     "strange": "neither: too sharp, or of another shape",
 }
