@@ -9,7 +9,7 @@ from acutance.scan.blur_modes import blur_modes, changed, edge_modes, fit_modes
 from acutance.scan.field import Field, field_polynomials
 from acutance.scan.field_fit import fit_field
 from acutance.scan.population import EdgeLikelihoods
-from acutance.scan.softness import START
+from acutance.scan.shares import START
 
 FREQ = np.arange(0.1, 0.75, 0.1)
 NORMALS = np.array([-60.0, -20.0, 10.0, 40.0, 80.0])

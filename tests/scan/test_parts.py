@@ -94,7 +94,8 @@ class Level:
 
 
 def test_the_scatter_is_an_error_of_the_blur_in_all_directions():
-    found = behind_objects(Level(), ac.ScanOptions(), None, {"parts_scatter": 0.01})
+    rows = np.array([[0.01, 0.0, 0.0]])
+    found = behind_objects(Level(), ac.ScanOptions(), None, {"parts_scatter": rows})
     assert not found.is_stated
     turn = np.radians([0.0, 40.0, 90.0])
     u, v = 0.3 * np.cos(turn), 0.3 * np.sin(turn)
@@ -103,3 +104,14 @@ def test_the_scatter_is_an_error_of_the_blur_in_all_directions():
     np.testing.assert_allclose(std, 0.5 * 2 * np.pi**2 * 0.3**2 * 0.01)
     light = found.with_errors(["target_softness"])
     assert not light.factor(u, v).any()
+
+
+def test_errors_of_one_direction_are_none_of_the_other():
+    # As much all around as across more than along: twice as much across, nothing along.
+    rows = np.array([[0.01, 0.01, 0.0], [0.0, 0.0, 0.02]])
+    found = behind_objects(Level(), ac.ScanOptions(), None, {"shared_softness": rows})
+    u, v = 0.3 * np.cos(np.radians([0, 90, 45])), 0.3 * np.sin(np.radians([0, 90, 45]))
+    std = np.abs(found.factor(u, v)) / (0.5 * 2 * np.pi**2 * 0.3**2)
+    errors = std[:, -2:]
+    np.testing.assert_allclose(errors[:, 0], [0.02, 0.0, 0.01], atol=1e-12)
+    np.testing.assert_allclose(errors[:, 1], [0.0, 0.0, 0.02], atol=1e-12)

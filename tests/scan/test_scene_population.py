@@ -10,10 +10,10 @@ from acutance.scan.information import edge_terms, expected_information, observed
 from acutance.scan.population import (
     EdgeLikelihoods,
     fit_shares,
-    share_covariance,
     softness_grid,
 )
-from acutance.scan.softness import KINDS, PARTS, PSEUDO_COUNTS, START, law_chances
+from acutance.scan.shares import SECTORS, START, sectors_of, share_covariance
+from acutance.scan.softness import KINDS, PARTS, PSEUDO_COUNTS, law_chances
 
 FREQ = np.array([0.1, 0.25, 0.4, 0.5])
 TRUE = np.concatenate([np.exp(-2 * (np.pi * 0.5 * FREQ) ** 2), np.zeros(4)])
@@ -69,7 +69,7 @@ def test_the_grid_of_an_edge_covers_its_softness():
 def test_the_likelihood_is_that_of_a_fine_integral():
     edges, _ = drawn(0.6, 20)
     otf = TRUE[None] * 0.98
-    share = START / START.sum()
+    share = START / START.sum(axis=1, keepdims=True)
     border = np.linspace(0, 6, 20001)
     fine = 0.5 * (border[:-1] + border[1:])
     chances = law_chances(border)
@@ -78,7 +78,7 @@ def test_the_likelihood_is_that_of_a_fine_integral():
             FREQ, edges.root[[one]], edges.value[[one]], edges.rank[[one]], edges.bin[[one]],
             edges.normal_deg[[one]], edges.gain[[one]],
         )  # fmt: skip
-        updated, member = fit_shares(alone, otf, share)
+        (updated, *_), member = fit_shares(alone, otf, share)
         blur = np.exp(-2 * (np.pi * np.outer(fine, FREQ)) ** 2)
         off = otf * np.hstack([blur, blur]) / STD - edges.value[one]
         likelihood = np.exp(-0.5 * np.sum(off**2, axis=1))
@@ -91,8 +91,8 @@ def test_the_likelihood_is_that_of_a_fine_integral():
 @pytest.mark.parametrize("soft_share", [0.0, 0.4, 0.8])
 def test_the_shares_are_found_within_their_deviations(soft_share):
     edges, _ = drawn(soft_share)
-    share, member = fit_shares(edges, TRUE[None], START)
-    covariance = share_covariance(member)
+    (share, *_), member = fit_shares(edges, TRUE[None], START)
+    covariance = share_covariance(member.part, member.sector, member.share)
     assert share.sum() == pytest.approx(1)
     assert len(share) == len(PARTS)
     # Of the soft ones a tenth is as sharp as ideal ones, of a half-normal of .8 px.
@@ -101,6 +101,26 @@ def test_the_shares_are_found_within_their_deviations(soft_share):
     assert abs(KINDS["ideal"] @ share - ideal) < 3 * std + 0.03
     assert share[-1] < 0.02
     assert np.abs(covariance.sum(axis=0)).max() < 1e-9
+
+
+def test_directions_have_shares_of_their_own():
+    edges, tau = drawn(0.5)
+    along = tau > 0
+    mixed = replace(edges, normal_deg=np.where(along, -85.0, 4.0))
+    share, member = fit_shares(mixed, TRUE[None], START)
+    ideal = share @ KINDS["ideal"]
+    across, down = sectors_of(np.array([0.0, 90.0]))
+    assert ideal[across] > 0.97
+    assert ideal[down] < 0.15
+    assert set(member.sector) == {across, down}
+    # Where no edge is, there is what was before.
+    assert share[1] == pytest.approx(PSEUDO_COUNTS / PSEUDO_COUNTS.sum())
+
+
+def test_sectors_lie_about_their_axes():
+    assert sectors_of(np.array([-90.0, -67.4, -22.6, -22.4, 0.0, 22.6, 67.6, 89.0])).tolist() == [
+        2, 3, 3, 0, 0, 1, 2, 2
+    ]  # fmt: skip
 
 
 def test_every_edge_has_the_softness_of_its_object():
@@ -118,7 +138,7 @@ def test_edges_of_another_sensor_are_strange():
     sharper = edges.value.copy()
     sharper[:30] += 0.3 / STD
     mixed = replace(edges, value=sharper)
-    share, member = fit_shares(mixed, TRUE[None], START)
+    (share, *_), member = fit_shares(mixed, TRUE[None], START)
     assert member.part[:30, -1].min() > 0.99
     assert share[-1] == pytest.approx(0.05, abs=0.02)
 
@@ -132,7 +152,7 @@ def test_the_gradient_is_that_of_the_likelihood():
     # At the likeliest shares, with the prior of the shares, their change has no effect.
     def log_posterior(values):
         found, at = fit_shares(edges, values, share)
-        return at.log_likelihood + PSEUDO_COUNTS @ np.log(found)
+        return at.log_likelihood + PSEUDO_COUNTS / SECTORS @ np.log(found[0])
 
     for place in range(4):
         step = np.zeros((1, 8))
@@ -144,7 +164,9 @@ def test_the_gradient_is_that_of_the_likelihood():
 def test_the_information_is_the_curvature_of_the_likelihood():
     edges, _ = drawn(0.5, 200, seed=3)
     _, member = fit_shares(edges, TRUE[None], START)
-    share, member = fit_shares(edges, TRUE[None], member.part.mean(axis=0) + 1e-3)
+    share, member = fit_shares(
+        edges, TRUE[None], np.tile(member.part.mean(axis=0) + 1e-3, (SECTORS, 1))
+    )
     (terms,) = edge_terms(edges, TRUE[None], member)
     step = np.zeros((1, 8))
     step[0, 3] = 2e-3

@@ -6,8 +6,8 @@ import pytest
 from acutance.scan.blur_modes import ALL_AROUND, changed, edge_modes, fit_modes
 from acutance.scan.information import observed_information
 from acutance.scan.population import EdgeLikelihoods, fit_shares
-from acutance.scan.shared_blur import integrate_shared_blur
-from acutance.scan.softness import START
+from acutance.scan.shared_blur import SharedBlur, integrate_shared_blur
+from acutance.scan.shares import START
 
 FREQ = np.array([0.1, 0.25, 0.4, 0.5])
 TRUE = np.concatenate([np.exp(-2 * (np.pi * 0.5 * FREQ) ** 2), np.zeros(4)])[None]
@@ -32,18 +32,19 @@ def posterior(edges):
     otf = changed(TRUE, MODES @ fit.amount)
     _, member = fit_shares(edges, otf, fit.share)
     information = observed_information(edges, otf, member)
-    shared = integrate_shared_blur(edges, otf, member, MODES[:, :, 0], information)
+    shared = integrate_shared_blur(edges, otf, member, MODES, information)
     slope = (otf * np.hstack([MODES[:, :, 0]] * 2)).ravel()
     normal = 1 / (slope @ information @ slope)
-    std = np.hypot(np.sqrt(normal), shared.excess_px2)
-    return fit.amount[0] + shared.mean_px2, std, shared
+    ((excess,),) = np.abs(shared.errors_px2)
+    (mean,) = shared.mean_px2
+    return fit.amount[0] + mean, np.hypot(np.sqrt(normal), excess), SharedBlur(mean, excess)
 
 
 def test_ideal_objects_leave_nothing_open():
     rng = np.random.default_rng(2)
     mean, std, shared = posterior(edges_of(np.zeros(300), 0.02, rng))
     assert abs(shared.mean_px2) < 0.001
-    assert shared.excess_px2 < 0.001
+    assert shared.errors_px2 < 0.001
     assert abs(mean) < 3 * std < 0.003
 
 
@@ -52,7 +53,7 @@ def test_objects_that_are_all_a_little_soft_open_the_interval_towards_sharper_se
     soft = rng.rayleigh(0.2, 60)
     _, _, shared = posterior(edges_of(soft, 0.05, rng))
     assert shared.mean_px2 < -0.003
-    assert shared.excess_px2 > 0.005
+    assert shared.errors_px2 > 0.005
 
 
 # What 1000 draws of seed 11 held; a share of 60 draws scatters by up to .05.

@@ -17,6 +17,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.scan.information import cost_of_shares, crossed_with_shares, edge_terms
 from acutance.scan.population import EdgeLikelihoods, fit_shares
+from acutance.scan.shares import sector_sums
 
 __all__ = [
     "ALL_AROUND",
@@ -53,7 +54,7 @@ class ModesFit(NamedTuple):
     Attributes
     ----------
     amount : (q,) array
-    share : (p,) array
+    share : (g, p) array
         Of the parts of the population.
     information : (q, q) array
         Of the edges alone, about the amounts, what the objects are not being known.
@@ -112,7 +113,7 @@ def fit_modes(
     edges : EdgeLikelihoods
     otf : (b, 2 k) array
         The sensor along the bins.
-    share : (p,) array
+    share : (g, p) array
         First guess.
     modes : (n, k, q) array
         Change of the logarithm of the OTF that every edge sees.
@@ -128,12 +129,13 @@ def fit_modes(
     reached = member.log_likelihood - 0.5 * float(precision @ amount**2)
     for _ in range(_MAX_STEPS):
         pull, information = np.zeros(amount.size), np.zeros((amount.size,) * 2)
-        crossed = np.zeros((amount.size, share.size))
+        crossed = np.zeros((share.shape[0], amount.size, share.shape[1]))
         for terms in edge_terms(seen, otf, member):
             slopes = mode_slopes(seen, otf, modes, terms.edges)
             pull += np.einsum("nkq,nk->q", slopes, terms.gradient)
             information += np.einsum("nkq,nkp->qp", slopes, terms.information @ slopes)
-            crossed += crossed_with_shares(terms, member, terms.slopes @ slopes).sum(axis=0)
+            own = crossed_with_shares(terms, member, terms.slopes @ slopes)
+            crossed += sector_sums(own, member.sector[terms.edges])
         information -= cost_of_shares(crossed, member)
         upwards = pull - precision * amount
         step = _step(information, upwards, precision)

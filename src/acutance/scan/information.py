@@ -14,8 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.scan.population import EdgeLikelihoods, Membership, share_information
-from acutance.scan.softness import FREE, STRANGE
+from acutance.scan.population import EdgeLikelihoods, Membership
+from acutance.scan.shares import SECTORS, free_shares, share_information
+from acutance.scan.softness import STRANGE
 
 __all__ = [
     "EdgeTerms",
@@ -74,12 +75,13 @@ def cost_of_shares(crossed: Floats, member: Membership) -> Floats:
 
     Parameters
     ----------
-    crossed : (q, p) array
-        Sum over all edges of `crossed_with_shares`.
+    crossed : (g, q, p) array
+        Sums over the edges of every sector of `crossed_with_shares`.
     member : Membership
     """
-    free = crossed @ FREE.T
-    return np.asarray(free @ np.linalg.solve(share_information(member), free.T))
+    free = free_shares(crossed)
+    known = share_information(member.part, member.sector, member.share)
+    return np.asarray(np.sum(free @ np.linalg.solve(known, _turned(free)), axis=0))
 
 
 def crossed_with_shares(terms: EdgeTerms, member: Membership, slopes: Floats) -> Floats:
@@ -100,7 +102,8 @@ def crossed_with_shares(terms: EdgeTerms, member: Membership, slopes: Floats) ->
     mean = weighted.sum(axis=1) + strange
     by_law = np.einsum("pnt,ntq->npq", member.within(terms.edges), weighted[:, 1:])
     by_part = np.concatenate([weighted[:, :1], by_law, strange[:, None]], axis=1)
-    return np.asarray(_turned(by_part - part[:, :, None] * mean[:, None]) / member.share)
+    share = member.share[member.sector[terms.edges]]
+    return np.asarray(_turned((by_part - part[:, :, None] * mean[:, None]) / share[:, :, None]))
 
 
 def _complete(edges: EdgeLikelihoods, some: slice, blur: Floats, weight: Floats) -> Floats:
@@ -139,12 +142,13 @@ def observed_information(edges: EdgeLikelihoods, otf: Floats, member: Membership
     """
     bins, size = otf.shape
     own = np.zeros((bins, size, size))
-    by_share = np.zeros((bins, size, member.share.size))
+    by_share = np.zeros((SECTORS, bins, size, member.share.shape[1]))
     for terms in edge_terms(edges, otf, member):
         where = edges.bin[terms.edges]
         np.add.at(own, where, terms.information)
-        np.add.at(by_share, where, crossed_with_shares(terms, member, terms.slopes))
+        crossed = crossed_with_shares(terms, member, terms.slopes)
+        np.add.at(by_share, (member.sector[terms.edges], where), crossed)
     whole = np.zeros((bins, size, bins, size))
     whole[np.arange(bins), :, np.arange(bins)] = own
-    cost = cost_of_shares(by_share.reshape(-1, member.share.size), member)
+    cost = cost_of_shares(by_share.reshape(SECTORS, bins * size, -1), member)
     return np.asarray(whole.reshape(bins * size, -1) - cost)

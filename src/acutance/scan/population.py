@@ -23,25 +23,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.scan.softness import (
-    FREE,
-    NEARLY_IDEAL_PX,
-    PSEUDO_COUNTS,
-    STRANGE,
-    law_chances,
-)
+from acutance.scan.shares import likeliest_shares, sectors_of
+from acutance.scan.softness import NEARLY_IDEAL_PX, STRANGE, law_chances
 
 __all__ = [
     "EdgeLikelihoods",
     "Membership",
     "fit_shares",
-    "share_covariance",
-    "share_information",
     "softness_grid",
 ]
 
-_SETTLED: Final = 1e-4
-_MAX_PASSES: Final = 200
 _CHUNK: Final = 256
 """Edges at once: arrays of edges by softness by frequency stay small."""
 _COARSE_PX2: Final[Floats] = np.array([
@@ -164,8 +155,9 @@ class Membership(NamedTuple):
 
     Attributes
     ----------
-    share : (p,) array
-        Of the parts.
+    share : (g, p) array
+        Of the parts, in every sector of directions.
+    sector : (n,) int array
     softness_px : (n, t + 1) array
         Softness that each may have; the first is 0, of an ideal object.
     width_px : (n,) array
@@ -181,6 +173,7 @@ class Membership(NamedTuple):
     """
 
     share: Floats
+    sector: NDArray[np.intp]
     softness_px: Floats
     width_px: Floats
     laws: Floats
@@ -210,12 +203,13 @@ class Membership(NamedTuple):
 
     def within(self, some: slice) -> Floats:
         """Probability of every law by softness of some edges, being soft ones, (p - 2, n, t)."""
-        by_law = self.share[1:-1, None, None] * self.laws[:, some]
+        share = self.share[self.sector[some]]
+        by_law = share.T[1:-1, :, None] * self.laws[:, some]
         return np.asarray(by_law / np.maximum(by_law.sum(axis=0), _TINY))
 
 
 def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> tuple[Floats, Membership]:
-    """Shares of the parts for a given sensor (b, 2 k), and what the edges are."""
+    """Shares of the parts (g, p) for a given sensor (b, 2 k), and what the edges are."""
     soft_px, width_px = softness_grid(edges, otf)
     softness_px = np.hstack([np.zeros((edges.size, 1)), soft_px])
     power = np.concatenate([
@@ -229,42 +223,20 @@ def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> tuple[Floa
     laws = _law_chances(soft_px, width_px)
     by_law = np.einsum("pnt,nt->np", laws, odds[:, 1:])
     by_part = np.column_stack([odds[:, 0], by_law, strange])
-    share = _likeliest_share(by_part, share)
-    whole = by_part @ share
-    soft = np.tensordot(share[1:-1], laws, axes=1)
-    chance = odds * np.hstack([np.full((edges.size, 1), share[0]), soft]) / whole[:, None]
+    sector = sectors_of(edges.normal_deg)
+    share = likeliest_shares(by_part, sector, share)
+    own = share[sector]
+    whole = np.sum(by_part * own, axis=1)
+    soft = np.einsum("np,pnt->nt", own[:, 1:-1], laws)
+    chance = odds * np.hstack([own[:, :1], soft]) / whole[:, None]
     member = Membership(
-        share, softness_px, width_px, laws, chance, by_part * share / whole[:, None],
+        share, sector, softness_px, width_px, laws, chance, by_part * own / whole[:, None],
         float(np.sum(largest) + np.sum(np.log(whole))),
     )  # fmt: skip
     return share, member
-
-
-def _likeliest_share(by_part: Floats, share: Floats) -> Floats:
-    """Shares of the parts that make the edges likeliest; likelihoods (n, p) by part."""
-    for _ in range(_MAX_PASSES):
-        counts = share * (by_part.T @ (1 / (by_part @ share))) + PSEUDO_COUNTS
-        updated = counts / counts.sum()
-        moved = float(np.abs(updated - share).max())
-        share = updated
-        if moved < _SETTLED:
-            break
-    return share
 
 
 def _law_chances(softness_px: Floats, width_px: Floats) -> Floats:
     """Probability of every law in cells (n, t) about their middles, (p - 2, n, t)."""
     half = 0.5 * width_px[:, None]
     return law_chances(np.hstack([softness_px - half, softness_px[:, -1:] + half]))
-
-
-def share_information(member: Membership) -> Floats:
-    """What the edges and the prior say of the shares, in the directions of `softness.FREE`."""
-    scaled = member.part / member.share
-    prior = np.diag(PSEUDO_COUNTS / member.share**2)
-    return np.asarray(FREE @ (scaled.T @ scaled + prior) @ FREE.T)
-
-
-def share_covariance(member: Membership) -> Floats:
-    """Covariance of the shares, the sensor being known, (p, p)."""
-    return np.asarray(FREE.T @ np.linalg.inv(share_information(member)) @ FREE)

@@ -23,9 +23,10 @@ from acutance.scan.blur_modes import ALL_AROUND, COMMON_MODES, changed, edge_mod
 from acutance.scan.field_fit import FieldFit, fit_field
 from acutance.scan.information import expected_information, observed_information
 from acutance.scan.parts import PartsFit, compare_parts
-from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares, share_covariance
+from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares
 from acutance.scan.shared_blur import integrate_shared_blur
-from acutance.scan.softness import KINDS, START
+from acutance.scan.shares import START, share_covariance
+from acutance.scan.softness import KINDS
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import CombinedFit, combine_curves
 from acutance.targets.combine.sensor_forms import FORMS
@@ -74,14 +75,11 @@ class SensorFit:
         Its change over the field.
     normal_deg : (b,) array
         Mean direction of every bin.
-    share : (p,) array
-        Of `softness.PARTS`.
-    share_covariance : (p, p) array
     member : Membership
         What every edge is.
-    shared_px2 : float
-        Standard deviation of a blur all around that may be the sensor's or all objects'
-        (`acutance.scan.shared_blur`), beside that of `combined`.
+    shared_px2 : (r, 3) array
+        Independent errors of the blurs that may be the sensor's or the objects'
+        (`acutance.scan.shared_blur`), beside those of `combined`.
     parts : PartsFit or None
         Whether the parts of the scene agree; None of too few edges.
     turns : int
@@ -91,27 +89,32 @@ class SensorFit:
     combined: CombinedFit
     field: FieldFit
     normal_deg: Floats
-    share: Floats
-    share_covariance: Floats
     member: Membership
-    shared_px2: float
+    shared_px2: Floats
     parts: PartsFit | None
     turns: int
     settled: bool
 
     @property
+    def share(self) -> Floats:
+        """Shares of `softness.PARTS` among all edges, (p,)."""
+        return np.asarray(self.member.share[self.member.sector].mean(axis=0))
+
+    @property
     def kinds(self) -> dict[str, tuple[float, float]]:
         """Shares of ideal, soft and strange edges, and their standard deviations."""
-        found = {}
+        member, share, found = self.member, self.share, {}
+        covariance = share_covariance(member.part, member.sector, member.share)
         for name, weight in KINDS.items():
-            variance = float(weight @ self.share_covariance @ weight)
-            found[name] = float(weight @ self.share), math.sqrt(max(variance, 0.0))
+            variance = float(weight @ covariance @ weight)
+            found[name] = float(weight @ share), math.sqrt(max(variance, 0.0))
         return found
 
     @property
-    def common_errors_px2(self) -> dict[str, float]:
-        """Standard deviations of a blur all around beside that of `combined`, by their cause."""
-        scatter = 0.0 if self.parts is None else self.parts.scatter_px2
+    def common_errors_px2(self) -> dict[str, Floats]:
+        """Independent errors of the blurs beside those of `combined`, (r, 3), by their cause."""
+        scatter = np.zeros((1, COMMON_MODES))
+        scatter[0, ALL_AROUND] = 0.0 if self.parts is None else self.parts.scatter_px2
         return {"shared_softness": self.shared_px2, "parts_scatter": scatter}
 
     @property
@@ -157,14 +160,14 @@ def fit_sensor(
     seen = state.along.turned(np.exp(field.log_gain))
     share, member = fit_shares(seen, state.otf, state.share)
     left = observed_information(seen, state.otf, member)
-    shared = integrate_shared_blur(seen, state.otf, member, modes[:, :, ALL_AROUND], left)
-    otf = changed(state.otf, modes[:, :, ALL_AROUND] * shared.mean_px2)
+    shared = integrate_shared_blur(seen, state.otf, member, modes, left)
+    otf = changed(state.otf, modes @ shared.mean_px2)
     share, member = fit_shares(seen, otf, share)
     # It is the mean already: a further step would follow what little is left of information.
     samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
-        combine_curves([samples]), field, normal_deg, share, share_covariance(member),
-        member, shared.excess_px2, compare_parts(seen, otf, share, x, y),
+        combine_curves([samples]), field, normal_deg, member, shared.errors_px2,
+        compare_parts(seen, otf, share, x, y),
         state.turns, state.settled,
     )  # fmt: skip
 
@@ -176,7 +179,7 @@ class _State(NamedTuple):
     ----------
     otf : (b, 2 k) array
         Along the bins, in the middle of the edges.
-    share : (p,) array
+    share : (g, p) array
     forms : sequence of tuples of str
         Forms of sensors that have some weight.
     near : sequence of WeightedForm

@@ -1,10 +1,12 @@
-"""How much of the blur that all edges share may be their objects': the ridge, integrated.
+"""How much of the blur that all edges share may be their objects': the ridges, integrated.
 
 A sensor a little sharper under objects that are all a little softer explains the edges nearly as
 well. With few sharp objects, or few at all, the likelihood falls slowly towards sharper sensors and
 steeply towards softer ones, until no law of softness (`acutance.scan.softness`) has objects like
-these. Its normal approximation about the top does not know that. So along this one direction, a
-blur the same all around, the posterior is integrated: its mean is the sensor's, and by what its
+these. Its normal approximation about the top does not know that. Objects of one direction may be
+softer than others (`acutance.scan.shares`), so there is such a ridge for every blur that edges see:
+all around, across more than along, oblique. Along the principal axes of what the edges say of
+these the posterior is integrated, each by itself: its mean is the sensor's, and by what its
 variance exceeds that of the approximation the sensor is known less well.
 """
 
@@ -17,6 +19,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.scan.blur_modes import changed
+from acutance.scan.information import expected_information
 from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares
 
 __all__ = ["SharedBlur", "integrate_shared_blur"]
@@ -32,24 +35,24 @@ _MOST_PX2: Final = 0.4
 
 
 class SharedBlur(NamedTuple):
-    """The posterior of a blur that is the same in all directions, about the likeliest sensor.
+    """The posterior of the blurs that edges see, about the likeliest sensor.
 
     Attributes
     ----------
-    mean_px2 : float
-        Variance by which the sensor's blur exceeds that of the likeliest: mostly negative.
-    excess_px2 : float
-        Standard deviation beyond that of the normal approximation.
+    mean_px2 : (q,) array
+        By how much the sensor's exceed those of the likeliest, of every mode: mostly negative.
+    errors_px2 : (r, q) array
+        Independent errors beyond the normal approximation, a row each.
     """
 
-    mean_px2: float
-    excess_px2: float
+    mean_px2: Floats
+    errors_px2: Floats
 
 
 def integrate_shared_blur(
-    edges: EdgeLikelihoods, otf: Floats, member: Membership, mode: Floats, information: Floats
+    edges: EdgeLikelihoods, otf: Floats, member: Membership, modes: Floats, information: Floats
 ) -> SharedBlur:
-    """The posterior of a blur all around, the objects' laws being the likeliest of every place.
+    """The posterior of the blurs, the objects' laws being the likeliest of every place.
 
     Parameters
     ----------
@@ -58,13 +61,38 @@ def integrate_shared_blur(
         The likeliest sensor along the bins.
     member : Membership
         What every edge is under it.
-    mode : (b, k) array
-        Change of the logarithm of the OTF by a variance of 1 px^2.
+    modes : (b, k, q) array
+        Change of the logarithm of the OTF by a unit of every blur.
     information : (b * 2 k, b * 2 k) array
         Of the edges about the sensor, of the normal approximation.
     """
-    slope = (otf * np.hstack([mode, mode])).ravel()
-    curvature = float(slope @ information @ slope)
+    axes, curvature = _axes(edges, otf, member, modes, information)
+    found = [
+        _along_axis(edges, otf, member, modes @ axis, size)
+        for axis, size in zip(axes, curvature.tolist(), strict=True)
+    ]
+    means, excess = np.array(found).reshape(-1, 2).T
+    return SharedBlur(means @ axes, excess[:, None] * axes)
+
+
+def _axes(
+    edges: EdgeLikelihoods, otf: Floats, member: Membership, modes: Floats, information: Floats
+) -> tuple[Floats, Floats]:
+    """Principal axes of the blurs that edges see, (r, q), and the information about each, (r,)."""
+    slopes = otf[:, :, None] * np.concatenate([modes, modes], axis=1)
+    complete = np.einsum("bkq,bkl,blp->qp", slopes, expected_information(edges, member)[0], slopes)
+    size, axes = np.linalg.eigh(complete)
+    # Of the others only what is known of sensors tells.
+    seen = axes[:, size > _WIDEST_PX2**-2]
+    flat = slopes.reshape(-1, slopes.shape[2]) @ seen
+    size, turned = np.linalg.eigh(flat.T @ information @ flat)
+    return (seen @ turned).T, size
+
+
+def _along_axis(
+    edges: EdgeLikelihoods, otf: Floats, member: Membership, mode: Floats, curvature: float
+) -> tuple[float, float]:
+    """Mean along one axis, and standard deviation beyond the normal approximation, px^2."""
     std = 1 / math.sqrt(curvature) if curvature > _WIDEST_PX2**-2 else _WIDEST_PX2
 
     def log_likelihood(blur_px2: float) -> float:
@@ -80,4 +108,4 @@ def integrate_shared_blur(
     weight = np.exp(height - height.max()) * np.gradient(places)
     mean = float(np.average(places, weights=weight))
     variance = float(np.average((places - mean) ** 2, weights=weight))
-    return SharedBlur(mean, math.sqrt(max(variance - std**2, 0.0)))
+    return mean, math.sqrt(max(variance - std**2, 0.0))

@@ -25,7 +25,6 @@ __all__ = [
     "NEARLY_IDEAL_PX",
     "PARTS",
     "PSEUDO_COUNTS",
-    "START",
     "STRANGE",
     "law_chances",
 ]
@@ -60,8 +59,6 @@ STRANGE: Final = 100.0
 """Variance of strange edges, in units of that of the pixels."""
 PSEUDO_COUNTS: Final[Floats] = np.array([1.0, *(len(_LAWS) * [1.2 / len(_LAWS)]), 0.2])
 """Edges that each part has before any is seen: some objects are ideal."""
-START: Final[Floats] = np.array([0.6, *(len(_LAWS) * [0.3 / len(_LAWS)]), 0.1])
-"""Shares of the parts before any edge is seen."""
 
 
 def law_chances(borders_px: Floats) -> Floats:

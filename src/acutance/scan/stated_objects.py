@@ -48,7 +48,7 @@ def require_statement(options: ScanOptions, gsd: Gsd | None) -> None:
 
 
 def behind_objects(
-    sensor: OtfModel, options: ScanOptions, gsd: Gsd | None, errors_px2: Mapping[str, float]
+    sensor: OtfModel, options: ScanOptions, gsd: Gsd | None, errors_px2: Mapping[str, Floats]
 ) -> OtfModel:
     """The sensor behind the softness that all objects have; the same one if nothing is known of it.
 
@@ -60,12 +60,12 @@ def behind_objects(
         That may state it.
     gsd : Gsd or None
         By which metres become pixels.
-    errors_px2 : mapping of str to float
-        Standard deviations of its variance that the edges tell, by the name of their cause; those
-        of 0 are none.
+    errors_px2 : mapping of str to (r, 3) array
+        Independent errors of its variance that the edges tell, by the name of their cause, as of
+        `OtfBehindObjects`; those of 0 are none.
     """
     across, down = _borders(options, gsd)
-    errors = {name: std for name, std in errors_px2.items() if std > 0}
+    errors = {name: rows for name, rows in errors_px2.items() if rows.any()}
     if across.softness_px is None and not errors:
         return sensor
     return OtfBehindObjects(sensor, (across.variance_px2, down.variance_px2), errors)
@@ -93,14 +93,15 @@ class OtfBehindObjects(ShortRepr):
     variance_px2 : (Estimate, Estimate)
         Of the borders' Gaussian profile along columns (u) and rows (v) as it was stated; one
         statement, whose errors are the same.
-    errors_px2 : mapping of str to float, optional
-        Further standard deviations of their variance, the same in all directions and independent
-        of one another, by the name of their cause.
+    errors_px2 : mapping of str to (r, 3) array, optional
+        Further errors of their variance, independent of one another, by the name of their cause: a
+        row each of a part all around, one across more than along, and an oblique one
+        (`acutance.scan.blur_modes`).
     """
 
     base: OtfModel
     variance_px2: tuple[Estimate, Estimate]
-    errors_px2: Mapping[str, float] = field(default_factory=dict)
+    errors_px2: Mapping[str, Floats] = field(default_factory=dict)
 
     @property
     def band_cpp(self) -> float:
@@ -124,7 +125,7 @@ class OtfBehindObjects(ShortRepr):
         return OtfBehindObjects(
             self.base,
             self.variance_px2 if _STATED in causes else certain,
-            {name: std for name, std in self.errors_px2.items() if name in causes},
+            {name: rows for name, rows in self.errors_px2.items() if name in causes},
         )
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
@@ -137,7 +138,8 @@ class OtfBehindObjects(ShortRepr):
         change = self.base.otf(u_cpp, v_cpp) * by_variance
         stated = self._along(u_cpp, v_cpp) @ [one.std for one in self.variance_px2]
         measured = self.base.factor(u_cpp, v_cpp) * gain[:, None]
-        others = [change * std for std in self.errors_px2.values()]
+        by_blur = self._by_blur(u_cpp, v_cpp)
+        others = [change[:, None] * (by_blur @ rows.T) for rows in self.errors_px2.values()]
         return np.column_stack([measured, change * stated, *others])
 
     def packed(self) -> OtfBehindObjects:
@@ -149,6 +151,12 @@ class OtfBehindObjects(ShortRepr):
         """By how much the sensor exceeds what is measured, and its derivative by the variance."""
         variance = self._along(u_cpp, v_cpp) @ [one.value for one in self.variance_px2]
         return border_gain(np.hypot(u_cpp, v_cpp), variance)
+
+    def _by_blur(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
+        """Variance along a direction by units of the blurs of `errors_px2`, (n, 3)."""
+        across, down = np.moveaxis(self._along(u_cpp, v_cpp), -1, 0)
+        oblique = 2 * np.sign(u_cpp * v_cpp) * np.sqrt(across * down)
+        return np.stack([across + down, across - down, oblique], axis=-1)
 
     def _along(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
         """Shares of the variances along columns and rows in that along a direction, (n, 2)."""

@@ -1,0 +1,98 @@
+"""Shares of the objects that are ideal, soft or strange, by the direction of their borders.
+
+Objects of one direction may be softer than those of another: rows of fields and the roads between
+them, the shadow side of roofs, a slope towards the sun. Were their shares the same by assumption,
+such a softness would pass for the sensor's blur of that direction. So every sector of directions
+has shares of its own.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.scan.softness import FREE, PARTS, PSEUDO_COUNTS
+
+__all__ = [
+    "SECTORS",
+    "START",
+    "free_shares",
+    "likeliest_shares",
+    "sector_sums",
+    "sectors_of",
+    "share_covariance",
+    "share_information",
+]
+
+SECTORS: Final = 4
+"""About across, along and the two directions between them."""
+_SOFT_LAWS: Final = len(PARTS) - 2
+START: Final[Floats] = np.tile([0.6, *(_SOFT_LAWS * [0.3 / _SOFT_LAWS]), 0.1], (SECTORS, 1))
+"""Shares of the parts before any edge is seen, (g, p)."""
+_BEFORE: Final[Floats] = PSEUDO_COUNTS / SECTORS
+"""Edges that each part of a sector has before any is seen."""
+_SETTLED: Final = 1e-4
+_MAX_PASSES: Final = 200
+
+
+def sectors_of(normal_deg: Floats) -> NDArray[np.intp]:
+    """Sector of every direction, the first about the columns' axis, (n,)."""
+    return np.asarray(np.rint(normal_deg * (SECTORS / 180.0)) % SECTORS, np.intp)
+
+
+def sector_sums(terms: Floats, sector: NDArray[np.intp]) -> Floats:
+    """Sums of terms (n, ...) over the edges of every sector, (g, ...)."""
+    return np.asarray(np.tensordot(np.arange(SECTORS)[:, None] == sector, terms, axes=1))
+
+
+def likeliest_shares(by_part: Floats, sector: NDArray[np.intp], share: Floats) -> Floats:
+    """Shares (g, p) that make the edges likeliest, from a first guess; likelihoods (n, p) by part.
+
+    Every sector by itself.
+    """
+    return np.array([_likeliest(by_part[sector == g], own) for g, own in enumerate(share)])
+
+
+def _likeliest(by_part: Floats, share: Floats) -> Floats:
+    """The likeliest shares of a sector, (p,), by expectation and maximisation."""
+    for _ in range(_MAX_PASSES):
+        counts = share * (by_part.T @ (1 / (by_part @ share))) + _BEFORE
+        updated = counts / counts.sum()
+        moved = float(np.abs(updated - share).max())
+        share = updated
+        if moved < _SETTLED:
+            break
+    return share
+
+
+def share_information(part: Floats, sector: NDArray[np.intp], share: Floats) -> Floats:
+    """What edges and prior say of the shares of every sector, whose sum is one, (g, p - 1, p - 1).
+
+    Parameters
+    ----------
+    part : (n, p) array
+        Probability of every part.
+    sector : (n,) int array
+    share : (g, p) array
+    """
+    scaled = part / share[sector]
+    own = [scaled[sector == g] for g in range(SECTORS)]
+    prior = [np.diag(_BEFORE / one**2) for one in share]
+    return np.array([
+        FREE @ (one.T @ one + before) @ FREE.T for one, before in zip(own, prior, strict=True)
+    ])  # fmt: skip
+
+
+def free_shares(crossed: Floats) -> Floats:
+    """Products with shares (..., p) in the directions of `share_information`, (..., p - 1)."""
+    return np.asarray(crossed @ FREE.T)
+
+
+def share_covariance(part: Floats, sector: NDArray[np.intp], share: Floats) -> Floats:
+    """Covariance of the shares of all edges together, the sensor being known, (p, p)."""
+    weight = np.bincount(sector, minlength=SECTORS) / sector.size
+    own = np.linalg.inv(share_information(part, sector, share))
+    return np.asarray(FREE.T @ np.tensordot(weight**2, own, axes=1) @ FREE)
