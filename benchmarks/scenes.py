@@ -1,7 +1,8 @@
 """Scenes against their truth: the sensor under ideal, partly soft, mostly soft, only soft objects.
 
 Landscapes of fields (`acutance.simulate.landscape`) without anything beside them, SNR 100 of the
-middle contrast; a share of the borders is soft, Gaussians of .15 to 2 px, or all of 0 to .4 px.
+middle contrast; a share of the borders is soft, Gaussians of .15 to 2 px, or all of 0 to .4 px,
+or all that face along within 22.5 degrees, the others being ideal.
 `acutance.scan_scene` measures across and along; the median of the used edges nearest to either
 direction stands beside. Where the blur grows over the field, every pixel is a mean of two
 landscapes under sensors a little sharper and a little softer than the one at its place; the sensor
@@ -33,14 +34,17 @@ MIN_LENGTH_PX, MIN_SNR, WRONG = 20.0, 20.0, 4.0
 
 @dataclass(frozen=True)
 class Case:
-    """A share of soft objects, whether the blur grows to the corners, and how soft they are."""
+    """A share of soft objects, whether the blur grows to the corners, how soft they are, where."""
 
     soft: float
     has_soft_corners: bool
     softness_px: tuple[float, float] = (0.15, 2.0)
+    soft_normal_deg: tuple[float, float] = (0.0, 180.0)
 
     @property
     def name(self) -> str:
+        if self.soft_normal_deg != (0.0, 180.0):
+            return "along soft by {:g} to {:g} px".format(*self.softness_px)
         if self.soft == 1:
             return "all soft by {:g} to {:g} px".format(*self.softness_px)
         return f"{100 * self.soft:.0f} % soft" + (", corners" if self.has_soft_corners else "")
@@ -48,6 +52,7 @@ class Case:
 
 CASES = (
     Case(0.0, False), Case(0.4, False), Case(0.75, False), Case(1.0, False, (0.0, 0.4)),
+    Case(1.0, False, (0.0, 0.4), (67.5, 112.5)),
     Case(0.0, True), Case(0.4, True),
 )  # fmt: skip
 
@@ -90,7 +95,9 @@ def draw(
     case: Case, sensor: ac.Sensor, size_px: int, seed: tuple[int, ...]
 ) -> tuple[np.ndarray, LandscapeTruth]:
     """A scene, its noise added, and its truth in the middle of the field."""
-    options = LandscapeOptions(soft=case.soft, softness_px=case.softness_px, **CLEAN)
+    options = LandscapeOptions(
+        soft=case.soft, softness_px=case.softness_px, soft_normal_deg=case.soft_normal_deg, **CLEAN
+    )
     shape, noise = (size_px, size_px), np.random.default_rng((*seed, 1))
 
     def landscape(variance_px2: float) -> tuple[np.ndarray, LandscapeTruth]:
@@ -222,7 +229,8 @@ def main() -> None:
     parts = [
         f"Scenes of {arguments.size} x {arguments.size} px, {arguments.draws} a row, SNR 100; "
         "errors of the MTF across and along, and how often 95 % intervals hold the truth. Soft "
-        'borders: Gaussians of .15 to 2 px where not said otherwise. "Corners": the blur grows to '
+        'borders: Gaussians of .15 to 2 px where not said otherwise. "Along": those of normals '
+        'within 22.5 degrees of along, all others being ideal. "Corners": the blur grows to '
         "the corners by a Gaussian of .3 px; errors are those in two corners, the median of the "
         f"edges is compared with the middle. Found: of true edges of {MIN_LENGTH_PX:.0f} px and "
         f"SNR {MIN_SNR:.0f} and more. Wrong: of used edges with ideal objects, those that err by "

@@ -243,6 +243,25 @@ def test_objects_that_are_all_soft_by_different_amounts_open_the_interval():
     assert max(terms[name, "shared_softness"] for name in ("across", "along")) > 0.1
 
 
+def test_softness_of_one_direction_is_none_of_the_sensor():
+    sensor = simulate.reference_systems()["diffraction"]
+    options = simulate.LandscapeOptions(
+        soft=1.0, softness_px=(0.0, 0.5), soft_normal_deg=(67.5, 112.5), density_per_mpx=70,
+        roofs=0.0, roads=0.0, discs=0.0,
+    )  # fmt: skip
+    rng = np.random.default_rng(5)
+    image, _ = simulate.landscape(sensor, shape=(900, 900), snr=80, options=options, rng=rng)
+    scene = ac.scan_scene(image)
+    truth = abs(sensor.otf(np.array([0.5]), np.array([0.0]))[0])
+    for number in (scene.across.mtf_nyquist, scene.along.mtf_nyquist):
+        assert abs(number.value - truth) < 2.5 * number.std
+        assert number.std < 0.08 * truth
+    edges = scene.edges
+    along = np.abs(np.abs(edges.normal_deg[edges.used]) - 90) < 22.5
+    assert edges.ideal[edges.used][~along].mean() > 0.9
+    assert edges.ideal[edges.used][along].mean() < 0.6
+
+
 def test_no_edge_and_too_few_are_errors_that_say_what_was_found():
     rng = np.random.default_rng(0)
     with pytest.raises(ac.NoEdgeError, match="no straight edge stands out"):

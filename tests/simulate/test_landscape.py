@@ -129,6 +129,17 @@ def test_soft_borders_have_a_lower_mtf_and_the_sensor_keeps_its_own():
     assert edge.sensor == SYSTEMS["gaussian"]
 
 
+def test_borders_may_be_soft_in_some_directions_only():
+    every = replace(BARE, soft=1.0, roofs=0.0)
+    _, all_soft = seeded(options=every)
+    _, truth = seeded(options=replace(every, soft_normal_deg=(60.0, 120.0)))
+    for before, edge in zip(all_soft.edges, truth.edges, strict=True):
+        faces_along = 60 <= edge.ground_line.normal_deg % 180 <= 120
+        assert edge.softness_px == (before.softness_px if faces_along else 0.0)
+    with pytest.raises(ac.ModelError, match="soft_normal_deg"):
+        replace(every, soft_normal_deg=(135.0, 225.0))
+
+
 def test_a_field_varies_from_object_to_object():
     field = SoftCorners(SYSTEMS["gaussian"], SHAPE, 0.5)
     image, truth = seeded(field, options=replace(BARE, soft=0.0, curved=0.0))

@@ -105,6 +105,13 @@ def landscape(
     soft: Annotated[
         float, typer.Option(metavar="SHARE", help="Borders of fields that are soft on the ground.")
     ] = 0.25,
+    soft_normal: Annotated[
+        str,
+        typer.Option(
+            metavar="LOW,HIGH",
+            help="Directions of the normals of borders that may be soft, degrees of 0 to 180.",
+        ),
+    ] = "0,180",
     curved: Annotated[
         float, typer.Option(metavar="SHARE", help="Borders of fields that are arcs.")
     ] = 0.2,
@@ -128,6 +135,7 @@ def landscape(
     files = SimulatedFiles.of(out, sensor, truth_ending=".geojson")
     shape, system = parse_size(size), named_sensor(sensor)
     shares = beside.shares(clean)
+    soft_normals = parse_pair("--soft-normal", soft_normal, "lowest and highest, as in 45,135")
     textures = parse_pair("--texture", texture, "lowest and highest, as in 0.01,0.04")
 
     import numpy as np
@@ -138,6 +146,7 @@ def landscape(
     options = simulate.LandscapeOptions(
         density_per_mpx=density,
         soft=soft,
+        soft_normal_deg=soft_normals,
         curved=curved,
         texture=textures,
         slope_per_px=slope,

@@ -27,8 +27,8 @@ __all__ = [
     "share_information",
 ]
 
-SECTORS: Final = 4
-"""About across, along and the two directions between them."""
+SECTORS: Final = 8
+"""About across, along and six directions between them."""
 _SOFT_LAWS: Final = len(PARTS) - 2
 START: Final[Floats] = np.tile([0.6, *(_SOFT_LAWS * [0.3 / _SOFT_LAWS]), 0.1], (SECTORS, 1))
 """Shares of the parts before any edge is seen, (g, p)."""

@@ -129,6 +129,9 @@ def _field(turn_deg: float, options: LandscapeOptions, rng: np.random.Generator)
     borders = []
     for one in found.borders:
         soft = rng.uniform(*options.softness_px) if rng.random() < options.soft else 0.0
+        lowest, highest = options.soft_normal_deg
+        if not lowest <= one.normal_deg % 180 <= highest:
+            soft = 0.0
         bend = 0.0
         if rng.random() < options.curved:
             radius = math.exp(rng.uniform(*np.log(options.radius_px)))

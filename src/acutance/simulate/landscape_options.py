@@ -64,6 +64,9 @@ class LandscapeOptions:
         Share of borders that are soft on the ground; those of roofs never are.
     softness_px : (float, float), optional
         Standard deviation of the Gaussian that blurs a soft border.
+    soft_normal_deg : (float, float), optional
+        Borders are soft only where the direction of their normal, 0 to 180 from the column axis
+        towards the row axis, lies between these; the others are ideal.
     curved : float, optional
         Share of fields' borders that are arcs.
     radius_px : (float, float), optional
@@ -106,6 +109,7 @@ class LandscapeOptions:
     disc_radius_px: Range = (5.0, 25.0)
     soft: float = 0.25
     softness_px: Range = (0.15, 0.6)
+    soft_normal_deg: Range = (0.0, 180.0)
     curved: float = 0.2
     radius_px: Range = (300.0, 5000.0)
     rims: float = 0.12
@@ -139,6 +143,7 @@ class LandscapeOptions:
                 self._require_range(one.name)
         for name, lowest in _SMALLEST_PX.items():
             require(self, lowest, **{name: getattr(self, name)[0]})
+        require(self, 0.0, 180.0, soft_normal_deg=self.soft_normal_deg[1])
 
     def _require_shares(self, names: tuple[str, ...]) -> None:
         shares = {name: getattr(self, name) for name in names}
