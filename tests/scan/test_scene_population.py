@@ -12,7 +12,7 @@ from acutance.scan.population import (
     fit_shares,
     softness_grid,
 )
-from acutance.scan.shares import SECTORS, START, sectors_of, share_covariance
+from acutance.scan.shares import SECTORS, START, sectors_of, share_covariances
 from acutance.scan.softness import KINDS, PARTS, PSEUDO_COUNTS, law_chances
 
 FREQ = np.array([0.1, 0.25, 0.4, 0.5])
@@ -92,7 +92,7 @@ def test_the_likelihood_is_that_of_a_fine_integral():
 def test_the_shares_are_found_within_their_deviations(soft_share):
     edges, _ = drawn(soft_share)
     (share, *_), member = fit_shares(edges, TRUE[None], START)
-    covariance = share_covariance(member.part, member.sector, member.share)
+    covariance, *_ = share_covariances(member.part, member.sector, member.share)
     assert share.sum() == pytest.approx(1)
     assert len(share) == len(PARTS)
     # Of the soft ones a tenth is as sharp as ideal ones, of a half-normal of .8 px.

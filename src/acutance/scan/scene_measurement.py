@@ -14,6 +14,7 @@ from acutance.errors import RegionError
 from acutance.geometry.line import Orientation
 from acutance.scan.field import Field, FieldOtf
 from acutance.scan.scene_edges import SceneEdges
+from acutance.scan.sensor_fit import IdealShare
 from acutance.scan.stated_objects import OtfBehindObjects
 from acutance.targets.measurement import Measurement
 from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_stds
@@ -86,6 +87,8 @@ class SceneMeasurement(Measurement):
         How sharpness changes over the scene.
     objects : mapping of str to Estimate
         Shares of the objects: "ideal", "soft", and "strange" for edges that are neither.
+    ideal_by_direction : tuple of IdealShare
+        Shares of ideal objects among those of about one direction: normal_deg, edges, share.
     normal_deg_bins : tuple of float
         Mean directions of the edges, -90 to 90 degrees.
     """
@@ -93,6 +96,7 @@ class SceneMeasurement(Measurement):
     edges: SceneEdges
     field: Field
     objects: Mapping[str, Estimate]
+    ideal_by_direction: tuple[IdealShare, ...]
     normal_deg_bins: tuple[float, ...]
 
     def at(self, row: float, col: float) -> ScenePlace:
@@ -147,6 +151,10 @@ class SceneMeasurement(Measurement):
             "edges": {"found": self.edges.size, "used": int(self.edges.used.sum())},
             "directions_deg": [round(one, 3) for one in self.normal_deg_bins],
             "objects": {name: share.to_dict() for name, share in self.objects.items()},
+            "ideal_by_direction": [
+                {"normal_deg": one.normal_deg, "edges": one.edges, "share": one.share.to_dict()}
+                for one in self.ideal_by_direction
+            ],
             "field": {**self.field.to_dict(), "places": [place.to_dict() for place in places]},
         }
 

@@ -11,11 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.stacked import stacked, unstacked
@@ -25,7 +27,7 @@ from acutance.scan.information import expected_information, observed_information
 from acutance.scan.parts import PartsFit, compare_parts
 from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares
 from acutance.scan.shared_blur import integrate_shared_blur
-from acutance.scan.shares import START, share_covariance
+from acutance.scan.shares import SECTOR_DEG, START, share_covariances
 from acutance.scan.softness import KINDS
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import CombinedFit, combine_curves
@@ -34,12 +36,14 @@ from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
 from acutance.targets.otf_likelihood import OtfLikelihood
 from acutance.targets.slices import places_along
 
-__all__ = ["SensorFit", "fit_sensor"]
+__all__ = ["IdealShare", "SensorFit", "fit_sensor"]
 
 _SETTLED: Final = 0.1
 """Square of a turn's change, in standard deviations of what the edges say."""
 _SETTLED_GAIN: Final = 1e-3
 _MAX_TURNS: Final = 12
+_HALVED_FROM: Final = 4
+"""Later turns go half the way: between objects and forms of sensors they may go in circles."""
 _MAX_FIELD_TURNS: Final = 4
 _CONSTANT: Final = 0.99
 """Chance of a field without change above which none is followed."""
@@ -53,6 +57,8 @@ _LEAST: Final = 1e3
 """Information of a direction whose edges are all strange: it has no part in a turn."""
 _EXACT: Final = 1e7
 """One over the error of what is exact."""
+_MOST_SHARE_STD: Final = 0.5
+"""Nothing between 0 and 1 scatters more."""
 _UNSEEN: Final = 1.0
 """Information of combinations that edges do not show: the OTF is between 0 and 1."""
 _BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
@@ -61,6 +67,22 @@ _ALIKE: Final = 0.005
 """Mean difference of transfer functions within the band that is none."""
 _FREE_PX2: Final = 0.1
 """Prior standard deviation of the modes by which first guesses may change."""
+
+
+class IdealShare(NamedTuple):
+    """How many objects are ideal among those that edges of about one direction show.
+
+    Attributes
+    ----------
+    normal_deg : float
+        Middle of the directions of their normals, 0 to 180.
+    edges : int
+    share : Estimate
+    """
+
+    normal_deg: float
+    edges: int
+    share: Estimate
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,12 +125,27 @@ class SensorFit:
     @property
     def kinds(self) -> dict[str, tuple[float, float]]:
         """Shares of ideal, soft and strange edges, and their standard deviations."""
-        member, share, found = self.member, self.share, {}
-        covariance = share_covariance(member.part, member.sector, member.share)
-        for name, weight in KINDS.items():
-            variance = float(weight @ covariance @ weight)
-            found[name] = float(weight @ share), math.sqrt(max(variance, 0.0))
-        return found
+        covariance = np.tensordot((self._counts / self._counts.sum()) ** 2, self._covariances, 1)
+        return {name: _share_of(one, self.share, covariance) for name, one in KINDS.items()}
+
+    @property
+    def ideal_by_direction(self) -> tuple[IdealShare, ...]:
+        """Shares of ideal objects by the direction of the edges, where there are any."""
+        found = []
+        for g in np.flatnonzero(self._counts).tolist():
+            value, std = _share_of(KINDS["ideal"], self.member.share[g], self._covariances[g])
+            share = Estimate(value, std, 0.0)
+            found.append(IdealShare(float(SECTOR_DEG[g]), int(self._counts[g]), share))
+        return tuple(found)
+
+    @cached_property
+    def _counts(self) -> Floats:
+        return np.bincount(self.member.sector, minlength=SECTOR_DEG.size).astype(float)
+
+    @cached_property
+    def _covariances(self) -> Floats:
+        member = self.member
+        return share_covariances(member.part, member.sector, member.share)
 
     @property
     def common_errors_px2(self) -> dict[str, Floats]:
@@ -124,6 +161,12 @@ class SensorFit:
         They are one measurement: there is nothing it could disagree with.
         """
         return self.combined.unwidened
+
+
+def _share_of(weight: Floats, share: Floats, covariance: Floats) -> tuple[float, float]:
+    """Sum of shares of parts by their weights, and its standard deviation."""
+    std = math.sqrt(max(float(weight @ covariance @ weight), 0.0))
+    return float(weight @ share), min(std, _MOST_SHARE_STD)
 
 
 def fit_sensor(
@@ -230,6 +273,8 @@ def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain
         seen = along.turned(np.exp(log_gain))
         found = fit_modes(seen, otf, share, modes[edges.bin])
         otf, share = changed(otf, modes @ found.amount), found.share
+        if before is not None and turn >= _HALVED_FROM:
+            otf = 0.5 * (otf + before)
         share, member = fit_shares(seen, otf, share)
         information, projection = expected_information(seen, member)
         if before is not None:

@@ -18,17 +18,20 @@ from acutance.scan.softness import FREE, PARTS, PSEUDO_COUNTS
 
 __all__ = [
     "SECTORS",
+    "SECTOR_DEG",
     "START",
     "free_shares",
     "likeliest_shares",
     "sector_sums",
     "sectors_of",
-    "share_covariance",
+    "share_covariances",
     "share_information",
 ]
 
 SECTORS: Final = 8
 """About across, along and six directions between them."""
+SECTOR_DEG: Final[Floats] = np.linspace(0.0, 180.0, SECTORS, endpoint=False)
+"""Middle of every sector, (g,)."""
 _SOFT_LAWS: Final = len(PARTS) - 2
 START: Final[Floats] = np.tile([0.6, *(_SOFT_LAWS * [0.3 / _SOFT_LAWS]), 0.1], (SECTORS, 1))
 """Shares of the parts before any edge is seen, (g, p)."""
@@ -91,8 +94,7 @@ def free_shares(crossed: Floats) -> Floats:
     return np.asarray(crossed @ FREE.T)
 
 
-def share_covariance(part: Floats, sector: NDArray[np.intp], share: Floats) -> Floats:
-    """Covariance of the shares of all edges together, the sensor being known, (p, p)."""
-    weight = np.bincount(sector, minlength=SECTORS) / sector.size
+def share_covariances(part: Floats, sector: NDArray[np.intp], share: Floats) -> Floats:
+    """Covariance of the shares of every sector, the sensor being known, (g, p, p)."""
     own = np.linalg.inv(share_information(part, sector, share))
-    return np.asarray(FREE.T @ np.tensordot(weight**2, own, axes=1) @ FREE)
+    return np.asarray(FREE.T @ own @ FREE)

@@ -40,7 +40,8 @@ def word_chance(chance: float) -> str:
 def scene_tables(measurement: SceneMeasurement) -> tuple[Table, ...]:
     """Edges by verdict, the shares of the objects, sharpness over the field, what was left out."""
     return (
-        _edges_table(measurement), _objects_table(measurement), _field_table(measurement),
+        _edges_table(measurement), _objects_table(measurement), _directions_table(measurement),
+        _field_table(measurement),
         reasons_table(measurement.edges),
     )  # fmt: skip
 
@@ -74,6 +75,22 @@ def _objects_table(measurement: SceneMeasurement) -> Table:
             "How soft the borders are on the ground, found together with the sensor. "
             + _in_common(measurement.options),
         ),
+    )  # fmt: skip
+
+
+def _directions_table(measurement: SceneMeasurement) -> Table:
+    rows = tuple(
+        (f"{one.normal_deg:.1f}", str(one.edges), f"{100 * one.share.value:.0f} ± "
+         f"{100 * one.share.std:.0f}")
+        for one in measurement.ideal_by_direction
+    )  # fmt: skip
+    return Table(
+        ("normal / °", "edges", "ideal / %"), rows, "rrr", title="Ideal objects by direction",
+        notes=(
+            "Objects of one direction may be softer than others: what they are is asked of every "
+            "direction by itself. The fewer are ideal, the wider the interval of the sensor there.",
+        ),
+        page_only=True,
     )  # fmt: skip
 
 
