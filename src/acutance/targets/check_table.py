@@ -371,7 +371,7 @@ _SCENE = {
         "rotation and asymmetry follow from the prior alone", severity="note",
     ),
     "ideal_share": Question(
-        "Which share of the objects is as sharp as the sensor can show?", ">=", 0.15,
+        "Which share of the objects is blurred by 0.1 px at most?", ">=", 0.15,
         "few objects show the sensor itself, the intervals widen; scan built-up areas, or more",
         severity="note",
     ),
