@@ -42,8 +42,6 @@ _SETTLED: Final = 0.1
 """Square of a turn's change, in standard deviations of what the edges say."""
 _SETTLED_GAIN: Final = 1e-3
 _MAX_TURNS: Final = 12
-_HALVED_FROM: Final = 4
-"""Later turns go half the way: between objects and forms of sensors they may go in circles."""
 _MAX_FIELD_TURNS: Final = 4
 _CONSTANT: Final = 0.99
 """Chance of a field without change above which none is followed."""
@@ -269,18 +267,19 @@ def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
     otf, share, forms, near, along, turns, _ = state
     before: Floats | None = None
+    moved = np.zeros_like(otf)
     for turn in range(_MAX_TURNS + 1):
         seen = along.turned(np.exp(log_gain))
         found = fit_modes(seen, otf, share, modes[edges.bin])
         otf, share = changed(otf, modes @ found.amount), found.share
-        if before is not None and turn >= _HALVED_FROM:
-            otf = 0.5 * (otf + before)
+        if before is not None:
+            moved = _calmed(otf - before, moved)
+            otf = before + moved
         share, member = fit_shares(seen, otf, share)
         information, projection = expected_information(seen, member)
-        if before is not None:
-            moved = otf - before
-            if float(np.einsum("bk,bkl,bl", moved, information, moved)) < _SETTLED:
-                return _State(otf, share, forms, near, along, turns + turn, settled=True)
+        size = float(np.einsum("bk,bkl,bl", moved, information, moved))
+        if before is not None and size < _SETTLED:
+            return _State(otf, share, forms, near, along, turns + turn, settled=True)
         before = otf
         combined = _combined(edges.freq_cpp, normal_deg, otf, information, projection, forms, near)
         near = combined.forms
@@ -289,6 +288,11 @@ def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain
         stepped = _along(combined, normal_deg, edges.freq_cpp)
         otf, along = stacked(stepped.T).T, _along_bins(edges, normal_deg, combined)
     return _State(otf, share, forms, near, along, turns + _MAX_TURNS, settled=False)
+
+
+def _calmed(move: Floats, last: Floats) -> Floats:
+    """A turn's move; half of one that goes back: turns may go in circles."""
+    return 0.5 * move if float(np.vdot(move, last)) < 0 else move
 
 
 def _combined(
