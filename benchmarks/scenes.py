@@ -43,10 +43,9 @@ class Case:
 
     @property
     def name(self) -> str:
-        if self.soft_normal_deg != (0.0, 180.0):
-            return "along soft by {:g} to {:g} px".format(*self.softness_px)
         if self.soft == 1:
-            return "all soft by {:g} to {:g} px".format(*self.softness_px)
+            which = "all" if self.soft_normal_deg == (0.0, 180.0) else "along"
+            return "{} soft by {:g} to {:g} px".format(which, *self.softness_px)
         return f"{100 * self.soft:.0f} % soft" + (", corners" if self.has_soft_corners else "")
 
 

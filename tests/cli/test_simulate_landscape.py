@@ -89,6 +89,17 @@ def test_a_tilted_focus(render):
             assert sigma == pytest.approx(width * one["col"] / 319, abs=70 / 319 * width + 1e-6)
 
 
+def test_borders_soft_in_some_directions(render):
+    words = ("--soft", 1, "--soft-normal", "135,225")
+    _, document, _, _ = render(*words)
+    edges = [one["properties"] for one in document["features"]]
+    faces_across = [abs((one["normal_deg"] + 90) % 180 - 90) <= 45 for one in edges]
+    soft = [one["softness_px"] > 0 for one in edges]
+    assert any(soft)
+    # Roofs are ideal whatever they face, and an arc faces where its object does.
+    assert all(not one or across for one, across in zip(soft, faces_across, strict=True))
+
+
 def test_the_image_and_its_parts_are_those_of_python(render):
     image, _, _, _ = render("--snr", 100, "--seed", 7, "--size", "300,1100")
     drawn, _ = simulate.landscape(

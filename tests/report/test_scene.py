@@ -244,6 +244,17 @@ def test_the_page_of_a_scene_says_what_its_numbers_are(measured):
     assert names == ["ideal", "soft", "strange"]
 
 
+def test_the_ideal_objects_of_every_direction_are_a_table(measured):
+    (table,) = [one for one in scene_tables(measured) if one.title == "Ideal objects by direction"]
+    for row, stated in zip(table.rows, measured.ideal_by_direction, strict=True):
+        assert float(row[0]) == pytest.approx(stated.normal_deg, abs=0.05)
+        assert int(row[1]) == stated.edges
+        value, std = map(float, row[2].split(" ± "))
+        assert value == pytest.approx(100 * stated.share.value, abs=0.5)
+        assert std == pytest.approx(100 * stated.share.std, abs=0.5)
+    assert sum(int(row[1]) for row in table.rows) == measured.edges.used.sum()
+
+
 def test_of_too_few_edges_nothing_is_shown_over_the_field(constant):
     assert not constant.field.is_fitted
     assert tuple(one.title for one in panels(constant)[-3:]) == PANELS[:3]

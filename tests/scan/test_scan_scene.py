@@ -260,6 +260,12 @@ def test_softness_of_one_direction_is_none_of_the_sensor():
     along = np.abs(np.abs(edges.normal_deg[edges.used]) - 90) < 22.5
     assert edges.ideal[edges.used][~along].mean() > 0.9
     assert edges.ideal[edges.used][along].mean() < 0.6
+    by_direction = {one.normal_deg: one for one in scene.ideal_by_direction}
+    assert sum(one.edges for one in by_direction.values()) == edges.used.sum()
+    assert by_direction[0.0].share.value > 0.9
+    assert by_direction[90.0].share.value + by_direction[90.0].share.std < 0.8
+    written = scene.to_dict()["ideal_by_direction"]
+    assert [one["normal_deg"] for one in written] == list(by_direction)
 
 
 def test_no_edge_and_too_few_are_errors_that_say_what_was_found():

@@ -7,11 +7,7 @@ import pytest
 from scipy import stats
 
 from acutance.scan.information import edge_terms, expected_information, observed_information
-from acutance.scan.population import (
-    EdgeLikelihoods,
-    fit_shares,
-    softness_grid,
-)
+from acutance.scan.population import EdgeLikelihoods, fit_shares, softness_grid
 from acutance.scan.shares import SECTORS, START, sectors_of, share_covariances
 from acutance.scan.softness import KINDS, PARTS, PSEUDO_COUNTS, law_chances
 
@@ -78,7 +74,8 @@ def test_the_likelihood_is_that_of_a_fine_integral():
             FREQ, edges.root[[one]], edges.value[[one]], edges.rank[[one]], edges.bin[[one]],
             edges.normal_deg[[one]], edges.gain[[one]],
         )  # fmt: skip
-        (updated, *_), member = fit_shares(alone, otf, share)
+        member = fit_shares(alone, otf, share)
+        updated = member.share[0]
         blur = np.exp(-2 * (np.pi * np.outer(fine, FREQ)) ** 2)
         off = otf * np.hstack([blur, blur]) / STD - edges.value[one]
         likelihood = np.exp(-0.5 * np.sum(off**2, axis=1))
@@ -91,7 +88,8 @@ def test_the_likelihood_is_that_of_a_fine_integral():
 @pytest.mark.parametrize("soft_share", [0.0, 0.4, 0.8])
 def test_the_shares_are_found_within_their_deviations(soft_share):
     edges, _ = drawn(soft_share)
-    (share, *_), member = fit_shares(edges, TRUE[None], START)
+    member = fit_shares(edges, TRUE[None], START)
+    share = member.share[0]
     covariance, *_ = share_covariances(member.part, member.sector, member.share)
     assert share.sum() == pytest.approx(1)
     assert len(share) == len(PARTS)
@@ -107,7 +105,8 @@ def test_directions_have_shares_of_their_own():
     edges, tau = drawn(0.5)
     along = tau > 0
     mixed = replace(edges, normal_deg=np.where(along, -85.0, 4.0))
-    share, member = fit_shares(mixed, TRUE[None], START)
+    member = fit_shares(mixed, TRUE[None], START)
+    share = member.share
     ideal = share @ KINDS["ideal"]
     across, down = sectors_of(np.array([0.0, 90.0]))
     assert ideal[across] > 0.97
@@ -124,7 +123,7 @@ def test_sectors_lie_about_their_axes():
 
 def test_every_edge_has_the_softness_of_its_object():
     edges, tau = drawn(0.5)
-    _, member = fit_shares(edges, TRUE[None], START)
+    member = fit_shares(edges, TRUE[None], START)
     far = tau > 0.5
     assert np.abs(member.mean_px - tau)[far].mean() < 0.05
     assert member.ideal[tau == 0].mean() > 0.8
@@ -137,7 +136,8 @@ def test_edges_of_another_sensor_are_strange():
     sharper = edges.value.copy()
     sharper[:30] += 0.3 / STD
     mixed = replace(edges, value=sharper)
-    (share, *_), member = fit_shares(mixed, TRUE[None], START)
+    member = fit_shares(mixed, TRUE[None], START)
+    share = member.share[0]
     assert member.part[:30, -1].min() > 0.99
     assert share[-1] == pytest.approx(0.05, abs=0.02)
 
@@ -145,13 +145,13 @@ def test_edges_of_another_sensor_are_strange():
 def test_the_gradient_is_that_of_the_likelihood():
     edges, _ = drawn(0.5, 40)
     otf = TRUE[None] * 0.97
-    share, member = fit_shares(edges, otf, START)
+    member = fit_shares(edges, otf, START)
     gradient = sum(terms.gradient.sum(axis=0) for terms in edge_terms(edges, otf, member))
 
     # At the likeliest shares, with the prior of the shares, their change has no effect.
     def log_posterior(values):
-        found, at = fit_shares(edges, values, share)
-        return at.log_likelihood + PSEUDO_COUNTS / SECTORS @ np.log(found[0])
+        at = fit_shares(edges, values, member.share)
+        return at.log_likelihood + PSEUDO_COUNTS / SECTORS @ np.log(at.share[0])
 
     for place in range(4):
         step = np.zeros((1, 8))
@@ -162,17 +162,16 @@ def test_the_gradient_is_that_of_the_likelihood():
 
 def test_the_information_is_the_curvature_of_the_likelihood():
     edges, _ = drawn(0.5, 200, seed=3)
-    _, member = fit_shares(edges, TRUE[None], START)
-    share, member = fit_shares(
-        edges, TRUE[None], np.tile(member.part.mean(axis=0) + 1e-3, (SECTORS, 1))
-    )
+    member = fit_shares(edges, TRUE[None], START)
+    start = np.tile(member.part.mean(axis=0) + 1e-3, (SECTORS, 1))
+    member = fit_shares(edges, TRUE[None], start)
     (terms,) = edge_terms(edges, TRUE[None], member)
     step = np.zeros((1, 8))
     step[0, 3] = 2e-3
 
     def pull(values):
         # Of so many edges the shares hardly move: what changes is what every edge is.
-        _, at = fit_shares(edges, values, share)
+        at = fit_shares(edges, values, member.share)
         (there,) = edge_terms(edges, values, at)
         return there.gradient.sum(axis=0)[3]
 
@@ -182,7 +181,7 @@ def test_the_information_is_the_curvature_of_the_likelihood():
 
 def test_hidden_softness_costs_information():
     edges, _ = drawn(0.6)
-    _, member = fit_shares(edges, TRUE[None], START)
+    member = fit_shares(edges, TRUE[None], START)
     (complete,), _ = expected_information(edges, member)
     left = observed_information(edges, TRUE[None], member)
     assert np.linalg.eigvalsh(complete - left).min() > -1e-6 * np.trace(complete)
@@ -192,7 +191,7 @@ def test_hidden_softness_costs_information():
 
 def test_ideal_edges_alone_give_the_mean_of_all():
     edges, _ = drawn(0.0, 400)
-    _, member = fit_shares(edges, TRUE[None], START)
+    member = fit_shares(edges, TRUE[None], START)
     (information,), (projection,) = expected_information(edges, member)
     mean = np.linalg.solve(information, projection)
     assert mean[:4] == pytest.approx(TRUE[:4], abs=4 * STD / 20)

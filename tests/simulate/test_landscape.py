@@ -129,15 +129,24 @@ def test_soft_borders_have_a_lower_mtf_and_the_sensor_keeps_its_own():
     assert edge.sensor == SYSTEMS["gaussian"]
 
 
-def test_borders_may_be_soft_in_some_directions_only():
+@pytest.mark.parametrize("middle_deg", [90.0, 180.0])
+def test_borders_may_be_soft_in_some_directions_only(middle_deg):
     every = replace(BARE, soft=1.0, roofs=0.0)
     _, all_soft = seeded(options=every)
-    _, truth = seeded(options=replace(every, soft_normal_deg=(60.0, 120.0)))
+    some = replace(every, soft_normal_deg=(middle_deg - 30, middle_deg + 30))
+    _, truth = seeded(options=some)
+    soft = []
     for before, edge in zip(all_soft.edges, truth.edges, strict=True):
-        faces_along = 60 <= edge.ground_line.normal_deg % 180 <= 120
-        assert edge.softness_px == (before.softness_px if faces_along else 0.0)
-    with pytest.raises(ac.ModelError, match="soft_normal_deg"):
-        replace(every, soft_normal_deg=(135.0, 225.0))
+        off_deg = (edge.ground_line.normal_deg - middle_deg + 90) % 180 - 90
+        soft.append(abs(off_deg) <= 30)
+        assert edge.softness_px == (before.softness_px if soft[-1] else 0.0)
+    assert 0 < sum(soft) < len(soft)
+
+
+def test_directions_of_soft_borders_that_mean_nothing_are_refused():
+    for normals in ((135.0, 400.0), (120.0, 60.0)):
+        with pytest.raises(ac.ModelError, match="soft_normal_deg"):
+            replace(BARE, soft_normal_deg=normals)
 
 
 def test_a_field_varies_from_object_to_object():

@@ -109,7 +109,7 @@ def landscape(
         str,
         typer.Option(
             metavar="LOW,HIGH",
-            help="Directions of the normals of borders that may be soft, degrees of 0 to 180.",
+            help="Directions of the normals of borders that may be soft, degrees; 135,225: across.",
         ),
     ] = "0,180",
     curved: Annotated[

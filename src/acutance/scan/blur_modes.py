@@ -17,7 +17,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.scan.information import cost_of_shares, crossed_with_shares, edge_terms
 from acutance.scan.population import EdgeLikelihoods, fit_shares
-from acutance.scan.shares import sector_sums
+from acutance.scan.shares import SECTORS
 
 __all__ = [
     "ALL_AROUND",
@@ -125,35 +125,35 @@ def fit_modes(
     amount = np.zeros(modes.shape[2]) if start is None else start
     precision = np.broadcast_to(np.asarray(std) ** -2.0, amount.shape)
     seen = edges.turned(np.exp(modes @ amount))
-    share, member = fit_shares(seen, otf, share)
+    member = fit_shares(seen, otf, share)
     reached = member.log_likelihood - 0.5 * float(precision @ amount**2)
     for _ in range(_MAX_STEPS):
         pull, information = np.zeros(amount.size), np.zeros((amount.size,) * 2)
-        crossed = np.zeros((share.shape[0], amount.size, share.shape[1]))
+        crossed = np.zeros((SECTORS, amount.size, share.shape[1]))
         for terms in edge_terms(seen, otf, member):
             slopes = mode_slopes(seen, otf, modes, terms.edges)
             pull += np.einsum("nkq,nk->q", slopes, terms.gradient)
             information += np.einsum("nkq,nkp->qp", slopes, terms.information @ slopes)
             own = crossed_with_shares(terms, member, terms.slopes @ slopes)
-            crossed += sector_sums(own, member.sector[terms.edges])
+            np.add.at(crossed, member.sector[terms.edges], own)
         information -= cost_of_shares(crossed, member)
         upwards = pull - precision * amount
         step = _step(information, upwards, precision)
         is_last = 0.5 * float(upwards @ step) < _SETTLED
         for _ in range(_MAX_HALVINGS):
             seen = edges.turned(np.exp(modes @ (amount + step)))
-            tried, member = fit_shares(seen, otf, share)
+            tried = fit_shares(seen, otf, member.share)
             moved = amount + step
-            value = member.log_likelihood - 0.5 * float(precision @ moved**2)
+            value = tried.log_likelihood - 0.5 * float(precision @ moved**2)
             if value > reached:
                 break
             step = step / 3
         else:
             break
-        amount, share, reached = moved, tried, value
+        amount, member, reached = moved, tried, value
         if is_last:
             break
-    return ModesFit(amount, share, information, reached)
+    return ModesFit(amount, member.share, information, reached)
 
 
 def mode_slopes(edges: EdgeLikelihoods, otf: Floats, modes: Floats, some: slice) -> Floats:

@@ -153,7 +153,7 @@ def _middle(
 ) -> Floats:
     """Means of the polynomials, every edge weighted by what it tells of a mode, (5, 4)."""
     weights = np.zeros((edges.size, along.shape[2]))
-    _, member = fit_shares(edges, otf, share)
+    member = fit_shares(edges, otf, share)
     for terms in edge_terms(edges, otf, member):
         slopes = mode_slopes(edges, otf, along, terms.edges)
         weights[terms.edges] = np.einsum("nkq,nkq->nq", slopes, terms.information @ slopes)

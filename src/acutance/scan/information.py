@@ -15,8 +15,8 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.scan.population import EdgeLikelihoods, Membership
-from acutance.scan.shares import SECTORS, free_shares, share_information
-from acutance.scan.softness import STRANGE
+from acutance.scan.shares import SECTORS, share_information
+from acutance.scan.softness import FREE, STRANGE
 
 __all__ = [
     "EdgeTerms",
@@ -79,7 +79,7 @@ def cost_of_shares(crossed: Floats, member: Membership) -> Floats:
         Sums over the edges of every sector of `crossed_with_shares`.
     member : Membership
     """
-    free = free_shares(crossed)
+    free = crossed @ FREE.T
     known = share_information(member.part, member.sector, member.share)
     return np.asarray(np.sum(free @ np.linalg.solve(known, _turned(free)), axis=0))
 

@@ -208,8 +208,8 @@ class Membership(NamedTuple):
         return np.asarray(by_law / np.maximum(by_law.sum(axis=0), _TINY))
 
 
-def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> tuple[Floats, Membership]:
-    """Shares of the parts (g, p) for a given sensor (b, 2 k), and what the edges are."""
+def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> Membership:
+    """What the edges are under a given sensor (b, 2 k), from a first guess of the shares (g, p)."""
     soft_px, width_px = softness_grid(edges, otf)
     softness_px = np.hstack([np.zeros((edges.size, 1)), soft_px])
     power = np.concatenate([
@@ -229,11 +229,10 @@ def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> tuple[Floa
     whole = np.sum(by_part * own, axis=1)
     soft = np.einsum("np,pnt->nt", own[:, 1:-1], laws)
     chance = odds * np.hstack([own[:, :1], soft]) / whole[:, None]
-    member = Membership(
+    return Membership(
         share, sector, softness_px, width_px, laws, chance, by_part * own / whole[:, None],
         float(np.sum(largest) + np.sum(np.log(whole))),
     )  # fmt: skip
-    return share, member
 
 
 def _law_chances(softness_px: Floats, width_px: Floats) -> Floats:

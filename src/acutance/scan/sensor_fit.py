@@ -188,7 +188,7 @@ def fit_sensor(
     for start in _starts(edges, normal_deg, guesses):
         near = ends[-1].near if ends else ()
         ends.append(_settled(edges, normal_deg, start._replace(near=near), nothing))
-    state = max(ends, key=lambda one: fit_shares(one.along, one.otf, one.share)[1].log_likelihood)
+    state = max(ends, key=lambda one: fit_shares(one.along, one.otf, one.share).log_likelihood)
     field = fit_field(state.along, state.otf, state.share, x, y)
     for _ in range(_MAX_FIELD_TURNS):
         if field.chance_constant > _CONSTANT or not field.amount.any():
@@ -199,16 +199,16 @@ def fit_sensor(
         if np.abs(field.log_gain - before.log_gain).max() < _SETTLED_GAIN:
             break
     seen = state.along.turned(np.exp(field.log_gain))
-    share, member = fit_shares(seen, state.otf, state.share)
+    member = fit_shares(seen, state.otf, state.share)
     left = observed_information(seen, state.otf, member)
     shared = integrate_shared_blur(seen, state.otf, member, modes, left)
     otf = changed(state.otf, modes @ shared.mean_px2)
-    share, member = fit_shares(seen, otf, share)
+    member = fit_shares(seen, otf, member.share)
     # It is the mean already: a further step would follow what little is left of information.
     samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
         combine_curves([samples]), field, normal_deg, member, shared.errors_px2,
-        compare_parts(seen, otf, share, x, y),
+        compare_parts(seen, otf, member.share, x, y),
         state.turns, state.settled,
     )  # fmt: skip
 
@@ -253,7 +253,7 @@ def _starts(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats
     found: list[_State] = []
     for guess in guesses:
         tried = [changed(guess, modes[:, :, 0] * blur) for blur in _BLUR_STARTS_PX2]
-        start = max(tried, key=lambda one: fit_shares(edges, one, START)[1].log_likelihood)
+        start = max(tried, key=lambda one: fit_shares(edges, one, START).log_likelihood)
         fit = fit_modes(edges, start, START, free[edges.bin], std=_FREE_PX2)
         otf = changed(start, free @ fit.amount)
         apart = [float(np.abs(otf - one.otf)[:, in_band].mean()) for one in found]
@@ -271,11 +271,12 @@ def _settled(edges: EdgeLikelihoods, normal_deg: Floats, state: _State, log_gain
     for turn in range(_MAX_TURNS + 1):
         seen = along.turned(np.exp(log_gain))
         found = fit_modes(seen, otf, share, modes[edges.bin])
-        otf, share = changed(otf, modes @ found.amount), found.share
+        otf = changed(otf, modes @ found.amount)
         if before is not None:
             moved = _calmed(otf - before, moved)
             otf = before + moved
-        share, member = fit_shares(seen, otf, share)
+        member = fit_shares(seen, otf, found.share)
+        share = member.share
         information, projection = expected_information(seen, member)
         size = float(np.einsum("bk,bkl,bl", moved, information, moved))
         if before is not None and size < _SETTLED:

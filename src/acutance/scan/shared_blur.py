@@ -96,7 +96,7 @@ def _along_axis(
     std = 1 / math.sqrt(curvature) if curvature > _WIDEST_PX2**-2 else _WIDEST_PX2
 
     def log_likelihood(blur_px2: float) -> float:
-        return fit_shares(edges, changed(otf, mode * blur_px2), member.share)[1].log_likelihood
+        return fit_shares(edges, changed(otf, mode * blur_px2), member.share).log_likelihood
 
     found = {0.0: member.log_likelihood}
     for side in (-std, std):

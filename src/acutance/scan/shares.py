@@ -20,9 +20,7 @@ __all__ = [
     "SECTORS",
     "SECTOR_DEG",
     "START",
-    "free_shares",
     "likeliest_shares",
-    "sector_sums",
     "sectors_of",
     "share_covariances",
     "share_information",
@@ -46,11 +44,6 @@ def sectors_of(normal_deg: Floats) -> NDArray[np.intp]:
     return np.asarray(np.rint(normal_deg * (SECTORS / 180.0)) % SECTORS, np.intp)
 
 
-def sector_sums(terms: Floats, sector: NDArray[np.intp]) -> Floats:
-    """Sums of terms (n, ...) over the edges of every sector, (g, ...)."""
-    return np.asarray(np.tensordot(np.arange(SECTORS)[:, None] == sector, terms, axes=1))
-
-
 def likeliest_shares(by_part: Floats, sector: NDArray[np.intp], share: Floats) -> Floats:
     """Shares (g, p) that make the edges likeliest, from a first guess; likelihoods (n, p) by part.
 
@@ -72,7 +65,7 @@ def _likeliest(by_part: Floats, share: Floats) -> Floats:
 
 
 def share_information(part: Floats, sector: NDArray[np.intp], share: Floats) -> Floats:
-    """What edges and prior say of the shares of every sector, whose sum is one, (g, p - 1, p - 1).
+    """What edges and prior say of every sector's shares, along `softness.FREE`, (g, p - 1, p - 1).
 
     Parameters
     ----------
@@ -87,11 +80,6 @@ def share_information(part: Floats, sector: NDArray[np.intp], share: Floats) -> 
     return np.array([
         FREE @ (one.T @ one + before) @ FREE.T for one, before in zip(own, prior, strict=True)
     ])  # fmt: skip
-
-
-def free_shares(crossed: Floats) -> Floats:
-    """Products with shares (..., p) in the directions of `share_information`, (..., p - 1)."""
-    return np.asarray(crossed @ FREE.T)
 
 
 def share_covariances(part: Floats, sector: NDArray[np.intp], share: Floats) -> Floats:

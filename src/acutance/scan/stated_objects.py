@@ -20,6 +20,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.otf2d import OtfModel, PackableOtf
 from acutance.curves.short_repr import ShortRepr
 from acutance.raster import Box, Gsd, Image
+from acutance.scan.blur_modes import ALL_AROUND, COMMON_MODES, blur_modes
 from acutance.scan.options import ScanOptions
 from acutance.targets.straight.stated_target import StatedTarget, border_gain, stated_softness
 
@@ -154,9 +155,9 @@ class OtfBehindObjects(ShortRepr):
 
     def _by_blur(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
         """Variance along a direction by units of the blurs of `errors_px2`, (n, 3)."""
-        across, down = np.moveaxis(self._along(u_cpp, v_cpp), -1, 0)
-        oblique = 2 * np.sign(u_cpp * v_cpp) * np.sqrt(across * down)
-        return np.stack([across + down, across - down, oblique], axis=-1)
+        modes = blur_modes(u_cpp, v_cpp)[..., :COMMON_MODES]
+        # Zero frequency has no direction, and needs none.
+        return np.asarray(modes / np.minimum(modes[..., [ALL_AROUND]], -np.finfo(float).tiny))
 
     def _along(self, u_cpp: Floats, v_cpp: Floats) -> Floats:
         """Shares of the variances along columns and rows in that along a direction, (n, 2)."""

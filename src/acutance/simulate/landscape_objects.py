@@ -130,7 +130,8 @@ def _field(turn_deg: float, options: LandscapeOptions, rng: np.random.Generator)
     for one in found.borders:
         soft = rng.uniform(*options.softness_px) if rng.random() < options.soft else 0.0
         lowest, highest = options.soft_normal_deg
-        if not lowest <= one.normal_deg % 180 <= highest:
+        # Drawn all the same: a seed gives the same objects whatever directions are soft.
+        if (one.normal_deg - lowest) % 180 > highest - lowest:
             soft = 0.0
         bend = 0.0
         if rng.random() < options.curved:

@@ -65,8 +65,9 @@ class LandscapeOptions:
     softness_px : (float, float), optional
         Standard deviation of the Gaussian that blurs a soft border.
     soft_normal_deg : (float, float), optional
-        Borders are soft only where the direction of their normal, 0 to 180 from the column axis
-        towards the row axis, lies between these; the others are ideal.
+        Borders are soft only where their normal lies between these directions, from the column
+        axis towards the row axis; the others are ideal. A normal and its opposite are the same:
+        45 to 135 are borders that face along, 135 to 225 those that face across.
     curved : float, optional
         Share of fields' borders that are arcs.
     radius_px : (float, float), optional
@@ -143,7 +144,7 @@ class LandscapeOptions:
                 self._require_range(one.name)
         for name, lowest in _SMALLEST_PX.items():
             require(self, lowest, **{name: getattr(self, name)[0]})
-        require(self, 0.0, 180.0, soft_normal_deg=self.soft_normal_deg[1])
+        require(self, 0.0, 360.0, soft_normal_deg=self.soft_normal_deg[1])
 
     def _require_shares(self, names: tuple[str, ...]) -> None:
         shares = {name: getattr(self, name) for name in names}

@@ -79,13 +79,13 @@ def _objects_table(measurement: SceneMeasurement) -> Table:
 
 
 def _directions_table(measurement: SceneMeasurement) -> Table:
-    rows = tuple(
-        (f"{one.normal_deg:.1f}", str(one.edges), f"{100 * one.share.value:.0f} ± "
-         f"{100 * one.share.std:.0f}")
-        for one in measurement.ideal_by_direction
-    )  # fmt: skip
+    rows = []
+    for one in measurement.ideal_by_direction:
+        share = f"{100 * one.share.value:.0f} ± {100 * one.share.std:.0f}"
+        rows.append((f"{one.normal_deg:.1f}", str(one.edges), share))
     return Table(
-        ("normal / °", "edges", "ideal / %"), rows, "rrr", title="Ideal objects by direction",
+        ("normal / °", "edges", "ideal / %"), tuple(rows), "rrr",
+        title="Ideal objects by direction",
         notes=(
             "Objects of one direction may be softer than others: what they are is asked of every "
             "direction by itself. The fewer are ideal, the wider the interval of the sensor there.",
