@@ -11,10 +11,11 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from itertools import islice
 from multiprocessing import get_context, parent_process
 from multiprocessing.connection import Connection
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 from acutance.errors import OptionError
 
@@ -26,10 +27,10 @@ Result = TypeVar("Result")
 _LIBRARIES = ("OPENBLAS", "OMP", "MKL")
 _LEAKS = "ignore:resource_tracker:UserWarning"
 _CHUNKS_PER_WORKER = 8
-_MAX_CHUNK = 16
+_MAX_CHUNK = 8
 _GRACE_S = 2.0
 """For the tasks in work when a run is ended."""
-_WAITING_PER_WORKER = 4
+_WAITING_PER_WORKER = 16
 """Chunks that are handed out before the first of them is waited for."""
 
 
@@ -147,7 +148,8 @@ def results_in_turn(
     """The result of every task, in the order of the tasks, as soon as it is there.
 
     Tasks are taken as they are needed, and few results wait: memory stays flat however many there
-    are. An exception of a task, or Ctrl-C, ends the run, and so does closing the generator.
+    are. An exception of a task, or Ctrl-C, ends the run, and so does closing the generator. This
+    process is one of the workers: it begins at once, while others still load what they need.
 
     Parameters
     ----------
@@ -161,18 +163,42 @@ def results_in_turn(
         yield from map(work, tasks)
         return
     todo = iter(tasks)
-    waiting: deque[Future[list[Result]]] = deque()
-    with _processes(workers) as pool:
+    # The first is for this process, which has nothing to load.
+    waiting = deque([_Chunk[Task, Result](list(islice(todo, _MAX_CHUNK)), Future())])
+    with _processes(workers - 1) as pool:
         while True:
             with _interrupts_held_back():
                 while len(waiting) < _WAITING_PER_WORKER * workers:
                     chunk = list(islice(todo, _MAX_CHUNK))
                     if not chunk:
                         break
-                    waiting.append(pool.submit(_work_through, work, chunk))
+                    waiting.append(_Chunk(chunk, pool.submit(_work_through, work, chunk)))
             if not waiting:
                 return
-            yield from waiting.popleft().result()
+            if waiting[0].results.done() or not _work_here(work, waiting):
+                yield from waiting.popleft().results.result()
+
+
+@dataclass
+class _Chunk(Generic[Task, Result]):
+    """Tasks in the order of a run, and where their results will be."""
+
+    tasks: list[Task]
+    results: Future[list[Result]]
+
+
+def _work_here(work: Callable[[Task], Result], waiting: Iterable[_Chunk[Task, Result]]) -> bool:
+    """Do in this process the first chunk that no other has begun; whether there was one."""
+    for chunk in waiting:
+        if chunk.results.cancel():
+            chunk.results = Future()
+            try:
+                chunk.results.set_result([work(task) for task in chunk.tasks])
+            except Exception as error:
+                # It comes after the results before it.
+                chunk.results.set_exception(error)
+            return True
+    return False
 
 
 @contextmanager
