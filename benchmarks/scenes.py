@@ -2,7 +2,8 @@
 
 Landscapes of fields (`acutance.simulate.landscape`) without anything beside them, SNR 100 of the
 middle contrast; a share of the borders is soft, Gaussians of .15 to 2 px, or all of 0 to .4 px,
-or all that face along within 22.5 degrees, the others being ideal.
+or all that face along within 22.5 degrees, the others being ideal. Four sensors, then one drawn
+at random from each of the families of `acutance.optics`.
 `acutance.scan_scene` measures across and along; the median of the used edges nearest to either
 direction stands beside. Where the blur grows over the field, every pixel is a mean of two
 landscapes under sensors a little sharper and a little softer than the one at its place; the sensor
@@ -21,6 +22,7 @@ import acutance as ac
 from acutance.simulate import LandscapeOptions, LandscapeTruth
 
 SYSTEMS = ("gaussian", "diffraction", "halo", "smeared")
+DRAWN = tuple(f"drawn {family}" for family in ac.optics.FAMILIES)
 CORNER_PX = 0.3
 """Blur that is added in the corners: that of a sensor of .4 px grows by a fourth."""
 LEVELS = 7
@@ -34,12 +36,16 @@ MIN_LENGTH_PX, MIN_SNR, WRONG = 20.0, 20.0, 4.0
 
 @dataclass(frozen=True)
 class Case:
-    """A share of soft objects, whether the blur grows to the corners, how soft they are, where."""
+    """A share of soft objects, whether the blur grows to the corners, how soft they are, where.
+
+    And under which sensors.
+    """
 
     soft: float
     has_soft_corners: bool
     softness_px: tuple[float, float] = (0.15, 2.0)
     soft_normal_deg: tuple[float, float] = (0.0, 180.0)
+    sensors: tuple[str, ...] = SYSTEMS
 
     @property
     def name(self) -> str:
@@ -52,7 +58,8 @@ class Case:
 CASES = (
     Case(0.0, False), Case(0.4, False), Case(0.75, False), Case(1.0, False, (0.0, 0.4)),
     Case(1.0, False, (0.0, 0.4), (67.5, 112.5)),
-    Case(0.0, True), Case(0.4, True),
+    Case(0.0, True), Case(0.4, True), Case(0.0, False, sensors=DRAWN),
+    Case(0.4, False, sensors=DRAWN),
 )  # fmt: skip
 
 
@@ -119,7 +126,11 @@ def draw(
 def scan(job: tuple[Case, str, int, tuple[int, ...]]) -> Scanned | None:
     """Draw a scene and scan it; nothing if it is refused."""
     case, name, size_px, seed = job
-    sensor = ac.simulate.reference_systems()[name]
+    if name in DRAWN:
+        rng = np.random.default_rng((*seed, 2))
+        sensor = ac.optics.draw_sensor(name.removeprefix("drawn "), rng)
+    else:
+        sensor = ac.simulate.reference_systems()[name]
     image, truth = draw(case, sensor, size_px, seed)
     start = time.process_time()
     try:
@@ -202,7 +213,7 @@ def main() -> None:
     jobs = [
         (case, name, arguments.size, (arguments.seed, draw_number, number))
         for case in CASES
-        for number, name in enumerate(SYSTEMS)
+        for number, name in enumerate(case.sensors)
         for draw_number in range(arguments.draws)
     ]
     found = work_through(scan, jobs, arguments.processes, "scenes")
@@ -213,12 +224,13 @@ def main() -> None:
             for one, job in zip(found, jobs, strict=True)
             if one is not None and job[0] == case
         ]
-        for name in SYSTEMS:
+        for name in case.sensors:
             some = [one for one, job in own if job[1] == name]
             if some:
                 rows.append(row(f"{case.name}, {name}", some))
         if own:
-            rows.append(row(f"**{case.name}, all**", [one for one, _ in own]))
+            every = "all drawn" if case.sensors is DRAWN else "all"
+            rows.append(row(f"**{case.name}, {every}**", [one for one, _ in own]))
     head = [
         "objects, sensor", "RMS at Nyquist", "bias", "held / %", "RMS at .25", "bias", "held / %",
         "std at Nyquist", "median of the edges, bias", "edges used", "found / %", "wrong / %",
