@@ -6,7 +6,10 @@ population are drawn, and each counts by the likelihood of the edge's pixels beh
 direction is known; its two levels and its place are not: they enter the image linearly (the place
 about the true one, which it misses by a hundredth of a pixel) and are integrated out.
 
-The optical transfer functions (OTF) of all drawn telescopes lie close to a space of a few
+Nobody knows the population of telescopes that a sensor was drawn from. The same of all families of
+`acutance.optics` is the bound of who knows no more than that it is one of these.
+
+The optical transfer functions (OTF) of all drawn sensors lie close to a space of a few dozen
 dimensions. Products of its edge spread functions over the pixels are formed once an image, and a
 likelihood is a quadratic form of few coefficients.
 """
@@ -22,9 +25,14 @@ from acutance import optics
 from acutance.curves.grid import Floats
 from acutance.simulate import Truth
 
-HIGHEST_CPP, STEP_CPP = 1.6, 1 / 256
-"""No aperture of the population passes more; the step makes images repeat after 256 px."""
+HIGHEST_CPP, STEP_CPP = 2.4, 1 / 256
+"""No aperture passes more; the step makes images repeat after 256 px."""
+FAMILIES = {
+    name: 3.0 if name == "telescope" else 1.0 for name in optics.FAMILIES if name != "trail"
+}
+"""How often each is drawn, as the estimator expects them; trails alone have no real OTF."""
 ANGLE_DEG = (5.0, 20.0)
+_FREQ_CPP = np.arange(round(HIGHEST_CPP / STEP_CPP) + 1) * STEP_CPP
 _NEGLIGIBLE = 1e-5
 """Directions of OTFs below this share of the largest are left out."""
 
@@ -46,6 +54,12 @@ def draw_blur(rng: np.random.Generator) -> list[optics.Block]:
     ]
 
 
+def _some_direction(rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Frequencies along a random direction."""
+    angle = np.deg2rad(rng.uniform(*ANGLE_DEG))
+    return _FREQ_CPP * np.cos(angle), _FREQ_CPP * np.sin(angle)
+
+
 class Posterior(NamedTuple):
     """What pixels and population say of the MTF at Nyquist.
 
@@ -53,7 +67,7 @@ class Posterior(NamedTuple):
     ----------
     mean, std : float
     effective : float
-        Effective number of drawn telescopes.
+        Effective number of drawn sensors.
     """
 
     mean: float
@@ -63,16 +77,16 @@ class Posterior(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Population:
-    """Telescopes drawn at random, each seen along a random direction.
+    """Sensors drawn at random, each seen along a random direction.
 
     Attributes
     ----------
     otf : (F, r) array
         The directions of OTFs at the frequencies k STEP_CPP, k = 0 to F - 1.
     share : (K, r) array
-        Of every telescope in these directions.
+        Of every sensor in these directions.
     nyquist : (K,) array
-        MTF of every telescope at .5 c/px.
+        MTF of every sensor at .5 c/px.
     """
 
     otf: Floats
@@ -82,16 +96,25 @@ class Population:
     @classmethod
     def drawn(cls, apertures: int, blurs: int, rng: np.random.Generator) -> Population:
         """Telescopes of some apertures, each with some blurs of its own."""
-        freq_cpp = np.arange(round(HIGHEST_CPP / STEP_CPP) + 1) * STEP_CPP
         drawn = []
         for _ in range(apertures):
-            aperture = draw_aperture(rng).otf(freq_cpp, np.zeros_like(freq_cpp)).real
+            aperture = draw_aperture(rng).otf(_FREQ_CPP, np.zeros_like(_FREQ_CPP)).real
             for _ in range(blurs):
-                angle = np.deg2rad(rng.uniform(*ANGLE_DEG))
-                u, v = freq_cpp * np.cos(angle), freq_cpp * np.sin(angle)
-                factors = [np.real(block.otf(u, v)) for block in draw_blur(rng)]
+                place = _some_direction(rng)
+                factors = [np.real(block.otf(*place)) for block in draw_blur(rng)]
                 drawn.append(aperture * np.prod(factors, axis=0))
-        otf = np.array(drawn)
+        return cls._of(np.array(drawn))
+
+    @classmethod
+    def of_families(cls, count: int, rng: np.random.Generator) -> Population:
+        """Sensors of all families, telescopes thrice as often as any other."""
+        often = np.array(list(FAMILIES.values())) / sum(FAMILIES.values())
+        names = rng.choice(list(FAMILIES), count, p=often)
+        sensors = (optics.draw_sensor(name, rng) for name in names)
+        return cls._of(np.array([np.real(one.otf(*_some_direction(rng))) for one in sensors]))
+
+    @classmethod
+    def _of(cls, otf: Floats) -> Population:
         power, axes = np.linalg.eigh(otf.T @ otf)
         kept = axes[:, power > _NEGLIGIBLE**2 * power[-1]]
         nyquist = np.abs(otf[:, round(0.5 / STEP_CPP)])
@@ -117,7 +140,7 @@ class Population:
         return Posterior(mean, np.sqrt(variance), 1 / float(weight @ weight))
 
     def _log_likelihood(self, distance_px: Floats, value: Floats) -> Floats:
-        """Of every telescope, (K,), for pixels of unit noise; levels and place integrated out."""
+        """Of every sensor, (K,), for pixels of unit noise; levels and place integrated out."""
         esf, lsf = self._images(distance_px)
         level = np.ones_like(value)
         middle = value - value.mean()
@@ -139,9 +162,8 @@ class Population:
 
     def _images(self, distance_px: Floats) -> tuple[Floats, Floats]:
         """ESF less one half, and LSF, of every direction of OTFs at the pixels, (n, r) each."""
-        freq_cpp = np.arange(len(self.otf)) * STEP_CPP
-        weight = np.where(freq_cpp == 0, 0.5, 1.0) * STEP_CPP
-        cycles = distance_px[:, None] * freq_cpp
+        weight = np.where(_FREQ_CPP == 0, 0.5, 1.0) * STEP_CPP
+        cycles = distance_px[:, None] * _FREQ_CPP
         esf = (2 * distance_px[:, None] * np.sinc(2 * cycles) * weight) @ self.otf
         lsf = (2 * np.cos(2 * np.pi * cycles) * weight) @ self.otf
         return esf, lsf
