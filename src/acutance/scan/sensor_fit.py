@@ -207,7 +207,7 @@ def fit_sensor(
     # It is the mean already: a further step would follow what little is left of information.
     samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
-        combine_curves([samples]), field, normal_deg, member, shared.errors_px2,
+        combine_curves([samples], near=state.near), field, normal_deg, member, shared.errors_px2,
         compare_parts(seen, otf, member.share, x, y),
         state.turns, state.settled,
     )  # fmt: skip
