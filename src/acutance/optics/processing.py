@@ -202,10 +202,11 @@ class Sharpening:
     def otf(self, u: Floats, v: Floats) -> Transfer:
         taps = np.asarray(self.kernel) / np.sum(self.kernel)
         symmetric = bool(np.array_equal(taps, taps[::-1, ::-1]))
+        down, right = (np.arange(size) - size // 2 for size in taps.shape)
+        by_column = np.exp(-2j * math.pi * np.multiply.outer(v, down)) @ taps
         total: Transfer = np.zeros(np.broadcast_shapes(np.shape(u), np.shape(v)), complex)
-        for (i, j), weight in np.ndenumerate(taps):
-            down, right = i - taps.shape[0] // 2, j - taps.shape[1] // 2
-            total = total + weight * np.exp(-2j * math.pi * (np.asarray(v) * down + u * right))
+        for j, place in enumerate(right.tolist()):
+            total = total + by_column[..., j] * np.exp(-2j * math.pi * place * np.asarray(u))
         return np.array(total.real) if symmetric else total
 
 
