@@ -5,11 +5,25 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import acutance as ac
 from acutance import Sensor
-from acutance.optics import FAMILIES, Detector, Diffraction, Gaussian, Halo, draw_sensor
+from acutance.numerics.gaussian_pixel_2d import FWHM_OF_SIGMA, GaussianPixel2d
+from acutance.optics import (
+    FAMILIES,
+    Detector,
+    Diffraction,
+    Gaussian,
+    Halo,
+    Sharpening,
+    Smear,
+    draw_sensor,
+)
 from acutance.targets.points.learn_psf import departure, directions_of, learn, sampled_psf, write
 from acutance.targets.points.psf_families import PARITIES, learned_families
+from acutance.targets.points.psf_prior import PsfDirections
 from acutance.targets.points.psf_spline import GRIDS
+
+OVERSHARP = Sensor([Diffraction(0.9), Gaussian(0.2), Detector(), Sharpening.both_axes(0.6)])
 
 
 def amount(one):
@@ -37,6 +51,36 @@ def test_a_departure_has_the_tail_of_its_aperture():
     sensor = Sensor([Diffraction(1.2, obscuration=0.3), Detector()])
     assert departure(Sensor([Gaussian(0.5), Detector()])).tail == pytest.approx(0, abs=1e-9)
     assert 0.15 < departure(sensor).tail < 0.6
+
+
+def test_a_departure_has_the_light_of_the_gaussian_that_the_joint_fit_counts():
+    """Per light of a fit whose width is free as well, it would be 1.4 times as large."""
+    found = departure(OVERSHARP)
+    xx, yy = ((wide / FWHM_OF_SIGMA) ** 2 - 1 / 12 for wide in found.widths_px)
+    directions = PsfDirections(GaussianPixel2d(xx, 0.0, yy))
+    families = directions.families
+    grids = zip(GRIDS, families.coefficients, strict=True)
+    basis = np.vstack([*(grid.step * one for grid, one in grids), families.tail])
+    flat = [g.step * c.ravel() for g, c in zip(GRIDS, found[:2], strict=True)]
+    weights = np.linalg.lstsq(basis, np.concatenate([*flat, [found.tail]]), rcond=1e-8)[0]
+    psf = sampled_psf(OVERSHARP)
+    places_px = (np.arange(psf.shape[0]) - psf.shape[0] // 2) / 6
+    near = np.abs(places_px) < 5
+    x, y = (one.ravel() for one in np.meshgrid(places_px[near], places_px[near]))
+    columns, blur = directions.with_mean(x, y)
+    parts = np.column_stack([blur, columns[:, directions.learned] @ weights, columns[:, :3]])
+    shares = np.linalg.lstsq(parts, psf[np.ix_(near, near)].ravel(), rcond=None)[0]
+    assert shares[1] / shares[0] == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize("length_px", [0.0, 0.6])
+def test_the_blur_of_a_departure_is_that_found_in_pixels(length_px):
+    """Of all samples of the PSF together, as one source, it would be wider."""
+    sensor = Sensor([Smear(length_px, "across"), *OVERSHARP.blocks])
+    image, truth = ac.simulate.points(sensor)
+    found = ac.measure_points(image, positions=truth.positions)
+    blur = found.details.fit.model.blur
+    assert departure(sensor).widths_px == pytest.approx(blur.widths_px, abs=0.01)
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -1,8 +1,8 @@
 """Learn from optics what point spread functions there are: thousands of departures, in coordinates.
 
-Departures of drawn sensors (`learn_psf`) are written in coordinates common to all families. Each is
-a combination of the directions of `psf_families`, so pixels that are seen through these directions
-are seen through the coordinates, too. `sensor_density` reads the file.
+Departures of drawn sensors (`learn_psf`) are written in coordinates common to all families. They
+are orthonormal axes of all that the directions of `psf_families` span, so pixels that are seen
+through these directions are seen through the coordinates, too. `sensor_density` reads the file.
 """
 
 from __future__ import annotations
@@ -34,10 +34,8 @@ DENSITY_COUNTS: Final = {
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
 detector, nothing else."""
-_COORDINATES: Final = (40, 12, 4)
-"""Of departures small and large what lies outside of these is below a hundredth of the first."""
-_SMALLEST: Final = 1e-3
-"""Departures of families smaller than this are not made larger."""
+_DEPENDENT: Final = 1e-6
+"""Singular value over the largest below which directions are combinations of others."""
 
 
 class Departures(NamedTuple):
@@ -126,11 +124,13 @@ def density(drawn: Mapping[str, Departures]) -> dict[str, Floats]:
     for family, one in drawn.items():
         turned = _turned(one.even)
         parts[family] = Basis(0.5 * (one.even + turned), 0.5 * (one.even - turned), one.odd)
-    axes, basis = {}, {}
-    for name, directions, count in zip(Basis._fields, (even, even, odd), _COORDINATES, strict=True):
-        rows = [getattr(one, name) for one in parts.values()]
-        axes[name] = _axes(rows, directions, count)
-        basis[f"basis {name}"] = np.linalg.lstsq(directions.T, axes[name], rcond=1e-10)[0]
+    turned = _turned(even)
+    directions = Basis(0.5 * (even + turned), 0.5 * (even - turned), odd)
+    axes = {name: _axes(getattr(directions, name)) for name in Basis._fields}
+    basis = {
+        f"basis {name}": np.linalg.lstsq(whole.T, axes[name], rcond=1e-10)[0]
+        for name, whole in zip(Basis._fields, (even, even, odd), strict=True)
+    }
     sensors = {
         family: np.hstack([*(getattr(one, name) @ axes[name] for name in Basis._fields), widths])
         for (family, one), (_, _, widths) in zip(parts.items(), drawn.values(), strict=True)
@@ -138,15 +138,13 @@ def density(drawn: Mapping[str, Departures]) -> dict[str, Floats]:
     return {**basis, **sensors}
 
 
-def _axes(rows: Iterable[Floats], directions: Floats, count: int) -> Floats:
-    """Principal axes of departures within the span of directions (r, m), orthonormal, (m, count).
+def _axes(directions: Floats) -> Floats:
+    """Orthonormal axes of what directions (r, m) span, (m, k): all of it.
 
-    Small departures are as interesting as large ones.
+    What coordinates lack, pixels at 200 times the noise see, and take for another sensor.
     """
-    span = np.linalg.qr(directions.T)[0]
-    even = [one / max(float(np.linalg.norm(one, axis=1).mean()), _SMALLEST) for one in rows]
-    found = np.linalg.svd(np.concatenate(even) @ span, full_matrices=False)[2]
-    return np.asarray(span @ found[:count].T)
+    size, axes = np.linalg.svd(directions, full_matrices=False)[1:]
+    return np.asarray(axes[size > _DEPENDENT * size[0]].T)
 
 
 def write_density(path: Path, found: Mapping[str, Floats]) -> None:

@@ -19,6 +19,7 @@ a closed form in the plane and in the plane of frequencies.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -303,11 +304,18 @@ class PsfDirections:
         """Shares of the blur, and of its slopes by x and y, in every direction: (3, size)."""
         return self._shares(self._raw(*self._raster))
 
+    def light_of_blur(self, psf: Callable[[Floats, Floats], Floats]) -> float:
+        """Flux of the mean blur that least squares finds in a PSF, a function of places (x, y).
+
+        No direction holds any: a source of this flux has the amplitudes of the directions.
+        """
+        x, y, _ = self._raster
+        return float(self._shares(psf(x, y)[:, None])[0, 0])
+
     @property
     def wings_share(self) -> float:
         """How much of the blur least squares finds in the wings of the first fit."""
-        x, y, _ = self._raster
-        return float(self._shares(self.blur.widened(WIDE_WIDTHS).psf(x, y)[:, None])[0, 0])
+        return self.light_of_blur(self.blur.widened(WIDE_WIDTHS).psf)
 
     def transform(self, u: Floats, v: Floats) -> Complexes:
         """Fourier transform of every direction at frequencies in cycles per pixel, (n, size)."""

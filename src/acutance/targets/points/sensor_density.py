@@ -1,7 +1,7 @@
 """What point spread functions there are: a density over thousands of sensors drawn at random.
 
-Departures of a PSF from a Gaussian through a pixel (`learn_psf`) are written in a few coordinates,
-each a combination of the directions of `psf_families`. Every drawn sensor is the centre of normal
+Departures of a PSF from a Gaussian through a pixel (`learn_psf`) are written in coordinates, each a
+combination of the directions of `psf_families`. Every drawn sensor is the centre of normal
 kernels, of the covariance that sensors like it have among themselves: families are halved along
 their longest axis until few are left in a part (a k-d tree along principal axes; J. L. Bentley,
 Communications of the ACM 18, 1975), so small departures have small kernels and large ones large
@@ -36,8 +36,9 @@ __all__ = ["Basis", "Sensors", "drawn_sensors", "sensors_of"]
 
 _REACH: Final = 3.0
 """Sensors whose blur differs by more standard deviations have no part."""
-_AXES: Final = 12
-"""Principal axes of a part's covariance that its kernels have; elsewhere they have the floor."""
+_AXES: Final = 24
+"""Principal axes of a part's covariance that its kernels have; elsewhere they have the floor. With
+12 the FWHM of restored sensors at SNR 200 lies in 86 of 100 intervals, with 24 in 94."""
 _NOTHING: Final = 1e-4
 """Coordinates below which a sensor is its own mirror image, or its own transpose."""
 

@@ -255,12 +255,11 @@ KERNEL_LOG_RATIO: Final = 0.15
 """Standard deviations of the logarithms of the mean width, and of the ratio of the widths across
 and along: sensors of another blur say less."""
 KERNEL_FLOOR: Final = 3e-4
-KERNEL_FLOOR_SHARE: Final = 0.006
+KERNEL_FLOOR_SHARE: Final = 0.005
 """Least standard deviation of a coordinate among sensors: some vary in few ways. So much in any
-case, and a share of how far they depart, which is what the coordinates lack. Gaussians at SNR 200
-have errors twice as large at .001 for all; at .0003 for all three quarters of the intervals of
-restored and of diffracting sensors hold. At .004 diffracting sensors at SNR 200 are off by a fifth
-less, and restored ones that are rare among the drawn by two to three deviations."""
+case, and a share of how far they depart, which is what the coordinates lack. Restored sensors that
+were not drawn are likeliest at a share of .003 to .004; at .004 their intervals hold 2 to 6 % less
+often than at .006, where errors of sharpened products at SNR 200 are larger by a third."""
 
 COMPENSATED: Final = ("sharpened", "restored")
 """Families whose PSF has lobes: of 32 such sensors without pads, two gained 6 and more by them."""
