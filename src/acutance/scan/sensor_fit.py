@@ -205,6 +205,7 @@ def fit_sensor(
     otf = changed(state.otf, modes @ shared.mean_px2)
     member = fit_shares(seen, otf, member.share)
     # It is the mean already: a further step would follow what little is left of information.
+    # And forms with a kernel have several optima: they begin where the turns ended.
     samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
         combine_curves([samples], near=state.near), field, normal_deg, member, shared.errors_px2,
