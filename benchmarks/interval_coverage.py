@@ -78,10 +78,16 @@ def obscured_systems() -> dict[str, ac.Sensor]:
 
 
 SYSTEMS = {
-    "reference": ac.simulate.reference_systems,
-    "held-out": held_out_systems,
-    "obscured": obscured_systems,
+    "reference": ac.simulate.reference_systems(),
+    "held-out": held_out_systems(),
+    "obscured": obscured_systems(),
 }
+NAMES = {group: list(systems) for group, systems in SYSTEMS.items()}
+NAMES["families"] = list(optics.FAMILIES)
+TITLES = {
+    "reference": "Reference systems", "held-out": "Held-out systems",
+    "obscured": "Obscured systems", "families": "Families of sensors",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -100,7 +106,7 @@ def standard_errors(job: Draw) -> tuple[list[float], bool] | str:
     if job.group == "families":
         sensor = optics.draw_sensor(job.system, rng)
     else:
-        sensor = SYSTEMS[job.group]()[job.system]
+        sensor = SYSTEMS[job.group][job.system]
     image, truth = random_edge(rng, sensor, RANGES, job.scene)
     try:
         found = ac.measure_edge(image)
@@ -142,7 +148,7 @@ def main() -> None:
         ("obscured", "white"),
     ]
     for group_number, (group, scene) in enumerate(groups):
-        names = list(optics.FAMILIES if group == "families" else SYSTEMS[group]())
+        names = NAMES[group]
         jobs = [
             Draw(group, name, scene, (arguments.seed, group_number, number, draw))
             for number, name in enumerate(names)
@@ -155,8 +161,7 @@ def main() -> None:
         ]
         rows.append(row("**pooled**", results))
         head = ["system", "draws", *METRICS, "far off / %", "checks / %", "refused"]
-        title = "Families of sensors" if group == "families" else f"{group.capitalize()} systems"
-        parts += [f"## {title}, {SCENES[scene]}", table(head, rows)]
+        parts += [f"## {TITLES[group]}, {SCENES[scene]}", table(head, rows)]
     publish("Coverage of the 95 % intervals", parts, arguments)
 
 

@@ -61,6 +61,7 @@ def test_an_error_ends_the_run_and_keeps_what_was_finished(workers):
 def test_results_come_in_the_order_of_the_tasks(workers):
     found = list(results_in_turn(square, range(100), workers=workers))
     assert [value for value, _ in found] == [task**2 for task in range(100)]
+    assert len({process for _, process in found}) <= workers
 
 
 def test_this_process_is_one_of_those_that_work_for_results_in_turn(tmp_path):

@@ -226,13 +226,9 @@ class SeenKernels(NamedTuple):
         axes = (told.columns.T @ kernels.factors) / error[:, :, None]
         power, turn = np.linalg.eigh(axes.transpose(0, 2, 1) @ axes)
         axes = axes @ turn
-        along = np.empty((len(off), power.shape[1]))
-        bounds = np.searchsorted(kernels.part, np.arange(len(axes) + 1)).tolist()
-        for own, first, last in zip(axes, bounds[:-1], bounds[1:], strict=True):
-            np.matmul(off[first:last], own, out=along[first:last])
         return cls(
             kernels, told.columns, error, off, axes, kernels.factors @ turn,
-            np.maximum(power, 0.0), along,
+            np.maximum(power, 0.0), _part_by_part(off, kernels.part, axes),
         )  # fmt: skip
 
     def log_weight(self, scale: float) -> Floats:
@@ -248,10 +244,10 @@ class SeenKernels(NamedTuple):
         """Means of some kernels, (k, q)."""
         part, along = self.kernels.part[kept], self.along[kept]
         shrunk = scale**2 * along / (1 + scale**2 * self.power[part])
-        left = self.off[kept] - np.einsum("ij,ikj->ik", shrunk, self.axes[part])
+        left = self.off[kept] - _part_by_part(shrunk, part, self.axes.transpose(0, 2, 1))
         by_floor = (left / self.error[part]) @ self.columns.T
         by_floor *= self.kernels.floor[part, None] ** 2
-        by_factor = np.einsum("ij,ikj->ik", shrunk, self.factors[part])
+        by_factor = _part_by_part(shrunk, part, self.factors.transpose(0, 2, 1))
         return np.asarray(self.kernels.centres[kept] + by_factor + by_floor)
 
     def covariance(self, scale: float, part: int) -> Floats:
@@ -262,3 +258,12 @@ class SeenKernels(NamedTuple):
         common = factor @ axes.T + variance * self.columns / self.error[part]
         reduced = (common @ axes) / np.sqrt(1 + scale**2 * self.power[part])
         return np.asarray(before - common @ common.T + reduced @ reduced.T)
+
+
+def _part_by_part(rows: Floats, part: NDArray[np.intp], matrices: Floats) -> Floats:
+    """Rows (n, a) times the matrix of their part, ascending, of matrices (p, a, b): (n, b)."""
+    found = np.empty((len(rows), matrices.shape[2]))
+    bounds = np.searchsorted(part, np.arange(len(matrices) + 1)).tolist()
+    for own, first, last in zip(matrices, bounds[:-1], bounds[1:], strict=True):
+        np.matmul(rows[first:last], own, out=found[first:last])
+    return found

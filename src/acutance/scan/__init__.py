@@ -7,12 +7,11 @@ and judged by `acutance.targets.straight`), `all_windows` (every window, on seve
 cluster; finished ones in a file: `kept_windows`, `scan_identity`), `softness` (laws of the
 objects), `shares` (by direction), `population` (what the edges share, and what each is),
 `information` (what they say of the sensor), `blur_modes` (how a blur may change), `shared_blur`
-(what is the sensor's or all objects'),
-`parts` (do the parts of a scene agree), `field_fit` and `field` (over the field of view),
-`sensor_fit` (the sensor over the plane of frequencies), `stated_objects` (what is stated of all
-objects), `scene` (the public function), `scene_edges` and `scene_measurement` (its result; written
-by `edge_table` and `parquet`), `checks` (is the scene rich enough), `bands` (several bands at once;
-`band_shift` between them), `options`.
+(what is the sensor's or all objects'), `parts` (do the parts of a scene agree), `field_fit` and
+`field` (over the field of view), `sensor_fit` (the sensor over the plane of frequencies),
+`stated_objects` (what is stated of all objects), `scene` (the public function), `scene_edges` and
+`scene_measurement` (its result; written by `edge_table` and `parquet`), `checks` (is the scene rich
+enough), `bands` (several bands at once; `band_shift` between them), `options`.
 """
 
 from acutance.scan.band_shift import BandShift

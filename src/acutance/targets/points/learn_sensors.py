@@ -120,12 +120,8 @@ def density(drawn: Mapping[str, Departures]) -> dict[str, Floats]:
         np.column_stack([*(q.reshape(len(q), -1) for q in group.quadrants), group.tail]) * _metric()
         for group in learned_families().groups
     )
-    parts: dict[str, Basis] = {}
-    for family, one in drawn.items():
-        turned = _turned(one.even)
-        parts[family] = Basis(0.5 * (one.even + turned), 0.5 * (one.even - turned), one.odd)
-    turned = _turned(even)
-    directions = Basis(0.5 * (even + turned), 0.5 * (even - turned), odd)
+    parts = {family: _by_symmetry(one.even, one.odd) for family, one in drawn.items()}
+    directions = _by_symmetry(even, odd)
     axes = {name: _axes(getattr(directions, name)) for name in Basis._fields}
     basis = {
         f"basis {name}": np.linalg.lstsq(whole.T, axes[name], rcond=1e-10)[0]
@@ -136,6 +132,12 @@ def density(drawn: Mapping[str, Departures]) -> dict[str, Floats]:
         for (family, one), (_, _, widths) in zip(parts.items(), drawn.values(), strict=True)
     }
     return {**basis, **sensors}
+
+
+def _by_symmetry(even: Floats, odd: Floats) -> Basis:
+    """Even departures (n, m) in parts that a turn by 90 degrees keeps, and turns; the odd ones."""
+    turned = _turned(even)
+    return Basis(0.5 * (even + turned), 0.5 * (even - turned), odd)
 
 
 def _axes(directions: Floats) -> Floats:

@@ -37,8 +37,9 @@ __all__ = ["Basis", "Sensors", "drawn_sensors", "sensors_of"]
 _REACH: Final = 3.0
 """Sensors whose blur differs by more standard deviations have no part."""
 _AXES: Final = 24
-"""Principal axes of a part's covariance that its kernels have; elsewhere they have the floor. With
-12 the FWHM of restored sensors at SNR 200 lies in 86 of 100 intervals, with 24 in 94."""
+"""Principal axes of a part's covariance that its kernels have; elsewhere they have the floor. Of 57
+restored sensors not drawn, linear in their coordinates, at SNR 200 the FWHM lies with 12 in 86 of
+100 intervals, with 24 in 94."""
 _NOTHING: Final = 1e-4
 """Coordinates below which a sensor is its own mirror image, or its own transpose."""
 
