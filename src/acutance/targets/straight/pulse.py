@@ -160,7 +160,6 @@ def _is_far(found_px: float, stated_px: float) -> bool:
 
 def _width_check(
     region: RegionPixels,
-    trimmed: PulsePixels,
     width: Estimate,
     stated_px: float | None,
     options: PulseOptions,
@@ -168,15 +167,17 @@ def _width_check(
     """Whether the image agrees with the stated width; one that was held is fitted for it."""
     if stated_px is None or width.std > 0:
         return width_check(options.limits, stated_px, width, is_held=False)
-    free = _free_width(region, trimmed, stated_px, robust=options.robust)
+    free = _free_width(region, stated_px, robust=options.robust)
     return width_check(options.limits, stated_px, free, is_held=True)
 
 
-def _free_width(
-    region: RegionPixels, trimmed: PulsePixels, held_px: float, *, robust: bool
-) -> Estimate | None:
-    """The width that the joint fit finds where another was held; None where it finds none."""
+def _free_width(region: RegionPixels, held_px: float, *, robust: bool) -> Estimate | None:
+    """The width that the joint fit finds where another was held; None where it finds none.
+
+    From a first fit of its own: about one with half the width the blur is wide, and stays so.
+    """
     try:
+        trimmed, _ = find_pulse(region.pixels, held_px)
         width = fit_pulse(trimmed, robust=robust).pulse_width
         if _is_far(width.value, held_px):
             again, _ = find_pulse(region.pixels, width.value)
@@ -241,7 +242,7 @@ def _measurement(
         return check_pulse(
             region, data, extent, options.limits,
             width=width, height_ratio=height_ratio,
-            stated_width=_width_check(region, trimmed, width, stated_px, options),
+            stated_width=_width_check(region, width, stated_px, options),
             by_ratio=method in PUBLISHED_PULSE,
         )  # fmt: skip
 
