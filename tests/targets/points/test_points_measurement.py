@@ -42,9 +42,9 @@ def test_curves_of_the_light_half_are_those_of_the_whole(measured):
     for angle_deg in (0.0, 33.0, 90.0):
         one, other = measured.response_at(angle_deg), light.response_at(angle_deg)
         assert other.mtf.otf == pytest.approx(one.mtf.otf, abs=1e-12)
-        assert other.mtf.std == pytest.approx(one.mtf.std, rel=0.2, abs=1e-4)
+        assert other.mtf.std == pytest.approx(one.mtf.std, rel=0.05, abs=1e-4)
         for name, number in one.metrics().items():
-            assert other.metrics()[name].std == pytest.approx(number.std, rel=0.06, abs=1e-4), name
+            assert other.metrics()[name].std == pytest.approx(number.std, rel=0.03, abs=1e-4), name
 
 
 def test_the_record_is_the_document(measured):

@@ -18,8 +18,8 @@ from acutance.targets.points.psf_prior import PsfDirections
 __all__ = ["PsfModel"]
 
 Complexes = NDArray[np.complex128]
-_CONDENSED = 56
-_FREQ_CPP: Floats = np.linspace(0.0, 1.0, 21)
+_CONDENSED = 40
+_FREQ_CPP: Floats = np.append([0.01, 0.02, 0.03], np.linspace(0.05, 1.0, 20))
 _ANGLES_RAD: Floats = np.radians(np.arange(0.0, 180.0, 15.0))
 
 
@@ -44,11 +44,14 @@ class PsfModel(ShortRepr):
     def packed(self) -> PsfModel:
         """The same PSF with the most important directions of its covariance, at half precision.
 
-        They are the principal axes of the OTF's errors up to 1 cycle per pixel.
+        They are the principal axes of the OTF's errors up to 1 cycle per pixel, in units of their
+        deviation at every frequency: small deviations keep as many digits as large ones.
         """
         freq, angle = np.meshgrid(_FREQ_CPP, _ANGLES_RAD)
         factor = self.factor((freq * np.cos(angle)).ravel(), (freq * np.sin(angle)).ravel())
-        axes = np.linalg.svd(stacked(factor), full_matrices=False)[2]
+        std = np.sqrt(np.sum(np.abs(factor) ** 2, axis=1, keepdims=True))
+        relative = factor / np.maximum(std, np.finfo(float).tiny)
+        axes = np.linalg.svd(stacked(relative), full_matrices=False)[2]
         latent = np.asarray(self.latent @ axes[:_CONDENSED].T)
         return replace(self, latent=latent.astype(np.float16))
 
