@@ -22,9 +22,10 @@ from typing import Final
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.otf_families import FAMILY_LOG_AMPLITUDES
 from acutance.numerics.otf_modes import MeanOtf, ProcessModes
 from acutance.numerics.stacked import stacked
-from acutance.optics import FAMILIES, Sensor, draw_sensor
+from acutance.optics import Sensor, draw_sensor
 
 __all__ = ["departure", "learn_families", "principal_directions", "write_families"]
 
@@ -92,7 +93,7 @@ def principal_directions(departures: Floats, negligible: float = _NEGLIGIBLE) ->
 
 
 def learn_families(
-    sensors_per_family: int, seed: int, families: Iterable[str] = FAMILIES
+    sensors_per_family: int, seed: int, families: Iterable[str] = FAMILY_LOG_AMPLITUDES
 ) -> dict[str, Floats]:
     """The directions of every family, (r, k) each."""
     found = {}

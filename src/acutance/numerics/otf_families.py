@@ -10,15 +10,27 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.resources import files
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.optics import FAMILIES
 
-__all__ = ["FamilyDirections", "family_directions"]
+__all__ = ["FAMILY_LOG_AMPLITUDES", "FamilyDirections", "family_directions"]
+
+FAMILY_LOG_AMPLITUDES: Final = {
+    "telescope": -0.5,
+    "halo": -1.5,
+    "trail": -3.0,
+    "smear": -3.0,
+    "sharpened": -3.0,
+    "restored": -3.0,
+    "resampled": -3.0,
+}
+"""Expected amplitude of every family of sensors relative to that of its own population: light of
+every sensor goes through an aperture, few have the other causes. As along an edge. What is
+processed in two ways departs along the directions of either."""
 
 
 class FamilyDirections(NamedTuple):
@@ -29,11 +41,14 @@ class FamilyDirections(NamedTuple):
     states : (r, k) array
         Coefficients of the states for every direction.
     family : (k,) int array
-        Which family every direction belongs to, in the order of `acutance.optics.FAMILIES`.
+        Which family every direction belongs to, in the order of `FAMILY_LOG_AMPLITUDES`.
+    log_amplitude : (f,) array
+        Expected amplitude of every family.
     """
 
     states: Floats
     family: NDArray[np.intp]
+    log_amplitude: Floats
 
 
 @cache
@@ -41,6 +56,7 @@ def family_directions() -> FamilyDirections:
     """The directions of all families, as they were learned."""
     path = files("acutance.numerics").joinpath("otf_families.npz")
     with path.open("rb") as file, np.load(file, allow_pickle=False) as learned:
-        parts = [learned[name].astype(float) for name in FAMILIES]
+        parts = [learned[name].astype(float) for name in FAMILY_LOG_AMPLITUDES]
     sizes = [part.shape[1] for part in parts]
-    return FamilyDirections(np.hstack(parts), np.repeat(np.arange(len(sizes)), sizes))
+    family = np.repeat(np.arange(len(sizes)), sizes)
+    return FamilyDirections(np.hstack(parts), family, np.array([*FAMILY_LOG_AMPLITUDES.values()]))

@@ -11,7 +11,8 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
 - "sharpened", "restored": compensation on the ground by kernels of 3 to 15 taps, set by hand or
   designed as Wiener filters (towards a point or a pixel, for this blur or another one), of a
   Gaussian blur and of a telescope's;
-- "resampled": an interpolated product.
+- "resampled": a product interpolated at all phases of its pixels;
+- "processed": one interpolated at a single phase, as in a small part of it, or compensated before.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from acutance.optics.block import Block
 from acutance.optics.detector import ChargeDiffusion, Detector
 from acutance.optics.electronics import Exponential
 from acutance.optics.motion import Smear
-from acutance.optics.processing import Resampling, Sharpening
+from acutance.optics.processing import Interpolation, Resampling, Sharpening, Shift
 from acutance.optics.sensor import Sensor
 
 __all__ = ["FAMILIES", "draw_sensor"]
@@ -137,6 +138,19 @@ def _resampled(rng: np.random.Generator) -> list[Block]:
     return [*blocks, Resampling("cubic", rng.uniform(-0.75, -0.3))]
 
 
+def _processed(rng: np.random.Generator) -> list[Block]:
+    blocks = _telescope(rng) if rng.random() < 0.6 else _plain(rng)
+    compensated = rng.random() < 0.7
+    if compensated:
+        blocks = _compensated(blocks, rng)
+    kernel: Interpolation = "bilinear" if rng.random() < 0.25 else "cubic"
+    a = rng.uniform(-0.75, -0.3)
+    if compensated and rng.random() < 0.5:
+        return [*blocks, Resampling(kernel, a)]
+    row_px, col_px = rng.uniform(-0.5, 0.5, 2).tolist()
+    return [*blocks, Shift(row_px, col_px, kernel, a)]
+
+
 FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "telescope": _telescope,
     "halo": _halo,
@@ -145,5 +159,6 @@ FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "sharpened": _sharpened,
     "restored": _restored,
     "resampled": _resampled,
+    "processed": _processed,
 }
 """How to draw the blocks of a sensor of each family."""

@@ -38,6 +38,8 @@ from acutance.targets.slices import places_along
 
 __all__ = ["IdealShare", "SensorFit", "fit_sensor"]
 
+_FORMS: Final = tuple(terms for terms in FORMS if "phase" not in terms)
+"""An interpolated scene has pixels at all phases."""
 _SETTLED: Final = 0.1
 """Square of a turn's change, in standard deviations of what the edges say."""
 _SETTLED_GAIN: Final = 1e-3
@@ -208,7 +210,8 @@ def fit_sensor(
     # And forms with a kernel have several optima: they begin where the turns ended.
     samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
-        combine_curves([samples], near=state.near), field, normal_deg, member, shared.errors_px2,
+        combine_curves([samples], forms=_FORMS, near=state.near),
+        field, normal_deg, member, shared.errors_px2,
         compare_parts(seen, otf, member.share, x, y),
         state.turns, state.settled,
     )  # fmt: skip
@@ -259,7 +262,7 @@ def _starts(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats
         otf = changed(start, free @ fit.amount)
         apart = [float(np.abs(otf - one.otf)[:, in_band].mean()) for one in found]
         if min(apart, default=np.inf) > _ALIKE:
-            found.append(_State(otf, fit.share, FORMS, (), edges, 0, settled=False))
+            found.append(_State(otf, fit.share, _FORMS, (), edges, 0, settled=False))
     return found
 
 

@@ -187,5 +187,10 @@ FORMS: tuple[tuple[str, ...], ...] = (
     ("gaussian", "defocus", "kernel"),
     ("gaussian", "diffraction", "smear", "kernel"),
     ("gaussian", "diffraction", "interpolation"),
+    ("gaussian", "defocus", "interpolation"),
+    ("gaussian", "phase"),
+    ("gaussian", "diffraction", "phase"),
+    ("gaussian", "kernel", "phase"),
+    ("gaussian", "diffraction", "kernel", "phase"),
 )
 """Forms that are tried, the simplest first."""

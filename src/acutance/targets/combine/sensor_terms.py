@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import wrap_axis
-from acutance.optics import Defocus, Diffraction, Resampling
+from acutance.optics import Defocus, Diffraction, Resampling, Shift
+from acutance.optics.processing import interpolation_weight
 
 __all__ = ["TERMS", "Term", "Transfer"]
 
@@ -237,6 +238,30 @@ def _interpolation_numbers(p: Floats) -> dict[str, float]:
     return {"cubic_a": _cubic(p)}
 
 
+def _phases(p: Floats) -> tuple[float, float]:
+    """Sub-pixel places of interpolation across and along: equally likely from -1/2 to 1/2."""
+    return 0.5 * math.erf(p[0] * math.sqrt(0.5)), 0.5 * math.erf(p[1] * math.sqrt(0.5))
+
+
+def _phase(p: Floats, u: Floats, v: Floats) -> Complexes:
+    """Cubic convolution at one phase of the pixels, as in a small part of a warped image."""
+    across, along = _phases(p)
+    otf = Shift(along, across, "cubic", _cubic(p[2:])).otf(u, v)
+    moved_px = u * _moved_px(across, _cubic(p[2:])) + v * _moved_px(along, _cubic(p[2:]))
+    return np.asarray(otf * np.exp(-2j * math.pi * moved_px))
+
+
+def _moved_px(phase_px: float, a: float) -> float:
+    """How far cubic convolution moves the image: only that of a = -1/2 keeps straight lines."""
+    away_px = np.arange(-2, 3) - phase_px
+    return float(away_px @ interpolation_weight("cubic", away_px, a))
+
+
+def _phase_numbers(p: Floats) -> dict[str, float]:
+    across, along = _phases(p)
+    return {"phase_across_px": across, "phase_along_px": along, "cubic_a": _cubic(p[2:])}
+
+
 _SIGMA_MEAN, _SIGMA_STD = (math.log(0.4),), (0.7,)
 _NEARLY_ROUND_STD = (0.03, 0.06)
 """No sensor is exactly round: half the logarithm of the ratio of its widths, and its correlation,
@@ -260,6 +285,7 @@ TERMS: dict[str, Term] = {
     "defocus": Term(_defocus, (math.log(1.3), -0.5, 0.25), (0.4, 1.0, 0.15), _defocus_numbers),
     "kernel": Term(_kernel, _TAP_MEAN, _TAP_STD, _kernel_numbers, _kernel_slopes),
     "interpolation": Term(_interpolation, (0.0,), (0.6,), _interpolation_numbers),
+    "phase": Term(_phase, (0.0, 0.0, 0.0), (1.0, 1.0, 0.6), _phase_numbers),
 }
 """Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear and halo of a pixel or two, taps
 of up to a third, masks of a quarter to the whole of what is missing, a quarter of a wave of

@@ -48,7 +48,7 @@ def kernel_prior(basis: KernelBasis, gain: float, reference: ReferenceOtf | None
     """
     families = _family_coefficients(basis, reference)
     own = basis.log_amplitude.size
-    family = family_directions().family
+    _, family, log_amplitude = family_directions()
     mean = np.zeros(basis.size + family.size)
     mean[0] = gain
     stds = [tuned.LOG_AMPLITUDE_STD, tuned.FAMILY_LOG_AMPLITUDE_STD]
@@ -56,8 +56,8 @@ def kernel_prior(basis: KernelBasis, gain: float, reference: ReferenceOtf | None
         block=np.concatenate([basis.blocks, own + family]).astype(float),
         scale=np.append(basis.scale, np.ones(family.size)),
         mean=mean,
-        log_amplitude=np.append(basis.log_amplitude, tuned.FAMILY_LOG_AMPLITUDE),
-        log_amplitude_std=np.repeat(stds, [own, tuned.FAMILY_LOG_AMPLITUDE.size]),
+        log_amplitude=np.append(basis.log_amplitude, log_amplitude),
+        log_amplitude_std=np.repeat(stds, [own, log_amplitude.size]),
         height=abs(gain),
         noise_floor=1e-3,
     )

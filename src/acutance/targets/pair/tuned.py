@@ -16,7 +16,6 @@ __all__ = [
     "BLOCK_FOLLOWS",
     "BLOCK_NOISES",
     "BLOCK_OFF",
-    "FAMILY_LOG_AMPLITUDE",
     "FAMILY_LOG_AMPLITUDE_STD",
     "FAR_SHARE",
     "FEW_BLOCKS_FOLLOW",
@@ -55,12 +54,8 @@ the tail its own volume. Hyperpriors only: the data move them."""
 LOG_AMPLITUDE_STD: Final = 0.7
 """How far the data may move them: within a factor of 2."""
 
-FAMILY_LOG_AMPLITUDE: Final[Floats] = np.array([-0.5, -1.5, -3.0, -3.0, -3.0, -3.0, -3.0])
-"""Expected amplitude of every family of sensors relative to that of its own population: light of
-every sensor goes through an aperture, few have the other causes. As along an edge."""
-
 FAMILY_LOG_AMPLITUDE_STD: Final = 2.0
-"""How far the data may move them."""
+"""How far the data may move the amplitude of a family of sensors."""
 
 PARAMETER_STD: Final[Floats] = np.array([10.0, 1.0, 1.0, 1.0, 1.0, 0.3, 0.3, 1.0, 1.0, 1.0])
 """Volume, shifts (px), variances (px^2), widths of the detector (px); and how far the low image is

@@ -16,7 +16,6 @@ from acutance.numerics.otf_families import family_directions
 from acutance.numerics.otf_modes import MEAN_MODES, ProcessModes
 from acutance.targets.periodic.otf_model import FittedOtf
 from acutance.targets.periodic.tuned import (
-    FAMILY_LOG_AMPLITUDE,
     FAMILY_LOG_AMPLITUDE_STD,
     FREE_LEVEL_LOG_AMPLITUDE,
     LOG_AMPLITUDE,
@@ -102,13 +101,14 @@ def otf_prior(
         Whether levels of wide patches show how much light is scattered far.
     """
     own = np.full(own_scale.size + MEAN_MODES, -1)
-    families = None if states is None else family_directions()
+    families = family_directions()
     blocks, combination = own, np.eye(own.size)
     amplitude = LOG_AMPLITUDE if level_stated else LOG_AMPLITUDE + FREE_LEVEL_LOG_AMPLITUDE
     stds = np.repeat(
-        [LOG_AMPLITUDE_STD, FAMILY_LOG_AMPLITUDE_STD], [amplitude.size, FAMILY_LOG_AMPLITUDE.size]
+        [LOG_AMPLITUDE_STD, FAMILY_LOG_AMPLITUDE_STD],
+        [amplitude.size, families.log_amplitude.size],
     )
-    if states is not None and families is not None:
+    if states is not None:
         blocks = np.concatenate([own, states.blocks(), amplitude.size + families.family])
         combination = _with_families(own.size, families.states)
     scale = np.ones(blocks.size)
@@ -116,7 +116,7 @@ def otf_prior(
     mean = np.zeros(blocks.size)
     mean[: own_mean.size] = own_mean
     prior = Prior(
-        blocks, scale, mean, np.append(amplitude, FAMILY_LOG_AMPLITUDE), stds, height,
+        blocks, scale, mean, np.append(amplitude, families.log_amplitude), stds, height,
         noise_floor * height,
     )  # fmt: skip
     return CombinedPrior(prior, combination)

@@ -17,7 +17,6 @@ __all__ = [
     "ABOUT_AS_WELL",
     "APERTURE_STD",
     "BARS_NOISE_FLOOR",
-    "FAMILY_LOG_AMPLITUDE",
     "FAMILY_LOG_AMPLITUDE_STD",
     "FREE_LEVEL_LOG_AMPLITUDE",
     "FULL_HEIGHT",
@@ -48,12 +47,8 @@ contrast from 8.7 to 13.8 %, bars' from 0.60 to 0.74 %; a third raises the star'
 LOG_AMPLITUDE_STD: Final = 1.2
 """How far the data may move a log amplitude, as along an edge."""
 
-FAMILY_LOG_AMPLITUDE: Final[Floats] = np.array([-0.5, -1.5, -3.0, -3.0, -3.0, -3.0, -3.0])
-"""Expected amplitude of every family of sensors relative to that of its own population: light of
-every sensor goes through an aperture, few have the other causes. As along an edge."""
-
 FAMILY_LOG_AMPLITUDE_STD: Final = 2.0
-"""How far the data may move them."""
+"""How far the data may move the amplitude of a family of sensors."""
 
 FREE_LEVEL_LOG_AMPLITUDE: Final[Floats] = np.array([0.0, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0])
 """Added to those of halo and tail where no levels are stated: nothing in the image then shows how

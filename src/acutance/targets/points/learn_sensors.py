@@ -31,6 +31,7 @@ DENSITY_COUNTS: Final = {
     "restored": 1500,
     "resampled": 400,
     "plain": 300,
+    "processed": 800,
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
 detector, nothing else."""
@@ -43,25 +44,28 @@ class Departures(NamedTuple):
 
     Attributes
     ----------
-    even, odd : (n, m) arrays
-        Parts even across and along, and odd across: a quadrant of coefficients on the fine grid,
-        then on the coarse one, then the tail; the root of the sum of squares is that of the light.
+    even, across, along : (n, m) arrays
+        Parts even across and along, odd across, and odd along with rows and columns exchanged: a
+        quadrant of coefficients on the fine grid, then on the coarse one, then the tail; the root
+        of the sum of squares is that of the light.
     log_widths : (n, 2) array
         Logarithms of the widths of the blur across and along, in pixels.
     """
 
     even: Floats
-    odd: Floats
+    across: Floats
+    along: Floats
     log_widths: Floats
 
     @classmethod
     def of(cls, departures: Iterable[Departure]) -> Self:
         """From departures on whole grids."""
         every = list(departures)
-        even, odd = (
-            np.array([_quadrants(one, parities) for one in every]) for parities in ((1, 1), (-1, 1))
+        even, across, along = (
+            np.array([_quadrants(one, parities) for one in every])
+            for parities in ((1, 1), (-1, 1), (1, -1))
         )
-        return cls(even, odd, np.log([one.widths_px for one in every]))
+        return cls(even, across, _turned(along), np.log([one.widths_px for one in every]))
 
 
 def _quadrants(one: Departure, parities: Parities) -> Floats:
@@ -114,24 +118,30 @@ def density(drawn: Mapping[str, Departures]) -> dict[str, Floats]:
     -------
     dict of str to array
         "basis same", "basis opposite", "basis odd": as `sensor_density.Basis`; by family
-        (n, a + b + c + 2): coordinates, and the logarithms of the widths across and along.
+        (n, a + b + 2 c + 2): coordinates, and the logarithms of the widths across and along.
     """
     even, odd, _ = (
         np.column_stack([*(q.reshape(len(q), -1) for q in group.quadrants), group.tail]) * _metric()
         for group in learned_families().groups
     )
-    parts = {family: _by_symmetry(one.even, one.odd) for family, one in drawn.items()}
-    directions = _by_symmetry(even, odd)
-    axes = {name: _axes(getattr(directions, name)) for name in Basis._fields}
-    basis = {
-        f"basis {name}": np.linalg.lstsq(whole.T, axes[name], rcond=1e-10)[0]
-        for name, whole in zip(Basis._fields, (even, even, odd), strict=True)
+    parts = _by_symmetry(even, odd)
+    axes = Basis(*(_axes(one) for one in parts))
+    found: dict[str, Floats] = {
+        f"basis {name}": np.asarray(np.linalg.lstsq(whole.T, own, rcond=1e-10)[0], float)
+        for name, whole, own in zip(Basis._fields, (even, even, odd), axes, strict=True)
     }
-    sensors = {
-        family: np.hstack([*(getattr(one, name) @ axes[name] for name in Basis._fields), widths])
-        for (family, one), (_, _, widths) in zip(parts.items(), drawn.values(), strict=True)
-    }
-    return {**basis, **sensors}
+    for family, one in drawn.items():
+        found[family] = _coordinates(one, axes)
+    return found
+
+
+def _coordinates(drawn: Departures, axes: Basis) -> Floats:
+    """Coordinates of departures along axes, (n, a + b + 2 c), and the logarithms of the widths."""
+    same, opposite, across = (
+        np.asarray(part @ own)
+        for part, own in zip(_by_symmetry(drawn.even, drawn.across), axes, strict=True)
+    )
+    return np.hstack([same, opposite, across, drawn.along @ axes.odd, drawn.log_widths])
 
 
 def _by_symmetry(even: Floats, odd: Floats) -> Basis:

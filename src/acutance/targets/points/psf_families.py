@@ -22,8 +22,9 @@ __all__ = ["PARITIES", "Families", "Parities", "entry_name", "learned_families"]
 
 Complexes = NDArray[np.complex128]
 Parities = tuple[Parity, Parity]
-PARITIES: Final[tuple[Parities, ...]] = ((1, 1), (-1, 1), (-1, -1))
-"""Across and along. Directions even across and odd along are transposes of the second kind."""
+PARITIES: Final[tuple[Parities, ...]] = ((1, 1), (-1, 1))
+"""Across and along. Directions even across and odd along are transposes of the second kind. What is
+odd both ways is a twentieth of what is even where there is any (interpolation at one phase)."""
 
 
 @dataclass(frozen=True, eq=False)

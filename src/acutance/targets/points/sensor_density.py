@@ -119,7 +119,7 @@ def sensors_of(basis: Basis, drawn: Mapping[str, Floats]) -> Sensors:
     ----------
     basis : Basis
         Of a + b + c coordinates.
-    drawn : mapping of str to (n, a + b + c + 2) arrays
+    drawn : mapping of str to (n, a + b + 2 c + 2) arrays
         Coordinates of the sensors of every family, and the logarithms of their widths.
     """
     found = {family: list(_parts(family, rows, basis)) for family, rows in drawn.items()}
@@ -150,7 +150,7 @@ class _Part(NamedTuple):
 
 
 def _parts(family: str, rows: Floats, basis: Basis) -> Iterator[_Part]:
-    """From the coordinates of every sensor, (n, a + b + c), and the logarithms of its widths."""
+    """From the coordinates of every sensor, (n, a + b + 2 c), and the logarithms of its widths."""
     centres, log_widths, log_weight = _images(rows[:, :-2], rows[:, -2:], basis)
     log_width = log_widths.mean(axis=1)
     log_ratio = log_widths[:, 0] - log_widths[:, 1]
@@ -179,19 +179,19 @@ def _images(coordinates: Floats, log_widths: Floats, basis: Basis) -> tuple[Floa
     (m,) array
         Logarithm of the share of the sensor that an image is.
     """
-    a, b = basis.same.shape[1], basis.opposite.shape[1]
-    same, opposite, odd = np.split(coordinates, [a, a + b], axis=1)
-    nothing = np.zeros_like(odd)
-    turned_widths = log_widths[:, ::-1]
-    images = [
-        (np.hstack([same, opposite, odd, nothing]), log_widths),
-        (np.hstack([same, -opposite, nothing, odd]), turned_widths),
-        (np.hstack([same, opposite, -odd, nothing]), log_widths),
-        (np.hstack([same, -opposite, nothing, -odd]), turned_widths),
-    ]
-    is_odd = np.linalg.norm(odd, axis=1) > _NOTHING
-    turns = is_odd | (np.linalg.norm(opposite, axis=1) > _NOTHING)
-    counts = (np.ones_like(turns), turns, is_odd, is_odd)
+    a, b, c = (part.shape[1] for part in basis)
+    same, opposite, across, along = np.split(coordinates, [a, a + b, a + b + c], axis=1)
+    by_row, by_col = (np.linalg.norm(odd, axis=1) > _NOTHING for odd in (along, across))
+    turns = by_row | by_col | (np.linalg.norm(opposite, axis=1) > _NOTHING)
+    always = np.ones_like(turns)
+    images, counts = [], []
+    for x, mirrored in ((1, always), (-1, by_col)):
+        for y, upside_down in ((1, always), (-1, by_row)):
+            images += [
+                (np.hstack([same, opposite, x * across, y * along]), log_widths),
+                (np.hstack([same, -opposite, y * along, x * across]), log_widths[:, ::-1]),
+            ]
+            counts += [mirrored & upside_down, mirrored & upside_down & turns]
     share = -np.log(np.sum(counts, axis=0))
     return (
         np.concatenate([one[kept] for (one, _), kept in zip(images, counts, strict=True)]),

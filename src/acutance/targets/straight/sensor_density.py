@@ -66,6 +66,8 @@ class SensorFamily:
         Of every sensor's departure; a unit is the light of the whole LSF.
     log_width : (n,) array
         Logarithm of the width of its blur in pixels, ascending.
+    weight : (n,) array
+        How often every one is expected; the sum is one.
     covariance : (q, q) array
         Of the coordinates.
     """
@@ -73,6 +75,7 @@ class SensorFamily:
     name: str
     coordinates: Floats
     log_width: Floats
+    weight: Floats
     covariance: Floats
 
 
@@ -112,7 +115,7 @@ class Sensors:
         """Covariance of all sensors about none, family by family, (q, q)."""
         found = np.zeros((self.basis.shape[1],) * 2)
         for family in self.families:
-            mean = family.coordinates.mean(axis=0)
+            mean = family.weight @ family.coordinates
             found += family.covariance + np.outer(mean, mean)
         return found
 
@@ -195,9 +198,7 @@ class Sensors:
     def _log_share(self) -> Floats:
         """Logarithm of the weight of every sensor among all, (n,)."""
         return np.concatenate([
-            np.full(family.log_width.size, math.log(weight / family.log_width.size))
-            for family in self.families
-            for weight in (FAMILY_WEIGHTS.get(family.name, 1.0),)
+            np.log(FAMILY_WEIGHTS.get(family.name, 1.0) * family.weight) for family in self.families
         ])  # fmt: skip
 
     def _about(self, width_px: float) -> tuple[NDArray[np.intp], Floats]:
@@ -244,13 +245,12 @@ def _family(name: str, rows: Floats, parity: Floats) -> SensorFamily:
     Edges are seen from either side, so mirror images of sensors that are not even count as often.
     """
     coordinates, log_width = rows[:, :-1], rows[:, -1]
-    odd = coordinates[:, parity < 0]
-    if float(np.sqrt(np.mean(np.sum(odd**2, axis=1)))) > KERNEL_FLOOR:
-        coordinates = np.repeat(coordinates, 2, axis=0)
-        coordinates[1::2] *= parity
-        log_width = np.repeat(log_width, 2)
-    else:
-        coordinates = np.where(parity < 0, 0.0, coordinates)
-    about = coordinates - coordinates.mean(axis=0)
-    covariance = about.T @ about / len(about) + KERNEL_FLOOR**2 * np.eye(parity.size)
-    return SensorFamily(name, coordinates, log_width, covariance)
+    uneven = np.linalg.norm(coordinates[:, parity < 0], axis=1) > KERNEL_FLOOR
+    coordinates = np.where((parity < 0) & ~uneven[:, None], 0.0, coordinates)
+    places = np.repeat(np.arange(len(rows)), 1 + uneven)
+    mirrored = np.append(False, places[1:] == places[:-1])
+    coordinates = np.where(mirrored[:, None], parity, 1.0) * coordinates[places]
+    weight = 1.0 / (1 + uneven[places]) / len(rows)
+    about = coordinates - weight @ coordinates
+    covariance = (weight[:, None] * about).T @ about + KERNEL_FLOOR**2 * np.eye(parity.size)
+    return SensorFamily(name, coordinates, log_width[places], weight, covariance)
