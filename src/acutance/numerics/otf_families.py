@@ -30,7 +30,7 @@ FAMILY_LOG_AMPLITUDES: Final = {
 }
 """Expected amplitude of every family of sensors relative to that of its own population: light of
 every sensor goes through an aperture, few have the other causes. As along an edge. What is
-processed in two ways departs along the directions of either."""
+interpolated at one phase, or compensated and interpolated, departs along directions of these."""
 
 
 class FamilyDirections(NamedTuple):

@@ -11,8 +11,9 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
 - "sharpened", "restored": compensation on the ground by kernels of 3 to 15 taps, set by hand or
   designed as Wiener filters (towards a point or a pixel, for this blur or another one), of a
   Gaussian blur and of a telescope's;
-- "resampled": a product interpolated at all phases of its pixels;
-- "processed": one interpolated at a single phase, as in a small part of it, or compensated before.
+- "resampled", "shifted": a product interpolated, at all phases of its pixels or at a single one, as
+  a small part of it is;
+- "processed": compensated on the ground, then interpolated.
 """
 
 from __future__ import annotations
@@ -138,17 +139,22 @@ def _resampled(rng: np.random.Generator) -> list[Block]:
     return [*blocks, Resampling("cubic", rng.uniform(-0.75, -0.3))]
 
 
-def _processed(rng: np.random.Generator) -> list[Block]:
+def _shifted(rng: np.random.Generator) -> list[Block]:
     blocks = _telescope(rng) if rng.random() < 0.6 else _plain(rng)
-    compensated = rng.random() < 0.7
-    if compensated:
-        blocks = _compensated(blocks, rng)
+    return [*blocks, _at_one_phase(rng)]
+
+
+def _processed(rng: np.random.Generator) -> list[Block]:
+    blocks = _restored(rng) if rng.random() < 0.6 else _sharpened(rng)
+    if rng.random() < 0.5:
+        return [*blocks, _at_one_phase(rng)]
+    return [*blocks, Resampling("cubic", rng.uniform(-0.75, -0.3))]
+
+
+def _at_one_phase(rng: np.random.Generator) -> Shift:
     kernel: Interpolation = "bilinear" if rng.random() < 0.25 else "cubic"
-    a = rng.uniform(-0.75, -0.3)
-    if compensated and rng.random() < 0.5:
-        return [*blocks, Resampling(kernel, a)]
-    row_px, col_px = rng.uniform(-0.5, 0.5, 2).tolist()
-    return [*blocks, Shift(row_px, col_px, kernel, a)]
+    row_px, col_px, a = rng.uniform((-0.5, -0.5, -0.75), (0.5, 0.5, -0.3)).tolist()
+    return Shift(row_px, col_px, kernel, a)
 
 
 FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
@@ -159,6 +165,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "sharpened": _sharpened,
     "restored": _restored,
     "resampled": _resampled,
+    "shifted": _shifted,
     "processed": _processed,
 }
 """How to draw the blocks of a sensor of each family."""

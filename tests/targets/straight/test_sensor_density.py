@@ -80,17 +80,17 @@ def test_what_was_drawn_is_kept(tmp_path):
     assert np.abs(density["trail"][:, :-1]).max() > 0.03
 
 
-@pytest.mark.parametrize(
-    "family", ["telescope", "halo", "sharpened", "restored", "resampled", "processed"]
-)
+@pytest.mark.parametrize("family", optics.FAMILIES)
 def test_departures_of_new_sensors_lie_in_the_coordinates(family):
     basis = drawn_sensors().basis
     rng = np.random.default_rng(77)
     left = []
-    for _ in range(4):
+    for _ in range(10):
         found = departure(draw_sensor(family, rng)).coefficients
         left.append(np.linalg.norm(found - basis @ (basis.T @ found)))
-    assert max(left) < 4e-3
+    # Of the departures .15 to .3 in the median.
+    assert np.median(left) < 2e-3
+    assert max(left) < 0.03
 
 
 SENSORS = {

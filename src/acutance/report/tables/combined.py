@@ -36,6 +36,8 @@ PARAMETERS = {
     "unsharp_sigma_px": ("unsharp mask, Gaussian", "px"),
     **{f"tap_{k}": (f"kernel, tap {k}", "") for k in range(1, 8)},
     "cubic_a": ("cubic convolution, a", ""),
+    "phase_across_px": ("cubic convolution, place across", "px"),
+    "phase_along_px": ("cubic convolution, place along", "px"),
     "detector_fill": ("detector's width over the stated one", ""),
 }
 PART_COLUMNS = (

@@ -54,11 +54,11 @@ _PHASES: Final = np.mod(np.outer(np.arange(13), (1, 5)) / 13 + 0.5, 1.0) - 0.5
 """Where in a pixel the sources of the first fit are: a lattice that a turn by 90 degrees keeps, of
 which the blur is within .004 px² that of 20 mirrors."""
 _APART_PX: Final = 100.0
-_NEGLIGIBLE: Final = {"telescope": 3e-5, "restored": 3e-5, "processed": 1e-3}
+_NEGLIGIBLE: Final = {"telescope": 3e-5, "restored": 3e-5, "shifted": 3e-3, "processed": 3e-3}
 _NEGLIGIBLE_ELSEWHERE: Final = 3e-4
 """Share of the mean square of a family's first direction below which directions are left out. What
-is even of processed sensors restored ones have as well: directions of a share of 3e-4 measured them
-no better, at a tenth more of work."""
+is even of shifted and processed sensors telescopes and restored ones have as well: with the 17 more
+directions of a share of 3e-4 they are measured hardly better, at a fifth more of work."""
 _SYMMETRIES: Final = [
     (parities, turned)
     for parities in PARITIES

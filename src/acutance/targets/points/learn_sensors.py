@@ -31,6 +31,7 @@ DENSITY_COUNTS: Final = {
     "restored": 1500,
     "resampled": 400,
     "plain": 300,
+    "shifted": 800,
     "processed": 800,
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a

@@ -210,6 +210,7 @@ FAMILY_LOG_AMPLITUDES: Final = {
     "sharpened": -3.0,
     "restored": -3.0,
     "resampled": -3.0,
+    "shifted": -3.0,
     "processed": -3.0,
 }
 """Expected amplitude of every family relative to that of its own population: light of every sensor
@@ -229,8 +230,8 @@ LOG_AMPLITUDE_STD: Final = 2.0
 7 either way, as those of edges. Those of SHAPE and DETAIL a factor e larger change nothing."""
 LOG_AMPLITUDE_STARTS: Final[Floats] = np.array(
     [
-        [0.0, 0.0, -3.0, -3.0, -2.0, -2.0, -3.0, -3.0, -5.0, -5.0, -4.5],
-        [-0.5, -0.5, -3.0, 0.3, -3.0, -3.0, -3.0, -3.0, -5.0, -5.0, -5.0],
+        [0.0, 0.0, -3.0, -3.0, -2.0, -2.0, -3.0, -3.0, -3.0, -5.0, -5.0, -4.5],
+        [-0.5, -0.5, -3.0, 0.3, -3.0, -3.0, -3.0, -3.0, -3.0, -5.0, -5.0, -5.0],
     ]
 )
 """From where the likeliest amplitudes are sought: light far out, and motion. Without the second,

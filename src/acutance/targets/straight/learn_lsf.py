@@ -43,6 +43,7 @@ DENSITY_COUNTS = {
     "restored": 2000,
     "resampled": 1000,
     "plain": 400,
+    "shifted": 1000,
     "processed": 1400,
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a

@@ -68,11 +68,12 @@ _MAX_STEP: Final = 0.3
 _SETTLED_SIGMAS: Final = 0.2
 _PRIOR_ODDS_OF_PULSES: Final = 1 / 3
 
-_EVEN, _ODD, _LOW_ODD, _LOW_ODD_TRAIL = 0.5, 0.1, 0.1, 0.3
+_UNEVEN: Final = ("trail", "shifted", "processed")
+_EVEN, _ODD, _LOW_ODD, _LOW_ODD_UNEVEN = 0.5, 0.1, 0.1, 0.3
 _LOW_ODD_STD: Final = 0.25
-"""Of linear sensors: an even LSF, any odd part, one of low order that looks like a curve, and one
-where the fit has found a charge trail; the curvature that a low one looks like: .25 is coma of .02
-waves rms or a trail of .18 px."""
+"""Families of uneven LSFs. Of linear sensors: an even LSF, any odd part, one of low order that
+looks like a curve, and one where the fit has found such a family; the curvature that a low one
+looks like: .25 is coma of .02 waves rms or a trail of .18 px."""
 _BRIGHTENS: Final = 0.9
 """Of the curves, those that lift the middle, as gammas above 1, square roots and logarithms do."""
 _PRIOR_SHOULDER: Final = 0.5
@@ -193,8 +194,9 @@ def _middle_px(data: CheckData, found: Curvature) -> float:
 
 def _log_linear(data: CheckData) -> Floats:
     """Of linear sensors: an even LSF, any odd part, one that looks like a curve, (3,)."""
-    trail = data.fit.families.get("trail", 0.0) if isinstance(data.fit, SplineEdge) else 0.0
-    return np.asarray(np.log([_EVEN, _ODD, _LOW_ODD + _LOW_ODD_TRAIL * trail]))
+    families = data.fit.families if isinstance(data.fit, SplineEdge) else {}
+    uneven = sum(families.get(name, 0.0) for name in _UNEVEN)
+    return np.asarray(np.log([_EVEN, _ODD, _LOW_ODD + _LOW_ODD_UNEVEN * uneven]))
 
 
 def _folded(mirrored: MirrorSum, noise: SideNoise | None, log_linear: Floats) -> Curvature:

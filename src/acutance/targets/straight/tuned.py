@@ -79,6 +79,7 @@ FAMILY_LOG_AMPLITUDES: Final = {
     "sharpened": -3.0,
     "restored": -3.0,
     "resampled": -3.0,
+    "shifted": -3.0,
     "processed": -3.0,
 }
 """Expected amplitude of every family relative to that of its own population: light of every sensor
