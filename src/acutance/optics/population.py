@@ -140,8 +140,8 @@ def _resampled(rng: np.random.Generator) -> list[Block]:
 
 
 def _shifted(rng: np.random.Generator) -> list[Block]:
-    blocks = _telescope(rng) if rng.random() < 0.6 else _plain(rng)
-    return [*blocks, _at_one_phase(rng)]
+    blurs = (_telescope, _telescope, _plain, _halo)
+    return [*blurs[rng.integers(4)](rng), _at_one_phase(rng)]
 
 
 def _processed(rng: np.random.Generator) -> list[Block]:
