@@ -71,10 +71,10 @@ def prior_directions() -> Figure:
     cell, _, slopes = edge_and_line_weights(u)
     rng = np.random.default_rng(4)
     names = (*FAMILY_LOG_AMPLITUDES, "detail", "tail")
-    figure = new_page(10.4, 8.4)
-    panels = figure.subplots(3, 3, sharex=True, sharey=True)
+    figure = new_page(10.4, 7.2)
+    panels = figure.subplots(3, 4, sharex=True, sharey=True)
     plain = blur.width_px * blur.lsf(u * blur.width_px)
-    for k, (axes, name) in enumerate(zip(panels.flat, names, strict=True)):
+    for k, (axes, name) in enumerate(zip(panels.flat, names, strict=False)):
         own = np.flatnonzero(known.block == prior.FIRST_BLOCK + k)
         start = float(np.exp(LOG_AMPLITUDE[k]))
         amplitude = 1.0 if name in FAMILY_LOG_AMPLITUDES else 0.05
@@ -84,10 +84,11 @@ def prior_directions() -> Figure:
             axes.plot(u, combine(cell, slopes, drawn), color=color, lw=1.5)
         axes.plot(u, 0.1 * plain, color=FAINT, lw=1, ls="--")
         axes.set_title(f"{name}, {amplitude:g} ({start:.2g})")
-    for axes in panels[-1]:
+    panels[-1, -1].set_visible(False)
+    panels[-2, -1].tick_params(labelbottom=True)
+    for axes in (*panels[-1, :-1], panels[-2, -1]):
         axes.set_xlabel("distance, widths")
-    for axes in panels[:, 0]:
-        axes.set_ylabel("correction of the LSF, per width")
+    figure.supylabel("correction of the LSF, per width", fontsize=10)
     dashed = "dashed: a tenth of\nthe Gaussian\nthrough a pixel"
     panels[0, 0].text(0.02, 0.98, dashed, transform=panels[0, 0].transAxes, color=FAINT,
                       fontsize=8.5, va="top")  # fmt: skip
