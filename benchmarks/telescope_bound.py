@@ -27,10 +27,11 @@ from acutance.simulate import Truth
 
 HIGHEST_CPP, STEP_CPP = 2.4, 1 / 256
 """No aperture passes more; the step makes images repeat after 256 px."""
+_UNEVEN = ("trail", "shifted", "processed")
 FAMILIES = {
-    name: 3.0 if name == "telescope" else 1.0 for name in optics.FAMILIES if name != "trail"
+    name: 3.0 if name == "telescope" else 1.0 for name in optics.FAMILIES if name not in _UNEVEN
 }
-"""How often each is drawn, as the estimator expects them; trails alone have no real OTF."""
+"""How often each is drawn, as the estimator expects them; uneven ones have no real OTF."""
 ANGLE_DEG = (5.0, 20.0)
 _FREQ_CPP = np.arange(round(HIGHEST_CPP / STEP_CPP) + 1) * STEP_CPP
 _NEGLIGIBLE = 1e-5
