@@ -190,6 +190,8 @@ FORMS: tuple[tuple[str, ...], ...] = (
     ("gaussian", "defocus", "interpolation"),
     ("gaussian", "phase"),
     ("gaussian", "diffraction", "phase"),
+    ("gaussian", "halo", "phase"),
+    ("gaussian", "defocus", "phase"),
     ("gaussian", "kernel", "phase"),
     ("gaussian", "diffraction", "kernel", "phase"),
 )
