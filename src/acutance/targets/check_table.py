@@ -136,7 +136,7 @@ _STRAIGHT = {
     ),
     "asymmetric_lsf": Question(
         "How far is the ESF from symmetric about its middle?", "<=", 0.01,
-        "a strip narrower than the blur, an uneven pulse, or a charge trail; compare other targets",
+        "a thin strip, an uneven pulse, a trail, or interpolation at one phase; compare others",
         severity="note",
     ),
     "rim": Question(
