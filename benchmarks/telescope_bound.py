@@ -23,13 +23,15 @@ import numpy as np
 
 from acutance import optics
 from acutance.curves.grid import Floats
+from acutance.optics.population import UNEVEN_FAMILIES
 from acutance.simulate import Truth
 
 HIGHEST_CPP, STEP_CPP = 2.4, 1 / 256
 """No aperture passes more; the step makes images repeat after 256 px."""
-_UNEVEN = ("trail", "shifted", "processed")
 FAMILIES = {
-    name: 3.0 if name == "telescope" else 1.0 for name in optics.FAMILIES if name not in _UNEVEN
+    name: 3.0 if name == "telescope" else 1.0
+    for name in optics.FAMILIES
+    if name not in UNEVEN_FAMILIES
 }
 """How often each is drawn, as the estimator expects them; uneven ones have no real OTF."""
 ANGLE_DEG = (5.0, 20.0)

@@ -74,7 +74,7 @@ def prior_directions() -> Figure:
     figure = new_page(10.4, 7.2)
     panels = figure.subplots(3, 4, sharex=True, sharey=True)
     plain = blur.width_px * blur.lsf(u * blur.width_px)
-    for k, (axes, name) in enumerate(zip(panels.flat, names, strict=False)):
+    for k, (axes, name) in enumerate(zip(panels.flat[: len(names)], names, strict=True)):
         own = np.flatnonzero(known.block == prior.FIRST_BLOCK + k)
         start = float(np.exp(LOG_AMPLITUDE[k]))
         amplitude = 1.0 if name in FAMILY_LOG_AMPLITUDES else 0.05
@@ -84,7 +84,8 @@ def prior_directions() -> Figure:
             axes.plot(u, combine(cell, slopes, drawn), color=color, lw=1.5)
         axes.plot(u, 0.1 * plain, color=FAINT, lw=1, ls="--")
         axes.set_title(f"{name}, {amplitude:g} ({start:.2g})")
-    panels[-1, -1].set_visible(False)
+    for spare in panels.flat[len(names) :]:
+        spare.set_visible(False)
     panels[-2, -1].tick_params(labelbottom=True)
     for axes in (*panels[-1, :-1], panels[-2, -1]):
         axes.set_xlabel("distance, widths")

@@ -29,8 +29,8 @@ FAMILY_LOG_AMPLITUDES: Final = {
     "resampled": -3.0,
 }
 """Expected amplitude of every family of sensors relative to that of its own population: light of
-every sensor goes through an aperture, few have the other causes. As along an edge. What is
-interpolated at one phase, or compensated and interpolated, departs along directions of these."""
+every sensor goes through an aperture, few have the other causes. What is interpolated at one phase,
+or compensated and interpolated, departs along directions of these."""
 
 
 class FamilyDirections(NamedTuple):

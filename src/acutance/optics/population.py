@@ -19,6 +19,7 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final
 
 import numpy as np
 
@@ -32,7 +33,7 @@ from acutance.optics.motion import Smear
 from acutance.optics.processing import Interpolation, Resampling, Sharpening, Shift
 from acutance.optics.sensor import Sensor
 
-__all__ = ["FAMILIES", "draw_sensor"]
+__all__ = ["FAMILIES", "UNEVEN_FAMILIES", "draw_sensor"]
 
 _LOWEST_MTF, _HIGHEST_MTF = 0.01, 1.0
 """MTF at Nyquist beyond which there is nothing to measure, or no detector behind it."""
@@ -169,3 +170,5 @@ FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "processed": _processed,
 }
 """How to draw the blocks of a sensor of each family."""
+UNEVEN_FAMILIES: Final = ("trail", "shifted", "processed")
+"""Those whose sensors' spread functions may differ from side to side."""

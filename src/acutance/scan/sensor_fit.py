@@ -39,7 +39,7 @@ from acutance.targets.slices import places_along
 __all__ = ["IdealShare", "SensorFit", "fit_sensor"]
 
 _FORMS: Final = tuple(terms for terms in FORMS if "phase" not in terms)
-"""An interpolated scene has pixels at all phases."""
+"""A scene that was warped has pixels at all phases; none of these is one shifted as a whole."""
 _SETTLED: Final = 0.1
 """Square of a turn's change, in standard deviations of what the edges say."""
 _SETTLED_GAIN: Final = 1e-3

@@ -30,6 +30,7 @@ from scipy.special import log_ndtr
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
+from acutance.optics.population import UNEVEN_FAMILIES
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.curved_model import (
     CURVATURE_STD,
@@ -68,12 +69,11 @@ _MAX_STEP: Final = 0.3
 _SETTLED_SIGMAS: Final = 0.2
 _PRIOR_ODDS_OF_PULSES: Final = 1 / 3
 
-_UNEVEN: Final = ("trail", "shifted", "processed")
 _EVEN, _ODD, _LOW_ODD, _LOW_ODD_UNEVEN = 0.5, 0.1, 0.1, 0.3
 _LOW_ODD_STD: Final = 0.25
-"""Families of uneven LSFs. Of linear sensors: an even LSF, any odd part, one of low order that
-looks like a curve, and one where the fit has found such a family; the curvature that a low one
-looks like: .25 is coma of .02 waves rms or a trail of .18 px."""
+"""Of linear sensors: an even LSF, any odd part, one of low order that looks like a curve, and one
+where the fit has found an uneven family; the curvature that a low one looks like: .25 is coma of
+.02 waves rms or a trail of .18 px."""
 _BRIGHTENS: Final = 0.9
 """Of the curves, those that lift the middle, as gammas above 1, square roots and logarithms do."""
 _PRIOR_SHOULDER: Final = 0.5
@@ -195,7 +195,7 @@ def _middle_px(data: CheckData, found: Curvature) -> float:
 def _log_linear(data: CheckData) -> Floats:
     """Of linear sensors: an even LSF, any odd part, one that looks like a curve, (3,)."""
     families = data.fit.families if isinstance(data.fit, SplineEdge) else {}
-    uneven = sum(families.get(name, 0.0) for name in _UNEVEN)
+    uneven = sum(families.get(name, 0.0) for name in UNEVEN_FAMILIES)
     return np.asarray(np.log([_EVEN, _ODD, _LOW_ODD + _LOW_ODD_UNEVEN * uneven]))
 
 

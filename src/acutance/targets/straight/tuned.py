@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics import otf_families
 
 __all__ = [
     "APERTURE_PX",
@@ -72,18 +73,12 @@ __all__ = [
 
 # The prior of the line spread function, LSF (lsf_prior.py).
 FAMILY_LOG_AMPLITUDES: Final = {
-    "telescope": -0.5,
-    "halo": -1.5,
-    "trail": -3.0,
-    "smear": -3.0,
-    "sharpened": -3.0,
-    "restored": -3.0,
-    "resampled": -3.0,
+    **otf_families.FAMILY_LOG_AMPLITUDES,
     "shifted": -3.0,
     "processed": -3.0,
 }
-"""Expected amplitude of every family relative to that of its own population: light of every sensor
-goes through an aperture, few have the other causes."""
+"""Expected amplitude of every family relative to that of its own population: as in the plane, and
+few products are interpolated at one phase or processed twice."""
 DETAIL: Final = (0.7, 0.17)
 """Fine structure of the peak: extent L and smoothness l of its process, in widths."""
 DETAIL_LOG_AMPLITUDE: Final = -3.0
