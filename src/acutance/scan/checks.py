@@ -14,13 +14,14 @@ from acutance.scan.parts import PartsFit
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.sensor_fit import SensorFit
 from acutance.targets.check import Check, Limits, answer
+from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.full_pixel import full_pixel
 
 __all__ = ["SCENE_CHECKS", "check_scene"]
 
 SCENE_CHECKS = (
     "edges_used", "scene_directions", "ideal_share", "strange_share", "scene_settled",
-    "parts_agree", "field_change", "full_pixel",
+    "form_agrees", "parts_agree", "field_change", "full_pixel",
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -73,12 +74,23 @@ def check_scene(
             f"sensor and objects were fitted in {fit.turns} turns"
             + ("" if fit.settled else ", and did not settle"), limits,
         ),
+        _form_agrees(fit.agreement, limits),
         _parts_agree(fit.parts, limits),
         _field_change(field, limits),
         full_pixel(
             [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
         ),
     )  # fmt: skip
+
+
+def _form_agrees(chi_square: ChiSquare, limits: Limits) -> Check:
+    """By how much the chi-square of the edges about their sensor exceeds what is expected."""
+    ratio = chi_square.value / max(chi_square.expected, 1.0)
+    found = (
+        f"the edges have a chi-square of {chi_square.value:.0f} about the form of the sensor with "
+        f"{chi_square.expected:.0f} degrees of freedom, {ratio:.2f} times as much"
+    )
+    return answer("form_agrees", ratio, found, limits)
 
 
 def _parts_agree(parts: PartsFit | None, limits: Limits) -> Check:

@@ -23,13 +23,14 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.stacked import stacked, unstacked
 from acutance.scan.blur_modes import ALL_AROUND, COMMON_MODES, changed, edge_modes, fit_modes
 from acutance.scan.field_fit import FieldFit, fit_field
+from acutance.scan.form_agreement import agreement_of_form, common_errors
 from acutance.scan.information import expected_information, observed_information
 from acutance.scan.parts import PartsFit, compare_parts
 from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares
 from acutance.scan.shared_blur import integrate_shared_blur
 from acutance.scan.shares import SECTOR_DEG, START, share_covariances
 from acutance.scan.softness import KINDS
-from acutance.targets.combine.curves import OtfSamples
+from acutance.targets.combine.curves import ChiSquare, OtfSamples
 from acutance.targets.combine.fit import CombinedFit, combine_curves
 from acutance.targets.combine.sensor_forms import FORMS
 from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
@@ -38,8 +39,6 @@ from acutance.targets.slices import places_along
 
 __all__ = ["IdealShare", "SensorFit", "fit_sensor"]
 
-_FORMS: Final = tuple(terms for terms in FORMS if "phase" not in terms)
-"""A scene that was warped has pixels at all phases; none of these is one shifted as a whole."""
 _SETTLED: Final = 0.1
 """Square of a turn's change, in standard deviations of what the edges say."""
 _SETTLED_GAIN: Final = 1e-3
@@ -47,10 +46,6 @@ _MAX_TURNS: Final = 12
 _MAX_FIELD_TURNS: Final = 4
 _CONSTANT: Final = 0.99
 """Chance of a field without change above which none is followed."""
-_COMMON_STD, _COMMON_CPP = 1.5e-3, 0.15
-"""Error of the transfer function that all edges of a sensor have in common, and over which
-frequencies: what the prior of an edge's line spread function does not allow for does not average
-out (benchmarks/scenes.py: errors of .000 to .002, by the shape of the sensor)."""
 _GAINS: Final = (0.7, 1.4)
 """Between these the sensor along an edge's normal is of that along its bin."""
 _LEAST: Final = 1e3
@@ -104,6 +99,8 @@ class SensorFit:
         (`acutance.scan.shared_blur`), beside those of `combined`.
     parts : PartsFit or None
         Whether the parts of the scene agree; None of too few edges.
+    agreement : ChiSquare
+        Whether the edges agree with the form of the sensor.
     turns : int
     settled : bool
     """
@@ -114,6 +111,7 @@ class SensorFit:
     member: Membership
     shared_px2: Floats
     parts: PartsFit | None
+    agreement: ChiSquare
     turns: int
     settled: bool
 
@@ -210,9 +208,10 @@ def fit_sensor(
     # And forms with a kernel have several optima: they begin where the turns ended.
     samples = _samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
-        combine_curves([samples], forms=_FORMS, near=state.near),
+        combine_curves([samples], near=state.near),
         field, normal_deg, member, shared.errors_px2,
         compare_parts(seen, otf, member.share, x, y),
+        agreement_of_form(seen, otf, member),
         state.turns, state.settled,
     )  # fmt: skip
 
@@ -262,7 +261,7 @@ def _starts(edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats
         otf = changed(start, free @ fit.amount)
         apart = [float(np.abs(otf - one.otf)[:, in_band].mean()) for one in found]
         if min(apart, default=np.inf) > _ALIKE:
-            found.append(_State(otf, fit.share, _FORMS, (), edges, 0, settled=False))
+            found.append(_State(otf, fit.share, FORMS, (), edges, 0, settled=False))
     return found
 
 
@@ -362,18 +361,10 @@ def _samples(
     root = np.column_stack([root, np.zeros(len(root))])
     level = np.append(np.zeros(values.size), _EXACT)
     likelihood = OtfLikelihood(unstacked(root), level, np.append(values, _EXACT))
-    likelihood = likelihood.with_errors(_common_errors(normal_deg.size, freq_cpp))
+    likelihood = likelihood.with_errors(common_errors(normal_deg.size, freq_cpp))
     u, v = places_along(normal_deg, freq_cpp)
     about = unstacked(otf[order])
     return OtfSamples("edges", u, v, about, np.zeros((about.size, 1), complex), likelihood)
-
-
-def _common_errors(bins: int, freq_cpp: Floats) -> NDArray[np.complex128]:
-    """Factor of the errors that all edges have in common, the same in all directions."""
-    away = (freq_cpp[:, None] - freq_cpp) / _COMMON_CPP
-    size, axes = np.linalg.eigh(np.exp(-0.5 * away**2))
-    root = np.tile(_COMMON_STD * axes * np.sqrt(np.maximum(size, 0.0)), (bins, 1))
-    return np.hstack([root, 1j * root])
 
 
 def _real_first(bins: int, frequencies: int) -> Floats:

@@ -8,6 +8,7 @@ source were set by simulation: documentation, "Edges", "Pulses", "Points" and so
 from __future__ import annotations
 
 from acutance.targets.question import PLACES, Question
+from acutance.targets.scene_questions import SCENE_QUESTIONS
 
 __all__ = ["QUESTIONS"]
 
@@ -360,41 +361,7 @@ _COMBINED = {
     ),
 }  # fmt: skip
 
-_SCENE = {
-    "edges_used": Question(
-        "How many edges of the scene are used?", ">=", 30.0,
-        "the intervals widen, and few of the objects may be ideal; scan a larger part, or several "
-        "scenes and combine them", severity="note",
-    ),
-    "scene_directions": Question(
-        "In how many directions, of 15 degrees each, are there edges?", ">=", 4.0,
-        "rotation and asymmetry follow from the prior alone", severity="note",
-    ),
-    "ideal_share": Question(
-        "Which share of the objects is blurred by 0.1 px at most?", ">=", 0.15,
-        "few objects show the sensor itself, the intervals widen; scan built-up areas, or more",
-        severity="note",
-    ),
-    "strange_share": Question(
-        "Which share of the edges is neither ideal nor soft?", "<=", 0.15,
-        "the sensor may change over the scene, or rims, shadows and processing make other edges",
-    ),
-    "scene_settled": Question(
-        "Did the fit of sensor and objects fail to settle?", "<=", 0.0,
-        "the edges do not separate the sensor from its objects", severity="fail",
-    ),
-    "parts_agree": Question(
-        "By which share does the MTF at Nyquist differ from part to part?", "<=", 0.05,
-        "their objects differ in a softness that all of them have; compare other scenes",
-        severity="note",
-    ),
-    "field_change": Question(
-        "By which share of its mean does sharpness surely change over the field?", "<=", 0.1,
-        "the numbers are means over the field: read those of the places", severity="note",
-    ),
-}  # fmt: skip
-
 QUESTIONS: dict[str, Question] = {
-    **_ANY_TARGET, **_STRAIGHT, **_POINTS, **_PERIODIC, **_PAIR, **_COMBINED, **_SCENE,
+    **_ANY_TARGET, **_STRAIGHT, **_POINTS, **_PERIODIC, **_PAIR, **_COMBINED, **SCENE_QUESTIONS,
 }  # fmt: skip
 """All questions by name; each kind of target asks some of them."""

@@ -1,0 +1,49 @@
+"""Questions asked of whole scenes: limits by simulation (documentation, "Scenes")."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from acutance.targets.question import Question
+
+__all__ = ["SCENE_QUESTIONS"]
+
+SCENE_QUESTIONS: Final = {
+    "edges_used": Question(
+        "How many edges of the scene are used?", ">=", 30.0,
+        "the intervals widen, and few of the objects may be ideal; scan a larger part, or several "
+        "scenes and combine them", severity="note",
+    ),
+    "scene_directions": Question(
+        "In how many directions, of 15 degrees each, are there edges?", ">=", 4.0,
+        "rotation and asymmetry follow from the prior alone", severity="note",
+    ),
+    "ideal_share": Question(
+        "Which share of the objects is blurred by 0.1 px at most?", ">=", 0.15,
+        "few objects show the sensor itself, the intervals widen; scan built-up areas, or more",
+        severity="note",
+    ),
+    "strange_share": Question(
+        "Which share of the edges is neither ideal nor soft?", "<=", 0.15,
+        "the sensor may change over the scene, or rims, shadows and processing make other edges",
+    ),
+    "scene_settled": Question(
+        "Did the fit of sensor and objects fail to settle?", "<=", 0.0,
+        "the edges do not separate the sensor from its objects", severity="fail",
+    ),
+    "form_agrees": Question(
+        "How much more do edges differ from the form of the sensor than their deviations say?",
+        "<=", 1.5,
+        "no form of sensor is like these edges, or they do not have one: the numbers may err by "
+        "more than their intervals; look at the edges by direction",
+    ),
+    "parts_agree": Question(
+        "By which share does the MTF at Nyquist differ from part to part?", "<=", 0.05,
+        "their objects differ in a softness that all of them have; compare other scenes",
+        severity="note",
+    ),
+    "field_change": Question(
+        "By which share of its mean does sharpness surely change over the field?", "<=", 0.1,
+        "the numbers are means over the field: read those of the places", severity="note",
+    ),
+}  # fmt: skip
