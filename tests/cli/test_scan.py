@@ -187,6 +187,8 @@ def test_a_scene_that_is_refused_leaves_the_reasons(acutance, tmp_path):
         done = acutance("scan", path, "--workers", 1, "--edges", table, *band)
         assert done.exit_code == 4
         assert "--edges FILE" in done.stderr
+        assert "Edges left out" in done.stderr
+        assert "to its angle" in done.stderr or "sample phases over" in done.stderr
         rows = list(csv.DictReader(table.read_text().splitlines()))
         assert rows
         assert all(row["reason"] for row in rows if row["used"] != "True")

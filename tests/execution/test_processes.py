@@ -31,6 +31,19 @@ def collected(work, tasks, workers):
     return found
 
 
+def interrupted_at_three(task):
+    if task == 3:
+        raise SystemError("a function returned a result with an error set") from KeyboardInterrupt()
+    return task
+
+
+def test_ctrl_c_inside_a_compiled_loop_is_ctrl_c():
+    with pytest.raises(KeyboardInterrupt):
+        collected(interrupted_at_three, range(5), 1)
+    with pytest.raises(KeyboardInterrupt):
+        list(results_in_turn(interrupted_at_three, range(5)))
+
+
 @pytest.mark.parametrize("workers", [1, 2])
 def test_every_result_is_handed_over_once_with_the_place_of_its_task(workers):
     tasks = list(range(40, 0, -1))

@@ -9,7 +9,7 @@ import pytest
 from test_every_kind import scene
 from test_figures import outside, overlaps, texts
 
-from acutance.report import draw, figure_bytes, page, panels, text
+from acutance.report import draw, figure_bytes, page, panels, reasons_text, text
 from acutance.report.figures.scene_population import expected_counts, scatter_of
 from acutance.report.figures.scene_sensor import EdgesSeen, edges_seen, sensor_along, sensor_at
 from acutance.report.paper import new_page, styled
@@ -234,6 +234,16 @@ def test_sides_are_not_told_apart_and_rare_reasons_are_counted_together():
     assert found[0][3].startswith("A strip on one side")
     assert found[-1] == ("2", "", "", "2 other reasons")
     assert sum(int(row[0]) for row in found) == 17
+
+
+def test_in_a_terminal_reasons_are_fewer_and_none_is_no_table():
+    kinds = [("rejected", f"{chr(97 + i) * 3} is wrong") for i in range(9)]
+    rows = [{"row": 0.0, "verdict": verdict, "reason": reason} for verdict, reason in kinds]
+    lines = reasons_text(SceneEdges.of_rows(rows)).splitlines()
+    assert len(lines) == 2 + 6 + 1
+    assert lines[0] == "Edges left out"
+    assert "3 other reasons" in lines[-1]
+    assert reasons_text(SceneEdges.of_rows([])) == ""
 
 
 def test_the_page_of_a_scene_says_what_its_numbers_are(measured):

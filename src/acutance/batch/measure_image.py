@@ -18,7 +18,7 @@ from acutance.batch.plan_options import ChosenOptions
 from acutance.batch.row_key import Reading, day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
 from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
-from acutance.execution import is_ending
+from acutance.execution import interruptible, is_ending
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image, open_bands
 from acutance.raster.metadata import ImageStatement, read_statement
@@ -206,7 +206,8 @@ def _row(
         _require_valid(target, opened.acquired)
         placed = _placed(target, image, opened)
         begin = _processor_s()
-        record = measure_target(placed, image, chosen, scan_workers).record
+        with interruptible():
+            record = measure_target(placed, image, chosen, scan_workers).record
         return {"record": record}, _processor_s() - begin
     except NotHereError as error:
         rejected = _rejected(error.stage, str(error), error.why, chosen, image)

@@ -67,8 +67,9 @@ class _Commands(TyperGroup):
         except KeyboardInterrupt as error:
             stop(str(error))
         except SystemError as error:
-            # Ctrl-C inside a compiled loop: the interpreter finds a result beside the interrupt.
-            if not isinstance(error.__cause__, KeyboardInterrupt):
+            from acutance.execution import was_interrupted
+
+            if not was_interrupted(error):
                 raise
             stop("")
 

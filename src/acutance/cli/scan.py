@@ -154,9 +154,10 @@ def scan(
             else:
                 found = scan_scene(images[0], region, **how)
         except FewEdgesError as error:
-            # The reasons in the table are what is asked for then.
+            # The reasons are what is asked for then.
             if table is not None:
                 _write_edges(table, error.edges, images[0])
+            _tell_reasons(error)
             raise
     if table is not None:
         _write_edges(table, found.edges, images[0])
@@ -173,6 +174,14 @@ def _backdrop(image: Image, found: SceneMeasurement) -> dict[str, Any]:
     from acutance.raster.quick_look import quick_look
 
     return {"backdrop": quick_look(image, Box(*found.image.roi))}
+
+
+def _tell_reasons(error: FewEdgesError) -> None:
+    """Why edges are not used, beside the message."""
+    from acutance import report
+
+    if reasons := report.reasons_text(error.edges):
+        typer.echo(reasons, err=True)
 
 
 def _write_edges(table: OutputFile, edges: EdgeTable, image: Image) -> None:

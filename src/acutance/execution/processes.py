@@ -18,6 +18,7 @@ from multiprocessing.connection import Connection
 from typing import Generic, TypeVar
 
 from acutance.errors import OptionError
+from acutance.execution.interrupts import interruptible
 
 __all__ = ["is_ending", "require_workers", "results_in_turn", "run_tasks"]
 
@@ -80,7 +81,9 @@ def run_tasks(
         _run_in_processes(work, tasks, keep, used, chunk)
         return
     for place, task in enumerate(tasks):
-        keep(place, work(task))
+        with interruptible():
+            result = work(task)
+        keep(place, result)
 
 
 def _run_in_processes(
@@ -160,7 +163,10 @@ def results_in_turn(
         As of `run_tasks`.
     """
     if workers < 2:
-        yield from map(work, tasks)
+        for task in tasks:
+            with interruptible():
+                result = work(task)
+            yield result
         return
     todo = iter(tasks)
     # The first is for this process, which has nothing to load.
@@ -193,7 +199,8 @@ def _work_here(work: Callable[[Task], Result], waiting: Iterable[_Chunk[Task, Re
         if chunk.results.cancel():
             chunk.results = Future()
             try:
-                chunk.results.set_result([work(task) for task in chunk.tasks])
+                with interruptible():
+                    chunk.results.set_result([work(task) for task in chunk.tasks])
             except Exception as error:
                 # It comes after the results before it.
                 chunk.results.set_exception(error)

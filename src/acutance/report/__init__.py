@@ -41,7 +41,7 @@ from acutance.report.studies.study import plan_text, study_figure, study_text
 from acutance.report.tables.points import sources_csv
 from acutance.report.tables.restoration import restoration_tables
 from acutance.report.tables.result import tables
-from acutance.report.text import text
+from acutance.report.text import reasons_text, text
 from acutance.report.truth import (
     landscape_document,
     scene_document,
@@ -77,6 +77,7 @@ __all__ = [
     "panels",
     "plan_text",
     "proof_text",
+    "reasons_text",
     "rejection_page",
     "restoration_figure",
     "restoration_page",

@@ -21,15 +21,18 @@ from acutance.report.labels import (
 )
 from acutance.report.tables.measurement import numbers_table
 from acutance.report.tables.result import kind_tables, tables
+from acutance.report.tables.scene_reasons import reasons_table
 from acutance.report.tables.uncertainty_budget import uncertainty_line
 from acutance.targets import TargetResult
 
 if TYPE_CHECKING:
+    from acutance.scan.edge_table import EdgeTable
     from acutance.targets.measurement import Measurement
 
-__all__ = ["align_columns", "table_text", "text"]
+__all__ = ["align_columns", "reasons_text", "table_text", "text"]
 
 MAX_ROWS = 40
+_REASONS = 6
 
 
 def text(result: Result) -> str:
@@ -136,6 +139,12 @@ def table_text(table: Table, drop_last: int = 0) -> str:
     if more > 0:
         lines.append(f"  ... {more} more in the JSON document")
     return "\n".join(lines)
+
+
+def reasons_text(edges: EdgeTable) -> str:
+    """Why edges of a scene are not used, the most frequent reasons first; empty if all are."""
+    table = reasons_table(edges, _REASONS)
+    return table_text(table) if table.rows else ""
 
 
 def align_columns(rows: Sequence[Sequence[str]], align: str, indent: str = "  ") -> str:

@@ -14,7 +14,7 @@ from acutance.report.labels import MISSING, format_number
 from acutance.targets.check_table import QUESTIONS
 
 if TYPE_CHECKING:
-    from acutance.scan import SceneEdges
+    from acutance.scan.edge_table import EdgeTable
 
 __all__ = ["reasons_table"]
 
@@ -33,23 +33,32 @@ class _Reason(NamedTuple):
     found: str
 
 
-def reasons_table(edges: SceneEdges) -> Table:
-    """Edges that are not used, by verdict and check or kind of error, the most frequent first."""
-    left_out = ~edges.used
+def reasons_table(edges: EdgeTable, most: int = _ROWS) -> Table:
+    """Edges that are not used, by verdict and check or kind of error, the most frequent first.
+
+    Parameters
+    ----------
+    edges : EdgeTable
+        Of one band or several.
+    most : int, optional
+        Rows; all others are one.
+    """
+    columns = edges.columns()
+    left_out = ~columns["used"]
     groups: dict[tuple[str, str, str], list[str]] = defaultdict(list)
     for verdict, reason in zip(
-        edges.verdict[left_out].tolist(), edges.reason[left_out].tolist(), strict=True
+        columns["verdict"][left_out].tolist(), columns["reason"][left_out].tolist(), strict=True
     ):
         one = _parted(verdict, reason)
         groups[one.verdict, one.check, one.kind].append(one.found)
     ordered = sorted(groups.items(), key=lambda group: -len(group[1]))
     rows = [
         (str(len(found)), verdict, check or MISSING, _with_medians(found))
-        for (verdict, check, _), found in ordered[:_ROWS]
+        for (verdict, check, _), found in ordered[:most]
     ]
-    rest = sum(len(found) for _, found in ordered[_ROWS:])
+    rest = sum(len(found) for _, found in ordered[most:])
     if rest:
-        rows.append((str(rest), "", "", f"{len(ordered) - _ROWS} other reasons"))
+        rows.append((str(rest), "", "", f"{len(ordered) - most} other reasons"))
     return Table(
         ("edges", "verdict", "check", "why; numbers are medians"), tuple(rows), "rlll",
         title="Edges left out", page_only=True,

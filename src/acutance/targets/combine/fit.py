@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
@@ -126,15 +126,17 @@ def combine_curves(
     forms : sequence of tuples of str, optional
         Terms of the forms that are tried.
     near : sequence of WeightedForm, optional
-        Of curves that hardly differed, the largest weight first: where a form begins.
+        Of curves that hardly differed, the largest weight first: where a form begins, too.
+        Forms with defocus and a kernel have several optima.
     """
     known = {one.form: one for one in reversed(near)}
     data = WhitenedCurves([one.centred() for one in curves])
     nowhere = np.zeros((data.values.size, 0))
 
     def fitted(form: SensorForm, start: Floats | None = None) -> FormFit:
-        begin = known[form].parameters if form in known else start
-        return _fit_form(data, form, begin, 0.0, nowhere)
+        starts = [known[form].parameters] if form in known else []
+        starts += [start] if start is not None else _likely(data, form)
+        return _fit_form(data, form, starts, 0.0, nowhere)
 
     plain = [fitted(SensorForm(terms, detector_px)) for terms in forms]
     first = min(plain, key=lambda one: one.score)
@@ -150,7 +152,7 @@ def combine_curves(
     for one in likely:
         for share in _SHARES[1:]:
             # A larger correction moves the form on from where a smaller one left it.
-            one = _fit_form(data, one.form, one.parameters, share, share * ways)
+            one = _fit_form(data, one.form, [one.parameters], share, share * ways)
             fits.append(one)
     weighted = _weighted([replace(one, correction=correction) for one in fits])
     simplest = min(plain, key=lambda one: len(one.form.terms))
@@ -167,10 +169,10 @@ def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
 
 
 def _fit_form(
-    data: WhitenedCurves, form: SensorForm, start: Floats | None, share: float, ways: Floats
+    data: WhitenedCurves, form: SensorForm, starts: Sequence[Floats], share: float, ways: Floats
 ) -> FormFit:
     """The parameters of largest posterior density, the correction integrated out."""
-    mean, std = form.mean, form.std
+    std = form.std
     # (1 + ways ways^T)^(-1/2), by the singular values of ways.
     left, singular, _ = np.linalg.svd(ways, full_matrices=False)
     damping = 1 / np.sqrt(1 + singular**2) - 1
@@ -179,8 +181,8 @@ def _fit_form(
         return np.asarray(values + (left * damping) @ (left.T @ values))
 
     def residual(p: Floats) -> Floats:
-        off = data.values - data.of(form.otf(p, data.u_cpp, data.v_cpp))
-        return np.concatenate([damped(off), (p - mean) / std])
+        off, from_prior = _residuals(data, form, p)
+        return np.concatenate([damped(off), from_prior])
 
     def slopes(p: Floats) -> Floats:
         by_p = data.of(form.slopes(p, data.u_cpp, data.v_cpp))
@@ -191,12 +193,12 @@ def _fit_form(
             least_squares(
                 residual, first, jac=slopes, method="lm", xtol=1e-6, ftol=1e-6, max_nfev=60
             )
-            for first in ([start] if start is not None else _likely(form, residual))
+            for first in starts
         ),
         key=lambda one: float(one.cost),
     )
     p = np.asarray(found.x)
-    off = data.values - data.of(form.otf(p, data.u_cpp, data.v_cpp))
+    off, _ = _residuals(data, form, p)
     by_p = data.of(form.slopes(p, data.u_cpp, data.v_cpp))
     design = np.concatenate([by_p, ways], axis=1)
     normal = design.T @ design
@@ -219,9 +221,19 @@ def _fit_form(
     )  # fmt: skip
 
 
-def _likely(form: SensorForm, residual: Callable[[Floats], Floats]) -> list[Floats]:
+def _residuals(data: WhitenedCurves, form: SensorForm, p: Floats) -> tuple[Floats, Floats]:
+    """Of the curves, and of the parameters from their prior, in standard deviations."""
+    off = data.values - data.of(form.otf(p, data.u_cpp, data.v_cpp))
+    return off, (p - form.mean) / form.std
+
+
+def _likely(data: WhitenedCurves, form: SensorForm) -> list[Floats]:
     """The first guesses that fit best."""
-    return sorted(_starts(form), key=lambda p: float(np.sum(residual(p) ** 2)))[:_STARTS_TRIED]
+
+    def misfit(p: Floats) -> float:
+        return float(np.sum(np.concatenate(_residuals(data, form, p)) ** 2))
+
+    return sorted(_starts(form), key=misfit)[:_STARTS_TRIED]
 
 
 def _starts(form: SensorForm) -> list[Floats]:
