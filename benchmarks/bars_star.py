@@ -9,7 +9,8 @@ comparison. Levels stated: dark and bright are known from patches of 100 pixels 
 uncertain.
 
 Families: a sensor drawn at random for every target, from broad ranges of optics, motion, charge
-and processing; coverage of MTF(.5), MTF(.25), RER and FWHM by the same intervals.
+and processing; coverage of MTF(.5), MTF(.25), RER and FWHM by the same intervals. Refused: targets
+that were not measured, of products that are sharpened to more than three times their contrast.
 """
 
 from __future__ import annotations
@@ -142,17 +143,23 @@ def bars_trial(job: tuple[BarsCase, str, int, int]) -> Trial:
 
 
 def family_trial(job: tuple[StarCase | BarsCase, str, int, int]) -> np.ndarray:
-    """Errors and standard deviations of the numbers of a random sensor, (1 or 2, numbers, 2)."""
+    """Errors and standard deviations of the numbers of a random sensor, (1 or 2, numbers, 2).
+
+    Of a target that was refused none, (0, numbers, 2).
+    """
     case, family, seed, number = job
     rng = np.random.default_rng([seed, number, *family.encode()])
     sensor = draw_sensor(family, rng)
-    if isinstance(case, StarCase):
-        found, _ = random_star(case, sensor, rng, number)
-        pairs = [(found.across, sensor.response_along(0.0))]
-        pairs += [(found.along, sensor.response_along(90.0))]
-    else:
-        bars = random_bars(case, sensor, rng, number)
-        pairs = [(bars.normal_response, sensor.response_along(bars.directions_deg[0]))]
+    try:
+        if isinstance(case, StarCase):
+            found, _ = random_star(case, sensor, rng, number)
+            pairs = [(found.across, sensor.response_along(0.0))]
+            pairs += [(found.along, sensor.response_along(90.0))]
+        else:
+            bars = random_bars(case, sensor, rng, number)
+            pairs = [(bars.normal_response, sensor.response_along(bars.directions_deg[0]))]
+    except ac.TargetError:
+        return np.empty((0, len(METRICS), 2))
     return np.array(
         [
             [(read(found).value - read(true).value, read(found).std) for read in METRICS.values()]
@@ -221,9 +228,11 @@ def family_table(case: StarCase | BarsCase, draws: int, seed: int, processes: in
         error, std = np.moveaxis(np.concatenate(own), -1, 0)
         held = 100 * np.mean(np.abs(error) < TWO_SIDED_95 * std, axis=0)
         rms = np.sqrt(np.mean(error**2, axis=0))
-        rows.append([name, *(f"{h:.0f}, {r:.4f}" for h, r in zip(held, rms, strict=True))])
+        refused = sum(len(one) == 0 for one in own)
+        cells = [f"{h:.0f}, {r:.4f}" for h, r in zip(held, rms, strict=True)]
+        rows.append([name, *cells, str(refused)])
     kind = "Star" if isinstance(case, StarCase) else "Bars"
-    head = ("family", *(f"{name}: held %, RMS" for name in METRICS))
+    head = ("family", *(f"{name}: held %, RMS" for name in METRICS), "refused")
     return f"## {kind}, families of sensors: {case.name}\n\n{table(head, rows)}"
 
 

@@ -12,6 +12,7 @@ import acutance as ac
 from acutance.archive.specification import Requirement, Specification, read_specification
 from acutance.archive.specification_check import check_requirement
 from acutance.archive.trends import Series
+from acutance.archive.trends.fit_trend import fit_trend
 from acutance.archive.trends.series import date_of
 
 DRAWS = 240
@@ -63,6 +64,19 @@ def test_the_three_words() -> None:
     assert below.probability == pytest.approx(1 - met.probability)
     assert "is met (probability of being met > 0.999)" in met.summary
     json.dumps([one.to_dict() for one in (met, missed, near, below)], allow_nan=False)
+
+
+def test_a_probability_that_seems_to_contradict_the_mean_is_explained() -> None:
+    made = series(1, images=12)
+    density = fit_trend(made).mean(float(made.when[-1]), season=False)
+    middle, median = density.estimate(0.0).value, density.quantile(0.5)
+    assert abs(middle - median) > 1e-9
+    between = check_requirement(at_least(0.5 * (middle + median)), made)
+    assert between.probability is not None
+    assert (between.probability > 0.5) == (median > middle)
+    assert "the density is skewed" in between.summary
+    beside = check_requirement(at_least(0.5 * (middle + median) - 0.01), made)
+    assert "skewed" not in beside.summary
 
 
 def test_so_many_more_images_would_tell() -> None:

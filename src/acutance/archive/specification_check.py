@@ -257,13 +257,25 @@ def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
     mean = density.estimate(0.0 if trend.metric in METRICS else None)
     found = _answer(
         requirement, trend.name, met, mean, date_of(year), trend.images.images, square * lost,
-        trend.images.systematic_std, " ".join(trend.notes),
+        trend.images.systematic_std, " ".join((*_skewed(requirement, mean, below), *trend.notes)),
     )  # fmt: skip
     nearest = date_of(min(max(year, first), last))
     if found.word != OPEN or found.day is None or nearest == found.day:
         return found
     # How many would tell depends on when they are taken.
     return replace(found, more_images=None, nearest=nearest)
+
+
+def _skewed(requirement: Requirement, mean: Estimate, below: float) -> tuple[str, ...]:
+    """What to know where the middle of the interval and the probability point to two sides."""
+    limit = requirement.limit
+    if (mean.value < limit) == (below > 0.5):
+        return ()
+    middle, most = ("below", "above") if mean.value < limit else ("above", "below")
+    return (
+        f"The middle of the interval lies {middle} {limit:g}, and yet most of the probability "
+        f"{most} it: the density is skewed, as where a step is probable and not certain.",
+    )
 
 
 def _by_mean(requirement: Requirement, series: Series) -> Answer:

@@ -103,6 +103,7 @@ def _target_document(result: TargetResult[Any], covariance: bool) -> dict[str, A
                 "chi_square": dict(group.chi_square),
                 "degrees_of_freedom": group.degrees_of_freedom,
                 "p_value": dict(group.p_value),
+                "left_out": [place[id(one)] for one in group.left_out],
             }
             for orientation, group in result.groups.items()
         },

@@ -22,6 +22,7 @@ from acutance.report.labels import (
 from acutance.report.tables.measurement import numbers_table
 from acutance.report.tables.result import kind_tables, tables
 from acutance.report.tables.scene_reasons import reasons_table
+from acutance.report.tables.target import notes_on_means
 from acutance.report.tables.uncertainty_budget import uncertainty_line
 from acutance.targets import TargetResult
 
@@ -113,6 +114,7 @@ def _target_text(result: TargetResult[Any]) -> str:
         (
             head + where,
             *map(table_text, tables(result)),
+            *notes_on_means(result),
             "\n".join((f"{common_verdict(measurements)}: {counted}", *failed)),
         )
     )

@@ -16,6 +16,8 @@ __all__ = ["EdgeGroup", "Rejected", "TargetResult"]
 One = TypeVar("One", bound=Measurement, covariant=True)
 
 _MAIN = ("mtf_nyquist", "rer", "fwhm_px")
+_STRANGE = 1e-3
+"""Chance of a chi-square below which edges disagree."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,8 @@ class EdgeGroup(ShortRepr, Generic[One]):
     ----------
     orientation : {"across", "along"}
     measurements : tuple of Measurement
+        Those the means are of: good and usable ones; where there are none, doubtful ones; invalid
+        ones only where there is no other.
     metrics : dict of Estimate
         Means weighted by 1 / std^2. What their uncertainty budgets have in common (the shape left
         to the prior, what was stated) does not average out. Where the edges disagree beyond their
@@ -53,6 +57,8 @@ class EdgeGroup(ShortRepr, Generic[One]):
         Consistency: chi-square of the edges about the mean, and the chance of a larger one; ``nan``
         for a single edge, and where it is not defined (below).
     degrees_of_freedom : int
+    left_out : tuple of Measurement
+        Edges of the orientation with a graver verdict.
 
     Notes
     -----
@@ -69,6 +75,12 @@ class EdgeGroup(ShortRepr, Generic[One]):
     chi_square: Mapping[str, float]
     p_value: Mapping[str, float]
     degrees_of_freedom: int
+    left_out: tuple[One, ...] = ()
+
+    @property
+    def disagrees(self) -> bool:
+        """Whether the edges differ by more than their standard deviations explain."""
+        return any(chance < _STRANGE for chance in self.p_value.values())
 
     def summary(self) -> str:
         """Direction, how many edges, and the main means."""

@@ -24,6 +24,18 @@ def scene():
     return site(SYSTEM, np.random.default_rng(4))
 
 
+@pytest.fixture
+def edge_seen_by():
+    def measured(sensor, seed, edit=lambda image: image):
+        image, _ = ac.simulate.edge(
+            sensor, angle_deg=8, snr=80, dark=200, bright=1000, shape=(48, 48),
+            rng=np.random.default_rng(seed),
+        )  # fmt: skip
+        return ac.measure_edge(edit(image))
+
+    return measured
+
+
 def test_a_checkerboard_gives_its_four_edges(scene):
     result = ac.measure_edges(scene.image)
     assert len(result.measurements) == 4
@@ -115,6 +127,32 @@ def test_a_blur_without_nyquist_has_no_chi_square_in_any_face():
     (written,) = document["groups"].values()
     assert written["chi_square"]["mtf_nyquist"] is None
     assert written["p_value"]["mtf_nyquist"] is None
+
+
+def test_means_are_of_the_edges_of_the_best_verdict(edge_seen_by):
+    good, other = (edge_seen_by(SYSTEM, seed) for seed in range(2))
+    strip = edge_seen_by(SYSTEM, 2, edit=lambda image: np.minimum(image, 600.0))
+    assert (good.verdict.word, strip.verdict.word) == ("good", "invalid")
+    (group,) = combine_edges([good, strip, other]).values()
+    assert (group.measurements, group.left_out) == ((good, other), (strip,))
+    (without,) = combine_edges([good, other]).values()
+    assert group.metrics == without.metrics
+    result = TargetResult((good, strip, other), (), {group.orientation: group})
+    assert "Left out of the means across: 2 (invalid)." in ac.report.text(result)
+    document = json.loads(json_text(document_of(result)))
+    (written,) = document["groups"].values()
+    assert (written["edges"], written["left_out"]) == ([0, 2], [1])
+    (alone,) = combine_edges([strip]).values()
+    assert (alone.measurements, alone.left_out) == ((strip,), ())
+
+
+def test_edges_that_disagree_are_said_to(edge_seen_by):
+    soft = ac.Sensor([ac.optics.Detector(), ac.optics.Gaussian(0.9)])
+    edges = (edge_seen_by(SYSTEM, 0), edge_seen_by(soft, 1))
+    groups = combine_edges(edges)
+    assert groups["across"].disagrees
+    said = ac.report.text(TargetResult(edges, (), groups))
+    assert "The edges across differ by more than their standard deviations explain" in said
 
 
 def test_a_scene_may_declare_that_along_track_is_the_x_axis(scene):

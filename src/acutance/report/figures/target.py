@@ -15,6 +15,7 @@ from acutance.report.figures.writing import write_grid
 from acutance.report.labels import count_edges, describe_image, word_estimate
 from acutance.report.paper import (
     BLUE,
+    FAINT,
     INK,
     NAME_WITH_ROOM,
     VERMILION,
@@ -163,6 +164,8 @@ def _draw_group(axes: Axes, result: TargetResult[Any], orientation: str, color: 
     top = max(float(one.mtf.value.max()) for one in group.measurements)
     mark_frequencies(axes, group.measurements[0].response.gsd_m, top)
     numbers = {id(one): i for i, one in enumerate(result.measurements, start=1)}
+    for one in group.left_out:
+        axes.plot(one.mtf.freq_cpp, one.mtf.value, color=FAINT, linewidth=0.9, linestyle="--")
     for one in group.measurements:
         low, high = band_edges(one.mtf.value, one.mtf.std)
         axes.fill_between(one.mtf.freq_cpp, low, high, color=color, alpha=0.10, linewidth=0)
@@ -175,6 +178,8 @@ def _draw_group(axes: Axes, result: TargetResult[Any], orientation: str, color: 
     named = count_edges(len(members))
     if len(members) <= MAX_NAMED:
         named += f" ({', '.join(members)})"
+    if group.left_out:
+        named += f", {len(group.left_out)} left out (dashed)"
     axes.text(
         0.985,
         0.955,

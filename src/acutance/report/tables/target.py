@@ -21,7 +21,7 @@ from acutance.report.tables.measurement import headline_table
 if TYPE_CHECKING:
     from acutance.targets import TargetResult
 
-__all__ = ["edges_table", "group_rows", "means_headline", "target_tables"]
+__all__ = ["edges_table", "group_rows", "means_headline", "notes_on_means", "target_tables"]
 
 MAIN = ("mtf_nyquist", "rer", "fwhm_px")
 
@@ -66,10 +66,6 @@ def edges_table(result: TargetResult[Any]) -> Table:
 
 
 def _means_table(result: TargetResult[Any]) -> Table:
-    note = (
-        "The means weigh every edge by its variance. A small p: the edges differ by more than "
-        "their standard deviations explain."
-    )
     found = group_rows(result)
     by_metric = dict.fromkeys(metric for _, metric, *_ in found)
     rows = [
@@ -77,10 +73,36 @@ def _means_table(result: TargetResult[Any]) -> Table:
         for metric in by_metric
     ]
     columns = (part for name in result.groups for part in (f"{name} mean", "chi² / dof", "p"))
+    notes = ("The means weigh every edge by its variance.", *notes_on_means(result))
     return Table(
         ("Metric", *columns), tuple(rows), "l" + "rrr" * len(result.groups),
-        title="Means by direction", notes=(note,),
+        title="Means by direction", notes=notes,
     )  # fmt: skip
+
+
+def notes_on_means(result: TargetResult[Any]) -> tuple[str, ...]:
+    """Which edges the means are without, where edges disagree, and why there is no chi-square."""
+    notes = []
+    number = {id(one): i for i, one in enumerate(result.measurements, start=1)}
+    for orientation, group in result.groups.items():
+        if group.left_out:
+            listed = ", ".join(f"{number[id(one)]} ({one.verdict.word})" for one in group.left_out)
+            notes.append(f"Left out of the means {orientation}: {listed}.")
+        if group.disagrees:
+            notes.append(
+                f"The edges {orientation} differ by more than their standard deviations explain "
+                "(p): the means' deviations are widened; find out why before using them."
+            )
+    if any(
+        group.degrees_of_freedom and math.isnan(found)
+        for group in result.groups.values()
+        for found in group.chi_square.values()
+    ):
+        notes.append(
+            "No chi²: an edge lies within its deviation of 0, which no number is below; the mean "
+            "is the plain one then, and no more certain than one edge."
+        )
+    return tuple(notes)
 
 
 def group_rows(

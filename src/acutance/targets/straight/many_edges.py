@@ -234,7 +234,8 @@ def combine_edges(
     return groups
 
 
-def _group(own: tuple[StraightMeasurement, ...]) -> EdgeGroup[StraightMeasurement]:
+def _group(edges: tuple[StraightMeasurement, ...]) -> EdgeGroup[StraightMeasurement]:
+    own, left_out = _best_and_others(edges)
     metrics, chi_square, p_value = {}, {}, {}
     for name in own[0].metrics():
         numbers = [one.metrics().get(name, Estimate(math.nan)) for one in own]
@@ -243,7 +244,19 @@ def _group(own: tuple[StraightMeasurement, ...]) -> EdgeGroup[StraightMeasuremen
         metrics[name] = mean
         chi_square[name] = scatter
         p_value[name] = _chance(scatter, len(own) - 1)
-    return EdgeGroup(own[0].orientation, own, metrics, chi_square, p_value, len(own) - 1)
+    freedom = len(own) - 1
+    return EdgeGroup(own[0].orientation, own, metrics, chi_square, p_value, freedom, left_out)
+
+
+def _best_and_others(
+    edges: tuple[StraightMeasurement, ...],
+) -> tuple[tuple[StraightMeasurement, ...], tuple[StraightMeasurement, ...]]:
+    """The edges of the best verdict there is (good and usable ones alike), and the others."""
+    for words in ({"good", "usable"}, {"doubtful"}):
+        best = tuple(one for one in edges if one.verdict.word in words)
+        if best:
+            return best, tuple(one for one in edges if one.verdict.word not in words)
+    return edges, ()
 
 
 def _weighted_mean(numbers: Sequence[Estimate], common: Floats) -> tuple[Estimate, float]:
