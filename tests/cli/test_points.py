@@ -62,7 +62,7 @@ def test_the_published_method_in_words(acutance, mirrors):
         (("--positions", "nowhere.csv"), "there is no such file"),
         (("--limit", "sources"), "write NAME=VALUE with a number"),
         (("--limit", "mirrors=3"), "no check 'mirrors' to limit (limits, --limit), only "),
-        (("--min-snr", "0"), "min_snr is 0"),
+        (("--min-snr", "0"), "--min-snr is 0"),
         (("--survey-reference", "last"), "mean or first"),
         (("--roi", "0,0,20,6"), "at least"),
     ],
@@ -118,9 +118,9 @@ def test_mirrors_are_laid_out(acutance, tmp_path):
     ("words", "message"),
     [
         (("--arrangement", "circle"), "columns or square"),
-        (("--count", "0"), "count is 0"),
-        (("--spacing", "3"), "spacing_px is 3"),
-        (("--level", "0.05"), "level is 0.05"),
+        (("--count", "0"), "--count is 0"),
+        (("--spacing", "3"), "--spacing is 3"),
+        (("--level", "0.05"), "--level is 0.05"),
         (("--sensor", "gaussian"), "need a ground sampling distance"),
     ],
 )

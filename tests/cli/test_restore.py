@@ -150,7 +150,7 @@ def test_niirs_of_a_measurement_and_of_numbers(acutance, folder):
 def test_a_gsd_that_no_image_has_is_refused(acutance, gsd):
     result = acutance("niirs", "--rer", "0.4", "--snr", "80", "--gsd-m", gsd)
     assert result.exit_code == 2
-    assert "gsd_m is" in result.stderr
+    assert "--gsd-m is" in result.stderr
 
 
 @pytest.fixture(scope="module")

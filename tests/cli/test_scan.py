@@ -138,7 +138,8 @@ def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown):
     [
         (("--roi", "0,0,60,60"), "at least 8 are needed", 4),
         (("--edges", "edges.txt"), "--edges", 2),
-        (("--min-length", "1"), "min_length_px is 1: give", 2),
+        (("--roi", "0,0,1,1"), "1 x 1 pixels were to be scanned", 2),
+        (("--min-length", "1"), "--min-length is 1: give", 2),
         (("--min-length", "60"), "max_length_px", 2),
         (("--workers", "0"), "workers", 2),
         (("--field", "3"), "--field 3 is no grid", 2),
@@ -197,4 +198,4 @@ def test_a_scene_that_is_refused_leaves_the_reasons(acutance, tmp_path):
 def test_an_image_without_data_is_named(refused, tmp_path):
     path = tmp_path / "nothing.npy"
     np.save(path, np.full((100, 100), np.nan))
-    refused(("scan", path), "no straight edge stands out in the 100 x 100 pixels", 4)
+    refused(("scan", path), "none of the 100 x 100 pixels holds data", 4)

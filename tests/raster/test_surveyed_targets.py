@@ -164,9 +164,12 @@ def test_what_holds_no_targets(document, message):
 
 
 def test_files_that_are_none(tmp_path):
-    with pytest.raises(OptionError, match="cannot be read as GeoJSON"):
+    with pytest.raises(OptionError, match="cannot be read .*No such file"):
         read_targets(str(tmp_path / "none.geojson"))
     path = tmp_path / "targets.geojson"
+    path.write_text("[1, 2")
+    with pytest.raises(OptionError, match="cannot be read as GeoJSON"):
+        read_targets(str(path))
     path.write_text("[1, 2]")
     with pytest.raises(OptionError, match="not a GeoJSON object"):
         read_targets(str(path))

@@ -207,7 +207,7 @@ def reasons(pairs):
 
 
 def test_reasons_that_differ_in_numbers_are_one_with_their_medians():
-    few = "only {} rows of the target have at least 3.7 px of plateau on both sides (at least 8 "
+    few = "only {} px of the target's length has at least 3.7 px of plateau on both sides (at least 8 "
     advice = "objects on the target, or a fit that does not hold; choose a cleaner region"
     found = reasons([
         *(("rejected", few.format(n) + "are needed): choose a region") for n in (0, 2, 5)),
@@ -217,8 +217,8 @@ def test_reasons_that_differ_in_numbers_are_one_with_their_medians():
     assert found == (
         (
             "3", "rejected", "–",
-            "Only 2 rows of the target have at least 3.7 px of plateau on both sides (at least 8 "
-            "are needed)",
+            "Only 2 px of the target's length has at least 3.7 px of plateau on both sides (at "
+            "least 8 are needed)",
         ),
         ("2", "doubtful", "outliers", "3.25 % of the pixels lie far"),
         ("1", "invalid", "–", "Something else"),

@@ -185,6 +185,10 @@ def _wrong(error: ValidationError) -> list[str]:
     for one in error.errors():
         place = ".".join(str(part + 1 if isinstance(part, int) else part) for part in one["loc"])
         kind, message = one["type"], one["msg"].removeprefix("Value error, ")
-        said = "is no key" if kind == "extra_forbidden" else message[:1].lower() + message[1:]
+        if kind == "extra_forbidden":
+            model = Specification if len(one["loc"]) == 1 else Requirement
+            said = f"is no key, only {', '.join(model.model_fields)}"
+        else:
+            said = message[:1].lower() + message[1:]
         found.append(f"{place}: {said}")
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -40,7 +41,13 @@ from acutance.cli.terminal import (
     stop,
     stop_printing,
 )
-from acutance.errors import AcutanceError, NoDataError, NothingSelectedError, TargetError
+from acutance.errors import (
+    AcutanceError,
+    NoDataError,
+    NothingSelectedError,
+    OptionError,
+    TargetError,
+)
 from acutance.targets.kinds import KINDS
 
 __all__ = ["app", "run"]
@@ -60,6 +67,8 @@ class _Commands(TyperGroup):
                 return super().invoke(ctx)
         except (TargetError, NoDataError, NothingSelectedError) as error:
             fail(str(error), NOTHING_MEASURED)
+        except OptionError as error:
+            fail(_as_typed(str(error), self.commands[ctx.invoked_subcommand]))
         except AcutanceError as error:
             fail(str(error))
         except MemoryError as error:
@@ -72,6 +81,25 @@ class _Commands(TyperGroup):
             if not was_interrupted(error):
                 raise
             stop("")
+
+
+def _as_typed(message: str, command: Any) -> str:
+    """The message with the option as it is typed, where it begins with its name in Python."""
+    found = re.match(r"([a-z_]+) is ", message)
+    if found is None:
+        return message
+    asked = f"--{found[1].replace('_', '-')}"
+    # The names in Python end with the unit: --radius, radius_px.
+    flags = [flag for flag in _flags(command) if f"{asked}-".startswith(f"{flag}-")]
+    return f"{max(flags, key=len)}{message[found.end(1) :]}" if flags else message
+
+
+def _flags(command: Any) -> Iterator[str]:
+    """The options of a command and of those under it."""
+    for parameter in command.params:
+        yield from parameter.opts
+    for one in getattr(command, "commands", {}).values():
+        yield from _flags(one)
 
 
 @contextmanager

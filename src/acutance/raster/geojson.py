@@ -28,7 +28,11 @@ def load_geojson(name: str) -> dict[str, Any]:
     """
     try:
         document = json.loads(Path(name).read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError) as error:
+    except OSError as error:
+        raise RegionError(
+            f"{name} cannot be read ({error.strerror or error}): name a GeoJSON file"
+        ) from error
+    except (ValueError, RecursionError) as error:
         raise RegionError(
             f"{name} cannot be read as GeoJSON ({error}): write a file of Polygons or Points"
         ) from error

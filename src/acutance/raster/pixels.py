@@ -144,7 +144,8 @@ def require_image_array(array: NDArray[Any], name: str) -> None:
         advice = {
             0: "a single number is no image",
             1: "reshape it to (rows, columns)",
-            3: "choose one band: array[band] if the bands come first, array[..., band] if last",
+            3: "choose one band: array[band] if the bands come first, array[..., band] if last; "
+            "for a command save it in a file of its own",
         }.get(array.ndim, "choose one image of one band, for example array[0, 0]")
         raise ImageError(
             f"{name} has shape {array.shape}; an image has two axes, (rows, columns): {advice}"

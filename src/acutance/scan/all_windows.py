@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from acutance.errors import ImageError, OptionError
+from acutance.errors import ImageError, OptionError, RegionError
 from acutance.execution import require_workers, run_on_cluster, run_tasks
 from acutance.raster import Box, Gsd, Image, Region
 from acutance.raster.disk_copy import disk_copy, named_from_root
@@ -26,6 +26,7 @@ Found = list[WindowEdges]
 """The edges of a window: of every band."""
 Progress = Callable[[int, int], None]
 """Function of (windows done, windows in all)."""
+_MIN_SIDE_PX = 8
 
 
 def part_of(image: Image, roi: RoiLike) -> tuple[Box, Region | None]:
@@ -34,13 +35,18 @@ def part_of(image: Image, roi: RoiLike) -> tuple[Box, Region | None]:
     Raises
     ------
     RegionError
-        If it is not inside the image.
+        If it is not inside the image, or smaller than any edge.
     """
     where = Box.whole(image.shape) if roi is None else chosen_region(roi)
-    if isinstance(where, Region):
-        return where.box(image.shape), where
-    where.require_inside(image.shape)
-    return where, None
+    region = where if isinstance(where, Region) else None
+    box = where if isinstance(where, Box) else where.box(image.shape)
+    box.require_inside(image.shape)
+    if min(box.shape) < _MIN_SIDE_PX:
+        raise RegionError(
+            f"{box.height} x {box.width} pixels were to be scanned, and an edge needs at least "
+            f"{_MIN_SIDE_PX} both ways; give a larger part or image"
+        )
+    return box, region
 
 
 def scan_windows(

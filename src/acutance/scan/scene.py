@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves import Estimate, Otf2d
 from acutance.curves.grid import Floats
-from acutance.errors import FewEdgesError
+from acutance.errors import FewEdgesError, NoDataError
 from acutance.geometry.angles import axis_difference
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, open_image
@@ -24,8 +24,9 @@ from acutance.scan.scene_measurement import SceneMeasurement
 from acutance.scan.sensor_fit import SensorFit, fit_sensor
 from acutance.scan.stated_objects import behind_objects, gsd_of_part, require_statement
 from acutance.scan.window_edges import UsedEdge, WindowEdges
+from acutance.scan.windows import windows
 from acutance.targets.options import chosen_options
-from acutance.targets.region import RoiLike, image_info
+from acutance.targets.region import RoiLike, image_info, read_data
 
 __all__ = ["measured_scene", "scan_scene"]
 
@@ -88,6 +89,8 @@ def scan_scene(
     ------
     ImageError, RegionError
         If there are no pixels to scan.
+    NoDataError
+        If no pixel holds data.
     FewEdgesError
         If too few edges can be used, or all have one direction; it holds the edges.
     OptionError
@@ -134,13 +137,30 @@ def measured_scene(
 
     Raises
     ------
+    NoDataError
+        If no pixel holds data.
     FewEdgesError
         If too few edges can be used, or all have one direction.
     """
     edges = SceneEdges.of_rows([row for window in found for row in window.rows])
     used = [edge for window in found for edge in window.used]
+    if not edges.size:
+        _require_data(image, box, options)
     fit = _fit(used, edges, box.as_tuple())
     return _measurement(image, box, gsd, options, edges, fit)
+
+
+def _require_data(image: Image, box: Box, options: ScanOptions) -> None:
+    """Refuse pixels of which none holds data."""
+    for window in windows(box, options.window_px, image.shape):
+        pixels, _ = read_data(image, window.core)
+        if np.isfinite(pixels).any():
+            return
+    raise NoDataError(
+        f"none of the {box.height} x {box.width} pixels holds data: all are nodata, masked, NaN or "
+        "a constant fill; scan another image, or correct the nodata value if pixels that have it "
+        "are data (nodata, --nodata; nan: every value is data)"
+    )
 
 
 @one_thread
@@ -154,8 +174,8 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, 
     """
     if not edges.size:
         raise FewEdgesError(
-            f"no straight edge stands out in the {roi[2]} x {roi[3]} pixels: they are flat, hold "
-            "no data, or nothing straight; scan a larger part, or another image",
+            f"no straight edge stands out in the {roi[2]} x {roi[3]} pixels: they are flat, or "
+            "hold nothing straight; scan a larger part, or another image",
             edges,
         )
     if len(used) < _MIN_EDGES:

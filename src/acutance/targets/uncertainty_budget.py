@@ -92,7 +92,8 @@ TERMS = {
     ),
     "row_scatter": TermWords("scatter of the rows", "A", "draws of the rows, as published"),
     "fit": TermWords(
-        "noise and prior together", "A", "covariance of the fit, whose causes are not separated"
+        "noise and prior together", "A",
+        "covariance of the fit; what the prior (type B) has of it is not separated",
     ),
 }  # fmt: skip
 """Every term by the name that budgets and documents have."""

@@ -107,17 +107,21 @@ def _not_measured(measurement: Measurement) -> tuple[str, ...]:
 def checks_table(result: Measurement | Record) -> Table:
     """What was asked of the target and what was found, failed checks first."""
     checks = sorted(result.checks, key=lambda check: check.passed)
+    has_sources = any(check.source for check in checks)
     rows = tuple(
         (
             f"{check.name}\n{check.question}" if check.question else check.name,
             write_found(check, 3), check.asked, state_of(check), check.message,
-            check.source,
+            *((check.source,) if has_sources else ()),
         )
         for check in checks
     )  # fmt: skip
     alerts = frozenset(i for i, check in enumerate(checks) if not check.passed)
-    columns = ("Check", "Found", "Asked", "", "What was found", "Source of the limit")
-    return Table(columns, rows, "lrrlll", alerts=alerts, title="Checks")
+    columns = (
+        "Check", "Found", "Asked", "", "What was found",
+        *(("Source of the limit",) if has_sources else ()),
+    )  # fmt: skip
+    return Table(columns, rows, "lrrlll"[: len(columns)], alerts=alerts, title="Checks")
 
 
 def state_of(check: Check) -> str:

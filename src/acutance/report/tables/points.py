@@ -69,9 +69,8 @@ def _rejected_table(measurement: PointsMeasurement) -> Table:
         if one.reason != "faint"
     )
     return Table(
-        ("Row", "Column", "Reason", "What was found"), rows, "rrll", title="Rejected",
-        notes=(f"{len(measurement.rejected)} rejected: {words}.",),
-    )  # fmt: skip
+        ("Row", "Column", "Reason", "What was found"), rows, "rrll", title=f"Rejected: {words}"
+    )
 
 
 def _survey_table(survey: SurveyErrors) -> Table:

@@ -146,8 +146,8 @@ def select_usable(image: Floats, edge: FirstFit, half_length_px: float) -> Usabl
     length = stop - start
     if length < MIN_ROWS:
         raise SupportError(
-            f"only {length} rows of the target have at least {need:.1f} px of plateau on both "
-            f"sides (at least {MIN_ROWS} are needed): choose a region with more of it"
+            f"only {length} px of the target's length has at least {need:.1f} px of plateau on "
+            f"both sides (at least {MIN_ROWS} are needed): choose a region with more of it"
         )
     used = np.isfinite(residual)
     if not whole:
