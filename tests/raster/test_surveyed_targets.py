@@ -164,7 +164,7 @@ def test_what_holds_no_targets(document, message):
 
 
 def test_files_that_are_none(tmp_path):
-    with pytest.raises(OptionError, match="cannot be read .*No such file"):
+    with pytest.raises(OptionError, match=r"cannot be read .*No such file"):
         read_targets(str(tmp_path / "none.geojson"))
     path = tmp_path / "targets.geojson"
     path.write_text("[1, 2")

@@ -207,10 +207,13 @@ def reasons(pairs):
 
 
 def test_reasons_that_differ_in_numbers_are_one_with_their_medians():
-    few = "only {} px of the target's length has at least 3.7 px of plateau on both sides (at least 8 "
+    few = (
+        "only {} px of the target's length has at least 3.7 px of plateau on both sides (at least "
+        "8 are needed): choose a region"
+    )
     advice = "objects on the target, or a fit that does not hold; choose a cleaner region"
     found = reasons([
-        *(("rejected", few.format(n) + "are needed): choose a region") for n in (0, 2, 5)),
+        *(("rejected", few.format(n)) for n in (0, 2, 5)),
         *(("doubtful", f"{n} % of the pixels lie far: {advice}") for n in ("2.5", "4")),
         ("invalid", "something else: do this"),
     ])  # fmt: skip
