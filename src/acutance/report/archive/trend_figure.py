@@ -157,6 +157,7 @@ def _draw_changes(axes: Axes, trend: Trend) -> None:
         axes.text(
             day, 0.02, f" {event.name}", transform=top, rotation=90,
             ha="right", va="bottom", fontsize=8.5, color=GREEN,
+            bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 1.0},
         )  # fmt: skip
 
 

@@ -205,6 +205,7 @@ def _draw_aligned(page: FigureBase, measurement: PointsMeasurement) -> None:
 
 def _draw_gallery(page: FigureBase, measurement: PointsMeasurement) -> None:
     shown = measurement.details.stamps[:MAX_SHOWN]
+    reach = max(max(one.pixels.shape) for one in shown) // 2
     lines = math.ceil(len(shown) / GALLERY_COLUMNS)
     grid = page.subplots(2 * lines, GALLERY_COLUMNS, squeeze=False)
     noise = max(measurement.noise_std, 1e-300)
@@ -217,11 +218,23 @@ def _draw_gallery(page: FigureBase, measurement: PointsMeasurement) -> None:
         lower.imshow(
             stamp.residual, cmap="RdBu_r", vmin=-5 * noise, vmax=5 * noise, interpolation="nearest"
         )
+        _centre_on(measurement.sources[number], stamp, reach, (upper, lower))
     more = len(measurement.sources) - len(shown)
     page.suptitle(
-        "Sources and their residuals" + (f" ({more} more not shown)" if more else ""),
+        "Sources and their residuals, −5 (blue) to 5 (red) standard deviations"
+        + (f" ({more} more not shown)" if more else ""),
         x=0.012, ha="left", fontsize=11, fontweight="bold",
     )  # fmt: skip
+
+
+def _centre_on(one: PointSource, stamp: SourceStamp, reach: int, pair: tuple[Axes, Axes]) -> None:
+    """Show as much around every source: what the image does not have stays blank."""
+    down, right = round(one.row.value) - stamp.origin[0], round(one.col.value) - stamp.origin[1]
+    for axes in pair:
+        axes.set(
+            xlim=(right - reach - 0.5, right + reach + 0.5),
+            ylim=(down + reach + 0.5, down - reach - 0.5),
+        )
 
 
 def _draw_stamp(axes: Axes, one: PointSource, stamp: SourceStamp, number: int) -> None:
