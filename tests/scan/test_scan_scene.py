@@ -191,6 +191,28 @@ def test_a_decimated_scene_is_sharper_than_any_pixel(ideal):
     assert "full_pixel" not in {check.name for check in plain.failed_checks}
 
 
+def share_of(scene):
+    return {check.name: check for check in scene.checks}["trusted_share"]
+
+
+def test_where_nearly_all_edges_contradict_a_sensor_the_scan_is_doubtful(ideal):
+    """A landscape decimated four times without a filter: of 275 edges 20 pass, by chance."""
+    fine, _ = simulate.landscape(
+        SENSOR, shape=(2400, 2400), snr=60, rng=np.random.default_rng((0, 7))
+    )
+    scene = ac.scan_scene(fine[::4, ::4])
+    check = share_of(scene)
+    trusted = np.isin(scene.edges.verdict, ["good", "usable"]).sum()
+    measured = (scene.edges.verdict != "rejected").sum()
+    assert check.value == pytest.approx(trusted / measured)
+    assert check.value < 0.15
+    assert not check.passed
+    assert scene.verdict.word == "doubtful"
+    assert f"{measured} edges that could be measured" in check.message
+    _, _, plain = ideal
+    assert share_of(plain).value > 0.9
+
+
 def test_a_scene_of_bare_samples_is_refused_in_words():
     bare, _ = simulate.landscape(
         ac.Sensor([ac.optics.Detector(0.3)]), shape=(700, 900),

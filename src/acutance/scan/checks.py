@@ -20,8 +20,8 @@ from acutance.targets.full_pixel import full_pixel
 __all__ = ["SCENE_CHECKS", "check_scene"]
 
 SCENE_CHECKS = (
-    "edges_used", "scene_directions", "ideal_share", "strange_share", "scene_settled",
-    "form_agrees", "parts_agree", "field_change", "full_pixel",
+    "edges_used", "trusted_share", "scene_directions", "ideal_share", "strange_share",
+    "scene_settled", "form_agrees", "parts_agree", "field_change", "full_pixel",
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -55,6 +55,7 @@ def check_scene(
             f"{used} of the {edges.size} edges that were found are used: {_verdicts(edges)}",
             limits,
         ),
+        _trusted_share(edges, limits),
         answer(
             "scene_directions", directions,
             f"their normals lie in {directions} of 12 directions of 15 degrees each", limits,
@@ -81,6 +82,18 @@ def check_scene(
             [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
         ),
     )  # fmt: skip
+
+
+def _trusted_share(edges: SceneEdges, limits: Limits) -> Check:
+    """Share of good and usable edges among all that were measured."""
+    measured = int(np.sum(edges.verdict != "rejected"))
+    trusted = int(np.isin(edges.verdict, ("good", "usable")).sum())
+    share = trusted / max(measured, 1)
+    found = (
+        f"of the {measured} edges that could be measured {trusted} are good or usable, "
+        f"{100 * share:.0f} %"
+    )
+    return answer("trusted_share", share, found, limits)
 
 
 def _form_agrees(chi_square: ChiSquare, limits: Limits) -> Check:

@@ -14,6 +14,11 @@ SCENE_QUESTIONS: Final = {
         "the intervals widen, and few of the objects may be ideal; scan a larger part, or several "
         "scenes and combine them", severity="note",
     ),
+    "trusted_share": Question(
+        "Which share of the edges that can be measured is good or usable?", ">=", 0.2,
+        "where nearly all edges contradict a sensor, those that pass may do so by chance: the "
+        "image may be decimated, drawn or a mosaic; scan the original",
+    ),
     "scene_directions": Question(
         "In how many directions, of 15 degrees each, are there edges?", ">=", 4.0,
         "rotation and asymmetry follow from the prior alone", severity="note",
