@@ -20,6 +20,16 @@ def test_the_text_holds_every_number_and_check(measurement):
     assert "measured 2026-01-02 03:04 UTC" in shown
 
 
+def test_the_verdict_stands_before_the_numbers(measurement, target):
+    head, verdict, numbers, *_ = text(measurement).split("\n\n")
+    assert "scene.tif" in head
+    assert verdict == f"doubtful: {measurement.verdict.sentence}"
+    assert "MTF at Nyquist" in numbers
+    head, verdict, *_, failed = text(target).split("\n\n")
+    assert verdict == "doubtful: 4 of 24 checks failed."
+    assert failed.startswith("Failed checks\n  blur_uniformity, edges 1 ")
+
+
 def test_the_text_of_a_pulse_has_its_width_and_levels(pulse, make_pulse):
     shown = text(pulse)
     assert shown.startswith("Pulse, method spline: across track")

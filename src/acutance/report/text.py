@@ -55,6 +55,7 @@ def text(result: Result) -> str:
         return _comparison_text(found)
     parts = [
         f"{describe_measurement(found)}\n  {describe_image(found)}",
+        *([str(found.verdict)] if found.checks else []),
         table_text(numbers_table(found), drop_last=1),
         *([f"  {causes}"] if (causes := uncertainty_line(found)) else []),
         *(table_text(table) for table in kind_tables(found) if not table.page_only),
@@ -106,16 +107,17 @@ def _target_text(result: TargetResult[Any]) -> str:
     head = f"{count_edges(len(measurements))} measured, {len(result.rejected)} rejected"
     where = f"\n  {describe_image(measurements[0])}" if measurements else ""
     counted = count_failed_checks(measurements)
-    failed = (
+    failed = [
         f"  {name}, edges {edges}: {meaning}"
         for name, edges, meaning in failed_by_check(measurements)
-    )
+    ]
     return "\n\n".join(
         (
             head + where,
+            f"{common_verdict(measurements)}: {counted}",
             *map(table_text, tables(result)),
             *notes_on_means(result),
-            "\n".join((f"{common_verdict(measurements)}: {counted}", *failed)),
+            *(["\n".join(("Failed checks", *failed))] if failed else []),
         )
     )
 
