@@ -124,8 +124,9 @@ def test_the_document_keeps_to_the_schema(result):
 def test_all_outputs_are_made_without_details(result):
     light = result.without_details()
     assert len(panels(light)) < len(panels(result)) or result.kind in ("combined", "scene")
-    numbers = text(result).split("\n\n")[1]
-    assert text(light).split("\n\n")[1].splitlines()[2][:30] == numbers.splitlines()[2][:30]
+    (_, verdict, numbers, *_), shown = (text(one).split("\n\n") for one in (result, light))
+    assert shown[1] == verdict
+    assert shown[2].splitlines()[2][:30] == numbers.splitlines()[2][:30]
     assert csv(light).splitlines()[0] == csv(result).splitlines()[0]
     more = {"star": ["mean"], "bars": ["normal"]}.get(result.kind, [])
     named = [line.split(",")[0] for line in csv(light).splitlines()[1:]]
