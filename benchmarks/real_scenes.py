@@ -3,8 +3,8 @@
 The folder and its files are described in its README; images are no part of this project. Beside
 the numbers stand which share of the edges that can be measured is good or usable (the check
 trusted_share), how far they are from the form of the sensor (form_agrees: about 1 or less), and
-what is in use for the sensor at Nyquist, where that is known. Images without edges enough are
-refused, with the reason.
+what is in use for the sensor at Nyquist, where that is known. Bands without edges enough are
+refused, with the reason: the second table.
 """
 
 from __future__ import annotations
@@ -50,13 +50,12 @@ class Band:
 
 
 def measured(band: Band) -> list[str]:
-    """One row of the table."""
+    """One row of the first table, or name and reason of what is refused."""
     start = time.perf_counter()
     try:
         scene = ac.scan_scene(ac.open_image(band.path, band=band.number))
     except ac.AcutanceError as error:
-        reason = str(error).split(": ")[0]
-        return [band.name, "refused", *[""] * 10, band.in_use, reason]
+        return [band.name, str(error).split(": ")[0]]
     across, along = scene.across, scene.along
     checks = {check.name: check.value for check in scene.checks}
     return [
@@ -70,7 +69,7 @@ def measured(band: Band) -> list[str]:
         f"{scene.objects['ideal']}",
         f"{checks['form_agrees']:.2f}",
         band.in_use,
-        f"{time.perf_counter() - start:.0f} s",
+        f"{time.perf_counter() - start:.0f}",
     ]
 
 
@@ -91,11 +90,14 @@ def main() -> None:
     head = [
         "file, band", "verdict", "edges used", "trusted_share", "Nyquist across", "along",
         "RER across", "along", "FWHM across / px", "along / px", "ideal objects", "form_agrees",
-        "in use at Nyquist", "time, or why not",
+        "in use at Nyquist", "time / s",
     ]  # fmt: skip
+    scanned = [row for row in rows if len(row) == len(head)]
+    refused = [row for row in rows if len(row) != len(head)]
     how = argparse.Namespace(processes=arguments.processes, out=arguments.out)
     text = __doc__.partition("\n\n")[2].strip()
-    publish("Real scenes", [text, table(head, rows, texts=3)], how)
+    parts = [text, table(head, scanned, texts=2), "## Refused"]
+    publish("Real scenes", [*parts, table(["file, band", "why"], refused, texts=2)], how)
 
 
 if __name__ == "__main__":
