@@ -49,13 +49,13 @@ class Band:
         return next(found, "")
 
 
-def measured(band: Band) -> list[str]:
-    """One row of the first table, or name and reason of what is refused."""
+def measured(band: Band) -> list[str] | str:
+    """One row of the first table, or why there is none."""
     start = time.perf_counter()
     try:
         scene = ac.scan_scene(ac.open_image(band.path, band=band.number))
     except ac.AcutanceError as error:
-        return [band.name, str(error).split(": ")[0]]
+        return str(error).partition(":")[0]
     across, along = scene.across, scene.along
     checks = {check.name: check.value for check in scene.checks}
     return [
@@ -86,14 +86,16 @@ def main() -> None:
         if path.suffix in IMAGES
         for one in open_bands(str(path))
     ]
-    rows = work_through(measured, bands, arguments.processes, "bands")
+    found = work_through(measured, bands, arguments.processes, "bands")
     head = [
         "file, band", "verdict", "edges used", "trusted_share", "Nyquist across", "along",
         "RER across", "along", "FWHM across / px", "along / px", "ideal objects", "form_agrees",
         "in use at Nyquist", "time / s",
     ]  # fmt: skip
-    scanned = [row for row in rows if len(row) == len(head)]
-    refused = [row for row in rows if len(row) != len(head)]
+    scanned = [one for one in found if not isinstance(one, str)]
+    refused = [
+        [band.name, one] for band, one in zip(bands, found, strict=True) if isinstance(one, str)
+    ]
     how = argparse.Namespace(processes=arguments.processes, out=arguments.out)
     text = __doc__.partition("\n\n")[2].strip()
     parts = [text, table(head, scanned, texts=2), "## Refused"]

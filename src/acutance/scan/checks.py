@@ -55,7 +55,7 @@ def check_scene(
             f"{used} of the {edges.size} edges that were found are used: {_verdicts(edges)}",
             limits,
         ),
-        _trusted_share(edges, limits),
+        _trusted_share(edges, used, limits),
         answer(
             "scene_directions", directions,
             f"their normals lie in {directions} of 12 directions of 15 degrees each", limits,
@@ -84,13 +84,12 @@ def check_scene(
     )  # fmt: skip
 
 
-def _trusted_share(edges: SceneEdges, limits: Limits) -> Check:
-    """Share of good and usable edges among all that were measured."""
+def _trusted_share(edges: SceneEdges, used: int, limits: Limits) -> Check:
+    """Share of the used edges, the good and usable ones, among all that were measured."""
     measured = int(np.sum(edges.verdict != "rejected"))
-    trusted = int(np.isin(edges.verdict, ("good", "usable")).sum())
-    share = trusted / max(measured, 1)
+    share = used / max(measured, 1)
     found = (
-        f"of the {measured} edges that could be measured {trusted} are good or usable, "
+        f"of the {measured} edges that could be measured {used} are good or usable, "
         f"{100 * share:.0f} %"
     )
     return answer("trusted_share", share, found, limits)
