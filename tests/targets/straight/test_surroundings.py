@@ -8,7 +8,7 @@ from acutance.geometry.line import Line
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.targets.straight.step_profile import pulse_profile
 from acutance.targets.straight.surroundings import (
-    best_run,
+    best_rows,
     bounded_residual,
     line_distances,
     local_mean,
@@ -120,11 +120,13 @@ def test_structure_ends_the_rows_beside_it_and_a_blur_before_it_the_wider_ones()
 @pytest.mark.parametrize(
     ("reach", "expected"),
     [
-        ([1.0, 1, 1], (0, 0)),
-        ([3.0, 3, 3, 1, 3, 3], (0, 3)),
-        ([3.0] * 2 + [7.0] * 7, (2, 9)),
-        ([3.0] * 9 + [7.0] * 4, (0, 13)),
+        ([1.0, 1, 1], []),
+        ([3.0] * 5 + [1.0] + [3.0] * 4, [0, 1, 2, 3, 4]),
+        ([3.0] * 5 + [1.0] + [3.0] * 5, [0, 1, 2, 3, 4, 6, 7, 8, 9, 10]),
+        ([3.0] * 2 + [7.0] * 7, [2, 3, 4, 5, 6, 7, 8]),
+        ([3.0] * 9 + [7.0] * 4, list(range(13))),
+        ([7.0] * 5 + [1.0] + [7.0] * 5 + [3.0], [0, 1, 2, 3, 4, 6, 7, 8, 9, 10]),
     ],
 )
-def test_best_run_is_long_or_wide(reach, expected):
-    assert best_run(np.array(reach), 3.0) == expected
+def test_best_rows_are_many_or_have_wide_plateaus(reach, expected):
+    assert np.flatnonzero(best_rows(np.array(reach), 3.0)).tolist() == expected

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.geometry.line import Line
@@ -16,7 +17,7 @@ from acutance.numerics.compiled import compiled
 from acutance.targets.straight.step_profile import blurred_profile
 
 __all__ = [
-    "best_run",
+    "best_rows",
     "bounded_residual",
     "line_distances",
     "local_mean",
@@ -29,6 +30,8 @@ __all__ = [
 
 _WIDER = (1.0, 1.5, 2.0, 3.0, 4.0)
 """Widths of plateaus that are tried, in units of the smallest one needed."""
+_SHORTEST_RUN = 5
+"""Fewer rows in a row, amid others that are not clear, are so by chance."""
 
 
 def line_distances(shape: tuple[int, ...], line: Line) -> tuple[Floats, Floats]:
@@ -217,19 +220,22 @@ def reach_before_structure(stop: Floats, width_px: float, need: float) -> Floats
 
 
 @compiled
-def best_run(reach: Floats, need: float) -> tuple[int, int]:
-    """The best run of rows: long, with plateaus of at least `need` pixels.
+def best_rows(reach: Floats, need: float) -> NDArray[np.bool_]:
+    """Which rows to use, (rows,): many, with plateaus of at least `need` pixels.
 
-    A wider plateau shortens the run; twice the need is worth a third of the rows.
+    Structure that ends at the border of a field interrupts it: rows beyond are of the same target.
+    A wider plateau leaves fewer rows; twice the need is worth a third of them.
     """
-    best, found = 0.0, (0, 0)
+    best, found = 0.0, np.zeros(reach.size, np.bool_)
     for wider in _WIDER:
-        start = 0
+        chosen, start = np.zeros(reach.size, np.bool_), 0
         for stop in range(reach.size + 1):
             if stop < reach.size and reach[stop] >= need * wider:
                 continue
-            worth = (stop - start) * (1 - 0.5**wider)
-            if worth > best:
-                best, found = worth, (start, stop)
+            if stop - start >= _SHORTEST_RUN:
+                chosen[start:stop] = True
             start = stop + 1
+        worth = np.count_nonzero(chosen) * (1 - 0.5**wider)
+        if worth > best:
+            best, found = worth, chosen
     return found

@@ -20,7 +20,7 @@ from acutance.targets.straight.find_edges import Segment
 from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.pixels import EdgePixels
 from acutance.targets.straight.surroundings import (
-    best_run,
+    best_rows,
     bounded_residual,
     line_distances,
     local_mean,
@@ -117,7 +117,7 @@ class UsablePixels:
 
 
 def select_usable(image: Floats, edge: FirstFit, half_length_px: float) -> UsablePixels:
-    """The longest and widest stretch of the target whose surroundings look like its plateaus.
+    """The rows of the target whose surroundings look like its plateaus: many, far to both sides.
 
     Parameters
     ----------
@@ -142,8 +142,8 @@ def select_usable(image: Floats, edge: FirstFit, half_length_px: float) -> Usabl
     )  # fmt: skip
     need = 1.5 * edge.blur.width_px + 1.5
     first, reaches, whole = _reaches(edge, residual, s, t, half_length_px, need)
-    start, stop = best_run(np.minimum(*reaches), need)
-    length = stop - start
+    rows = best_rows(np.minimum(*reaches), need)
+    length = int(np.count_nonzero(rows))
     if length < MIN_ROWS:
         raise SupportError(
             f"only {length} px of the target's length has at least {need:.1f} px of plateau on "
@@ -152,18 +152,17 @@ def select_usable(image: Floats, edge: FirstFit, half_length_px: float) -> Usabl
     used = np.isfinite(residual)
     if not whole:
         last = edge.profile.positions_px[-1]
-        place = (t - first).astype(np.intp)
-        used &= (place >= start) & (place < stop)
-        dark_reach, bright_reach = reaches[:, np.where(used, place, 0)]
-        used &= (-s < dark_reach) & (s - last < bright_reach)
+        place = np.where(used, t - first, 0).astype(np.intp)
+        dark_reach, bright_reach = reaches[:, place]
+        used &= rows[place] & (-s < dark_reach) & (s - last < bright_reach)
         image = np.where(used, image, np.nan)
     if not used.any():
         raise SupportError(
             f"no pixel of the target's {length} rows is usable: next to its line they hold no "
             "data; choose a region with fewer missing pixels"
         )
-    dark_px, bright_px = np.sort(reaches[:, start:stop])[:, length // 10].tolist()
-    line = replace(edge.line.slid(first + 0.5 * (start + stop)), length_px=float(length))
+    dark_px, bright_px = np.sort(reaches[:, rows])[:, length // 10].tolist()
+    line = replace(edge.line.slid(first + 0.5 + float(np.flatnonzero(rows).mean())), length_px=float(length))
     _require_contrast(edge, residual[used])
     extent = Extent(dark_px, bright_px, float(length), whole)
     return UsablePixels(image, line, extent)
