@@ -49,6 +49,17 @@ class Band:
         return next(found, "")
 
 
+def bands_of(folder: Path) -> list[Band]:
+    """Every band of all images of a folder and of its folder of scenes."""
+    files = sorted(folder.glob("[0-9]*")) + sorted((folder / "scenes").iterdir())
+    return [
+        Band(path, one.band)
+        for path in files
+        if path.suffix in IMAGES
+        for one in open_bands(str(path))
+    ]
+
+
 def measured(band: Band) -> list[str] | str:
     """One row of the first table, or why there is none."""
     start = time.perf_counter()
@@ -77,15 +88,7 @@ def main() -> None:
     parser = command(__doc__.partition("\n")[0], draws=1)
     parser.add_argument("folder", type=Path, help="of the images")
     arguments = parser.parse_args()
-    files = sorted(arguments.folder.glob("[0-9]*")) + sorted(
-        (arguments.folder / "scenes").iterdir()
-    )
-    bands = [
-        Band(path, one.band)
-        for path in files
-        if path.suffix in IMAGES
-        for one in open_bands(str(path))
-    ]
+    bands = bands_of(arguments.folder)
     found = work_through(measured, bands, arguments.processes, "bands")
     head = [
         "file, band", "verdict", "edges used", "trusted_share", "Nyquist across", "along",

@@ -162,7 +162,8 @@ def select_usable(image: Floats, edge: FirstFit, half_length_px: float) -> Usabl
             "data; choose a region with fewer missing pixels"
         )
     dark_px, bright_px = np.sort(reaches[:, rows])[:, length // 10].tolist()
-    line = replace(edge.line.slid(first + 0.5 + float(np.flatnonzero(rows).mean())), length_px=float(length))
+    middle = first + 0.5 + float(np.flatnonzero(rows).mean())
+    line = replace(edge.line.slid(middle), length_px=float(length))
     _require_contrast(edge, residual[used])
     extent = Extent(dark_px, bright_px, float(length), whole)
     return UsablePixels(image, line, extent)
