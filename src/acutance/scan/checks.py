@@ -110,13 +110,14 @@ def _parts_agree(parts: PartsFit | None, limits: Limits) -> Check:
     if parts is None:
         found = "the edges are too few to ask whether the parts of the scene agree"
         return answer("parts_agree", 0.0, found, limits)
-    share = 2 * math.pi**2 * NYQUIST_CPP**2 * parts.scatter_px2
-    count, chi_square = parts.chi_square.expected + 1, parts.chi_square
+    # Oblique blur is none across and along.
+    share = 2 * math.pi**2 * NYQUIST_CPP**2 * math.hypot(*parts.errors_px2[:2])
+    chi_square = parts.chi_square
     found = (
-        f"the blur of {count:.0f} parts of the scene has a chi-square of {chi_square.value:.1f} "
-        f"with {chi_square.expected:.0f} degrees of freedom: "
+        f"the blurs of {parts.places} parts of the scene have a chi-square of "
+        f"{chi_square.value:.1f} with {chi_square.expected:.0f} degrees of freedom: "
         + (
-            f"the MTF at Nyquist differs by {100 * share:.1f} % from part to part, which is a part "
+            f"the MTF at Nyquist is uncertain by {100 * share:.1f} % for that, which is a part "
             "of all deviations"
             if share > 0
             else "they agree"

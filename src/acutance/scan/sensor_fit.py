@@ -21,7 +21,7 @@ from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.stacked import stacked, unstacked
-from acutance.scan.blur_modes import ALL_AROUND, COMMON_MODES, changed, edge_modes, fit_modes
+from acutance.scan.blur_modes import COMMON_MODES, changed, edge_modes, fit_modes
 from acutance.scan.field_fit import FieldFit, fit_field
 from acutance.scan.form_agreement import agreement_of_form, common_errors
 from acutance.scan.information import expected_information, observed_information
@@ -148,9 +148,8 @@ class SensorFit:
     @property
     def common_errors_px2(self) -> dict[str, Floats]:
         """Independent errors of the blurs beside those of `combined`, (r, 3), by their cause."""
-        scatter = np.zeros((1, COMMON_MODES))
-        scatter[0, ALL_AROUND] = 0.0 if self.parts is None else self.parts.scatter_px2
-        return {"shared_softness": self.shared_px2, "parts_scatter": scatter}
+        scatter = np.zeros(COMMON_MODES) if self.parts is None else self.parts.errors_px2
+        return {"shared_softness": self.shared_px2, "parts_scatter": np.diag(scatter)}
 
     @property
     def otf(self) -> CombinedOtf:

@@ -43,7 +43,7 @@ SCENE_QUESTIONS: Final = {
         "more than their intervals; look at the edges by direction",
     ),
     "parts_agree": Question(
-        "By which share does the MTF at Nyquist differ from part to part?", "<=", 0.05,
+        "By which share is the MTF at Nyquist uncertain as the parts disagree?", "<=", 0.05,
         "their objects differ in a softness that all of them have; compare other scenes",
         severity="note",
     ),
