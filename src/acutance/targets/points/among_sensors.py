@@ -33,6 +33,7 @@ from acutance.numerics.marginal_likelihood import (
     whiten,
 )
 from acutance.numerics.normal_equations import Normal
+from acutance.numerics.pivoted_root import covariance_root
 from acutance.targets.points import tuned
 from acutance.targets.points.amplitudes import averaged_posterior, posterior_log_evidence
 from acutance.targets.points.psf_prior import PsfDirections
@@ -194,7 +195,7 @@ class SensorModel:
 
     def posterior(self, coordinates: Mixture, likeliest: Posterior) -> Posterior:
         """All unknowns, by the coordinates."""
-        followed = self.columns @ _root(coordinates.covariance)
+        followed = self.columns @ covariance_root(coordinates.covariance)
         return replace(
             likeliest,
             beta=self.start + self.columns @ coordinates.mean,
@@ -227,10 +228,4 @@ def _averaged(among: Posterior, others: Posterior, other: float) -> Posterior:
         math.sqrt(other) * others.factor,
         math.sqrt(other * (1 - other)) * away[:, None],
     ])  # fmt: skip
-    return replace(among, beta=among.beta + other * away, factor=_root(factor @ factor.T))
-
-
-def _root(covariance: Floats) -> Floats:
-    """Factor of a covariance."""
-    power, axes = np.linalg.eigh(covariance)
-    return np.asarray(axes * np.sqrt(np.maximum(power, 0.0)))
+    return replace(among, beta=among.beta + other * away, factor=covariance_root(factor @ factor.T))
