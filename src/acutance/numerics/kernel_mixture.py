@@ -180,9 +180,9 @@ class Mixture:
         means, weight = self._means
         away = np.sqrt(weight)[:, None] * (means - self.mean)
         kernels = self.seen.kernels
-        shares = np.stack([
-            np.bincount(kernels.part, own, len(kernels.factors)) for own in self.weight
-        ])  # fmt: skip
+        shares: Floats = np.array(
+            [np.bincount(kernels.part, own, len(kernels.factors)) for own in self.weight], float
+        )
         shares[shares <= _RARE] = 0.0
         return np.asarray(away.T @ away + self.seen.covariance(shares))
 

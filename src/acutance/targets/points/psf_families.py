@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.targets.points.psf_spline import GRIDS, Parity, SplineGrid, whole
+from acutance.targets.points.psf_spline import GRIDS, Parity, add_spline_sum, add_splines, whole
 from acutance.targets.points.tuned import FAMILY_LOG_AMPLITUDES
 
 __all__ = ["PARITIES", "Families", "Parities", "entry_name", "learned_families"]
@@ -92,23 +92,22 @@ class Families:
             found.append(np.concatenate(every).reshape(-1, grid.size**2).T.copy())
         return tuple(found)
 
-    def values(self, u: Floats, v: Floats) -> Floats:
-        """Every direction at places in widths, without its tail, per square width, (n, r)."""
-        found = np.zeros((u.size, self.tail.size))
-        for grid, coefficients in zip(GRIDS, self.coefficients, strict=True):
-            near = _inside(grid, u, v)
-            found[near] += grid.rows(u[near], v[near]) @ coefficients
-        return found
+    def add(
+        self, found: Floats, pixel: NDArray[np.intp], light: Floats, u: Floats, v: Floats
+    ) -> None:
+        """Add the light of all directions, without tails, to the first columns of a matrix.
 
-    def sums(
-        self, u: Floats, v: Floats, weights: Floats, slopes: tuple[tuple[int, int], ...]
-    ) -> list[Floats]:
-        """``values(u, v) @ weights``, or its derivatives of the given orders by u and v, (n,)."""
-        found = [np.zeros(u.size) for _ in slopes]
+        At places (u, v) in widths, per square width, times `light`, each to the row of its pixel.
+        """
         for grid, coefficients in zip(GRIDS, self.coefficients, strict=True):
-            near, mixed = _inside(grid, u, v), coefficients @ weights
-            for total, slope in zip(found, slopes, strict=True):
-                total[near] += grid.rows(u[near], v[near], slope) @ mixed
+            add_splines(found, pixel, light, u, v, grid.step, coefficients)
+
+    def sums(self, u: Floats, v: Floats, weights: Floats) -> Floats:
+        """All directions times weights, (r,), and the derivatives by u and v, (3, n)."""
+        found = np.zeros((3, u.size))
+        for grid, coefficients in zip(GRIDS, self.coefficients, strict=True):
+            mixed = (coefficients @ weights).reshape(grid.size, grid.size)
+            add_spline_sum(found, u, v, grid.step, mixed)
         return found
 
     def transform(self, f: Floats, g: Floats) -> Complexes:
@@ -122,10 +121,6 @@ class Families:
         for group, own in zip(self.groups, np.split(weights, ends), strict=True):
             found += group.transform_sum(f, g, own)
         return found
-
-
-def _inside(grid: SplineGrid, u: Floats, v: Floats) -> NDArray[np.intp]:
-    return np.flatnonzero((np.abs(u) < grid.half_support) & (np.abs(v) < grid.half_support))
 
 
 def entry_name(family: str, across: Parity, along: Parity) -> str:
