@@ -25,6 +25,7 @@ Parities = tuple[Parity, Parity]
 PARITIES: Final[tuple[Parities, ...]] = ((1, 1), (-1, 1))
 """Across and along. Directions even across and odd along are transposes of the second kind. What is
 odd both ways is a twentieth of what is even where there is any (interpolation at one phase)."""
+_ROUNDING: Final = 1e-13
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,24 +39,18 @@ class _Group:
 
     def transform(self, f: Floats, g: Floats) -> Complexes:
         """Transform at frequencies in cycles per width, without the tail, (n, r)."""
-        count = self.tail.size
-        found = np.zeros((f.size, count))
+        found = np.zeros((f.size, self.tail.size))
         for grid, quadrant in zip(GRIDS, self.quadrants, strict=True):
-            along = grid.waves(g, self.along) @ quadrant.transpose(1, 0, 2).reshape(
-                grid.reach + 1, -1
-            )
-            along = along.reshape(f.size, count, grid.reach + 1)
-            found += np.einsum("nrk,nk->nr", along, grid.waves(f, self.across))
+            found += _sums(grid.waves(f, self.across), grid.waves(g, self.along), quadrant)
         return np.asarray(found * self._turn)
 
     def transform_sum(self, f: Floats, g: Floats, weights: Floats) -> Complexes:
         """``transform(f, g) @ weights``, (n,)."""
-        found = np.zeros(f.size)
+        found = np.zeros((f.size, 1))
         for grid, quadrant in zip(GRIDS, self.quadrants, strict=True):
-            mixed = np.tensordot(weights, quadrant, 1)
-            along = grid.waves(g, self.along) @ mixed
-            found += np.einsum("nk,nk->n", along, grid.waves(f, self.across))
-        return np.asarray(found * self._turn)
+            mixed = np.tensordot(weights, quadrant, 1)[None]
+            found += _sums(grid.waves(f, self.across), grid.waves(g, self.along), mixed)
+        return np.asarray(found[:, 0] * self._turn)
 
     @property
     def _turn(self) -> complex:
@@ -121,6 +116,22 @@ class Families:
         for group, own in zip(self.groups, np.split(weights, ends), strict=True):
             found += group.transform_sum(f, g, own)
         return found
+
+
+def _sums(across: Floats, along: Floats, quadrant: Floats) -> Floats:
+    """Sums over quadrants (r, k, k) of waves across and along, (n, k) each, (n, r)."""
+    if _is_constant(along):
+        # On an axis the waves along it are all there is to multiply.
+        return np.asarray(across @ (along[0] @ quadrant).T)
+    if _is_constant(across):
+        return np.asarray(along @ (quadrant @ across[0]).T)
+    rows = along @ quadrant.transpose(1, 0, 2).reshape(along.shape[1], -1)
+    return np.einsum("nrk,nk->nr", rows.reshape(len(rows), len(quadrant), -1), across)
+
+
+def _is_constant(waves: Floats) -> bool:
+    """Whether waves, (n, k), are the same at all frequencies, but for rounding."""
+    return float(np.ptp(waves, axis=0).max(initial=0.0)) < _ROUNDING
 
 
 def entry_name(family: str, across: Parity, along: Parity) -> str:

@@ -104,10 +104,9 @@ def cut_stamps(image: Floats, places: Floats, radius_px: float) -> Stamps:
     kept = (tree.query(pixels)[1] == source) & np.isfinite(image[pixels[:, 0], pixels[:, 1]])
     pixels, source = pixels[kept], source[kept]
     _require_pixels(places, np.bincount(source, minlength=len(places)), radius_px)
-    lit = tree.query_ball_point(pixels, tuned.LIT_PX)
-    counts = np.array([len(one) for one in lit], dtype=np.intp)
-    pair_pixel = np.repeat(np.arange(counts.size), counts)
-    pair_source = np.concatenate([np.asarray(one, np.intp) for one in lit])
+    lit = cKDTree(pixels).query_ball_point(places, tuned.LIT_PX)
+    pair_source = np.repeat(np.arange(len(places)), [len(one) for one in lit])
+    pair_pixel = np.concatenate([np.asarray(one, np.intp) for one in lit])
     others = pair_source != source[pair_pixel]
     return Stamps(
         pixels[:, 0].astype(float),
