@@ -75,7 +75,7 @@ def test_combinations_are_what_the_data_say():
 def test_unlikely_kernels_are_out_of_the_question(kernels, told):
     far = kernels._replace(centres=kernels.centres + 60.0 * (kernels.part == 2)[:, None])
     found = mixture(far, told)
-    kept = found.likely(40.0)
+    kept = far.some(found.is_likely(40.0))
     assert kept.name.tolist() == ["a", "b"]
     assert kept.part.tolist() == [0, 0, 0, 1, 1, 1]
     assert mixture(kept, told).mean == pytest.approx(found.mean, abs=1e-9)
@@ -87,7 +87,7 @@ def test_a_further_parameter_gains_what_its_own_mixture_says(kernels, told):
     rng = np.random.default_rng(2)
     slopes, projection, information = rng.normal(size=(6, 2)), np.array([1.0, -2.0]), 40.0
     further = Further(slopes, projection, np.full(2, information))
-    found = mixture(kernels, told).log_weight_with(further)
+    found = mixture(kernels, told).log_weight_with(further, np.arange(9))
     for number in range(2):
         whole = np.zeros((7, 7))
         whole[:6, :6] = told.columns @ told.columns.T

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 
 __all__ = [
     "Combinations",
@@ -75,13 +76,13 @@ class Further(NamedTuple):
     projection: Floats
     information: Floats
 
-    def gain(self, mean: Floats, variance: Floats) -> Floats:
-        """Gain of log evidence by each parameter.
-
-        `mean` and `variance` are of what the projection falls by, (..., j).
-        """
+    def precision(self, variance: Floats) -> Floats:
+        """Of each parameter after the data; `variance` is of what its projection falls by."""
         # The data never say less than nothing, whatever rounding leaves.
-        precision = 1 + np.maximum(self.information - variance, 0.0)
+        return np.asarray(1 + np.maximum(self.information - variance, 0.0))
+
+    def gain(self, mean: Floats, precision: Floats) -> Floats:
+        """Gain of log evidence by each parameter, `mean` being what its projection falls by."""
         return np.asarray(0.5 * ((self.projection - mean) ** 2 / precision - np.log(precision)))
 
 
@@ -148,10 +149,10 @@ class Mixture:
         weight = np.where(relative > _NEGLIGIBLE, np.exp(relative), 0.0)
         return np.asarray(weight / weight.sum())
 
-    def likely(self, margin: float) -> Kernels:
-        """Kernels whose logarithm of the weight is less than a margin below the largest."""
+    def is_likely(self, margin: float) -> NDArray[np.bool_]:
+        """Whether the logarithm of a kernel's weight is within a margin of the largest, (n,)."""
         best = self.log_weight.max(axis=0)
-        return self.seen.kernels.some(best > best.max() - margin)
+        return np.asarray(best > best.max() - margin)
 
     @property
     def share(self) -> dict[str, float]:
@@ -186,9 +187,10 @@ class Mixture:
         shares[shares <= _RARE] = 0.0
         return np.asarray(away.T @ away + self.seen.covariance(shares))
 
-    def log_weight_with(self, further: Further) -> Floats:
-        """As `log_weight`, with each of the further parameters, (j, s, n)."""
-        return np.asarray(self.log_weight + self.seen.gains(further).transpose(2, 0, 1))
+    def log_weight_with(self, further: Further, kept: NDArray[np.intp]) -> Floats:
+        """As `log_weight`, of kernels (k,) with each of the further parameters, (j, s, k)."""
+        gains = self.seen.gains(further, kept)
+        return np.asarray(self.log_weight[:, kept] + gains.transpose(2, 0, 1))
 
 
 def combinations_of(information: Floats, projection: Floats, untold: float) -> Combinations:
@@ -227,6 +229,8 @@ class SeenKernels(NamedTuple):
         Their errors that the floors leave.
     off : (n, r) array
         What the data say, minus what the centres do.
+    misfit : (n,) array
+        Sum of its squares.
     turn : (p, m, m) array
         Axes of every part along which its factor is seen independently.
     axes : (p, r, m) array
@@ -241,6 +245,7 @@ class SeenKernels(NamedTuple):
     columns: Floats
     error: Floats
     off: Floats
+    misfit: Floats
     turn: Floats
     axes: Floats
     power: Floats
@@ -252,14 +257,13 @@ class SeenKernels(NamedTuple):
         size = np.sum(told.columns**2, axis=0)
         error = np.sqrt(1 + np.multiply.outer(kernels.floor**2, size))
         off = kernels.centres @ told.columns
-        np.subtract(told.values, off, out=off)
-        off /= error[kernels.part]
+        misfit = _in_errors(off, told.values, error, kernels.part)
         axes = told.columns.T @ kernels.factors
         axes /= error[:, :, None]
         power, turn = np.linalg.eigh(axes.transpose(0, 2, 1) @ axes)
         axes = axes @ turn
         return cls(
-            kernels, told.columns, error, off, turn, axes, np.maximum(power, 0.0),
+            kernels, told.columns, error, off, misfit, turn, axes, np.maximum(power, 0.0),
             _part_by_part(off, kernels.part, axes),
         )  # fmt: skip
 
@@ -274,10 +278,9 @@ class SeenKernels(NamedTuple):
         kernels, shrinkage = self.kernels, self.shrinkage
         seen, scales = self.along**2, np.square(kernels.scales)
         explained = np.stack([np.einsum("ij,ij->i", seen, one[kernels.part]) for one in shrinkage])
-        misfit = np.einsum("ij,ij->i", self.off, self.off)
         volume = 0.5 * np.log(scales[:, None, None] / shrinkage).sum(axis=2)
         volume += np.log(self.error).sum(axis=1) + math.log(scales.size)
-        weight = kernels.log_weight - 0.5 * (misfit - explained)
+        weight = kernels.log_weight - 0.5 * (self.misfit - explained)
         return np.asarray(weight - volume[:, kernels.part])
 
     def _left(self, parts: NDArray[np.intp]) -> Floats:
@@ -313,25 +316,39 @@ class SeenKernels(NamedTuple):
         found.reshape(-1)[:: len(found) + 1] += floor.sum()
         return np.asarray(found)
 
-    def gains(self, further: Further) -> Floats:
-        """Gain of log evidence of every kernel at every scale by further parameters, (s, n, j)."""
+    def gains(self, further: Further, kept: NDArray[np.intp]) -> Floats:
+        """Gain of log evidence by further parameters, of kernels (k,) at every scale, (s, k, j)."""
         kernels, slopes = self.kernels, further.slopes
+        part = kernels.part[kept]
         variance = kernels.floor[:, None, None] ** 2
         seen = (self.columns.T @ slopes) / self.error[:, :, None]
         left = self.turn.transpose(0, 2, 1) @ (kernels.factors.transpose(0, 2, 1) @ slopes)
         left -= variance * (self.axes.transpose(0, 2, 1) @ seen)
-        means = kernels.centres @ slopes
-        means += _part_by_part(self.off, kernels.part, variance * seen)
+        means = kernels.centres[kept] @ slopes
+        means += _part_by_part(self.off[kept], part, variance * seen)
         alone = variance[:, 0] * (slopes**2).sum(axis=0) - variance[:, 0] ** 2 * (seen**2).sum(
             axis=1
         )
-        gains = np.empty((len(kernels.scales), *means.shape))
-        for found, shrinkage in zip(gains, self.shrinkage, strict=True):
-            shrunk = shrinkage[:, :, None] * left
-            doubt = alone + np.einsum("pmj,pmj->pj", left, shrunk)
-            mean = means + _part_by_part(self.along, kernels.part, shrunk)
-            found[:] = further.gain(mean, doubt[kernels.part])
-        return gains
+        shrunk = self.shrinkage[..., None] * left
+        precision = further.precision(alone + np.einsum("pmj,spmj->spj", left, shrunk))
+        moved = shrunk.transpose(1, 2, 0, 3).reshape(*self.power.shape, -1)
+        moved = _part_by_part(self.along[kept], part, moved)
+        moved = moved.reshape(len(means), len(precision), slopes.shape[1]).transpose(1, 0, 2)
+        return further.gain(means + moved, precision[:, part])
+
+
+@compiled
+def _in_errors(found: Floats, values: Floats, error: Floats, part: NDArray[np.intp]) -> Floats:
+    """Put values (r,) less those found, (n, r), in units of the errors of their part, in the place
+    of these; the sums of their squares, (n,)."""
+    misfit = np.empty(len(found))
+    for k in range(len(found)):
+        row, unit, square = found[k], error[part[k]], 0.0
+        for i in range(row.size):
+            row[i] = (values[i] - row[i]) / unit[i]
+            square += row[i] ** 2
+        misfit[k] = square
+    return misfit
 
 
 def _part_by_part(rows: Floats, part: NDArray[np.intp], matrices: Floats) -> Floats:

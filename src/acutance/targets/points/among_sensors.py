@@ -80,7 +80,12 @@ class AmongSensors:
     @property
     def kernels(self) -> Kernels | None:
         """Kernels of the sensors that also another model of the same pixels has to reckon with."""
-        return None if self.mixture is None else self.mixture.likely(_MARGIN)
+        return None if self.mixture is None else self.mixture.seen.kernels.some(self.likely)
+
+    @cached_property
+    def likely(self) -> NDArray[np.bool_]:
+        """Which of the sensors that were thought of these are, (n,)."""
+        return np.zeros(0, bool) if self.mixture is None else self.mixture.is_likely(_MARGIN)
 
     @cached_property
     def posterior(self) -> Posterior:

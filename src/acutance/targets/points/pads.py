@@ -33,8 +33,9 @@ from acutance.targets.points.stamps import Stamps
 __all__ = ["Pads", "PadsFound", "find_pads", "pads_image"]
 
 _DOUBT: Final = 0.5
-"""How much more log evidence a fit with pads may find than was foreseen: in 52 images of eleven
-families, with pads and without, it found at most .1 more, and .01 where it found any gain."""
+"""How much more log evidence a fit with pads may find than was foreseen: of 53 images of eleven
+families, with pads and without, more than .05 in two, whose pads gain 9 and were foreseen to gain
+7; .1 where nothing is gained."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,8 +198,9 @@ def _foreseen_gains(
     projection = pads.projection * (contrast_std / noise)
     information = np.diagonal(pads.gram) * (contrast_std**2 / noise)
     likeliest = without.equations.likeliest
-    doubt = _squares(likeliest.factor[:, : likeliest.beta.size].T @ scaled)
-    gain = Further(scaled, projection, information).gain(likeliest.beta @ scaled, doubt)
+    alone = Further(scaled, projection, information)
+    precision = alone.precision(_squares(likeliest.factor[:, : likeliest.beta.size].T @ scaled))
+    gain = alone.gain(likeliest.beta @ scaled, precision)
     of_others = math.log(max(without.other, 1e-300)) + gain
     if without.mixture is None:
         return of_others
@@ -209,7 +211,8 @@ def _foreseen_gains(
     )
     kernels = without.mixture.seen.kernels
     counted = ~np.isin(kernels.name, tuned.COMPENSATED)[kernels.part]
-    weight = without.mixture.log_weight_with(further)[:, :, counted]
+    counted &= without.likely
+    weight = without.mixture.log_weight_with(further, np.flatnonzero(counted))
     of_sensors = np.logaddexp.reduce(weight, axis=(1, 2)) + model.log_evidence
     return np.asarray(np.logaddexp(of_others, of_sensors - without.log_evidence))
 

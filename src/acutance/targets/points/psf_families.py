@@ -6,10 +6,11 @@ are sums of splines (`psf_spline`) in units of the width of the first fit, and o
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.resources import files
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,21 @@ odd both ways is a twentieth of what is even where there is any (interpolation a
 _ROUNDING: Final = 1e-13
 
 
+class _Waves(NamedTuple):
+    """Waves of every parity on either grid, (n, reach + 1) each, at frequencies per width."""
+
+    across: dict[Parity, list[Floats]]
+    along: dict[Parity, list[Floats]]
+
+    @classmethod
+    def at(cls, f: Floats, g: Floats) -> _Waves:
+        """At frequencies (f, g), (n,)."""
+        parities: tuple[Parity, Parity] = (1, -1)
+        return cls(
+            *({p: [grid.waves(one, p) for grid in GRIDS] for p in parities} for one in (f, g))
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class _Group:
     """Directions of one parity: quadrants of coefficients a grid, and tails."""
@@ -37,20 +53,18 @@ class _Group:
     quadrants: tuple[Floats, ...]
     tail: Floats
 
-    def transform(self, f: Floats, g: Floats) -> Complexes:
-        """Transform at frequencies in cycles per width, without the tail, (n, r)."""
-        found = np.zeros((f.size, self.tail.size))
-        for grid, quadrant in zip(GRIDS, self.quadrants, strict=True):
-            found += _sums(grid.waves(f, self.across), grid.waves(g, self.along), quadrant)
-        return np.asarray(found * self._turn)
+    def transform(self, waves: _Waves) -> Complexes:
+        """Transform at frequencies, without the tail, (n, r)."""
+        return self._transform(waves, self.quadrants)
 
-    def transform_sum(self, f: Floats, g: Floats, weights: Floats) -> Complexes:
-        """``transform(f, g) @ weights``, (n,)."""
-        found = np.zeros((f.size, 1))
-        for grid, quadrant in zip(GRIDS, self.quadrants, strict=True):
-            mixed = np.tensordot(weights, quadrant, 1)[None]
-            found += _sums(grid.waves(f, self.across), grid.waves(g, self.along), mixed)
-        return np.asarray(found[:, 0] * self._turn)
+    def transform_sum(self, waves: _Waves, weights: Floats) -> Complexes:
+        """``transform(waves) @ weights``, (n,)."""
+        mixed = [np.tensordot(weights, one, 1)[None] for one in self.quadrants]
+        return self._transform(waves, mixed)[:, 0]
+
+    def _transform(self, waves: _Waves, quadrants: Sequence[Floats]) -> Complexes:
+        pairs = zip(waves.across[self.across], waves.along[self.along], quadrants, strict=True)
+        return np.asarray(sum(_sums(*pair) for pair in pairs) * self._turn)
 
     @property
     def _turn(self) -> complex:
@@ -107,14 +121,15 @@ class Families:
 
     def transform(self, f: Floats, g: Floats) -> Complexes:
         """Transform of every direction without its tail at frequencies per width, (n, r)."""
-        return np.hstack([one.transform(f, g) for one in self.groups])
+        waves = _Waves.at(f, g)
+        return np.hstack([one.transform(waves) for one in self.groups])
 
     def transform_sum(self, f: Floats, g: Floats, weights: Floats) -> Complexes:
         """``transform(f, g) @ weights``, (n,)."""
         ends = np.cumsum([one.tail.size for one in self.groups])[:-1]
-        found = np.zeros(f.size, complex)
+        found, waves = np.zeros(f.size, complex), _Waves.at(f, g)
         for group, own in zip(self.groups, np.split(weights, ends), strict=True):
-            found += group.transform_sum(f, g, own)
+            found += group.transform_sum(waves, own)
         return found
 
 
