@@ -28,6 +28,9 @@ WIDE_WIDTHS: Final = 2.0
 """Width of the wings over that of the core."""
 MIN_SIGMA_PX: Final = 0.36
 """Through a pixel's area, a narrower Gaussian looks like a point."""
+_Shape = tuple[float, float, float, float, float, float]
+"""Standard deviations across, given the height, and along; how far the middle moves across for
+every pixel along; the aperture; and the reach across and along."""
 
 
 class PixelSlopes(NamedTuple):
@@ -117,13 +120,16 @@ class GaussianPixel2d:
         """
         return PixelSlopes(*_slopes(*self._of(x, y)))
 
-    def _of(self, x: Floats, y: Floats) -> tuple[Floats, Floats, tuple[float, ...]]:
+    def _of(self, x: Floats, y: Floats) -> tuple[Floats, Floats, _Shape]:
         """The places and this blur, for the loops."""
         lean = self.xy / self.yy
         sigma_x = math.sqrt(max(self.xx - lean * self.xy, 1e-12))
-        reach = (0.5 * self.aperture_px + _REACH * math.sqrt(one) for one in (self.xx, self.yy))
-        shape = (sigma_x, math.sqrt(self.yy), lean, self.aperture_px, *reach)
-        return np.ascontiguousarray(x), np.ascontiguousarray(y), tuple(map(float, shape))
+        reach_x, reach_y = (
+            0.5 * self.aperture_px + _REACH * math.sqrt(one) for one in (self.xx, self.yy)
+        )
+        sigma_y, aperture = math.sqrt(self.yy), float(self.aperture_px)
+        shape = (sigma_x, sigma_y, float(lean), aperture, reach_x, reach_y)
+        return np.ascontiguousarray(x), np.ascontiguousarray(y), shape
 
     def otf(self, u: Floats, v: Floats) -> Floats:
         """Transfer function at frequencies in cycles per pixel (real: the PSF is symmetric)."""
@@ -150,11 +156,6 @@ class GaussianPixel2d:
             ],
             axis=1,
         )
-
-
-_Shape = tuple[float, float, float, float, float, float]
-"""Standard deviations across, given the height, and along; how far the middle moves across for
-every pixel along; the aperture; and the reach across and along."""
 
 
 @inlined

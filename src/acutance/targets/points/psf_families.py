@@ -141,7 +141,8 @@ def _sums(across: Floats, along: Floats, quadrant: Floats) -> Floats:
     if _is_constant(across):
         return np.asarray(along @ (quadrant @ across[0]).T)
     rows = along @ quadrant.transpose(1, 0, 2).reshape(along.shape[1], -1)
-    return np.einsum("nrk,nk->nr", rows.reshape(len(rows), len(quadrant), -1), across)
+    rows = rows.reshape(len(rows), len(quadrant), -1)
+    return np.asarray(np.einsum("nrk,nk->nr", rows, across))
 
 
 def _is_constant(waves: Floats) -> bool:

@@ -160,11 +160,15 @@ class PsfDirections:
         """
         count, area = int(pixel.max()) + 1, self._area
         wide, high = self.blur.widths_px
-        parts = [np.bincount(pixel, light * one, count) for one in self.blur.slopes(x, y)]
-        tail = light * tail_psf(np.hypot(x, y), self.half_width_px)
+
+        def onto(values: Floats) -> Floats:
+            return np.asarray(np.bincount(pixel, light * values, count), float)
+
+        parts = [onto(one) for one in self.blur.slopes(x, y)]
+        tail = onto(tail_psf(np.hypot(x, y), self.half_width_px))
         columns = np.empty((count, self.size))
         columns[:, _BLURRED:-1] = _in_widths(x / wide, y / high, light / area, pixel, count)
-        self._complete(columns, parts, np.bincount(pixel, tail, count))
+        self._complete(columns, parts, tail)
         columns -= np.stack(parts[:3], axis=1) @ self._gauge
         return columns, parts[0]
 

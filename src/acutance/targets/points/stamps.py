@@ -73,7 +73,8 @@ class Stamps:
 
     def summed(self, fluxes: Floats, values: Floats) -> Floats:
         """What all sources add to every pixel, (n,), from values for unit flux at `all_offsets`."""
-        return np.bincount(self.lit_pixel, self.lights(fluxes) * values, self.value.size)
+        light = self.lights(fluxes) * values
+        return np.asarray(np.bincount(self.lit_pixel, light, self.value.size), float)
 
 
 def cut_stamps(image: Floats, places: Floats, radius_px: float) -> Stamps:
