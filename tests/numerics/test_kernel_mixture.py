@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acutance.numerics.kernel_mixture import Kernels, combinations_of, mixture
+from acutance.numerics.kernel_mixture import Further, Kernels, combinations_of, mixture
 
 SCALES = (0.5, 1.3)
 
@@ -75,8 +75,36 @@ def test_combinations_are_what_the_data_say():
 def test_unlikely_kernels_are_out_of_the_question(kernels, told):
     far = kernels._replace(centres=kernels.centres + 60.0 * (kernels.part == 2)[:, None])
     found = mixture(far, told)
-    kept = found.likely(40.0)
+    kept = far.some(found.is_likely(40.0))
     assert kept.name.tolist() == ["a", "b"]
     assert kept.part.tolist() == [0, 0, 0, 1, 1, 1]
     assert mixture(kept, told).mean == pytest.approx(found.mean, abs=1e-9)
     assert mixture(kept, told).log_evidence == pytest.approx(found.log_evidence, rel=1e-12)
+
+
+def test_a_further_parameter_gains_what_its_own_mixture_says(kernels, told):
+    """Written as a seventh parameter of unit variance, which the data see beside the others."""
+    rng = np.random.default_rng(2)
+    slopes, projection, information = rng.normal(size=(6, 2)), np.array([1.0, -2.0]), 40.0
+    further = Further(slopes, projection, np.full(2, information))
+    found = mixture(kernels, told).log_weight_with(further, np.arange(9))
+    for number in range(2):
+        whole = np.zeros((7, 7))
+        whole[:6, :6] = told.columns @ told.columns.T
+        whole[6, :6] = whole[:6, 6] = slopes[:, number]
+        whole[6, 6] = information
+        says = np.append(told.columns @ told.values, projection[number])
+        for scale, own in zip(kernels.scales, found[number], strict=True):
+            for centre, weight, part, gained in zip(
+                kernels.centres, kernels.log_weight, kernels.part, own, strict=True
+            ):
+                before = np.eye(7)
+                factor = scale * kernels.factors[part]
+                before[:6, :6] = factor @ factor.T + kernels.floor[part] ** 2 * np.eye(6)
+                start = np.append(centre, 0.0)
+                after = np.linalg.inv(np.linalg.inv(before) + whole)
+                pull = says - whole @ start
+                wanted = weight - np.log(2) + 0.5 * pull @ after @ pull + says @ start
+                wanted += 0.5 * np.linalg.slogdet(after)[1] - 0.5 * np.linalg.slogdet(before)[1]
+                wanted -= 0.5 * start @ whole @ start + 0.5 * told.values @ told.values
+                assert gained == pytest.approx(wanted, rel=1e-10)

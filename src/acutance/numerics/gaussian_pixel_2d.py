@@ -13,11 +13,11 @@ from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
-from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA, gaussian
+from acutance.numerics.compiled import compiled, inlined
+from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
+from acutance.numerics.normal_distribution import normal_distribution
 
 __all__ = ["MIN_SIGMA_PX", "WIDE_WIDTHS", "GaussianPixel2d", "PixelSlopes"]
 
@@ -28,6 +28,9 @@ WIDE_WIDTHS: Final = 2.0
 """Width of the wings over that of the core."""
 MIN_SIGMA_PX: Final = 0.36
 """Through a pixel's area, a narrower Gaussian looks like a point."""
+_Shape = tuple[float, float, float, float, float, float]
+"""Standard deviations across, given the height, and along; how far the middle moves across for
+every pixel along; the aperture; and the reach across and along."""
 
 
 class PixelSlopes(NamedTuple):
@@ -106,13 +109,7 @@ class GaussianPixel2d:
 
     def psf(self, x: Floats, y: Floats) -> Floats:
         """The PSF at places (x, y), (n,)."""
-        half = 0.5 * self.aperture_px
-        found = np.zeros(x.size)
-        near = self._near(x, y)
-        nodes = y[near] + half * _NODES[:, None]
-        row, high, low, _ = self._ends(x[near], nodes)
-        found[near] = (half / self.aperture_px**2) * _WEIGHTS @ (row * (ndtr(high) - ndtr(low)))
-        return found
+        return _psf(*self._of(x, y))
 
     def slopes(self, x: Floats, y: Floats) -> PixelSlopes:
         """The PSF and all of its derivatives at places (x, y), (n,).
@@ -121,64 +118,18 @@ class GaussianPixel2d:
         form, given y. The Gaussian solves the heat equation, so that its derivative by Sigma is
         half of a second derivative by place: a difference of integrands at the aperture's ends.
         """
-        found = np.zeros((len(PixelSlopes._fields), x.size))
-        near = self._near(x, y)
-        found[:, near] = self._slopes_near(x[near], y[near])
-        return PixelSlopes(*found)
+        return PixelSlopes(*_slopes(*self._of(x, y)))
 
-    def _near(self, x: Floats, y: Floats) -> NDArray[np.intp]:
-        """Indices of the places within reach of the PSF."""
-        half = 0.5 * self.aperture_px
-        near = np.abs(x) < half + _REACH * math.sqrt(self.xx)
-        near &= np.abs(y) < half + _REACH * math.sqrt(self.yy)
-        return np.flatnonzero(near)
-
-    def _slopes_near(self, x: Floats, y: Floats) -> tuple[Floats, ...]:
-        half = 0.5 * self.aperture_px
-        nodes = y[None, :] + half * _NODES[:, None]
-        inner = self._inner(x, nodes)
-        weights = half * _WEIGHTS
-        psf, by_x, by_xx, ends_x = (np.einsum("i,ij->j", weights, part) for part in inner[:4])
-        top, bottom = self._inner(x, y + half), self._inner(x, y - half)
-        area = self.aperture_px**2
-        psf = psf / area
-        return (
-            psf,
-            by_x / area,
-            (top[0] - bottom[0]) / area,
-            0.5 * by_xx / area,
-            (top[1] - bottom[1]) / area,
-            0.5 * (top[4] - bottom[4]) / area,
-            ends_x / area - psf / self.aperture_px,
-            0.5 * (top[0] + bottom[0]) / area - psf / self.aperture_px,
-        )
-
-    def _inner(self, x: Floats, t: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        """Integrals over the aperture in x of the Gaussian at height t.
-
-        Plain; derived by x once and twice; mean of its values at both ends; derived by t.
-        """
-        lean = self.xy / self.yy
-        row, high, low, sigma_x = self._ends(x, t)
-        pdf_high, pdf_low = gaussian(high) / sigma_x, gaussian(low) / sigma_x
-        plain = row * (ndtr(high) - ndtr(low))
-        by_x = row * (pdf_high - pdf_low)
-        by_xx = row * (low * pdf_low - high * pdf_high) / sigma_x
-        ends = 0.5 * row * (pdf_high + pdf_low)
-        return plain, by_x, by_xx, ends, -plain * t / self.yy - lean * by_x
-
-    def _ends(self, x: Floats, t: Floats) -> tuple[Floats, Floats, Floats, float]:
-        """The Gaussian's marginal at height t, the aperture's ends in x in units of its width.
-
-        The last number is that width: the standard deviation across, given the height.
-        """
-        half = 0.5 * self.aperture_px
-        sigma_y = math.sqrt(self.yy)
+    def _of(self, x: Floats, y: Floats) -> tuple[Floats, Floats, _Shape]:
+        """The places and this blur, for the loops."""
         lean = self.xy / self.yy
         sigma_x = math.sqrt(max(self.xx - lean * self.xy, 1e-12))
-        row = gaussian(t / sigma_y) / sigma_y
-        middle = x - lean * t
-        return row, (middle + half) / sigma_x, (middle - half) / sigma_x, sigma_x
+        reach_x, reach_y = (
+            0.5 * self.aperture_px + _REACH * math.sqrt(one) for one in (self.xx, self.yy)
+        )
+        sigma_y, aperture = math.sqrt(self.yy), float(self.aperture_px)
+        shape = (sigma_x, sigma_y, float(lean), aperture, reach_x, reach_y)
+        return np.ascontiguousarray(x), np.ascontiguousarray(y), shape
 
     def otf(self, u: Floats, v: Floats) -> Floats:
         """Transfer function at frequencies in cycles per pixel (real: the PSF is symmetric)."""
@@ -205,3 +156,64 @@ class GaussianPixel2d:
             ],
             axis=1,
         )
+
+
+@inlined
+def _inner(x: float, t: float, shape: _Shape) -> tuple[float, float, float, float, float]:
+    """Integrals over the aperture in x of the Gaussian at height t.
+
+    Plain; derived by x once and twice; mean of its values at both ends; derived by t.
+    """
+    sigma_x, sigma_y, lean, aperture = shape[0], shape[1], shape[2], shape[3]
+    row = normal_distribution(t / sigma_y)[1] / sigma_y
+    middle = x - lean * t
+    high, low = (middle + 0.5 * aperture) / sigma_x, (middle - 0.5 * aperture) / sigma_x
+    below_high, at_high = normal_distribution(high)
+    below_low, at_low = normal_distribution(low)
+    plain = row * (below_high - below_low)
+    by_x = row * (at_high - at_low) / sigma_x
+    by_xx = row * (low * at_low - high * at_high) / sigma_x**2
+    ends = 0.5 * row * (at_high + at_low) / sigma_x
+    return plain, by_x, by_xx, ends, -plain * t / sigma_y**2 - lean * by_x
+
+
+@compiled
+def _psf(x: Floats, y: Floats, shape: _Shape) -> Floats:
+    """`GaussianPixel2d.psf`."""
+    found = np.zeros(x.size)
+    aperture = shape[3]
+    for i in range(x.size):
+        if abs(x[i]) < shape[4] and abs(y[i]) < shape[5]:
+            light = 0.0
+            for k in range(_NODES.size):
+                light += _WEIGHTS[k] * _inner(x[i], y[i] + 0.5 * aperture * _NODES[k], shape)[0]
+            found[i] = 0.5 * light / aperture
+    return found
+
+
+@compiled
+def _slopes(x: Floats, y: Floats, shape: _Shape) -> Floats:
+    """`GaussianPixel2d.slopes`, (8, n)."""
+    found = np.zeros((8, x.size))
+    aperture = shape[3]
+    half, area = 0.5 * aperture, aperture**2
+    for i in range(x.size):
+        if abs(x[i]) < shape[4] and abs(y[i]) < shape[5]:
+            psf, by_x, by_xx, ends = 0.0, 0.0, 0.0, 0.0
+            for k in range(_NODES.size):
+                one = _inner(x[i], y[i] + half * _NODES[k], shape)
+                weight = half * _WEIGHTS[k]
+                psf += weight * one[0]
+                by_x += weight * one[1]
+                by_xx += weight * one[2]
+                ends += weight * one[3]
+            top, bottom = _inner(x[i], y[i] + half, shape), _inner(x[i], y[i] - half, shape)
+            psf /= area
+            found[0, i], found[1, i] = psf, by_x / area
+            found[2, i] = (top[0] - bottom[0]) / area
+            found[3, i] = 0.5 * by_xx / area
+            found[4, i] = (top[1] - bottom[1]) / area
+            found[5, i] = 0.5 * (top[4] - bottom[4]) / area
+            found[6, i] = ends / area - psf / aperture
+            found[7, i] = 0.5 * (top[0] + bottom[0]) / area - psf / aperture
+    return found

@@ -27,9 +27,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 
 __all__ = [
     "Combinations",
+    "Further",
     "Kernels",
     "Mixture",
     "SeenKernels",
@@ -55,6 +57,33 @@ class Combinations(NamedTuple):
 
     columns: Floats
     values: Floats
+
+
+class Further(NamedTuple):
+    """Parameters of unit prior variance beside those of a mixture, each by itself.
+
+    Attributes
+    ----------
+    slopes : (q, j) array
+        How much the projection falls for every unit of the mixture's parameters.
+    projection : (j,) array
+        Information of the data about each times what they say of it, the mixture's being zero.
+    information : (j,) array
+        Inverse variance of what the data say, the mixture's parameters being known.
+    """
+
+    slopes: Floats
+    projection: Floats
+    information: Floats
+
+    def precision(self, variance: Floats) -> Floats:
+        """Of each parameter after the data; `variance` is of what its projection falls by."""
+        # The data never say less than nothing, whatever rounding leaves.
+        return np.asarray(1 + np.maximum(self.information - variance, 0.0))
+
+    def gain(self, mean: Floats, precision: Floats) -> Floats:
+        """Gain of log evidence by each parameter, `mean` being what its projection falls by."""
+        return np.asarray(0.5 * ((self.projection - mean) ** 2 / precision - np.log(precision)))
 
 
 class Kernels(NamedTuple):
@@ -120,10 +149,10 @@ class Mixture:
         weight = np.where(relative > _NEGLIGIBLE, np.exp(relative), 0.0)
         return np.asarray(weight / weight.sum())
 
-    def likely(self, margin: float) -> Kernels:
-        """Kernels whose logarithm of the weight is less than a margin below the largest."""
+    def is_likely(self, margin: float) -> NDArray[np.bool_]:
+        """Whether the logarithm of a kernel's weight is within a margin of the largest, (n,)."""
         best = self.log_weight.max(axis=0)
-        return self.seen.kernels.some(best > best.max() - margin)
+        return np.asarray(best > best.max() - margin)
 
     @property
     def share(self) -> dict[str, float]:
@@ -137,9 +166,8 @@ class Mixture:
     @cached_property
     def _means(self) -> tuple[Floats, Floats]:
         """Means of the kernels that matter, (k, q), and their weights, (k,)."""
-        scaled = list(zip(self.seen.kernels.scales, self.weight, strict=True))
-        means = [self.seen.means(scale, np.flatnonzero(own)) for scale, own in scaled]
-        return np.concatenate(means), self.weight[self.weight > 0]
+        scale, kernel = np.nonzero(self.weight)
+        return self.seen.means(scale, kernel), self.weight[scale, kernel]
 
     @cached_property
     def mean(self) -> Floats:
@@ -151,14 +179,18 @@ class Mixture:
     def covariance(self) -> Floats:
         """Covariance of the parameters: of the kernels, and of their means, (q, q)."""
         means, weight = self._means
-        away = means - self.mean
-        covariance = (weight[:, None] * away).T @ away
+        away = np.sqrt(weight)[:, None] * (means - self.mean)
         kernels = self.seen.kernels
-        for scale, own in zip(kernels.scales, self.weight, strict=True):
-            shares = np.bincount(kernels.part, own, len(kernels.factors))
-            for part in np.flatnonzero(shares > _RARE).tolist():
-                covariance += shares[part] * self.seen.covariance(scale, part)
-        return np.asarray(covariance)
+        shares: Floats = np.array(
+            [np.bincount(kernels.part, own, len(kernels.factors)) for own in self.weight], float
+        )
+        shares[shares <= _RARE] = 0.0
+        return np.asarray(away.T @ away + self.seen.covariance(shares))
+
+    def log_weight_with(self, further: Further, kept: NDArray[np.intp]) -> Floats:
+        """As `log_weight`, of kernels (k,) with each of the further parameters, (j, s, k)."""
+        gains = self.seen.gains(further, kept)
+        return np.asarray(self.log_weight[:, kept] + gains.transpose(2, 0, 1))
 
 
 def combinations_of(information: Floats, projection: Floats, untold: float) -> Combinations:
@@ -182,8 +214,7 @@ def combinations_of(information: Floats, projection: Floats, untold: float) -> C
 def mixture(kernels: Kernels, told: Combinations) -> Mixture:
     """The mixture after the data."""
     seen = SeenKernels.of(kernels, told)
-    log_weight = np.stack([seen.log_weight(scale) for scale in kernels.scales])
-    return Mixture(seen, log_weight - math.log(len(kernels.scales)))
+    return Mixture(seen, seen.log_weights())
 
 
 class SeenKernels(NamedTuple):
@@ -198,10 +229,12 @@ class SeenKernels(NamedTuple):
         Their errors that the floors leave.
     off : (n, r) array
         What the data say, minus what the centres do.
+    misfit : (n,) array
+        Sum of its squares.
+    turn : (p, m, m) array
+        Axes of every part along which its factor is seen independently.
     axes : (p, r, m) array
-        The factors' axes as the data see them, orthogonal to each other.
-    factors : (p, q, m) array
-        The factors along them.
+        The factors along them as the data see them.
     power : (p, m) array
         Information about each.
     along : (n, m) array
@@ -212,8 +245,9 @@ class SeenKernels(NamedTuple):
     columns: Floats
     error: Floats
     off: Floats
+    misfit: Floats
+    turn: Floats
     axes: Floats
-    factors: Floats
     power: Floats
     along: Floats
 
@@ -222,42 +256,99 @@ class SeenKernels(NamedTuple):
         """What the combinations say of the kernels."""
         size = np.sum(told.columns**2, axis=0)
         error = np.sqrt(1 + np.multiply.outer(kernels.floor**2, size))
-        off = (told.values - kernels.centres @ told.columns) / error[kernels.part]
-        axes = (told.columns.T @ kernels.factors) / error[:, :, None]
+        off = kernels.centres @ told.columns
+        misfit = _in_errors(off, told.values, error, kernels.part)
+        axes = told.columns.T @ kernels.factors
+        axes /= error[:, :, None]
         power, turn = np.linalg.eigh(axes.transpose(0, 2, 1) @ axes)
         axes = axes @ turn
         return cls(
-            kernels, told.columns, error, off, axes, kernels.factors @ turn,
-            np.maximum(power, 0.0), _part_by_part(off, kernels.part, axes),
+            kernels, told.columns, error, off, misfit, turn, axes, np.maximum(power, 0.0),
+            _part_by_part(off, kernels.part, axes),
         )  # fmt: skip
 
-    def log_weight(self, scale: float) -> Floats:
-        """Logarithm of the weight of every kernel, (n,)."""
-        wider = 1 + scale**2 * self.power
-        part = self.kernels.part
-        explained = np.einsum("ij,ij->i", self.along**2, (scale**2 / wider)[part])
-        misfit = np.einsum("ij,ij->i", self.off, self.off) - explained
-        volume = 0.5 * np.log(wider).sum(axis=1) + np.log(self.error).sum(axis=1)
-        return np.asarray(self.kernels.log_weight - 0.5 * misfit - volume[part])
+    @property
+    def shrinkage(self) -> Floats:
+        """Variances along the axes after the data, of every scale and part, (s, p, m)."""
+        scales = np.square(self.kernels.scales)[:, None, None]
+        return np.asarray(scales / (1 + scales * self.power))
 
-    def means(self, scale: float, kept: NDArray[np.intp]) -> Floats:
-        """Means of some kernels, (k, q)."""
-        part, along = self.kernels.part[kept], self.along[kept]
-        shrunk = scale**2 * along / (1 + scale**2 * self.power[part])
-        left = self.off[kept] - _part_by_part(shrunk, part, self.axes.transpose(0, 2, 1))
-        by_floor = (left / self.error[part]) @ self.columns.T
-        by_floor *= self.kernels.floor[part, None] ** 2
-        by_factor = _part_by_part(shrunk, part, self.factors.transpose(0, 2, 1))
-        return np.asarray(self.kernels.centres[kept] + by_factor + by_floor)
+    def log_weights(self) -> Floats:
+        """Logarithm of the weight of every kernel at every scale, (s, n)."""
+        kernels, shrinkage = self.kernels, self.shrinkage
+        seen, scales = self.along**2, np.square(kernels.scales)
+        explained = np.stack([np.einsum("ij,ij->i", seen, one[kernels.part]) for one in shrinkage])
+        volume = 0.5 * np.log(scales[:, None, None] / shrinkage).sum(axis=2)
+        volume += np.log(self.error).sum(axis=1) + math.log(scales.size)
+        weight = kernels.log_weight - 0.5 * (self.misfit - explained)
+        return np.asarray(weight - volume[:, kernels.part])
 
-    def covariance(self, scale: float, part: int) -> Floats:
-        """Covariance of the kernels of a part, (q, q)."""
-        factor, axes = scale * self.factors[part], scale * self.axes[part]
-        variance = float(self.kernels.floor[part]) ** 2
-        before = factor @ factor.T + variance * np.eye(len(factor))
-        common = factor @ axes.T + variance * self.columns / self.error[part]
-        reduced = (common @ axes) / np.sqrt(1 + scale**2 * self.power[part])
-        return np.asarray(before - common @ common.T + reduced @ reduced.T)
+    def _left(self, parts: NDArray[np.intp]) -> Floats:
+        """What the data, seen through the floor, leave of the factors of parts, (k, q, m)."""
+        seen = self.axes[parts] / self.error[parts, :, None]
+        seen *= self.kernels.floor[parts, None, None] ** 2
+        return np.asarray(self.kernels.factors[parts] @ self.turn[parts] - self.columns @ seen)
+
+    def means(self, scale: NDArray[np.intp], kernel: NDArray[np.intp]) -> Floats:
+        """Means of some kernels, each at the scale of a number, (k, q)."""
+        some, place = np.unique(kernel, return_inverse=True)
+        parts, part = np.unique(self.kernels.part[some], return_inverse=True)
+        # The floor alone, then the factor with what that leaves of it.
+        weight = self.kernels.floor[parts, None] ** 2 / self.error[parts]
+        means = (self.off[some] * weight[part]) @ self.columns.T
+        means += self.kernels.centres[some]
+        means = means[place]
+        order = np.argsort(part[place], kind="stable")
+        shrunk = self.along[kernel] * self.shrinkage[scale, self.kernels.part[kernel]]
+        left = self._left(parts).transpose(0, 2, 1)
+        means[order] += _part_by_part(shrunk[order], part[place][order], left)
+        return means
+
+    def covariance(self, shares: Floats) -> Floats:
+        """Sum of the covariances of every part at every scale times their shares (s, p), (q, q)."""
+        parts = np.flatnonzero(shares.any(axis=0))
+        variance = np.einsum("sp,spm->pm", shares[:, parts], self.shrinkage[:, parts])
+        left = self._left(parts) * np.sqrt(variance)[:, None, :]
+        left = left.transpose(1, 0, 2).reshape(len(self.columns), -1)
+        floor = shares.sum(axis=0)[parts] * self.kernels.floor[parts] ** 2
+        reduced = (floor * self.kernels.floor[parts] ** 2) @ self.error[parts] ** -2.0
+        found = left @ left.T - (self.columns * reduced) @ self.columns.T
+        found.reshape(-1)[:: len(found) + 1] += floor.sum()
+        return np.asarray(found)
+
+    def gains(self, further: Further, kept: NDArray[np.intp]) -> Floats:
+        """Gain of log evidence by further parameters, of kernels (k,) at every scale, (s, k, j)."""
+        kernels, slopes = self.kernels, further.slopes
+        part = kernels.part[kept]
+        variance = kernels.floor[:, None, None] ** 2
+        seen = (self.columns.T @ slopes) / self.error[:, :, None]
+        left = self.turn.transpose(0, 2, 1) @ (kernels.factors.transpose(0, 2, 1) @ slopes)
+        left -= variance * (self.axes.transpose(0, 2, 1) @ seen)
+        means = kernels.centres[kept] @ slopes
+        means += _part_by_part(self.off[kept], part, variance * seen)
+        alone = variance[:, 0] * (slopes**2).sum(axis=0) - variance[:, 0] ** 2 * (seen**2).sum(
+            axis=1
+        )
+        shrunk = self.shrinkage[..., None] * left
+        precision = further.precision(alone + np.einsum("pmj,spmj->spj", left, shrunk))
+        moved = shrunk.transpose(1, 2, 0, 3).reshape(*self.power.shape, -1)
+        moved = _part_by_part(self.along[kept], part, moved)
+        moved = moved.reshape(len(means), len(precision), slopes.shape[1]).transpose(1, 0, 2)
+        return further.gain(means + moved, precision[:, part])
+
+
+@compiled
+def _in_errors(found: Floats, values: Floats, error: Floats, part: NDArray[np.intp]) -> Floats:
+    """Put values (r,) less those found, (n, r), in units of the errors of their part, in the place
+    of these; the sums of their squares, (n,)."""
+    misfit = np.empty(len(found))
+    for k in range(len(found)):
+        row, unit, square = found[k], error[part[k]], 0.0
+        for i in range(row.size):
+            row[i] = (values[i] - row[i]) / unit[i]
+            square += row[i] ** 2
+        misfit[k] = square
+    return misfit
 
 
 def _part_by_part(rows: Floats, part: NDArray[np.intp], matrices: Floats) -> Floats:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
 from dataclasses import dataclass
-from functools import cache
-from typing import Any, Protocol
+from functools import cache, lru_cache
+from io import FileIO
+from typing import Any, NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +28,6 @@ __all__ = [
 ]
 
 _NPY_MAGIC = b"\x93NUMPY"
-_MAPPED_BYTES = 32 * 2**20
-"""Of a file mapped at once: limit of the memory held by a column down all its rows."""
 
 
 class PixelSource(Protocol):
@@ -65,7 +64,7 @@ class ArrayPixels:
 
 @dataclass(frozen=True)
 class NpyPixels:
-    """A 2-D array in a ``.npy`` file, mapped into memory for the length of a reading.
+    """A 2-D array in a ``.npy`` file, of which the lines of a box are read.
 
     Parameters
     ----------
@@ -78,16 +77,16 @@ class NpyPixels:
     nodata: float | None = None
 
     def read(self, box: Box) -> Floats:
-        # The system maps the neighbourhood of every page touched: a column down all rows of a
-        # large file would hold the whole file, so it is mapped anew for every few lines.
-        values = np.empty(box.shape)
-        header = self.map()
-        lines = max(1, _MAPPED_BYTES // max(header.strides))
-        for part in _strips(box, lines, by_rows=header.strides[0] >= header.strides[1]):
-            inside = slice(part.row - box.row, part.row - box.row + part.height)
-            across = slice(part.col - box.col, part.col - box.col + part.width)
-            values[inside, across] = ArrayPixels(self.map(), self.nodata).read(part)
-        return values
+        # Lines are read: to map the file would cost a small region a page or more a line, and
+        # its neighbourhood, which the system maps as well.
+        try:
+            state = os.stat(self.path)
+            layout = _layout(self, state.st_mtime_ns, state.st_size)
+            with open(self.path, "rb", buffering=0) as file:
+                raw = layout.read(file, box)
+        except (EOFError, OSError) as error:
+            raise self._unreadable(error) from error
+        return ArrayPixels(raw, self.nodata).read(Box(0, 0, *box.shape))
 
     def map(self) -> NDArray[Any]:
         """The array, read-only, of which only the pages touched are loaded.
@@ -103,21 +102,58 @@ class NpyPixels:
                     raise ValueError("its first bytes are not those of one")
             array: NDArray[Any] = np.load(self.path, mmap_mode="r", allow_pickle=False)
         except (ValueError, EOFError, OSError) as error:
-            raise ImageError(
-                f"{self.path} cannot be read as a NumPy file ({error}): "
-                "save a 2-D array of numbers with numpy.save"
-            ) from error
+            raise self._unreadable(error) from error
         return array
 
+    def _unreadable(self, error: Exception) -> ImageError:
+        return ImageError(
+            f"{self.path} cannot be read as a NumPy file ({error}): "
+            "save a 2-D array of numbers with numpy.save"
+        )
 
-def _strips(box: Box, lines: int, *, by_rows: bool) -> Iterator[Box]:
-    """A box in pieces of so many whole rows, or columns, one after the other."""
-    if by_rows:
-        for row in range(box.row, box.row + box.height, lines):
-            yield Box(row, box.col, min(lines, box.row + box.height - row), box.width)
-    else:
-        for col in range(box.col, box.col + box.width, lines):
-            yield Box(box.row, col, box.height, min(lines, box.col + box.width - col))
+
+class _Layout(NamedTuple):
+    """Where the values of a 2-D array lie in its file.
+
+    Attributes
+    ----------
+    dtype : dtype
+    start : int
+        Bytes before the first value.
+    strides : (int, int)
+        Bytes from row to row, and from column to column.
+    """
+
+    dtype: np.dtype[Any]
+    start: int
+    strides: tuple[int, int]
+
+    def read(self, file: FileIO, box: Box) -> NDArray[Any]:
+        """The values of a box, line by line as they lie in the file.
+
+        Raises
+        ------
+        EOFError
+            If the file ends before.
+        """
+        down, right = self.strides
+        by_rows = down >= right
+        raw = np.empty(box.shape if by_rows else box.shape[::-1], self.dtype)
+        place = self.start + box.row * down + box.col * right
+        for line in raw:
+            file.seek(place)
+            if file.readinto(line) < line.nbytes:
+                raise EOFError("it is cut short")
+            place += down if by_rows else right
+        return raw if by_rows else raw.T
+
+
+@lru_cache(maxsize=8)
+def _layout(source: NpyPixels, changed_ns: int, size: int) -> _Layout:
+    """The layout of a file, of which the time of the last change and the size are known."""
+    array = source.map()
+    down, right = array.strides
+    return _Layout(array.dtype, cast(np.memmap[Any, Any], array).offset, (down, right))
 
 
 def require_image_array(array: NDArray[Any], name: str) -> None:

@@ -68,7 +68,7 @@ def test_a_departure_has_the_light_of_the_gaussian_that_the_joint_fit_counts():
     places_px = (np.arange(psf.shape[0]) - psf.shape[0] // 2) / 6
     near = np.abs(places_px) < 5
     x, y = (one.ravel() for one in np.meshgrid(places_px[near], places_px[near]))
-    columns, blur = directions.with_mean(x, y)
+    columns, blur = directions.summed(x, y, np.ones(x.size), np.arange(x.size))
     parts = np.column_stack([blur, columns[:, directions.learned] @ weights, columns[:, :3]])
     shares = np.linalg.lstsq(parts, psf[np.ix_(near, near)].ravel(), rcond=None)[0]
     assert shares[1] / shares[0] == pytest.approx(1.0, abs=0.02)

@@ -33,6 +33,7 @@ from acutance.numerics.marginal_likelihood import (
     whiten,
 )
 from acutance.numerics.normal_equations import Normal
+from acutance.numerics.pivoted_root import covariance_root
 from acutance.targets.points import tuned
 from acutance.targets.points.amplitudes import averaged_posterior, posterior_log_evidence
 from acutance.targets.points.psf_prior import PsfDirections
@@ -79,7 +80,12 @@ class AmongSensors:
     @property
     def kernels(self) -> Kernels | None:
         """Kernels of the sensors that also another model of the same pixels has to reckon with."""
-        return None if self.mixture is None else self.mixture.likely(_MARGIN)
+        return None if self.mixture is None else self.mixture.seen.kernels.some(self.likely)
+
+    @cached_property
+    def likely(self) -> NDArray[np.bool_]:
+        """Which of the sensors that were thought of these are, (n,)."""
+        return np.zeros(0, bool) if self.mixture is None else self.mixture.is_likely(_MARGIN)
 
     @cached_property
     def posterior(self) -> Posterior:
@@ -194,7 +200,7 @@ class SensorModel:
 
     def posterior(self, coordinates: Mixture, likeliest: Posterior) -> Posterior:
         """All unknowns, by the coordinates."""
-        followed = self.columns @ _root(coordinates.covariance)
+        followed = self.columns @ covariance_root(coordinates.covariance)
         return replace(
             likeliest,
             beta=self.start + self.columns @ coordinates.mean,
@@ -227,10 +233,4 @@ def _averaged(among: Posterior, others: Posterior, other: float) -> Posterior:
         math.sqrt(other) * others.factor,
         math.sqrt(other * (1 - other)) * away[:, None],
     ])  # fmt: skip
-    return replace(among, beta=among.beta + other * away, factor=_root(factor @ factor.T))
-
-
-def _root(covariance: Floats) -> Floats:
-    """Factor of a covariance."""
-    power, axes = np.linalg.eigh(covariance)
-    return np.asarray(axes * np.sqrt(np.maximum(power, 0.0)))
+    return replace(among, beta=among.beta + other * away, factor=covariance_root(factor @ factor.T))

@@ -24,6 +24,7 @@ from acutance.numerics.marginal_likelihood import (
     whiten,
 )
 from acutance.numerics.normal_equations import Normal
+from acutance.numerics.pivoted_root import covariance_root
 from acutance.targets.points import tuned
 from acutance.targets.points.per_source import Blocks
 
@@ -94,8 +95,7 @@ def averaged_posterior(
         covariance += w * one.covariance * np.outer(one.sigma, one.sigma)
         away = one.sigma * one.mean - mean
         covariance += w * np.outer(away, away)
-    power, axes = np.linalg.eigh(covariance)
-    factor = axes * np.sqrt(np.maximum(power, 0.0))
+    factor = covariance_root(covariance)
     share = _share_of_others(normal, prior, mode, noise)
     return Posterior(
         mean, np.hstack([factor, share]), likeliest.prior_std, mode, likeliest.variance,

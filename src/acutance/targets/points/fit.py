@@ -30,7 +30,6 @@ from acutance.targets.points.first_fit import FirstFit, own_columns
 from acutance.targets.points.noise import PointNoise, noise_around, noise_grows
 from acutance.targets.points.pads import Pads, PadsFound, find_pads, pads_image
 from acutance.targets.points.per_source import Blocks, SourceProblem
-from acutance.targets.points.pixels_alone import PixelsAlone
 from acutance.targets.points.points_fit import PointsFit
 from acutance.targets.points.psf import PsfModel
 from acutance.targets.points.psf_prior import PsfDirections
@@ -83,8 +82,7 @@ def fit_points(stamps: Stamps, first: FirstFit, *, robust: bool = True) -> Point
     doubt = np.zeros((posterior.beta.size, 0))
     if pads is not None and not pads.sure:
         doubt = pads.doubt(among.posterior)
-    alone = PixelsAlone.of(settled.posterior, state.model.weights.size, doubt)
-    fit = replace(fit, families=among.share, pixels_alone=alone)
+    fit = replace(fit, families=among.share, posterior=settled.posterior, doubt=doubt)
     if pads is None or not pads.likely:
         return fit
     return replace(fit, pads=Pads.of(pads.side_px, posterior if pads.sure else pads.posterior))
@@ -232,11 +230,13 @@ def _linear_problem(
     """What the unknowns of all sources do to the pixels near a state; noise for unit weight."""
     directions = state.model.directions
     psf, by_x, by_y = directions.sum_with_slopes(*stamps.offsets(state.places), state.model.weights)
-    columns, blur = directions.with_mean(*stamps.all_offsets(state.places))
+    columns, blur = directions.summed(
+        *stamps.all_offsets(state.places), stamps.lights(state.fluxes), stamps.lit_pixel
+    )
     return SourceProblem(
         own_columns(stamps, state.places, state.fluxes, (psf, by_x, by_y)),
-        np.hstack([stamps.summed(state.fluxes, columns), background.columns]),
-        stamps.value - stamps.summed(state.fluxes, blur),
+        np.hstack([columns, background.columns]),
+        stamps.value - blur,
         stamps.starts,
         background.tie(noise),
     )

@@ -6,6 +6,7 @@ Gaussian seen through a pixel would give at the same phase: a table turns them i
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 from typing import Final
@@ -14,6 +15,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 from acutance.targets.points import tuned
 
 __all__ = ["BROAD_WINDOW_PX", "WINDOW_PX", "SpotShape", "half_window_px", "spot_shape"]
@@ -81,30 +83,11 @@ def spot_shape(
     row, col = middle
     half = half_window_px(window_px)
     top, side = max(row - half, 0), max(col - half, 0)
-    light = residual[top : row + half + 1, side : col + half + 1] - background
-    rows = np.arange(top, top + light.shape[0]) - float(row)
-    cols = np.arange(side, side + light.shape[1]) - float(col)
-    y = x = 0.0
-    for _ in range(_CENTRINGS):
-        window = np.outer(_fall(rows - y, window_px), _fall(cols - x, window_px))
-        seen = np.maximum(light * window, 0.0)
-        total = max(float(seen.sum()), 1e-300)
-        # The window holds the centroid back: twice the step is right for a spot as wide as it.
-        y = float(np.clip(y + 1.5 * float((rows - y) @ seen.sum(axis=1)) / total, -1.0, 1.0))
-        x = float(np.clip(x + 1.5 * float((cols - x) @ seen.sum(axis=0)) / total, -1.0, 1.0))
-    dy, dx = rows - y, cols - x
-    window = np.outer(_fall(dy, window_px), _fall(dx, window_px))
-    seen = light * window
-    # Where light and what is missing cancel, there is no spot: it is as wide as may be.
-    total = max(float(seen.sum()), 0.1 * float(np.abs(seen).sum()), 1e-300)
-    down, across = float(dy**2 @ seen.sum(axis=1)) / total, float(seen.sum(axis=0) @ dx**2) / total
-    lean = float(dy @ seen @ dx) / total
-    by_noise = np.array(
-        [
-            tuned.MOMENT_SIGMAS * noise * np.sqrt(np.sum((window * (power - moment)) ** 2)) / total
-            for power, moment in ((dy[:, None] ** 2, down), (dx[None, :] ** 2, across))
-        ]
-    )
+    light = np.ascontiguousarray(residual[top : row + half + 1, side : col + half + 1], float)
+    y, x, down, across, lean, *spread = _windowed_moments(
+        light - background, float(top - row), float(side - col), window_px
+    ).tolist()
+    by_noise = tuned.MOMENT_SIGMAS * noise * np.array(spread)
     doubt = np.hypot(tuned.MOMENT_LENIENCE_PX2, by_noise)
     likely, wider, narrower, noisier = (
         _axes(down + away[0], across + away[1], lean, (y, x), window_px)
@@ -122,6 +105,67 @@ def half_window_px(window_px: float) -> int:
     return round(_HALF_WINDOWS * window_px)
 
 
+@compiled
+def _windowed_moments(light: Floats, top: float, side: float, window_px: float) -> Floats:
+    """Centroid and second moments of what a window about the centroid shows.
+
+    Parameters
+    ----------
+    light : (rows, cols) array
+    top, side : float
+        Row and column of its first pixel, from the brightest one.
+    window_px : float
+
+    Returns
+    -------
+    (7,) array
+        Row and column of the centroid, from the brightest pixel; moments down, across, and mixed;
+        standard deviations of the first two for noise of one.
+    """
+    height, width = light.shape
+    found = np.zeros(7)
+    down, across = np.empty(height), np.empty(width)
+    y = x = 0.0
+    for _ in range(_CENTRINGS):
+        for i in range(height):
+            down[i] = np.exp(-0.5 * ((top + i - y) / window_px) ** 2)
+        for j in range(width):
+            across[j] = np.exp(-0.5 * ((side + j - x) / window_px) ** 2)
+        total, by_y, by_x = 0.0, 0.0, 0.0
+        for i in range(height):
+            for j in range(width):
+                seen = max(light[i, j] * (down[i] * across[j]), 0.0)
+                total += seen
+                by_y += (top + i - y) * seen
+                by_x += (side + j - x) * seen
+        total = max(total, 1e-300)
+        # The window holds the centroid back: twice the step is right for a spot as wide as it.
+        y = min(max(y + 1.5 * by_y / total, -1.0), 1.0)
+        x = min(max(x + 1.5 * by_x / total, -1.0), 1.0)
+    total, modulus = 0.0, 0.0
+    for i in range(height):
+        for j in range(width):
+            dy, dx = top + i - y, side + j - x
+            seen = light[i, j] * np.exp(-0.5 * (dy * dy + dx * dx) / window_px**2)
+            total += seen
+            modulus += abs(seen)
+            found[2] += dy * dy * seen
+            found[3] += dx * dx * seen
+            found[4] += dy * dx * seen
+    # Where light and what is missing cancel, there is no spot: it is as wide as may be.
+    total = max(total, 0.1 * modulus, 1e-300)
+    found[2:5] /= total
+    for i in range(height):
+        for j in range(width):
+            dy, dx = top + i - y, side + j - x
+            window = np.exp(-0.5 * (dy * dy + dx * dx) / window_px**2)
+            found[5] += (window * (dy * dy - found[2])) ** 2
+            found[6] += (window * (dx * dx - found[3])) ** 2
+    found[5], found[6] = np.sqrt(found[5]) / total, np.sqrt(found[6]) / total
+    found[0], found[1] = y, x
+    return found
+
+
 def _fall(distance: Floats, window_px: float) -> Floats:
     return np.asarray(np.exp(-0.5 * (distance / window_px) ** 2))
 
@@ -136,7 +180,8 @@ def _axes(
     # To first order in the lean, the window multiplies it by this.
     whole = window_px**4 / ((yy + window_px**2) * (xx + window_px**2))
     xy = lean / whole
-    return np.asarray(np.linalg.eigvalsh(np.array([[yy, xy], [xy, xx]])))
+    half_apart = math.hypot(0.5 * (yy - xx), xy)
+    return 0.5 * (yy + xx) + half_apart * np.array([-1.0, 1.0])
 
 
 def _unwindowed(moment: float, phase: float, window_px: float) -> float:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
+from acutance.numerics.kernel_mixture import Further
 from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.points import tuned
@@ -30,6 +31,11 @@ from acutance.targets.points.psf_prior import PsfDirections
 from acutance.targets.points.stamps import Stamps
 
 __all__ = ["Pads", "PadsFound", "find_pads", "pads_image"]
+
+_DOUBT: Final = 0.5
+"""How much more log evidence a fit with pads may find than was foreseen: of 53 images of eleven
+families, with pads and without, more than .05 in two, whose pads gain 9 and were foreseen to gain
+7; .1 where nothing is gained."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,6 +152,11 @@ def find_pads(
     directions : PsfDirections
         What its first unknowns are.
     """
+    pads = replace(problem, shared=np.column_stack(images)).eliminated(weight)
+    between = blocks.shared.T @ pads.shared
+    foreseen = _foreseen_gains(without, between, pads.normal, contrast_std)
+    if foreseen[1:].max() < tuned.PAD_OPEN_LOG_EVIDENCE - _DOUBT:
+        return None
     alone, prior, inflation, found = without.equations
     more = replace(
         prior,
@@ -153,8 +164,6 @@ def find_pads(
         scale=np.append(prior.scale, contrast_std),
         mean=np.append(prior.mean, 0.0),
     )
-    pads = replace(problem, shared=np.column_stack(images)).eliminated(weight)
-    between = blocks.shared.T @ pads.shared
     kernels = without.kernels
 
     def beneath(number: int) -> AmongSensors:
@@ -174,6 +183,43 @@ def find_pads(
         return None
     share = 1 / (1 + math.exp(min(tuned.PAD_LOG_EVIDENCE - gain, 700.0)))
     return PadsFound(tuned.PAD_SIDES_PX[best], share, tried[best].posterior)
+
+
+def _foreseen_gains(
+    without: AmongSensors, between: Floats, pads: Normal, contrast_std: float
+) -> Floats:
+    """About what every image gains, `_as_pads`, without solving anything anew, (j,).
+
+    Exact for the noise and the prior amplitudes of the fit without pads: with pads both differ by
+    little.
+    """
+    model, noise = without.model, without.equations.noise
+    scaled = between * (contrast_std / noise)
+    projection = pads.projection * (contrast_std / noise)
+    information = np.diagonal(pads.gram) * (contrast_std**2 / noise)
+    likeliest = without.equations.likeliest
+    alone = Further(scaled, projection, information)
+    precision = alone.precision(_squares(likeliest.factor[:, : likeliest.beta.size].T @ scaled))
+    gain = alone.gain(likeliest.beta @ scaled, precision)
+    of_others = math.log(max(without.other, 1e-300)) + gain
+    if without.mixture is None:
+        return of_others
+    further = Further(
+        model.columns.T @ scaled,
+        projection - model.start @ scaled,
+        information - _squares(model.others.T @ scaled),
+    )
+    kernels = without.mixture.seen.kernels
+    counted = ~np.isin(kernels.name, tuned.COMPENSATED)[kernels.part]
+    counted &= without.likely
+    weight = without.mixture.log_weight_with(further, np.flatnonzero(counted))
+    of_sensors = np.logaddexp.reduce(weight, axis=(1, 2)) + model.log_evidence
+    return np.asarray(np.logaddexp(of_others, of_sensors - without.log_evidence))
+
+
+def _squares(columns: Floats) -> Floats:
+    """Sum of the squares of every column, (j,) of (m, j)."""
+    return np.asarray(np.einsum("ij,ij->j", columns, columns))
 
 
 def _as_pads(among: AmongSensors) -> float:

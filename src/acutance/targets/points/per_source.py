@@ -11,9 +11,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 from acutance.numerics.normal_equations import Normal
 
 __all__ = ["Blocks", "SourceProblem"]
@@ -119,31 +119,81 @@ def _eliminated(
     tie: Floats | None,
 ) -> Blocks:
     root = np.sqrt(weight)
-    count, q = starts.size - 1, own.shape[1]
+    count, q, pixels = starts.size - 1, own.shape[1], root.size
     # What ties a source's unknowns to zero are q more rows for it, after all pixels.
-    bound = np.zeros((q, q)) if tie is None else np.diag(tie)
-    own = own * root[:, None]
-    shared = np.concatenate([shared * root[:, None], np.zeros((count * q, shared.shape[1]))])
-    data = np.concatenate([data * root, np.zeros(count * q)])
-    inverse = np.empty((count, q, q))
-    own_shared = np.empty((count, q, shared.shape[1]))
-    own_data = np.empty((count, q))
-    leverage = np.empty(root.size)
-    unit = np.eye(q)
-    for k, (first, last) in enumerate(zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True)):
-        ties = slice(root.size + q * k, root.size + q * (k + 1))
-        axes, triangle = np.linalg.qr(np.vstack([own[first:last], bound]))
-        pixel_axes, tie_axes = axes[: last - first], axes[last - first :]
-        leverage[first:last] = np.einsum("ij,ij->i", pixel_axes, pixel_axes)
-        inverse[k] = solve_triangular(triangle, unit)
-        along, along_data = pixel_axes.T @ shared[first:last], pixel_axes.T @ data[first:last]
-        shared[first:last] -= pixel_axes @ along
-        data[first:last] -= pixel_axes @ along_data
-        shared[ties] -= tie_axes @ along
-        data[ties] -= tie_axes @ along_data
-        own_shared[k], own_data[k] = inverse[k] @ along, inverse[k] @ along_data
+    bound = np.zeros(q) if tie is None else tie
+    axes = np.concatenate([own * root[:, None], np.tile(np.diag(bound), (count, 1))])
+    left = np.zeros((axes.shape[0], shared.shape[1] + 1))
+    np.multiply(shared, root[:, None], out=left[:pixels, :-1])
+    np.multiply(data, root, out=left[:pixels, -1])
+    inverse, along = _eliminate(axes, left, starts)
+    own_along = inverse @ along
     free = q if tie is None else int(np.count_nonzero(tie == 0))
-    log_volume = float(np.log(np.abs(np.einsum("kii->ki", inverse))).sum())
     return Blocks(
-        shared, data, inverse, own_shared, own_data, leverage, log_volume, root.size - count * free
-    )
+        np.ascontiguousarray(left[:, :-1]), left[:, -1].copy(), inverse, own_along[:, :, :-1],
+        own_along[:, :, -1], np.einsum("ij,ij->i", axes[:pixels], axes[:pixels]),
+        float(np.log(np.abs(np.einsum("kii->ki", inverse))).sum()), pixels - count * free,
+    )  # fmt: skip
+
+
+@compiled
+def _eliminate(axes: Floats, left: Floats, starts: NDArray[np.intp]) -> tuple[Floats, Floats]:
+    """Take out of the columns of a system what the own unknowns of each source explain.
+
+    By Gram and Schmidt's method in its modified form, source by source.
+
+    Parameters
+    ----------
+    axes : (n + k q, q) array
+        Columns of the own unknowns, the pixels first, then q rows that tie those of each source;
+        they become orthonormal within a source.
+    left : (n + k q, c) array
+        The system's other columns; what the axes explain of them is taken out.
+    starts : (k + 1,) int array
+        Where each source's pixels start, and the end.
+
+    Returns
+    -------
+    inverse : (k, q, q) array
+        Inverses of the triangular factors: old columns times it are the axes.
+    along : (k, q, c) array
+        What was taken out, along the axes.
+    """
+    count, q, width = starts.size - 1, axes.shape[1], left.shape[1]
+    pixels = starts[count]
+    inverse, along = np.zeros((count, q, q)), np.zeros((count, q, width))
+    for k in range(count):
+        first, size = starts[k], starts[k + 1] - starts[k]
+        rows = np.empty(size + q, np.intp)
+        for i in range(size):
+            rows[i] = first + i
+        for i in range(q):
+            rows[size + i] = pixels + q * k + i
+        own = inverse[k]
+        for a in range(q):
+            own[a, a] = 1.0
+            for b in range(a):
+                share = 0.0
+                for i in rows:
+                    share += axes[i, a] * axes[i, b]
+                for i in rows:
+                    axes[i, a] -= share * axes[i, b]
+                for c in range(b + 1):
+                    own[c, a] -= share * own[c, b]
+            power = 0.0
+            for i in rows:
+                power += axes[i, a] ** 2
+            length = np.sqrt(power)
+            for i in rows:
+                axes[i, a] /= length
+            for c in range(a + 1):
+                own[c, a] /= length
+        for i in rows:
+            for a in range(q):
+                for c in range(width):
+                    along[k, a, c] += axes[i, a] * left[i, c]
+        for i in rows:
+            for a in range(q):
+                for c in range(width):
+                    left[i, c] -= axes[i, a] * along[k, a, c]
+    return inverse, along

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import Correlation
 from acutance.targets.points import tuned
 from acutance.targets.points.pads import Pads
@@ -48,8 +50,10 @@ class PointsFit:
         Pads under the sources, where the pixels ask for them.
     families : mapping of str to float
         Probability of every family of sensors, and that it is another sensor.
-    pixels_alone : PixelsAlone, optional
-        What the pixels say of the PSF, the prior apart.
+    posterior : Posterior, optional
+        The solution by the normal prior, of which the first unknowns are those of the PSF.
+    doubt : (m, j) array, optional
+        Further errors of its unknowns, that the prior has no part in.
     """
 
     stamps: Stamps
@@ -67,7 +71,15 @@ class PointsFit:
     correlation: Correlation
     pads: Pads | None = None
     families: Mapping[str, float] = field(default_factory=dict)
-    pixels_alone: PixelsAlone | None = None
+    posterior: Posterior | None = None
+    doubt: Floats | None = None
+
+    @cached_property
+    def pixels_alone(self) -> PixelsAlone | None:
+        """What the pixels say of the PSF, the prior apart."""
+        if self.posterior is None or self.doubt is None:
+            return None
+        return PixelsAlone.of(self.posterior, self.model.weights.size, self.doubt)
 
     @property
     def residual(self) -> Floats:

@@ -6,16 +6,17 @@ are sums of splines (`psf_spline`) in units of the width of the first fit, and o
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.resources import files
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.targets.points.psf_spline import GRIDS, Parity, SplineGrid, whole
+from acutance.targets.points.psf_spline import GRIDS, Parity, add_spline_sum, add_splines, whole
 from acutance.targets.points.tuned import FAMILY_LOG_AMPLITUDES
 
 __all__ = ["PARITIES", "Families", "Parities", "entry_name", "learned_families"]
@@ -25,6 +26,22 @@ Parities = tuple[Parity, Parity]
 PARITIES: Final[tuple[Parities, ...]] = ((1, 1), (-1, 1))
 """Across and along. Directions even across and odd along are transposes of the second kind. What is
 odd both ways is a twentieth of what is even where there is any (interpolation at one phase)."""
+_ROUNDING: Final = 1e-13
+
+
+class _Waves(NamedTuple):
+    """Waves of every parity on either grid, (n, reach + 1) each, at frequencies per width."""
+
+    across: dict[Parity, list[Floats]]
+    along: dict[Parity, list[Floats]]
+
+    @classmethod
+    def at(cls, f: Floats, g: Floats) -> _Waves:
+        """At frequencies (f, g), (n,)."""
+        parities: tuple[Parity, Parity] = (1, -1)
+        return cls(
+            *({p: [grid.waves(one, p) for grid in GRIDS] for p in parities} for one in (f, g))
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,26 +53,18 @@ class _Group:
     quadrants: tuple[Floats, ...]
     tail: Floats
 
-    def transform(self, f: Floats, g: Floats) -> Complexes:
-        """Transform at frequencies in cycles per width, without the tail, (n, r)."""
-        count = self.tail.size
-        found = np.zeros((f.size, count))
-        for grid, quadrant in zip(GRIDS, self.quadrants, strict=True):
-            along = grid.waves(g, self.along) @ quadrant.transpose(1, 0, 2).reshape(
-                grid.reach + 1, -1
-            )
-            along = along.reshape(f.size, count, grid.reach + 1)
-            found += np.einsum("nrk,nk->nr", along, grid.waves(f, self.across))
-        return np.asarray(found * self._turn)
+    def transform(self, waves: _Waves) -> Complexes:
+        """Transform at frequencies, without the tail, (n, r)."""
+        return self._transform(waves, self.quadrants)
 
-    def transform_sum(self, f: Floats, g: Floats, weights: Floats) -> Complexes:
-        """``transform(f, g) @ weights``, (n,)."""
-        found = np.zeros(f.size)
-        for grid, quadrant in zip(GRIDS, self.quadrants, strict=True):
-            mixed = np.tensordot(weights, quadrant, 1)
-            along = grid.waves(g, self.along) @ mixed
-            found += np.einsum("nk,nk->n", along, grid.waves(f, self.across))
-        return np.asarray(found * self._turn)
+    def transform_sum(self, waves: _Waves, weights: Floats) -> Complexes:
+        """``transform(waves) @ weights``, (n,)."""
+        mixed = [np.tensordot(weights, one, 1)[None] for one in self.quadrants]
+        return self._transform(waves, mixed)[:, 0]
+
+    def _transform(self, waves: _Waves, quadrants: Sequence[Floats]) -> Complexes:
+        pairs = zip(waves.across[self.across], waves.along[self.along], quadrants, strict=True)
+        return np.asarray(sum(_sums(*pair) for pair in pairs) * self._turn)
 
     @property
     def _turn(self) -> complex:
@@ -92,40 +101,53 @@ class Families:
             found.append(np.concatenate(every).reshape(-1, grid.size**2).T.copy())
         return tuple(found)
 
-    def values(self, u: Floats, v: Floats) -> Floats:
-        """Every direction at places in widths, without its tail, per square width, (n, r)."""
-        found = np.zeros((u.size, self.tail.size))
-        for grid, coefficients in zip(GRIDS, self.coefficients, strict=True):
-            near = _inside(grid, u, v)
-            found[near] += grid.rows(u[near], v[near]) @ coefficients
-        return found
+    def add(
+        self, found: Floats, pixel: NDArray[np.intp], light: Floats, u: Floats, v: Floats
+    ) -> None:
+        """Add the light of all directions, without tails, to the first columns of a matrix.
 
-    def sums(
-        self, u: Floats, v: Floats, weights: Floats, slopes: tuple[tuple[int, int], ...]
-    ) -> list[Floats]:
-        """``values(u, v) @ weights``, or its derivatives of the given orders by u and v, (n,)."""
-        found = [np.zeros(u.size) for _ in slopes]
+        At places (u, v) in widths, per square width, times `light`, each to the row of its pixel.
+        """
         for grid, coefficients in zip(GRIDS, self.coefficients, strict=True):
-            near, mixed = _inside(grid, u, v), coefficients @ weights
-            for total, slope in zip(found, slopes, strict=True):
-                total[near] += grid.rows(u[near], v[near], slope) @ mixed
+            add_splines(found, pixel, light, u, v, grid.step, coefficients)
+
+    def sums(self, u: Floats, v: Floats, weights: Floats) -> Floats:
+        """All directions times weights, (r,), and the derivatives by u and v, (3, n)."""
+        found = np.zeros((3, u.size))
+        for grid, coefficients in zip(GRIDS, self.coefficients, strict=True):
+            mixed = (coefficients @ weights).reshape(grid.size, grid.size)
+            add_spline_sum(found, u, v, grid.step, mixed)
         return found
 
     def transform(self, f: Floats, g: Floats) -> Complexes:
         """Transform of every direction without its tail at frequencies per width, (n, r)."""
-        return np.hstack([one.transform(f, g) for one in self.groups])
+        waves = _Waves.at(f, g)
+        return np.hstack([one.transform(waves) for one in self.groups])
 
     def transform_sum(self, f: Floats, g: Floats, weights: Floats) -> Complexes:
         """``transform(f, g) @ weights``, (n,)."""
         ends = np.cumsum([one.tail.size for one in self.groups])[:-1]
-        found = np.zeros(f.size, complex)
+        found, waves = np.zeros(f.size, complex), _Waves.at(f, g)
         for group, own in zip(self.groups, np.split(weights, ends), strict=True):
-            found += group.transform_sum(f, g, own)
+            found += group.transform_sum(waves, own)
         return found
 
 
-def _inside(grid: SplineGrid, u: Floats, v: Floats) -> NDArray[np.intp]:
-    return np.flatnonzero((np.abs(u) < grid.half_support) & (np.abs(v) < grid.half_support))
+def _sums(across: Floats, along: Floats, quadrant: Floats) -> Floats:
+    """Sums over quadrants (r, k, k) of waves across and along, (n, k) each, (n, r)."""
+    if _is_constant(along):
+        # On an axis the waves along it are all there is to multiply.
+        return np.asarray(across @ (along[0] @ quadrant).T)
+    if _is_constant(across):
+        return np.asarray(along @ (quadrant @ across[0]).T)
+    rows = along @ quadrant.transpose(1, 0, 2).reshape(along.shape[1], -1)
+    rows = rows.reshape(len(rows), len(quadrant), -1)
+    return np.asarray(np.einsum("nrk,nk->nr", rows, across))
+
+
+def _is_constant(waves: Floats) -> bool:
+    """Whether waves, (n, k), are the same at all frequencies, but for rounding."""
+    return float(np.ptp(waves, axis=0).max(initial=0.0)) < _ROUNDING
 
 
 def entry_name(family: str, across: Parity, along: Parity) -> str:

@@ -19,9 +19,9 @@ a closed form in the plane and in the plane of frequencies.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Final
 
 import numpy as np
@@ -30,77 +30,44 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel_2d import WIDE_WIDTHS, GaussianPixel2d, PixelSlopes
 from acutance.numerics.lorentz_tail import tail_otf, tail_psf
-from acutance.numerics.process_modes import mehler
 from acutance.targets.points import tuned
 from acutance.targets.points.psf_families import Families, learned_families
+from acutance.targets.points.psf_modes import Process, add_modes, hermite, hermite_slopes
 
 __all__ = ["PsfDirections"]
 
 Complexes = NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
-class _Process:
-    """A Gaussian process of extent L and smoothness l, in widths, up to an order of its modes.
-
-    Its amplitude is normalised so that, integrated over one direction, it has the variance of
-    the process of an LSF with the same L and l at the line's middle.
-    """
-
-    extent: float
-    smoothness: float
-    order: int
-
-    @property
-    def ratio(self) -> float:
-        """Factor of the variance from one order to the next."""
-        return mehler(self.extent, self.smoothness)[0]
-
-    @property
-    def scale(self) -> float:
-        """Scale of the Hermite functions, in widths."""
-        return mehler(self.extent, self.smoothness)[1]
-
-    @cached_property
-    def orders(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Orders across and along of every mode."""
-        i, j = np.indices((self.order + 1, self.order + 1)).reshape(2, -1)
-        kept = i + j <= self.order
-        return i[kept], j[kept]
-
-    @cached_property
-    def sizes(self) -> Floats:
-        """Standard deviation of every mode's coefficient, relative to the process."""
-        i, j = self.orders
-        inverse = 1 / self.extent**2
-        lsf_variance = 2 * np.pi / math.sqrt(inverse * (inverse + 2 / self.smoothness**2))
-        middle = math.pi * (1 - self.ratio**2) * self.ratio ** (i + j)
-        return np.asarray(np.sqrt(middle / lsf_variance))
-
-
-_PROCESSES: Final = tuple(_Process(*one) for one in tuned.PROCESSES)
+_PROCESSES: Final = tuple(Process(*one) for one in tuned.PROCESSES)
 _BLURRED: Final = 5
 _GAUGE_STEP: Final = 0.3
 _GAUGE_REACH: Final = 4.5
 
 
-def hermite(t: Floats, order: int) -> Floats:
-    """Orthonormal Hermite functions 0 .. order at `t` (n,), as (order + 1, n)."""
-    values = np.empty((order + 1, t.size))
-    values[0] = math.pi**-0.25 * np.exp(-0.5 * t * t)
-    if order > 0:
-        values[1] = math.sqrt(2.0) * t * values[0]
-    for n in range(2, order + 1):
-        values[n] = math.sqrt(2 / n) * t * values[n - 1] - math.sqrt((n - 1) / n) * values[n - 2]
-    return values
+def _in_widths(u: Floats, v: Floats, light: Floats, pixel: NDArray[np.intp], count: int) -> Floats:
+    """Families, without tails, and modes at places in widths, summed over pixels, (count, r).
+
+    These are the same for every blur, in units of its widths.
+    """
+    families = learned_families()
+    sizes = [process.sizes for process in _PROCESSES]
+    found = np.zeros((count, families.tail.size + sum(one.size for one in sizes)))
+    families.add(found, pixel, light, u, v)
+    first = families.tail.size
+    for process, size in zip(_PROCESSES, sizes, strict=True):
+        across, along = (hermite(at / process.scale, process.order) for at in (u, v))
+        add_modes(found, first, pixel, light, across, along, *process.orders, size)
+        first += size.size
+    return found
 
 
-def _hermite_slopes(values: Floats) -> Floats:
-    """Derivatives by t of the Hermite functions but the last, from the functions."""
-    orders = np.arange(values.shape[0] - 1)[:, None]
-    slopes = -np.sqrt((orders + 1) / 2) * values[1:]
-    slopes[1:] += np.sqrt(orders[1:] / 2) * values[: slopes.shape[0] - 1]
-    return slopes
+@cache
+def _raster_in_widths() -> tuple[Floats, Floats, Floats]:
+    """A dense raster of places in widths, and `_in_widths` there."""
+    steps = np.arange(-_GAUGE_REACH, _GAUGE_REACH + 1e-9, _GAUGE_STEP)
+    u, v = (grid.ravel() for grid in np.meshgrid(steps, steps))
+    return u, v, _in_widths(u, v, np.ones(u.size), np.arange(u.size), u.size)
 
 
 @dataclass(frozen=True)
@@ -170,14 +137,46 @@ class PsfDirections:
 
     def evaluate(self, x: Floats, y: Floats) -> Floats:
         """Every direction at places (x, y) in pixels, (n, size)."""
-        return self.with_mean(x, y)[0]
+        return self.summed(x, y, np.ones(x.size), np.arange(x.size))[0]
 
-    def with_mean(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        """Every direction at places (x, y), (n, size), and the mean blur there, (n,)."""
-        slopes = self.blur.slopes(x, y)
-        columns = self._raw(x, y, slopes)
-        columns -= np.stack(slopes[:3], axis=1) @ self._gauge
-        return columns, slopes.psf
+    def summed(
+        self, x: Floats, y: Floats, light: Floats, pixel: NDArray[np.intp]
+    ) -> tuple[Floats, Floats]:
+        """Every direction, and the mean blur, summed over the sources that light a pixel.
+
+        Parameters
+        ----------
+        x, y : (n,) arrays
+            Places of pixels about sources.
+        light : (n,) array
+            Flux of the source.
+        pixel : (n,) int array
+            Number of the pixel; none below the largest is missing.
+
+        Returns
+        -------
+        (m, size) array
+        (m,) array
+        """
+        count, area = int(pixel.max()) + 1, self._area
+        wide, high = self.blur.widths_px
+
+        def onto(values: Floats) -> Floats:
+            return np.asarray(np.bincount(pixel, light * values, count), float)
+
+        parts = [onto(one) for one in self.blur.slopes(x, y)]
+        tail = onto(tail_psf(np.hypot(x, y), self.half_width_px))
+        columns = np.empty((count, self.size))
+        columns[:, _BLURRED:-1] = _in_widths(x / wide, y / high, light / area, pixel, count)
+        self._complete(columns, parts, tail)
+        columns -= np.stack(parts[:3], axis=1) @ self._gauge
+        return columns, parts[0]
+
+    def _complete(self, columns: Floats, slopes: Sequence[Floats], tail: Floats) -> None:
+        """Put the blur's directions and the tail beside those of `_in_widths`."""
+        columns[:, :_BLURRED] = np.stack(slopes[3:], axis=1)
+        columns[:, self.learned] += tail[:, None] * self.families.tail
+        columns[:, -1] = tail
 
     def sum(self, x: Floats, y: Floats, weights: Floats) -> Floats:
         """Mean blur plus ``evaluate(x, y) @ weights``, (n,)."""
@@ -187,7 +186,7 @@ class PsfDirections:
         psf = slopes.psf - (self._gauge @ weights) @ np.stack(slopes[:3])
         for weight, part in zip(weights.tolist(), slopes[3:], strict=False):
             psf += weight * part
-        psf += self._of_families(x, y, weights, ((0, 0),))[0]
+        psf += self._of_families(x, y, weights)[0]
         for table, (scale_x, scale_y) in self._mixtures(weights):
             order = table.shape[0] - 1
             along = table @ hermite(y / scale_y, order)
@@ -199,39 +198,13 @@ class PsfDirections:
         own = weights[_BLURRED : self._first_mode]
         return float(weights[-1] + self.families.tail @ own)
 
-    def _of_families(
-        self, x: Floats, y: Floats, weights: Floats, slopes: tuple[tuple[int, int], ...]
-    ) -> list[Floats]:
-        """What the families add, without tails, or its derivatives by x and y."""
+    def _of_families(self, x: Floats, y: Floats, weights: Floats) -> Floats:
+        """What the families add, without tails, and its derivatives by x and y, (3, n)."""
         wide, high = self.blur.widths_px
-        own = weights[_BLURRED : self._first_mode]
-        sums = self.families.sums(x / wide, y / high, own, slopes)
-        return [
-            one / (self._area * wide**across * high**along)
-            for one, (across, along) in zip(sums, slopes, strict=True)
-        ]
+        sums = self.families.sums(x / wide, y / high, weights[self.learned])
+        return sums / (self._area * np.array([[1.0], [wide], [high]]))
 
-    def _raw(self, x: Floats, y: Floats, slopes: PixelSlopes) -> Floats:
-        columns = np.empty((x.size, self.size))
-        columns[:, :_BLURRED] = np.stack(slopes[3:], axis=1)
-        wide, high = self.blur.widths_px
-        tail = tail_psf(np.hypot(x, y), self.half_width_px)
-        learned = columns[:, _BLURRED : self._first_mode]
-        learned[:] = self.families.values(x / wide, y / high)
-        learned /= self._area
-        learned += tail[:, None] * self.families.tail
-        first = self._first_mode
-        for process, (scale_x, scale_y) in self._scaled():
-            across, along = hermite(x / scale_x, process.order), hermite(y / scale_y, process.order)
-            order_x, order_y = process.orders
-            own = columns[:, first : first + order_x.size]
-            np.multiply(across[order_x].T, along[order_y].T, out=own)
-            own *= process.sizes / self._area
-            first += order_x.size
-        columns[:, -1] = tail
-        return columns
-
-    def _scaled(self) -> list[tuple[_Process, tuple[float, float]]]:
+    def _scaled(self) -> list[tuple[Process, tuple[float, float]]]:
         """The processes with the scales of their modes across and along, in pixels."""
         wide, high = self.blur.widths_px
         return [(one, (one.scale * wide, one.scale * high)) for one in _PROCESSES]
@@ -265,7 +238,7 @@ class PsfDirections:
 
         psf = blurred(slopes)
         by_x, by_y = ((blurred(one) - psf) / step for one in shifted)
-        learned = self._of_families(x, y, weights, ((0, 0), (1, 0), (0, 1)))
+        learned = self._of_families(x, y, weights)
         psf, by_x, by_y = (
             part + more for part, more in zip((psf, by_x, by_y), learned, strict=True)
         )
@@ -274,10 +247,9 @@ class PsfDirections:
             along = hermite(y / scale_y, table.shape[0])
             mixed = table @ along[:-1]
             psf = psf + np.einsum("ij,ij->j", across[:-1], mixed)
-            by_x = by_x + np.einsum("ij,ij->j", _hermite_slopes(across), mixed) / scale_x
+            by_x = by_x + np.einsum("ij,ij->j", hermite_slopes(across), mixed) / scale_x
             by_y = (
-                by_y
-                + np.einsum("ij,ij->j", table.T @ across[:-1], _hermite_slopes(along)) / scale_y
+                by_y + np.einsum("ij,ij->j", table.T @ across[:-1], hermite_slopes(along)) / scale_y
             )
         tail = self._tail_weight(weights) * tail_psf(np.hypot(x, y), self.half_width_px)
         bend = -3 * tail / (x * x + y * y + self.half_width_px**2)
@@ -287,8 +259,8 @@ class PsfDirections:
     def _raster(self) -> tuple[Floats, Floats, PixelSlopes]:
         """A dense raster of places, and the blur there."""
         wide, high = self.blur.widths_px
-        steps = np.arange(-_GAUGE_REACH, _GAUGE_REACH + 1e-9, _GAUGE_STEP)
-        x, y = (grid.ravel() for grid in np.meshgrid(steps * wide, steps * high))
+        u, v, _ = _raster_in_widths()
+        x, y = u * wide, v * high
         return x, y, self.blur.slopes(x, y)
 
     def _shares(self, columns: Floats) -> Floats:
@@ -302,7 +274,11 @@ class PsfDirections:
     @cached_property
     def _gauge(self) -> Floats:
         """Shares of the blur, and of its slopes by x and y, in every direction: (3, size)."""
-        return self._shares(self._raw(*self._raster))
+        x, y, slopes = self._raster
+        columns = np.empty((x.size, self.size))
+        columns[:, _BLURRED:-1] = _raster_in_widths()[2] / self._area
+        self._complete(columns, slopes, tail_psf(np.hypot(x, y), self.half_width_px))
+        return self._shares(columns)
 
     def light_of_blur(self, psf: Callable[[Floats, Floats], Floats]) -> float:
         """Flux of the mean blur that least squares finds in a PSF, a function of places (x, y).

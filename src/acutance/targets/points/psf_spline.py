@@ -23,6 +23,7 @@ from scipy.ndimage import spline_filter
 from scipy.sparse import csr_array
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled, inlined
 
 __all__ = [
     "COARSE",
@@ -30,6 +31,8 @@ __all__ = [
     "GRIDS",
     "Parity",
     "SplineGrid",
+    "add_spline_sum",
+    "add_splines",
     "coarse_share",
     "parity_part",
     "whole",
@@ -84,36 +87,13 @@ class SplineGrid:
         `slope` is the order of the derivative by u and by v, 0 or 1.
         """
         (first_u, across), (first_v, along) = (
-            self._row(at, order) for at, order in zip((u, v), slope, strict=True)
+            _rows(at, self.step, self.reach, order) for at, order in zip((u, v), slope, strict=True)
         )
         index = (first_v[:, None] + _FOUR)[:, :, None] * self.size
         index = index + (first_u[:, None] + _FOUR)[:, None, :]
         values = along[:, :, None] * across[:, None, :]
         starts = 16 * np.arange(u.size + 1)
         return csr_array((values.ravel(), index.ravel(), starts), (u.size, self.size**2))
-
-    def _row(self, at: Floats, order: int) -> tuple[NDArray[np.intp], Floats]:
-        """First of the four splines of a row that are not 0 at each place, and their values."""
-        place = np.clip(at / self.step + self.reach, 1.0, self.size - 2.0)
-        cell = np.minimum(place.astype(np.intp), self.size - 3)
-        t = (place - cell)[:, None]
-        rest = 1 - t
-        if order == 0:
-            parts = [
-                rest**3 / 6,
-                (4 - 3 * t * t * (2 - t)) / 6,
-                (4 - 3 * rest * rest * (2 - rest)) / 6,
-                t**3 / 6,
-            ]
-        else:
-            steep = 0.5 / self.step
-            parts = [
-                -steep * rest**2,
-                steep * t * (3 * t - 4),
-                steep * rest * (4 - 3 * rest),
-                steep * t**2,
-            ]
-        return cell - 1, np.hstack(parts)
 
     def waves(self, freq: Floats, parity: Parity) -> Floats:
         """Transform of every spline of a half row with its mirror image, (n, reach + 1).
@@ -124,6 +104,108 @@ class SplineGrid:
         pairs = 2 * (np.cos(phase) if parity > 0 else np.sin(phase))
         pairs[:, 0] *= 0.5
         return np.asarray(pairs * (self.step * np.sinc(freq * self.step) ** 4)[:, None])
+
+
+@inlined
+def _cell(at: float, step: float, reach: int) -> tuple[int, float]:
+    """First of the four splines of a row that are not 0 at a place, and the place in its cell."""
+    place = min(max(at / step + reach, 1.0), 2.0 * reach - 1.0)
+    cell = min(int(place), 2 * reach - 2)
+    return cell - 1, place - cell
+
+
+@inlined
+def _four(t: float) -> tuple[float, float, float, float]:
+    """Those four splines."""
+    rest = 1 - t
+    near, far = 4 - 3 * t * t * (2 - t), 4 - 3 * rest * rest * (2 - rest)
+    return rest * rest * rest / 6, near / 6, far / 6, t * t * t / 6
+
+
+@inlined
+def _four_slopes(t: float, step: float) -> tuple[float, float, float, float]:
+    """Their derivatives by the place."""
+    rest, steep = 1 - t, 0.5 / step
+    near, far = t * (3 * t - 4), rest * (4 - 3 * rest)
+    return -steep * rest * rest, steep * near, steep * far, steep * t * t
+
+
+@compiled
+def _rows(at: Floats, step: float, reach: int, order: int) -> tuple[NDArray[np.intp], Floats]:
+    """`_cell` and `_four` (order 0) or `_four_slopes` (order 1) at many places, (n,) and (n, 4)."""
+    first, values = np.empty(at.size, np.intp), np.empty((at.size, 4))
+    for i in range(at.size):
+        first[i], t = _cell(at[i], step, reach)
+        values[i] = _four(t) if order == 0 else _four_slopes(t, step)
+    return first, values
+
+
+@compiled
+def add_splines(
+    found: Floats,
+    pixel: NDArray[np.intp],
+    light: Floats,
+    u: Floats,
+    v: Floats,
+    step: float,
+    coefficients: Floats,
+) -> None:
+    """Add the light of r functions at places to their pixels, the first r columns of a matrix.
+
+    Parameters
+    ----------
+    found : (m, ...) array
+    pixel : (n,) int array
+        Row of every place.
+    light : (n,) array
+        Factor of every place.
+    u, v : (n,) arrays
+        The places, in widths.
+    step : float
+        Of the grid.
+    coefficients : (size * size, r) array
+    """
+    size = int(np.sqrt(len(coefficients)))
+    reach, count = size // 2, coefficients.shape[1]
+    end = step * (reach - 1)
+    for i in range(u.size):
+        if abs(u[i]) < end and abs(v[i]) < end:
+            (first_u, t_u), (first_v, t_v) = _cell(u[i], step, reach), _cell(v[i], step, reach)
+            a, b, c, d = _four(t_u)
+            along = _four(t_v)
+            row = found[pixel[i]]
+            for j in range(4):
+                weight = light[i] * along[j]
+                start = (first_v + j) * size + first_u
+                e, f, g, h = weight * a, weight * b, weight * c, weight * d
+                p, q = coefficients[start], coefficients[start + 1]
+                r, s = coefficients[start + 2], coefficients[start + 3]
+                for k in range(count):
+                    row[k] += e * p[k] + f * q[k] + g * r[k] + h * s[k]
+
+
+@compiled
+def add_spline_sum(found: Floats, u: Floats, v: Floats, step: float, coefficients: Floats) -> None:
+    """Add a function at places (u, v) in widths and its derivatives by u and v to (3, n).
+
+    `coefficients` are those of the function, (size, size).
+    """
+    reach = len(coefficients) // 2
+    end = step * (reach - 1)
+    for i in range(u.size):
+        if abs(u[i]) < end and abs(v[i]) < end:
+            (first_u, t_u), (first_v, t_v) = _cell(u[i], step, reach), _cell(v[i], step, reach)
+            across, steep_u = _four(t_u), _four_slopes(t_u, step)
+            along, steep_v = _four(t_v), _four_slopes(t_v, step)
+            for j in range(4):
+                row = coefficients[first_v + j]
+                level, slope = 0.0, 0.0
+                for k in range(4):
+                    level += across[k] * row[first_u + k]
+                    slope += steep_u[k] * row[first_u + k]
+                found[0, i] += along[j] * level
+                found[1, i] += along[j] * slope
+                found[2, i] += steep_v[j] * level
 
 
 FINE: Final = SplineGrid(0.2, 28)

@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
@@ -47,11 +46,13 @@ class Stamps:
         return np.searchsorted(self.owner, np.arange(self.owner[-1] + 2))
 
     @cached_property
-    def _onto(self) -> csr_array:
-        """Sums the values of pairs into pixels, (n, p)."""
-        pairs = np.arange(self.pair_pixel.size)
-        shape = (self.value.size, pairs.size)
-        return csr_array((np.ones(pairs.size), (self.pair_pixel, pairs)), shape=shape)
+    def lit_pixel(self) -> _Indices:
+        """Which pixel every one of `all_offsets` belongs to, (n + p,)."""
+        return np.concatenate([np.arange(self.value.size), self.pair_pixel])
+
+    def lights(self, fluxes: Floats) -> Floats:
+        """Flux of the source of every one of `all_offsets`, (n + p,), from those of all, (k,)."""
+        return np.concatenate([fluxes[self.owner], fluxes[self.pair_source]])
 
     def offsets(self, places: Floats) -> tuple[Floats, Floats]:
         """Distances x, y of every pixel from its own source at `places` (row, col), (n,)."""
@@ -71,19 +72,9 @@ class Stamps:
         return np.concatenate([x, pair_x]), np.concatenate([y, pair_y])
 
     def summed(self, fluxes: Floats, values: Floats) -> Floats:
-        """What all sources add to every pixel, from `values` for unit flux at `all_offsets`.
-
-        Values (n + p,) or (n + p, m) give sums (n,) or (n, m).
-        """
-        size = self.value.size
-        whole = _times(fluxes[self.owner], values[:size])
-        if self.pair_pixel.size:
-            whole += self._onto @ _times(fluxes[self.pair_source], values[size:])
-        return whole
-
-
-def _times(weights: Floats, values: Floats) -> Floats:
-    return np.asarray(weights.reshape(-1, *(1,) * (values.ndim - 1)) * values)
+        """What all sources add to every pixel, (n,), from values for unit flux at `all_offsets`."""
+        light = self.lights(fluxes) * values
+        return np.asarray(np.bincount(self.lit_pixel, light, self.value.size), float)
 
 
 def cut_stamps(image: Floats, places: Floats, radius_px: float) -> Stamps:
@@ -114,10 +105,9 @@ def cut_stamps(image: Floats, places: Floats, radius_px: float) -> Stamps:
     kept = (tree.query(pixels)[1] == source) & np.isfinite(image[pixels[:, 0], pixels[:, 1]])
     pixels, source = pixels[kept], source[kept]
     _require_pixels(places, np.bincount(source, minlength=len(places)), radius_px)
-    lit = tree.query_ball_point(pixels, tuned.LIT_PX)
-    counts = np.array([len(one) for one in lit], dtype=np.intp)
-    pair_pixel = np.repeat(np.arange(counts.size), counts)
-    pair_source = np.concatenate([np.asarray(one, np.intp) for one in lit])
+    lit = cKDTree(pixels).query_ball_point(places, tuned.LIT_PX)
+    pair_source = np.repeat(np.arange(len(places)), [len(one) for one in lit])
+    pair_pixel = np.concatenate([np.asarray(one, np.intp) for one in lit])
     others = pair_source != source[pair_pixel]
     return Stamps(
         pixels[:, 0].astype(float),

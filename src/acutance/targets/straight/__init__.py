@@ -17,12 +17,16 @@ own: `rim` (a strip along the border), `nonlinearity` (a characteristic that cur
 the methods of the literature, biases included.
 """
 
-from acutance.targets.straight.edge import METHODS, measure_edge
-from acutance.targets.straight.many_edges import each_edge, measure_edges
-from acutance.targets.straight.many_pulses import each_pulse, measure_pulses
-from acutance.targets.straight.options import EdgeOptions, PulseOptions
-from acutance.targets.straight.pulse import PULSE_METHODS, measure_pulse
-from acutance.targets.straight.straight_measurement import StraightDetails, StraightMeasurement
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from acutance.targets.straight.edge import METHODS, measure_edge
+    from acutance.targets.straight.many_edges import each_edge, measure_edges
+    from acutance.targets.straight.many_pulses import each_pulse, measure_pulses
+    from acutance.targets.straight.options import EdgeOptions, PulseOptions
+    from acutance.targets.straight.pulse import PULSE_METHODS, measure_pulse
+    from acutance.targets.straight.straight_measurement import StraightDetails, StraightMeasurement
 
 __all__ = [
     "METHODS",
@@ -38,3 +42,25 @@ __all__ = [
     "measure_pulse",
     "measure_pulses",
 ]
+
+# The modules are loaded when a name is first used: an edge needs none of those of pulses.
+_HOMES = {
+    "METHODS": "edge",
+    "PULSE_METHODS": "pulse",
+    "EdgeOptions": "options",
+    "PulseOptions": "options",
+    "StraightDetails": "straight_measurement",
+    "StraightMeasurement": "straight_measurement",
+    "each_edge": "many_edges",
+    "each_pulse": "many_pulses",
+    "measure_edge": "edge",
+    "measure_edges": "many_edges",
+    "measure_pulse": "pulse",
+    "measure_pulses": "many_pulses",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        return getattr(importlib.import_module(f"acutance.targets.straight.{_HOMES[name]}"), name)
+    raise AttributeError(f"module 'acutance.targets.straight' has no attribute {name!r}")

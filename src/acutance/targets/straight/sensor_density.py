@@ -244,12 +244,12 @@ def _family(name: str, rows: Floats, parity: Floats) -> SensorFamily:
 
     Edges are seen from either side, so mirror images of sensors that are not even count as often.
     """
-    coordinates, log_width = rows[:, :-1], rows[:, -1]
-    uneven = np.linalg.norm(coordinates[:, parity < 0], axis=1) > KERNEL_FLOOR
-    coordinates = np.where((parity < 0) & ~uneven[:, None], 0.0, coordinates)
+    log_width, odd = rows[:, -1], np.flatnonzero(parity < 0)
+    uneven = np.linalg.norm(rows[:, odd], axis=1) > KERNEL_FLOOR
     places = np.repeat(np.arange(len(rows)), 1 + uneven)
     mirrored = np.append(False, places[1:] == places[:-1])
-    coordinates = np.where(mirrored[:, None], parity, 1.0) * coordinates[places]
+    coordinates = rows[places, :-1]
+    coordinates[:, odd] *= (uneven[places] * np.where(mirrored, -1.0, 1.0))[:, None]
     weight = 1.0 / (1 + uneven[places]) / len(rows)
     about = coordinates - weight @ coordinates
     covariance = (weight[:, None] * about).T @ about + KERNEL_FLOOR**2 * np.eye(parity.size)
