@@ -17,7 +17,6 @@ from typing import Literal
 
 import numpy as np
 
-from acutance.curves.grid import crossing, sample, slope
 from acutance.curves.reading import UNDEFINED, Reading
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
@@ -59,14 +58,14 @@ def rer(esf: Esf, lsf: Lsf, centre: RerCentre = "half") -> Reading:
         The 50 % point (GIQE), or the peak of the line spread function (LSF) (KOMPSAT-3 draft, step
         9b).
     """
-    grid = esf.distance_px
+    grid, curve = esf.distance_px, esf.plain
     # The peak is stationary, so its own uncertainty does not move the RER to first order.
     middle = esf.half_point if centre == "half" else Reading(_peak(lsf), np.zeros(1))
     before, behind = middle.value - 0.5, middle.value + 0.5
     if not (grid[0] <= before and behind <= grid[-1]):
         return UNDEFINED
-    value = sample(grid, esf.value, behind) - sample(grid, esf.value, before)
-    tilt = slope(grid, esf.value, behind) - slope(grid, esf.value, before)
+    tilt = curve.slope(behind) - curve.slope(before)
+    value = curve.at(behind) - curve.at(before)
     return Reading(value, esf.row(behind) - esf.row(before) + tilt * middle.row)
 
 
@@ -81,16 +80,14 @@ def _peak(lsf: Lsf) -> float:
 
 def full_width(lsf: Lsf, level: float = 0.5) -> Reading:
     """Full width of the LSF at `level` of its maximum, in pixels (level 0.5: the FWHM)."""
-    grid = lsf.distance_px
-    top = _peak(lsf)
-    height = level * sample(grid, lsf.value, top)
-    left = crossing(grid, lsf.value, height, top, -1)
-    right = crossing(grid, lsf.value, height, top, +1)
+    curve, top = lsf.plain, _peak(lsf)
+    height = level * curve.at(top)
+    left, right = curve.crossing(height, top, -1), curve.crossing(height, top, +1)
     if math.isnan(left) or math.isnan(right):
         return UNDEFINED
     rise = level * lsf.row(top)
-    row = (rise - lsf.row(right)) / slope(grid, lsf.value, right)
-    row -= (rise - lsf.row(left)) / slope(grid, lsf.value, left)
+    row = (rise - lsf.row(right)) / curve.slope(right)
+    row -= (rise - lsf.row(left)) / curve.slope(left)
     return Reading(right - left, row, lowest=0.0)
 
 
@@ -101,10 +98,10 @@ def mtf_at(mtf: Mtf, freq_cpp: float) -> Reading:
 
 def mtf_crossing(mtf: Mtf, level: float) -> Reading:
     """Lowest frequency at which the MTF falls to `level`, cycles per pixel (MTF50: 0.5)."""
-    place = crossing(mtf.freq_cpp, mtf.value, level, 0.0)
+    place = mtf.plain.crossing(level, 0.0)
     if math.isnan(place):
         return UNDEFINED
-    row = mtf.row(place) / -slope(mtf.freq_cpp, mtf.value, place)
+    row = mtf.row(place) / -mtf.plain.slope(place)
     return Reading(place, row, lowest=0.0)
 
 
@@ -157,9 +154,9 @@ def giqe_h(esf: Esf) -> Reading:
     places = [middle.value + 1.0 + 0.25 * i for i in range(9)]
     if not places[-1] <= esf.distance_px[-1]:
         return UNDEFINED
-    values = [sample(esf.distance_px, esf.value, place) for place in places]
+    values = [esf.plain.at(place) for place in places]
     highest = values.index(max(values)) if _falls(esf, places, values) else 1
-    tilt = slope(esf.distance_px, esf.value, places[highest])
+    tilt = esf.plain.slope(places[highest])
     return Reading(values[highest], esf.row(places[highest]) + tilt * middle.row)
 
 

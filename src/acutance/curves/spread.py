@@ -11,7 +11,7 @@ import numpy as np
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
-from acutance.curves.grid import Floats, Places, Rows, as_places, crossing, listed, sample, slope
+from acutance.curves.grid import Floats, Places, PlainCurve, Rows, as_places, listed, sample
 from acutance.curves.reading import UNDEFINED, Reading
 from acutance.curves.short_repr import ShortRepr
 
@@ -60,6 +60,11 @@ class _SpreadCurve(ShortRepr):
         """All of the covariance's factor, (n, m): its square is the curve's covariance."""
         return np.asarray(self.factor) if self.latent is None else self.factor @ self.latent
 
+    @cached_property
+    def plain(self) -> PlainCurve:
+        """The curve as plain numbers."""
+        return PlainCurve(self.distance_px, self.value.tolist())
+
     def row(self, distance_px: float) -> Floats:
         """The row of `factor` at any distance, (k,)."""
         found: Floats = sample(self.distance_px, self.factor, distance_px)
@@ -67,10 +72,10 @@ class _SpreadCurve(ShortRepr):
 
     def passing(self, level: float, start_px: float, direction: int = 1) -> Reading:
         """Where it first passes `level`, going from `start_px` in `direction` (+1 or -1)."""
-        place = crossing(self.distance_px, self.value, level, start_px, direction)
+        place = self.plain.crossing(level, start_px, direction)
         if math.isnan(place):
             return UNDEFINED
-        return Reading(place, self.row(place) / -slope(self.distance_px, self.value, place))
+        return Reading(place, self.row(place) / -self.plain.slope(place))
 
     def gradient(self, distance_px: float | Floats) -> Floats:
         """The row of `covariance_factor` at any distance, (m,); at an array of them (..., m)."""

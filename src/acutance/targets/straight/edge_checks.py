@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.geometry.line import Line
-from acutance.numerics.compiled import compiled
-from acutance.numerics.noise import median
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
 from acutance.targets.full_pixel import full_pixel
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
+from acutance.targets.straight.check_loops import change_along, widest_gap
 from acutance.targets.straight.ground_checks import ground_checks, rim
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,
@@ -147,10 +143,8 @@ def angle(line: Line, limits: Limits, *, by_rows: bool) -> Check:
 
 def sample_phases(line_distance: Floats, reach_px: float = 2.0) -> float:
     """Number of sub-pixel phases: one over the largest gap between the samples of the profile."""
-    ordered = np.sort(line_distance[np.abs(line_distance) < reach_px])
-    if ordered.size < 2:
-        return 0.0
-    return bounded_ratio(1.0, float((ordered[1:] - ordered[:-1]).max()))
+    gap_px = widest_gap(line_distance, reach_px)
+    return bounded_ratio(1.0, gap_px) if gap_px < math.inf else 0.0
 
 
 def phases(data: CheckData, limits: Limits) -> Check:
@@ -182,11 +176,7 @@ def blur_uniformity(data: CheckData, limits: Limits) -> Check:
     A blur wider by a variance v has an edge spread function (ESF) that differs by v / 2 times the
     slope of the line spread function (LSF).
     """
-    lsf = data.fit.response.lsf
-    step_px = float(lsf.distance_px[1] - lsf.distance_px[0])
-    bend = (lsf.value[2:] - lsf.value[:-2]) / (2 * step_px)
-    column = np.interp(-data.before[data.near], lsf.distance_px[1:-1], bend, left=0.0, right=0.0)
-    value = _lost_at_nyquist(2 * _change_along(data, column))
+    value = _lost_at_nyquist(2 * _change_along(data, data.bend))
     found = (
         f"from part to part of the edge its blur changes by {100 * value:.1f} % of the MTF at "
         "Nyquist"
@@ -204,44 +194,8 @@ def _change_along(data: CheckData, column: Floats) -> float:
 
     The column has a value for every near pixel.
     """
-    part, parts = data.along
-    power, share = _sums_of_parts(part, parts, column, data.bounded, data.near)
-    usable = power > 0.3 * median(power)
-    return _excess_rms(share[usable], power[usable], data.noise**2 * data.smoothness)
-
-
-@compiled
-def _sums_of_parts(
-    part: NDArray[np.intp], parts: int, column: Floats, residual: Floats, near: NDArray[np.intp]
-) -> tuple[Floats, Floats]:
-    """Products of a column with itself and with the near pixels' residuals, part by part."""
-    power, share = np.zeros(parts), np.zeros(parts)
-    for k in range(part.size):
-        power[part[k]] += column[k] * column[k]
-        share[part[k]] += column[k] * residual[near[k]]
-    return power, share
-
-
-@compiled
-def _excess_rms(share: Floats, power: Floats, variance: float) -> float:
-    """Root mean square of the amounts ``share / power`` about their mean, beyond their variances.
-
-    These are ``variance / power``; 0 within chance.
-    """
-    freedom = power.size - 1
-    if freedom < 1:
-        # Pixels lie next to one part of the edge at most.
-        return 0.0
-    # The mean of all parts belongs to the fit and is no change along the edge.
-    mean = np.sum(share) / np.sum(power)
-    chi_square, excess = 0.0, 0.0
-    for k in range(power.size):
-        square, chance = (share[k] / power[k] - mean) ** 2, variance / power[k]
-        chi_square += square / max(chance, 1e-18)
-        excess += (square - chance) / power.size
-    if chi_square <= freedom + CHANGE_SIGMAS * math.sqrt(2 * freedom):
-        return 0.0
-    return math.sqrt(max(excess, 0.0))
+    variance = data.noise**2 * data.smoothness
+    return change_along(*data.along, column, data.bounded, data.near, variance, CHANGE_SIGMAS)
 
 
 def lsf_width(data: CheckData, limits: Limits) -> Check:

@@ -8,12 +8,12 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.numerics.clipping import at_limit_share, piled_up_share
-from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median, outlier_share
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels
 from acutance.targets.straight.check_data import MISFIT, CheckData
+from acutance.targets.straight.check_loops import rise_outwards
 from acutance.targets.straight.nonlinearity import find_curvature, gamma_of
 from acutance.targets.straight.rounding import level_step, smallest_step
 from acutance.targets.straight.step_profile import Profile
@@ -167,35 +167,13 @@ def _slope_outwards(data: CheckData, from_px: float) -> tuple[float, float, floa
         middle = median(value)
         # A bright side rises to its level, a dark one falls to it.
         sign = 1.0 if middle > 0.5 else -1.0
-        mean_px, own, rise = _rise(outwards, data.value, from_px, middle, most)
+        mean_px, own, rise = rise_outwards(outwards, data.value, from_px, middle, most)
         covariance += sign * rise
         power += own
         weighed += own * APERTURE_TAIL_PX / mean_px**2
     if power <= 0:
         return 0.0, 0.0, 1.0
     return covariance / power, max(data.noise, MISFIT) / math.sqrt(power), weighed / power
-
-
-@compiled
-def _rise(
-    outwards: Floats, value: Floats, from_px: float, middle: float, most: float
-) -> tuple[float, float, float]:
-    """Mean distance of the pixels that are far enough, its spread, and their values' along it.
-
-    Values count from `middle` on, by no more than `most`.
-    """
-    count, total = 0, 0.0
-    for k in range(outwards.size):
-        if outwards[k] > from_px:
-            count += 1
-            total += outwards[k]
-    mean_px, power, rise = total / count, 0.0, 0.0
-    for k in range(outwards.size):
-        if outwards[k] > from_px:
-            offset = outwards[k] - mean_px
-            power += offset * offset
-            rise += offset * min(max(value[k] - middle, -most), most)
-    return mean_px, power, rise
 
 
 def correlated_noise(data: CheckData, limits: Limits) -> Check:
