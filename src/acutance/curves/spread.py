@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self, overload
+from typing import Any, overload
 
 import numpy as np
 
@@ -112,16 +112,6 @@ class _SpreadCurve(ShortRepr):
         """Where it runs."""
         first, last = self.distance_px[[0, -1]]
         return f"distance_px {first:g} to {last:g}, {self.distance_px.size} places"
-
-    def every(self, step: int) -> Self:
-        """The curve at every few of its places, from the first on."""
-        own = slice(None, None, step)
-        return replace(
-            self,
-            distance_px=self.distance_px[own],
-            value=self.value[own],
-            factor=self.factor[own],
-        )
 
     def arrays(self) -> dict[str, Floats]:
         """Distances, values and standard deviations by name, (n,) each."""

@@ -231,6 +231,7 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
     def _document(self) -> dict[str, Any]:
         from acutance import __version__
 
+        verdict = self.verdict
         one_direction = self.normal_deg is not None
         if one_direction:
             curves = _direction_fields(self.response)
@@ -248,7 +249,7 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
             **curves,
             "plane": self.plane_document(),
             "checks": WrittenLater(partial(_documents, tuple(self.checks))),
-            "verdict": {"word": self.verdict.word, "sentence": self.verdict.sentence},
+            "verdict": {"word": verdict.word, "sentence": verdict.sentence},
             "budget": WrittenLater(partial(_documents, self.budget)),
             "options": dict(self.options),
             "software": {"acutance": __version__},
@@ -291,14 +292,15 @@ def _direction_fields(response: Response) -> dict[str, Any]:
         "rer_centre": response.rer_centre,
         "gsd_m": response.gsd_m,
         "mtf": _curve_field(response.mtf),
-        "lsf": _curve_field(response.lsf.every(_STEPS)),
-        "esf": _curve_field(response.esf.every(_STEPS)),
+        "lsf": _curve_field(response.lsf, _STEPS),
+        "esf": _curve_field(response.esf, _STEPS),
     }
 
 
-def _curve_field(curve: Mtf | Esf | Lsf) -> WrittenLater:
-    """A curve, of which no more is held than is written: not its covariance."""
-    return WrittenLater(partial(_curve_document, curve.arrays()))
+def _curve_field(curve: Mtf | Esf | Lsf, step: int = 1) -> WrittenLater:
+    """A curve at every few of its places, of which no more is held than is written."""
+    columns = {name: column[::step].copy() for name, column in curve.arrays().items()}
+    return WrittenLater(partial(_curve_document, columns))
 
 
 def _curve_document(columns: Mapping[str, Floats]) -> dict[str, list[float]]:

@@ -53,13 +53,14 @@ class CoarseEsf(NamedTuple):
 
     Attributes
     ----------
-    distance_px, value : (n,) arrays
+    distance_px, value, std : (n,) arrays
     factor : (n, k) array
         Of their covariance.
     """
 
     distance_px: Floats
     value: Floats
+    std: Floats
     factor: Floats
 
     def nearest(self, place: int) -> int:
@@ -231,10 +232,9 @@ class CheckData:
     def coarse_esf(self) -> CoarseEsf:
         """Every tenth place of the ESF."""
         esf, some = self.fit.response.esf, slice(None, None, _COARSE)
-        factor = np.asarray(esf.factor[some])
-        if esf.latent is not None:
-            factor = factor @ esf.latent
-        return CoarseEsf(esf.distance_px[some], esf.value[some], factor)
+        return CoarseEsf(
+            esf.distance_px[some], esf.value[some], esf.std[some], esf.covariance_factor[some]
+        )
 
     @cached_property
     def blocks(self) -> NDArray[np.intp]:

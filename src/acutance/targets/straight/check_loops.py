@@ -21,6 +21,7 @@ __all__ = [
     "blotches",
     "border_offsets",
     "change_along",
+    "largest_bump",
     "largest_odd_part",
     "linear_at",
     "mean_std",
@@ -28,6 +29,7 @@ __all__ = [
     "pixels_far",
     "rise_outwards",
     "second_peak",
+    "side_upwards",
     "slope_and_bend",
     "standard_squares",
     "widest_gap",
@@ -259,6 +261,21 @@ def rise_outwards(
 
 
 @compiled
+def side_upwards(values: Floats, middle: float, outwards: Floats, from_px: float) -> Floats:
+    """Values of the pixels of a side, negated where they lie below the middle on average; (m,).
+
+    Of the pixels that lie further outwards than `from_px`.
+    """
+    found, n, above = np.empty(values.size), 0, 0.0
+    for k in range(values.size):
+        if outwards[k] > from_px:
+            found[n] = values[k]
+            above += values[k] - middle
+            n += 1
+    return found[:n].copy() if above > 0 else -found[:n]
+
+
+@compiled
 def blocks_of(rows: NDArray[np.intp], cols: NDArray[np.intp]) -> NDArray[np.intp]:
     """The block of 4 x 4 pixels in which every pixel lies, (n,)."""
     across = np.max(cols) // BLOCK_PX + 1
@@ -296,6 +313,28 @@ def blotches(block: NDArray[np.intp], field: Floats, outwards: Floats, from_px: 
     noise = np.sum(power - count * mean * mean) / max(np.sum(count - 1), 1)
     excess = np.var(mean) * mean.size / (mean.size - 1) - noise * np.mean(1 / count)
     return math.sqrt(max(excess, 0.0))
+
+
+@compiled
+def largest_bump(
+    distance: Floats, curve: Floats, std: Floats, from_px: float, to_px: float
+) -> float:
+    """How far a curve goes up and down on either side, beyond two of its usual deviations.
+
+    Between two distances from 0; half of its way is one bump.
+    """
+    worst = 0.0
+    for direction in (-1.0, 1.0):
+        there = (direction * distance > from_px) & (direction * distance < to_px)
+        side, usual = curve[there], np.sort(std[there])
+        if side.size < 2:
+            continue
+        way = 0.0
+        for k in range(1, side.size):
+            way += abs(side[k] - side[k - 1])
+        detour = way - abs(side[-1] - side[0])
+        worst = max(worst, 0.5 * detour - 2.0 * usual[usual.size // 2])
+    return worst
 
 
 @compiled

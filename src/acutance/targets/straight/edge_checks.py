@@ -84,6 +84,7 @@ def check_edge(
     by_rows : bool
         Whether the method works row by row, which limits the angle.
     """
+    values = region.pixels[data.trimmed.pixels.at]
     return (
         _contrast(data, limits),
         uniformity(data, limits, "dark", data.before),
@@ -99,9 +100,9 @@ def check_edge(
         full_pixel([data.fit.response.mtf_nyquist], limits),
         plateau(limits, "dark", extent.dark_px),
         plateau(limits, "bright", extent.bright_px),
-        saturation(region, data, limits, ("dark", "bright")),
+        saturation(region, values, data, limits, ("dark", "bright")),
         undeclared_fill([region.fill], limits),
-        quantisation(region, data, limits),
+        quantisation(region, values, data, limits),
         nonlinearity(data, limits, EDGE),
         gradient(data, limits),
         correlated_noise(data, limits),

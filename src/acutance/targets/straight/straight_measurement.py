@@ -123,7 +123,8 @@ class StraightMeasurement(Measurement):
     def _budget(self) -> tuple[BudgetTerm, ...]:
         """Causes of the fit, then what was stated of the target."""
         terms, rows = self.stated.terms, self.response.main_rows
-        own, stated = np.split(rows, [rows.shape[1] - len(terms)], axis=1)
+        fitted = rows.shape[1] - len(terms)
+        own, stated = rows[:, :fitted], rows[:, fitted:]
         variances = self._own_variances(own) | dict(zip(terms, stated.T**2, strict=True))
         return budget_rows(
             self.orientation,
@@ -141,7 +142,8 @@ class StraightMeasurement(Measurement):
             errors = rows if latent is None else rows @ latent[: rows.shape[1]]
             name = "fit" if isinstance(self.response, SplineResponse) else "row_scatter"
             return {name: np.einsum("ij,ij->i", errors, errors)}
-        fitted, halo = np.split(rows, [causes.design.shape[0]], axis=1)
+        columns = causes.design.shape[0]
+        fitted, halo = rows[:, :columns], rows[:, columns:]
         halos = {"halo": halo[:, 0] ** 2} if halo.size else {}
         return causes.variances(fitted) | halos
 

@@ -15,11 +15,15 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.compiled import compiled
-from acutance.numerics.noise import median
 from acutance.targets.check import Check, Limits, answer, bounded_ratio, limit_of
 from acutance.targets.question import PLACES
 from acutance.targets.straight.check_data import CheckData
-from acutance.targets.straight.check_loops import blotches, border_offsets, second_peak
+from acutance.targets.straight.check_loops import (
+    blotches,
+    border_offsets,
+    largest_bump,
+    second_peak,
+)
 from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.tuned import (
     REPEATED_SIGMAS,
@@ -80,18 +84,8 @@ def structure(data: CheckData, limits: Limits) -> Check:
     """Bumps of the ESF where it should be flat: a line, a road, a second edge."""
     place = int(0.95 * data.outside.size)
     reach = float(np.partition(data.outside, place)[place])
-    distance, value, factor = data.coarse_esf
-    std = np.sqrt(np.einsum("ij,ij->i", factor, factor))
-    worst = 0.0
-    for outwards in (-distance, distance):
-        there = (outwards > _FAR_WIDTHS * data.fwhm_px) & (outwards < reach)
-        coarse = value[there]
-        if coarse.size < 2:
-            continue
-        detour = float(
-            np.add.reduce(np.abs(coarse[1:] - coarse[:-1])) - abs(coarse[-1] - coarse[0])
-        )
-        worst = max(worst, 0.5 * detour - 2.0 * median(std[there]))
+    esf = data.coarse_esf
+    worst = largest_bump(esf.distance_px, esf.value, esf.std, _FAR_WIDTHS * data.fwhm_px, reach)
     found = f"next to the edge the profile goes up and down by {100 * worst:.1f} % of the contrast"
     return answer("structure", worst, found, limits)
 
@@ -193,7 +187,7 @@ def asymmetric_wings(data: CheckData, limits: Limits) -> Check:
     Halo, stray light and diffraction scatter to both sides equally. A step of the background
     parallel to the edge lies on one.
     """
-    distance, esf, factor = data.coarse_esf
+    distance, esf, _, factor = data.coarse_esf
     near = _FAR_WIDTHS * data.fwhm_px
     far = min(float(distance[-1]), float(data.before.max()), float(data.behind.max()))
     value, significance = 0.0, 0.0
