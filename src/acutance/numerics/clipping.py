@@ -37,7 +37,7 @@ def at_limit_share(values: Floats, saturation_level: float | None) -> float:
     """Share of some pixels, (n,), that have the largest value the detector can give."""
     if saturation_level is None or values.size == 0:
         return 0.0
-    return float(np.mean(values >= saturation_level))
+    return int(np.count_nonzero(values >= saturation_level)) / values.size
 
 
 def piled_up_share(values: Floats) -> float:

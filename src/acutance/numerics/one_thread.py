@@ -31,14 +31,15 @@ def one_thread(function: Callable[Given, Result]) -> Callable[Given, Result]:
             return function(*args, **options)
         outside = _IS_ALONE.set(True)
         try:
-            several = [(one, one.get_num_threads()) for one in _linear_algebra()]
+            threads = [(one, one.get_num_threads()) for one in _linear_algebra()]
+            several = [(library, count) for library, count in threads if count > 1]
             for library, _ in several:
                 library.set_num_threads(1)
             try:
                 return function(*args, **options)
             finally:
-                for library, threads in several:
-                    library.set_num_threads(threads)
+                for library, count in several:
+                    library.set_num_threads(count)
         finally:
             _IS_ALONE.reset(outside)
 

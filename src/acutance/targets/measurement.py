@@ -228,6 +228,10 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
         """The slices of the OTF, for JSON."""
         return self.slices.to_dict()
 
+    def budget_document(self) -> WrittenLater:
+        """The rows of the uncertainty budget, for JSON."""
+        return WrittenLater(partial(_documents, self.budget))
+
     def _document(self) -> dict[str, Any]:
         from acutance import __version__
 
@@ -250,7 +254,7 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
             "plane": self.plane_document(),
             "checks": WrittenLater(partial(_documents, tuple(self.checks))),
             "verdict": {"word": verdict.word, "sentence": verdict.sentence},
-            "budget": WrittenLater(partial(_documents, self.budget)),
+            "budget": self.budget_document(),
             "options": dict(self.options),
             "software": {"acutance": __version__},
             "measured_at": self.measured_at.isoformat(timespec="seconds"),

@@ -252,40 +252,54 @@ def _repeated_profiles(s: Floats, t: Floats, residual: Floats, windows: Floats) 
     windows : (w, 2) array
         From where to where along the normal they are compared.
     """
+    means = _part_means(s, t, residual, windows)
     found = np.zeros((len(windows), 2))
     for k in range(len(windows)):
-        start, stop = windows[k]
-        bins = int((stop - start) // _BIN_PX)
-        if bins >= 2:
-            mean = _part_means(s, t, residual, start, stop, bins)
-            found[k, 0], found[k, 1] = _shared(mean)
+        found[k, 0], found[k, 1] = _shared(means[k])
     return found
 
 
 @compiled
-def _part_means(
-    s: Floats, t: Floats, residual: Floats, start: float, stop: float, bins: int
-) -> Floats:
-    """Mean residual of every part of the target, (parts, bins), in bins that all parts fill.
+def _part_means(s: Floats, t: Floats, residual: Floats, windows: Floats) -> list[Floats]:
+    """Mean residual of every part of the target, (parts, bins), in the bins that all parts fill.
 
-    No bins where there are few pixels, or the target is short.
+    In every window, of which none overlap; without bins where there are few pixels, or the target
+    is short.
     """
-    count, first, last = 0, np.inf, -np.inf
-    for k in range(s.size):
-        if start <= s[k] < stop:
-            count, first, last = count + 1, min(first, t[k]), max(last, t[k])
-    parts = min(int((last - first) // _PART_PX), _MAX_PARTS) if count else 0
-    if parts < _MIN_PARTS or count < _MIN_PARTS * bins:
-        return np.zeros((0, 0))
-    total, pixels = np.zeros((parts, bins)), np.zeros((parts, bins))
-    for k in range(s.size):
-        if start <= s[k] < stop:
-            column = min(int((s[k] - start) * (bins / (stop - start))), bins - 1)
-            row = min(int((t[k] - first) * (parts / (last - first))), parts - 1)
-            total[row, column] += residual[k]
-            pixels[row, column] += 1
-    full = np.array([np.min(pixels[:, column]) >= 2 for column in range(bins)])
-    return total[:, full] / pixels[:, full]
+    count = len(windows)
+    window = np.full(s.size, -1, np.int64)
+    pixels, first, last = np.zeros(count), np.full(count, np.inf), np.full(count, -np.inf)
+    for i in range(s.size):
+        for k in range(count):
+            if windows[k, 0] <= s[i] < windows[k, 1]:
+                window[i] = k
+                pixels[k] += 1
+                first[k], last[k] = min(first[k], t[i]), max(last[k], t[i])
+                break
+    bins, parts = np.zeros(count, np.int64), np.zeros(count, np.int64)
+    for k in range(count):
+        bins[k] = max(int((windows[k, 1] - windows[k, 0]) // _BIN_PX), 0)
+        most = min(int((last[k] - first[k]) // _PART_PX), _MAX_PARTS) if pixels[k] else 0
+        enough = bins[k] >= 2 and most >= _MIN_PARTS and pixels[k] >= _MIN_PARTS * bins[k]
+        parts[k] = most if enough else 0
+    total = np.zeros((count, _MAX_PARTS, np.max(bins) + 1))
+    known = np.zeros(total.shape)
+    for i in range(s.size):
+        k = window[i]
+        if k >= 0 and parts[k] > 0:
+            start, stop = windows[k]
+            column = min(int((s[i] - start) * (bins[k] / (stop - start))), bins[k] - 1)
+            row = min(int((t[i] - first[k]) * (parts[k] / (last[k] - first[k]))), parts[k] - 1)
+            total[k, row, column] += residual[i]
+            known[k, row, column] += 1
+    found = []
+    for k in range(count):
+        own, full = parts[k], np.zeros(total.shape[2], np.bool_)
+        if own > 0:
+            for column in range(bins[k]):
+                full[column] = np.min(known[k, :own, column]) >= 2
+        found.append(total[k, :own][:, full] / known[k, :own][:, full])
+    return found
 
 
 @compiled
