@@ -205,11 +205,7 @@ class PlainCurve(NamedTuple):
         origin = int(grid.searchsorted(start))
         if direction < 0:
             origin = min(origin, grid.size - 1)
-        ahead = range(origin, grid.size if direction > 0 else -1, direction)
-        if not ahead:
-            return math.nan
-        above = values[origin] > level
-        last = next((place for place in ahead if (values[place] > level) != above), None)
+        last = self._changes_side(level, origin, direction)
         if last is None:
             return math.nan
         x0, x1 = grid.item(last - direction), grid.item(last)
@@ -219,6 +215,14 @@ class PlainCurve(NamedTuple):
         # One step on the cubic removes what the chord leaves.
         refined = guess - (self.at(guess) - level) / steepness
         return refined if min(x0, x1) <= refined <= max(x0, x1) else guess
+
+    def _changes_side(self, level: float, origin: int, direction: int) -> int | None:
+        """The first grid point from one on that lies on the other side of a level, if any."""
+        values = self.values
+        for place in range(origin, len(values) if direction > 0 else -1, direction):
+            if (values[place] > level) != (values[origin] > level):
+                return place
+        return None
 
 
 def crossing(grid: Floats, values: Floats, level: float, start: float, direction: int = 1) -> float:
