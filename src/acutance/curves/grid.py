@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +16,12 @@ __all__ = [
     "FREQ_CPP",
     "Floats",
     "Places",
-    "PlainCurve",
     "Rows",
     "as_places",
     "crossing",
     "listed",
     "sample",
+    "slope",
 ]
 
 Floats = NDArray[np.float64]
@@ -99,14 +99,15 @@ def _outside(grid: Floats, at: float) -> OptionError:
     )
 
 
-def _cell(grid: Floats, at: float) -> tuple[int, float]:
-    """The first of the four grid points around `at`, and its place among them (0 to 3)."""
+def _cell(grid: Floats, at: float) -> tuple[slice, float, float]:
+    """The four grid points around `at`, its place among them (0 to 3) and the grid's step."""
     start, size = grid.item(0), grid.size
-    position = (at - start) / (grid.item(1) - start)
+    step = grid.item(1) - start
+    position = (at - start) / step
     if not -1e-9 <= position <= size - 1 + 1e-9:
         raise _outside(grid, at)
     first = min(max(math.floor(position) - 1, 0), size - 4)
-    return first, position - first
+    return slice(first, first + 4), position - first, step
 
 
 def _cells(grid: Floats, at: Floats) -> tuple[NDArray[np.intp], Floats]:
@@ -153,81 +154,53 @@ def sample(grid: Floats, values: NDArray[Any] | Rows, at: float | Floats) -> Any
         columns = columns if columns.ndim == 2 else columns[:, None]
         found = np.einsum("i...,...ij->...j", np.array(_cubic_weights(places)), columns[cells])
         return found if len(values.shape) == 2 else found[..., 0]
-    cell, t = _cell(grid, at)
-    weights, near = _cubic_weights(t), values[cell : cell + 4]
-    if isinstance(near, np.ndarray) and near.ndim == 1:
-        return _sum(weights, near.tolist())
-    return np.array(weights) @ near
+    window, t, _ = _cell(grid, at)
+    weights, near = _cubic_weights(t), values[window]
+    return np.array(weights) @ near if len(values.shape) == 2 else _sum(weights, near)
 
 
-def _sum(weights: tuple[float, float, float, float], values: Sequence[Any]) -> Any:
+def slope(grid: Floats, values: Floats, at: float) -> float:
+    """Derivative of the interpolated curve at one place."""
+    window, t, step = _cell(grid, at)
+    a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
+    weights = (
+        -(c * d + b * d + b * c) / 6.0,
+        (c * d + a * d + a * c) / 2.0,
+        -(b * d + a * d + a * b) / 2.0,
+        (b * c + a * c + a * b) / 6.0,
+    )
+    return float(_sum(weights, values[window])) / step
+
+
+def _sum(weights: tuple[float, float, float, float], values: Any) -> Any:
     """Weighted sum of four numbers: plain ones are faster than arrays of them."""
-    (a, b, c, d), (p, q, r, s) = weights, values
+    (a, b, c, d), (p, q, r, s) = weights, values.tolist()
     return a * p + b * q + c * r + d * s
 
 
-class PlainCurve(NamedTuple):
-    """A curve on a regular grid as plain numbers: to read it at one place after the other.
-
-    Attributes
-    ----------
-    grid : (n,) array
-    values : list of float
-    """
-
-    grid: Floats
-    values: list[float]
-
-    def at(self, place: float) -> float:
-        """The interpolated curve at one place."""
-        first, t = _cell(self.grid, place)
-        return float(_sum(_cubic_weights(t), self.values[first : first + 4]))
-
-    def slope(self, place: float) -> float:
-        """Its derivative."""
-        first, t = _cell(self.grid, place)
-        a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
-        weights = (
-            -(c * d + b * d + b * c) / 6.0,
-            (c * d + a * d + a * c) / 2.0,
-            -(b * d + a * d + a * b) / 2.0,
-            (b * c + a * c + a * b) / 6.0,
-        )
-        step = self.grid.item(1) - self.grid.item(0)
-        return float(_sum(weights, self.values[first : first + 4])) / step
-
-    def crossing(self, level: float, start: float, direction: int = 1) -> float:
-        """Where it first passes `level`, going from `start` in `direction` (+1 or -1).
-
-        Returns ``nan`` when it never does.
-        """
-        grid, values = self.grid, self.values
-        origin = int(grid.searchsorted(start))
-        if direction < 0:
-            origin = min(origin, grid.size - 1)
-        last = self._changes_side(level, origin, direction)
-        if last is None:
-            return math.nan
-        x0, x1 = grid.item(last - direction), grid.item(last)
-        y0, y1 = values[last - direction] - level, values[last] - level
-        guess = x0 + (x1 - x0) * y0 / (y0 - y1)
-        steepness = (y1 - y0) / (x1 - x0)
-        # One step on the cubic removes what the chord leaves.
-        refined = guess - (self.at(guess) - level) / steepness
-        return refined if min(x0, x1) <= refined <= max(x0, x1) else guess
-
-    def _changes_side(self, level: float, origin: int, direction: int) -> int | None:
-        """The first grid point from one on that lies on the other side of a level, if any."""
-        values = self.values
-        for place in range(origin, len(values) if direction > 0 else -1, direction):
-            if (values[place] > level) != (values[origin] > level):
-                return place
-        return None
-
-
 def crossing(grid: Floats, values: Floats, level: float, start: float, direction: int = 1) -> float:
-    """Where a curve first passes `level`; see `PlainCurve.crossing`."""
-    return PlainCurve(grid, values.tolist()).crossing(level, start, direction)
+    """Where the curve first passes `level`, going from `start` in `direction` (+1 or -1).
+
+    Returns ``nan`` when it never does.
+    """
+    origin = int(grid.searchsorted(start))
+    if direction < 0:
+        origin = min(origin, grid.size - 1)
+    above = values[origin::direction] > level
+    if above.size < 2:
+        return math.nan
+    change = int((above != above[0]).argmax())
+    if change == 0:
+        return math.nan
+    last = origin + direction * change
+    x0, x1 = grid.item(last - direction), grid.item(last)
+    y0, y1 = values.item(last - direction) - level, values.item(last) - level
+    guess = x0 + (x1 - x0) * y0 / (y0 - y1)
+    steepness = (y1 - y0) / (x1 - x0)
+    # One step on the cubic removes what the chord leaves.
+    residual = float(sample(grid, values, guess)) - level
+    refined = guess - residual / steepness
+    return refined if min(x0, x1) <= refined <= max(x0, x1) else guess
 
 
 def listed(columns: Mapping[str, Floats]) -> dict[str, list[float]]:

@@ -17,6 +17,7 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.curves.grid import crossing, sample, slope
 from acutance.curves.reading import UNDEFINED, Reading
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
@@ -58,14 +59,14 @@ def rer(esf: Esf, lsf: Lsf, centre: RerCentre = "half") -> Reading:
         The 50 % point (GIQE), or the peak of the line spread function (LSF) (KOMPSAT-3 draft, step
         9b).
     """
-    grid, curve = esf.distance_px, esf.plain
+    grid = esf.distance_px
     # The peak is stationary, so its own uncertainty does not move the RER to first order.
     middle = esf.half_point if centre == "half" else Reading(_peak(lsf), np.zeros(1))
     before, behind = middle.value - 0.5, middle.value + 0.5
     if not (grid[0] <= before and behind <= grid[-1]):
         return UNDEFINED
-    tilt = curve.slope(behind) - curve.slope(before)
-    value = curve.at(behind) - curve.at(before)
+    value = sample(grid, esf.value, behind) - sample(grid, esf.value, before)
+    tilt = slope(grid, esf.value, behind) - slope(grid, esf.value, before)
     return Reading(value, esf.row(behind) - esf.row(before) + tilt * middle.row)
 
 
@@ -80,14 +81,16 @@ def _peak(lsf: Lsf) -> float:
 
 def full_width(lsf: Lsf, level: float = 0.5) -> Reading:
     """Full width of the LSF at `level` of its maximum, in pixels (level 0.5: the FWHM)."""
-    curve, top = lsf.plain, _peak(lsf)
-    height = level * curve.at(top)
-    left, right = curve.crossing(height, top, -1), curve.crossing(height, top, +1)
+    grid = lsf.distance_px
+    top = _peak(lsf)
+    height = level * sample(grid, lsf.value, top)
+    left = crossing(grid, lsf.value, height, top, -1)
+    right = crossing(grid, lsf.value, height, top, +1)
     if math.isnan(left) or math.isnan(right):
         return UNDEFINED
     rise = level * lsf.row(top)
-    row = (rise - lsf.row(right)) / curve.slope(right)
-    row -= (rise - lsf.row(left)) / curve.slope(left)
+    row = (rise - lsf.row(right)) / slope(grid, lsf.value, right)
+    row -= (rise - lsf.row(left)) / slope(grid, lsf.value, left)
     return Reading(right - left, row, lowest=0.0)
 
 
@@ -98,10 +101,10 @@ def mtf_at(mtf: Mtf, freq_cpp: float) -> Reading:
 
 def mtf_crossing(mtf: Mtf, level: float) -> Reading:
     """Lowest frequency at which the MTF falls to `level`, cycles per pixel (MTF50: 0.5)."""
-    place = mtf.plain.crossing(level, 0.0)
+    place = crossing(mtf.freq_cpp, mtf.value, level, 0.0)
     if math.isnan(place):
         return UNDEFINED
-    row = mtf.row(place) / -mtf.plain.slope(place)
+    row = mtf.row(place) / -slope(mtf.freq_cpp, mtf.value, place)
     return Reading(place, row, lowest=0.0)
 
 
@@ -154,9 +157,9 @@ def giqe_h(esf: Esf) -> Reading:
     places = [middle.value + 1.0 + 0.25 * i for i in range(9)]
     if not places[-1] <= esf.distance_px[-1]:
         return UNDEFINED
-    values = [esf.plain.at(place) for place in places]
+    values = [sample(esf.distance_px, esf.value, place) for place in places]
     highest = values.index(max(values)) if _falls(esf, places, values) else 1
-    tilt = esf.plain.slope(places[highest])
+    tilt = slope(esf.distance_px, esf.value, places[highest])
     return Reading(values[highest], esf.row(places[highest]) + tilt * middle.row)
 
 
@@ -169,6 +172,7 @@ def _falls(esf: Esf, places: list[float], values: list[float]) -> bool:
     falls = [i for i, one in enumerate(depth.tolist()) if one > _ROUNDING]
     if not falls:
         return False
-    rows = np.array([esf.row(places[i + 1]) - esf.row(places[i]) for i in falls])
+    row = {i: esf.row(places[i]) for i in {*falls, *(fall + 1 for fall in falls)}}
+    rows = np.array([row[i + 1] - row[i] for i in falls])
     std = np.linalg.norm(rows if esf.latent is None else rows @ esf.latent, axis=1)
     return bool((depth[falls] > 2 * std + _ROUNDING).any())

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, overload
+from typing import Any, Self, overload
 
 import numpy as np
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
-from acutance.curves.grid import Floats, Places, PlainCurve, Rows, as_places, listed, sample
+from acutance.curves.grid import Floats, Places, Rows, as_places, crossing, listed, sample, slope
 from acutance.curves.reading import UNDEFINED, Reading
 from acutance.curves.short_repr import ShortRepr
 
@@ -60,11 +60,6 @@ class _SpreadCurve(ShortRepr):
         """All of the covariance's factor, (n, m): its square is the curve's covariance."""
         return np.asarray(self.factor) if self.latent is None else self.factor @ self.latent
 
-    @cached_property
-    def plain(self) -> PlainCurve:
-        """The curve as plain numbers."""
-        return PlainCurve(self.distance_px, self.value.tolist())
-
     def row(self, distance_px: float) -> Floats:
         """The row of `factor` at any distance, (k,)."""
         found: Floats = sample(self.distance_px, self.factor, distance_px)
@@ -72,10 +67,10 @@ class _SpreadCurve(ShortRepr):
 
     def passing(self, level: float, start_px: float, direction: int = 1) -> Reading:
         """Where it first passes `level`, going from `start_px` in `direction` (+1 or -1)."""
-        place = self.plain.crossing(level, start_px, direction)
+        place = crossing(self.distance_px, self.value, level, start_px, direction)
         if math.isnan(place):
             return UNDEFINED
-        return Reading(place, self.row(place) / -self.plain.slope(place))
+        return Reading(place, self.row(place) / -slope(self.distance_px, self.value, place))
 
     def gradient(self, distance_px: float | Floats) -> Floats:
         """The row of `covariance_factor` at any distance, (m,); at an array of them (..., m)."""
@@ -112,6 +107,17 @@ class _SpreadCurve(ShortRepr):
         """Where it runs."""
         first, last = self.distance_px[[0, -1]]
         return f"distance_px {first:g} to {last:g}, {self.distance_px.size} places"
+
+    @cached_property
+    def thinned(self) -> Self:
+        """The curve at every second place: as documents hold it, and checks look at it."""
+        own = slice(None, None, 2)
+        return replace(
+            self,
+            distance_px=self.distance_px[own],
+            value=self.value[own],
+            factor=self.factor[own],
+        )
 
     def arrays(self) -> dict[str, Floats]:
         """Distances, values and standard deviations by name, (n,) each."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
-from acutance.curves.grid import Floats, Places, PlainCurve, as_places, listed, sample
+from acutance.curves.grid import Floats, Places, as_places, listed, sample
 from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["Mtf", "phasor"]
@@ -61,11 +61,6 @@ class Mtf(ShortRepr):
     def _turned(self) -> Complexes:
         """`factor` relative to the direction of the OTF, (n, k)."""
         return _turned(self.otf, self.factor)
-
-    @cached_property
-    def plain(self) -> PlainCurve:
-        """The MTF as plain numbers."""
-        return PlainCurve(self.freq_cpp, self.value.tolist())
 
     @property
     def rows(self) -> Floats:

@@ -29,9 +29,6 @@ from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_st
 
 __all__ = ["Measurement", "direction_document"]
 
-_STEPS = 2
-"""ESF and LSF are written at every second place of their grid: every 0.1 px."""
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Measurement(HasResponse, HasDirections[Response], HasChecks):
@@ -296,15 +293,14 @@ def _direction_fields(response: Response) -> dict[str, Any]:
         "rer_centre": response.rer_centre,
         "gsd_m": response.gsd_m,
         "mtf": _curve_field(response.mtf),
-        "lsf": _curve_field(response.lsf, _STEPS),
-        "esf": _curve_field(response.esf, _STEPS),
+        "lsf": _curve_field(response.lsf.thinned),
+        "esf": _curve_field(response.esf.thinned),
     }
 
 
-def _curve_field(curve: Mtf | Esf | Lsf, step: int = 1) -> WrittenLater:
-    """A curve at every few of its places, of which no more is held than is written."""
-    columns = {name: column[::step].copy() for name, column in curve.arrays().items()}
-    return WrittenLater(partial(_curve_document, columns))
+def _curve_field(curve: Mtf | Esf | Lsf) -> WrittenLater:
+    """A curve, of which no more is held than is written: not its covariance."""
+    return WrittenLater(partial(_curve_document, curve.arrays()))
 
 
 def _curve_document(columns: Mapping[str, Floats]) -> dict[str, list[float]]:

@@ -231,7 +231,7 @@ class CheckData:
     @cached_property
     def coarse_esf(self) -> CoarseEsf:
         """Every tenth place of the ESF."""
-        esf, some = self.fit.response.esf, slice(None, None, _COARSE)
+        esf, some = self.fit.response.esf.thinned, slice(None, None, _COARSE // 2)
         return CoarseEsf(
             esf.distance_px[some], esf.value[some], esf.std[some], esf.covariance_factor[some]
         )

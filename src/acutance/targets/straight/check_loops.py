@@ -32,7 +32,6 @@ __all__ = [
     "side_upwards",
     "slope_and_bend",
     "standard_squares",
-    "widest_gap",
 ]
 
 BLOCK_PX = 4
@@ -45,21 +44,6 @@ def linear_at(values: Floats, first: float, step: float, place: float) -> float:
     position = min(max((place - first) / step, 0.0), values.size - 1.0)
     cell = min(int(position), values.size - 2)
     return float(values[cell] + (position - cell) * (values[cell + 1] - values[cell]))
-
-
-@compiled
-def widest_gap(distance: Floats, reach_px: float) -> float:
-    """The largest gap between neighbouring ones of the distances within a reach.
-
-    Infinite of fewer than two.
-    """
-    ordered = np.sort(distance[np.abs(distance) < reach_px])
-    if ordered.size < 2:
-        return np.inf
-    widest = 0.0
-    for k in range(1, ordered.size):
-        widest = max(widest, ordered[k] - ordered[k - 1])
-    return widest
 
 
 @compiled

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.geometry.line import Line
@@ -12,7 +14,7 @@ from acutance.targets.full_pixel import full_pixel
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
-from acutance.targets.straight.check_loops import change_along, widest_gap
+from acutance.targets.straight.check_loops import change_along
 from acutance.targets.straight.ground_checks import ground_checks, rim
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,
@@ -144,8 +146,10 @@ def angle(line: Line, limits: Limits, *, by_rows: bool) -> Check:
 
 def sample_phases(line_distance: Floats, reach_px: float = 2.0) -> float:
     """Number of sub-pixel phases: one over the largest gap between the samples of the profile."""
-    gap_px = widest_gap(line_distance, reach_px)
-    return bounded_ratio(1.0, gap_px) if gap_px < math.inf else 0.0
+    ordered = np.sort(line_distance[np.abs(line_distance) < reach_px])
+    if ordered.size < 2:
+        return 0.0
+    return bounded_ratio(1.0, float((ordered[1:] - ordered[:-1]).max()))
 
 
 def phases(data: CheckData, limits: Limits) -> Check:

@@ -277,19 +277,21 @@ def _part_means(s: Floats, t: Floats, residual: Floats, windows: Floats) -> list
                 first[k], last[k] = min(first[k], t[i]), max(last[k], t[i])
                 break
     bins, parts = np.zeros(count, np.int64), np.zeros(count, np.int64)
+    per_px, part_per_px = np.zeros(count), np.zeros(count)
     for k in range(count):
         bins[k] = max(int((windows[k, 1] - windows[k, 0]) // _BIN_PX), 0)
         most = min(int((last[k] - first[k]) // _PART_PX), _MAX_PARTS) if pixels[k] else 0
         enough = bins[k] >= 2 and most >= _MIN_PARTS and pixels[k] >= _MIN_PARTS * bins[k]
         parts[k] = most if enough else 0
+        per_px[k] = bins[k] / (windows[k, 1] - windows[k, 0])
+        part_per_px[k] = parts[k] / (last[k] - first[k])
     total = np.zeros((count, _MAX_PARTS, np.max(bins) + 1))
     known = np.zeros(total.shape)
     for i in range(s.size):
         k = window[i]
         if k >= 0 and parts[k] > 0:
-            start, stop = windows[k]
-            column = min(int((s[i] - start) * (bins[k] / (stop - start))), bins[k] - 1)
-            row = min(int((t[i] - first[k]) * (parts[k] / (last[k] - first[k]))), parts[k] - 1)
+            column = min(int((s[i] - windows[k, 0]) * per_px[k]), bins[k] - 1)
+            row = min(int((t[i] - first[k]) * part_per_px[k]), parts[k] - 1)
             total[k, row, column] += residual[i]
             known[k, row, column] += 1
     found = []
