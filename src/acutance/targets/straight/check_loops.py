@@ -21,6 +21,7 @@ __all__ = [
     "blotches",
     "border_offsets",
     "change_along",
+    "far_side",
     "largest_bump",
     "largest_odd_part",
     "linear_at",
@@ -223,24 +224,30 @@ def border_offsets(
 
 
 @compiled
+def far_side(outwards: Floats, value: Floats, from_px: float) -> tuple[Floats, Floats]:
+    """Distances and values of the pixels that lie further outwards than `from_px`, (m,) each."""
+    far = np.empty((2, outwards.size))
+    n = 0
+    for k in range(outwards.size):
+        if outwards[k] > from_px:
+            far[0, n], far[1, n] = outwards[k], value[k]
+            n += 1
+    return far[0, :n].copy(), far[1, :n].copy()
+
+
+@compiled
 def rise_outwards(
-    outwards: Floats, value: Floats, from_px: float, middle: float, most: float
+    outwards: Floats, value: Floats, middle: float, most: float
 ) -> tuple[float, float, float]:
-    """Mean distance of the pixels that are far enough, its spread, and their values' along it.
+    """Mean distance of some pixels, its spread, and their values' along it.
 
     Values count from `middle` on, by no more than `most`.
     """
-    count, total = 0, 0.0
+    mean_px, power, rise = float(np.mean(outwards)), 0.0, 0.0
     for k in range(outwards.size):
-        if outwards[k] > from_px:
-            count += 1
-            total += outwards[k]
-    mean_px, power, rise = total / count, 0.0, 0.0
-    for k in range(outwards.size):
-        if outwards[k] > from_px:
-            offset = outwards[k] - mean_px
-            power += offset * offset
-            rise += offset * min(max(value[k] - middle, -most), most)
+        offset = outwards[k] - mean_px
+        power += offset * offset
+        rise += offset * min(max(value[k] - middle, -most), most)
     return mean_px, power, rise
 
 

@@ -138,8 +138,9 @@ def _contrast(data: CheckData, limits: Limits) -> Check:
 
 def angle(line: Line, limits: Limits, *, by_rows: bool) -> Check:
     """Angle between the edge and the grid."""
+    angle_deg = line.angle_deg
     return answer(
-        "angle_deg", line.angle_deg, f"the edge is inclined by {line.angle_deg:.2f} degrees",
+        "angle_deg", angle_deg, f"the edge is inclined by {angle_deg:.2f} degrees",
         limits, default=MAX_ANGLE_BY_ROWS_DEG if by_rows else None,
     )  # fmt: skip
 

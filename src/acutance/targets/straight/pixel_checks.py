@@ -13,7 +13,7 @@ from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels
 from acutance.targets.straight.check_data import MISFIT, CheckData
-from acutance.targets.straight.check_loops import rise_outwards, side_upwards
+from acutance.targets.straight.check_loops import far_side, rise_outwards, side_upwards
 from acutance.targets.straight.nonlinearity import find_curvature, gamma_of
 from acutance.targets.straight.rounding import level_step, smallest_step
 from acutance.targets.straight.step_profile import Profile
@@ -162,13 +162,13 @@ def _slope_outwards(data: CheckData, from_px: float) -> tuple[float, float, floa
     covariance, power, weighed = 0.0, 0.0, 0.0
     most = OUTLIER_SIGMAS * data.noise
     for outwards in (data.before, data.behind):
-        value = data.value[outwards > from_px]
+        distance, value = far_side(outwards, data.value, from_px)
         if value.size < MIN_SIDE_PIXELS:
             continue
         middle = median(value)
         # A bright side rises to its level, a dark one falls to it.
         sign = 1.0 if middle > 0.5 else -1.0
-        mean_px, own, rise = rise_outwards(outwards, data.value, from_px, middle, most)
+        mean_px, own, rise = rise_outwards(distance, value, middle, most)
         covariance += sign * rise
         power += own
         weighed += own * APERTURE_TAIL_PX / mean_px**2

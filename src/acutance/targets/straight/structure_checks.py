@@ -11,6 +11,7 @@ import math
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
@@ -252,19 +253,25 @@ def _repeated_profiles(s: Floats, t: Floats, residual: Floats, windows: Floats) 
     windows : (w, 2) array
         From where to where along the normal they are compared.
     """
-    means = _part_means(s, t, residual, windows)
+    mean, parts, bins = _part_means(s, t, residual, windows)
     found = np.zeros((len(windows), 2))
     for k in range(len(windows)):
-        found[k, 0], found[k, 1] = _shared(means[k])
+        found[k, 0], found[k, 1] = _shared(mean[k, : parts[k], : bins[k]])
     return found
 
 
 @compiled
-def _part_means(s: Floats, t: Floats, residual: Floats, windows: Floats) -> list[Floats]:
-    """Mean residual of every part of the target, (parts, bins), in the bins that all parts fill.
+def _part_means(
+    s: Floats, t: Floats, residual: Floats, windows: Floats
+) -> tuple[Floats, NDArray[np.int64], NDArray[np.int64]]:
+    """Mean residuals of the parts of the target in bins of every window, of which none overlap.
 
-    In every window, of which none overlap; without bins where there are few pixels, or the target
-    is short.
+    Returns
+    -------
+    mean : (w, parts, bins) array
+        In the first bins those that all parts fill.
+    parts, bins : (w,) int arrays
+        How many there are: none where there are few pixels, or the target is short.
     """
     count = len(windows)
     window = np.full(s.size, -1, np.int64)
@@ -294,14 +301,17 @@ def _part_means(s: Floats, t: Floats, residual: Floats, windows: Floats) -> list
             row = min(int((t[i] - first[k]) * part_per_px[k]), parts[k] - 1)
             total[k, row, column] += residual[i]
             known[k, row, column] += 1
-    found = []
+    mean, filled = np.zeros(total.shape), np.zeros(count, np.int64)
     for k in range(count):
-        own, full = parts[k], np.zeros(total.shape[2], np.bool_)
-        if own > 0:
-            for column in range(bins[k]):
-                full[column] = np.min(known[k, :own, column]) >= 2
-        found.append(total[k, :own][:, full] / known[k, :own][:, full])
-    return found
+        for column in range(bins[k] if parts[k] > 0 else 0):
+            fewest = np.inf
+            for row in range(parts[k]):
+                fewest = min(fewest, known[k, row, column])
+            if fewest >= 2:
+                for row in range(parts[k]):
+                    mean[k, row, filled[k]] = total[k, row, column] / known[k, row, column]
+                filled[k] += 1
+    return mean, parts, filled
 
 
 @compiled
