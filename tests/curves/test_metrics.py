@@ -162,12 +162,11 @@ def test_giqe_h_takes_no_rounding_of_a_plateau_for_a_fall() -> None:
     assert metrics.giqe_h(esf).value == pytest.approx(ndtr(1.25 / 0.8), abs=1e-3)
 
 
-def test_a_curve_at_every_other_place_is_the_same_curve() -> None:
+def test_a_thinned_curve_is_the_same_curve_at_every_other_place() -> None:
     esf = gaussian_response(factor_std=0.01).esf
-    thinned = esf.every(2)
-    assert np.array_equal(thinned.distance_px, esf.distance_px[::2])
-    assert np.array_equal(thinned.value, esf.value[::2])
-    assert np.array_equal(thinned.std, esf.std[::2])
+    assert np.array_equal(esf.thinned.distance_px, esf.distance_px[::2])
+    assert np.array_equal(esf.thinned.value, esf.value[::2])
+    assert np.array_equal(esf.thinned.std, esf.std[::2])
 
 
 def test_rows_give_the_deviations_of_the_main_numbers() -> None:

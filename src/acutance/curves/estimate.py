@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from numbers import Real
 from statistics import NormalDist
 from typing import Any, ClassVar
@@ -27,6 +28,12 @@ def normal_quantile(level: float) -> float:
     """
     if not (isinstance(level, Real) and 0 <= level < 1):
         raise OptionError(f"level is {level!r}: give a probability between 0 and 1, such as 0.95")
+    return _quantile(float(level))
+
+
+@lru_cache
+def _quantile(level: float) -> float:
+    """The same of a number; every estimate of a measurement asks for that of 95 %."""
     return _STANDARD_NORMAL.inv_cdf(0.5 + level / 2)
 
 

@@ -172,6 +172,7 @@ def _falls(esf: Esf, places: list[float], values: list[float]) -> bool:
     falls = [i for i, one in enumerate(depth.tolist()) if one > _ROUNDING]
     if not falls:
         return False
-    rows = np.array([esf.row(places[i + 1]) - esf.row(places[i]) for i in falls])
+    row = {i: esf.row(places[i]) for i in {*falls, *(fall + 1 for fall in falls)}}
+    rows = np.array([row[i + 1] - row[i] for i in falls])
     std = np.linalg.norm(rows if esf.latent is None else rows @ esf.latent, axis=1)
     return bool((depth[falls] > 2 * std + _ROUNDING).any())

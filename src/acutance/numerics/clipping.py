@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 
 __all__ = ["at_limit_share", "clipped_share", "piled_up_share"]
 
@@ -36,7 +37,7 @@ def at_limit_share(values: Floats, saturation_level: float | None) -> float:
     """Share of some pixels, (n,), that have the largest value the detector can give."""
     if saturation_level is None or values.size == 0:
         return 0.0
-    return float(np.mean(values >= saturation_level))
+    return int(np.count_nonzero(values >= saturation_level)) / values.size
 
 
 def piled_up_share(values: Floats) -> float:
@@ -45,12 +46,22 @@ def piled_up_share(values: Floats) -> float:
     Clipping before writing leaves many pixels at the end and few next to it; noise has few at its
     end.
     """
-    if values.size == 0:
-        return 0.0
-    is_last = values == values.max()
-    last = int(np.count_nonzero(is_last))
-    if last < _MIN_PILED_UP:
-        return 0.0
-    others = values[~is_last]
-    before = int(np.count_nonzero(others == others.max())) if others.size else 0
-    return last / values.size if last > _MIN_EXCESS * before else 0.0
+    last, before = _counts_at_end(values)
+    piled = last >= _MIN_PILED_UP and last > _MIN_EXCESS * before
+    return last / values.size if piled else 0.0
+
+
+@compiled
+def _counts_at_end(values: Floats) -> tuple[int, int]:
+    """How many of some values are the largest, and how many the largest but that."""
+    largest, second, last, before = -np.inf, -np.inf, 0, 0
+    for value in values:
+        if value > largest:
+            largest, second, last, before = value, largest, 1, last
+        elif value == largest:
+            last += 1
+        elif value > second:
+            second, before = value, 1
+        elif value == second:
+            before += 1
+    return last, before

@@ -128,7 +128,15 @@ def outlier_share(residual: Floats, noise: float, floor: float = 0.0) -> float:
     """
     if not noise > floor or residual.size == 0:
         return 0.0
-    return float(np.mean(np.abs(residual) > _OUTLYING * noise))
+    return _count_beyond(residual, _OUTLYING * noise) / residual.size
+
+
+@compiled
+def _count_beyond(residual: Floats, bound: float) -> int:
+    count = 0
+    for one in residual:
+        count += abs(one) > bound
+    return count
 
 
 @dataclass(frozen=True)

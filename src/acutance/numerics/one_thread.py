@@ -13,7 +13,7 @@ from contextvars import ContextVar
 from functools import cache, wraps
 from typing import ParamSpec, TypeVar
 
-from threadpoolctl import ThreadpoolController
+from threadpoolctl import LibController, ThreadpoolController
 
 __all__ = ["one_thread"]
 
@@ -31,8 +31,15 @@ def one_thread(function: Callable[Given, Result]) -> Callable[Given, Result]:
             return function(*args, **options)
         outside = _IS_ALONE.set(True)
         try:
-            with _libraries().limit(limits=1, user_api="blas"):
+            threads = [(one, one.get_num_threads()) for one in _linear_algebra()]
+            several = [(library, count) for library, count in threads if count > 1]
+            for library, _ in several:
+                library.set_num_threads(1)
+            try:
                 return function(*args, **options)
+            finally:
+                for library, count in several:
+                    library.set_num_threads(count)
         finally:
             _IS_ALONE.reset(outside)
 
@@ -40,6 +47,6 @@ def one_thread(function: Callable[Given, Result]) -> Callable[Given, Result]:
 
 
 @cache
-def _libraries() -> ThreadpoolController:
+def _linear_algebra() -> tuple[LibController, ...]:
     """The libraries with threads of their own; looking for them takes some milliseconds."""
-    return ThreadpoolController()
+    return tuple(ThreadpoolController().select(user_api="blas").lib_controllers)

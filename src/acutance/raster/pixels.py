@@ -210,7 +210,10 @@ def is_nan(nodata: float | None) -> bool:
 def usable_values(raw: NDArray[Any], masked: NDArray[np.bool_]) -> Floats:
     """Raw values as a new float64 array, NaN where masked or not finite."""
     values = np.array(raw, dtype=np.float64, order="C")
-    values[masked | ~np.isfinite(values)] = np.nan
+    # Of a large image most boxes are whole.
+    unusable = masked if raw.dtype.kind in "iu" else masked | ~np.isfinite(values)
+    if unusable.any():
+        values[unusable] = np.nan
     return values
 
 

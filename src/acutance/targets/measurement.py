@@ -29,9 +29,6 @@ from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_st
 
 __all__ = ["Measurement", "direction_document"]
 
-_STEPS = 2
-"""ESF and LSF are written at every second place of their grid: every 0.1 px."""
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Measurement(HasResponse, HasDirections[Response], HasChecks):
@@ -228,9 +225,14 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
         """The slices of the OTF, for JSON."""
         return self.slices.to_dict()
 
+    def budget_document(self) -> WrittenLater:
+        """The rows of the uncertainty budget, for JSON."""
+        return WrittenLater(partial(_documents, self.budget))
+
     def _document(self) -> dict[str, Any]:
         from acutance import __version__
 
+        verdict = self.verdict
         one_direction = self.normal_deg is not None
         if one_direction:
             curves = _direction_fields(self.response)
@@ -248,8 +250,8 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
             **curves,
             "plane": self.plane_document(),
             "checks": WrittenLater(partial(_documents, tuple(self.checks))),
-            "verdict": {"word": self.verdict.word, "sentence": self.verdict.sentence},
-            "budget": WrittenLater(partial(_documents, self.budget)),
+            "verdict": {"word": verdict.word, "sentence": verdict.sentence},
+            "budget": self.budget_document(),
             "options": dict(self.options),
             "software": {"acutance": __version__},
             "measured_at": self.measured_at.isoformat(timespec="seconds"),
@@ -291,8 +293,8 @@ def _direction_fields(response: Response) -> dict[str, Any]:
         "rer_centre": response.rer_centre,
         "gsd_m": response.gsd_m,
         "mtf": _curve_field(response.mtf),
-        "lsf": _curve_field(response.lsf.every(_STEPS)),
-        "esf": _curve_field(response.esf.every(_STEPS)),
+        "lsf": _curve_field(response.lsf.thinned),
+        "esf": _curve_field(response.esf.thinned),
     }
 
 

@@ -20,10 +20,19 @@ from acutance.numerics.noise import (
     side_variances,
 )
 from acutance.targets.check import MAX_RATIO
+from acutance.targets.straight.check_loops import (
+    blocks_of,
+    largest_odd_part,
+    mean_std,
+    parts_along,
+    pixels_far,
+    slope_and_bend,
+    standard_squares,
+)
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.tuned import NOISE_FLOOR, STRUCTURE_OUTLIER_SIGMAS
 
-__all__ = ["MISFIT", "CheckData", "ratio_in_words"]
+__all__ = ["MISFIT", "CheckData", "ratio_in_words", "regular"]
 
 MISFIT = 3e-4
 """Residuals below this share of the contrast are the model's own, not noise."""
@@ -44,13 +53,14 @@ class CoarseEsf(NamedTuple):
 
     Attributes
     ----------
-    distance_px, value : (n,) arrays
+    distance_px, value, std : (n,) arrays
     factor : (n, k) array
         Of their covariance.
     """
 
     distance_px: Floats
     value: Floats
+    std: Floats
     factor: Floats
 
     def nearest(self, place: int) -> int:
@@ -102,7 +112,7 @@ class CheckData:
         """Residual of the pixels, as a share of the contrast."""
         return self.fit.residual
 
-    @property
+    @cached_property
     def fwhm_px(self) -> float:
         """Full width at half maximum (FWHM) of the line spread function (LSF); 1 if undefined."""
         fwhm = self.fit.response.fwhm_px.value
@@ -149,10 +159,8 @@ class CheckData:
         Outliers count for less, and all pixels where those near the target leave the fit by more
         than their noise, as on a rough border.
         """
-        dark, bright = self.variances
-        share = np.minimum(np.maximum(self.fitted, 0.0), 1.0)
-        variance = (dark + NOISE_FLOOR**2) + (bright - dark) * share
-        square = self.residual * self.residual / variance
+        dark, bright = (variance + NOISE_FLOOR**2 for variance in self.variances)
+        square, variance = standard_squares(self.residual, self.fitted, dark, bright)
         near = square[self.outside < _NEAR_WIDTHS * self.fwhm_px]
         excess = max(median(near) / _MEDIAN_SQUARE, 1.0) if near.size else 1.0
         excess *= self.inflation
@@ -186,51 +194,52 @@ class CheckData:
         On the plateaus alone, each about its own level: across the edge a method's own misfit
         looks like correlation, and so does a level that a published method takes from few pixels.
         """
-        before, behind = (side.nonzero()[0] for side in self.plateaus)
-        flat = np.concatenate([before, behind])
-        residual = self.residual[flat]
-        for side in (residual[: before.size], residual[before.size :]):
-            if side.size:
-                side -= np.add.reduce(side) / side.size
+        residual, rows, cols = pixels_far(
+            self.residual, *self.trimmed.pixels.at, self.before, self.behind, self.far_px
+        )
         noise = robust_scale(residual) if residual.size else 0.0
         if noise <= MISFIT:
             return Correlation(1.0, 0.0, 0.0)
-        rows, cols = (at[flat] for at in self.trimmed.pixels.at)
         bounded = np.minimum(np.maximum(residual / noise, -_OUTLYING), _OUTLYING)
         return correlation(bounded, rows, cols, [direction])
 
     @cached_property
     def plateau_std(self) -> float:
         """Mean standard deviation of the two plateaus."""
-        sides = (self.value[side] for side in self.plateaus)
-        stds = [_std(side) for side in sides if side.size > 1]
-        return sum(stds) / len(stds) if stds else 0.0
+        return mean_std(self.value, self.before, self.behind, self.far_px)
 
     @cached_property
     def near(self) -> NDArray[np.intp]:
         """Which pixels lie within the reach of the blur from the first step."""
         return (np.abs(self.before) < _REACH_WIDTHS * self.fwhm_px).nonzero()[0]
 
-    @cached_property
+    @property
     def slope(self) -> Floats:
         """How much every near pixel changes when the first step moves by one pixel against s."""
-        lsf = self.fit.response.lsf
-        return np.interp(-self.before[self.near], lsf.distance_px, lsf.value)
+        return self._lsf_at_near_pixels[0]
+
+    @property
+    def bend(self) -> Floats:
+        """The derivative of the LSF at every near pixel, 1/px^2."""
+        return self._lsf_at_near_pixels[1]
+
+    @cached_property
+    def _lsf_at_near_pixels(self) -> tuple[Floats, Floats]:
+        grid, value = self.fit.response.lsf.distance_px, self.fit.response.lsf.value
+        return slope_and_bend(value, *regular(grid), self.before, self.near)
 
     @cached_property
     def coarse_esf(self) -> CoarseEsf:
         """Every tenth place of the ESF."""
-        esf, some = self.fit.response.esf, slice(None, None, _COARSE)
-        factor = np.asarray(esf.factor[some])
-        if esf.latent is not None:
-            factor = factor @ esf.latent
-        return CoarseEsf(esf.distance_px[some], esf.value[some], factor)
+        esf, some = self.fit.response.esf.thinned, slice(None, None, _COARSE // 2)
+        return CoarseEsf(
+            esf.distance_px[some], esf.value[some], esf.std[some], esf.covariance_factor[some]
+        )
 
     @cached_property
     def blocks(self) -> NDArray[np.intp]:
         """The block of 4 x 4 pixels in which every pixel lies, (n,)."""
-        rows, cols = (at >> 2 for at in self.trimmed.pixels.at)
-        return np.asarray(rows * (int(cols.max()) + 1) + cols)
+        return blocks_of(*self.trimmed.pixels.at)
 
     @cached_property
     def bounded(self) -> Floats:
@@ -245,30 +254,21 @@ class CheckData:
         As many parts as there are 5 px of pixels next to the first step, 3 to 12, over the whole
         length.
         """
-        t = self.t[self.near]
-        steep = t[np.abs(self.before[self.near]) < 1]
-        extent_px = float(steep.max() - steep.min()) if steep.size else 0.0
-        parts = max(_MIN_PARTS, min(_MAX_PARTS, int(extent_px // _PART_PX)))
-        first, last = float(self.t.min()), float(self.t.max())
-        place = (t - first) * (parts / max(last - first, 1e-9))
-        return np.minimum(place.astype(np.intp), parts - 1), parts
+        return parts_along(self.t, self.before, self.near, _PART_PX, _MIN_PARTS, _MAX_PARTS)
 
     @cached_property
     def asymmetry(self) -> float:
         """Largest odd part of the ESF about the middle where it is smallest, within two widths."""
         esf = self.fit.response.esf
-        middle, apart = _MIDDLES_PX[:, None], _APART_WIDTHS * self.fwhm_px
-        places = np.concatenate([middle + apart, middle - apart], axis=1)
-        value = np.interp(places, esf.distance_px, esf.value).reshape(_MIDDLES_PX.size, 2, -1)
-        odd = np.add.reduce(value, axis=1) - 1
-        best = int(np.argmin(np.einsum("ij,ij->i", odd, odd)))
-        return float(np.max(np.abs(odd[best])))
+        return largest_odd_part(
+            esf.value, *regular(esf.distance_px), _MIDDLES_PX, _APART_WIDTHS * self.fwhm_px
+        )
 
 
-def _std(values: Floats) -> float:
-    """Standard deviation, faster than `numpy.std`."""
-    centred = values - float(np.add.reduce(values)) / values.size
-    return math.sqrt(float(centred @ centred) / values.size)
+def regular(grid: Floats) -> tuple[float, float]:
+    """The first place of a regular grid, and its step."""
+    first = grid.item(0)
+    return first, grid.item(1) - first
 
 
 def ratio_in_words(ratio: float) -> str:

@@ -269,7 +269,7 @@ def in_whole_image(line: Line, region: RegionPixels) -> Line:
 def details_of(region: RegionPixels, trimmed: EdgePixels, fit: EdgeFit) -> StraightDetails:
     """The pixels of a fit by their distance along the normal."""
     used = np.isfinite(trimmed.image)
-    details = StraightDetails(region.pixels, used, fit.distance_px, fit.value, fit.residual)
+    pixels = (region.pixels, used, fit.distance_px, fit.value, fit.residual)
     if not isinstance(fit, SplineEdge):
-        return details
-    return replace(details, causes=fit.causes, pixels_alone=fit.pixels_alone, families=fit.families)
+        return StraightDetails(*pixels)
+    return StraightDetails(*pixels, fit.causes, fit.pixels_alone, fit.families)

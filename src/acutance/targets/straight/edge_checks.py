@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.geometry.line import Line
-from acutance.numerics.compiled import compiled
-from acutance.numerics.noise import median
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
 from acutance.targets.full_pixel import full_pixel
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
+from acutance.targets.straight.check_loops import change_along
 from acutance.targets.straight.ground_checks import ground_checks, rim
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,
@@ -88,6 +86,7 @@ def check_edge(
     by_rows : bool
         Whether the method works row by row, which limits the angle.
     """
+    values = region.pixels[data.trimmed.pixels.at]
     return (
         _contrast(data, limits),
         uniformity(data, limits, "dark", data.before),
@@ -103,9 +102,9 @@ def check_edge(
         full_pixel([data.fit.response.mtf_nyquist], limits),
         plateau(limits, "dark", extent.dark_px),
         plateau(limits, "bright", extent.bright_px),
-        saturation(region, data, limits, ("dark", "bright")),
+        saturation(region, values, data, limits, ("dark", "bright")),
         undeclared_fill([region.fill], limits),
-        quantisation(region, data, limits),
+        quantisation(region, values, data, limits),
         nonlinearity(data, limits, EDGE),
         gradient(data, limits),
         correlated_noise(data, limits),
@@ -139,8 +138,9 @@ def _contrast(data: CheckData, limits: Limits) -> Check:
 
 def angle(line: Line, limits: Limits, *, by_rows: bool) -> Check:
     """Angle between the edge and the grid."""
+    angle_deg = line.angle_deg
     return answer(
-        "angle_deg", line.angle_deg, f"the edge is inclined by {line.angle_deg:.2f} degrees",
+        "angle_deg", angle_deg, f"the edge is inclined by {angle_deg:.2f} degrees",
         limits, default=MAX_ANGLE_BY_ROWS_DEG if by_rows else None,
     )  # fmt: skip
 
@@ -182,11 +182,7 @@ def blur_uniformity(data: CheckData, limits: Limits) -> Check:
     A blur wider by a variance v has an edge spread function (ESF) that differs by v / 2 times the
     slope of the line spread function (LSF).
     """
-    lsf = data.fit.response.lsf
-    step_px = float(lsf.distance_px[1] - lsf.distance_px[0])
-    bend = (lsf.value[2:] - lsf.value[:-2]) / (2 * step_px)
-    column = np.interp(-data.before[data.near], lsf.distance_px[1:-1], bend, left=0.0, right=0.0)
-    value = _lost_at_nyquist(2 * _change_along(data, column))
+    value = _lost_at_nyquist(2 * _change_along(data, data.bend))
     found = (
         f"from part to part of the edge its blur changes by {100 * value:.1f} % of the MTF at "
         "Nyquist"
@@ -204,44 +200,8 @@ def _change_along(data: CheckData, column: Floats) -> float:
 
     The column has a value for every near pixel.
     """
-    part, parts = data.along
-    power, share = _sums_of_parts(part, parts, column, data.bounded, data.near)
-    usable = power > 0.3 * median(power)
-    return _excess_rms(share[usable], power[usable], data.noise**2 * data.smoothness)
-
-
-@compiled
-def _sums_of_parts(
-    part: NDArray[np.intp], parts: int, column: Floats, residual: Floats, near: NDArray[np.intp]
-) -> tuple[Floats, Floats]:
-    """Products of a column with itself and with the near pixels' residuals, part by part."""
-    power, share = np.zeros(parts), np.zeros(parts)
-    for k in range(part.size):
-        power[part[k]] += column[k] * column[k]
-        share[part[k]] += column[k] * residual[near[k]]
-    return power, share
-
-
-@compiled
-def _excess_rms(share: Floats, power: Floats, variance: float) -> float:
-    """Root mean square of the amounts ``share / power`` about their mean, beyond their variances.
-
-    These are ``variance / power``; 0 within chance.
-    """
-    freedom = power.size - 1
-    if freedom < 1:
-        # Pixels lie next to one part of the edge at most.
-        return 0.0
-    # The mean of all parts belongs to the fit and is no change along the edge.
-    mean = np.sum(share) / np.sum(power)
-    chi_square, excess = 0.0, 0.0
-    for k in range(power.size):
-        square, chance = (share[k] / power[k] - mean) ** 2, variance / power[k]
-        chi_square += square / max(chance, 1e-18)
-        excess += (square - chance) / power.size
-    if chi_square <= freedom + CHANGE_SIGMAS * math.sqrt(2 * freedom):
-        return 0.0
-    return math.sqrt(max(excess, 0.0))
+    variance = data.noise**2 * data.smoothness
+    return change_along(*data.along, column, data.bounded, data.near, variance, CHANGE_SIGMAS)
 
 
 def lsf_width(data: CheckData, limits: Limits) -> Check:

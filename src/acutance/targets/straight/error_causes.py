@@ -8,6 +8,7 @@ column of the factors, or part of the covariance of the latent variables.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, TypeVar
 
 import numpy as np
@@ -92,12 +93,16 @@ class FitCauses(ShortRepr):
         noise = np.sum(by_pixels @ self.information * by_pixels, axis=1)
         # Of a density with several peaks the covariance may exceed what any of them allows.
         noise = np.minimum(noise, left_open)
-        names = np.array(self.group)
+        terms, belongs = _memberships(self.group)
         return {
             "pixel_noise": noise,
             "prior_shape": left_open - noise + squares[:, m:].sum(axis=1),
-            **{
-                name: squares[:, n:m][:, names == name].sum(axis=1)
-                for name in dict.fromkeys(self.group)
-            },
+            **dict(zip(terms, (squares[:, n:m] @ belongs).T, strict=True)),
         }
+
+
+@lru_cache
+def _memberships(group: tuple[str, ...]) -> tuple[tuple[str, ...], Floats]:
+    """The terms of some unknowns, and which unknown belongs to which, (unknowns, terms)."""
+    terms = tuple(dict.fromkeys(group))
+    return terms, np.array([[name == term for term in terms] for name in group], float)

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import wrap_direction
 from acutance.geometry.line import Line
@@ -24,7 +23,10 @@ __all__ = ["Segment", "find_segments"]
 
 _BIN_DEG = 5.0
 _BINS = int(360 / _BIN_DEG)
-_BEFORE, _AFTER = np.arange(_BINS) - 1, (np.arange(_BINS) + 1) % _BINS
+_MOST_DIRECTIONS = 4
+"""In which the line with the most votes is looked for."""
+_VOTE = 6
+"""Numbers of a vote."""
 _WINDOW_COS = math.cos(math.radians(20.0))
 _REACH_PX = 2.5
 _MIN_LENGTH_PX = 6.0
@@ -51,25 +53,6 @@ class Segment:
     strength: float
 
 
-@dataclass(frozen=True, eq=False)
-class _Votes:
-    """Gradient of the pixels that stand out: place, unit vector and magnitude, (n,) each."""
-
-    row: Floats
-    col: Floats
-    x: Floats
-    y: Floats
-    magnitude: Floats
-
-    @property
-    def arrays(self) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        """All of them, in that order."""
-        return self.row, self.col, self.x, self.y, self.magnitude
-
-    def only(self, chosen: NDArray[np.bool_]) -> _Votes:
-        return _Votes(*(values[chosen] for values in self.arrays))
-
-
 def find_segments(image: Floats, most: int = 32) -> Iterator[Segment]:
     """Straight edges of an image, the strongest first.
 
@@ -82,7 +65,7 @@ def find_segments(image: Floats, most: int = 32) -> Iterator[Segment]:
     """
     votes = _gradient_votes(image)
     for _ in range(most):
-        if votes.magnitude.size < _MIN_LENGTH_PX:
+        if votes.shape[1] < _MIN_LENGTH_PX:
             return
         found = _strongest(votes)
         if found is None:
@@ -90,18 +73,21 @@ def find_segments(image: Floats, most: int = 32) -> Iterator[Segment]:
         segment, own = found
         if segment.stop_px - segment.start_px >= _MIN_LENGTH_PX:
             yield segment
-        votes = votes.only(~own)
+        votes = votes[:, ~own]
 
 
-def _gradient_votes(image: Floats) -> _Votes:
-    """Gradient of the inner pixels whose whole neighbourhood is known, strong ones only."""
+def _gradient_votes(image: Floats) -> Floats:
+    """Votes of the inner pixels whose whole neighbourhood is known, strong ones only, (6, n).
+
+    Row and column, unit vector (x, y) of the gradient, its magnitude, and the bin of its direction.
+    """
     gradient = _sobel(np.ascontiguousarray(image))
     magnitude = gradient[2]
     known = np.isfinite(magnitude)
     if not known.any():
-        return _Votes(*(np.empty(0) for _ in range(5)))
+        return np.empty((_VOTE, 0))
     strongest, typical = _usual_magnitudes(magnitude[known])
-    return _Votes(*_standing_out(gradient, max(0.2 * strongest, 2 * typical, 1e-300), strongest))
+    return _standing_out(gradient, max(0.2 * strongest, 2 * typical, 1e-300), strongest)
 
 
 @compiled
@@ -134,57 +120,76 @@ def _usual_magnitudes(magnitude: Floats) -> tuple[float, float]:
 
 @compiled
 def _standing_out(gradient: Floats, least: float, strongest: float) -> Floats:
-    """Votes of the pixels whose gradient exceeds the least, (5, n); none counts too much."""
+    """Votes of the pixels whose gradient exceeds the least, (6, n); none counts too much."""
     _, rows, cols = gradient.shape
     count = 0
     for i in range(rows):
         for j in range(cols):
             count += gradient[2, i, j] > least
-    votes, n = np.empty((5, count)), 0
+    votes, n = np.empty((_VOTE, count)), 0
     for i in range(rows):
         for j in range(cols):
             magnitude = gradient[2, i, j]
             if magnitude > least:
                 votes[0, n], votes[1, n] = i + 1, j + 1
-                votes[2, n], votes[3, n] = (
-                    gradient[0, i, j] / magnitude,
-                    gradient[1, i, j] / magnitude,
-                )
+                x, y = gradient[0, i, j] / magnitude, gradient[1, i, j] / magnitude
+                direction_deg = math.degrees(math.atan2(y, x))
+                votes[2, n], votes[3, n] = x, y
                 votes[4, n] = min(magnitude, strongest)
+                votes[5, n] = int((direction_deg + 180.0) / _BIN_DEG) % _BINS
                 n += 1
     return votes
 
 
-def _strongest(votes: _Votes) -> tuple[Segment, NDArray[np.bool_]] | None:
+def _strongest(votes: Floats) -> tuple[Segment, NDArray[np.bool_]] | None:
     """The strongest segment and the votes that are its own."""
-    best: tuple[float, float, float] | None = None
-    for direction in _favoured_directions(votes):
-        total, offset = _favoured_offset(*votes.arrays, *unit_vector(direction))
-        if best is None or total > best[0]:
-            best = total, direction, offset
-    if best is None:
+    total, direction_deg, offset = _favoured_line(votes)
+    if not total > 0:
         return None
-    return _refined(votes, best[1], best[2])
-
-
-def _favoured_directions(votes: _Votes, most: int = 4) -> list[float]:
-    """Directions with the most votes, as peaks of the smoothed circular histogram."""
-    direction_deg = np.degrees(np.arctan2(votes.y, votes.x))
-    number = ((direction_deg + 180.0) / _BIN_DEG).astype(np.intp) % _BINS
-    histogram = np.bincount(number, votes.magnitude, _BINS)
-    smooth = histogram + histogram[_BEFORE] + histogram[_AFTER]
-    peaks = (smooth >= smooth[_BEFORE]) & (smooth > smooth[_AFTER]) & (smooth > 0)
-    order = np.flatnonzero(peaks)
-    order = order[np.argsort(smooth[order])[::-1][:most]]
-    return [float((k + 0.5) * _BIN_DEG - 180.0) for k in order]
+    row, col, angle, length_px, own = _refined(votes, direction_deg, offset)
+    if not length_px > 0:
+        return None
+    line = Line(row, col, wrap_direction(math.degrees(angle)))
+    half_px = 0.5 * length_px
+    return Segment(line, -half_px, half_px, float(votes[4, own].sum())), own
 
 
 @compiled
-def _favoured_offset(
-    row: Floats, col: Floats, x: Floats, y: Floats, magnitude: Floats, normal_x: float,
-    normal_y: float,
-) -> tuple[float, float]:  # fmt: skip
+def _favoured_line(votes: Floats) -> tuple[float, float, float]:
+    """The line with the most votes: how many, direction of its normal in degrees, and offset.
+
+    It is looked for in the directions with the most votes, as peaks of the smoothed circular
+    histogram.
+    """
+    histogram = np.zeros(_BINS)
+    for k in range(votes.shape[1]):
+        histogram[int(votes[5, k])] += votes[4, k]
+    smooth = np.empty(_BINS)
+    for k in range(_BINS):
+        smooth[k] = histogram[k] + histogram[k - 1] + histogram[(k + 1) % _BINS]
+    most, favoured_deg, favoured_offset = 0.0, 0.0, 0.0
+    tried = np.zeros(_BINS, np.bool_)
+    for _ in range(_MOST_DIRECTIONS):
+        peak = -1
+        for k in range(_BINS):
+            is_peak = smooth[k] >= smooth[k - 1] and smooth[k] > smooth[(k + 1) % _BINS]
+            if is_peak and not tried[k] and (peak < 0 or smooth[k] >= smooth[peak]):
+                peak = k
+        if peak < 0:
+            break
+        tried[peak] = True
+        direction_deg = (peak + 0.5) * _BIN_DEG - 180.0
+        angle = math.radians(direction_deg)
+        total, offset = _favoured_offset(votes, math.cos(angle), math.sin(angle))
+        if total > most:
+            most, favoured_deg, favoured_offset = total, direction_deg, offset
+    return most, favoured_deg, favoured_offset
+
+
+@compiled
+def _favoured_offset(votes: Floats, normal_x: float, normal_y: float) -> tuple[float, float]:
     """The most votes that lines of one direction have, and the offset of the line with them."""
+    row, col, x, y, magnitude = votes[0], votes[1], votes[2], votes[3], votes[4]
     near = x * normal_x + y * normal_y > _WINDOW_COS
     offset = normal_x * col + normal_y * row
     first, last = np.inf, -np.inf
@@ -204,38 +209,52 @@ def _favoured_offset(
     return profile[best + 1], first + best + 0.5
 
 
+@compiled
 def _refined(
-    votes: _Votes, direction: float, offset: float
-) -> tuple[Segment, NDArray[np.bool_]] | None:
-    """Place the line through the votes near it by weighted least squares, twice."""
-    angle = math.radians(direction)
+    votes: Floats, direction_deg: float, offset: float
+) -> tuple[float, float, float, float, NDArray[np.bool_]]:
+    """Place a line through the votes near it by weighted least squares, twice.
+
+    Returns
+    -------
+    row, col : float
+        Middle of the longest stretch of votes.
+    angle : float
+        Of its normal, radians.
+    length_px : float
+        Of the stretch; 0 where there is none.
+    own : (n,) bool array
+        The votes that belong to it.
+    """
+    angle = math.radians(direction_deg)
+    row, col, middle = 0.0, 0.0, 0.0
+    own, along = np.zeros(votes.shape[1], np.bool_), np.empty(0)
     for reach in (_REACH_PX + 2.0, _REACH_PX):
         x, y = math.cos(angle), math.sin(angle)
-        own, along, middle, across, tilt = _line_through(*votes.arrays, x, y, offset, reach)
+        own, along, middle, across, tilt = _line_through(votes, x, y, offset, reach)
         if along.size < _MIN_LENGTH_PX or not math.isfinite(tilt):
-            return None
+            return row, col, angle, 0.0, own
         # The line's points are (offset + across) n + along t, tilted by `tilt`.
         col = x * (offset + across) - y * middle
         row = y * (offset + across) + x * middle
         angle -= math.atan(tilt)
         offset = math.cos(angle) * col + math.sin(angle) * row
     start, stop = _longest_stretch(np.sort(along), _MAX_GAP_PX)
-    if not stop > start:
-        return None
+    n = 0
+    for k in range(own.size):
+        if own[k]:
+            own[k] = start <= along[n] <= stop
+            n += 1
     centre = 0.5 * (start + stop) - middle
-    x, y = math.cos(angle), math.sin(angle)
-    line = Line(row + x * centre, col - y * centre, wrap_direction(math.degrees(angle)))
-    inside = (along >= start) & (along <= stop)
-    own[own] = inside
-    half = 0.5 * (stop - start)
-    return Segment(line, -half, half, float(votes.magnitude[own].sum())), own
+    row += math.cos(angle) * centre
+    col -= math.sin(angle) * centre
+    return row, col, angle, stop - start, own
 
 
 @compiled
 def _line_through(
-    row: Floats, col: Floats, x: Floats, y: Floats, magnitude: Floats, normal_x: float,
-    normal_y: float, offset: float, reach_px: float,
-) -> tuple[NDArray[np.bool_], Floats, float, float, float]:  # fmt: skip
+    votes: Floats, normal_x: float, normal_y: float, offset: float, reach_px: float
+) -> tuple[NDArray[np.bool_], Floats, float, float, float]:
     """The straight line through the votes near another one, by least squares.
 
     Returns
@@ -249,6 +268,7 @@ def _line_through(
     tilt : float
         Slope of the line through them against the first; not finite if they are one point.
     """
+    row, col, x, y, magnitude = votes[0], votes[1], votes[2], votes[3], votes[4]
     away = normal_x * col + normal_y * row - offset
     own = (np.abs(away) < reach_px) & (x * normal_x + y * normal_y > _WINDOW_COS)
     away, weight = away[own], magnitude[own] ** 2

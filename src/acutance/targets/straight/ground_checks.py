@@ -5,16 +5,19 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
+from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 from acutance.targets.check import Check, Limits, answer
 from acutance.targets.question import PLACES
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.fit_edge import SplineEdge
-from acutance.targets.straight.ground_steps import GroundSide
 from acutance.targets.straight.rim import find_rim
 
 __all__ = ["ground_checks", "rim"]
 
+_Span = tuple[float, float, float]
 _CLOSE_WIDTHS = 2.5
 _MIN_LEVEL = 0.003
 """Share of the contrast below which ground is taken as even when the two sides are compared."""
@@ -32,9 +35,10 @@ def ground_checks(data: CheckData, limits: Limits, sides: tuple[str, str]) -> tu
     """
     if not isinstance(data.fit, SplineEdge):
         return ()
-    spans = [_span(side) for side in data.fit.ground]
+    close_px = _CLOSE_WIDTHS * data.fit.blur.width_px
+    spans = [_span(one.distance_px, one.level, one.seen, close_px) for one in data.fit.ground]
     return (
-        _ground(spans, limits, sides), _close(data.fit, limits, sides),
+        _ground(spans, limits, sides), _close(spans, close_px, limits, sides),
         _mirrored(data.fit, spans, limits),
     )  # fmt: skip
 
@@ -57,10 +61,10 @@ def rim(data: CheckData, limits: Limits) -> tuple[Check, ...]:
     return (answer("rim", strip.probability, found, limits),)
 
 
-def _ground(spans: list[tuple[float, float]], limits: Limits, sides: tuple[str, str]) -> Check:
+def _ground(spans: list[_Span], limits: Limits, sides: tuple[str, str]) -> Check:
     """How much the ground beside the target differs from its level at the target."""
     worst = 0 if spans[0][0] >= spans[1][0] else 1
-    value, from_px = spans[worst]
+    value, from_px, _ = spans[worst]
     found = "the ground beside the target is even"
     if value > 0:
         found = (
@@ -70,30 +74,32 @@ def _ground(spans: list[tuple[float, float]], limits: Limits, sides: tuple[str, 
     return answer("ground", value, found, limits)
 
 
-def _span(side: GroundSide) -> tuple[float, float]:
-    """The largest significant level of a side, and where it begins, px."""
-    seen = side.seen
-    if not seen.any():
-        return 0.0, math.inf
-    return float(np.abs(side.level[seen]).max()), float(side.distance_px[int(np.argmax(seen))])
+@compiled
+def _span(
+    distance_px: Floats, level: Floats, seen: NDArray[np.bool_], close_px: float
+) -> tuple[float, float, float]:
+    """The largest significant level of a side, where such begin, px, and the largest close one."""
+    largest, from_px, close = 0.0, np.inf, 0.0
+    for k in range(level.size):
+        if seen[k]:
+            largest, from_px = max(largest, abs(level[k])), min(from_px, distance_px[k])
+            if distance_px[k] <= close_px:
+                close = max(close, abs(level[k]))
+    return largest, from_px, close
 
 
-def _close(fit: SplineEdge, limits: Limits, sides: tuple[str, str]) -> Check:
+def _close(spans: list[_Span], close_px: float, limits: Limits, sides: tuple[str, str]) -> Check:
     """How much the ground steps where the blur ends: a step closer still is taken for blur."""
-    levels = []
-    for side in fit.ground:
-        near = int(np.searchsorted(side.distance_px, _CLOSE_WIDTHS * fit.blur.width_px, "right"))
-        seen = np.where(side.seen[:near], np.abs(side.level[:near]), 0.0)
-        levels.append(float(seen.max(initial=0.0)))
+    levels = [close for _, _, close in spans]
     worst = 0 if levels[0] >= levels[1] else 1
     found = (
         f"{PLACES[sides[worst]]} the ground steps by {100 * levels[worst]:.1f} % of the contrast "
-        f"within {_CLOSE_WIDTHS * fit.blur.width_px:.1f} px of the target"
+        f"within {close_px:.1f} px of the target"
     )
     return answer("close_ground", levels[worst], found, limits)
 
 
-def _mirrored(fit: SplineEdge, spans: list[tuple[float, float]], limits: Limits) -> Check:
+def _mirrored(fit: SplineEdge, spans: list[_Span], limits: Limits) -> Check:
     """Whether the ground on one side is the mirror image of that on the other.
 
     Ground is not; ringing of a sharpened product, which is as far out on both sides of an edge,

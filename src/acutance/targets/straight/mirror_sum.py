@@ -27,7 +27,8 @@ from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.numerics.small_matrices import factorize, forward_substitution
-from acutance.targets.straight.check_data import MISFIT, CheckData
+from acutance.targets.straight.check_data import MISFIT, CheckData, regular
+from acutance.targets.straight.check_loops import linear_at
 from acutance.targets.straight.ground_steps import near_ground
 from acutance.targets.straight.tuned import NEAR_GROUND_STEPS
 
@@ -106,19 +107,15 @@ class MirrorSum:
             Where the edge is folded, from its 50 % point on.
         """
         response = data.fit.response
-        cell_px = _CELL * data.fwhm_px
         information, left = _folded(
-            data.fit.distance_px - middle_px, data.weights, data.residual, data.near, cell_px
-        )
-        places = middle_px + cell_px / _CELL * np.concatenate([-_CENTRES, _CENTRES])
-        esf = np.interp(places, response.esf.distance_px, response.esf.value).reshape(2, -1)
-        lsf = np.interp(places, response.lsf.distance_px, response.lsf.value).reshape(2, -1)
-        return cls(
-            np.asarray(np.add.reduce(esf + left) - 1),
-            np.asarray(np.add.reduce(1 / information)) + MISFIT**2,
-            np.asarray(0.5 * (1 + esf[1] - esf[0])),
-            np.asarray(0.5 * np.add.reduce(lsf)),
-        )
+            data.fit.distance_px, data.weights, data.residual, data.near, middle_px,
+            _CELL * data.fwhm_px,
+        )  # fmt: skip
+        first, step = regular(response.esf.distance_px)
+        return cls(*_summed(
+            response.esf.value, response.lsf.value, first, step, information, left, middle_px,
+            data.fwhm_px,
+        ))  # fmt: skip
 
     def weighed(self, curves: Floats, settings: slice = EVERY) -> Weighed:
         """Weigh the sum, and `curves` (k, n) that may be part of it, at some settings."""
@@ -160,17 +157,40 @@ def _weighed(
 
 @compiled
 def _folded(
-    s: Floats, weight: Floats, residual: Floats, near: NDArray[np.intp], cell_px: float
-) -> tuple[Floats, Floats]:
+    s: Floats, weight: Floats, residual: Floats, near: NDArray[np.intp], middle_px: float,
+    cell_px: float,
+) -> tuple[Floats, Floats]:  # fmt: skip
     """Weight of the near pixels in every bin of either side, and their mean residual, (2, n)."""
     total, left = np.full((2, _BINS), 1e-12), np.zeros((2, _BINS))
     for k in near:
-        own = _BIN[min(int(abs(s[k]) / cell_px), _BIN.size - 1)]
+        outwards = s[k] - middle_px
+        own = _BIN[min(int(abs(outwards) / cell_px), _BIN.size - 1)]
         if own < _BINS:
-            side = 1 if s[k] > 0 else 0
+            side = 1 if outwards > 0 else 0
             total[side, own] += weight[k]
             left[side, own] += weight[k] * residual[k]
     return total, left / total
+
+
+@compiled
+def _summed(
+    esf: Floats, lsf: Floats, first: float, step: float, information: Floats, left: Floats,
+    middle_px: float, width_px: float,
+) -> tuple[Floats, Floats, Floats, Floats]:  # fmt: skip
+    """The sum in every bin, the variance of its noise, and even parts of ESF and LSF, (n,) each.
+
+    Of curves that both stand on the regular grid of `first` and `step`, and of what they leave of
+    the pixels on either side, (2, n), with its inverse variance.
+    """
+    value, variance, half, even = np.empty((4, _BINS))
+    for k in range(_BINS):
+        before, behind = middle_px - width_px * _CENTRES[k], middle_px + width_px * _CENTRES[k]
+        low, high = linear_at(esf, first, step, before), linear_at(esf, first, step, behind)
+        value[k] = low + left[0, k] + high + left[1, k] - 1
+        variance[k] = 1 / information[0, k] + 1 / information[1, k] + MISFIT**2
+        half[k] = 0.5 * (1 + high - low)
+        even[k] = 0.5 * (linear_at(lsf, first, step, before) + linear_at(lsf, first, step, behind))
+    return value, variance, half, even
 
 
 @cache

@@ -30,6 +30,7 @@ from scipy.special import log_ndtr
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
+from acutance.numerics.compiled import compiled
 from acutance.optics.population import UNEVEN_FAMILIES
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.curved_model import (
@@ -234,12 +235,18 @@ def _log_prior() -> Floats:
     return np.asarray(np.log(np.append(1 - _PRIOR_SHOULDER, shoulders)))
 
 
+@compiled
 def _bends(half: Floats) -> Floats:
     """What a curve and shoulders of unit size add to the sum of mirror images, (k, n)."""
-    u = np.stack([half, 1 - half])
-    rest = 1 - _SHOULDERS[:, None, None]
-    shoulders = rest * u - np.maximum(u - _SHOULDERS[:, None, None], 0) ** 2 / rest
-    return np.vstack([2 * half * (1 - half), np.add.reduce(shoulders, axis=1)])
+    found = np.empty((1 + _SHOULDERS.size, half.size))
+    for i in range(half.size):
+        found[0, i] = 2 * half[i] * (1 - half[i])
+        for k in range(_SHOULDERS.size):
+            rest = 1 - _SHOULDERS[k]
+            bright = max(half[i] - _SHOULDERS[k], 0.0)
+            dark = max(1 - half[i] - _SHOULDERS[k], 0.0)
+            found[1 + k, i] = rest - (bright * bright + dark * dark) / rest
+    return found
 
 
 def _slopes(amplitude: Floats) -> Floats:

@@ -8,12 +8,12 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.numerics.clipping import at_limit_share, piled_up_share
-from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median, outlier_share
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels
 from acutance.targets.straight.check_data import MISFIT, CheckData
+from acutance.targets.straight.check_loops import far_side, rise_outwards, side_upwards
 from acutance.targets.straight.nonlinearity import find_curvature, gamma_of
 from acutance.targets.straight.rounding import level_step, smallest_step
 from acutance.targets.straight.step_profile import Profile
@@ -45,23 +45,22 @@ _FEW = 512
 
 
 def saturation(
-    region: RegionPixels, data: CheckData, limits: Limits, sides: tuple[str, str]
+    region: RegionPixels, values: Floats, data: CheckData, limits: Limits, sides: tuple[str, str]
 ) -> Check:
     """Pixels at the detector's limit, or a side that piles up at its outer end.
 
-    `sides` are the names of those before and behind the target.
+    `values` (n,) are those of the image, `sides` the names of those before and behind the target.
     """
-    values = region.pixels[data.trimmed.pixels.at]
     share, where = at_limit_share(values, region.saturation_level), ""
     middle = float(np.add.reduce(values)) / values.size
     # The two plateaus and, of a pulse, the pulse itself.
     places = (*(PLACES[side] for side in sides), "of the pulse")
-    for there, place in zip((*data.plateaus, data.outside < 0), places, strict=True):
-        side = values[there]
+    distances = ((data.before, data.far_px), (data.behind, data.far_px), (-data.outside, 0.0))
+    for (outwards, from_px), place in zip(distances, places, strict=True):
+        side = side_upwards(values, middle, outwards, from_px)
         if side.size < MIN_PILED_PIXELS:
             continue
-        outwards = 1.0 if float(np.add.reduce(side)) > middle * side.size else -1.0
-        piled = piled_up_share(outwards * side)
+        piled = piled_up_share(side)
         if piled > share and not _quiet(data, side):
             share, where = piled, f" {place}"
     found = f"{100 * share:.1f} % of the pixels{where} are clipped at an end of the scale"
@@ -75,9 +74,11 @@ def _quiet(data: CheckData, side: Floats) -> bool:
     return quiet and float(np.std(data.residual[data.outside < 1.0])) < QUIET_TRANSITION
 
 
-def quantisation(region: RegionPixels, data: CheckData, limits: Limits) -> Check:
-    """Noise in steps of the image's numbers: below one step rounding distorts the profile."""
-    values = region.pixels[data.trimmed.pixels.at]
+def quantisation(region: RegionPixels, values: Floats, data: CheckData, limits: Limits) -> Check:
+    """Noise in steps of the image's numbers: below one step rounding distorts the profile.
+
+    `values` (n,) are those of the image.
+    """
     contrast = abs(data.fit.bright - data.fit.dark)
     if region.image.characteristic is not None:
         return _uneven_quantisation(data, values, contrast, limits)
@@ -161,41 +162,19 @@ def _slope_outwards(data: CheckData, from_px: float) -> tuple[float, float, floa
     covariance, power, weighed = 0.0, 0.0, 0.0
     most = OUTLIER_SIGMAS * data.noise
     for outwards in (data.before, data.behind):
-        value = data.value[outwards > from_px]
+        distance, value = far_side(outwards, data.value, from_px)
         if value.size < MIN_SIDE_PIXELS:
             continue
         middle = median(value)
         # A bright side rises to its level, a dark one falls to it.
         sign = 1.0 if middle > 0.5 else -1.0
-        mean_px, own, rise = _rise(outwards, data.value, from_px, middle, most)
+        mean_px, own, rise = rise_outwards(distance, value, middle, most)
         covariance += sign * rise
         power += own
         weighed += own * APERTURE_TAIL_PX / mean_px**2
     if power <= 0:
         return 0.0, 0.0, 1.0
     return covariance / power, max(data.noise, MISFIT) / math.sqrt(power), weighed / power
-
-
-@compiled
-def _rise(
-    outwards: Floats, value: Floats, from_px: float, middle: float, most: float
-) -> tuple[float, float, float]:
-    """Mean distance of the pixels that are far enough, its spread, and their values' along it.
-
-    Values count from `middle` on, by no more than `most`.
-    """
-    count, total = 0, 0.0
-    for k in range(outwards.size):
-        if outwards[k] > from_px:
-            count += 1
-            total += outwards[k]
-    mean_px, power, rise = total / count, 0.0, 0.0
-    for k in range(outwards.size):
-        if outwards[k] > from_px:
-            offset = outwards[k] - mean_px
-            power += offset * offset
-            rise += offset * min(max(value[k] - middle, -most), most)
-    return mean_px, power, rise
 
 
 def correlated_noise(data: CheckData, limits: Limits) -> Check:

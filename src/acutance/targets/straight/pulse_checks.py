@@ -95,6 +95,7 @@ def check_pulse(
     by_ratio : bool
         Whether the method divides by the pulse's spectrum.
     """
+    values = region.pixels[data.trimmed.pixels.at]
     return (
         _contrast(data, limits),
         uniformity(data, limits, "before", data.before),
@@ -109,9 +110,9 @@ def check_pulse(
         full_pixel([data.fit.response.mtf_nyquist], limits),
         plateau(limits, "before", extent.dark_px),
         plateau(limits, "behind", extent.bright_px),
-        saturation(region, data, limits, ("before", "behind")),
+        saturation(region, values, data, limits, ("before", "behind")),
         undeclared_fill([region.fill], limits),
-        quantisation(region, data, limits),
+        quantisation(region, values, data, limits),
         _nonlinearity(data, limits, width.value, height_ratio.value),
         gradient(data, limits),
         correlated_noise(data, limits),

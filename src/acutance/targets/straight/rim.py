@@ -235,7 +235,7 @@ class _Model:
         esf += self.blur.esf(s)[:, None] + np.outer(tail_esf(s / width, TAIL_WIDTH), tail)
         esf /= height
         freq_cpp = np.array([NYQUIST_CPP])
-        otf = self.blur.otf(freq_cpp) + transform(freq_cpp * width)[0] @ spline
+        otf = self.blur.otf(freq_cpp) + transform(freq_cpp * width, 0.0, 1.0, 0)[0] @ spline
         otf += tail_otf(freq_cpp * width, TAIL_WIDTH) * tail
         return _Numbers(_relative_edge_response(esf), np.abs(otf) / height)
 

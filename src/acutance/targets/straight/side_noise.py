@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled, inlined
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.tuned import MIN_SIDE_PIXELS, NOISE_FLOOR
 
@@ -79,22 +79,46 @@ class SideNoise:
     @property
     def max_gain(self) -> float:
         """Log likelihood of the characteristic that suits this noise best, over that of none."""
-        best, without = self._density(np.array([0.0, self.log_variance])).tolist()
+        best, without = (self._density(log_ratio) for log_ratio in (0.0, self.log_variance))
         return max(math.log(_NOISE_BEFORE * best / without + 1 - _NOISE_BEFORE), 0.0)
 
     def likelihood(self, slope: Floats) -> Floats:
         """Likelihood of characteristics of a slope, bright over dark, over that of none."""
-        through = self._density(self.log_variance - 2 * np.log(slope))
-        without = float(self._density(np.array(self.log_variance)))
+        through = _densities(
+            self.log_variance - 2 * np.log(slope), self.std, self.widest, self.texture
+        )
+        without = self._density(self.log_variance)
         return _NOISE_BEFORE / without * through + (1 - _NOISE_BEFORE)
 
-    def _density(self, log_ratio: Floats) -> Floats:
-        """Density of the logarithm of bright over dark variance, for linear values."""
-        below = ndtr(log_ratio / self.std) - ndtr((log_ratio - self.widest) / self.std)
-        sensor = _WHITE * _normal(log_ratio, self.std) + _PHOTONS * below / self.widest
-        ground = _normal(log_ratio, math.hypot(_TEXTURE_STD, self.std))
-        return np.asarray((1 - self.texture) * sensor + self.texture * ground)
+    def _density(self, log_ratio: float) -> float:
+        return _density(log_ratio, self.std, self.widest, self.texture)
 
 
-def _normal(x: Floats, std: float) -> Floats:
-    return np.asarray(np.exp(-0.5 * (x / std) ** 2) / (std * math.sqrt(2 * math.pi)))
+@compiled
+def _density(log_ratio: float, std: float, widest: float, texture: float) -> float:
+    """Density of the logarithm of bright over dark variance, for linear values."""
+    below = _share_below(log_ratio / std) - _share_below((log_ratio - widest) / std)
+    sensor = _WHITE * _normal(log_ratio, std) + _PHOTONS * below / widest
+    ground = _normal(log_ratio, math.hypot(_TEXTURE_STD, std))
+    return (1 - texture) * sensor + texture * ground
+
+
+@compiled
+def _densities(log_ratio: Floats, std: float, widest: float, texture: float) -> Floats:
+    """The same of many logarithms, (k, m)."""
+    found = np.empty(log_ratio.shape)
+    for k in range(log_ratio.shape[0]):
+        for m in range(log_ratio.shape[1]):
+            found[k, m] = _density(log_ratio[k, m], std, widest, texture)
+    return found
+
+
+@inlined
+def _share_below(z: float) -> float:
+    """Share of the standard normal distribution below z."""
+    return 0.5 * math.erfc(-z * math.sqrt(0.5))
+
+
+@inlined
+def _normal(x: float, std: float) -> float:
+    return math.exp(-0.5 * (x / std) ** 2) / (std * math.sqrt(2 * math.pi))

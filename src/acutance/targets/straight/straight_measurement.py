@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from acutance.curves import MAIN_NUMBERS, Estimate, Mtf
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.geometry.line import Line
+from acutance.geometry.line import Line, Orientation
 from acutance.targets.document_fields import WrittenLater
 from acutance.targets.measurement import Measurement
 from acutance.targets.slices import SLICE_FREQ_CPP, OtfSlices
@@ -121,17 +121,18 @@ class StraightMeasurement(Measurement):
         return alone
 
     def _budget(self) -> tuple[BudgetTerm, ...]:
-        """Causes of the fit, then what was stated of the target."""
+        return _budget_rows(self.orientation, self._variances())
+
+    def budget_document(self) -> WrittenLater:
+        """The rows of the budget, made when they are read: their variances alone are held."""
+        return WrittenLater(partial(_budget_document, self.orientation, self._variances()))
+
+    def _variances(self) -> dict[str, Floats]:
+        """What causes of the fit, then what was stated of the target, give to the main numbers."""
         terms, rows = self.stated.terms, self.response.main_rows
-        own, stated = np.split(rows, [rows.shape[1] - len(terms)], axis=1)
-        variances = self._own_variances(own) | dict(zip(terms, stated.T**2, strict=True))
-        return budget_rows(
-            self.orientation,
-            {
-                name: dict(zip(MAIN_NUMBERS, np.sqrt(found).tolist(), strict=True))
-                for name, found in variances.items()
-            },
-        )
+        fitted = rows.shape[1] - len(terms)
+        own, stated = rows[:, :fitted], rows[:, fitted:]
+        return self._own_variances(own) | dict(zip(terms, stated.T**2, strict=True))
 
     def _own_variances(self, rows: Floats) -> dict[str, Floats]:
         """What fit and halo give to the main numbers of these rows, (3,) by term."""
@@ -141,7 +142,8 @@ class StraightMeasurement(Measurement):
             errors = rows if latent is None else rows @ latent[: rows.shape[1]]
             name = "fit" if isinstance(self.response, SplineResponse) else "row_scatter"
             return {name: np.einsum("ij,ij->i", errors, errors)}
-        fitted, halo = np.split(rows, [causes.design.shape[0]], axis=1)
+        columns = causes.design.shape[0]
+        fitted, halo = rows[:, :columns], rows[:, columns:]
         halos = {"halo": halo[:, 0] ** 2} if halo.size else {}
         return causes.variances(fitted) | halos
 
@@ -186,6 +188,23 @@ def _slices(
     others = mtf.near(freq_cpp).factor[:, alone.columns.shape[0] :]
     found = alone.likelihood(freq_cpp, stated.gain(freq_cpp)).with_errors(others)
     return replace(slices, likelihood=found)
+
+
+def _budget_rows(
+    orientation: Orientation, variances: Mapping[str, Floats]
+) -> tuple[BudgetTerm, ...]:
+    """The rows of terms that give the main numbers some variances, (3,) each."""
+    stds = {
+        name: dict(zip(MAIN_NUMBERS, np.sqrt(found).tolist(), strict=True))
+        for name, found in variances.items()
+    }
+    return budget_rows(orientation, stds)
+
+
+def _budget_document(
+    orientation: Orientation, variances: Mapping[str, Floats]
+) -> list[dict[str, Any]]:
+    return [row.to_dict() for row in _budget_rows(orientation, variances)]
 
 
 def _plane_document(

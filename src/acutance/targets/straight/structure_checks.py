@@ -16,10 +16,15 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.compiled import compiled
-from acutance.numerics.noise import median
 from acutance.targets.check import Check, Limits, answer, bounded_ratio, limit_of
 from acutance.targets.question import PLACES
 from acutance.targets.straight.check_data import CheckData
+from acutance.targets.straight.check_loops import (
+    blotches,
+    border_offsets,
+    largest_bump,
+    second_peak,
+)
 from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.tuned import (
     REPEATED_SIGMAS,
@@ -46,7 +51,6 @@ _BIN_PX = 1.0
 _PART_PX = 5.0
 _MIN_PARTS, _MAX_PARTS = 4, 12
 _STEEP_SHARE = 0.3
-_BLOCK_PX = 4
 _MAX_OFFSET_PX = 0.15
 _MAX_ASYMMETRY, _ANY_ASYMMETRY = 0.08, 0.1
 """Caution where a deviation of RER is small, and whatever it is."""
@@ -62,7 +66,7 @@ pulses with a roof of two heights, and none of 2900 other targets."""
 
 def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> Check:
     """Structure of one plateau: variation of means over 4 x 4 pixels, beyond noise."""
-    variation = _blotches(data.blocks, data.value, outwards > data.far_px)
+    variation = blotches(data.blocks, data.value, outwards, data.far_px)
     found = (
         f"the plateau {PLACES[side]} varies by {100 * variation:.1f} % of the contrast from place "
         "to place"
@@ -72,50 +76,17 @@ def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> 
 
 def target_uniformity(data: CheckData, limits: Limits) -> Check:
     """Structure of a pulse and of its two sides, from the residuals there."""
-    near = data.outside < 0.5 * data.fwhm_px
-    variation = _blotches(data.blocks, data.residual, near)
+    variation = blotches(data.blocks, data.residual, -data.outside, -0.5 * data.fwhm_px)
     found = f"the pulse varies by {100 * variation:.1f} % of its height from place to place"
     return answer("uniformity_target", bounded_ratio(1.0, variation), found, limits)
-
-
-@compiled
-def _blotches(block: NDArray[np.intp], field: Floats, there: NDArray[np.bool_]) -> float:
-    """Standard deviation of means over blocks of pixels, without the share of noise."""
-    level = np.mean(field[there]) if there.any() else 0.0
-    size = np.max(block) + 1
-    count, total, power = np.zeros(size), np.zeros(size), np.zeros(size)
-    for k in range(block.size):
-        if there[k]:
-            value = field[k] - level
-            count[block[k]] += 1
-            total[block[k]] += value
-            power[block[k]] += value * value
-    full = count >= _BLOCK_PX**2 // 2
-    count, total, power = count[full], total[full], power[full]
-    if count.size < 3:
-        return 0.0
-    mean = total / count
-    noise = np.sum(power - count * mean * mean) / max(np.sum(count - 1), 1)
-    excess = np.var(mean) * mean.size / (mean.size - 1) - noise * np.mean(1 / count)
-    return math.sqrt(max(excess, 0.0))
 
 
 def structure(data: CheckData, limits: Limits) -> Check:
     """Bumps of the ESF where it should be flat: a line, a road, a second edge."""
     place = int(0.95 * data.outside.size)
     reach = float(np.partition(data.outside, place)[place])
-    distance, value, factor = data.coarse_esf
-    std = np.sqrt(np.einsum("ij,ij->i", factor, factor))
-    worst = 0.0
-    for outwards in (-distance, distance):
-        there = (outwards > _FAR_WIDTHS * data.fwhm_px) & (outwards < reach)
-        coarse = value[there]
-        if coarse.size < 2:
-            continue
-        detour = float(
-            np.add.reduce(np.abs(coarse[1:] - coarse[:-1])) - abs(coarse[-1] - coarse[0])
-        )
-        worst = max(worst, 0.5 * detour - 2.0 * median(std[there]))
+    esf = data.coarse_esf
+    worst = largest_bump(esf.distance_px, esf.value, esf.std, _FAR_WIDTHS * data.fwhm_px, reach)
     found = f"next to the edge the profile goes up and down by {100 * worst:.1f} % of the contrast"
     return answer("structure", worst, found, limits)
 
@@ -143,14 +114,7 @@ def double_edge(data: CheckData, limits: Limits) -> Check:
     The second peak counts by its height over the lowest place between the two, relative to the
     first.
     """
-    lsf = data.fit.response.lsf
-    value = lsf.value / float(np.max(lsf.value))
-    top = int(np.argmax(value))
-    worst = 0.0
-    for side in (value[top:], value[: top + 1][::-1]):
-        # A lobe of sharpening lies below 0, and what comes after it is no peak.
-        valley = np.maximum(np.minimum.accumulate(side), 0.0)
-        worst = max(worst, float(np.max(side - valley)))
+    worst = second_peak(data.fit.response.lsf.value)
     found = f"the LSF has a second peak of {100 * worst:.0f} % of the first"
     return answer("double_edge", worst, found, limits)
 
@@ -162,17 +126,12 @@ def edge_roughness(data: CheckData, limits: Limits) -> Check:
     d^2 is the excess of their mean square residual over that of the noisier plateau, divided by the
     mean square slope.
     """
-    slope = data.slope
-    steepness = np.abs(slope)
-    steep = steepness > _STEEP_SHARE * float(steepness.max(initial=0.0))
-    sides = [data.residual[side] for side in data.plateaus]
-    noise = max((float(np.mean(side**2)) for side in sides if side.size), default=0.0)
-    count = int(np.count_nonzero(steep))
-    there = data.residual[data.near[steep]]
-    excess = float(there @ there) / count - noise if count else 0.0
+    count, power, noise, steepness = border_offsets(
+        data.residual, data.slope, data.near, data.before, data.behind, data.far_px, _STEEP_SHARE
+    )
     # The variance of count squares of Gaussian noise.
     chance = STRUCTURE_SIGMAS * noise * math.sqrt(2 / max(count, 1))
-    value = math.sqrt(excess / float(np.mean(slope[steep] ** 2))) if excess > chance else 0.0
+    value = math.sqrt((power - noise) / steepness) if power - noise > chance else 0.0
     found = (
         f"from pixel to pixel the border lies {value:.3f} px rms off the fitted line and profile"
     )
@@ -229,7 +188,7 @@ def asymmetric_wings(data: CheckData, limits: Limits) -> Check:
     Halo, stray light and diffraction scatter to both sides equally. A step of the background
     parallel to the edge lies on one.
     """
-    distance, esf, factor = data.coarse_esf
+    distance, esf, _, factor = data.coarse_esf
     near = _FAR_WIDTHS * data.fwhm_px
     far = min(float(distance[-1]), float(data.before.max()), float(data.behind.max()))
     value, significance = 0.0, 0.0
@@ -273,12 +232,9 @@ def profile(data: CheckData, limits: Limits, last_px: float, *, own_misfit: bool
     windows = [(ends[0], -near), (last_px + near, ends[1])]
     if not own_misfit:
         windows += [(-near, -steep), (-steep, last_px + steep), (last_px + steep, last_px + near)]
-    value, most = 0.0, 0.0
-    for start, stop in windows:
-        common, significance = _common_profile(data, s, start, stop)
-        if significance > REPEATED_SIGMAS:
-            value = max(value, common)
-        most = max(most, significance)
+    found_in = _repeated_profiles(s, data.t, data.bounded, np.array(windows)).tolist()
+    value = max([common for common, sure in found_in if sure > REPEATED_SIGMAS], default=0.0)
+    most = max(0.0, *(sure for _, sure in found_in))
     found = (
         f"all along the target the pixels leave the fit by the same {100 * value:.2f} % of the "
         f"contrast ({most:.0f} standard deviations)"
@@ -286,8 +242,81 @@ def profile(data: CheckData, limits: Limits, last_px: float, *, own_misfit: bool
     return answer("profile", value, found, limits)
 
 
-def _common_profile(data: CheckData, s: Floats, start: float, stop: float) -> tuple[float, float]:
-    """Root mean square of the profile that all parts of the target share, and its significance.
+@compiled
+def _repeated_profiles(s: Floats, t: Floats, residual: Floats, windows: Floats) -> Floats:
+    """What the residuals of all parts of a target have in common, and its significance, (w, 2).
+
+    Parameters
+    ----------
+    s, t, residual : (n,) arrays
+        Distance of the pixels along the normal and along the target, and residuals.
+    windows : (w, 2) array
+        From where to where along the normal they are compared.
+    """
+    mean, parts, bins = _part_means(s, t, residual, windows)
+    found = np.zeros((len(windows), 2))
+    for k in range(len(windows)):
+        found[k, 0], found[k, 1] = _shared(mean[k, : parts[k], : bins[k]])
+    return found
+
+
+@compiled
+def _part_means(
+    s: Floats, t: Floats, residual: Floats, windows: Floats
+) -> tuple[Floats, NDArray[np.int64], NDArray[np.int64]]:
+    """Mean residuals of the parts of the target in bins of every window, of which none overlap.
+
+    Returns
+    -------
+    mean : (w, parts, bins) array
+        In the first bins those that all parts fill.
+    parts, bins : (w,) int arrays
+        How many there are: none where there are few pixels, or the target is short.
+    """
+    count = len(windows)
+    window = np.full(s.size, -1, np.int64)
+    pixels, first, last = np.zeros(count), np.full(count, np.inf), np.full(count, -np.inf)
+    for i in range(s.size):
+        for k in range(count):
+            if windows[k, 0] <= s[i] < windows[k, 1]:
+                window[i] = k
+                pixels[k] += 1
+                first[k], last[k] = min(first[k], t[i]), max(last[k], t[i])
+                break
+    bins, parts = np.zeros(count, np.int64), np.zeros(count, np.int64)
+    per_px, part_per_px = np.zeros(count), np.zeros(count)
+    for k in range(count):
+        bins[k] = max(int((windows[k, 1] - windows[k, 0]) // _BIN_PX), 0)
+        most = min(int((last[k] - first[k]) // _PART_PX), _MAX_PARTS) if pixels[k] else 0
+        enough = bins[k] >= 2 and most >= _MIN_PARTS and pixels[k] >= _MIN_PARTS * bins[k]
+        parts[k] = most if enough else 0
+        per_px[k] = bins[k] / (windows[k, 1] - windows[k, 0])
+        part_per_px[k] = parts[k] / (last[k] - first[k])
+    total = np.zeros((count, _MAX_PARTS, np.max(bins) + 1))
+    known = np.zeros(total.shape)
+    for i in range(s.size):
+        k = window[i]
+        if k >= 0 and parts[k] > 0:
+            column = min(int((s[i] - windows[k, 0]) * per_px[k]), bins[k] - 1)
+            row = min(int((t[i] - first[k]) * part_per_px[k]), parts[k] - 1)
+            total[k, row, column] += residual[i]
+            known[k, row, column] += 1
+    mean, filled = np.zeros(total.shape), np.zeros(count, np.int64)
+    for k in range(count):
+        for column in range(bins[k] if parts[k] > 0 else 0):
+            fewest = np.inf
+            for row in range(parts[k]):
+                fewest = min(fewest, known[k, row, column])
+            if fewest >= 2:
+                for row in range(parts[k]):
+                    mean[k, row, filled[k]] = total[k, row, column] / known[k, row, column]
+                filled[k] += 1
+    return mean, parts, filled
+
+
+@compiled
+def _shared(mean: Floats) -> tuple[float, float]:
+    """Root mean square of the profile that all parts of a target share, and its significance.
 
     With the mean residual P (K, B) of K parts in B bins, the products of different parts,
     ``sum_(i != j) P_i . P_j``, are zero on average for noise of any colour; their variance is
@@ -295,15 +324,6 @@ def _common_profile(data: CheckData, s: Floats, start: float, stop: float) -> tu
     differ (tr(C^2) without the bias of few parts: Bai and Saranadasa, Statistica Sinica 6, 311,
     1996).
     """
-    bins = int((stop - start) // _BIN_PX)
-    if bins < 2:
-        return 0.0, 0.0
-    return _shared(_part_means(s, data.t, data.bounded, start, stop, bins))
-
-
-@compiled
-def _shared(mean: Floats) -> tuple[float, float]:
-    """As `_common_profile`, of the mean residuals (K, B) themselves."""
     parts, bins = mean.shape
     if bins < 2:
         return 0.0, 0.0
@@ -331,29 +351,3 @@ def _shared(mean: Floats) -> tuple[float, float]:
     variance = 2 * parts * freedom * max(squares, trace**2 / bins, 1e-24)
     rms = math.sqrt(max(shared, 0.0) / (parts * freedom * bins))
     return rms, shared / math.sqrt(variance)
-
-
-@compiled
-def _part_means(
-    s: Floats, t: Floats, residual: Floats, start: float, stop: float, bins: int
-) -> Floats:
-    """Mean residual of every part of the target, (parts, bins), in bins that all parts fill.
-
-    No bins where there are few pixels, or the target is short.
-    """
-    count, first, last = 0, np.inf, -np.inf
-    for k in range(s.size):
-        if start <= s[k] < stop:
-            count, first, last = count + 1, min(first, t[k]), max(last, t[k])
-    parts = min(int((last - first) // _PART_PX), _MAX_PARTS) if count else 0
-    if parts < _MIN_PARTS or count < _MIN_PARTS * bins:
-        return np.zeros((0, 0))
-    total, pixels = np.zeros((parts, bins)), np.zeros((parts, bins))
-    for k in range(s.size):
-        if start <= s[k] < stop:
-            column = min(int((s[k] - start) * (bins / (stop - start))), bins - 1)
-            row = min(int((t[k] - first) * (parts / (last - first))), parts - 1)
-            total[row, column] += residual[k]
-            pixels[row, column] += 1
-    full = np.array([np.min(pixels[:, column]) >= 2 for column in range(bins)])
-    return total[:, full] / pixels[:, full]

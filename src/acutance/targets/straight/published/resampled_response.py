@@ -186,8 +186,8 @@ def fit_with_bootstrap(
     )
     esf, lsf, otf = (np.stack(part, axis=1) for part in zip(curves, *kept, strict=True))
     response = Response(
-        Esf(GRID_PX, esf[:, 0], covariance_factor(esf[:, 1:])),
-        Lsf(GRID_PX, lsf[:, 0], covariance_factor(lsf[:, 1:])),
+        Esf(GRID_PX, curves[0], covariance_factor(esf[:, 1:])),
+        Lsf(GRID_PX, curves[1], covariance_factor(lsf[:, 1:])),
         Mtf(FREQ_CPP, otf[:, 0], covariance_factor(otf[:, 1:])),
         rer_centre=rer_centre,
     )
