@@ -22,11 +22,12 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.stacked import stacked, unstacked
 from acutance.scan.blur_modes import ALL_AROUND, COMMON_MODES, changed, edge_modes, fit_modes
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field_fit import FieldFit, fit_field
 from acutance.scan.form_agreement import agreement_of_form, common_errors
 from acutance.scan.information import expected_information, observed_information
 from acutance.scan.parts import PartsFit, compare_parts
-from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares
+from acutance.scan.population import Membership, fit_shares
 from acutance.scan.shared_blur import integrate_shared_blur
 from acutance.scan.shares import SECTOR_DEG, START, share_covariances
 from acutance.scan.softness import KINDS
