@@ -208,7 +208,8 @@ def settled(
             break
         # Small steps leave forms in their optima.
         fresh = 2 if reached - last > _LEAP else 0
-        before, last = otf, reached
+        # Before the first turn the sensor has no form, and may be likelier than with one.
+        before, last = otf, reached if turn > 0 else -np.inf
         combined = _combined(
             edges.freq_cpp, normal_deg, otf, information, projection, forms, near, fresh
         )
