@@ -49,8 +49,6 @@ _ALIKE: Final = 0.005
 _TURN_TOLERANCE: Final = 1e-4
 """Change of the misfit of the sensor's forms, a share of it, that is none between turns."""
 _ENOUGH_EDGES: Final = 600
-_LEAP: Final = 10.0
-"""Rise of the log likelihood in a turn beyond which forms are sought afar, too."""
 _LIKELIER: Final = 3.0
 """By so much in the log likelihood another sensor has to be likelier than that of a better start:
 less is what a form of more terms gains."""
@@ -206,13 +204,9 @@ def settled(
         is_hopeless = rival - reached > _PATIENCE * max(reached - last, 0.0)
         if is_settled or is_hopeless or turn == _MAX_TURNS:
             break
-        # Small steps leave forms in their optima.
-        fresh = 2 if reached - last > _LEAP else 0
         # Before the first turn the sensor has no form, and may be likelier than with one.
         before, last = otf, reached if turn > 0 else -np.inf
-        combined = _combined(
-            edges.freq_cpp, normal_deg, otf, information, projection, forms, near, fresh
-        )
+        combined = _combined(edges.freq_cpp, normal_deg, otf, information, projection, forms, near)
         near, sensor = combined.near, combined.unwidened
         # Forms without any weight have none in the next turn, either.
         forms = tuple({form.form.oblique_terms: None for form in sensor.forms})
@@ -234,7 +228,6 @@ def _combined(
     projection: Floats,
     forms: Sequence[tuple[str, ...]],
     near: Sequence[WeightedForm],
-    fresh_starts: int,
 ) -> CombinedFit:
     """The sensor, if it is known what the edges are; near that of the turn before."""
     curves = [
@@ -242,9 +235,7 @@ def _combined(
         for b, (own, pull) in enumerate(zip(information, projection, strict=True))
         if np.trace(own) > _LEAST
     ]
-    return combine_curves(
-        curves, forms=forms, near=near, fresh_starts=fresh_starts, tolerance=_TURN_TOLERANCE
-    )
+    return combine_curves(curves, forms=forms, near=near, tolerance=_TURN_TOLERANCE)
 
 
 def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:

@@ -21,6 +21,7 @@ __all__ = ["CombinedFit", "FormFit", "combine_curves"]
 _MIN_WEIGHT = 0.01
 _MIN_SINGULAR = 0.1
 _MAX_CORRECTED = 3
+_STARTS_TRIED = 2
 _FIRST_STEPS, _MAX_STEPS = 30, 60
 _HOPELESS = 60.0
 """Of scores above the least, after the first steps: no form beyond it gets any weight (of 390 forms
@@ -117,7 +118,6 @@ def combine_curves(
     detector_px: tuple[float, float] = (1.0, 1.0),
     forms: Sequence[tuple[str, ...]] = FORMS,
     near: Sequence[WeightedForm] = (),
-    fresh_starts: int = 2,
     tolerance: float = 1e-6,
 ) -> CombinedFit:
     """Fit every form to all curves, with corrections of several sizes, and average.
@@ -137,8 +137,6 @@ def combine_curves(
     near : sequence of WeightedForm, optional
         Of curves that hardly differed, the largest weight first: where a form begins, too.
         Forms with defocus and a kernel have several optima.
-    fresh_starts : int, optional
-        First guesses beside it: at least one of a form that is near none.
     tolerance : float, optional
         Change of a form's misfit, a share of it, below which it is settled.
     """
@@ -148,8 +146,7 @@ def combine_curves(
 
     def fitted(form: SensorForm, start: Floats | None = None) -> FormFit:
         starts = [known[form].parameters] if form in known else []
-        fresh = max(fresh_starts, 1 - len(starts))
-        starts += [start] if start is not None else _likely(data, form, fresh)
+        starts += [start] if start is not None else _likely(data, form)
         return _fit_form(data, form, starts, 0.0, nowhere, tolerance, _FIRST_STEPS)
 
     def settled(fits: Sequence[FormFit]) -> list[FormFit]:
@@ -267,13 +264,13 @@ def _residuals(data: WhitenedCurves, form: SensorForm, p: Floats) -> tuple[Float
     return off, (p - form.mean) / form.std
 
 
-def _likely(data: WhitenedCurves, form: SensorForm, count: int) -> list[Floats]:
-    """The first guesses that fit best, so many."""
+def _likely(data: WhitenedCurves, form: SensorForm) -> list[Floats]:
+    """The first guesses that fit best."""
 
     def misfit(p: Floats) -> float:
         return float(np.sum(np.concatenate(_residuals(data, form, p)) ** 2))
 
-    return sorted(_starts(form), key=misfit)[:count]
+    return sorted(_starts(form), key=misfit)[:_STARTS_TRIED]
 
 
 def _starts(form: SensorForm) -> list[Floats]:
