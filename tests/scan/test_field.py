@@ -6,9 +6,9 @@ import pytest
 from acutance.curves import Otf2d
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.scan.blur_modes import blur_modes, changed, edge_modes, fit_modes
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field import Field, field_polynomials
 from acutance.scan.field_fit import fit_field
-from acutance.scan.population import EdgeLikelihoods
 from acutance.scan.shares import START
 
 FREQ = np.arange(0.1, 0.75, 0.1)
@@ -34,8 +34,7 @@ def drawn(variance, soft_share=0.0, count=800, seed=0):
     seen = np.hstack([own, np.zeros_like(own)]) + rng.normal(0, STD, (count, 2 * FREQ.size))
     root = np.broadcast_to(np.eye(2 * FREQ.size) / STD, (count, *(2 * [2 * FREQ.size])))
     rank = np.full(count, 2.0 * FREQ.size)
-    gain = np.ones((count, FREQ.size))
-    return EdgeLikelihoods(FREQ, root, seen / STD, rank, bins, normals, gain), x, y
+    return EdgeLikelihoods.of_roots(FREQ, root, seen / STD, rank, bins, normals), x, y
 
 
 def settled(edges, x, y):

@@ -6,9 +6,10 @@ from bare_ground import bare_ground
 
 import acutance as ac
 from acutance import optics, simulate
-from acutance.scan import sensor_fit
+from acutance.scan import sensor_turns
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.form_agreement import agreement_of_form
-from acutance.scan.population import EdgeLikelihoods, fit_shares
+from acutance.scan.population import fit_shares
 from acutance.scan.shares import START
 from acutance.targets.combine.sensor_forms import FORMS
 
@@ -23,9 +24,8 @@ def chi_square(otf, count, std, seed):
     """Of ideal edges of one direction whose transfer functions are known to a deviation."""
     seen = TRUE + np.random.default_rng(seed).normal(0, std, (count, 8))
     root = np.broadcast_to(np.eye(8) / std, (count, 8, 8))
-    edges = EdgeLikelihoods(
+    edges = EdgeLikelihoods.of_roots(
         FREQ, root, seen / std, np.full(count, 8.0), np.zeros(count, int), np.zeros(count),
-        np.ones((count, 4)),
     )  # fmt: skip
     return agreement_of_form(edges, otf, fit_shares(edges, otf, START))
 
@@ -72,7 +72,7 @@ def test_a_scene_interpolated_at_one_phase_is_measured(shifted):
 
 def test_without_a_form_for_it_the_scan_is_doubtful(shifted, monkeypatch):
     known = tuple(terms for terms in FORMS if "phase" not in terms)
-    monkeypatch.setattr(sensor_fit, "FORMS", known)
+    monkeypatch.setattr(sensor_turns, "FORMS", known)
     scene = ac.scan_scene(shifted)
     assert check_of(scene).value > 1.8
     assert scene.verdict.word == "doubtful"

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from acutance.scan.information import edge_terms, expected_information, observed_information
-from acutance.scan.population import EdgeLikelihoods, fit_shares, softness_grid
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
+from acutance.scan.information import expected_information, observed_information, sensor_terms
+from acutance.scan.population import SoftnessGrid, fit_shares, softness_grid
 from acutance.scan.shares import SECTORS, START, sectors_of, share_covariances
 from acutance.scan.softness import KINDS, PARTS, PSEUDO_COUNTS, law_chances
 
@@ -22,10 +23,15 @@ def drawn(soft_share, count=600, seed=0):
     tau = np.where(rng.random(count) < soft_share, np.abs(rng.normal(0, 0.8, count)), 0.0)
     blur = np.exp(-2 * (np.pi * np.outer(tau, FREQ)) ** 2)
     seen = TRUE * np.hstack([blur, blur]) + rng.normal(0, STD, (count, 8))
+    return known_to_std(seen), tau
+
+
+def known_to_std(seen):
+    """Edges of one direction whose transfer functions (n, 8) are known to STD."""
+    count = len(seen)
     root = np.broadcast_to(np.eye(8) / STD, (count, 8, 8))
     rank, bins = np.full(count, 8.0), np.zeros(count, int)
-    normals, gain = np.zeros(count), np.ones((count, 4))
-    return EdgeLikelihoods(FREQ, root, seen / STD, rank, bins, normals, gain), tau
+    return EdgeLikelihoods.of_roots(FREQ, root, seen / STD, rank, bins, np.zeros(count))
 
 
 def test_laws_are_roots_of_sums_of_squares():
@@ -50,16 +56,38 @@ def test_kinds_divide_the_parts():
 
 def test_the_grid_of_an_edge_covers_its_softness():
     edges, tau = drawn(0.6)
-    grid, width = softness_grid(edges, TRUE[None])
-    assert np.all((grid[:, 0] - width < tau) & (tau < grid[:, -1] + width))
+    objects = edges.of_objects(TRUE[None])
+    grid = softness_grid(objects)
+    middle, width = grid.middle_px, grid.width_px
+    assert np.all((middle[:, 0] - width < tau) & (tau < middle[:, -1] + width))
     # Several places in what the pixels of an edge allow, however soft its object is.
-    blur = edges.blur(grid**2)
-    power = np.concatenate([
-        -0.5 * np.sum(edges.off(TRUE[None], some, blur[some]) ** 2, axis=2)
-        for some in edges.chunks()
-    ])  # fmt: skip
+    power = -0.5 * objects.powers(*grid, middle.shape[1])[:, 1:]
     near = np.sum(power > power.max(axis=1, keepdims=True) - 2, axis=1)
     assert near.min() >= 4
+
+
+def test_what_is_said_of_objects_is_what_is_said_of_edges():
+    rng = np.random.default_rng(1)
+    root, value = rng.normal(0, 1, (5, 8, 6)), rng.normal(0, 1, (5, 6))
+    bins = np.array([0, 1, 0, 1, 1])
+    edges = EdgeLikelihoods.of_roots(FREQ, root, value, np.full(5, 6.0), bins, np.zeros(5))
+    gain, otf = rng.uniform(0.8, 1.2, (5, 4)), rng.normal(0, 1, (2, 8))
+    edges = edges.turned(gain)
+    first, width = np.full(5, 0.3), np.full(5, 0.1)
+    power = edges.of_objects(otf).powers(first, width, 3) + edges.square[:, None]
+    for t, softness in enumerate((0.0, 0.3, 0.4, 0.5)):
+        seen = np.tile(gain * np.exp(-2 * (np.pi * softness * FREQ) ** 2), 2) * otf[bins]
+        off = np.einsum("nkr,nk->nr", root, seen) - value
+        assert power[:, t] == pytest.approx(np.sum(off**2, axis=1))
+
+
+def test_cells_have_the_chances_of_their_laws():
+    grid = SoftnessGrid(np.array([0.02, 0.7, 9.0]), np.array([0.04, 0.031, 0.5]))
+    border = grid.middle_px - 0.5 * grid.width_px[:, None]
+    border = np.hstack([border, border[:, -1:] + grid.width_px[:, None]])
+    found = np.moveaxis(grid.chances(slice(None)), 1, 0)
+    assert found == pytest.approx(law_chances(border), abs=2e-4)
+    assert found.min() >= 0
 
 
 def test_the_likelihood_is_that_of_a_fine_integral():
@@ -70,14 +98,11 @@ def test_the_likelihood_is_that_of_a_fine_integral():
     fine = 0.5 * (border[:-1] + border[1:])
     chances = law_chances(border)
     for one in range(20):
-        alone = EdgeLikelihoods(
-            FREQ, edges.root[[one]], edges.value[[one]], edges.rank[[one]], edges.bin[[one]],
-            edges.normal_deg[[one]], edges.gain[[one]],
-        )  # fmt: skip
+        alone = edges.chosen(np.array([one]))
         member = fit_shares(alone, otf, share)
         updated = member.share[0]
         blur = np.exp(-2 * (np.pi * np.outer(fine, FREQ)) ** 2)
-        off = otf * np.hstack([blur, blur]) / STD - edges.value[one]
+        off = otf * np.hstack([blur, blur]) / STD - STD * edges.pull[one]
         likelihood = np.exp(-0.5 * np.sum(off**2, axis=1))
         soft = np.tensordot(updated[1:-1], chances, axes=1)
         strange = likelihood[0] ** (1 / 100) * 100**-4.0
@@ -147,9 +172,9 @@ def test_every_edge_has_the_softness_of_its_object():
 
 def test_edges_of_another_sensor_are_strange():
     edges, _ = drawn(0.0)
-    sharper = edges.value.copy()
-    sharper[:30] += 0.3 / STD
-    mixed = replace(edges, value=sharper)
+    sharper = STD**2 * edges.pull
+    sharper[:30] += 0.3
+    mixed = known_to_std(sharper)
     member = fit_shares(mixed, TRUE[None], START)
     share = member.share[0]
     assert member.part[:30, -1].min() > 0.99
@@ -160,7 +185,7 @@ def test_the_gradient_is_that_of_the_likelihood():
     edges, _ = drawn(0.5, 40)
     otf = TRUE[None] * 0.97
     member = fit_shares(edges, otf, START)
-    gradient = sum(terms.gradient.sum(axis=0) for terms in edge_terms(edges, otf, member))
+    gradient = sum(terms.gradient.sum(axis=0) for terms in sensor_terms(edges, otf, member))
 
     # At the likeliest shares, with the prior of the shares, their change has no effect.
     def log_posterior(values):
@@ -179,14 +204,14 @@ def test_the_information_is_the_curvature_of_the_likelihood():
     member = fit_shares(edges, TRUE[None], START)
     start = np.tile(member.part.mean(axis=0) + 1e-3, (SECTORS, 1))
     member = fit_shares(edges, TRUE[None], start)
-    (terms,) = edge_terms(edges, TRUE[None], member)
+    (terms,) = sensor_terms(edges, TRUE[None], member)
     step = np.zeros((1, 8))
     step[0, 3] = 2e-3
 
     def pull(values):
         # Of so many edges the shares hardly move: what changes is what every edge is.
         at = fit_shares(edges, values, member.share)
-        (there,) = edge_terms(edges, values, at)
+        (there,) = sensor_terms(edges, values, at)
         return there.gradient.sum(axis=0)[3]
 
     falls = (pull(TRUE[None] - step) - pull(TRUE[None] + step)) / 4e-3

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from acutance.scan.blur_modes import ALL_AROUND, changed, edge_modes, fit_modes
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.information import observed_information
-from acutance.scan.population import EdgeLikelihoods, fit_shares
+from acutance.scan.population import fit_shares
 from acutance.scan.shared_blur import integrate_shared_blur
 from acutance.scan.shares import START
 
@@ -21,9 +22,7 @@ def edges_of(softness_px, std, rng):
     seen = TRUE * np.hstack([blur, blur]) + rng.normal(0, std, (count, 8))
     root = np.broadcast_to(np.eye(8) / std, (count, 8, 8))
     whole, bins = np.full(count, 8.0), np.zeros(count, int)
-    return EdgeLikelihoods(
-        FREQ, root, seen / std, whole, bins, np.zeros(count), np.ones((count, 4))
-    )
+    return EdgeLikelihoods.of_roots(FREQ, root, seen / std, whole, bins, np.zeros(count))
 
 
 def posterior(edges):

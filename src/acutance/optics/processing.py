@@ -149,8 +149,12 @@ class Shift:
     def _transform(self, f: Floats, shift_px: float) -> Transfer:
         offset = np.arange(-2, 4) - (shift_px - math.floor(shift_px))
         weight = interpolation_weight(self.kernel, offset, self.a)
-        terms = (w * np.exp(2j * math.pi * x * f) for w, x in zip(weight, offset, strict=True))
-        return np.asarray(sum(terms))
+        # The offsets are a pixel apart: a polynomial in what a pixel turns the phase by.
+        turn = np.exp(2j * math.pi * f)
+        values = np.zeros_like(turn)
+        for one in weight[::-1]:
+            values = values * turn + one
+        return np.asarray(values * np.exp(2j * math.pi * offset[0] * f))
 
 
 @dataclass(frozen=True)

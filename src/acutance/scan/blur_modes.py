@@ -15,9 +15,9 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.scan.information import cost_of_shares, crossed_with_shares, edge_terms
-from acutance.scan.population import EdgeLikelihoods, fit_shares
-from acutance.scan.shares import SECTORS
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
+from acutance.scan.information import mode_information
+from acutance.scan.population import fit_shares
 
 __all__ = [
     "ALL_AROUND",
@@ -28,7 +28,6 @@ __all__ = [
     "changed",
     "edge_modes",
     "fit_modes",
-    "mode_slopes",
 ]
 
 BLUR_MODES: Final = ("all around", "across more than along", "oblique", "middle of the band")
@@ -128,15 +127,7 @@ def fit_modes(
     member = fit_shares(seen, otf, share)
     reached = member.log_likelihood - 0.5 * float(precision @ amount**2)
     for _ in range(_MAX_STEPS):
-        pull, information = np.zeros(amount.size), np.zeros((amount.size,) * 2)
-        crossed = np.zeros((SECTORS, amount.size, share.shape[1]))
-        for terms in edge_terms(seen, otf, member):
-            slopes = mode_slopes(seen, otf, modes, terms.edges)
-            pull += np.einsum("nkq,nk->q", slopes, terms.gradient)
-            information += np.einsum("nkq,nkp->qp", slopes, terms.information @ slopes)
-            own = crossed_with_shares(terms, member, terms.slopes @ slopes)
-            np.add.at(crossed, member.sector[terms.edges], own)
-        information -= cost_of_shares(crossed, member)
+        pull, information = mode_information(member, modes)
         upwards = pull - precision * amount
         step = _step(information, upwards, precision)
         is_last = 0.5 * float(upwards @ step) < _SETTLED
@@ -154,12 +145,6 @@ def fit_modes(
         if is_last:
             break
     return ModesFit(amount, member.share, information, reached)
-
-
-def mode_slopes(edges: EdgeLikelihoods, otf: Floats, modes: Floats, some: slice) -> Floats:
-    """Derivatives of the OTF that some edges see by the amounts of modes, (n, 2 k, q)."""
-    both = np.concatenate([modes[some]] * 2, axis=1)
-    return np.asarray(otf[edges.bin[some]][:, :, None] * both)
 
 
 def _step(information: Floats, pull: Floats, precision: Floats) -> Floats:

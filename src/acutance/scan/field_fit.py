@@ -9,7 +9,6 @@ amounts that are drawn from normal distributions of several widths. The result i
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import product
 from typing import Final, NamedTuple
 
@@ -23,11 +22,11 @@ from acutance.scan.blur_modes import (
     ModesFit,
     edge_modes,
     fit_modes,
-    mode_slopes,
 )
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field import DEGREES, field_polynomials
-from acutance.scan.information import edge_terms
-from acutance.scan.population import EdgeLikelihoods, fit_shares
+from acutance.scan.information import gain_terms
+from acutance.scan.population import fit_shares
 
 __all__ = ["FieldFit", "fit_field"]
 
@@ -143,8 +142,7 @@ def _cooled(
     """
     amount = np.zeros(std.size)
     for heat in _HEATS:
-        rough = replace(edges, root=edges.root / heat, value=edges.value / heat)
-        amount = fit_modes(rough, otf, share, modes, start=amount, std=std).amount
+        amount = fit_modes(edges.rougher(heat), otf, share, modes, start=amount, std=std).amount
     return amount
 
 
@@ -154,9 +152,9 @@ def _middle(
     """Means of the polynomials, every edge weighted by what it tells of a mode, (5, 4)."""
     weights = np.zeros((edges.size, along.shape[2]))
     member = fit_shares(edges, otf, share)
-    for terms in edge_terms(edges, otf, member):
-        slopes = mode_slopes(edges, otf, along, terms.edges)
-        weights[terms.edges] = np.einsum("nkq,nkq->nq", slopes, terms.information @ slopes)
+    for terms in gain_terms(member):
+        own = along[terms.edges]
+        weights[terms.edges] = np.sum(own * (terms.information @ own), axis=1)
     weights = np.maximum(weights, 0.0)
     return np.asarray(polynomials.T @ weights / np.maximum(weights.sum(axis=0), 1e-12))
 

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.stacked import stacked
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.information import expected_information
-from acutance.scan.population import EdgeLikelihoods, Membership
+from acutance.scan.population import Membership
 from acutance.targets.combine.curves import ChiSquare
 
 __all__ = ["agreement_of_form", "common_errors"]

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.scan.blur_modes import ALL_AROUND, COMMON_MODES, edge_modes, fit_modes
-from acutance.scan.population import EdgeLikelihoods
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.targets.combine.curves import ChiSquare
 
 __all__ = ["PartsFit", "compare_parts", "equal_parts"]

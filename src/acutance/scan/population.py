@@ -15,171 +15,111 @@ laws of softness have their probability of every cell of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.scan.edge_likelihoods import EdgeLikelihoods, FactorLikelihoods, chunks
 from acutance.scan.shares import likeliest_shares, sectors_of
-from acutance.scan.softness import NEARLY_IDEAL_PX, STRANGE, law_chances
+from acutance.scan.softness import NEARLY_IDEAL_PX, STRANGE, below_steps
+from acutance.scan.softness_sums import cell_chances
 
-__all__ = [
-    "EdgeLikelihoods",
-    "Membership",
-    "fit_shares",
-    "softness_grid",
-]
+__all__ = ["Membership", "SoftnessGrid", "fit_shares", "softness_grid"]
 
-_CHUNK: Final = 256
-"""Edges at once: arrays of edges by softness by frequency stay small."""
 _COARSE_PX2: Final[Floats] = np.array([
     0.0, 0.01, 0.03, 0.06, 0.1, 0.16, 0.25, 0.4, 0.6, 0.9, 1.4, 2.0, 3.0, 4.5, 7.0, 11.0, 16.0
 ])  # fmt: skip
 """Variances from which the likeliest softness of an edge is sought."""
-_STEPS: Final = 4
-_LEAST_PX2, _MOST_PX2 = -0.2, 30.0
-_GRID: Final = 24
+_CELLS: Final = 24
 _TINY: Final = 1e-300
 _REACH: Final = 5.0
 """The grid of an edge covers so many standard deviations of its softness."""
 
 
-@dataclass(frozen=True, eq=False)
-class EdgeLikelihoods:
-    """What the pixels of n edges say of their transfer functions; real parts stand first.
-
-    Minus twice the logarithm is the sum of squares of ``root[i].T @ f - value[i]``.
+class SoftnessGrid(NamedTuple):
+    """Equal cells of the softness that each of n objects may have, in px.
 
     Attributes
     ----------
-    freq_cpp : (k,) array
-    root : (n, 2 k, r) array
-        Columns that an edge does not have are zero.
-    value : (n, r) array
-    rank : (n,) array
-        Number of columns of each edge.
-    bin : (n,) int array
-        Bin of directions of each.
-    normal_deg : (n,) array
-        Its own direction, -90 to 90.
-    gain : (n, k) array
-        What each sees, over the sensor along its bin.
+    first_px : (n,) array
+        Middle of the first cell.
+    width_px : (n,) array
     """
 
-    freq_cpp: Floats
-    root: Floats
-    value: Floats
-    rank: Floats
-    bin: NDArray[np.intp]
-    normal_deg: Floats
-    gain: Floats
+    first_px: Floats
+    width_px: Floats
 
     @property
-    def size(self) -> int:
-        """Number of edges."""
-        return int(self.rank.size)
+    def middle_px(self) -> Floats:
+        """Middles of all cells, (n, t)."""
+        return self.first_px[:, None] + self.width_px[:, None] * np.arange(_CELLS)
 
-    def turned(self, gain: Floats) -> EdgeLikelihoods:
-        """Likelihoods of the sensor along the bins, of edges that see `gain` (n, k) times that."""
-        return replace(self, gain=self.gain * gain)
-
-    def chosen(self, some: NDArray[np.intp]) -> EdgeLikelihoods:
-        """Some of the edges."""
-        names = ("root", "value", "rank", "bin", "normal_deg", "gain")
-        return replace(self, **{name: getattr(self, name)[some] for name in names})
-
-    def seen_root(self, some: slice) -> Floats:
-        """Root of the likelihoods of the sensor along the bins, of some edges, (n, 2 k, r)."""
-        gain = self.gain[some]
-        return np.asarray(self.root[some] * np.hstack([gain, gain])[:, :, None])
-
-    def chunks(self) -> Iterator[slice]:
-        """Some edges at a time."""
-        for start in range(0, self.size, _CHUNK):
-            yield slice(start, min(start + _CHUNK, self.size))
-
-    def blur(self, variance_px2: Floats) -> Floats:
-        """Transfer function of objects of some softness (n, t), (n, t, 2 k)."""
-        one = np.exp(-2 * np.pi**2 * variance_px2[:, :, None] * self.freq_cpp**2)
-        return np.concatenate([one, one], axis=2)
-
-    def off(self, otf: Floats, some: slice, blur: Floats) -> Floats:
-        """``root.T @ f - value`` of some edges, (n, t, r); otf (b, 2 k), blur (n, t, 2 k)."""
-        seen = self.seen_root(some) * otf[self.bin[some]][:, :, None]
-        return np.asarray(blur @ seen - self.value[some][:, None, :])
+    def chances(self, some: slice) -> Floats:
+        """Probability of every law in the cells of some edges, (n, p - 2, t)."""
+        return cell_chances(*below_steps(), self.first_px[some], self.width_px[some], _CELLS)
 
 
-def softness_grid(edges: EdgeLikelihoods, otf: Floats) -> tuple[Floats, Floats]:
-    """Softness that every edge may have under a sensor (b, 2 k), in px.
-
-    Returns
-    -------
-    softness_px : (n, t) array
-        Middles of equal parts of what the edge allows.
-    width_px : (n,) array
-        Of the parts.
-    """
-    parts = [_likeliest(edges, otf, some) for some in edges.chunks()]
-    middle, std = (np.concatenate(column) for column in zip(*parts, strict=True))
+def softness_grid(objects: FactorLikelihoods) -> SoftnessGrid:
+    """Cells about what the pixels of every edge allow."""
+    middle, std = objects.likeliest_variances(_COARSE_PX2)
     low = np.sqrt(np.maximum(middle - _REACH * std, 0.0))
     high = np.sqrt(np.maximum(middle + _REACH * std, std))
-    width = (high - low) / _GRID
-    return low[:, None] + width[:, None] * (np.arange(_GRID) + 0.5), width
+    width = (high - low) / _CELLS
+    return SoftnessGrid(low + 0.5 * width, width)
 
 
-def _likeliest(edges: EdgeLikelihoods, otf: Floats, some: slice) -> tuple[Floats, Floats]:
-    """Likeliest variance of the softness of some edges, and its standard deviation, (n,) each.
-
-    It is below zero for an edge that is sharper than the sensor.
-    """
-    root = edges.seen_root(some) * otf[edges.bin[some]][:, :, None]
-    tried = np.broadcast_to(_COARSE_PX2, (len(root), _COARSE_PX2.size))
-    power = np.sum(edges.off(otf, some, edges.blur(tried)) ** 2, axis=2)
-    variance = _COARSE_PX2[np.argmin(power, axis=1)]
-    falls = np.tile(-2 * np.pi**2 * edges.freq_cpp**2, 2)
-    for _ in range(_STEPS):
-        blur = edges.blur(variance[:, None])
-        off = (blur @ root)[:, 0] - edges.value[some]
-        slope = ((blur * falls) @ root)[:, 0]
-        information = np.maximum(np.sum(slope * slope, axis=1), 1e-3)
-        step = -np.sum(slope * off, axis=1) / information
-        variance = np.clip(variance + step, _LEAST_PX2, _MOST_PX2)
-    return variance, 1 / np.sqrt(information)
-
-
-class Membership(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Membership:
     """What n edges are, at a guess of the sensor and the shares.
 
     Attributes
     ----------
+    objects : FactorLikelihoods
+        What the pixels say of the objects under that sensor.
+    grid : SoftnessGrid
+    sector : (n,) int array
     share : (g, p) array
         Of the parts, in every sector of directions.
-    sector : (n,) int array
-    softness_px : (n, t + 1) array
-        Softness that each may have; the first is 0, of an ideal object.
-    width_px : (n,) array
-        Of the cells about the others.
-    laws : (p - 2, n, t) array
-        Probability of the cells by every law.
-    chance : (n, t + 1) array
-        Probability of each softness, of edges that are not strange.
-    part : (n, p) array
-        Probability of `softness.PARTS`.
+    odds : (n, t + 1) array
+        Likelihood of every softness, over the largest of the edge; the first is of an ideal object.
+    by_part : (n, p) array
+        Likelihood of every part of the population, over the same.
     log_likelihood : float
         Of all edges.
     """
 
-    share: Floats
+    objects: FactorLikelihoods
+    grid: SoftnessGrid
     sector: NDArray[np.intp]
-    softness_px: Floats
-    width_px: Floats
-    laws: Floats
-    chance: Floats
-    part: Floats
+    share: Floats
+    odds: Floats
+    by_part: Floats
     log_likelihood: float
+
+    @property
+    def softness_px(self) -> Floats:
+        """Softness that each may have, (n, t + 1); the first is 0, of an ideal object."""
+        return np.pad(self.grid.middle_px, ((0, 0), (1, 0)))
+
+    @cached_property
+    def part(self) -> Floats:
+        """Probability of `softness.PARTS`, (n, p)."""
+        odds = self.by_part * self.share[self.sector]
+        return np.asarray(odds / odds.sum(axis=1, keepdims=True))
+
+    @cached_property
+    def chance(self) -> Floats:
+        """Probability of each softness, of edges that are not strange, (n, t + 1)."""
+        own = self.share[self.sector]
+        chance = self.odds * own[:, :1]
+        for some in chunks(self.sector.size):
+            soft = own[some, None, 1:-1] @ self.grid.chances(some)
+            chance[some, 1:] = self.odds[some, 1:] * soft[:, 0]
+        return np.asarray(chance / np.sum(self.by_part * own, axis=1, keepdims=True))
 
     @property
     def mean_px(self) -> Floats:
@@ -190,11 +130,11 @@ class Membership(NamedTuple):
     @property
     def ideal(self) -> Floats:
         """Probability that the object of every edge counts as ideal, (n,)."""
-        width = self.width_px[:, None]
-        below = np.clip((NEARLY_IDEAL_PX - self.softness_px[:, 1:]) / width + 0.5, 0.0, 1.0)
+        width = self.grid.width_px[:, None]
+        below = np.clip((NEARLY_IDEAL_PX - self.grid.middle_px) / width + 0.5, 0.0, 1.0)
         return np.asarray(self.chance[:, 0] + np.sum(below * self.chance[:, 1:], axis=1))
 
-    @property
+    @cached_property
     def weight(self) -> Floats:
         """Information by softness that every edge gives, (n, t + 1): strange ones give little."""
         weight = self.chance.copy()
@@ -202,40 +142,26 @@ class Membership(NamedTuple):
         return weight
 
     def within(self, some: slice) -> Floats:
-        """Probability of every law by softness of some edges, being soft ones, (p - 2, n, t)."""
-        share = self.share[self.sector[some]]
-        by_law = share.T[1:-1, :, None] * self.laws[:, some]
-        return np.asarray(by_law / np.maximum(by_law.sum(axis=0), _TINY))
+        """Probability of every law by softness of some edges, being soft ones, (n, p - 2, t)."""
+        by_law = self.share[self.sector[some], 1:-1, None] * self.grid.chances(some)
+        return np.asarray(by_law / np.maximum(by_law.sum(axis=1, keepdims=True), _TINY))
 
 
 def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> Membership:
     """What the edges are under a given sensor (b, 2 k), from a first guess of the shares (g, p)."""
-    soft_px, width_px = softness_grid(edges, otf)
-    softness_px = np.hstack([np.zeros((edges.size, 1)), soft_px])
-    power = np.concatenate([
-        -0.5 * np.sum(edges.off(otf, some, edges.blur(softness_px[some] ** 2)) ** 2, axis=2)
-        for some in edges.chunks()
-    ])  # fmt: skip
+    objects = edges.of_objects(otf)
+    grid = softness_grid(objects)
+    power = -0.5 * (objects.powers(*grid, _CELLS) + edges.square[:, None])
     log_strange = power[:, 0] / STRANGE - 0.5 * edges.rank * np.log(STRANGE)
     largest = np.maximum(power.max(axis=1), log_strange)
     odds = np.exp(power - largest[:, None])
     strange = np.exp(log_strange - largest)
-    laws = _law_chances(soft_px, width_px)
-    by_law = np.einsum("pnt,nt->np", laws, odds[:, 1:])
+    by_law = np.concatenate([
+        (grid.chances(some) @ odds[some, 1:, None])[:, :, 0] for some in chunks(edges.size)
+    ])  # fmt: skip
     by_part = np.column_stack([odds[:, 0], by_law, strange])
     sector = sectors_of(edges.normal_deg)
     share = likeliest_shares(by_part, sector, share)
-    own = share[sector]
-    whole = np.sum(by_part * own, axis=1)
-    soft = np.einsum("np,pnt->nt", own[:, 1:-1], laws)
-    chance = odds * np.hstack([own[:, :1], soft]) / whole[:, None]
-    return Membership(
-        share, sector, softness_px, width_px, laws, chance, by_part * own / whole[:, None],
-        float(np.sum(largest) + np.sum(np.log(whole))),
-    )  # fmt: skip
-
-
-def _law_chances(softness_px: Floats, width_px: Floats) -> Floats:
-    """Probability of every law in cells (n, t) about their middles, (p - 2, n, t)."""
-    half = 0.5 * width_px[:, None]
-    return law_chances(np.hstack([softness_px - half, softness_px[:, -1:] + half]))
+    whole = np.sum(by_part * share[sector], axis=1)
+    log_likelihood = float(np.sum(largest) + np.sum(np.log(whole)))
+    return Membership(objects, grid, sector, share, odds, by_part, log_likelihood)

@@ -16,9 +16,9 @@ from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, open_image
 from acutance.scan.all_windows import Progress, part_of, scan_windows
 from acutance.scan.checks import check_scene
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field import Field, field_places
 from acutance.scan.options import ScanOptions
-from acutance.scan.population import EdgeLikelihoods
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
 from acutance.scan.sensor_fit import SensorFit, fit_sensor
@@ -222,8 +222,7 @@ def _likelihoods(
     value = np.zeros((len(used), int(ranks.max())))
     for i, (one, rank) in enumerate(zip(used, ranks, strict=True)):
         root[i, :, :rank], value[i, :rank] = one.root, one.value
-    gain = np.ones((len(used), freq.size))
-    return EdgeLikelihoods(freq, root, value, ranks.astype(float), number, axis_deg, gain)
+    return EdgeLikelihoods.of_roots(freq, root, value, ranks.astype(float), number, axis_deg)
 
 
 def _sensor_of(

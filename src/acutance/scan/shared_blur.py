@@ -19,8 +19,9 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.scan.blur_modes import changed
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.information import expected_information
-from acutance.scan.population import EdgeLikelihoods, Membership, fit_shares
+from acutance.scan.population import Membership, fit_shares
 
 __all__ = ["SharedBlur", "integrate_shared_blur"]
 

@@ -11,6 +11,7 @@ blur that no law allows to the objects would pass for the sensor's.
 from __future__ import annotations
 
 import math
+from functools import cache
 from itertools import product
 from typing import Final
 
@@ -26,6 +27,7 @@ __all__ = [
     "PARTS",
     "PSEUDO_COUNTS",
     "STRANGE",
+    "below_steps",
     "law_chances",
 ]
 
@@ -38,6 +40,9 @@ _LEAST_SPREAD_PX: Final = 0.09
 """Least standard deviation of a law. Narrower ones are one softness that all objects have, which no
 edge tells from the sensor's; they took for softness what a field leaves (benchmarks/scenes.py,
 corners: errors of .012 at Nyquist instead of .001)."""
+
+_STEP_PX, _MOST_PX = 0.005, 12.0
+"""Steps of tables of the laws, and where all of them end."""
 
 
 def _spread(causes: int, size_px: float) -> float:
@@ -64,6 +69,16 @@ PSEUDO_COUNTS: Final[Floats] = np.array([1.0, *(len(_LAWS) * [1.2 / len(_LAWS)])
 def law_chances(borders_px: Floats) -> Floats:
     """Probability of every law in cells between borders (..., t + 1), (laws, ..., t)."""
     return np.array([np.diff(_up_to(borders_px, *law)) for law in _LAWS])
+
+
+@cache
+def below_steps() -> tuple[Floats, float]:
+    """Probability of less than 0, 1, 2, ... steps by every law, (m, laws), and the step in px.
+
+    Linear between them, since the steps are far narrower than the laws.
+    """
+    borders = np.asarray(_STEP_PX * np.arange(round(_MOST_PX / _STEP_PX) + 1), float)
+    return np.array([_up_to(borders, *law) for law in _LAWS]).T.copy(), _STEP_PX
 
 
 def _up_to(softness_px: Floats, causes: int, size_px: float) -> Floats:

@@ -11,6 +11,7 @@ from acutance.numerics.stacked import stacked
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
 from acutance.targets.combine.fit import combine_curves
+from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
 from acutance.targets.combine.sensor_terms import TERMS
 from acutance.targets.otf_likelihood import OtfLikelihood
@@ -56,16 +57,16 @@ def test_slopes_of_a_form_are_those_of_its_values(terms):
     u, v = rng.uniform(-0.7, 0.7, (2, 20))
     move = 1e-3 * rng.standard_normal(p.size)
     change = form.otf(p + move, u, v) - form.otf(p - move, u, v)
-    assert change == pytest.approx(2 * form.slopes(p, u, v) @ move, abs=2e-7)
+    assert change == pytest.approx(2 * form.slopes_on(p, Plane(u, v)) @ move, abs=2e-7)
 
 
 @pytest.mark.parametrize("name", [name for name, term in TERMS.items() if term.slopes])
 def test_slopes_in_closed_form_are_those_of_the_term(name):
     term, step = TERMS[name], 1e-6
-    p, (u, v) = np.array(term.mean) + 0.1, np.random.default_rng(3).uniform(-1, 1, (2, 9))
-    found = term.slopes(p, u, v)
+    p, plane = np.array(term.mean) + 0.1, Plane(*np.random.default_rng(3).uniform(-1, 1, (2, 9)))
+    found = term.slopes(p, plane)
     for column, move in zip(found.T, step * np.eye(p.size), strict=True):
-        by_difference = (term.otf(p + move, u, v) - term.otf(p - move, u, v)) / (2 * step)
+        by_difference = (term.otf(p + move, plane) - term.otf(p - move, plane)) / (2 * step)
         np.testing.assert_allclose(column, by_difference, atol=1e-8)
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.sensor_forms import SensorForm
 
 __all__ = ["Correction"]
@@ -57,9 +58,10 @@ class Correction(ShortRepr):
     def directions(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Change of the OTF for a unit of every direction, (n, m): exactly 0 at zero frequency."""
         p = np.array(self.parameters)
-        size = np.abs(self.form.otf(p, u_cpp, v_cpp))
+        plane = Plane(u_cpp, v_cpp)
+        size = np.abs(self.form.otf_on(p, plane))
         # Sharpening multiplies the blur by a gain: the blur is the detector's at most.
-        blurred = np.minimum(size, np.abs(self.form.detector_otf(p, u_cpp, v_cpp)))
+        blurred = np.minimum(size, np.abs(self.form.detector_otf_on(p, plane)))
         reach = -math.e * size * np.log(np.maximum(blurred, 1e-30))
         even = self._kernel(u_cpp, v_cpp, 1.0) @ self._roots[0]
         odd = self._kernel(u_cpp, v_cpp, -1.0) @ self._roots[1]

@@ -18,6 +18,7 @@ from scipy.special import gammaincc
 
 from acutance.curves.grid import Floats
 from acutance.numerics.stacked import stacked
+from acutance.targets.combine.plane import Plane
 from acutance.targets.otf_likelihood import OtfLikelihood
 
 __all__ = ["ChiSquare", "OtfSamples", "WhitenedCurves"]
@@ -175,6 +176,11 @@ class WhitenedCurves:
     def v_cpp(self) -> Floats:
         """Frequencies along, (n,)."""
         return np.concatenate([one.v_cpp for one in self.curves])
+
+    @cached_property
+    def plane(self) -> Plane:
+        """Places of all curves."""
+        return Plane(self.u_cpp, self.v_cpp)
 
     @cached_property
     def values(self) -> Floats:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
-from acutance.targets.combine.sensor_terms import TERMS, Term, Transfer
+from acutance.targets.combine.plane import Plane
+from acutance.targets.combine.sensor_terms import TERMS, Term, Transfer, sinc_growth
 
 __all__ = ["FORMS", "SensorForm"]
 
@@ -75,27 +76,31 @@ class SensorForm:
 
     def otf(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF (n,), exactly 1 at zero frequency."""
-        return _product([factor(own, u_cpp, v_cpp) for factor, own in self._factors(p)])
+        return self.otf_on(p, Plane(u_cpp, v_cpp))
 
-    def detector_otf(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Floats:
+    def otf_on(self, p: Floats, plane: Plane) -> Complexes:
+        """OTF (n,) at places of the plane."""
+        detector = _detector(p[-1:], plane, self.detector_px)
+        return _product([*(term.otf(own, plane) for term, own in self._split(p)), detector])
+
+    def detector_otf_on(self, p: Floats, plane: Plane) -> Floats:
         """OTF of the detector alone, (n,)."""
-        across, along = math.exp(p[-1]) * np.array(self.detector_px)
-        return np.asarray(np.sinc(across * u_cpp) * np.sinc(along * v_cpp))
+        return _detector(p[-1:], plane, self.detector_px)
 
-    def slopes(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
+    def slopes_on(self, p: Floats, plane: Plane) -> Complexes:
         """Derivatives of the OTF by the parameters, (n, p)."""
-        split = [(term.otf, term.slopes, own) for term, own in self._split(p)]
-        factors = [*split, (self.detector_otf, None, p[-1:])]
-        values = [otf(own, u_cpp, v_cpp) for otf, _, own in factors]
-        columns = []
-        for i, (otf, slopes, own) in enumerate(factors):
-            others = _product(values[:i] + values[i + 1 :])
-            if slopes is None:
-                by_own = _differences(otf, values[i], own, u_cpp, v_cpp)
-            else:
-                by_own = slopes(own, u_cpp, v_cpp)
-            columns.append(others[:, None] * by_own)
-        return np.concatenate(columns, axis=1)
+        split = self._split(p)
+        values = [*(term.otf(own, plane) for term, own in split), self.detector_otf_on(p, plane)]
+        slopes = [
+            _differences(term.otf, here, own, plane) if term.slopes is None
+            else term.slopes(own, plane)
+            for (term, own), here in zip(split, values, strict=False)
+        ]  # fmt: skip
+        slopes.append(_detector_slopes(p[-1:], plane, self.detector_px))
+        others = [_product(values[:i] + values[i + 1 :]) for i in range(len(values))]
+        return np.concatenate(
+            [other[:, None] * by_own for other, by_own in zip(others, slopes, strict=True)], axis=1
+        )
 
     def numbers(self, p: Floats) -> dict[str, float]:
         """The reported numbers, by name."""
@@ -137,11 +142,6 @@ class SensorForm:
             for kind, own in widths.items()
         )
 
-    def _factors(self, p: Floats) -> list[tuple[Transfer, Floats]]:
-        """The factors of the product, each with its parameters, in their order."""
-        terms = [(term.otf, own) for term, own in self._split(p)]
-        return [*terms, (self.detector_otf, p[-1:])]
-
     def _split(self, p: Floats) -> list[tuple[Term, Floats]]:
         found, start = [], 0
         for name in self.terms:
@@ -151,12 +151,35 @@ class SensorForm:
         return found
 
 
-def _differences(
-    otf: Transfer, here: NDArray[Any], p: Floats, u: Floats, v: Floats
-) -> NDArray[Any]:
-    """Derivatives by the parameters, (n, p), by differences from the OTF as it is `here`."""
+def _detector(p: Floats, plane: Plane, detector_px: tuple[float, float]) -> Floats:
+    """OTF of a rectangular detector, (n,), by the logarithm of its width over the stated one."""
+    across, along = _detector_waves(p, plane, detector_px)
+    return np.asarray(np.sinc(across) * np.sinc(along))
+
+
+def _detector_slopes(p: Floats, plane: Plane, detector_px: tuple[float, float]) -> Floats:
+    """Its derivative, (n, 1)."""
+    across, along = _detector_waves(p, plane, detector_px)
+    by_both = sinc_growth(across) * np.sinc(along) + np.sinc(across) * sinc_growth(along)
+    return np.asarray(by_both[:, None])
+
+
+def _detector_waves(
+    p: Floats, plane: Plane, detector_px: tuple[float, float]
+) -> tuple[Floats, Floats]:
+    """Cycles over the detector, across and along."""
+    across, along = math.exp(p[0]) * np.array(detector_px)
+    return across * plane.u_cpp, along * plane.v_cpp
+
+
+def _differences(otf: Transfer, here: NDArray[Any], p: Floats, plane: Plane) -> NDArray[Any]:
+    """Derivatives by the parameters, (n, p), by differences from the OTF as it is `here`.
+
+    To one side: a step leads away from a smear or a trail of 0, which is stationary. By slopes in
+    closed form a fit that comes there stays.
+    """
     moves = _STEP * np.eye(p.size)
-    return np.stack([(otf(p + move, u, v) - here) / _STEP for move in moves], axis=1)
+    return np.stack([(otf(p + move, plane) - here) / _STEP for move in moves], axis=1)
 
 
 def _product(values: list[NDArray[Any]]) -> Complexes:

@@ -19,15 +19,13 @@ from acutance.curves.grid import Floats
 from acutance.geometry.angles import wrap_axis
 from acutance.optics import Defocus, Diffraction, Resampling, Shift
 from acutance.optics.processing import interpolation_weight
+from acutance.targets.combine.plane import TAPS, Plane
 
-__all__ = ["TERMS", "Term", "Transfer"]
+__all__ = ["TERMS", "Term", "Transfer", "sinc_growth"]
 
 Complexes = NDArray[np.complex128]
-Transfer = Callable[[Floats, Floats, Floats], NDArray[Any]]
-"""Optical transfer function (OTF), (n,), by parameters and frequencies in cycles per pixel."""
-
-_DIGITS = 12
-"""Of a frequency: those of slices in different directions differ in the last ones."""
+Transfer = Callable[[Floats, Plane], NDArray[Any]]
+"""Optical transfer function (OTF), (n,), by parameters and places of the plane."""
 
 
 @dataclass(frozen=True)
@@ -36,13 +34,13 @@ class Term:
 
     Parameters
     ----------
-    otf : function of (parameters, u, v)
+    otf : function of (parameters, plane)
         1 at zero frequency.
     mean, std : tuple of float
         Prior mean and standard deviation of the parameters.
     numbers : function of parameters
         The reported numbers, by name with the unit.
-    slopes : function of (parameters, u, v), optional
+    slopes : function of (parameters, plane), optional
         Derivatives of the OTF by the parameters, (n, p), in closed form.
     """
 
@@ -60,9 +58,19 @@ def _blur_covariance(p: Floats) -> tuple[float, float, float]:
     return across**2, along**2, correlation * across * along
 
 
-def _gaussian(p: Floats, u: Floats, v: Floats) -> Floats:
+def _gaussian(p: Floats, plane: Plane) -> Floats:
     xx, yy, xy = _blur_covariance(p)
+    u, v = plane.u_cpp, plane.v_cpp
     return np.asarray(np.exp(-2 * math.pi**2 * (xx * u**2 + 2 * xy * u * v + yy * v**2)))
+
+
+def _gaussian_slopes(p: Floats, plane: Plane) -> Floats:
+    xx, yy, xy = _blur_covariance(p)
+    u, v = plane.u_cpp, plane.v_cpp
+    crossed = xy * u * v
+    by_correlation = math.exp(p[0] + p[1]) / math.cosh(p[2]) ** 2 * u * v
+    falls = np.stack([xx * u**2 + crossed, yy * v**2 + crossed, by_correlation], axis=1)
+    return np.asarray(-4 * math.pi**2 * _gaussian(p, plane)[:, None] * falls)
 
 
 def _gaussian_numbers(p: Floats) -> dict[str, float]:
@@ -78,18 +86,27 @@ def _gaussian_numbers(p: Floats) -> dict[str, float]:
     }
 
 
-def _upright(p: Floats, u: Floats, v: Floats) -> Floats:
+def _upright(p: Floats, plane: Plane) -> Floats:
     """A Gaussian whose axes are those of the image."""
-    return _gaussian(np.append(p, 0.0), u, v)
+    return _gaussian(np.append(p, 0.0), plane)
+
+
+def _upright_slopes(p: Floats, plane: Plane) -> Floats:
+    return _gaussian_slopes(np.append(p, 0.0), plane)[:, :2]
 
 
 def _upright_numbers(p: Floats) -> dict[str, float]:
     return {"sigma_across_px": math.exp(p[0]), "sigma_along_px": math.exp(p[1])}
 
 
-def _round(p: Floats, u: Floats, v: Floats) -> Floats:
+def _round(p: Floats, plane: Plane) -> Floats:
     """A Gaussian that is nearly round: of one width, a small difference, a small correlation."""
-    return _gaussian(_nearly_round(p), u, v)
+    return _gaussian(_nearly_round(p), plane)
+
+
+def _round_slopes(p: Floats, plane: Plane) -> Floats:
+    across, along, correlation = _gaussian_slopes(_nearly_round(p), plane).T
+    return np.stack([across + along, across - along, correlation], axis=1)
 
 
 def _round_numbers(p: Floats) -> dict[str, float]:
@@ -100,14 +117,26 @@ def _nearly_round(p: Floats) -> Floats:
     return np.array([p[0] + p[1], p[0] - p[1], p[2]])
 
 
-def _smear(p: Floats, u: Floats, v: Floats) -> Floats:
-    return np.asarray(np.sinc(p[0] * u + p[1] * v))
+def _smear(p: Floats, plane: Plane) -> Floats:
+    return np.asarray(np.sinc(p[0] * plane.u_cpp + p[1] * plane.v_cpp))
 
 
-def _upright_smear(p: Floats, u: Floats, v: Floats) -> Floats:
+def sinc_growth(waves: Floats) -> Floats:
+    """Derivative of ``sinc(x)`` by the logarithm of x."""
+    return np.asarray(np.cos(math.pi * waves) - np.sinc(waves))
+
+
+def _upright_smear(p: Floats, plane: Plane) -> Floats:
     """Smears along both axes of the image, by the logarithms of their lengths."""
     # A length of 0 is stationary: an expansion about it knows nothing of smears.
-    return np.asarray(np.sinc(math.exp(p[0]) * u) * np.sinc(math.exp(p[1]) * v))
+    across, along = math.exp(p[0]) * plane.u_cpp, math.exp(p[1]) * plane.v_cpp
+    return np.asarray(np.sinc(across) * np.sinc(along))
+
+
+def _upright_smear_slopes(p: Floats, plane: Plane) -> Floats:
+    across, along = math.exp(p[0]) * plane.u_cpp, math.exp(p[1]) * plane.v_cpp
+    by_across = sinc_growth(across) * np.sinc(along)
+    return np.stack([by_across, np.sinc(across) * sinc_growth(along)], axis=1)
 
 
 def _upright_smear_numbers(p: Floats) -> dict[str, float]:
@@ -126,18 +155,33 @@ def _logistic(x: float) -> float:
     return 1 / (1 + math.exp(-x))
 
 
-def _halo(p: Floats, u: Floats, v: Floats) -> Floats:
-    share, sigma = _logistic(p[0]), math.exp(p[1])
-    halo = np.exp(-2 * (math.pi * sigma) ** 2 * (u**2 + v**2))
-    return np.asarray(1 - share + share * halo)
+def _logistic_slope(x: float) -> float:
+    return _logistic(x) * _logistic(-x)
+
+
+def _wide(sigma_px: float, plane: Plane) -> tuple[Floats, Floats]:
+    """A round Gaussian, and its derivative by the logarithm of its width."""
+    square = (math.pi * sigma_px) ** 2 * (plane.u_cpp**2 + plane.v_cpp**2)
+    values = np.exp(-2 * square)
+    return values, -4 * square * values
+
+
+def _halo(p: Floats, plane: Plane) -> Floats:
+    share = _logistic(p[0])
+    return np.asarray(1 - share + share * _wide(math.exp(p[1]), plane)[0])
+
+
+def _halo_slopes(p: Floats, plane: Plane) -> Floats:
+    halo, by_width = _wide(math.exp(p[1]), plane)
+    return np.stack([_logistic_slope(p[0]) * (halo - 1), _logistic(p[0]) * by_width], axis=1)
 
 
 def _halo_numbers(p: Floats) -> dict[str, float]:
     return {"halo_share": _logistic(p[0]), "halo_sigma_px": math.exp(p[1])}
 
 
-def _trail(p: Floats, u: Floats, v: Floats) -> Complexes:
-    across, along = 2j * math.pi * p[0] * u, 2j * math.pi * p[1] * v
+def _trail(p: Floats, plane: Plane) -> Complexes:
+    across, along = 2j * math.pi * p[0] * plane.u_cpp, 2j * math.pi * p[1] * plane.v_cpp
     return np.asarray(np.exp(across + along) / ((1 + across) * (1 + along)))
 
 
@@ -150,10 +194,17 @@ def _taps(p: Floats) -> tuple[float, float]:
     return 0.4 * math.tanh(p[0]), 0.4 * math.tanh(p[1])
 
 
-def _sharpening(p: Floats, u: Floats, v: Floats) -> Floats:
+def _sharpening(p: Floats, plane: Plane) -> Floats:
     across, along = _taps(p)
-    by_col = 1 + 2 * across * (1 - np.cos(2 * math.pi * u))
-    return np.asarray(by_col * (1 + 2 * along * (1 - np.cos(2 * math.pi * v))))
+    by_col, by_row = (gains[:, 0] for gains in plane.tap_gains)
+    return np.asarray((1 + across * by_col) * (1 + along * by_row))
+
+
+def _sharpening_slopes(p: Floats, plane: Plane) -> Floats:
+    across, along = _taps(p)
+    by_col, by_row = (gains[:, 0] for gains in plane.tap_gains)
+    both = np.stack([by_col * (1 + along * by_row), by_row * (1 + across * by_col)], axis=1)
+    return np.asarray(0.4 / np.cosh(p) ** 2 * both)
 
 
 def _sharpening_numbers(p: Floats) -> dict[str, float]:
@@ -166,9 +217,15 @@ def _mask(p: Floats) -> tuple[float, float]:
     return 2.0 * _logistic(p[0]), math.exp(p[1])
 
 
-def _unsharp(p: Floats, u: Floats, v: Floats) -> Floats:
+def _unsharp(p: Floats, plane: Plane) -> Floats:
     gain, sigma = _mask(p)
-    return np.asarray(1 + gain * (1 - np.exp(-2 * (math.pi * sigma) ** 2 * (u**2 + v**2))))
+    return np.asarray(1 + gain * (1 - _wide(sigma, plane)[0]))
+
+
+def _unsharp_slopes(p: Floats, plane: Plane) -> Floats:
+    gain, sigma = _mask(p)
+    blurred, by_width = _wide(sigma, plane)
+    return np.stack([2 * _logistic_slope(p[0]) * (1 - blurred), -gain * by_width], axis=1)
 
 
 def _unsharp_numbers(p: Floats) -> dict[str, float]:
@@ -180,9 +237,12 @@ def _aperture(p: Floats) -> tuple[float, float]:
     return math.exp(p[0]), 0.7 * _logistic(p[1])
 
 
-def _diffraction(p: Floats, u: Floats, v: Floats) -> Floats:
+def _diffraction(p: Floats, plane: Plane) -> Floats:
+    """Once for every distance from zero frequency."""
+    freq, where = plane.rings
     cutoff, obscuration = _aperture(p)
-    return np.asarray(Diffraction(cutoff, obscuration=obscuration).otf(u, v))
+    otf = Diffraction(cutoff, obscuration=obscuration).otf(freq, np.zeros(freq.size))
+    return np.asarray(np.asarray(otf)[where])
 
 
 def _diffraction_numbers(p: Floats) -> dict[str, float]:
@@ -190,12 +250,12 @@ def _diffraction_numbers(p: Floats) -> dict[str, float]:
     return {"cutoff_cpp": cutoff, "obscuration": obscuration}
 
 
-def _defocus(p: Floats, u: Floats, v: Floats) -> Floats:
-    """Once for every distance from zero frequency: slices in all directions share theirs."""
-    freq, where = np.unique(np.round(np.hypot(u, v), _DIGITS), return_inverse=True)
+def _defocus(p: Floats, plane: Plane) -> Floats:
+    """Once for every distance from zero frequency."""
+    freq, where = plane.rings
     cutoff, obscuration = _aperture(p)
-    otf = Defocus(_waves(p), cutoff, obscuration).otf(np.asarray(freq), np.zeros(freq.size))
-    return np.asarray(otf[where])
+    otf = Defocus(_waves(p), cutoff, obscuration).otf(freq, np.zeros(freq.size))
+    return np.asarray(np.asarray(otf)[where])
 
 
 def _waves(p: Floats) -> float:
@@ -206,19 +266,15 @@ def _defocus_numbers(p: Floats) -> dict[str, float]:
     return {**_diffraction_numbers(p), "defocus_waves": abs(_waves(p))}
 
 
-def _kernel(p: Floats, u: Floats, v: Floats) -> Floats:
+def _kernel(p: Floats, plane: Plane) -> Floats:
     """An even kernel of 15 taps, the same in both axes: its outer taps are -p[0], -p[1], ..."""
-    return np.asarray((1 + _tap_gains(p.size, u) @ p) * (1 + _tap_gains(p.size, v) @ p))
+    across, along = plane.tap_gains
+    return np.asarray((1 + across @ p) * (1 + along @ p))
 
 
-def _kernel_slopes(p: Floats, u: Floats, v: Floats) -> Floats:
-    across, along = _tap_gains(p.size, u), _tap_gains(p.size, v)
+def _kernel_slopes(p: Floats, plane: Plane) -> Floats:
+    across, along = plane.tap_gains
     return np.asarray(across * (1 + along @ p)[:, None] + along * (1 + across @ p)[:, None])
-
-
-def _tap_gains(count: int, freq: Floats) -> Floats:
-    """What a unit of every outer tap adds to the gain along an axis, (n, count)."""
-    return np.asarray(2 - 2 * np.cos(2 * math.pi * np.outer(freq, np.arange(1, count + 1))))
 
 
 def _kernel_numbers(p: Floats) -> dict[str, float]:
@@ -230,8 +286,8 @@ def _cubic(p: Floats) -> float:
     return -_logistic(p[0])
 
 
-def _interpolation(p: Floats, u: Floats, v: Floats) -> Floats:
-    return np.asarray(Resampling("cubic", _cubic(p)).otf(u, v))
+def _interpolation(p: Floats, plane: Plane) -> Floats:
+    return np.asarray(Resampling("cubic", _cubic(p)).otf(plane.u_cpp, plane.v_cpp))
 
 
 def _interpolation_numbers(p: Floats) -> dict[str, float]:
@@ -243,8 +299,9 @@ def _phases(p: Floats) -> tuple[float, float]:
     return 0.5 * math.erf(p[0] * math.sqrt(0.5)), 0.5 * math.erf(p[1] * math.sqrt(0.5))
 
 
-def _phase(p: Floats, u: Floats, v: Floats) -> Complexes:
+def _phase(p: Floats, plane: Plane) -> Complexes:
     """Cubic convolution at one phase of the pixels, as in a small part of a warped image."""
+    u, v = plane.u_cpp, plane.v_cpp
     across, along = _phases(p)
     otf = Shift(along, across, "cubic", _cubic(p[2:])).otf(u, v)
     moved_px = u * _moved_px(across, _cubic(p[2:])) + v * _moved_px(along, _cubic(p[2:]))
@@ -266,21 +323,37 @@ _SIGMA_MEAN, _SIGMA_STD = (math.log(0.4),), (0.7,)
 _NEARLY_ROUND_STD = (0.03, 0.06)
 """No sensor is exactly round: half the logarithm of the ratio of its widths, and its correlation,
 the same ellipse in any direction."""
-_TAP_MEAN = (0.4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_TAP_MEAN = (0.4, *((TAPS - 1) * [0.0]))
 _TAP_STD = (0.5, 0.25, 0.12, 0.07, 0.05, 0.03, 0.02)
 
 TERMS: dict[str, Term] = {
-    "gaussian": Term(_gaussian, (*_SIGMA_MEAN * 2, 0.0), (*_SIGMA_STD * 2, 0.3), _gaussian_numbers),
-    "upright gaussian": Term(_upright, _SIGMA_MEAN * 2, _SIGMA_STD * 2, _upright_numbers),
+    "gaussian": Term(
+        _gaussian,
+        (*_SIGMA_MEAN * 2, 0.0),
+        (*_SIGMA_STD * 2, 0.3),
+        _gaussian_numbers,
+        _gaussian_slopes,
+    ),
+    "upright gaussian": Term(
+        _upright, _SIGMA_MEAN * 2, _SIGMA_STD * 2, _upright_numbers, _upright_slopes
+    ),
     "round gaussian": Term(
-        _round, (*_SIGMA_MEAN, 0.0, 0.0), (*_SIGMA_STD, *_NEARLY_ROUND_STD), _round_numbers
+        _round,
+        (*_SIGMA_MEAN, 0.0, 0.0),
+        (*_SIGMA_STD, *_NEARLY_ROUND_STD),
+        _round_numbers,
+        _round_slopes,
     ),
     "smear": Term(_smear, (0.0, 0.0), (1.2, 1.2), _smear_numbers),
-    "upright smear": Term(_upright_smear, (-0.4, -0.4), (0.8, 0.8), _upright_smear_numbers),
-    "halo": Term(_halo, (-2.2, math.log(2.0)), (1.0, 0.5), _halo_numbers),
+    "upright smear": Term(
+        _upright_smear, (-0.4, -0.4), (0.8, 0.8), _upright_smear_numbers, _upright_smear_slopes
+    ),
+    "halo": Term(_halo, (-2.2, math.log(2.0)), (1.0, 0.5), _halo_numbers, _halo_slopes),
     "trail": Term(_trail, (0.0, 0.0), (0.4, 0.4), _trail_numbers),
-    "sharpening": Term(_sharpening, (0.4, 0.4), (0.4, 0.4), _sharpening_numbers),
-    "unsharp": Term(_unsharp, (-1.0, 0.0), (1.0, 0.3), _unsharp_numbers),
+    "sharpening": Term(
+        _sharpening, (0.4, 0.4), (0.4, 0.4), _sharpening_numbers, _sharpening_slopes
+    ),
+    "unsharp": Term(_unsharp, (-1.0, 0.0), (1.0, 0.3), _unsharp_numbers, _unsharp_slopes),
     "diffraction": Term(_diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
     "defocus": Term(_defocus, (math.log(1.3), -0.5, 0.25), (0.4, 1.0, 0.15), _defocus_numbers),
     "kernel": Term(_kernel, _TAP_MEAN, _TAP_STD, _kernel_numbers, _kernel_slopes),

@@ -16,6 +16,7 @@ from acutance.curves.rounded_rows import RoundedRows
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.angles import wrap_axis
 from acutance.targets.combine.correction import Correction
+from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.sensor_forms import SensorForm
 
 __all__ = ["CombinedOtf", "RoundedForm", "WeightedForm"]
@@ -63,7 +64,7 @@ class WeightedForm(ShortRepr):
 
     def slopes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Derivatives of the OTF by parameters and weights, (n, p + m)."""
-        own = self.form.slopes(self.parameters, u_cpp, v_cpp)
+        own = self.form.slopes_on(self.parameters, Plane(u_cpp, v_cpp))
         if self.weights.size == 0:
             return own
         return np.concatenate([own, self.correction.directions(u_cpp, v_cpp)], axis=1)

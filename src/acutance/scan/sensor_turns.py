@@ -1,0 +1,294 @@
+"""Turns by which the sensor of a scene is found: what the edges are, and the sensor given that.
+
+Each turn asks how much of the blur is the sensor's (`acutance.scan.blur_modes`), what every edge is
+(`acutance.scan.population`), and what sensor all directions together have then
+(`acutance.targets.combine`). Which start leads to the likeliest sensor some of the edges decide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
+from acutance.numerics.stacked import stacked, unstacked
+from acutance.scan.blur_modes import COMMON_MODES, changed, edge_modes, fit_modes
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
+from acutance.scan.form_agreement import common_errors
+from acutance.scan.information import expected_information
+from acutance.scan.population import fit_shares
+from acutance.scan.shares import START
+from acutance.targets.combine.curves import OtfSamples
+from acutance.targets.combine.fit import CombinedFit, combine_curves
+from acutance.targets.combine.sensor_forms import FORMS
+from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
+from acutance.targets.otf_likelihood import OtfLikelihood
+from acutance.targets.slices import places_along
+
+__all__ = ["SensorState", "first_sensor", "otf_samples", "settled", "some_of_each"]
+
+_SETTLED: Final = 0.1
+"""Square of a turn's change, in standard deviations of what the edges say."""
+_MAX_TURNS: Final = 12
+_GAINS: Final = (0.7, 1.4)
+"""Between these the sensor along an edge's normal is of that along its bin."""
+_LEAST: Final = 1e3
+"""Information of a direction whose edges are all strange: it has no part in a turn."""
+_EXACT: Final = 1e7
+"""One over the error of what is exact."""
+_UNSEEN: Final = 1.0
+"""Information of combinations that edges do not show: the OTF is between 0 and 1."""
+_BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
+"""Blur that is added to first guesses: the sharpest edges are so by their noise, too."""
+_ALIKE: Final = 0.005
+"""Mean difference of transfer functions within the band that is none."""
+_TURN_TOLERANCE: Final = 1e-4
+"""Change of the misfit of the sensor's forms, a share of it, that is none between turns."""
+_ENOUGH_EDGES: Final = 600
+_LIKELIER: Final = 3.0
+"""By so much in the log likelihood another sensor has to be likelier than that of a better start:
+less is what a form of more terms gains."""
+_FAR: Final = 10.0
+"""By so much an edge, in the log likelihood, a start may lie behind another: those that led to a
+likelier sensor in the end lay behind by 5 at most (benchmarks/scenes.py, twenty scenes)."""
+_PATIENCE: Final = 5.0
+"""Turns rise less and less: a start that lies behind by more than so many rises is given up."""
+_FINE_DEG: Final[Floats] = np.linspace(-90.0, 90.0, 181)
+"""Directions between which the modulus of a sensor is linear."""
+_FREE_PX2: Final = 0.1
+"""Prior standard deviation of the modes by which first guesses may change."""
+
+
+class SensorState(NamedTuple):
+    """A sensor between two turns.
+
+    Attributes
+    ----------
+    otf : (b, 2 k) array
+        Along the bins, in the middle of the edges.
+    share : (g, p) array
+    forms : sequence of tuples of str
+        Forms of sensors that have some weight.
+    combined : CombinedFit or None
+        Such forms where they were fitted last.
+    along : EdgeLikelihoods
+        What the edges say of the sensor along their bins.
+    log_likelihood : float
+        Of the edges.
+    turns : int
+    settled : bool
+    """
+
+    otf: Floats
+    share: Floats
+    forms: Sequence[tuple[str, ...]]
+    combined: CombinedFit | None
+    along: EdgeLikelihoods
+    log_likelihood: float
+    turns: int
+    settled: bool
+
+    @property
+    def near(self) -> Sequence[WeightedForm]:
+        """Forms where they were fitted last, if they were."""
+        return () if self.combined is None else self.combined.near
+
+
+def first_sensor(
+    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
+) -> SensorState:
+    """The likeliest sensor to which guesses lead, without a change over the field.
+
+    Parameters
+    ----------
+    edges : EdgeLikelihoods
+    normal_deg : (b,) array
+        Mean direction of every bin.
+    guesses : sequence of (b, 2 k) arrays
+        First guesses of the OTF in every direction, real parts first.
+    """
+    some = some_of_each(edges.bin)
+    state = _likeliest(edges.chosen(some), normal_deg, guesses)
+    if some.size == edges.size or state.combined is None:
+        return state
+    along = _along_bins(edges, normal_deg, state.combined.unwidened)
+    return settled(edges, normal_deg, state._replace(along=along), np.zeros_like(edges.gain))
+
+
+def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Edges by which a start is chosen: every m-th of each bin of directions.
+
+    All of them, of few; of many 600 to 1200, and few more where bins are sparse.
+    """
+    step = max(number.size // _ENOUGH_EDGES, 1)
+    own = (np.flatnonzero(number == b)[::step] for b in range(int(number.max()) + 1))
+    return np.sort(np.concatenate(list(own)))
+
+
+def _likeliest(
+    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
+) -> SensorState:
+    """The likeliest of the sensors to which the guesses lead."""
+    nothing = np.zeros_like(edges.gain)
+    first, *others = _starts(edges, normal_deg, guesses)
+    best = settled(edges, normal_deg, first, nothing)
+    for start in others:
+        start = start._replace(combined=best.combined)
+        end = settled(edges, normal_deg, start, nothing, best.log_likelihood)
+        if end.log_likelihood > best.log_likelihood + _LIKELIER:
+            best = end
+    return best
+
+
+def _starts(
+    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
+) -> list[SensorState]:
+    """The likeliest sensors near the guesses, of free shape, as far as they differ; best first.
+
+    The likelihood has several tops where few edges are sharp: a soft sensor whose sharpest edges
+    are noise, and a sharp one under soft objects.
+    """
+    modes = edge_modes(normal_deg, edges.freq_cpp)
+    steeper = (edges.freq_cpp[:, None] / NYQUIST_CPP) ** 2
+    free = np.concatenate([modes, modes[:, :, :COMMON_MODES] * steeper], axis=2)
+    in_band = np.tile(edges.freq_cpp <= NYQUIST_CPP, 2)
+    found: list[SensorState] = []
+    for guess in guesses:
+        tried = [changed(guess, modes[:, :, 0] * blur) for blur in _BLUR_STARTS_PX2]
+        start = max(tried, key=lambda one: fit_shares(edges, one, START).log_likelihood)
+        fit = fit_modes(edges, start, START, free[edges.bin], std=_FREE_PX2)
+        otf = changed(start, free @ fit.amount)
+        apart = [float(np.abs(otf - one.otf)[:, in_band].mean()) for one in found]
+        if min(apart, default=np.inf) > _ALIKE:
+            state = SensorState(
+                otf, fit.share, FORMS, None, edges, fit.log_posterior, 0, settled=False
+            )
+            found.append(state)
+    least = max(one.log_likelihood for one in found) - _FAR * edges.size
+    likely = [one for one in found if one.log_likelihood >= least]
+    return sorted(likely, key=lambda one: -one.log_likelihood)
+
+
+def settled(
+    edges: EdgeLikelihoods,
+    normal_deg: Floats,
+    state: SensorState,
+    log_gain: Floats,
+    rival: float = -np.inf,
+) -> SensorState:
+    """The sensor after as many turns as it needs, under a given change over the field (n, k).
+
+    Or after so many that it will not reach the log likelihood of a `rival`.
+    """
+    modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
+    otf, share, forms, combined, along, _, turns, _ = state
+    near = state.near
+    before: Floats | None = None
+    moved, last = np.zeros_like(otf), -np.inf
+    for turn in range(_MAX_TURNS + 1):
+        seen = along.turned(np.exp(log_gain))
+        found = fit_modes(seen, otf, share, modes[edges.bin])
+        otf = changed(otf, modes @ found.amount)
+        if before is not None:
+            moved = _calmed(otf - before, moved)
+            otf = before + moved
+        member = fit_shares(seen, otf, found.share)
+        share, reached = member.share, member.log_likelihood
+        information, projection = expected_information(seen, member)
+        size = float(np.einsum("bk,bkl,bl", moved, information, moved))
+        is_settled = before is not None and size < _SETTLED
+        is_hopeless = rival - reached > _PATIENCE * max(reached - last, 0.0)
+        if is_settled or is_hopeless or turn == _MAX_TURNS:
+            break
+        # Before the first turn the sensor has no form, and may be likelier than with one.
+        before, last = otf, reached if turn > 0 else -np.inf
+        combined = _combined(edges.freq_cpp, normal_deg, otf, information, projection, forms, near)
+        near, sensor = combined.near, combined.unwidened
+        # Forms without any weight have none in the next turn, either.
+        forms = tuple({form.form.oblique_terms: None for form in sensor.forms})
+        otf = stacked(_along(sensor, normal_deg, edges.freq_cpp).T).T
+        along = _along_bins(edges, normal_deg, sensor)
+    return SensorState(otf, share, forms, combined, along, reached, turns + turn, is_settled)
+
+
+def _calmed(move: Floats, last: Floats) -> Floats:
+    """A turn's move; half of one that goes back: turns may go in circles."""
+    return 0.5 * move if float(np.vdot(move, last)) < 0 else move
+
+
+def _combined(
+    freq_cpp: Floats,
+    normal_deg: Floats,
+    otf: Floats,
+    information: Floats,
+    projection: Floats,
+    forms: Sequence[tuple[str, ...]],
+    near: Sequence[WeightedForm],
+) -> CombinedFit:
+    """The sensor, if it is known what the edges are; near that of the turn before."""
+    curves = [
+        otf_samples(normal_deg[[b]], freq_cpp, otf[b], own, pull - own @ otf[b])
+        for b, (own, pull) in enumerate(zip(information, projection, strict=True))
+        if np.trace(own) > _LEAST
+    ]
+    return combine_curves(curves, forms=forms, near=near, tolerance=_TURN_TOLERANCE)
+
+
+def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:
+    """What the edges say of the sensor along their bins; along their own normals it differs."""
+    fine, mean = (np.abs(_along(sensor, one, edges.freq_cpp)) for one in (_FINE_DEG, normal_deg))
+    own = [np.interp(edges.normal_deg, _FINE_DEG, column) for column in fine.T]
+    low, high = _GAINS
+    gain = np.transpose(own) / np.maximum(mean[edges.bin], 1e-3)
+    return edges.turned(np.clip(gain, low, high))
+
+
+def _along(sensor: CombinedOtf, normal_deg: Floats, freq_cpp: Floats) -> NDArray[np.complex128]:
+    """The OTF in every direction, (b, k)."""
+    otf = sensor.otf(*places_along(normal_deg, freq_cpp))
+    return np.asarray(otf.reshape(normal_deg.size, freq_cpp.size))
+
+
+def otf_samples(
+    normal_deg: Floats,
+    freq_cpp: Floats,
+    otf: Floats,
+    information: Floats,
+    pull: Floats | float = 0.0,
+) -> OtfSamples:
+    """A likelihood about an OTF: its information, and its gradient there.
+
+    Parameters
+    ----------
+    normal_deg : (b,) array
+    freq_cpp : (k,) array
+    otf : (b * 2 k,) array
+        Direction by direction, of each the real parts first.
+    information : (b * 2 k, b * 2 k) array
+    pull : (b * 2 k,) array, optional
+        Gradient; none where the OTF is the likeliest.
+    """
+    pull = np.broadcast_to(pull, otf.shape)
+    order = _real_first(normal_deg.size, freq_cpp.size)
+    size, axes = np.linalg.eigh(information[np.ix_(order, order)])
+    seen = size > _UNSEEN
+    root = axes[:, seen] * np.sqrt(size[seen])
+    values = root.T @ otf[order] + (root / size[seen]).T @ pull[order]
+    # One more value: at zero frequency the OTF is 1, whatever light an image has.
+    root = np.column_stack([root, np.zeros(len(root))])
+    level = np.append(np.zeros(values.size), _EXACT)
+    likelihood = OtfLikelihood(unstacked(root), level, np.append(values, _EXACT))
+    likelihood = likelihood.with_errors(common_errors(normal_deg.size, freq_cpp))
+    u, v = places_along(normal_deg, freq_cpp)
+    about = unstacked(otf[order])
+    return OtfSamples("edges", u, v, about, np.zeros((about.size, 1), complex), likelihood)
+
+
+def _real_first(bins: int, frequencies: int) -> Floats:
+    """Where all real parts stand, then all imaginary ones."""
+    places = np.arange(bins * 2 * frequencies).reshape(bins, 2, frequencies)
+    return np.asarray(places.transpose(1, 0, 2).ravel())
