@@ -267,7 +267,8 @@ class _Model:
         seen = white.covariance @ (white.sigma[:, None] * self.crossed)
         left = self.projection - beta @ self.crossed
         power = self.own - np.sum(white.sigma[:, None] * self.crossed * seen, axis=0)
-        precision = 1 / RIM_STD**2 + power
+        # Without noise the difference of large numbers may be rounded to below zero.
+        precision = 1 / RIM_STD**2 + np.maximum(power, 0.0)
         height = left / precision
         gain = 0.5 * (left * height - np.log(precision * RIM_STD**2))
         moved = beta - (white.sigma[:, None] * seen * height).T
