@@ -32,7 +32,7 @@ from acutance.errors import (
 )
 
 if TYPE_CHECKING:
-    from acutance import optics, report, simulate
+    from acutance import optics, report, simulate, targets
     from acutance.archive import Archive
     from acutance.batch import BatchPlan, BatchSummary, read_plan, run_batch
     from acutance.curves import Esf, Estimate, Estimates, Lsf, Mtf, Response
@@ -170,7 +170,7 @@ _HOMES = {
     "sites": "acutance.raster",
     "verify_restoration": "acutance.restoration",
 }
-_MODULES = ("optics", "report", "simulate")
+_MODULES = ("optics", "report", "simulate", "targets")
 
 __all__ = [
     "AcutanceError",
@@ -259,6 +259,7 @@ __all__ = [
     "scan_scene",
     "simulate",
     "sites",
+    "targets",
     "verify_restoration",
 ]
 

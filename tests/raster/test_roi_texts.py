@@ -209,7 +209,7 @@ def test_coordinates_that_need_a_crs(plain, located, write_geojson):
         ("{not json", "cannot be read as GeoJSON"),
         ("\xff\xfe", "cannot be read as GeoJSON"),
         ("[1, 2]", "a list, not a GeoJSON object"),
-        ("{}", "holds a None, which has no inside"),
+        ("{}", "is no GeoJSON: what it holds has no type"),
         ({"type": "Point", "coordinates": [1, 2]}, "'Point', which has no inside"),
         (collection(), "no polygon"),
         ({"type": "FeatureCollection"}, "without a list of features"),

@@ -136,6 +136,8 @@ def test_nothing_to_measure_is_no_error(scene):
         lambda image: ac.measure_pulses(image, REGIONS, method="spleen"),
         lambda image: ac.measure_edges(image, REGIONS, options=ac.PulseOptions()),
         lambda image: ac.measure_edges(image, REGIONS, workers=0),
+        lambda image: ac.measure_edges(image, REGIONS, workers="2"),
+        lambda image: ac.measure_edges(image, REGIONS, workers=1.5),
         lambda image: ac.measure_edges(image, GOOD, workers=2),
     ],
 )
@@ -155,6 +157,7 @@ def test_options_that_mean_nothing_are_refused_before_anything_is_measured(scene
         ("0,0,4,4", False),
         (np.array(GOOD), False),
         ([GOOD], True),
+        ([GOOD, "nowhere"], True),
         ([], True),
         (np.array([GOOD]), True),
         (iter([GOOD]), True),

@@ -41,10 +41,10 @@ def require_workers(workers: int) -> None:
     Raises
     ------
     OptionError
-        If there is no worker.
+        If it is no number of processes.
     """
-    if workers < 1:
-        raise OptionError(f"workers is {workers}: give the number of processes, 1 or more")
+    if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
+        raise OptionError(f"workers is {workers!r}: give the number of processes, 1 or more")
 
 
 def run_tasks(

@@ -146,6 +146,11 @@ def _polygons(node: Any, name: str, label: str = "") -> Iterator[tuple[str, Any]
             yield f"{label} part {number}".strip(), part
     elif kind == "Polygon":
         yield label or "polygon", node.get("coordinates")
+    elif kind is None:
+        raise RegionError(
+            f"{name} is no GeoJSON: what it holds has no type; give a Polygon, a Feature or a "
+            "FeatureCollection"
+        )
     else:
         raise RegionError(
             f"{name} holds a {kind!r}, which has no inside: draw the target as a Polygon"

@@ -180,7 +180,7 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, 
         )
     if len(used) < _MIN_EDGES:
         raise FewEdgesError(
-            f"{edges.size} straight edges were found, and {len(used)} of them can be used, where "
+            f"{_counted(edges.size)} found, and {len(used)} of them can be used, where "
             f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}scan a larger part, or "
             "another image, or measure single edges; the table of the edges has every reason "
             "(--edges FILE, the error's edges)",
@@ -210,6 +210,10 @@ def _common_reason(edges: SceneEdges) -> str:
     unused = edges.verdict[~edges.used]
     words, counts = np.unique(unused, return_counts=True)
     return f"most of the others are {words[int(np.argmax(counts))]}; "
+
+
+def _counted(edges: int) -> str:
+    return "1 straight edge was" if edges == 1 else f"{edges} straight edges were"
 
 
 def _likelihoods(

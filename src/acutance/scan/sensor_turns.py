@@ -46,8 +46,6 @@ _BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
 """Blur that is added to first guesses: the sharpest edges are so by their noise, too."""
 _ALIKE: Final = 0.005
 """Mean difference of transfer functions within the band that is none."""
-_TURN_TOLERANCE: Final = 1e-4
-"""Change of the misfit of the sensor's forms, a share of it, that is none between turns."""
 _ENOUGH_EDGES: Final = 600
 _LIKELIER: Final = 3.0
 """By so much in the log likelihood another sensor has to be likelier than that of a better start:
@@ -235,7 +233,7 @@ def _combined(
         for b, (own, pull) in enumerate(zip(information, projection, strict=True))
         if np.trace(own) > _LEAST
     ]
-    return combine_curves(curves, forms=forms, near=near, tolerance=_TURN_TOLERANCE)
+    return combine_curves(curves, forms=forms, near=near)
 
 
 def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:

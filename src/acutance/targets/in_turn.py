@@ -87,7 +87,7 @@ def are_many(image: Any, roi: Any) -> bool:
     if isinstance(roi, np.ndarray):
         return roi.ndim == 2
     if isinstance(roi, list | tuple):
-        return not any(np.isscalar(one) for one in roi)
+        return not any(isinstance(one, int | float | np.number) for one in roi)
     return isinstance(roi, Iterator)
 
 

@@ -181,8 +181,10 @@ def main_stds(response: Response) -> dict[str, float]:
 def systematic_share(budget: Iterable[BudgetTerm], direction: Orientation, number: str) -> float:
     """Part of a number's variance that does not average out over measurements of one sensor.
 
-    Of a number without a budget it is the largest of those that have one.
+    Of a number without a budget it is the largest of those that have one; one in metres has that of
+    the same in pixels.
     """
+    number = number.removesuffix("_m") + "_px" if number.endswith("_m") else number
     rows = [row for row in budget if row.direction == direction and row.name in SYSTEMATIC_TERMS]
 
     def share(name: str) -> float:

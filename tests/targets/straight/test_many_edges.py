@@ -61,6 +61,14 @@ def test_group_means_are_better_than_their_edges_and_consistent(scene):
         assert group.p_value["mtf_nyquist"] > 1e-3
 
 
+def test_means_in_metres_are_those_in_pixels(scene):
+    gsd_m = 0.3
+    (group, *_) = ac.measure_edges(scene.image, gsd_m=gsd_m).groups.values()
+    pixels, metres = group.metrics["fwhm_px"], group.metrics["fwhm_m"]
+    assert metres.value == pytest.approx(gsd_m * pixels.value)
+    assert metres.std == pytest.approx(gsd_m * pixels.std)
+
+
 def test_border_edges_are_rejected_with_their_reason(scene):
     result = ac.measure_edges(scene.image)
     reasons = [one for one in result.rejected if one.stage == "contrast"]

@@ -23,6 +23,8 @@ _MIN_SINGULAR = 0.1
 _MAX_CORRECTED = 3
 _STARTS_TRIED = 2
 _FIRST_STEPS, _MAX_STEPS = 30, 60
+_SETTLED = 1e-6
+"""Change of a form's misfit, a share of it, that is none: with more the turns of a scene cycle."""
 _HOPELESS = 60.0
 """Of scores above the least, after the first steps: no form beyond it gets any weight (of 390 forms
 fitted to the edges of scenes, those that did were within 12; after 22 steps they were not)."""
@@ -118,7 +120,6 @@ def combine_curves(
     detector_px: tuple[float, float] = (1.0, 1.0),
     forms: Sequence[tuple[str, ...]] = FORMS,
     near: Sequence[WeightedForm] = (),
-    tolerance: float = 1e-6,
 ) -> CombinedFit:
     """Fit every form to all curves, with corrections of several sizes, and average.
 
@@ -137,8 +138,6 @@ def combine_curves(
     near : sequence of WeightedForm, optional
         Of curves that hardly differed, the largest weight first: where a form begins, too.
         Forms with defocus and a kernel have several optima.
-    tolerance : float, optional
-        Change of a form's misfit, a share of it, below which it is settled.
     """
     known = {one.form: one for one in reversed(near)}
     data = WhitenedCurves([one.centred() for one in curves])
@@ -147,12 +146,12 @@ def combine_curves(
     def fitted(form: SensorForm, start: Floats | None = None) -> FormFit:
         starts = [known[form].parameters] if form in known else []
         starts += [start] if start is not None else _likely(data, form)
-        return _fit_form(data, form, starts, 0.0, nowhere, tolerance, _FIRST_STEPS)
+        return _fit_form(data, form, starts, 0.0, nowhere, _FIRST_STEPS)
 
     def settled(fits: Sequence[FormFit]) -> list[FormFit]:
         least = min((one.score for one in fits), default=0.0)
         return [
-            _fit_form(data, one.form, [one.parameters], 0.0, nowhere, tolerance)
+            _fit_form(data, one.form, [one.parameters], 0.0, nowhere)
             if one.score < least + _HOPELESS
             else one
             for one in fits
@@ -171,7 +170,7 @@ def combine_curves(
     for last in sorted(fits, key=lambda one: one.score)[:_MAX_CORRECTED]:
         for share in _SHARES[1:]:
             # A larger correction moves the form on from where a smaller one left it.
-            one = _fit_form(data, last.form, [last.parameters], share, share * ways, tolerance)
+            one = _fit_form(data, last.form, [last.parameters], share, share * ways)
             fits.append(one)
             # Scores have one least: what no correction of some size explains, no larger one does.
             if one.score > last.score - 2 * math.log(_MIN_WEIGHT):
@@ -199,7 +198,6 @@ def _fit_form(
     starts: Sequence[Floats],
     share: float,
     ways: Floats,
-    tolerance: float,
     steps: int = _MAX_STEPS,
 ) -> FormFit:
     """The parameters of largest posterior density, the correction integrated out."""
@@ -226,8 +224,8 @@ def _fit_form(
                 first,
                 jac=slopes,
                 method="lm",
-                xtol=tolerance,
-                ftol=tolerance,
+                xtol=_SETTLED,
+                ftol=_SETTLED,
                 max_nfev=steps,
             )
             for first in starts
