@@ -43,7 +43,7 @@ def _numbers_table(found: BandScenes) -> Table:
     for name, scene in found.scenes.items():
         for direction, response in scene.directions.items():
             first = direction == next(iter(scene.directions))
-            if not scene.trusted:
+            if scene.verdict.warns:
                 alerts.add(len(rows))
             rows.append((
                 name if first else "", direction,
@@ -71,8 +71,8 @@ def _shifts_table(found: BandScenes) -> Table:
         ("Band", "Rows [px]", "Columns [px]", "Scatter [px]", "Edges"), rows, "lrrrr",
         title=f"Shifts relative to band {found.first}",
         notes=(
-            "Where a band has the ground, less where the first has it. Scatter: by how much single "
-            "edges differ in excess of their deviations.",
+            "Place of the ground in a band minus its place in the first. Scatter: by how much "
+            "single edges differ in excess of their deviations.",
         ),
     )  # fmt: skip
 
@@ -92,8 +92,9 @@ def bands_text(found: BandScenes) -> str:
     ]
     lines += [f"band {one.values['band']}: not measured: {one.reason}" for one in found.rejected]
     lines += [f"band {one.values['band']}: no shift: {one.reason}" for one in found.unshifted]
+    image = describe_image(first, without=("band",))
     return "\n\n".join((
-        f"scene in {bands}\n  {describe_image(first)}",
+        f"scene in {bands}\n  {image}",
         *map(table_text, bands_tables(found)),
         "\n".join(lines),
     ))  # fmt: skip

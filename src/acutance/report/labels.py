@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -335,11 +335,16 @@ def _gsd_words(pixel_gsd_m: tuple[float, float], along_track: str) -> str:
     return f"{along} m" if along == across else f"{across} m across, {along} m along"
 
 
-def describe_image(result: Measurement | Record, max_name: int | None = None) -> str:
-    """`provenance` in one line."""
+def describe_image(
+    result: Measurement | Record, max_name: int | None = None, without: Collection[str] = ()
+) -> str:
+    """`provenance` in one line, some of it left out."""
     plain = ("image", "region")
-    found = provenance(result, max_name)
-    return ", ".join(value if name in plain else f"{name} {value}" for name, value in found.items())
+    return ", ".join(
+        value if name in plain else f"{name} {value}"
+        for name, value in provenance(result, max_name).items()
+        if name not in without
+    )
 
 
 def word_softness(options: Mapping[str, Any]) -> str:

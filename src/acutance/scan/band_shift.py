@@ -38,7 +38,7 @@ _SETTLED_PX: Final = 1e-6
 
 @dataclass(frozen=True)
 class BandShift(ShortRepr):
-    """Where a band has the ground, less where the first band has it.
+    """Place of the ground in a band minus its place in the first band.
 
     Parameters
     ----------

@@ -112,17 +112,17 @@ def _parts_agree(parts: PartsFit | None, limits: Limits) -> Check:
         return answer("parts_agree", 0.0, found, limits)
     # Oblique blur is none across and along.
     share = 2 * math.pi**2 * NYQUIST_CPP**2 * math.hypot(*parts.errors_px2[:2])
-    chi_square = parts.chi_square
-    found = (
+    told = (
         f"the blurs of {parts.places} parts of the scene have a chi-square of "
-        f"{chi_square.value:.1f} with {chi_square.expected:.0f} degrees of freedom: "
-        + (
-            f"the MTF at Nyquist is uncertain by {100 * share:.1f} % for that, which is a part "
-            "of all deviations"
-            if share > 0
-            else "they agree"
-        )
+        f"{parts.chi_square.value:.1f} with {parts.chi_square.expected:.0f} degrees of freedom"
     )
+    if share > 0:
+        found = (
+            f"the parts of the scene differ: the MTF at Nyquist is uncertain by {100 * share:.1f} "
+            f"% for that, which is a part of all deviations ({told})"
+        )
+    else:
+        found = f"{told}: they agree"
     return answer("parts_agree", share, found, limits)
 
 

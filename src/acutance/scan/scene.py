@@ -183,7 +183,7 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, 
             f"{_counted(edges.size)} found, and {len(used)} of them can be used, where "
             f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}scan a larger part, or "
             "another image, or measure single edges; the table of the edges has every reason "
-            "(--edges FILE, the error's edges)",
+            "(--edges FILE; in Python, error.edges)",
             edges,
         )
     axis_deg = np.array([one.axis_deg for one in used])

@@ -148,6 +148,11 @@ class Verdict:
     def __str__(self) -> str:
         return f"{self.word}: {self.sentence}"
 
+    @property
+    def warns(self) -> bool:
+        """Whether the numbers may be biased, or have no meaning."""
+        return self.word in ("doubtful", "invalid")
+
 
 def limit_of(name: str, limits: Limits) -> float:
     """The limit of a check: the caller's, or that of the table."""

@@ -72,7 +72,8 @@ def points_panels(measurement: PointsMeasurement) -> tuple[Panel, ...]:
 def _map_panel(measurement: PointsMeasurement) -> Panel:
     return Panel(
         "Sources",
-        "Circles: the sources measured, counted from 1. Crosses: what was rejected.",
+        "Circles: the sources measured, counted from 1. Crosses: what was rejected, for another "
+        "reason than being faint.",
         on_axes(_draw_places, measurement),
         is_target=True,
     )

@@ -57,7 +57,7 @@ def edges_table(result: TargetResult[Any]) -> Table:
                 format_number(one.snr, 3), *numbers, one.verdict.word, failed or "all passed",
             )
         )  # fmt: skip
-        if failed:
+        if one.verdict.warns:
             alerts.add(i)
     labels = (metric_words(name).label_with_unit for name in MAIN)
     line = ("Edge", "Row", "Column", "Direction", "Angle [°]", "SNR")
@@ -73,7 +73,7 @@ def _means_table(result: TargetResult[Any]) -> Table:
         for metric in by_metric
     ]
     columns = (part for name in result.groups for part in (f"{name} mean", "chi² / dof", "p"))
-    notes = ("The means weigh every edge by its variance.", *notes_on_means(result))
+    notes = ("The means weigh every edge by one over its variance.", *notes_on_means(result))
     return Table(
         ("Metric", *columns), tuple(rows), "l" + "rrr" * len(result.groups),
         title="Means by direction", notes=notes,
@@ -99,8 +99,9 @@ def notes_on_means(result: TargetResult[Any]) -> tuple[str, ...]:
         for found in group.chi_square.values()
     ):
         notes.append(
-            "No chi²: an edge lies within its deviation of 0, which no number is below; the mean "
-            "is the plain one then, and no more certain than one edge."
+            "No chi²: the interval of an edge reaches 0, below which there is no such number, and "
+            "deviations do not tell how edges scatter there. The mean is a plain one, and no more "
+            "certain than one edge."
         )
     return tuple(notes)
 
