@@ -3,7 +3,7 @@
 A chain of array operations reads and writes every intermediate array; a loop that does the same
 work for one pixel after another keeps them in registers. Such loops are compiled by numba when
 they are first called, and kept in a folder of the user's, so that other processes load them:
-the first call of a fresh installation takes some ten seconds longer.
+the first calls of a fresh installation take some thirty seconds longer.
 """
 
 from __future__ import annotations
