@@ -25,7 +25,6 @@ from acutance.raster import Box
 from acutance.targets.region import read_data
 
 FREQ_CPP = (0.25, 0.5)
-TRUSTED = ("good", "usable")
 BLOCKS = (2, 3)
 
 
@@ -71,7 +70,7 @@ def trusted_scan(pixels: np.ndarray) -> ac.SceneMeasurement | None:
         scene = ac.scan_scene(pixels)
     except ac.AcutanceError:
         return None
-    return scene if scene.verdict.word in TRUSTED else None
+    return None if scene.verdict.warns else scene
 
 
 def compared(band: Band) -> list[Compared]:

@@ -113,7 +113,7 @@ def _parts_agree(parts: PartsFit | None, limits: Limits) -> Check:
     # Oblique blur is none across and along.
     share = 2 * math.pi**2 * NYQUIST_CPP**2 * math.hypot(*parts.errors_px2[:2])
     told = (
-        f"the blurs of {parts.places} parts of the scene have a chi-square of "
+        f"the blurs of {parts.part_count} parts of the scene have a chi-square of "
         f"{parts.chi_square.value:.1f} with {parts.chi_square.expected:.0f} degrees of freedom"
     )
     if share > 0:

@@ -34,7 +34,7 @@ class PartsFit(NamedTuple):
 
     Attributes
     ----------
-    places : int
+    part_count : int
         Number of parts.
     chi_square : ChiSquare
         Of the blurs about their means.
@@ -43,7 +43,7 @@ class PartsFit(NamedTuple):
         than along and oblique, variances in px^2: 0 where the parts agree.
     """
 
-    places: int
+    part_count: int
     chi_square: ChiSquare
     errors_px2: Floats
 

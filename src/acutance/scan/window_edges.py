@@ -31,7 +31,6 @@ from acutance.targets.straight.surroundings import line_distances
 __all__ = ["UsedEdge", "WindowEdges", "scan_window"]
 
 _MIN_SIDE_PX = 16
-_USED = ("good", "usable")
 _EDGE_OPTIONS = EdgeOptions(limits={"full_pixel": math.inf})
 """Whether it is too sharp for a sensor is asked of the scene: all edges of a sharpened one are."""
 
@@ -160,7 +159,7 @@ def _measured(
         except TargetError as error:
             rows.append(row | {"reason": str(error)})
             continue
-        is_used = found.verdict.word in _USED
+        is_used = not found.verdict.warns
         rows.append(row | _numbers(found) | {"used": is_used})
         if is_used:
             used.append(UsedEdge.of(found))
@@ -212,7 +211,7 @@ def _numbers(found: StraightMeasurement) -> dict[str, Any]:
         "place_std_px": found.line.offset_std_px,
         "snr": found.snr,
         "verdict": verdict.word,
-        "reason": "" if verdict.word in _USED else verdict.sentence,
+        "reason": verdict.sentence if verdict.warns else "",
     }
     for name in ("mtf_nyquist", "rer", "fwhm_px"):
         number = getattr(found, name)

@@ -65,11 +65,6 @@ class SplineGrid:
         return 2 * self.reach + 1
 
     @property
-    def half_support(self) -> float:
-        """Distance beyond which every function is zero, in widths."""
-        return self.step * (self.reach - 1)
-
-    @property
     def centres(self) -> Floats:
         """Where the splines of a row are centred, in widths, (size,)."""
         return np.asarray(self.step * np.arange(-self.reach, self.reach + 1.0))
