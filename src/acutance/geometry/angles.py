@@ -38,7 +38,7 @@ def wrap_axis(angle_deg: Angles) -> Angles:
     return (angle_deg + 90.0) % 180.0 - 90.0
 
 
-def direction_difference(one_deg: Angles, other_deg: float) -> Angles:
+def direction_difference(one_deg: Angles, other_deg: Angles | float) -> Angles:
     """Angle between two directions, 0 to 180 degrees."""
     return abs(wrap_direction(one_deg - other_deg))
 

@@ -6,12 +6,13 @@ by itself), `band_pieces` (the same in several bands), `window_edges` (a window'
 and judged by `acutance.targets.straight`), `all_windows` (every window, on several processes or a
 cluster; finished ones in a file: `kept_windows`, `scan_identity`), `softness` (laws of the
 objects), `shares` (by direction), `population` (what the edges share, and what each is),
-`information` (what they say of the sensor), `blur_modes` (how a blur may change), `shared_blur`
-(what is the sensor's or all objects'), `parts` (do the parts of a scene agree), `field_fit` and
-`field` (over the field of view), `sensor_fit` (the sensor over the plane of frequencies),
-`stated_objects` (what is stated of all objects), `scene` (the public function), `scene_edges` and
-`scene_measurement` (its result; written by `edge_table` and `parquet`), `checks` (is the scene rich
-enough), `bands` (several bands at once; `band_shift` between them), `options`.
+`information` (what they say of the sensor), `first_guesses` (where its fit begins), `blur_modes`
+(how a blur may change), `shared_blur` (what is the sensor's or all objects'), `parts` (do the parts
+of a scene agree), `field_fit` and `field` (over the field of view), `sensor_fit` (the sensor over
+the plane of frequencies), `stated_objects` (what is stated of all objects), `scene` (the public
+function), `scene_edges` and `scene_measurement` (its result; written by `edge_table` and
+`parquet`), `borders` (edges of one object) and `checks` (is the scene rich enough), `bands`
+(several bands at once; `band_shift` between them), `options`.
 """
 
 from acutance.scan.band_shift import BandShift

@@ -8,7 +8,9 @@ from itertools import product
 import numpy as np
 
 from acutance.curves import Otf2d
+from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
+from acutance.scan.borders import border_of_each
 from acutance.scan.field import Field
 from acutance.scan.parts import PartsFit
 from acutance.scan.scene_edges import SceneEdges
@@ -20,8 +22,8 @@ from acutance.targets.full_pixel import full_pixel
 __all__ = ["SCENE_CHECKS", "check_scene"]
 
 SCENE_CHECKS = (
-    "edges_used", "trusted_share", "scene_directions", "ideal_share", "strange_share",
-    "scene_settled", "form_agrees", "parts_agree", "field_change", "full_pixel",
+    "edges_used", "trusted_share", "scene_directions", "ideal_share", "ideal_borders",
+    "strange_share", "scene_settled", "form_agrees", "parts_agree", "field_change", "full_pixel",
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -65,6 +67,7 @@ def check_scene(
             f"{100 * ideal:.0f} ± {100 * ideal_std:.0f} % of the objects are as "
             "sharp as the sensor can show", limits,
         ),
+        _ideal_borders(edges, fit.member.ideal, limits),
         answer(
             "strange_share", strange,
             f"{100 * strange:.1f} % of the edges are neither ideal nor soft ones of this sensor",
@@ -93,6 +96,16 @@ def _trusted_share(edges: SceneEdges, used: int, limits: Limits) -> Check:
         f"{100 * share:.0f} %"
     )
     return answer("trusted_share", share, found, limits)
+
+
+def _ideal_borders(edges: SceneEdges, ideal: Floats, limits: Limits) -> Check:
+    """How many borders are those of ideal objects; pieces of one border count once."""
+    border = border_of_each(edges.of_answer)
+    chance = np.zeros(int(border.max()) + 1)
+    np.maximum.at(chance, border, ideal)
+    value = float(chance.sum())
+    found = f"{value:.1f} of {chance.size} borders are as sharp as the sensor can show"
+    return answer("ideal_borders", value, found, limits)
 
 
 def _form_agrees(chi_square: ChiSquare, limits: Limits) -> Check:

@@ -18,6 +18,7 @@ from acutance.scan.all_windows import Progress, part_of, scan_windows
 from acutance.scan.checks import check_scene
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field import Field, field_places
+from acutance.scan.first_guesses import BIN_DEG, sensor_guesses
 from acutance.scan.options import ScanOptions
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
@@ -30,14 +31,8 @@ from acutance.targets.region import RoiLike, image_info, read_data
 
 __all__ = ["measured_scene", "scan_scene"]
 
-_BIN_DEG = 7.5
-"""A sensor changes along the normal by no more than .0005 within half of it."""
 _MIN_EDGES = 8
-_NEAR_EDGES = 8
 _MIN_GAP_DEG = 20.0
-_SHARP = ((0.1, 0.3), (0.3, 0.6), (0.5, 0.9))
-"""Quantiles, the sharpest first, between which edges are a first guess of the sensor: where most
-objects are ideal the middle ones, where most are soft the sharp ones."""
 
 
 def scan_scene(
@@ -187,7 +182,7 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, 
             edges,
         )
     axis_deg = np.array([one.axis_deg for one in used])
-    _, number = np.unique(np.floor((axis_deg + 90.0) / _BIN_DEG), return_inverse=True)
+    _, number = np.unique(np.floor((axis_deg + 90.0) / BIN_DEG), return_inverse=True)
     normal_deg = np.array([axis_deg[number == b].mean() for b in range(int(number.max()) + 1)])
     gap = max(axis_difference(float(a), float(b)) for a in normal_deg for b in normal_deg)
     if gap < _MIN_GAP_DEG:
@@ -197,10 +192,9 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, 
             "part, or another image, or measure them with measure_edges",
             edges,
         )
-    guesses = [_sensor_of(used, normal_deg, quantiles) for quantiles in _SHARP]
     likelihoods = _likelihoods(used, number, axis_deg)
     x, y = field_places(roi, edges.row[edges.used], edges.col[edges.used])
-    return fit_sensor(likelihoods, normal_deg, guesses, x, y)
+    return fit_sensor(likelihoods, normal_deg, sensor_guesses(used, normal_deg), x, y)
 
 
 def _common_reason(edges: SceneEdges) -> str:
@@ -227,24 +221,6 @@ def _likelihoods(
     for i, (one, rank) in enumerate(zip(used, ranks, strict=True)):
         root[i, :, :rank], value[i, :rank] = one.root, one.value
     return EdgeLikelihoods.of_roots(freq, root, value, ranks.astype(float), number, axis_deg)
-
-
-def _sensor_of(
-    used: Sequence[UsedEdge], normal_deg: Floats, quantiles: tuple[float, float]
-) -> Floats:
-    """The mean of the edges of about every direction between quantiles of sharpness, (b, 2 k)."""
-    modulus = np.array([np.abs(one.otf) for one in used])
-    sharpness = modulus[:, : modulus.shape[1] // 2].sum(axis=1)
-    axis_deg = np.array([one.axis_deg for one in used])
-    guesses = []
-    for one in normal_deg:
-        away = axis_difference(axis_deg, float(one))
-        near = np.argsort(away)[: max(_NEAR_EDGES, int(np.sum(away < _BIN_DEG)))]
-        order = near[np.argsort(-sharpness[near])]
-        first, last = (int(share * near.size) for share in quantiles)
-        mean = modulus[order[first : max(last, first + 1)]].mean(axis=0)
-        guesses.append(np.concatenate([mean, np.zeros(mean.size)]))
-    return np.array(guesses)
 
 
 def _measurement(

@@ -87,6 +87,11 @@ class SceneEdges(EdgeTable, ShortRepr):
         soft[self.used], chance[self.used] = softness_px, ideal
         return replace(self, softness_px=soft, ideal=chance)
 
+    @property
+    def of_answer(self) -> SceneEdges:
+        """The used ones."""
+        return replace(self, **{name: column[self.used] for name, column in self.columns().items()})
+
     def summary(self) -> str:
         """How many were found and used."""
         return f"{self.size} found, {int(self.used.sum())} used"

@@ -28,6 +28,12 @@ SCENE_QUESTIONS: Final = {
         "few objects show the sensor itself, the intervals widen; scan built-up areas, or more",
         severity="note",
     ),
+    "ideal_borders": Question(
+        "How many borders, of one or more pieces, are those of ideal objects?", ">=", 6.0,
+        "a blur that differs by direction has three numbers, and three borders agree with one "
+        "whatever their objects are; scan a larger part, or several scenes and combine them",
+        severity="note", caution=4.0,
+    ),
     "strange_share": Question(
         "Which share of the edges is neither ideal nor soft?", "<=", 0.15,
         "the sensor may change over the scene, or rims, shadows and processing make other edges",
