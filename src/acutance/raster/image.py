@@ -99,6 +99,8 @@ class Image(ShortRepr):
     @classmethod
     def of(cls, image: Image | ArrayLike) -> Image:
         """What stands for an image: itself, or an array as one (`from_array`)."""
+        if image is None:
+            raise ImageError("the image is None: give an array, or open_image(path)")
         return image if isinstance(image, Image) else cls.from_array(image)
 
     @classmethod

@@ -33,6 +33,8 @@ __all__ = ["SensorState", "first_sensor", "otf_samples", "settled", "some_of_eac
 
 _SETTLED: Final = 0.1
 """Square of a turn's change, in standard deviations of what the edges say."""
+_SAME: Final = 1.0
+"""Square of the difference of two sensors that are one, in the same unit."""
 _MAX_TURNS: Final = 12
 _GAINS: Final = (0.7, 1.4)
 """Between these the sensor along an edge's normal is of that along its bin."""
@@ -44,8 +46,8 @@ _UNSEEN: Final = 1.0
 """Information of combinations that edges do not show: the OTF is between 0 and 1."""
 _BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
 """Blur that is added to first guesses: the sharpest edges are so by their noise, too."""
-_ALIKE: Final = 0.005
-"""Mean difference of transfer functions within the band that is none."""
+_ALIKE: Final = 0.5
+"""Depth of a valley of the log likelihood that is none."""
 _ENOUGH_EDGES: Final = 600
 _LIKELIER: Final = 3.0
 """By so much in the log likelihood another sensor has to be likelier than that of a better start:
@@ -130,15 +132,21 @@ def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:
 def _likeliest(
     edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
 ) -> SensorState:
-    """The likeliest of the sensors to which the guesses lead."""
+    """The likeliest of the sensors to which the guesses lead.
+
+    Each is tried in the forms of the best so far, if that settled; a likelier one in all of them.
+    """
     nothing = np.zeros_like(edges.gain)
     first, *others = _starts(edges, normal_deg, guesses)
     best = settled(edges, normal_deg, first, nothing)
     for start in others:
-        start = start._replace(combined=best.combined)
-        end = settled(edges, normal_deg, start, nothing, best.log_likelihood)
+        forms = best.forms if best.settled else FORMS
+        tried = start._replace(forms=forms, combined=best.combined)
+        end = settled(edges, normal_deg, tried, nothing, best)
         if end.log_likelihood > best.log_likelihood + _LIKELIER:
             best = end
+            if forms is not FORMS:
+                best = settled(edges, normal_deg, end._replace(forms=FORMS), nothing)
     return best
 
 
@@ -153,22 +161,30 @@ def _starts(
     modes = edge_modes(normal_deg, edges.freq_cpp)
     steeper = (edges.freq_cpp[:, None] / NYQUIST_CPP) ** 2
     free = np.concatenate([modes, modes[:, :, :COMMON_MODES] * steeper], axis=2)
-    in_band = np.tile(edges.freq_cpp <= NYQUIST_CPP, 2)
-    found: list[SensorState] = []
+    near: list[SensorState] = []
     for guess in guesses:
         tried = [changed(guess, modes[:, :, 0] * blur) for blur in _BLUR_STARTS_PX2]
         start = max(tried, key=lambda one: fit_shares(edges, one, START).log_likelihood)
         fit = fit_modes(edges, start, START, free[edges.bin], std=_FREE_PX2)
         otf = changed(start, free @ fit.amount)
-        apart = [float(np.abs(otf - one.otf)[:, in_band].mean()) for one in found]
-        if min(apart, default=np.inf) > _ALIKE:
-            state = SensorState(
-                otf, fit.share, FORMS, None, edges, fit.log_posterior, 0, settled=False
-            )
-            found.append(state)
-    least = max(one.log_likelihood for one in found) - _FAR * edges.size
-    likely = [one for one in found if one.log_likelihood >= least]
-    return sorted(likely, key=lambda one: -one.log_likelihood)
+        near.append(
+            SensorState(otf, fit.share, FORMS, None, edges, fit.log_posterior, 0, settled=False)
+        )
+    near.sort(key=lambda one: -one.log_likelihood)
+    least = near[0].log_likelihood - _FAR * edges.size
+    found: list[SensorState] = []
+    for one in near:
+        is_likely = one.log_likelihood >= least
+        if is_likely and not any(_are_one_top(edges, one, other) for other in found):
+            found.append(one)
+    return found
+
+
+def _are_one_top(edges: EdgeLikelihoods, one: SensorState, other: SensorState) -> bool:
+    """Whether no valley of the likelihood lies between two sensors."""
+    between = fit_shares(edges, 0.5 * (one.otf + other.otf), other.share)
+    lower = min(fit_shares(edges, own.otf, own.share).log_likelihood for own in (one, other))
+    return between.log_likelihood > lower - _ALIKE
 
 
 def settled(
@@ -176,11 +192,11 @@ def settled(
     normal_deg: Floats,
     state: SensorState,
     log_gain: Floats,
-    rival: float = -np.inf,
+    rival: SensorState | None = None,
 ) -> SensorState:
     """The sensor after as many turns as it needs, under a given change over the field (n, k).
 
-    Or after so many that it will not reach the log likelihood of a `rival`.
+    Or after so many that it will not reach the log likelihood of a `rival`, or is the same sensor.
     """
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
     otf, share, forms, combined, along, _, turns, _ = state
@@ -197,12 +213,18 @@ def settled(
         member = fit_shares(seen, otf, found.share)
         share, reached = member.share, member.log_likelihood
         information, projection = expected_information(seen, member)
-        size = float(np.einsum("bk,bkl,bl", moved, information, moved))
-        is_settled = before is not None and size < _SETTLED
-        is_hopeless = rival - reached > _PATIENCE * max(reached - last, 0.0)
-        if is_settled or is_hopeless or turn == _MAX_TURNS:
-            break
+        is_settled = before is not None and _size(moved, information) < _SETTLED
         # Before the first turn the sensor has no form, and may be likelier than with one.
+        is_needless = (
+            turn > 0
+            and rival is not None
+            and (
+                rival.log_likelihood - reached > _PATIENCE * max(reached - last, 0.0)
+                or _size(otf - rival.otf, information) < _SAME
+            )
+        )
+        if is_settled or is_needless or turn == _MAX_TURNS:
+            break
         before, last = otf, reached if turn > 0 else -np.inf
         combined = _combined(edges.freq_cpp, normal_deg, otf, information, projection, forms, near)
         near, sensor = combined.near, combined.unwidened
@@ -211,6 +233,11 @@ def settled(
         otf = stacked(_along(sensor, normal_deg, edges.freq_cpp).T).T
         along = _along_bins(edges, normal_deg, sensor)
     return SensorState(otf, share, forms, combined, along, reached, turns + turn, is_settled)
+
+
+def _size(change: Floats, information: Floats) -> float:
+    """Square of a change of the sensor (b, 2 k), in standard deviations of what the edges say."""
+    return float(np.einsum("bk,bkl,bl", change, information, change))
 
 
 def _calmed(move: Floats, last: Floats) -> Floats:
