@@ -33,8 +33,6 @@ __all__ = ["SensorState", "first_sensor", "otf_samples", "settled", "some_of_eac
 
 _SETTLED: Final = 0.1
 """Square of a turn's change, in standard deviations of what the edges say."""
-_SAME: Final = 1.0
-"""Square of the difference of two sensors that are one, in the same unit."""
 _MAX_TURNS: Final = 12
 _GAINS: Final = (0.7, 1.4)
 """Between these the sensor along an edge's normal is of that along its bin."""
@@ -48,6 +46,8 @@ _BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
 """Blur that is added to first guesses: the sharpest edges are so by their noise, too."""
 _ALIKE: Final = 0.5
 """Depth of a valley of the log likelihood that is none."""
+_AS_LIKELY: Final = 5.0
+"""Difference of the log likelihoods of two starts that may be one."""
 _ENOUGH_EDGES: Final = 600
 _LIKELIER: Final = 3.0
 """By so much in the log likelihood another sensor has to be likelier than that of a better start:
@@ -132,21 +132,15 @@ def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:
 def _likeliest(
     edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
 ) -> SensorState:
-    """The likeliest of the sensors to which the guesses lead.
-
-    Each is tried in the forms of the best so far, if that settled; a likelier one in all of them.
-    """
+    """The likeliest of the sensors to which the guesses lead."""
     nothing = np.zeros_like(edges.gain)
     first, *others = _starts(edges, normal_deg, guesses)
     best = settled(edges, normal_deg, first, nothing)
     for start in others:
-        forms = best.forms if best.settled else FORMS
-        tried = start._replace(forms=forms, combined=best.combined)
-        end = settled(edges, normal_deg, tried, nothing, best)
+        start = start._replace(combined=best.combined)
+        end = settled(edges, normal_deg, start, nothing, best.log_likelihood)
         if end.log_likelihood > best.log_likelihood + _LIKELIER:
             best = end
-            if forms is not FORMS:
-                best = settled(edges, normal_deg, end._replace(forms=FORMS), nothing)
     return best
 
 
@@ -181,7 +175,12 @@ def _starts(
 
 
 def _are_one_top(edges: EdgeLikelihoods, one: SensorState, other: SensorState) -> bool:
-    """Whether no valley of the likelihood lies between two sensors."""
+    """Whether two sensors are about as likely, and no valley of the likelihood lies between them.
+
+    A far likelier one does not stand for the other: in a form, that may be the likelier one.
+    """
+    if abs(one.log_likelihood - other.log_likelihood) > _AS_LIKELY:
+        return False
     between = fit_shares(edges, 0.5 * (one.otf + other.otf), other.share)
     lower = min(fit_shares(edges, own.otf, own.share).log_likelihood for own in (one, other))
     return between.log_likelihood > lower - _ALIKE
@@ -192,11 +191,11 @@ def settled(
     normal_deg: Floats,
     state: SensorState,
     log_gain: Floats,
-    rival: SensorState | None = None,
+    rival: float = -np.inf,
 ) -> SensorState:
     """The sensor after as many turns as it needs, under a given change over the field (n, k).
 
-    Or after so many that it will not reach the log likelihood of a `rival`, or is the same sensor.
+    Or after so many that it will not reach the log likelihood of a `rival`.
     """
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
     otf, share, forms, combined, along, _, turns, _ = state
@@ -213,18 +212,12 @@ def settled(
         member = fit_shares(seen, otf, found.share)
         share, reached = member.share, member.log_likelihood
         information, projection = expected_information(seen, member)
-        is_settled = before is not None and _size(moved, information) < _SETTLED
-        # Before the first turn the sensor has no form, and may be likelier than with one.
-        is_needless = (
-            turn > 0
-            and rival is not None
-            and (
-                rival.log_likelihood - reached > _PATIENCE * max(reached - last, 0.0)
-                or _size(otf - rival.otf, information) < _SAME
-            )
-        )
-        if is_settled or is_needless or turn == _MAX_TURNS:
+        size = float(np.einsum("bk,bkl,bl", moved, information, moved))
+        is_settled = before is not None and size < _SETTLED
+        is_hopeless = rival - reached > _PATIENCE * max(reached - last, 0.0)
+        if is_settled or is_hopeless or turn == _MAX_TURNS:
             break
+        # Before the first turn the sensor has no form, and may be likelier than with one.
         before, last = otf, reached if turn > 0 else -np.inf
         combined = _combined(edges.freq_cpp, normal_deg, otf, information, projection, forms, near)
         near, sensor = combined.near, combined.unwidened
@@ -233,11 +226,6 @@ def settled(
         otf = stacked(_along(sensor, normal_deg, edges.freq_cpp).T).T
         along = _along_bins(edges, normal_deg, sensor)
     return SensorState(otf, share, forms, combined, along, reached, turns + turn, is_settled)
-
-
-def _size(change: Floats, information: Floats) -> float:
-    """Square of a change of the sensor (b, 2 k), in standard deviations of what the edges say."""
-    return float(np.einsum("bk,bkl,bl", change, information, change))
 
 
 def _calmed(move: Floats, last: Floats) -> Floats:
