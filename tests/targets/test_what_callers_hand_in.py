@@ -39,7 +39,7 @@ def edge():
         (lambda: ac.open_image(IMAGE), ac.ImageError, "an array is measured as it is"),
         (lambda: ac.measure_edge([[1.0, 2.0], [3.0]]), ac.ImageError, "rows of equal length"),
         (lambda: ac.measure_edge("file.tif"), ac.ImageError, "'file.tif'.*acutance.open_image"),
-        (lambda: ac.measure_edge(None), ac.ImageError, "real numbers"),
+        (lambda: ac.measure_edge(None), ac.ImageError, "the image is None"),
         (lambda: ac.measure_edge(IMAGE, options={}), ac.OptionError, "type dict: give EdgeOptions"),
         (
             lambda: ac.measure_edge(IMAGE, options=PulseOptions()),
