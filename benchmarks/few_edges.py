@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scenes import DRAWN, SYSTEMS, Case, draw, true_mtf
+from scenes import DRAWN, SYSTEMS, Case, draw, sensor_of, true_mtf
 from trials import TWO_SIDED_95, command, publish, table, work_through
 
 import acutance as ac
@@ -45,10 +45,7 @@ class Scanned:
 def scanned(job: tuple[float, int, str, int]) -> Scanned | None:
     """Draw a scene and scan it; nothing if it is refused."""
     soft, size_px, name, seed = job
-    sensor = ac.simulate.reference_systems().get(name)
-    if sensor is None:
-        rng = np.random.default_rng((seed, 2))
-        sensor = ac.optics.draw_sensor(name.removeprefix("drawn "), rng)
+    sensor = sensor_of(name, (seed,))
     image, _ = draw(Case(soft, False), sensor, size_px, (seed, size_px))
     try:
         scene = ac.scan_scene(image)

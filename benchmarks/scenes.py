@@ -83,6 +83,14 @@ class Scanned:
     seconds: float
 
 
+def sensor_of(name: str, seed: tuple[int, ...]) -> ac.Sensor:
+    """The reference system of a name, or a sensor drawn from the family it names."""
+    if name not in DRAWN:
+        return ac.simulate.reference_systems()[name]
+    rng = np.random.default_rng((*seed, 2))
+    return ac.optics.draw_sensor(name.removeprefix("drawn "), rng)
+
+
 def true_mtf(sensor: ac.Sensor, freq_cpp: float, normal_deg: float) -> float:
     """MTF of a sensor at one place of the plane."""
     turn = np.radians(normal_deg)
@@ -126,11 +134,7 @@ def draw(
 def scan(job: tuple[Case, str, int, tuple[int, ...]]) -> Scanned | None:
     """Draw a scene and scan it; nothing if it is refused."""
     case, name, size_px, seed = job
-    if name in DRAWN:
-        rng = np.random.default_rng((*seed, 2))
-        sensor = ac.optics.draw_sensor(name.removeprefix("drawn "), rng)
-    else:
-        sensor = ac.simulate.reference_systems()[name]
+    sensor = sensor_of(name, seed)
     image, truth = draw(case, sensor, size_px, seed)
     start = time.process_time()
     try:

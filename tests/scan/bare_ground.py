@@ -1,6 +1,8 @@
 """Landscapes of parcels on bare ground: nothing beside an edge but the two levels it separates."""
 
-from acutance.simulate import LandscapeOptions
+import numpy as np
+
+from acutance.simulate import LandscapeOptions, landscape
 
 BARE = {
     "roofs": 0.0, "roads": 0.0, "discs": 0.0, "rims": 0.0, "gutters": 0.0, "shadows": 0.0,
@@ -19,3 +21,12 @@ def all_of_softness(softness_px, **changed):
     if not softness_px:
         return bare_ground(soft=0.0, **changed)
     return bare_ground(soft=1.0, softness_px=(softness_px, softness_px + 1e-9), **changed)
+
+
+def small_scene(sensor, size_px, soft, seed):
+    """Bare ground of few parcels at SNR 100, a share of their borders soft by .15 to 2 px."""
+    image, _ = landscape(
+        sensor, shape=(size_px, size_px), options=bare_ground(soft=soft, softness_px=(0.15, 2.0)),
+        rng=np.random.default_rng(seed),
+    )  # fmt: skip
+    return image + np.random.default_rng((*seed, 1)).normal(0, 10.0, image.shape)

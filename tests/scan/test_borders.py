@@ -1,7 +1,7 @@
 """Which edges of a scene are pieces of one border."""
 
 import numpy as np
-from bare_ground import bare_ground
+from bare_ground import small_scene
 
 import acutance as ac
 from acutance import simulate
@@ -51,12 +51,7 @@ def test_no_edge_and_one_edge():
 def test_a_scan_of_few_ideal_borders_is_doubtful():
     """The sharpest of each direction agree with an uneven sensor, which is likelier."""
     sensor = simulate.reference_systems()["gaussian"]
-    image, _ = simulate.landscape(
-        sensor, shape=(320, 320), options=bare_ground(soft=0.9, softness_px=(0.15, 2.0)),
-        rng=np.random.default_rng((50, 320)),
-    )  # fmt: skip
-    image += np.random.default_rng((50, 320, 1)).normal(0, 10.0, image.shape)
-    scene = ac.scan_scene(image)
+    scene = ac.scan_scene(small_scene(sensor, 320, 0.9, (50, 320)))
     found = next(check for check in scene.checks if check.name == "ideal_borders")
     assert found.value < 4
     assert found.severity == "caution"

@@ -1,7 +1,7 @@
 """First guesses of the sensor of a scene: some are of one direction, some of all."""
 
 import numpy as np
-from bare_ground import bare_ground
+from bare_ground import small_scene
 
 import acutance as ac
 from acutance import simulate
@@ -40,12 +40,7 @@ def test_one_guess_is_of_the_ideal_edges_where_a_direction_has_none():
 def test_few_edges_with_few_ideal_objects_give_the_sensor():
     """Started from the sharp edges of every direction alone, MTF along would be .69 for .29."""
     sensor = simulate.reference_systems()["gaussian"]
-    image, _ = simulate.landscape(
-        sensor, shape=(480, 480), options=bare_ground(soft=0.75, softness_px=(0.15, 2.0)),
-        rng=np.random.default_rng((77, 2)),
-    )  # fmt: skip
-    image += np.random.default_rng((77, 2, 1)).normal(0, 10.0, image.shape)
-    scene = ac.scan_scene(image)
+    scene = ac.scan_scene(small_scene(sensor, 480, 0.75, (77, 2)))
     truth = abs(sensor.otf(np.array([0.5]), np.array([0.0]))[0])
     for number in (scene.across.mtf_nyquist, scene.along.mtf_nyquist):
         assert abs(number.value - truth) < 3 * number.std

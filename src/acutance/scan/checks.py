@@ -100,7 +100,7 @@ def _trusted_share(edges: SceneEdges, used: int, limits: Limits) -> Check:
 
 def _ideal_borders(edges: SceneEdges, ideal: Floats, limits: Limits) -> Check:
     """How many borders are those of ideal objects; pieces of one border count once."""
-    border = border_of_each(edges.of_answer)
+    border = border_of_each(edges.only_used)
     chance = np.zeros(int(border.max()) + 1)
     np.maximum.at(chance, border, ideal)
     value = float(chance.sum())

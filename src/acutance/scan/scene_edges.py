@@ -88,8 +88,8 @@ class SceneEdges(EdgeTable, ShortRepr):
         return replace(self, softness_px=soft, ideal=chance)
 
     @property
-    def of_answer(self) -> SceneEdges:
-        """The used ones."""
+    def only_used(self) -> SceneEdges:
+        """Those that are part of the answer, (m,) each."""
         return replace(self, **{name: column[self.used] for name, column in self.columns().items()})
 
     def summary(self) -> str:
