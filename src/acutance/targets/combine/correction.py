@@ -61,7 +61,7 @@ class Correction(ShortRepr):
         plane = Plane(u_cpp, v_cpp)
         size = np.abs(self.form.otf_on(p, plane))
         # Sharpening multiplies the blur by a gain: the blur is the detector's at most.
-        blurred = np.minimum(size, np.abs(self.form.detector_otf_on(p, plane)))
+        blurred = np.minimum(size, np.abs(self.form.factors_on(p, plane)[-1]))
         reach = -math.e * size * np.log(np.maximum(blurred, 1e-30))
         even = self._kernel(u_cpp, v_cpp, 1.0) @ self._roots[0]
         odd = self._kernel(u_cpp, v_cpp, -1.0) @ self._roots[1]

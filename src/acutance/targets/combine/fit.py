@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from acutance.curves.grid import Floats
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
+from acutance.targets.combine.form_fit import FIRST_STEPS, FormFit, fit_form, likely_starts
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
 from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
 
@@ -21,38 +21,11 @@ __all__ = ["CombinedFit", "FormFit", "combine_curves"]
 _MIN_WEIGHT = 0.01
 _MIN_SINGULAR = 0.1
 _MAX_CORRECTED = 3
-_STARTS_TRIED = 2
-_FIRST_STEPS, _MAX_STEPS = 30, 60
-_SETTLED = 1e-6
-"""Change of a form's misfit, a share of it, that is none: with more the turns of a scene cycle."""
 _HOPELESS = 60.0
 """Of scores above the least, after the first steps: no form beyond it gets any weight (of 390 forms
 fitted to the edges of scenes, those that did were within 12; after 22 steps they were not)."""
 _SHARES = (0.0, 0.01, 0.03, 0.1, 0.3)
 """Standard deviations tried for the correction of a form, shares of the logarithm of the OTF."""
-
-_STARTS: Mapping[str, Sequence[tuple[float, float]]] = {
-    "smear": ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7)),
-    "upright smear": ((0.0, -1.5), (-1.5, 0.0), (-0.4, -0.4)),
-    "trail": ((0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3)),
-    "phase": ((0.7, 0.7), (0.7, -0.7), (-0.7, 0.7), (-0.7, -0.7)),
-}
-
-
-@dataclass(frozen=True, eq=False)
-class FormFit(WeightedForm):
-    """One form, with a correction of a given size, fitted to all curves.
-
-    Parameters
-    ----------
-    inverse : (p + m, p + m) array
-        Covariance of parameters and weights if the errors of different curves were independent.
-    score : float
-        Minus twice the log evidence of the form, by Laplace's approximation.
-    """
-
-    inverse: Floats
-    score: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,13 +118,13 @@ def combine_curves(
 
     def fitted(form: SensorForm, start: Floats | None = None) -> FormFit:
         starts = [known[form].parameters] if form in known else []
-        starts += [start] if start is not None else _likely(data, form)
-        return _fit_form(data, form, starts, 0.0, nowhere, _FIRST_STEPS)
+        starts += [start] if start is not None else likely_starts(data, form)
+        return fit_form(data, form, starts, 0.0, nowhere, FIRST_STEPS)
 
     def settled(fits: Sequence[FormFit]) -> list[FormFit]:
         least = min((one.score for one in fits), default=0.0)
         return [
-            _fit_form(data, one.form, [one.parameters], 0.0, nowhere)
+            fit_form(data, one.form, [one.parameters], 0.0, nowhere)
             if one.score < least + _HOPELESS
             else one
             for one in fits
@@ -170,7 +143,7 @@ def combine_curves(
     for last in sorted(fits, key=lambda one: one.score)[:_MAX_CORRECTED]:
         for share in _SHARES[1:]:
             # A larger correction moves the form on from where a smaller one left it.
-            one = _fit_form(data, last.form, [last.parameters], share, share * ways)
+            one = fit_form(data, last.form, [last.parameters], share, share * ways)
             fits.append(one)
             # Scores have one least: what no correction of some size explains, no larger one does.
             if one.score > last.score - 2 * math.log(_MIN_WEIGHT):
@@ -190,101 +163,6 @@ def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
     kept = sorted((one for one in fits if odds[id(one)] > _MIN_WEIGHT), key=lambda one: one.score)
     whole = sum(odds[id(one)] for one in kept)
     return tuple(replace(one, weight=odds[id(one)] / whole) for one in kept)
-
-
-def _fit_form(
-    data: WhitenedCurves,
-    form: SensorForm,
-    starts: Sequence[Floats],
-    share: float,
-    ways: Floats,
-    steps: int = _MAX_STEPS,
-) -> FormFit:
-    """The parameters of largest posterior density, the correction integrated out."""
-    std = form.std
-    # (1 + ways ways^T)^(-1/2), by the singular values of ways.
-    left, singular, _ = np.linalg.svd(ways, full_matrices=False)
-    damping = 1 / np.sqrt(1 + singular**2) - 1
-
-    def damped(values: Floats) -> Floats:
-        return np.asarray(values + (left * damping) @ (left.T @ values))
-
-    def residual(p: Floats) -> Floats:
-        off, from_prior = _residuals(data, form, p)
-        return np.concatenate([damped(off), from_prior])
-
-    def slopes(p: Floats) -> Floats:
-        by_p = data.of(form.slopes_on(p, data.plane))
-        return np.concatenate([-damped(by_p), np.diag(1 / std)])
-
-    found = min(
-        (
-            least_squares(
-                residual,
-                first,
-                jac=slopes,
-                method="lm",
-                xtol=_SETTLED,
-                ftol=_SETTLED,
-                max_nfev=steps,
-            )
-            for first in starts
-        ),
-        key=lambda one: float(one.cost),
-    )
-    p = np.asarray(found.x)
-    off, _ = _residuals(data, form, p)
-    by_p = data.of(form.slopes_on(p, data.plane))
-    design = np.concatenate([by_p, ways], axis=1)
-    normal = design.T @ design
-    normal += np.diag(np.concatenate([std**-2.0, np.ones(ways.shape[1])]))
-    inverse = np.linalg.inv(normal)
-    moved = design @ inverse
-    # The directions' weights are counted in units of the share.
-    scale = np.concatenate([np.ones(p.size), np.full(ways.shape[1], share)])
-    amounts = np.linalg.solve(normal[p.size :, p.size :], ways.T @ off)
-    # Laplace: the posterior of parameters and directions is narrower than their prior.
-    whole = np.concatenate([std, np.ones(ways.shape[1])])
-    narrowed = np.linalg.slogdet(whole[:, None] * normal * whole)[1]
-    score = 2 * float(found.cost) + float(narrowed)
-    nothing = Correction(form, tuple(p.tolist()))
-    covariance = scale[:, None] * (inverse + moved.T @ data.shared @ moved) * scale
-    root = np.asarray(np.linalg.cholesky(0.5 * (covariance + covariance.T)))
-    return FormFit(
-        form, share, nothing, p, share * amounts, root, 1.0,
-        inverse=scale[:, None] * inverse * scale, score=score,
-    )  # fmt: skip
-
-
-def _residuals(data: WhitenedCurves, form: SensorForm, p: Floats) -> tuple[Floats, Floats]:
-    """Of the curves, and of the parameters from their prior, in standard deviations."""
-    off = data.values - data.of(form.otf_on(p, data.plane))
-    return off, (p - form.mean) / form.std
-
-
-def _likely(data: WhitenedCurves, form: SensorForm) -> list[Floats]:
-    """The first guesses that fit best."""
-
-    def misfit(p: Floats) -> float:
-        return float(np.sum(np.concatenate(_residuals(data, form, p)) ** 2))
-
-    return sorted(_starts(form), key=misfit)[:_STARTS_TRIED]
-
-
-def _starts(form: SensorForm) -> list[Floats]:
-    """First guesses: a smear or trail of 0 is stationary, and both have directions."""
-    found = [form.mean]
-    for name, ways in _STARTS.items():
-        if name in form.terms:
-            at = SensorForm(form.terms[: form.terms.index(name)]).mean.size
-            found = [_with(start, at, way) for start in found for way in ways]
-    return found
-
-
-def _with(start: Floats, at: int, way: tuple[float, float]) -> Floats:
-    moved = start.copy()
-    moved[at : at + 2] = way
-    return moved
 
 
 def _chi_squares(

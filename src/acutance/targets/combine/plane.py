@@ -10,11 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.optics import Resampling
 
-__all__ = ["TAPS", "Plane"]
+__all__ = ["PIXELS", "TAPS", "Plane"]
+
+Complexes = NDArray[np.complex128]
 
 TAPS = 7
 """Outer taps on either side of the kernels."""
+PIXELS: Floats = np.arange(-2.0, 3.0)
+"""Pixels of which cubic convolution at less than half a pixel from one makes a value."""
 _DIGITS = 12
 """Of a frequency: those of slices in different directions differ in the last ones."""
 
@@ -46,6 +51,25 @@ class Plane:
     def tap_gains(self) -> tuple[Floats, Floats]:
         """What a unit of every outer tap adds to the gain across and along, (n, taps) each."""
         return _tap_gains(self.u_cpp), _tap_gains(self.v_cpp)
+
+    @cached_property
+    def cubic_parts(self) -> tuple[Floats, Floats]:
+        """OTF of cubic convolution of parameter 0 across and along, and what a unit adds, (n, 2).
+
+        Its kernel is linear in the parameter.
+        """
+        still = np.zeros_like(self.u_cpp)
+        none, less = (Resampling("cubic", a) for a in (0.0, -1.0))
+        across = np.asarray(none.otf(self.u_cpp, still)), np.asarray(less.otf(self.u_cpp, still))
+        along = np.asarray(none.otf(still, self.v_cpp)), np.asarray(less.otf(still, self.v_cpp))
+        at_none = np.stack([across[0], along[0]], axis=1)
+        return at_none, at_none - np.stack([across[1], along[1]], axis=1)
+
+    @cached_property
+    def pixel_waves(self) -> tuple[Complexes, Complexes]:
+        """Transfer from the middle one of `PIXELS` to each, across and along, (n, 5) each."""
+        across, along = (np.outer(freq, PIXELS) for freq in (self.u_cpp, self.v_cpp))
+        return np.exp(2j * math.pi * across), np.exp(2j * math.pi * along)
 
 
 def _tap_gains(freq: Floats) -> Floats:

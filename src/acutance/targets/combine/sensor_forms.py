@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from acutance.errors import ModelError
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.sensor_terms import TERMS, Term, Transfer, sinc_growth
 
-__all__ = ["FORMS", "SensorForm"]
+__all__ = ["FORMS", "SensorForm", "product"]
 
 Complexes = NDArray[np.complex128]
 
@@ -80,24 +81,25 @@ class SensorForm:
 
     def otf_on(self, p: Floats, plane: Plane) -> Complexes:
         """OTF (n,) at places of the plane."""
-        detector = _detector(p[-1:], plane, self.detector_px)
-        return _product([*(term.otf(own, plane) for term, own in self._split(p)), detector])
+        return product(self.factors_on(p, plane))
 
-    def detector_otf_on(self, p: Floats, plane: Plane) -> Floats:
-        """OTF of the detector alone, (n,)."""
-        return _detector(p[-1:], plane, self.detector_px)
+    def factors_on(self, p: Floats, plane: Plane) -> list[NDArray[Any]]:
+        """OTFs of all terms, and of the detector as the last, (n,) each."""
+        own = [term.otf(own, plane) for term, own in self._split(p)]
+        return [*own, _detector(p[-1:], plane, self.detector_px)]
 
-    def slopes_on(self, p: Floats, plane: Plane) -> Complexes:
-        """Derivatives of the OTF by the parameters, (n, p)."""
-        split = self._split(p)
-        values = [*(term.otf(own, plane) for term, own in split), self.detector_otf_on(p, plane)]
+    def slopes_on(
+        self, p: Floats, plane: Plane, factors: list[NDArray[Any]] | None = None
+    ) -> Complexes:
+        """Derivatives of the OTF by the parameters, (n, p); the factors may be known already."""
+        values = self.factors_on(p, plane) if factors is None else factors
         slopes = [
             _differences(term.otf, here, own, plane) if term.slopes is None
             else term.slopes(own, plane)
-            for (term, own), here in zip(split, values, strict=False)
+            for (term, own), here in zip(self._split(p), values, strict=False)
         ]  # fmt: skip
         slopes.append(_detector_slopes(p[-1:], plane, self.detector_px))
-        others = [_product(values[:i] + values[i + 1 :]) for i in range(len(values))]
+        others = [product(values[:i] + values[i + 1 :]) for i in range(len(values))]
         return np.concatenate(
             [other[:, None] * by_own for other, by_own in zip(others, slopes, strict=True)], axis=1
         )
@@ -160,7 +162,8 @@ def _detector(p: Floats, plane: Plane, detector_px: tuple[float, float]) -> Floa
 def _detector_slopes(p: Floats, plane: Plane, detector_px: tuple[float, float]) -> Floats:
     """Its derivative, (n, 1)."""
     across, along = _detector_waves(p, plane, detector_px)
-    by_both = sinc_growth(across) * np.sinc(along) + np.sinc(across) * sinc_growth(along)
+    one, other = np.sinc(across), np.sinc(along)
+    by_both = sinc_growth(across, one) * other + one * sinc_growth(along, other)
     return np.asarray(by_both[:, None])
 
 
@@ -182,8 +185,9 @@ def _differences(otf: Transfer, here: NDArray[Any], p: Floats, plane: Plane) -> 
     return np.stack([(otf(p + move, plane) - here) / _STEP for move in moves], axis=1)
 
 
-def _product(values: list[NDArray[Any]]) -> Complexes:
-    return np.asarray(np.prod(values, axis=0), complex)
+def product(values: list[NDArray[Any]]) -> Complexes:
+    """Of factors of an OTF, (n,)."""
+    return np.asarray(reduce(np.multiply, values), complex)
 
 
 FORMS: tuple[tuple[str, ...], ...] = (

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import wrap_axis
-from acutance.optics import Defocus, Diffraction, Resampling, Shift
+from acutance.optics import Defocus, Diffraction
 from acutance.optics.processing import interpolation_weight
-from acutance.targets.combine.plane import TAPS, Plane
+from acutance.targets.combine.plane import PIXELS, TAPS, Plane
 
 __all__ = ["TERMS", "Term", "Transfer", "sinc_growth"]
 
@@ -121,9 +121,9 @@ def _smear(p: Floats, plane: Plane) -> Floats:
     return np.asarray(np.sinc(p[0] * plane.u_cpp + p[1] * plane.v_cpp))
 
 
-def sinc_growth(waves: Floats) -> Floats:
-    """Derivative of ``sinc(x)`` by the logarithm of x."""
-    return np.asarray(np.cos(math.pi * waves) - np.sinc(waves))
+def sinc_growth(waves: Floats, sinc: Floats) -> Floats:
+    """Derivative of ``sinc(x)`` by the logarithm of x, beside its values."""
+    return np.asarray(np.cos(math.pi * waves) - sinc)
 
 
 def _upright_smear(p: Floats, plane: Plane) -> Floats:
@@ -135,8 +135,9 @@ def _upright_smear(p: Floats, plane: Plane) -> Floats:
 
 def _upright_smear_slopes(p: Floats, plane: Plane) -> Floats:
     across, along = math.exp(p[0]) * plane.u_cpp, math.exp(p[1]) * plane.v_cpp
-    by_across = sinc_growth(across) * np.sinc(along)
-    return np.stack([by_across, np.sinc(across) * sinc_growth(along)], axis=1)
+    one, other = np.sinc(across), np.sinc(along)
+    by_across = sinc_growth(across, one) * other
+    return np.stack([by_across, one * sinc_growth(along, other)], axis=1)
 
 
 def _upright_smear_numbers(p: Floats) -> dict[str, float]:
@@ -286,8 +287,21 @@ def _cubic(p: Floats) -> float:
     return -_logistic(p[0])
 
 
+def _cubic_slope(p: Floats) -> float:
+    return -_logistic_slope(p[0])
+
+
 def _interpolation(p: Floats, plane: Plane) -> Floats:
-    return np.asarray(Resampling("cubic", _cubic(p)).otf(plane.u_cpp, plane.v_cpp))
+    at_none, by_unit = plane.cubic_parts
+    across, along = (at_none + _cubic(p) * by_unit).T
+    return np.asarray(across * along)
+
+
+def _interpolation_slopes(p: Floats, plane: Plane) -> Floats:
+    at_none, by_unit = plane.cubic_parts
+    across, along = (at_none + _cubic(p) * by_unit).T
+    by_parameter = by_unit[:, 0] * along + across * by_unit[:, 1]
+    return np.asarray(_cubic_slope(p) * by_parameter[:, None])
 
 
 def _interpolation_numbers(p: Floats) -> dict[str, float]:
@@ -301,17 +315,21 @@ def _phases(p: Floats) -> tuple[float, float]:
 
 def _phase(p: Floats, plane: Plane) -> Complexes:
     """Cubic convolution at one phase of the pixels, as in a small part of a warped image."""
-    u, v = plane.u_cpp, plane.v_cpp
     across, along = _phases(p)
-    otf = Shift(along, across, "cubic", _cubic(p[2:])).otf(u, v)
-    moved_px = u * _moved_px(across, _cubic(p[2:])) + v * _moved_px(along, _cubic(p[2:]))
-    return np.asarray(otf * np.exp(-2j * math.pi * moved_px))
+    by_col, by_row = plane.pixel_waves
+    a = _cubic(p[2:])
+    return _at_phase(across, a, plane.u_cpp, by_col) * _at_phase(along, a, plane.v_cpp, by_row)
 
 
-def _moved_px(phase_px: float, a: float) -> float:
-    """How far cubic convolution moves the image: only that of a = -1/2 keeps straight lines."""
-    away_px = np.arange(-2, 3) - phase_px
-    return float(away_px @ interpolation_weight("cubic", away_px, a))
+def _at_phase(phase_px: float, a: float, freq: Floats, pixel_waves: Complexes) -> Complexes:
+    """Along one axis; the mean place of the light is taken off.
+
+    Cubic convolution moves the image: only that of a = -1/2 keeps straight lines.
+    """
+    away_px = PIXELS - phase_px
+    weight = interpolation_weight("cubic", away_px, a)
+    middle_px = phase_px + float(away_px @ weight)
+    return np.asarray((pixel_waves @ weight) * np.exp(-2j * math.pi * middle_px * freq))
 
 
 def _phase_numbers(p: Floats) -> dict[str, float]:
@@ -357,7 +375,9 @@ TERMS: dict[str, Term] = {
     "diffraction": Term(_diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
     "defocus": Term(_defocus, (math.log(1.3), -0.5, 0.25), (0.4, 1.0, 0.15), _defocus_numbers),
     "kernel": Term(_kernel, _TAP_MEAN, _TAP_STD, _kernel_numbers, _kernel_slopes),
-    "interpolation": Term(_interpolation, (0.0,), (0.6,), _interpolation_numbers),
+    "interpolation": Term(
+        _interpolation, (0.0,), (0.6,), _interpolation_numbers, _interpolation_slopes
+    ),
     "phase": Term(_phase, (0.0, 0.0, 0.0), (1.0, 1.0, 0.6), _phase_numbers),
 }
 """Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear and halo of a pixel or two, taps
