@@ -48,6 +48,8 @@ _ALIKE: Final = 0.5
 """Depth of a valley of the log likelihood that is none."""
 _AS_LIKELY: Final = 5.0
 """Difference of the log likelihoods of two starts that may be one."""
+_WAY: Final = tuple(np.linspace(0.0, 1.0, 9).tolist())
+"""Places between a start and an end where the likelihood is looked at."""
 _ENOUGH_EDGES: Final = 600
 _LIKELIER: Final = 3.0
 """By so much in the log likelihood another sensor has to be likelier than that of a better start:
@@ -136,11 +138,17 @@ def _likeliest(
     nothing = np.zeros_like(edges.gain)
     first, *others = _starts(edges, normal_deg, guesses)
     best = settled(edges, normal_deg, first, nothing)
-    for start in others:
+    ends = [best]
+    # In the end all forms once more: a form may have lost its weight on the way.
+    for start in (*others, None):
+        if start is None:
+            start = best._replace(forms=FORMS)
+        elif any(_leads_to(edges, start, end) for end in ends):
+            continue
         start = start._replace(combined=best.combined)
-        end = settled(edges, normal_deg, start, nothing, best.log_likelihood)
-        if end.log_likelihood > best.log_likelihood + _LIKELIER:
-            best = end
+        ends.append(settled(edges, normal_deg, start, nothing, best.log_likelihood))
+        if ends[-1].log_likelihood > best.log_likelihood + _LIKELIER:
+            best = ends[-1]
     return best
 
 
@@ -184,6 +192,19 @@ def _are_one_top(edges: EdgeLikelihoods, one: SensorState, other: SensorState) -
     between = fit_shares(edges, 0.5 * (one.otf + other.otf), other.share)
     lower = min(fit_shares(edges, own.otf, own.share).log_likelihood for own in (one, other))
     return between.log_likelihood > lower - _ALIKE
+
+
+def _leads_to(edges: EdgeLikelihoods, start: SensorState, end: SensorState) -> bool:
+    """Whether the likelihood of the edges only rises on the straight way from a start to an end."""
+    share, highest = start.share, -np.inf
+    for part in _WAY:
+        otf = (1 - part) * start.otf + part * end.otf
+        found = fit_shares(edges if part == 0 else end.along, otf, share)
+        share = found.share
+        if found.log_likelihood < highest - _ALIKE:
+            return False
+        highest = max(highest, found.log_likelihood)
+    return True
 
 
 def settled(
