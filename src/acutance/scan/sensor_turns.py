@@ -50,6 +50,10 @@ _AS_LIKELY: Final = 5.0
 """Difference of the log likelihoods of two starts that may be one."""
 _WAY: Final = tuple(np.linspace(0.0, 1.0, 9).tolist())
 """Places between a start and an end where the likelihood is looked at."""
+_ALWAYS_FOLLOWED: Final = 3
+"""Starts that are followed to their end even where the likelihood only rises towards a known one:
+in forms of sensors it has more tops than between them. In 129 scenes three ended less likely than
+if all were followed, by 3.5 to 6.5 in the log likelihood, and none by 11 as with one."""
 _ENOUGH_EDGES: Final = 600
 _LIKELIER: Final = 3.0
 """By so much in the log likelihood another sensor has to be likelier than that of a better start:
@@ -139,11 +143,8 @@ def _likeliest(
     first, *others = _starts(edges, normal_deg, guesses)
     best = settled(edges, normal_deg, first, nothing)
     ends = [best]
-    # In the end all forms once more: a form may have lost its weight on the way.
-    for start in (*others, None):
-        if start is None:
-            start = best._replace(forms=FORMS)
-        elif any(_leads_to(edges, start, end) for end in ends):
+    for start in others:
+        if len(ends) >= _ALWAYS_FOLLOWED and any(_leads_to(edges, start, end) for end in ends):
             continue
         start = start._replace(combined=best.combined)
         ends.append(settled(edges, normal_deg, start, nothing, best.log_likelihood))
