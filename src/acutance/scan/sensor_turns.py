@@ -20,7 +20,7 @@ from acutance.scan.blur_modes import COMMON_MODES, changed, edge_modes, fit_mode
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.form_agreement import common_errors
 from acutance.scan.information import expected_information
-from acutance.scan.population import fit_shares
+from acutance.scan.population import fit_shares, rises_along
 from acutance.scan.shares import START
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import CombinedFit, combine_curves
@@ -196,16 +196,10 @@ def _are_one_top(edges: EdgeLikelihoods, one: SensorState, other: SensorState) -
 
 
 def _leads_to(edges: EdgeLikelihoods, start: SensorState, end: SensorState) -> bool:
-    """Whether the likelihood of the edges only rises on the straight way from a start to an end."""
-    share, highest = start.share, -np.inf
-    for part in _WAY:
-        otf = (1 - part) * start.otf + part * end.otf
-        found = fit_shares(edges if part == 0 else end.along, otf, share)
-        share = found.share
-        if found.log_likelihood < highest - _ALIKE:
-            return False
-        highest = max(highest, found.log_likelihood)
-    return True
+    """Whether the likelihood only rises on the straight way from a start to an end."""
+    way = ((1 - part) * start.otf + part * end.otf for part in _WAY)
+    seen = (edges if part == 0 else end.along for part in _WAY)
+    return rises_along(zip(seen, way, strict=True), start.share, _ALIKE)
 
 
 def settled(
