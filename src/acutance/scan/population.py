@@ -37,6 +37,8 @@ _COARSE_PX2: Final[Floats] = np.array([
 """Variances from which the likeliest softness of an edge is sought."""
 _CELLS: Final = 24
 _TINY: Final = 1e-300
+_FORMLESS: Final = 5.0
+"""By so much, in the log likelihood, sensors may be likelier than one of a form for their noise."""
 _REACH: Final = 5.0
 """The grid of an edge covers so many standard deviations of its softness."""
 
@@ -168,8 +170,12 @@ def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> Membership
     return Membership(objects, grid, sector, share, odds, by_part, log_likelihood)
 
 
-def rises_along(way: Iterable[tuple[EdgeLikelihoods, Floats]], share: Floats, least: float) -> bool:
-    """Whether the log likelihood never falls by more than `least` on a way of sensors.
+def rises_along(
+    way: Iterable[tuple[EdgeLikelihoods, Floats]], share: Floats, top: float, least: float
+) -> bool:
+    """Whether the log likelihood of edges rises on a way of sensors, up to that of its end.
+
+    A little above it is allowed: on the way sensors have no form, and any form costs likelihood.
 
     Parameters
     ----------
@@ -177,12 +183,15 @@ def rises_along(way: Iterable[tuple[EdgeLikelihoods, Floats]], share: Floats, le
         The edges, as they see a sensor, and that sensor.
     share : (g, p) array
         First guess of the shares.
+    top : float
+        Log likelihood of the end.
     least : float
+        By so much it may fall before.
     """
     highest = -np.inf
     for edges, otf in way:
         found = fit_shares(edges, otf, share)
-        if found.log_likelihood < highest - least:
+        if not min(highest, top) - least <= found.log_likelihood <= top + _FORMLESS:
             return False
         share, highest = found.share, max(highest, found.log_likelihood)
     return True

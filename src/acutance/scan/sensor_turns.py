@@ -199,7 +199,7 @@ def _leads_to(edges: EdgeLikelihoods, start: SensorState, end: SensorState) -> b
     """Whether the likelihood only rises on the straight way from a start to an end."""
     way = ((1 - part) * start.otf + part * end.otf for part in _WAY)
     seen = (edges if part == 0 else end.along for part in _WAY)
-    return rises_along(zip(seen, way, strict=True), start.share, _ALIKE)
+    return rises_along(zip(seen, way, strict=True), start.share, end.log_likelihood, _ALIKE)
 
 
 def settled(
