@@ -70,6 +70,32 @@ def test_slopes_in_closed_form_are_those_of_the_term(name):
         np.testing.assert_allclose(column, by_difference, atol=1e-8)
 
 
+@pytest.mark.parametrize("logit", [-1.5, 0.0, 0.7])
+def test_interpolation_is_that_of_the_optics(logit):
+    u, v = np.random.default_rng(5).uniform(-1, 1, (2, 30))
+    a = -1 / (1 + np.exp(-logit))
+    found = TERMS["interpolation"].otf(np.array([logit]), Plane(u, v))
+    np.testing.assert_allclose(found, optics.Resampling("cubic", a).otf(u, v), atol=1e-12)
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (0.8, -0.3), (-1.7, 2.5)])
+def test_a_phase_is_a_shift_of_the_optics_with_its_light_in_the_middle(place):
+    u, v = np.random.default_rng(6).uniform(-1, 1, (2, 30))
+    p = np.array([*place, 0.4])
+    numbers = TERMS["phase"].numbers(p)
+    shift = optics.Shift(
+        numbers["phase_along_px"], numbers["phase_across_px"], "cubic", numbers["cubic_a"]
+    )
+    found, moved = TERMS["phase"].otf(p, Plane(u, v)), np.asarray(shift.otf(u, v))
+    np.testing.assert_allclose(np.abs(found), np.abs(moved), atol=1e-12)
+    # What is left is a linear phase, and none of it in what is found.
+    at = np.array([[1e-4, 0.0], [0.0, 1e-4]])
+    slope = np.angle(shift.otf(*at)) / 1e-4
+    np.testing.assert_allclose(
+        found, moved * np.exp(-1j * (slope[0] * u + slope[1] * v)), atol=1e-7
+    )
+
+
 def test_curves_of_different_lengths_are_whitened_together():
     whole, short = curve(OBLIQUE.otf, 6.0, 0.01), curve(OBLIQUE.otf, 97.0, 0.02)
     short = OtfSamples("short", short.u_cpp[:9], short.v_cpp[:9], short.otf[:9], short.factor[:9])
