@@ -246,7 +246,7 @@ def way_between(edges, first_px, last_px):
 
 def rises(way):
     top = fit_shares(*way[-1], START).log_likelihood
-    return rises_along(way, START, top, 0.5)
+    return rises_along(way, START, top, dip=0.5, excess=5.0)
 
 
 def test_towards_the_only_sensor_that_edges_allow_their_likelihood_rises():
@@ -269,5 +269,5 @@ def test_beyond_an_end_the_likelihood_may_rise_a_little():
     edges, _ = drawn(0.0)
     found = fit_shares(edges, TRUE[None], START).log_likelihood
     way = way_between(edges, 0.4, 0.0)
-    assert rises_along(way, START, found - 4.0, 0.5)
-    assert not rises_along(way, START, found - 6.0, 0.5)
+    assert rises_along(way, START, found - 4.0, dip=0.5, excess=5.0)
+    assert not rises_along(way, START, found - 6.0, dip=0.5, excess=5.0)

@@ -37,8 +37,6 @@ _COARSE_PX2: Final[Floats] = np.array([
 """Variances from which the likeliest softness of an edge is sought."""
 _CELLS: Final = 24
 _TINY: Final = 1e-300
-_FORMLESS: Final = 5.0
-"""By so much, in the log likelihood, sensors may be likelier than one of a form for their noise."""
 _REACH: Final = 5.0
 """The grid of an edge covers so many standard deviations of its softness."""
 
@@ -171,11 +169,14 @@ def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> Membership
 
 
 def rises_along(
-    way: Iterable[tuple[EdgeLikelihoods, Floats]], share: Floats, top: float, least: float
+    way: Iterable[tuple[EdgeLikelihoods, Floats]],
+    share: Floats,
+    top: float,
+    *,
+    dip: float,
+    excess: float,
 ) -> bool:
     """Whether the log likelihood of edges rises on a way of sensors, up to that of its end.
-
-    A little above it is allowed: on the way sensors have no form, and any form costs likelihood.
 
     Parameters
     ----------
@@ -185,13 +186,13 @@ def rises_along(
         First guess of the shares.
     top : float
         Log likelihood of the end.
-    least : float
-        By so much it may fall before.
+    dip, excess : float
+        By so much it may fall on the way there, and lie above the end.
     """
     highest = -np.inf
     for edges, otf in way:
         found = fit_shares(edges, otf, share)
-        if not min(highest, top) - least <= found.log_likelihood <= top + _FORMLESS:
+        if not min(highest, top) - dip <= found.log_likelihood <= top + excess:
             return False
         share, highest = found.share, max(highest, found.log_likelihood)
     return True

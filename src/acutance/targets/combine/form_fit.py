@@ -150,9 +150,8 @@ class _Misfit:
 def likely_starts(data: WhitenedCurves, form: SensorForm) -> list[Floats]:
     """The first guesses of the parameters that fit best."""
     misfit = _Misfit(data, form, np.zeros((data.values.size, 0)))
-    return sorted(_starts(form), key=lambda p: float(np.sum(misfit.residual(p) ** 2)))[
-        :_STARTS_TRIED
-    ]
+    best_first = sorted(_starts(form), key=lambda p: float(np.sum(misfit.residual(p) ** 2)))
+    return best_first[:_STARTS_TRIED]
 
 
 def _starts(form: SensorForm) -> list[Floats]:

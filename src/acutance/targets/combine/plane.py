@@ -59,11 +59,11 @@ class Plane:
         Its kernel is linear in the parameter.
         """
         still = np.zeros_like(self.u_cpp)
-        none, less = (Resampling("cubic", a) for a in (0.0, -1.0))
-        across = np.asarray(none.otf(self.u_cpp, still)), np.asarray(less.otf(self.u_cpp, still))
-        along = np.asarray(none.otf(still, self.v_cpp)), np.asarray(less.otf(still, self.v_cpp))
-        at_none = np.stack([across[0], along[0]], axis=1)
-        return at_none, at_none - np.stack([across[1], along[1]], axis=1)
+        at_none, at_less = (
+            np.stack([cubic.otf(self.u_cpp, still), cubic.otf(still, self.v_cpp)], axis=1)
+            for cubic in (Resampling("cubic", 0.0), Resampling("cubic", -1.0))
+        )
+        return at_none, at_none - at_less
 
     @cached_property
     def pixel_waves(self) -> tuple[Complexes, Complexes]:

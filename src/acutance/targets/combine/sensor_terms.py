@@ -287,21 +287,16 @@ def _cubic(p: Floats) -> float:
     return -_logistic(p[0])
 
 
-def _cubic_slope(p: Floats) -> float:
-    return -_logistic_slope(p[0])
-
-
 def _interpolation(p: Floats, plane: Plane) -> Floats:
     at_none, by_unit = plane.cubic_parts
-    across, along = (at_none + _cubic(p) * by_unit).T
-    return np.asarray(across * along)
+    return np.asarray(np.prod(at_none + _cubic(p) * by_unit, axis=1))
 
 
 def _interpolation_slopes(p: Floats, plane: Plane) -> Floats:
     at_none, by_unit = plane.cubic_parts
     across, along = (at_none + _cubic(p) * by_unit).T
     by_parameter = by_unit[:, 0] * along + across * by_unit[:, 1]
-    return np.asarray(_cubic_slope(p) * by_parameter[:, None])
+    return np.asarray(-_logistic_slope(p[0]) * by_parameter[:, None])
 
 
 def _interpolation_numbers(p: Floats) -> dict[str, float]:
