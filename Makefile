@@ -26,4 +26,5 @@ docs: $(VENV)/.installed
 	$(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
 
 clean:
+	find src -name '*.nb[ic]' -delete
 	rm -rf $(VENV) docs/_build docs/gallery docs/generated demo

@@ -30,6 +30,8 @@ def compiled(function: _F) -> _F:
 
     Sums may be taken in another order than written (they are vectorised), so results may differ
     between processors in the last digits. Division by zero gives infinities, as in numpy.
+    Constants and inlined functions of other modules become part of it, and a change of them goes
+    unseen: it wants a `make clean`.
     """
     return cast(_F, numba.njit(function, cache=True, **_OPTIONS))
 

@@ -361,7 +361,7 @@ TERMS: dict[str, Term] = {
     "upright smear": Term(
         _upright_smear, (-0.4, -0.4), (0.8, 0.8), _upright_smear_numbers, _upright_smear_slopes
     ),
-    "halo": Term(_halo, (-2.2, math.log(2.0)), (1.0, 0.5), _halo_numbers, _halo_slopes),
+    "halo": Term(_halo, (-2.5, math.log(3.0)), (0.7, 0.4), _halo_numbers, _halo_slopes),
     "trail": Term(_trail, (0.0, 0.0), (0.4, 0.4), _trail_numbers),
     "sharpening": Term(
         _sharpening, (0.4, 0.4), (0.4, 0.4), _sharpening_numbers, _sharpening_slopes
@@ -375,6 +375,7 @@ TERMS: dict[str, Term] = {
     ),
     "phase": Term(_phase, (0.0, 0.0, 0.0), (1.0, 1.0, 0.6), _phase_numbers),
 }
-"""Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear and halo of a pixel or two, taps
-of up to a third, masks of a quarter to the whole of what is missing, a quarter of a wave of
-defocus, kernels as those of Wiener filters, cubic convolutions of -.35 to -.65."""
+"""Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear of a pixel or two, halos as of
+`acutance.optics.FAMILIES` and somewhat more (2 to 25 % of the light, 1.5 to 6 px), taps of up to a
+third, masks of a quarter to the whole of what is missing, a quarter of a wave of defocus, kernels
+as those of Wiener filters, cubic convolutions of -.35 to -.65."""

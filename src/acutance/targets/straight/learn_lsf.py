@@ -48,7 +48,7 @@ DENSITY_COUNTS = {
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
 detector, nothing else."""
-_COORDINATES = 40
+_COORDINATES = 44
 """In the median .0001 (telescopes) to .0002 (processed) of the light lies outside of these; what
 thousand edges of a scene share must be less than what they tell."""
 

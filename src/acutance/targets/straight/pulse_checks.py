@@ -96,6 +96,7 @@ def check_pulse(
         Whether the method divides by the pulse's spectrum.
     """
     values = region.pixels[data.trimmed.pixels.at]
+    wrongly_held = not (stated_width.passed or width.std > 0)
     return (
         _contrast(data, limits),
         uniformity(data, limits, "before", data.before),
@@ -117,7 +118,13 @@ def check_pulse(
         gradient(data, limits),
         correlated_noise(data, limits),
         asymmetric_lsf(data, limits),
-        profile(data, limits, width.value, own_misfit=by_ratio),
+        profile(
+            data,
+            limits,
+            width.value,
+            own_misfit=by_ratio,
+            advice=stated_width.message if wrongly_held else None,
+        ),
         outliers(data, limits),
         _parallel(data, limits, height_ratio.value),
         _background_step(limits, height_ratio.value),

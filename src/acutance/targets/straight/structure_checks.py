@@ -209,7 +209,14 @@ def asymmetric_wings(data: CheckData, limits: Limits) -> Check:
     return answer("asymmetric_wings", value, found, limits)
 
 
-def profile(data: CheckData, limits: Limits, last_px: float, *, own_misfit: bool) -> Check:
+def profile(
+    data: CheckData,
+    limits: Limits,
+    last_px: float,
+    *,
+    own_misfit: bool,
+    advice: str | None = None,
+) -> Check:
     """Residuals along the normal that repeat all along the target.
 
     Noise of any colour differs from part to part of the target; a line parallel to it, a striped
@@ -222,6 +229,8 @@ def profile(data: CheckData, limits: Limits, last_px: float, *, own_misfit: bool
         Place of the target's last step: 0 for an edge.
     own_misfit : bool
         Whether the method's curves do not follow the pixels (the published ones smooth).
+    advice : str, optional
+        The cause, where it is known.
     """
     s = -data.before
     steep, near = _STEEP_WIDTHS * data.fwhm_px, _NEAR_WIDTHS * data.fwhm_px
@@ -239,7 +248,7 @@ def profile(data: CheckData, limits: Limits, last_px: float, *, own_misfit: bool
         f"all along the target the pixels leave the fit by the same {100 * value:.2f} % of the "
         f"contrast ({most:.0f} standard deviations)"
     )
-    return answer("profile", value, found, limits)
+    return answer("profile", value, found, limits, advice=advice)
 
 
 @compiled
