@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import os
 import signal
 import sys
@@ -246,6 +248,8 @@ def is_ending() -> bool:
 def _obey_parent(heard: Connection) -> None:
     """Leave interrupts to the parent process, and end when it has ended, however it did."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # The parent waits for the end: nothing is looked through once more for unused memory.
+    atexit.register(gc.freeze)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     threading.Thread(target=_end_with_run, daemon=True, args=(heard,)).start()
 
