@@ -81,9 +81,14 @@ class Check:
 
     @property
     def excess(self) -> float:
-        """How many times the value is beyond the limit; 0 of a check that passed."""
+        """How many times the value is beyond the limit; 0 of a check that passed.
+
+        Where there should be none, any are beyond: as many times as there are, and once more.
+        """
         if self.passed:
             return 0.0
+        if self.sense == "<=" and self.limit == 0:
+            return 1.0 + self.value
         over, under = (self.value, self.limit) if self.sense == "<=" else (self.limit, self.value)
         return over / under if under > 0 else math.inf
 

@@ -205,6 +205,12 @@ _POINTS = {
         "Where in the detector's range is the brightest pixel?", "<=", 0.9,
         "near its end the detector may not be linear; about 75 % is best", "Li et al. 2.2",
     ),
+    "psf_width_px": Question(
+        "Is the PSF as narrow as that of a camera?", "<=", 5.0,
+        "these are no images of points but parts of edges, roofs and the like, or they are far out "
+        "of focus: give the places of mirrors, lamps or stars, or a region that holds nothing else",
+        severity="fail",
+    ),
     "source_misfit": Question(
         "How many times the noise are the residuals of the worst source?", "<=", 1.5,
         "it is no point, or the PSF differs over the region; leave it out",
@@ -336,6 +342,12 @@ _COMBINED = {
     "plain_sensor": Question(
         "Which is that chance for the best product of OTF blocks?", ">=", 0.01,
         "its parameters are only a description", severity="note",
+    ),
+    "correction": Question(
+        "How much of the logarithm of the MTF is that of no product of OTF blocks?", "<=", 0.1,
+        "no sensor's MTF changes like that with direction and frequency: the measurements are not "
+        "of one sensor, or one of them is wrong; leave out the one that fits least",
+        severity="fail",
     ),
     "directions": Question(
         "How many directions differ by 15 degrees?", ">=", 3.0,

@@ -15,8 +15,8 @@ from acutance.targets.combine.inputs import MeasuredInput
 __all__ = ["COMBINE_CHECKS", "check_combination", "count_directions", "direction_gap_deg"]
 
 COMBINE_CHECKS = (
-    "agreement", "worst_member", "plain_sensor", "directions", "failed_inputs", "shared_targets",
-    "assumed_covariance", "unknown_gsd",
+    "agreement", "worst_member", "plain_sensor", "correction", "directions", "failed_inputs",
+    "shared_targets", "assumed_covariance", "unknown_gsd",
 )  # fmt: skip
 """Names of all checks of a combination."""
 
@@ -49,6 +49,7 @@ def check_combination(
         _agreement(fit, limits),
         _worst(inputs, fit, limits),
         _plain(fit, limits),
+        _correction(fit, limits),
         answer("directions", directions, f"{directions} directions were measured", limits),
         _counted("failed_inputs", failed, "with a failed check of their own", limits),
         _counted("shared_targets", _shared(inputs), "of the same pixels", limits, "pair"),
@@ -95,17 +96,22 @@ def _worst(inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: Limits) ->
 
 def _plain(fit: CombinedFit, limits: Limits) -> Check:
     plain = fit.plain
-    added = (
-        f"a smooth correction of {100 * fit.otf.correction_share:.1f} % of the log MTF "
-        "was added, and its uncertainty is part of every deviation"
-        if fit.otf.correction_share > 0
-        else "no correction was added"
-    )
     return answer(
         "plain_sensor", plain.p_value,
         "the best product of Gaussian, detector, smear, halo, charge trail and aperture has "
-        f"chi-square {plain.value:.0f}, {plain.expected:.0f} being expected; {added}", limits,
+        f"chi-square {plain.value:.0f}, {plain.expected:.0f} being expected", limits,
     )  # fmt: skip
+
+
+def _correction(fit: CombinedFit, limits: Limits) -> Check:
+    share = fit.otf.correction_share
+    found = (
+        f"a smooth correction of {100 * share:.1f} % of the log MTF was added, and its uncertainty "
+        "is part of every deviation"
+        if share > 0
+        else "no correction was added"
+    )
+    return answer("correction", share, found, limits)
 
 
 def _shared(inputs: Sequence[MeasuredInput]) -> list[str]:

@@ -112,8 +112,7 @@ class _Misfit:
     def least(self, start: Floats, steps: int) -> tuple[float, Floats]:
         """The least sum of squares of the residual, and where it is, by Levenberg and Marquardt.
 
-        `scipy.optimize.least_squares` takes the same steps, and a tenth more of the time of a scan's
-        sensor.
+        `scipy.optimize.least_squares` takes the same steps, in a tenth more of the time.
         """
         found, _, info, *_ = leastsq(
             self.residual, start, Dfun=self.slopes, full_output=True,

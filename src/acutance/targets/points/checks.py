@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -23,6 +24,7 @@ POINTS_CHECKS = (
     "spacing_px",
     "phase_gap_px",
     "background_uniformity",
+    "psf_width_px",
     "source_misfit",
     "undeclared_fill",
     "full_scale",
@@ -40,6 +42,7 @@ def check_points(
     sources: Sequence[PointSource],
     limits: Limits,
     *,
+    fwhm_px: Mapping[str, float],
     fill: Fill | None = None,
     full_scale: float | None = None,
     correlation: Correlation | None = None,
@@ -52,6 +55,8 @@ def check_points(
     sources : sequence of PointSource
     limits : mapping of str to float
         Limits the caller changed.
+    fwhm_px : mapping of str to float
+        Full width of the point spread function at half maximum by direction, NaN where it has none.
     fill : Fill, optional
         Undeclared fill that was left out.
     full_scale : float, optional
@@ -62,11 +67,12 @@ def check_points(
         Share of outlying pixels, where the method knows it.
     """
     checks = [
-        answer("sources", len(sources), f"{len(sources)} sources were measured", limits),
+        answer("sources", len(sources), _counted(sources), limits),
         _peak_snr(sources, limits),
         _spacing(sources, limits),
         _phase_gap(sources, limits),
         _background_uniformity(sources, limits),
+        _psf_width(fwhm_px, limits),
         _source_misfit(sources, limits),
         undeclared_fill([fill], limits),
     ]
@@ -100,6 +106,23 @@ def phase_gap_px(phases: Floats) -> float:
     rows, cols = np.meshgrid(steps, steps)
     tree = cKDTree(np.mod(phases, 1.0), boxsize=1.0)
     return float(tree.query(np.stack([rows.ravel(), cols.ravel()], axis=1))[0].max())
+
+
+def _counted(sources: Sequence[PointSource]) -> str:
+    return "1 source was measured" if len(sources) == 1 else f"{len(sources)} sources were measured"
+
+
+def _psf_width(fwhm_px: Mapping[str, float], limits: Limits) -> Check:
+    widths = {
+        name: MAX_RATIO if math.isnan(own) else min(own, MAX_RATIO) for name, own in fwhm_px.items()
+    }
+    widest = max(widths, key=widths.__getitem__)
+    value = widths[widest]
+    if value == MAX_RATIO:
+        found = f"{widest} the PSF does not fall to half its height: it has no width"
+    else:
+        found = f"{widest} the PSF is {value:.2f} px wide at half maximum"
+    return answer("psf_width_px", value, found, limits)
 
 
 def _peak_snr(sources: Sequence[PointSource], limits: Limits) -> Check:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from acutance.errors import OptionError, TargetError
 from acutance.numerics.noise import outlier_share
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
+from acutance.targets.check import Check, Checks
 from acutance.targets.options import chosen_options, published_options
 from acutance.targets.points.checks import check_points, check_survey
 from acutance.targets.points.detect import RejectedSpot
@@ -55,9 +57,10 @@ def _fit_jointly(
         raise OptionError("method_options belong to the published method: leave them out")
     fit, rejected = _fit_alike(region, selected, options)
     sources, shown = sources_of_fit(fit, region.pixels, _origin(region))
-    checks = check_points(
-        sources, options.limits, fill=region.fill, full_scale=_full_scale(shown, region),
-        correlation=fit.correlation, outliers=outlier_share(fit.standard_residual, 1.0),
+    checks = partial(
+        check_points, sources, options.limits, fill=region.fill,
+        full_scale=_full_scale(shown, region), correlation=fit.correlation,
+        outliers=outlier_share(fit.standard_residual, 1.0),
     )  # fmt: skip
     return _measurement(
         "psf-fit", fit.model, region, options, sources, rejected, checks=checks,
@@ -105,9 +108,10 @@ def _fit_gaussians(
     chosen = published_options(options, "gaussian-2003", SdsuMirrorsOptions)
     found = sdsu_2003_mirrors(cover_rejected(region.pixels, rejected), places, chosen)
     sources, shown = sources_of_mirrors(found, region.pixels, _origin(region), chosen.window_px)
-    checks = check_points(
-        sources, options.limits, fill=region.fill, full_scale=_full_scale(shown, region)
-    )
+    checks = partial(
+        check_points, sources, options.limits, fill=region.fill,
+        full_scale=_full_scale(shown, region),
+    )  # fmt: skip
     return _measurement(
         "gaussian-2003", found.psf, region, options, sources, rejected, checks=checks,
         noise_std=found.aligned.background_std, aligned=found.aligned,
@@ -122,11 +126,12 @@ def _measurement(
     options: PointsOptions,
     sources: tuple[PointSource, ...],
     rejected: _Rejected,
+    checks: Callable[..., tuple[Check, ...]],
     **found: Any,
 ) -> PointsMeasurement:
     """A measurement by one of the methods; `found` is what differs between them."""
     row, col = _origin(region)
-    return PointsMeasurement(
+    measurement = PointsMeasurement(
         kind="points",
         method=method,
         transfer=_otf(model, region),
@@ -135,8 +140,10 @@ def _measurement(
         options=options.to_dict(),
         sources=sources,
         rejected=tuple(replace(one, row=one.row + row, col=one.col + col) for one in rejected),
+        checks=Checks(lambda: checks(fwhm_px=_fwhm_px(measurement))),
         **found,
     )
+    return measurement
 
 
 POINTS_METHODS: dict[str, Callable[[RegionPixels, Selection, PointsOptions], PointsMeasurement]] = {
@@ -247,6 +254,11 @@ def _origin(region: RegionPixels) -> tuple[int, int]:
 
 def _otf(model: OtfModel, region: RegionPixels) -> Otf2d:
     return Otf2d(model, region.info.pixel_gsd_m)
+
+
+def _fwhm_px(measurement: PointsMeasurement) -> dict[str, float]:
+    """Full width at half maximum by direction."""
+    return {name: own.fwhm_px.value for name, own in measurement.directions.items()}
 
 
 def _full_scale(shown: Sequence[SourceStamp], region: RegionPixels) -> float | None:

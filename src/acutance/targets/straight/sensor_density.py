@@ -51,8 +51,6 @@ __all__ = ["SensorFamily", "Sensors", "SensorsSeen", "drawn_sensors"]
 _REACH = 3.0
 """Sensors whose blur differs by more, in units of `KERNEL_LOG_WIDTH`, have no part."""
 _SIZES = len(KERNEL_SCALES)
-_LEAST_STD = 1e-4
-"""Least standard deviation of a coordinate over a family: what lies outside of all coordinates."""
 _UNTOLD = 1e-2
 """Information of combinations that pixels do not tell, whose prior variance is one."""
 
@@ -114,10 +112,11 @@ class Sensors:
 
     @cached_property
     def second_moment(self) -> Floats:
-        """Of the coordinates of all sensors, family by family, with the least of any, (q, q)."""
-        found = len(self.families) * _LEAST_STD**2 * np.eye(self.basis.shape[1])
+        """Covariance of all sensors about none, family by family, (q, q)."""
+        found = np.zeros((self.basis.shape[1],) * 2)
         for family in self.families:
-            found += (family.weight[:, None] * family.coordinates).T @ family.coordinates
+            mean = family.weight @ family.coordinates
+            found += family.covariance + np.outer(mean, mean)
         return found
 
     def seen(
