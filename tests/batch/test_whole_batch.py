@@ -227,6 +227,11 @@ def test_bands_by_name_and_number(field_pixels, tmp_path, run, rows, write_field
         ("all", "nir"), ("all", "pan"), ("all", "red"), ("named", "nir"), ("second", "red"),
     ]  # fmt: skip
     assert ac.run_batch(plan, bands=["red"]).kept == 0
+    named = ac.run_batch(plan, bands=["red", "blue", 4])
+    assert named.measured == 2
+    assert named.missing_bands == ("blue", 4)
+    assert named.bands == ("1 (pan)", "2 (red)", "3 (nir)")
+    assert named.to_dict()["missing_bands"] == ["blue", 4]
 
 
 def test_workers_give_the_same_rows(write_field, run, rows, tmp_path):

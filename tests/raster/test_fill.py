@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import acutance.simulate as sim
-from acutance.raster import Box, Image, find_fill, open_image
+from acutance.raster import Box, Image, find_fill, open_image, value_far_off
 
 SYSTEMS = sim.reference_systems()
 
@@ -182,3 +182,17 @@ def test_fill_inside_a_polygon_only():
     assert fill.within(inside) is None
     inside[:, :100] = True
     assert fill.within(inside).count == np.count_nonzero(corner & inside)
+
+
+def test_a_value_far_from_all_others_is_named_wherever_it_lies():
+    pixels = ground()
+    assert value_far_off(pixels) is None
+    pixels[30:36, 40:50] = -9999.0
+    assert value_far_off(pixels) == (-9999.0, 60)
+    pixels[30:36, 40:50] = 65535.0
+    assert value_far_off(pixels) == (65535.0, 60)
+    assert value_far_off(np.full((9, 9), 5.0)) is None
+    assert value_far_off(np.full((9, 9), np.nan)) is None
+    # Neither side of an edge, with noise or without.
+    edge, _ = sim.edge(sim.reference_systems()["gaussian"], angle_deg=6.0)
+    assert value_far_off(np.asarray(edge, float)) is None

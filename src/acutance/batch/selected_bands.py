@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-__all__ = ["Band", "selected"]
+__all__ = ["Band", "selected", "without_band"]
 
 
 class Band(NamedTuple):
@@ -37,4 +37,12 @@ def _wanted(band: Band, wanted: Sequence[str | int] | None) -> bool:
     return any(
         one == band.number if isinstance(one, int) else one.lower() in (name, str(band.number))
         for one in wanted
+    )
+
+
+def without_band(wanted: Iterable[str | int], bands: Iterable[Band]) -> tuple[str | int, ...]:
+    """Names and numbers that none of the bands has, each once."""
+    there = list(bands)
+    return tuple(
+        one for one in dict.fromkeys(wanted) if not any(_wanted(band, (one,)) for band in there)
     )

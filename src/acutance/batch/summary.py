@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from acutance.archive.counted import counted
+from acutance.batch.selected_bands import Band, without_band
 from acutance.curves.short_repr import ShortRepr
 
 if TYPE_CHECKING:
@@ -46,6 +47,10 @@ class BatchSummary(ShortRepr):
         Of the plan.
     unreadable : tuple of str
         Images that could not be read now.
+    missing_bands : tuple of (str or int)
+        Bands that were asked for and that no image has.
+    bands : tuple of str
+        Those that images have, as "1" or "2 (red)".
     done_before : int
         Rows that were there already.
     kept : int
@@ -64,6 +69,8 @@ class BatchSummary(ShortRepr):
     archive: str
     images: int
     unreadable: tuple[str, ...] = ()
+    missing_bands: tuple[str | int, ...] = ()
+    bands: tuple[str, ...] = ()
     done_before: int = 0
     kept: int = 0
     verdicts: Mapping[str, int] = field(default_factory=dict)
@@ -105,6 +112,7 @@ class BatchSummary(ShortRepr):
             "archive": self.archive,
             "images": self.images,
             "unreadable": list(self.unreadable),
+            "missing_bands": list(self.missing_bands),
             "done_before": self.done_before,
             "kept": self.kept,
             "measured": self.measured,
@@ -125,6 +133,7 @@ class Tally:
         self.reasons: Counter[str] = Counter()
         self.earlier, self.kept, self.measuring_s = 0, 0, 0.0
         self.unreadable: list[str] = []
+        self.bands: set[Band] = set()
 
     def add_earlier(self, rows: Sequence[Outcome]) -> None:
         """Count rows that were there before."""
@@ -139,6 +148,8 @@ class Tally:
         self.measuring_s += found.measuring_s
         if found.bands is None:
             self.unreadable.append(path)
+        else:
+            self.bands.update(found.bands)
         for entry in found.entries:
             if entry.record is not None:
                 self._count(entry.record.verdict.word, None)
@@ -160,13 +171,28 @@ class Tally:
             "reasons": dict(self.reasons.most_common()),
         }
 
-    def summary(self, archive: str, images: int, elapsed_s: float, run: int | None) -> BatchSummary:
-        """What came out, verdicts from the best, reasons from the most frequent."""
+    def summary(
+        self,
+        archive: str,
+        images: int,
+        elapsed_s: float,
+        run: int | None,
+        bands: Iterable[str | int] = (),
+    ) -> BatchSummary:
+        """What came out, verdicts from the best, reasons from the most frequent.
+
+        `bands` are those that were asked for.
+        """
         counts = self.to_dict()
+        there = sorted(self.bands, key=lambda band: (band.number, band.name or ""))
         return BatchSummary(
             archive=archive,
             images=images,
             unreadable=tuple(self.unreadable),
+            missing_bands=without_band(bands, there) if there else (),
+            bands=tuple(
+                f"{one.number} ({one.name})" if one.name else f"{one.number}" for one in there
+            ),
             measuring_s=self.measuring_s,
             elapsed_s=elapsed_s,
             run=run,

@@ -113,7 +113,8 @@ def run_batch(
         there = place.outcomes({one.content for one in known.values()})
         todo = _tasks(files, known, wanted, work, there, tally)
         run = _run(todo, wanted, work, place, there, tally, progress, kept) if todo else None
-    return tally.summary(wanted.archive, len(files), time.monotonic() - begin, run)
+    bands = [one for some in (work.bands, *(t.bands for t in work.targets)) for one in some or ()]
+    return tally.summary(wanted.archive, len(files), time.monotonic() - begin, run, bands)
 
 
 def _wanted(
@@ -209,6 +210,8 @@ def _tasks(
         if content is not None and (content, reading) in seen:
             continue
         seen.add((content or file.path, reading))
+        if image is not None:
+            tally.bands.update(Band(*one) for one in image.bands or ())
         done = by_content.get(content or "", set())
         wanted = None if image is None else _wanted_keys(image, reading, work)
         if unreadable_key(content, file.path) in done:

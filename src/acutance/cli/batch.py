@@ -208,6 +208,9 @@ def _text(found: BatchSummary) -> str:
     ]
     if len(found.unreadable) > _NAMED:
         lines.append(f"and {len(found.unreadable) - _NAMED} more that cannot be read")
+    if found.missing_bands:
+        asked = ", ".join(map(str, found.missing_bands))
+        lines.append(f"no image has band {asked}: choose from {', '.join(found.bands)}")
     return "\n".join(lines)
 
 

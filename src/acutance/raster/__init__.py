@@ -1,6 +1,6 @@
 """Images in and out, regions, geolocation, sites. Only files opened here load rasterio."""
 
-from acutance.raster.fill import Fill, find_fill
+from acutance.raster.fill import Fill, find_fill, value_far_off
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import Image
@@ -36,6 +36,7 @@ __all__ = [
     "read_positions",
     "site_region",
     "sites",
+    "value_far_off",
     "write_geotiff",
     "write_geotiff_tiles",
 ]

@@ -21,7 +21,7 @@ from acutance.raster.region import Box
 if TYPE_CHECKING:
     from acutance.raster.image import Image
 
-__all__ = ["Fill", "blended_px", "find_fill", "grown"]
+__all__ = ["Fill", "blended_px", "find_fill", "grown", "value_far_off"]
 
 _CONTEXT_PX: Final = 16
 """How far around a region its constant parts are looked at."""
@@ -52,6 +52,8 @@ _GROWTH_BLENDED_PX: Final = 2
 _MAX_ROUGHNESS_PX: Final = 0.7
 """Of a blended border, rms: a staircase has .3. A clipped side has a border like that, so only zero
 is taken for blended fill: what resampling leaves where it has no data."""
+_FAR_OFF: Final = 2.0
+"""Distance of a value from all others, in units of their range: no light is so much apart."""
 _READ_PX: Final = (256, 4096)
 """Length of the first and of the longest piece that is read on the way to the image's border."""
 _SIDES: Final = ((0, 1), (0, -1), (1, 0), (-1, 0))
@@ -283,3 +285,19 @@ def grown(mask: NDArray[np.bool_], by_px: int) -> NDArray[np.bool_]:
     from scipy import ndimage
 
     return np.asarray(ndimage.binary_dilation(mask, np.ones((3, 3)), iterations=by_px))
+
+
+def value_far_off(pixels: Floats) -> tuple[float, int] | None:
+    """The lowest or the highest value, if it is far from all others, and how many pixels have it.
+
+    It may be fill inside an image, which no sharp border tells from dark or clipped ground: nothing
+    is left out for it.
+    """
+    finite = pixels[np.isfinite(pixels)]
+    for value in (finite.min(initial=np.inf), finite.max(initial=-np.inf)):
+        others = finite[finite != value]
+        if not others.size or others.size < 0.5 * finite.size:
+            continue
+        if np.abs(others - value).min() > _FAR_OFF * float(np.ptp(others)) > 0:
+            return float(value), finite.size - others.size
+    return None

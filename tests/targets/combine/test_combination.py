@@ -132,6 +132,19 @@ def test_another_sensor_among_them_is_named():
     assert "widened by the Birge ratio" in failed["agreement"].message
 
 
+def test_sensors_that_only_a_large_correction_would_join_are_no_sensor():
+    sharper, softer = (optics.Sensor([optics.Gaussian(s), optics.Detector()]) for s in (0.4, 0.5))
+    parts = [
+        edge(6, "across", 1, sharper),
+        edge(8, "across", 2, softer),
+        edge(6, "along", 3, sharper),
+    ]
+    found = ac.combine(parts)
+    assert found.sensor.correction_share > 0.1
+    assert found.verdict.word == "invalid"
+    assert "not of one sensor" in found.verdict.sentence
+
+
 def test_limits_can_be_changed(edges):
     options = ac.CombineOptions(limits={"directions": 2})
     assert ac.combine(edges[:2], options=options).trusted

@@ -49,6 +49,15 @@ def test_messages_say_what_was_found_and_what_to_do(image):
     assert found["spacing_px"].message == "the two nearest sources are 10.3 px apart"
 
 
+def test_parts_of_a_tarp_are_no_points():
+    tarp, _ = ac.simulate.pulse(
+        SENSOR, width_px=3.0, angle_deg=6.0, shape=(60, 40), snr=50, rng=np.random.default_rng(1)
+    )
+    found = ac.measure_points(tarp)
+    assert found.verdict.word == "invalid"
+    assert "no images of points" in found.verdict.sentence
+
+
 def test_a_limit_without_a_check_is_refused():
     with pytest.raises(ac.OptionError, match="no check 'ground'"):
         PointsOptions(limits={"ground": 0.1})

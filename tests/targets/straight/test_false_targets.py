@@ -25,6 +25,23 @@ def crossed(seed, angle_deg, bright):
     return first + np.asarray(second)
 
 
+@pytest.mark.parametrize("width_px", [1.0, 3.0])
+def test_a_pulse_is_no_edge_and_says_so(width_px):
+    pulse, _ = ac.simulate.pulse(
+        SENSOR, width_px=width_px, angle_deg=6.0, shape=(60, 50), snr=100,
+        rng=np.random.default_rng(1),
+    )  # fmt: skip
+    with pytest.raises(ac.NoEdgeError, match=r"a line or a pulse and no.* step.*acutance pulse"):
+        ac.measure_edge(pulse)
+
+
+def test_fill_inside_the_region_is_named_where_no_edge_is_found():
+    image, _ = edge(1, shape=(60, 60))
+    image[20:26, 25:31] = -9999
+    with pytest.raises(ac.NoEdgeError, match="36 of the pixels are -9999, far from all others"):
+        ac.measure_edge(image)
+
+
 @pytest.mark.parametrize(("angle_deg", "bright"), [(-5, 200), (-5, 300), (-12, 300), (20, 200)])
 @pytest.mark.parametrize("seed", range(3))
 def test_a_second_edge_across_the_first_is_noticed(angle_deg, bright, seed):

@@ -63,9 +63,9 @@ def trend_plate(trend: Trend, limit: float | None = None) -> Plate:
         trend_figure(trend, limit=limit),
         f"{METRIC_WORDS[trend.metric].label} of the sensor through time",
         "Dots: means of the measurements of an image, with their random standard deviations "
-        "(arrows lie outside the drawing); red: far from all others (bad days), and of little "
-        "weight. Blue: the sensor's mean with its 50 and 95 % bands; "
-        "dotted: if the drift goes on. Grey: between these lie 95 % of single images. Orange: a "
+        "(arrows lie outside the drawing); orange-red: far from all others (bad days), and of "
+        "little weight. Blue: the sensor's mean with its 50 and 95 % bands; "
+        "dotted: if the drift goes on. Grey: between these lie 95 % of single images. Amber: a "
         "step at a date that was not stated, and the days between which it lies. Green: stated "
         "events.",
         wide=True,

@@ -70,10 +70,11 @@ def points_panels(measurement: PointsMeasurement) -> tuple[Panel, ...]:
 
 
 def _map_panel(measurement: PointsMeasurement) -> Panel:
+    counted = ", counted from 1" if len(measurement.sources) <= MAX_NAMED else ""
     return Panel(
         "Sources",
-        "Circles: the sources measured, counted from 1. Crosses: what was rejected, for another "
-        "reason than being faint.",
+        f"Circles: the sources measured{counted}. Crosses: what was rejected, for another reason "
+        "than being faint.",
         on_axes(_draw_places, measurement),
         is_target=True,
     )

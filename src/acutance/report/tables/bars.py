@@ -54,6 +54,7 @@ def _groups_table(measurement: BarsMeasurement) -> Table:
         "MTF: the joint fit of all groups. Sinusoid: the fundamental of every group over that of "
         "square bars. CTF: the contrast of the bars themselves. Coltman: MTF from the CTF of all "
         "groups by Coltman's series, with a CTF that falls along the last two groups' line beyond "
-        "them."
+        "them. Deviations of sinusoid and CTF are those of the noise alone: as groups have ends, "
+        "one or two percent of either are no MTF."
     )
     return Table(COLUMNS, rows, "rrrrrrrr", title="Groups", notes=(note,))

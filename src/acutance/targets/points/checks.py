@@ -119,9 +119,9 @@ def _psf_width(fwhm_px: Mapping[str, float], limits: Limits) -> Check:
     widest = max(widths, key=widths.__getitem__)
     value = widths[widest]
     if value == MAX_RATIO:
-        found = f"{widest} the PSF does not fall to half its height: it has no width"
+        found = f"{widest} track the PSF does not fall to half its height: it has no width"
     else:
-        found = f"{widest} the PSF is {value:.2f} px wide at half maximum"
+        found = f"{widest} track the PSF is {value:.2f} px wide at half maximum"
     return answer("psf_width_px", value, found, limits)
 
 

@@ -18,7 +18,7 @@ from acutance.curves.metrics import RerCentre
 from acutance.errors import NoEdgeError, OptionError, PhaseError, TargetError
 from acutance.geometry.line import Line
 from acutance.numerics.one_thread import one_thread
-from acutance.raster import Gsd, Image
+from acutance.raster import Gsd, Image, value_far_off
 from acutance.targets.check import Checks, limit_of
 from acutance.targets.options import chosen_options, published_options
 from acutance.targets.region import RegionPixels, RoiLike, read_region
@@ -128,13 +128,29 @@ def _measure_first(region: RegionPixels, method: str, options: EdgeOptions) -> S
             return measure_segment(region, segment, method, options)
         except TargetError as error:
             first = first or error
+    raise _named(first or _nothing_found(region), region)
+
+
+def _nothing_found(region: RegionPixels) -> NoEdgeError:
     missing = float(np.mean(np.isnan(region.pixels)))
     reason = "the region is flat, or its longest edge is too short"
     if missing > _MANY_MISSING:
         reason += f", or torn by the {100 * missing:.0f} % of it without data"
-    raise first or NoEdgeError(
+    return NoEdgeError(
         f"no straight edge stands out in the {region.box.height} x {region.box.width} pixels: "
         f"{reason}; choose a region that holds one bright and one dark side"
+    )
+
+
+def _named(error: TargetError, region: RegionPixels) -> TargetError:
+    """The error, with what fill may have to do with it."""
+    found = value_far_off(region.pixels)
+    if found is None:
+        return error
+    value, count = found
+    return type(error)(
+        f"{error}; {count} of the pixels are {value:g}, far from all others: if they hold no data, "
+        "say so (nodata, --nodata; masked pixels or NaN in an array)"
     )
 
 

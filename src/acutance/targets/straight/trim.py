@@ -44,6 +44,9 @@ _MAX_HALF_WIDTH_PX = 40.0
 _FAR_PX = 100.0
 _FIRST_REACH_PX = 7.0
 _REACH_WIDTHS = 2.5
+_BUMP, _BUMP_QUANTILE = 4.0, 0.9
+"""Where a tenth of the pixels leave the mean of both levels by so many times their difference,
+there is a line or a pulse and no step."""
 
 
 @dataclass(frozen=True)
@@ -188,7 +191,8 @@ def _first_fit(image: Floats, segment: Segment) -> FirstFit:
         if not levels[1] > levels[0]:
             raise NoEdgeError(
                 f"the strongest edge separates levels of {levels[0]:.4g} and {levels[1]:.4g}, "
-                "which is a line and not a step: choose a region with one bright and one dark side"
+                "which is a line or a pulse and not a step: measure a pulse as one (measure_pulse, "
+                "acutance pulse), or choose a region with one bright and one dark side"
             )
         edge = fit_first(
             row, col, value, segment.line, dark=levels[0], bright=levels[1], sigma_px=sigma_px
@@ -198,6 +202,13 @@ def _first_fit(image: Floats, segment: Segment) -> FirstFit:
             break
         reach, sigma_px = 1.2 * _REACH_WIDTHS * edge.blur.width_px, edge.blur.sigma_px
     if edge.height < MIN_SNR * edge.noise:
+        between = float(np.quantile(np.abs(value - sum(levels) / 2), _BUMP_QUANTILE))
+        if between > _BUMP * edge.height:
+            raise NoEdgeError(
+                f"the strongest edge separates levels that differ by {edge.height:.3g}, and what "
+                f"lies between them by {between:.4g}: it is a line or a pulse and no step; measure "
+                "a pulse as one (measure_pulse, acutance pulse), or choose a region with one edge"
+            )
         raise NoEdgeError(
             f"the strongest edge has a height of {edge.height:.4g} in noise of {edge.noise:.3g}: "
             f"an SNR of {edge.height / edge.noise:.1f} where at "
