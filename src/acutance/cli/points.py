@@ -61,7 +61,11 @@ def points(
     ] = "mean",
     method: Annotated[str, method_option("points")] = KIND.methods[0],
     min_snr: Annotated[
-        float, typer.Option(metavar="RATIO", help="Minimum peak of a source over the noise.")
+        float,
+        typer.Option(
+            metavar="RATIO",
+            help="Minimum peak of a bright spot over the noise about it, before the fit.",
+        ),
     ] = 10.0,
     min_distance: Annotated[
         float, typer.Option(metavar="PX", help="Minimum distance to another bright source.")

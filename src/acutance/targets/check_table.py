@@ -123,8 +123,9 @@ _STRAIGHT = {
     ),
     "profile": Question(
         "How far do the pixels leave the fit in the same way all along the target?", "<=", 0.0005,
-        "parallel lines, an uneven pulse, or ringing finer than the fit follows: no interval "
-        "allows for it", severity="note", caution=0.02,
+        "parallel lines, an uneven pulse, or ringing finer than the fit follows; below 2 % "
+        "intervals have held all the same, above no interval allows for it",
+        severity="note", caution=0.02,
     ),
     "ground": Question(
         "How much does the ground beside the target differ from its level at the target?",

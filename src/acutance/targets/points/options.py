@@ -21,7 +21,8 @@ class PointsOptions:
     Parameters
     ----------
     min_snr : float
-        Minimum peak over the noise of a source that is used.
+        Minimum peak, over the noise about it, of a bright spot that is fitted. The fit has noise of
+        its own, and a source that is no point may then have a lower SNR.
     min_distance_px : float
         Minimum distance to another source that is not much fainter.
     max_sources : int
