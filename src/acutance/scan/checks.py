@@ -23,7 +23,8 @@ __all__ = ["SCENE_CHECKS", "check_scene"]
 
 SCENE_CHECKS = (
     "edges_used", "trusted_share", "scene_directions", "ideal_share", "ideal_borders",
-    "strange_share", "scene_settled", "form_agrees", "parts_agree", "field_change", "full_pixel",
+    "strange_share", "scene_settled", "form_agrees", "parts_agree", "diagonals", "field_change",
+    "full_pixel",
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -80,6 +81,7 @@ def check_scene(
         ),
         _form_agrees(fit.agreement, limits),
         _parts_agree(fit.parts, limits),
+        _diagonals(transfer, limits),
         _field_change(field, limits),
         full_pixel(
             [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
@@ -137,6 +139,21 @@ def _parts_agree(parts: PartsFit | None, limits: Limits) -> Check:
     else:
         found = f"{told}: they agree"
     return answer("parts_agree", share, found, limits)
+
+
+def _diagonals(transfer: Otf2d, limits: Limits) -> Check:
+    """How far the MTF along one diagonal surely differs from that along the other, relative."""
+    one, other = (transfer.response(deg).mtf for deg in (45.0, 135.0))
+    both = [float(curve(NYQUIST_CPP)) for curve in (one, other)]
+    std = float(np.linalg.norm(one.gradient(NYQUIST_CPP) - other.gradient(NYQUIST_CPP)))
+    mean = max(0.5 * sum(both), 1e-9)
+    least = max(abs(both[0] - both[1]) - _SIGNIFICANT * std, 0.0) / mean
+    found = (
+        f"the MTF at Nyquist is {both[0]:.3f} along one diagonal and {both[1]:.3f} along the "
+        f"other, surely (by {_SIGNIFICANT:.0f} standard deviations) different by "
+        f"{100 * least:.0f} % of it"
+    )
+    return answer("diagonals", least, found, limits)
 
 
 def _field_change(field: Field, limits: Limits) -> Check:

@@ -53,6 +53,12 @@ SCENE_QUESTIONS: Final = {
         "their objects differ in a softness that all of them have; compare other scenes",
         severity="note",
     ),
+    "diagonals": Question(
+        "By which share do the MTFs along the two diagonals surely differ?", "<=", 0.1,
+        "the blur of a sensor lies along rows and columns: unless this image was turned, the "
+        "objects of one diagonal are softer, or those of few borders were taken for ideal ones; "
+        "scan a larger part, or another image",
+    ),
     "field_change": Question(
         "By which share of its mean does sharpness surely change over the field?", "<=", 0.1,
         "the numbers are means over the field: read those of the places", severity="note",
