@@ -82,12 +82,20 @@ def test_two_batches_at_once_keep_nothing_twice(words, tmp_path):
         assert len(archive.keys()) == len(archive.measurements()) == 2 * IMAGES
 
 
-def test_an_interrupt_inside_a_compiled_loop_rejects_nothing(write_field, run, rows, monkeypatch):
-    """The interpreter finds a result beside the interrupt, and says SystemError."""
+@pytest.mark.parametrize("errors", [1, 2])
+def test_an_interrupt_inside_a_compiled_loop_rejects_nothing(
+    write_field, run, rows, monkeypatch, errors
+):
+    """The interpreter finds a result beside the interrupt, and says SystemError, once or twice."""
     images = [write_field(number) for number in range(2)]
 
     def interrupted(*_):
-        raise SystemError("a function returned a result with an error set") from KeyboardInterrupt()
+        error = KeyboardInterrupt()
+        for _ in range(errors):
+            outer = SystemError("a function returned a result with an error set")
+            outer.__cause__ = error
+            error = outer
+        raise error
 
     monkeypatch.setattr("acutance.batch.measure_target.measure_target", interrupted)
     with pytest.raises(KeyboardInterrupt):

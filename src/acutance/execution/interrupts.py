@@ -9,8 +9,15 @@ __all__ = ["interruptible", "was_interrupted"]
 
 
 def was_interrupted(error: SystemError) -> bool:
-    """Whether this is Ctrl-C inside a compiled loop: a result was found beside the interrupt."""
-    return isinstance(error.__cause__, KeyboardInterrupt)
+    """Whether this is Ctrl-C inside a compiled loop: a result was found beside the interrupt.
+
+    A compiled loop that says so itself, by Python of its own, hands on one SystemError as the
+    cause of another.
+    """
+    cause: BaseException | None = error
+    while isinstance(cause, SystemError):
+        cause = cause.__cause__
+    return isinstance(cause, KeyboardInterrupt)
 
 
 @contextmanager
