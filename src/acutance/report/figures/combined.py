@@ -121,9 +121,14 @@ def _draw_residuals(axes: Axes, measurement: CombinedMeasurement) -> None:
                 part.freq_cpp, np.clip(row, -MAX_STDS, MAX_STDS),
                 color=color_of(i), linewidth=1.3 if len(off) == 1 else 0.8,
             )  # fmt: skip
+            for marker, beyond in (("^", row > MAX_STDS), ("v", row < -MAX_STDS)):
+                axes.plot(
+                    part.freq_cpp[beyond], np.clip(row[beyond], -MAX_STDS, MAX_STDS),
+                    color=color_of(i), marker=marker, markersize=4, linestyle="",
+                )  # fmt: skip
     axes.set(
         xlim=(0, REACH_CPP), ylim=(-1.05 * MAX_STDS, 1.05 * MAX_STDS),
-        xlabel="frequency [c/px]", ylabel="standard deviations", title="Own − combined",
+        xlabel="frequency [c/px]", ylabel="standard deviations (triangles: beyond)", title="Own − combined",
     )  # fmt: skip
 
 
