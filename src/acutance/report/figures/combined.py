@@ -128,7 +128,8 @@ def _draw_residuals(axes: Axes, measurement: CombinedMeasurement) -> None:
                 )  # fmt: skip
     axes.set(
         xlim=(0, REACH_CPP), ylim=(-1.05 * MAX_STDS, 1.05 * MAX_STDS),
-        xlabel="frequency [c/px]", ylabel="standard deviations (triangles: beyond)", title="Own − combined",
+        xlabel="frequency [c/px]", ylabel="standard deviations (triangles: beyond)",
+        title="Own − combined",
     )  # fmt: skip
 
 
