@@ -232,6 +232,12 @@ _PERIODIC = {
         "it scales the whole MTF: state the levels of wide patches of the same materials (dark and "
         "bright), add a group of wide bars, or use a star with fewer cycles or a larger radius",
     ),
+    "stated_levels": Question(
+        "How far are the stated levels from those of the image, relative to their contrast?",
+        "<=", 0.05,
+        "they scale the whole MTF: take both from wide patches of the same materials in this "
+        "image and band (dark and bright), or state none", severity="fail",
+    ),
     "coarsest_cpp": Question(
         "Which is the frequency of the widest bars?", "<=", 0.2,
         "below it the MTF follows from the outline of the groups", severity="note",

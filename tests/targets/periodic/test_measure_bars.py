@@ -244,6 +244,19 @@ def test_clipped_bars_and_wrong_levels_fail_by_name():
     assert "correlated_noise" in _names(measure_bars(image, options=wrong).failed_checks)
 
 
+@pytest.mark.parametrize("contrast", [1.0, -1.0])
+def test_levels_of_another_image_are_invalid(contrast):
+    image, truth = bars_scene()
+    image = image if contrast > 0 else 1400.0 - image
+    for dark, bright in ((100.0, 800.0), (300.0, 1300.0), (0.0, 4095.0)):
+        wrong = BarsOptions(stated_groups(truth), dark=dark, bright=bright)
+        found = measure_bars(image, options=wrong)
+        assert found.verdict.word == "invalid"
+        assert "stated_levels" in _names(found.failed_checks)
+    right = BarsOptions(stated_groups(truth), dark=200.0, bright=1200.0)
+    assert measure_bars(image, options=right).trusted
+
+
 def test_zero_noise():
     image, truth = bars_scene(snr=None)
     found = measure_bars(image)

@@ -124,6 +124,30 @@ def test_without_levels_the_interval_widens_and_says_so():
     assert _names(free.failed_checks) == ["level"]
 
 
+@pytest.mark.parametrize(
+    ("dark", "bright"), [(100.0, 800.0), (-400.0, 1800.0), (300.0, 1300.0), (0.0, 4095.0)]
+)
+def test_levels_of_another_image_are_invalid(dark, bright):
+    """The middle of the second is right, and the contrast of the third."""
+    image, _ = star_scene()
+    found = measure_star(image, cycles=CYCLES, options=StarOptions(dark=dark, bright=bright))
+    assert found.verdict.word == "invalid"
+    assert "the stated levels" in found.verdict.sentence
+
+
+@pytest.mark.parametrize("name", list(reference_systems()))
+def test_true_levels_are_those_of_the_image(name):
+    found, _ = measured_star(name)
+    (check,) = (one for one in found.checks if one.name == "stated_levels")
+    assert check.passed
+    assert check.value < 0.01
+
+
+def test_without_levels_none_are_judged():
+    found, _ = measured_star(stated=False)
+    assert "stated_levels" not in _names(found.checks)
+
+
 def test_deviations_are_those_of_the_errors():
     """Over eight systems: deviations 0.8 or 1.25 times as large lie outside."""
     squares, inside = [], []

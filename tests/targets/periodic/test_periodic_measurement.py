@@ -1,10 +1,19 @@
 """What bars and stars have in common as measurements: limits of checks, and light copies."""
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from periodic_scenes import CYCLES, bars_scene, measured_bars, measured_star, star_scene
+from periodic_scenes import (
+    CYCLES,
+    STATED,
+    STATED_BARS,
+    bars_scene,
+    measured_bars,
+    measured_star,
+    star_scene,
+)
 
 from acutance.errors import OptionError
 from acutance.targets import Record
@@ -29,7 +38,7 @@ def test_every_check_of_bars_has_its_limit():
     asked, _ = measured_bars()
     assert tuple(check.name for check in asked.checks) == BARS_CHECKS
     limits = _absurd(asked.checks)
-    found = measure_bars(bars_scene()[0], options=BarsOptions(limits=limits))
+    found = measure_bars(bars_scene()[0], options=replace(STATED_BARS, limits=limits))
     assert [check.name for check in found.failed_checks] == list(BARS_CHECKS)
     assert found.options["limits"] == limits
     with pytest.raises(OptionError, match="no check 'sweep_deg'"):
@@ -40,7 +49,8 @@ def test_every_check_of_a_star_has_its_limit():
     asked, _ = measured_star()
     assert tuple(check.name for check in asked.checks) == STAR_CHECKS
     limits = _absurd(asked.checks)
-    found = measure_star(star_scene()[0], cycles=CYCLES, options=StarOptions(limits=limits))
+    options = replace(STATED, limits=limits)
+    found = measure_star(star_scene()[0], cycles=CYCLES, options=options)
     assert [check.name for check in found.failed_checks] == list(STAR_CHECKS)
     assert found.options["limits"] == limits
     with pytest.raises(OptionError, match="no check 'bars'"):

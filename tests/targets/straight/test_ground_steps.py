@@ -50,6 +50,8 @@ def test_seams_of_a_pulse_end_with_it():
     assert ground.spline.shape[1] == 0
     # Of a pulse as narrow as the blur, seams are the LSF's.
     assert 2 not in Ground.beside_pulse([-u, u - 1.8], 1.8).side
+    # A fit may pass through widths that no pulse has.
+    assert 2 not in Ground.beside_pulse([-u, u + 0.1], -0.1).side
 
 
 def test_the_ground_of_a_solution_is_that_of_the_image():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from statistics import median
+
 import numpy as np
 
 from acutance.targets.check import Check, Limits, answer
@@ -12,14 +14,15 @@ from acutance.targets.periodic.pattern_checks import (
     level,
     outliers,
     saturation,
+    stated_levels,
 )
 from acutance.targets.region import RegionPixels, undeclared_fill
 
 __all__ = ["BARS_CHECKS", "bars_checks"]
 
 BARS_CHECKS = (
-    "contrast_snr", "level", "bars", "bar_directions", "coarsest_cpp", "finest_cpp", "misfit",
-    "saturation", "undeclared_fill", "correlated_noise", "outliers",
+    "contrast_snr", "level", "stated_levels", "bars", "bar_directions", "coarsest_cpp",
+    "finest_cpp", "misfit", "saturation", "undeclared_fill", "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of bars."""
 
@@ -46,6 +49,7 @@ def bars_checks(
     return (
         contrast_snr(solved.snr, "the bars'", limits),
         level(solved.otf, "the bars' contrast", limits),
+        *_stated_levels(solved, limits),
         _bars(solved, limits),
         _directions(directions_deg, limits),
         *_frequencies(solved, limits),
@@ -59,6 +63,13 @@ def bars_checks(
         ),
         outliers(residual, solved.noise, solved.otf, "the bars", limits),
     )  # fmt: skip
+
+
+def _stated_levels(solved: BarsSolution, limits: Limits) -> tuple[Check, ...]:
+    """The background is dark beside bright bars, and bright beside dark ones."""
+    stated, is_dark = solved.stated, solved.otf.level > 0
+    own = 0.0 if stated is None else (stated.levels.dark if is_dark else stated.levels.bright)
+    return stated_levels(stated, "beside the bars", median(solved.backgrounds), own, limits)
 
 
 def _bars(solved: BarsSolution, limits: Limits) -> Check:

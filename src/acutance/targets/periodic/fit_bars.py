@@ -17,6 +17,7 @@ from typing import Final
 
 import numpy as np
 
+from acutance.curves import Estimate
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
@@ -36,7 +37,7 @@ from acutance.targets.periodic.otf_regression import (
     reweighted,
     weighted_normal,
 )
-from acutance.targets.periodic.stated_contrast import Levels, with_level
+from acutance.targets.periodic.stated_contrast import Levels, StatedContrast, with_level
 from acutance.targets.periodic.tuned import (
     APERTURE_STD,
     BARS_NOISE_FLOOR,
@@ -80,6 +81,8 @@ class BarsSolution:
         Standard deviation of the noise, image units.
     correlation : Correlation
         Of the residuals of neighbouring pixels.
+    stated : StatedContrast or None
+        The stated levels, if there are any.
     """
 
     otf: FittedOtf
@@ -89,6 +92,7 @@ class BarsSolution:
     period_std_px: tuple[float, ...]
     noise: float
     correlation: Correlation
+    stated: StatedContrast | None
 
     @property
     def snr(self) -> float:
@@ -201,6 +205,12 @@ def _fit_otf(
         _store(all_scattered, pixels, found)
         earlier = fitted.posterior
         contrast = _same_sign(fitted.otf.level, contrast)
+    seen = None
+    if levels is not None:
+        free = _regression(
+            pixels, stated, mean, states, contrast, weight, scattered, None, noise_found.inflation
+        ).otf
+        seen = StatedContrast(levels, Estimate(abs(free.level), free.level_std))
     own = [_own(fitted, number) for number in range(len(pixels))]
     return BarsSolution(
         otf=fitted.otf,
@@ -210,6 +220,7 @@ def _fit_otf(
         period_std_px=tuple(float(std[3]) for _, std in own),
         noise=fitted.noise,
         correlation=noise_found,
+        stated=seen,
     )
 
 

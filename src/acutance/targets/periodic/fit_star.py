@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import NoStarError
 from acutance.geometry.star_geometry import SiemensStar
@@ -34,7 +35,7 @@ from acutance.targets.periodic.otf_regression import (
 )
 from acutance.targets.periodic.star_rings import ring_modulations, shape_error
 from acutance.targets.periodic.star_waves import StarTable, Wave, star_table
-from acutance.targets.periodic.stated_contrast import Levels, with_level
+from acutance.targets.periodic.stated_contrast import Levels, StatedContrast, with_level
 from acutance.targets.periodic.tuned import APERTURE_STD, STAR_FINEST_CPP, STAR_NOISE_FLOOR
 
 __all__ = ["SIDE_MARGIN_PX", "StarSolution", "amplitude_of", "solve_star"]
@@ -47,6 +48,8 @@ SIDE_MARGIN_PX: Final = 5.0
 """Pixels nearer to a straight side of a fan are left out."""
 _MAX_PASSES: Final = 8
 _MIN_PIXELS: Final = 400
+_EXACT: Final = 1e-6
+"""Of a modulation: no ring knows its own better."""
 _SETTLED_PX: Final = 0.003
 _SETTLED_RAD: Final = 0.003
 _SETTLED_SHARE: Final = 0.05
@@ -83,6 +86,10 @@ class StarSolution:
         Of the residuals of neighbouring pixels.
     inner_px, outer_px : float
         Radii between which pixels were used.
+    middle : float
+        Half way between dark and bright spokes, image units: the mean of what lies under them.
+    stated : StatedContrast or None
+        The stated levels, if there are any.
     """
 
     star: SiemensStar
@@ -96,6 +103,8 @@ class StarSolution:
     correlation: Correlation
     inner_px: float
     outer_px: float
+    middle: float
+    stated: StatedContrast | None
 
     @property
     def reach_cpp(self) -> tuple[float, float]:
@@ -181,10 +190,18 @@ def solve_star(
         fitted.otf,
         shape_error=shape_error(residual, star, fitted.noise, fitted.otf.level, inner, outer),
     )
+    stated = None
+    if levels is not None:
+        free = _regression(
+            design, value, weight, table, level, None, noise_found.inflation, None, None
+        ).otf
+        one = amplitude_of(1.0, wave)
+        stated = StatedContrast(levels, Estimate(free.level / one, free.level_std / one))
+    middle = float(np.mean(design[:, :_BACKGROUND] @ fitted.posterior.beta[:_BACKGROUND]))
     col_std, row_std = (np.linalg.norm(fitted.posterior.factor[_PLACE], axis=1) / level).tolist()
     return StarSolution(
         star, (row_std, col_std), otf, rows, cols, value, fitted.residual, fitted.noise,
-        noise_found, inner, outer,
+        noise_found, inner, outer, middle, stated,
     )  # fmt: skip
 
 
@@ -243,7 +260,7 @@ def _first_fit(
             "small or not where it was found; choose a region that holds the whole star"
         )
     f, m = freq[coarse], modulation[coarse]
-    weight = (m / std[coarse]) * np.sqrt(1 / (1 + (f / 0.4) ** 4))
+    weight = (m / np.maximum(std[coarse], _EXACT * m)) * np.sqrt(1 / (1 + (f / 0.4) ** 4))
     design = np.stack([np.ones(f.size), -2 * math.pi**2 * f**2], axis=1)
     # The pixel's own blur is taken out, in its mean over the directions.
     own = np.log(m) + 2 * math.pi**2 * f**2 / 12

@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+import math
+from typing import Final
+
 from acutance.curves.grid import Floats
 from acutance.numerics.clipping import clipped_share
 from acutance.numerics.noise import Correlation, outlier_share
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.periodic.otf_model import FittedOtf
+from acutance.targets.periodic.stated_contrast import StatedContrast
 from acutance.targets.periodic.tuned import QUIET_SNR
 
-__all__ = ["contrast_snr", "correlated_noise", "level", "outliers", "saturation"]
+__all__ = [
+    "contrast_snr",
+    "correlated_noise",
+    "level",
+    "outliers",
+    "saturation",
+    "stated_levels",
+]
+
+_SURE: Final = 3.0
+"""Deviations by which a contrast fitted without the stated levels surely differs from theirs."""
 
 
 def contrast_snr(snr: float, whose: str, limits: Limits) -> Check:
@@ -24,6 +38,38 @@ def level(otf: FittedOtf, contrast: str, limits: Limits) -> Check:
     relative = otf.level_std / abs(otf.level)
     found = f"{contrast} before the sensor is known to {relative:.1%}"
     return answer("level", relative, found, limits)
+
+
+def stated_levels(
+    stated: StatedContrast | None, place: str, seen: float, expected: float, limits: Limits
+) -> tuple[Check, ...]:
+    """Whether the stated levels, if there are any, can be those of the image.
+
+    Levels of another band or another unit pass for a sensor: they scale its whole MTF. But what
+    lies beside the bars, or half way between the spokes, is one of them; and the contrast that the
+    pattern has by itself is theirs, as well as it is known.
+
+    Parameters
+    ----------
+    stated : StatedContrast or None
+    place : str
+        Where the image shows a level: "half way between the spokes".
+    seen, expected : float
+        The value there, and that by the stated levels.
+    limits : mapping of str to float
+    """
+    if stated is None:
+        return ()
+    levels, free = stated.levels, stated.free
+    contrast = levels.bright - levels.dark
+    apart = abs(free.value - contrast)
+    sure = apart > _SURE * math.hypot(free.std, levels.std)
+    value = max(abs(seen - expected), apart if sure else 0.0) / contrast
+    found = (
+        f"{place} the image has {seen:.5g} and the stated levels {expected:.5g}; the contrast is "
+        f"{free} by the pattern and {contrast:.5g} by them"
+    )
+    return (answer("stated_levels", value, found, limits),)
 
 
 def saturation(

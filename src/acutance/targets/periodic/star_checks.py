@@ -14,14 +14,15 @@ from acutance.targets.periodic.pattern_checks import (
     level,
     outliers,
     saturation,
+    stated_levels,
 )
 from acutance.targets.region import RegionPixels, undeclared_fill
 
 __all__ = ["STAR_CHECKS", "star_checks", "third_harmonic"]
 
 STAR_CHECKS = (
-    "contrast_snr", "level", "rim_cpp", "centre_cpp", "sweep_deg", "wave", "saturation",
-    "undeclared_fill", "correlated_noise", "outliers",
+    "contrast_snr", "level", "stated_levels", "rim_cpp", "centre_cpp", "sweep_deg", "wave",
+    "saturation", "undeclared_fill", "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of a star."""
 
@@ -43,6 +44,7 @@ def star_checks(
     return (
         contrast_snr(snr, "the spokes'", limits),
         level(solved.otf, "the contrast of the spokes", limits),
+        *_stated_levels(solved, limits),
         *_frequencies(solved, limits),
         _sweep(solved, limits),
         _wave(solved, limits),
@@ -54,6 +56,12 @@ def star_checks(
         ),
         outliers(solved.residual, solved.noise, solved.otf, "the star", limits),
     )  # fmt: skip
+
+
+def _stated_levels(solved: StarSolution, limits: Limits) -> tuple[Check, ...]:
+    place, stated = "half way between the spokes", solved.stated
+    half = 0.0 if stated is None else 0.5 * (stated.levels.dark + stated.levels.bright)
+    return stated_levels(stated, place, solved.middle, half, limits)
 
 
 def _frequencies(solved: StarSolution, limits: Limits) -> tuple[Check, Check]:

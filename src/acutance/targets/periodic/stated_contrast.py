@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 from acutance.numerics.normal_equations import Normal
 
-__all__ = ["Levels", "stated_levels", "with_level"]
+__all__ = ["Levels", "StatedContrast", "stated_levels", "with_level"]
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,21 @@ class Levels:
     dark: float
     bright: float
     std: float
+
+
+@dataclass(frozen=True)
+class StatedContrast:
+    """Stated levels, and what the pixels have to say of them.
+
+    Parameters
+    ----------
+    levels : Levels
+    free : Estimate
+        Contrast from dark to bright that the pattern has without them.
+    """
+
+    levels: Levels
+    free: Estimate
 
 
 def stated_levels(dark: float | None, bright: float | None, std: float) -> Levels | None:

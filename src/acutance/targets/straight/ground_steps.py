@@ -94,7 +94,7 @@ class Ground:
         outwards : pair of (n,) arrays
             Distance of the pixels outwards from the pulse's first and last step, in widths.
         width : float
-            The pulse's own width, in widths of the blur.
+            The pulse's own width, in widths of the blur; none where a fit went below zero.
         """
         beside = [_steps(distance, 0) for distance in outwards]
         count = min(max(int(width / _SEAM_WIDTHS) - 1, 0), _MAX_SEAMS)
@@ -102,7 +102,7 @@ class Ground:
         seams = _blurred(-outwards[0], places) - _blurred(outwards[1], np.zeros(1))
         steps = [*beside, seams]
         scale = [_SCALE[: len(steps)] for steps in beside]
-        scale.append(np.full(count, math.sqrt(width / (count + 1))))
+        scale.append(np.full(count, math.sqrt(max(width, 0.0) / (count + 1))))
         none = np.zeros((CELLS + 3, 0))
         side = np.concatenate(_numbers(steps))
         return cls(none, np.vstack(steps), side, np.concatenate(scale), 3)
