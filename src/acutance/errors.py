@@ -5,7 +5,7 @@
     AcutanceError
     ├── ImageError          (OSError)     a file is missing, unreadable, or holds no image
     ├── RegionError         (ValueError)  a region lies outside the image or is too small
-    │   └── NoDataError                   what it holds is nodata, masked, NaN or fill
+    │   └── NoDataError                   what it holds is nodata, masked, NaN, infinite or fill
     ├── TargetError         (ValueError)  the pixels hold no target that can be measured
     │   ├── NoEdgeError                   no straight edge stands out of the noise
     │   │   └── FewEdgesError             the edges of a scene do not tell its sensor; holds them
@@ -59,7 +59,7 @@ class RegionError(AcutanceError, ValueError):
 
 
 class NoDataError(RegionError):
-    """A region holds too few pixels with data: the rest is nodata, masked, NaN or fill."""
+    """A region holds too few pixels with data: others are nodata, masked, not finite or fill."""
 
 
 class TargetError(AcutanceError, ValueError):

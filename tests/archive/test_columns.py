@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 
 import numpy as np
@@ -110,6 +111,14 @@ def test_notebooks_show_a_table_without_markup_of_others(filled, entry_of):
 def test_a_column_that_is_not_there(filled):
     with pytest.raises(OptionError, match="no column 'sharpness', only id, sensor"):
         filled.measurements()["sharpness"]
+
+
+@pytest.mark.parametrize("row", [999, -8, "a", 1.5, slice(0, 1), None])
+def test_a_row_that_is_not_there(filled, row):
+    wanted = rf"row {re.escape(repr(row))} was requested of 7 rows, numbered from 0"
+    with pytest.raises(OptionError, match=wanted):
+        filled.measurements().record(row)
+    assert filled.measurements().record(-1) == filled.measurements().record(6)
 
 
 def test_one_entry_and_all(filled, entry_of):

@@ -78,6 +78,12 @@ def test_places_where_there_can_be_no_archive(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("place", [None, 3, {"path": "kept.db"}])
+def test_what_is_no_place_is_refused(place):
+    with pytest.raises(ArchiveError, match=f"archive {place} names no file: give the path"):
+        Archive(place)
+
+
 def test_a_password_is_not_told(short_patience):
     with pytest.raises(ArchiveError) as found:
         Archive("postgresql://user:secret@127.0.0.1:1/a")

@@ -151,6 +151,8 @@ def test_all_that_is_wrong_is_named_at_once(tmp_path: Path) -> None:
 def test_files_that_are_no_specification(tmp_path: Path) -> None:
     with pytest.raises(ac.OptionError, match="cannot be read"):
         read_specification(tmp_path / "missing.toml")
+    with pytest.raises(ac.OptionError, match=r"of type dict: .*Specification\.of\(document\)"):
+        ac.Archive(tmp_path / "kept.db").check({"requirement": []})  # type: ignore[arg-type]
     path = tmp_path / "spec.toml"
     path.write_text("requirement = [")
     with pytest.raises(ac.OptionError, match="is no TOML"):

@@ -12,6 +12,7 @@ from scipy.special import ndtr
 from acutance import optics
 from acutance.curves import Otf2d
 from acutance.curves.grid import Floats
+from acutance.errors import OptionError
 from acutance.optics import Sensor
 
 ROOF = Sensor([optics.Gaussian(0.4, 0.5), optics.Detector(), optics.Smear(0.7, "along")])
@@ -164,3 +165,9 @@ def test_metres_follow_the_direction(normal_deg: float, gsd_m: float) -> None:
     assert found.gsd_m == pytest.approx(gsd_m)
     assert found.fwhm_m is not None
     assert found.fwhm_m.value == pytest.approx(gsd_m * found.fwhm_px.value)
+
+
+@pytest.mark.parametrize("direction", ["30", None, [0.0, 90.0], math.nan, math.inf])
+def test_a_direction_is_a_finite_number(direction: object) -> None:
+    with pytest.raises(OptionError, match=r"the direction is .*: give a finite number of degrees"):
+        Otf2d(SensorModel(ROOF)).response(direction)  # type: ignore[arg-type]

@@ -70,6 +70,17 @@ def test_a_gsd_that_means_nothing_is_refused(gsd_m):
         Image.from_array(np.zeros((4, 4)), gsd_m=gsd_m)
 
 
+@pytest.mark.parametrize("nodata", ["x", [1], 1 + 2j])
+def test_a_nodata_value_is_a_number(tmp_path, nodata):
+    np.save(tmp_path / "a.npy", np.zeros((4, 4)))
+    for opened in (
+        lambda: Image.from_array(np.zeros((4, 4)), nodata=nodata),
+        lambda: open_image(tmp_path / "a.npy", nodata=nodata),
+    ):
+        with pytest.raises(OptionError, match=r"nodata is .*: give the number that unusable"):
+            opened()
+
+
 def test_no_gsd_given_is_no_gsd():
     assert Image.from_array(np.zeros((4, 4))).gsd() is None
 

@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import re
 import shutil
 import warnings
 from concurrent.futures import ThreadPoolExecutor
@@ -150,6 +151,20 @@ def test_bands_are_chosen_from_one(pixels, write_raster):
     for band in (0, 4, -1):
         with pytest.raises(ImageError, match=rf"band {band} .* it has 3: .* from 1 to 3"):
             open_image(path, band=band)
+
+
+@pytest.mark.parametrize("name", ["a.tif", "a.npy"])
+@pytest.mark.parametrize("band", ["pan", None, 1.5, [1]])
+def test_a_band_is_a_number(pixels, write_raster, tmp_path, name, band):
+    path = write_raster("a.tif", pixels)
+    np.save(tmp_path / "a.npy", pixels)
+    with pytest.raises(ImageError, match=rf"band {re.escape(repr(band))} of .*{name} .*, from 1"):
+        open_image(path.replace("a.tif", name), band=band)
+
+
+def test_a_band_may_be_an_integer_of_numpy(pixels, write_raster):
+    image = open_image(write_raster("a.tif", pixels), band=np.int64(1))
+    assert type(image.band) is int
 
 
 @pytest.mark.parametrize(("dtype", "nodata"), [("uint16", 0), ("int16", -999), ("float32", -1e38)])

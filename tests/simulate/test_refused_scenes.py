@@ -1,22 +1,27 @@
 """What cannot be rendered is refused in words, before memory is taken for it."""
 
 import math
+from datetime import datetime
 
 import numpy as np
 import pytest
 
 from acutance.errors import ModelError, OptionError
+from acutance.optics import Detector, presets
 from acutance.simulate import (
     Noise,
     bars,
     brookings,
     checkerboard,
     edge,
+    landscape,
+    overflights,
     pair,
     points,
     pulse,
     reference_systems,
     render_site,
+    sky,
     star,
     tarp_rows,
 )
@@ -153,6 +158,43 @@ def test_a_pair_shows_the_same_ground(change, message):
 def test_arguments_of_the_wrong_kind_are_refused_by_name(render, message):
     with pytest.raises(OptionError, match=message):
         render()
+
+
+@pytest.mark.parametrize(
+    "render",
+    [
+        edge,
+        pulse,
+        star,
+        bars,
+        points,
+        checkerboard,
+        lambda sensor: brookings(sensor, np.random.default_rng(1)),
+        lambda sensor: render_site(sensor, [], (50, 50)),
+        lambda sensor: sky(sensor, rng=np.random.default_rng(1)),
+        lambda sensor: landscape(sensor, shape=(150, 150), rng=np.random.default_rng(1)),
+        lambda sensor: pair(sensor, SENSOR, rng=np.random.default_rng(1)),
+        lambda sensor: pair(SENSOR, sensor, rng=np.random.default_rng(1)),
+        lambda sensor: next(
+            overflights(
+                lambda when: sensor, [], (50, 50), [datetime(2026, 1, 1)],
+                noise_std=1.0, air_px=0.1, rng=np.random.default_rng(1),
+            )
+        ),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize(
+    ("sensor", "message"),
+    [
+        ("ikonos-like", r"'ikonos-like': give a Sensor, .*optics\.preset\('ikonos-like'\)"),
+        (presets()["ikonos-like"], r"SensorFile\(.*: give a Sensor, .*optics\.preset"),
+        (Detector(), r"Detector\(.*: give a Sensor"),
+        (None, r"sensor is None: give a Sensor, .*optics\.read_sensor\(path\)"),
+    ],
+)
+def test_what_is_no_sensor_is_refused(render, sensor, message):
+    with pytest.raises(OptionError, match=message):
+        render(sensor)
 
 
 @pytest.mark.parametrize(

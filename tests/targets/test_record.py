@@ -67,3 +67,19 @@ def test_a_covariance_has_one_document():
 
 def test_the_smallest_of_numbers_are_written_as_zero():
     assert rounded([1e-310, 1.23456789, 5e-324]) == [0.0, 1.23457, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"mtf_nyquist": "x"}, "mtf_nyquist is 'x', no value with its standard deviation"),
+        ({"rer": {"value": "x", "std": 0.1}}, "rer is {'value': 'x'"),
+        ({"fwhm_px": {"value": 1.2}}, "fwhm_px is {'value': 1.2}, no value with its"),
+        ({"snr": "x"}, "could not convert string to float: 'x'"),
+        ({"measured_at": "yesterday"}, "yesterday"),
+        ({"orientation": 5, "measured_directions": ["across"]}, "across"),
+    ],
+)
+def test_a_damaged_document_is_refused_when_it_is_read(record, change, message):
+    with pytest.raises(ac.OptionError, match=f"cannot be read as a measurement .*{message}"):
+        Record.from_dict({**record.to_dict(), **change})

@@ -82,6 +82,25 @@ def edge():
         (lambda: Estimate(1.0, 0.1).interval(95), ac.OptionError, "between 0 and 1, such as 0.95"),
         (lambda: Estimate(1.0, 0.1).interval(1), ac.OptionError, "between 0 and 1"),
         (lambda: Estimate(1.0, 0.1).interval("a"), ac.OptionError, "between 0 and 1"),
+        (lambda: Estimate(1.0, 0.1).interval(0), ac.OptionError, "level is 0: .* between 0 and 1"),
+        (
+            lambda: ac.measure_edge(IMAGE, {"type": "Polygon", "coordinates": []}),
+            ac.RegionError,
+            "roi is {'type': 'Polygon', .*}: give .*parse_roi",
+        ),
+        (
+            lambda: ac.measure_edge(IMAGE, np.s_[0:20, 0:20]),
+            ac.RegionError,
+            r"\(slice\(0, 20, None\), .* holds slices: give \(row, column, height, width\)",
+        ),
+        (lambda: ac.measure_edge(IMAGE, b"0,0,20,20"), ac.RegionError, "the text b'0,0,20,20'"),
+        (lambda: ac.measure_pulse(IMAGE, width_px="3"), ac.OptionError, "width_px is '3': .*pixel"),
+        (lambda: ac.measure_pulse(IMAGE, width_m="3"), ac.OptionError, "width_m is '3': .*metres"),
+        (
+            lambda: ac.measure_pulse(IMAGE, width_m=[3], gsd_m=1.0),
+            ac.OptionError,
+            r"width_m is \[3\]: give a number of metres",
+        ),
     ],
 )
 def test_refused_by_name(measure, error, message):

@@ -117,7 +117,7 @@ class Database:
 
 def is_there(place: str | os.PathLike[str]) -> bool:
     """Whether a place is a file that exists already, or a server's: those are not made here."""
-    text = os.fspath(place)
+    text = _as_text(place)
     if "://" not in text:
         return Path(text).exists()
     url = _url(text)
@@ -138,7 +138,7 @@ def open_database(place: str | os.PathLike[str], *, read_only: bool = False) -> 
     ArchiveError
         If there can be no archive in that place, or the library for it is not installed.
     """
-    text = os.fspath(place)
+    text = _as_text(place)
     if "://" not in text:
         return _file_database(Path(text), read_only)
     url = _url(text)
@@ -155,6 +155,16 @@ def insert_missing(
     """An insert that passes over rows whose unique column is there."""
     insert = sqlite.insert if connection.dialect.name == "sqlite" else postgresql.insert
     return insert(table).on_conflict_do_nothing(index_elements=[unique])
+
+
+def _as_text(place: str | os.PathLike[str]) -> str:
+    try:
+        return os.fsdecode(place)
+    except TypeError:
+        raise ArchiveError(
+            f"archive {place!r:.80} names no file: give the path of a file, or "
+            f"{_DRIVER}://USER@HOST/DATABASE"
+        ) from None
 
 
 def _url(text: str) -> URL:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -63,8 +64,21 @@ class Measurements(Columns):
     )  # fmt: skip
 
     def record(self, i: int) -> Record:
-        """The record of row `i`, with its curves and their covariance."""
-        return self.load([int(self.columns["id"][i])])[0]
+        """The record of row `i`, with its curves and their covariance.
+
+        Raises
+        ------
+        OptionError
+            If there is no such row.
+        """
+        try:
+            number = int(self.columns["id"][operator.index(i)])
+        except (IndexError, TypeError):
+            raise OptionError(
+                f"row {i!r:.80} was requested of {counted(len(self), 'row')}, numbered from 0: "
+                'record() takes the number of a row, Archive.entry() one of the column "id"'
+            ) from None
+        return self.load([number])[0]
 
     def records(self) -> list[Record]:
         """The records of all rows, each measurement once, in the order of the rows."""

@@ -140,6 +140,8 @@ class Questions(ABC):
         ------
         NothingSelectedError
             If sensors, bands, sites or other names of a requirement occur nowhere.
+        OptionError
+            If there is no specification, or it cannot be read.
         """
         from acutance.archive.specification import Specification, read_specification
         from acutance.archive.specification_check import check_specification
@@ -156,7 +158,7 @@ class Questions(ABC):
 
     def compare(
         self,
-        metric: str,
+        metric: str = "mtf_nyquist",
         by: str = "orientation",
         *,
         margin: float = MARGIN,
@@ -169,8 +171,7 @@ class Questions(ABC):
 
         Parameters
         ----------
-        metric : str
-            "mtf_nyquist".
+        metric : str, optional
         by : {"orientation", "method", "kind", "band", "level", "sensor", "site", "target"}
             What is compared; sensors, bands, product levels and directions are not mixed else.
         margin : float, optional

@@ -167,11 +167,16 @@ def read_specification(path: str | os.PathLike[str]) -> Specification:
     Raises
     ------
     OptionError
-        If it cannot be read, is no TOML, or says what cannot be.
+        If there is no path, the file cannot be read, is no TOML, or says what cannot be.
     """
     try:
         text = Path(path).read_bytes().decode()
         document = tomllib.loads(text)
+    except TypeError:
+        raise OptionError(
+            f"the specification is of type {type(path).__name__}: give the path of a TOML file, or "
+            "acutance.archive.specification.Specification.of(document)"
+        ) from None
     except OSError as error:
         raise OptionError(f"{path} cannot be read ({error.strerror}): name a TOML file") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

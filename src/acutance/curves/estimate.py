@@ -24,9 +24,9 @@ def normal_quantile(level: float) -> float:
     Raises
     ------
     OptionError
-        If `level` is no probability, or 1, which no interval reaches.
+        If `level` is no probability, or 0 or 1, which no interval has.
     """
-    if not (isinstance(level, Real) and 0 <= level < 1):
+    if not (isinstance(level, Real) and 0 < level < 1):
         raise OptionError(f"level is {level!r}: give a probability between 0 and 1, such as 0.95")
     return _quantile(float(level))
 
@@ -75,14 +75,14 @@ class Estimate:
     __array_ufunc__: ClassVar[None] = None
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """The interval that holds the truth with probability `level` (0..1).
+        """The interval that holds the truth with probability `level` (above 0, below 1).
 
         It is symmetric about the value, cut off where it would reach below `lowest`.
 
         Raises
         ------
         OptionError
-            If `level` is no probability, or 1, which no interval reaches.
+            If `level` is no probability, or 0 or 1, which no interval has.
         """
         half = normal_quantile(level) * self.std
         low, high = self.value - half, self.value + half
@@ -108,7 +108,8 @@ class Estimate:
     def from_dict(cls, document: Mapping[str, Any]) -> Estimate:
         """The estimate that `to_dict` wrote; ``nan`` where it has ``None``."""
         value, std = (
-            math.nan if document[name] is None else document[name] for name in ("value", "std")
+            math.nan if document[name] is None else float(document[name])
+            for name in ("value", "std")
         )
         return cls(value, std, document.get("lowest"))
 

@@ -45,7 +45,7 @@ class Estimates(ShortRepr):
         Raises
         ------
         OptionError
-            If `level` is no probability, or 1, which no interval reaches.
+            If `level` is no probability, or 0 or 1, which no interval has.
         """
         half = normal_quantile(level) * self.std
         low, high = self.value - half, self.value + half

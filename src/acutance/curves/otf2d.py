@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
+from numbers import Real
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -16,6 +17,7 @@ from acutance.curves.response import Response
 from acutance.curves.short_repr import ShortRepr
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
+from acutance.errors import OptionError
 
 __all__ = ["Otf2d", "OtfModel", "PackableOtf"]
 
@@ -86,7 +88,17 @@ class Otf2d(ShortRepr):
         ----------
         normal_deg : float
             From the column axis (0: across) towards the row axis (90: along).
+
+        Raises
+        ------
+        OptionError
+            If the direction is no finite number.
         """
+        if not (isinstance(normal_deg, Real) and math.isfinite(normal_deg)):
+            raise OptionError(
+                f"the direction is {normal_deg!r:.80}: give a finite number of degrees, from the "
+                "column axis (0: across) towards the row axis (90: along)"
+            )
         freq = np.asarray(np.arange(round(PERIOD_PX * self.model.band_cpp) + 1) / PERIOD_PX)
         otf, factor = self._slice(normal_deg, freq)
         centroid = self._centroid(normal_deg)

@@ -26,6 +26,7 @@ from acutance.raster.pixels import (
     is_nan,
     largest_count,
     require_image_array,
+    require_nodata,
     type_name,
 )
 from acutance.raster.region import Box
@@ -129,8 +130,9 @@ class Image(ShortRepr):
         ImageError
             If the array is not 2-D, is empty, or does not hold real numbers.
         OptionError
-            If the GSD is not a positive number.
+            If the GSD is not a positive number, or the nodata value no number.
         """
+        require_nodata(nodata)
         values = _as_array(array)
         require_image_array(values, "the array")
         return cls(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import re
 from collections.abc import Sequence
@@ -15,7 +16,14 @@ from acutance.errors import ImageError, OptionError
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import AlongTrack, Image
 from acutance.raster.linearization import LinearizeLike
-from acutance.raster.pixels import NpyPixels, is_nan, largest_count, require_image_array, type_name
+from acutance.raster.pixels import (
+    NpyPixels,
+    is_nan,
+    largest_count,
+    require_image_array,
+    require_nodata,
+    type_name,
+)
 
 __all__ = ["open_bands", "open_image"]
 
@@ -64,10 +72,12 @@ def open_image(
         If the file is missing, empty, damaged, a directory without an image, of a kind that
         cannot be measured (complex, palette), or has no such band.
     OptionError
-        If the GSD is not a positive number, or there is no such curve.
+        If the GSD is not a positive number, the nodata value no number, or there is no such curve.
     """
     gsd = Gsd.given(gsd_m)
+    require_nodata(nodata)
     name = _as_name(path)
+    band = _as_number(band, name)
     _require_file(name)
     if name.lower().endswith(".npy"):
         opened = _open_npy(name, band, gsd, nodata)
@@ -128,6 +138,16 @@ def _as_name(path: Any) -> str:
             "measured as it is, or made an image by Image.from_array"
         ) from None
     return os.fsdecode(name)
+
+
+def _as_number(band: Any, name: str) -> int:
+    """The number of a band, whatever kind of integer it was given as."""
+    try:
+        return operator.index(band)
+    except TypeError:
+        raise ImageError(
+            f"band {band!r:.80} of {name} was requested: give the number of a band, from 1"
+        ) from None
 
 
 def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Image:

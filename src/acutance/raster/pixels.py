@@ -6,13 +6,14 @@ import os
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from io import FileIO
+from numbers import Real
 from typing import Any, NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.errors import ImageError
+from acutance.errors import ImageError, OptionError
 from acutance.raster.region import Box
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "is_nan",
     "largest_count",
     "require_image_array",
+    "require_nodata",
     "type_name",
     "usable_values",
 ]
@@ -189,6 +191,21 @@ def require_image_array(array: NDArray[Any], name: str) -> None:
     if array.size == 0:
         raise ImageError(
             f"{name} has shape {array.shape}: it is empty; give an array with rows and columns"
+        )
+
+
+def require_nodata(nodata: float | None) -> None:
+    """Refuse a nodata value that no pixel can have.
+
+    Raises
+    ------
+    OptionError
+        If it is of another kind than a number.
+    """
+    if nodata is not None and not isinstance(nodata, Real):
+        raise OptionError(
+            f"nodata is {nodata!r:.80}: give the number that unusable pixels have, or NaN if every "
+            "value is data"
         )
 
 

@@ -18,7 +18,7 @@ from acutance.geometry.bar_group import Bars
 from acutance.geometry.line import Line, Orientation
 from acutance.optics.block import Transfer
 from acutance.optics.sensor import Sensor, normal_direction_deg
-from acutance.simulate.limits import require_finite, require_shape
+from acutance.simulate.limits import require_finite, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import Patch, add_patches
 
@@ -171,7 +171,10 @@ def bars(
     ------
     ModelError
         If the arguments contradict each other.
+    OptionError
+        If an argument is of the wrong kind.
     """
+    require_sensor(sensor)
     sizes = (*periods_px, length_px)
     if not periods_px or not all(0 < size < math.inf for size in sizes) or count < 1:
         raise ModelError(

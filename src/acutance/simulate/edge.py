@@ -15,7 +15,7 @@ from acutance.geometry.angles import wrap_direction
 from acutance.geometry.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.ground import GroundNoise
-from acutance.simulate.limits import require_finite, require_numbers, require_shape
+from acutance.simulate.limits import require_finite, require_numbers, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 
@@ -139,8 +139,10 @@ def edge(
     ModelError
         If the arguments contradict each other.
     OptionError
-        If an argument is of the wrong kind: a shape that is no pair, a seed instead of `rng`.
+        If an argument is of the wrong kind: a name instead of a sensor, a shape that is no
+        pair, a seed instead of `rng`.
     """
+    require_sensor(sensor)
     if polarity not in ("rising", "falling"):
         raise ModelError(f'polarity is {polarity!r}, it has to be "rising" or "falling"')
     require_shape(shape)

@@ -142,6 +142,8 @@ def landscape_tiles(
     """
     require_shape(shape, MAX_SCENE_PIXELS)
     drawn = require_rng(rng, "a landscape")
+    # What is no sensor is refused before the layout is drawn, which takes a while.
+    sensor_at(sensor, 0.0, 0.0)
     chosen = LandscapeOptions() if options is None else options
     added = noise_of_snr(chosen.typical_contrast, snr, noise)
     layout = draw_layout(shape, chosen, drawn)

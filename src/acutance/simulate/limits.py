@@ -1,14 +1,16 @@
-"""What can be rendered: sizes that fit into memory, levels that are numbers."""
+"""What can be rendered: by a sensor, in a size that fits into memory, levels that are numbers."""
 
 from __future__ import annotations
 
 import math
 import operator
 from numbers import Real
+from typing import Any
 
 import numpy as np
 
 from acutance.errors import ModelError, OptionError
+from acutance.optics.sensor import Sensor
 
 __all__ = [
     "MAX_PIXELS",
@@ -16,6 +18,7 @@ __all__ = [
     "require_finite",
     "require_numbers",
     "require_rng",
+    "require_sensor",
     "require_shape",
 ]
 
@@ -94,3 +97,20 @@ def require_rng(rng: np.random.Generator | None, wanted: str) -> np.random.Gener
         seed = rng if isinstance(rng, int) else ""
         raise OptionError(f"rng is {rng!r:.80}: pass numpy.random.default_rng({seed})")
     return rng
+
+
+def require_sensor(sensor: Any) -> Sensor:
+    """The sensor of a caller.
+
+    Raises
+    ------
+    OptionError
+        If it is something else, such as a name.
+    """
+    if not isinstance(sensor, Sensor):
+        name = sensor if isinstance(sensor, str) else "generic-2005"
+        raise OptionError(
+            f"sensor is {sensor!r:.80}: give a Sensor, by its name acutance.optics.preset({name!r})"
+            ", of a TOML file acutance.optics.read_sensor(path)"
+        )
+    return sensor

@@ -13,6 +13,7 @@ from acutance.errors import ModelError
 from acutance.optics.aperture import Gaussian
 from acutance.optics.sensor import Sensor
 from acutance.simulate.campaign import render_site
+from acutance.simulate.limits import require_sensor
 from acutance.simulate.tarps import EdgeTarps, PulseTarp
 
 __all__ = ["Overflight", "overflights"]
@@ -79,6 +80,8 @@ def overflights(
     ------
     ModelError
         If a deviation is negative.
+    OptionError
+        If `sensor_on` gives no sensor.
     """
     if min(noise_std, air_px, pointing_px) < 0:
         raise ModelError(
@@ -88,7 +91,7 @@ def overflights(
     for acquired in dates:
         row, col = (float(one) for one in rng.normal(0.0, pointing_px, 2))
         blur = float(abs(rng.normal(0.0, air_px)))
-        sensor = sensor_on(acquired)
+        sensor = require_sensor(sensor_on(acquired))
         seen = Sensor([*sensor.blocks, Gaussian(blur)], gsd_m=sensor.gsd_m) if blur else sensor
         there = [_moved(tarp, row, col) for tarp in tarps]
         pixels = render_site(seen, there, shape).image + rng.normal(0.0, noise_std, shape)

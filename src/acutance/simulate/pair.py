@@ -18,7 +18,7 @@ from acutance.geometry.line import Orientation
 from acutance.optics import Rescaled, Sensor
 from acutance.optics.block import Block, Transfer, require
 from acutance.simulate.ground import alias_bands
-from acutance.simulate.limits import require_finite, require_rng, require_shape
+from acutance.simulate.limits import require_finite, require_rng, require_sensor, require_shape
 from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise, noise_of_snr
 
@@ -192,7 +192,11 @@ def pair(
     ModelError
         If the ratio is no number of quarters above 1, the low image has no contrast or is shifted
         by more than half of it, or the images are too large to be rendered at once.
+    OptionError
+        If an argument is of the wrong kind.
     """
+    for one in (sensor, reference):
+        require_sensor(one)
     require_shape(shape)
     drawn = require_rng(rng, "a landscape")
     require_finite(ratio=ratio, gain=gain, offset=offset, dark=dark, bright=bright)

@@ -14,7 +14,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.geometry.line import Orientation
 from acutance.optics.sensor import Sensor
-from acutance.simulate.limits import require_finite, require_shape
+from acutance.simulate.limits import require_finite, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import Point, render_patches
 
@@ -174,7 +174,10 @@ def points(
     ModelError
         If there are no sources, one lies outside the image, their numbers differ, or `peak` is not
         above 0.
+    OptionError
+        If an argument is of the wrong kind.
     """
+    require_sensor(sensor)
     places = mirror_columns((12.0, 12.0)) if positions is None else np.asarray(positions, float)
     if places.ndim != 2 or places.shape[0] == 0 or places.shape[1] != 2:
         raise ModelError(f"positions have shape {places.shape}, they have to be (n, 2): row, col")

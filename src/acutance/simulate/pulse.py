@@ -16,7 +16,7 @@ from acutance.geometry.line import Line, Orientation
 from acutance.optics.sensor import Sensor
 from acutance.simulate.edge import line_through_centre
 from acutance.simulate.ground import GroundNoise
-from acutance.simulate.limits import require_finite, require_shape
+from acutance.simulate.limits import require_finite, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 from acutance.simulate.scene import Patch, render_patches
@@ -237,7 +237,10 @@ def pulse(
     ------
     ModelError
         If the arguments contradict each other, or the pulse does not fit in the image.
+    OptionError
+        If an argument is of the wrong kind.
     """
+    require_sensor(sensor)
     behind = dark if right_dark is None else right_dark
     require_shape(shape)
     require_finite(dark=dark, bright=bright, right_dark=behind, width_px=width_px)

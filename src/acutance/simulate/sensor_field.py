@@ -8,7 +8,7 @@ from typing import Protocol
 
 from acutance.optics import Gaussian, Sensor
 from acutance.optics.block import require
-from acutance.simulate.limits import require_shape
+from acutance.simulate.limits import require_sensor, require_shape
 
 __all__ = ["SensorField", "SoftCorners", "TiltedFocus", "sensor_at"]
 
@@ -99,5 +99,12 @@ def _blurred(sensor: Sensor, across_px: float, along_px: float) -> Sensor:
 
 
 def sensor_at(sensor: Sensor | SensorField, row: float, col: float) -> Sensor:
-    """The sensor at a place: itself where it is the same everywhere."""
-    return sensor if isinstance(sensor, Sensor) else sensor.at(row, col)
+    """The sensor at a place: itself where it is the same everywhere.
+
+    Raises
+    ------
+    OptionError
+        If it is neither a sensor nor a field of them.
+    """
+    at = getattr(sensor, "at", None)
+    return require_sensor(sensor if at is None else at(row, col))

@@ -18,7 +18,7 @@ from acutance.geometry.line import Line
 from acutance.optics.sensor import Sensor
 from acutance.simulate.bars import BarsTruth
 from acutance.simulate.edge import Truth
-from acutance.simulate.limits import require_finite, require_rng, require_shape
+from acutance.simulate.limits import require_finite, require_rng, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.points import PointsTruth
 from acutance.simulate.pulse import PulseTruth
@@ -143,7 +143,10 @@ def checkerboard(
     ------
     ModelError
         If the board is too small, leaves the image, or randomness is requested without `rng`.
+    OptionError
+        If an argument is of the wrong kind.
     """
+    require_sensor(sensor)
     require_shape(shape)
     if centre is None:
         centre = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))

@@ -14,7 +14,7 @@ from acutance.errors import OptionError
 from acutance.optics.block import require
 from acutance.optics.sensor import Sensor
 from acutance.simulate.galaxy import Galaxy
-from acutance.simulate.limits import require_finite, require_rng, require_shape
+from acutance.simulate.limits import require_finite, require_rng, require_sensor, require_shape
 from acutance.simulate.noise import Noise
 from acutance.simulate.points import PointsTruth, peak_per_flux
 from acutance.simulate.scene import Point, render_patches, stamp
@@ -138,8 +138,9 @@ def sky(
     Raises
     ------
     ModelError, OptionError
-        If a number makes no sense.
+        If a number makes no sense, or an argument is of the wrong kind.
     """
+    require_sensor(sensor)
     field = SkyField() if field is None else field
     noise = Noise(read=10.0) if noise is None else noise
     require_finite(background=background)

@@ -17,7 +17,7 @@ from acutance.geometry.angles import direction_difference
 from acutance.optics.block import require, require_count
 from acutance.optics.sensor import Sensor
 from acutance.simulate.ground import MAX_SUBPIXELS, render_raster
-from acutance.simulate.limits import require_finite, require_shape
+from acutance.simulate.limits import require_finite, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import stamp
 
@@ -265,7 +265,10 @@ def star(
     ------
     ModelError
         If the arguments contradict each other, or the star does not fit into the image.
+    OptionError
+        If an argument is of the wrong kind.
     """
+    require_sensor(sensor)
     require_shape(shape)
     require_finite(dark=dark, bright=bright, start_deg=start_deg)
     if centre is None:

@@ -133,11 +133,23 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
         return tuple(self.directions)
 
     def response_at(self, angle_deg: float) -> Response:
-        """The curves of any direction, from the column axis (0) towards the row axis (90)."""
+        """The curves of any direction, from the column axis (0) towards the row axis (90).
+
+        Raises
+        ------
+        OptionError
+            If the direction is no finite number.
+        """
         return self.otf.response(angle_deg)
 
     def mtf_at(self, angle_deg: float) -> Mtf:
-        """The MTF in any direction, from the column axis (0) towards the row axis (90)."""
+        """The MTF in any direction, from the column axis (0) towards the row axis (90).
+
+        Raises
+        ------
+        OptionError
+            If the direction is no finite number.
+        """
         return self.response_at(angle_deg).mtf
 
     def psf(self, half_width_px: float = 5.0, step_px: float = 0.1) -> tuple[Floats, Floats]:

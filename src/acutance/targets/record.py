@@ -146,9 +146,15 @@ class RecordedDirection(ShortRepr):
 
     @cached_property
     def numbers(self) -> dict[str, Estimate]:
-        """All numbers by name, in the order a report prints them."""
+        """All numbers by name, in the order a report prints them.
+
+        Raises
+        ------
+        OptionError
+            If one of them is none.
+        """
         return {
-            name: Estimate.from_dict(self.document[name])
+            name: _number(name, self.document[name])
             for name in METRICS
             if self.document.get(name) is not None
         }
@@ -236,10 +242,13 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         require_document(document, SCHEMA, _REQUIRED, name="the document", advice=advice)
         record = cls(document)
         try:
-            _ = record.image, record.checks, record.directions, record.budget
+            _ = record.image, record.checks, record.budget, record.snr, record.measured_at
+            _ = {name: one.numbers for name, one in record.directions.items()}
+            _ = [record.directions[name] for name in record.measured_directions]
         except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
+            reason = str(error) if isinstance(error, OptionError) else repr(error)
             raise OptionError(
-                f"the document cannot be read as a measurement ({error!r}): give one that "
+                f"the document cannot be read as a measurement ({reason}): give one that "
                 "acutance wrote"
             ) from error
         return record
@@ -345,6 +354,22 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         """Target and method, the main numbers, and how many checks failed."""
         named = (f"{name}: {self.directions[name].summary()}" for name in self.measured_directions)
         return f"{self.kind} by {self.method}, {', '.join(named)}, {count_failed(self.checks)}"
+
+
+def _number(name: str, document: Any) -> Estimate:
+    """A number of a document.
+
+    Raises
+    ------
+    OptionError
+        Names what is written there instead.
+    """
+    try:
+        return Estimate.from_dict(document)
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise OptionError(
+            f"{name} is {document!r:.80}, no value with its standard deviation"
+        ) from error
 
 
 def _unpacked(packed: bytes) -> Record:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -127,11 +127,13 @@ def read_region(
         fill = None if fill is None else fill.within(inside)
     usable = int(np.count_nonzero(np.isfinite(pixels)))
     if usable < _MIN_SIDE_PX**2:
+        last = "NaN or infinite"
+        if fill is not None:
+            last = f"NaN, infinite or a constant fill of {fill.value:.9g}"
         raise NoDataError(
             f"only {usable} of the region's {pixels.size} pixels hold data: the rest is nodata, "
-            f"masked, NaN{'' if fill is None else f' or a constant fill of {fill.value:.9g}'}; "
-            "choose another region, or correct the nodata value if pixels that have it are data "
-            "(nodata, --nodata; nan: every value is data)"
+            f"masked, {last}; choose another region, or correct the nodata value if pixels that "
+            "have it are data (nodata, --nodata; nan: every value is data)"
         )
     gsd = source.gsd(box.row + box.height / 2, box.col + box.width / 2)
     if gsd_m is not None:
@@ -183,10 +185,15 @@ def chosen_region(roi: Any) -> Region | Box:
     """
     if isinstance(roi, Region | Box):
         return roi
-    if isinstance(roi, str):
+    if isinstance(roi, str | bytes):
         raise RegionError(
             f"roi is the text {roi!r}: read it with acutance.raster.parse_roi(text, image), or "
             "give (row, column, height, width)"
+        )
+    if isinstance(roi, Mapping):
+        raise RegionError(
+            f"roi is {roi!r:.80}: give (row, column, height, width), a Box or a Region; the "
+            "polygon of a GeoJSON file is read by acutance.raster.parse_roi(path, image)"
         )
     try:
         numbers: Sequence[Any] = tuple(roi)
@@ -195,6 +202,11 @@ def chosen_region(roi: Any) -> Region | Box:
             f"roi is of type {type(roi).__name__}: give (row, column, height, width), a Box or a "
             "Region"
         ) from None
+    if any(isinstance(one, slice) for one in numbers):
+        raise RegionError(
+            f"roi is {roi!r:.80}, which holds slices: give (row, column, height, width), of "
+            "slices (start, start, stop - start, stop - start)"
+        )
     if len(numbers) != 4:
         raise RegionError(
             f"roi has {len(numbers)} numbers: give four, (row, column, height, width), in pixels"

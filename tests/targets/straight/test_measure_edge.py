@@ -291,9 +291,17 @@ class TestRefusals:
         with pytest.raises(ac.TargetError):
             ac.measure_edge(image)
 
-    def test_nan_and_nodata(self):
-        with pytest.raises(ac.RegionError, match="hold data"):
-            ac.measure_edge(np.full((40, 40), np.nan))
+    @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+    def test_no_pixel_holds_data(self, value):
+        with pytest.raises(ac.NoDataError, match=r"hold data: .* masked, NaN or infinite"):
+            ac.measure_edge(np.full((40, 40), value))
+
+    @pytest.mark.parametrize("value", [np.nan, np.inf])
+    def test_an_edge_cut_by_pixels_without_data(self, value):
+        image, _ = simulated(shape=(60, 40))
+        image[image > 900] = value
+        with pytest.raises(ac.SupportError, match=r"4\d % of the region is without .*infinite"):
+            ac.measure_edge(image)
 
     def test_too_small(self):
         with pytest.raises(ac.RegionError, match="at least 8"):

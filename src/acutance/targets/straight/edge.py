@@ -47,6 +47,7 @@ __all__ = [
 ]
 
 _MANY_MISSING = 0.05
+_MISSING_WORDS = "nodata, masked, NaN, infinite, fill, or outside its outline"
 _CANDIDATES = 4
 _ALIGNED_DEG = 0.1
 _NEAR_45_DEG = 40.0
@@ -87,7 +88,8 @@ def measure_edge(
     Parameters
     ----------
     image : Image or (rows, cols) array_like
-        From `acutance.open_image`, or pixels in memory; NaN and masked pixels are not used.
+        From `acutance.open_image`, or pixels in memory; NaN, infinite and masked
+        pixels are not used.
     roi : Region, Box, (row, col, height, width) or None
         A loose region is normal: the edge is found in it, and its usable pixels are kept.
     gsd_m : float or Gsd, optional
@@ -128,18 +130,32 @@ def _measure_first(region: RegionPixels, method: str, options: EdgeOptions) -> S
             return measure_segment(region, segment, method, options)
         except TargetError as error:
             first = first or error
-    raise _named(first or _nothing_found(region), region)
+    raise _named(_nothing_found(region) if first is None else _torn(first, region), region)
 
 
 def _nothing_found(region: RegionPixels) -> NoEdgeError:
-    missing = float(np.mean(np.isnan(region.pixels)))
+    missing = _share_missing(region)
     reason = "the region is flat, or its longest edge is too short"
     if missing > _MANY_MISSING:
-        reason += f", or torn by the {100 * missing:.0f} % of it without data"
+        reason += f", or torn by the {100 * missing:.0f} % of it without data ({_MISSING_WORDS})"
     return NoEdgeError(
         f"no straight edge stands out in the {region.box.height} x {region.box.width} pixels: "
         f"{reason}; choose a region that holds one bright and one dark side"
     )
+
+
+def _torn(error: TargetError, region: RegionPixels) -> TargetError:
+    """The error, with what pixels without data may have to do with it."""
+    missing = _share_missing(region)
+    if missing <= _MANY_MISSING:
+        return error
+    return type(error)(
+        f"{error}; {100 * missing:.0f} % of the region is without data ({_MISSING_WORDS})"
+    )
+
+
+def _share_missing(region: RegionPixels) -> float:
+    return float(np.mean(np.isnan(region.pixels)))
 
 
 def _named(error: TargetError, region: RegionPixels) -> TargetError:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from numbers import Real
 
 from numpy.typing import ArrayLike
 
@@ -105,7 +106,7 @@ def measure_pulse(
     Raises
     ------
     ImageError, RegionError, OptionError
-        If there are no pixels to measure, or the width is out of range.
+        If there are no pixels to measure, or the width is no number or out of range.
     NoEdgeError, PhaseError, SupportError
         If there is no pulse, it is aligned with the grid, or too little of it is there.
     """
@@ -205,6 +206,10 @@ def _stated_width(
     region: RegionPixels, width_px: float | None, width_m: float | None
 ) -> float | None:
     """The stated width in pixels along the normal of the strongest side in the region."""
+    for name, width in (("width_px", width_px), ("width_m", width_m)):
+        if width is not None and not isinstance(width, Real):
+            unit = "pixels" if name == "width_px" else "metres"
+            raise OptionError(f"{name} is {width!r:.80}: give a number of {unit}")
     if width_px is not None and width_m is not None:
         raise OptionError("the width was given in pixels and in metres: give one of them")
     if width_m is not None:
