@@ -146,6 +146,32 @@ def test_niirs_of_a_measurement_and_of_numbers(acutance, folder):
     assert acutance("niirs", "--rer", "0.4", "--gsd-m", "0.7").exit_code == 2
 
 
+def test_niirs_of_a_file_for_each_direction(acutance, folder, two_regions):
+    files = folder / "across.json", folder / "along.json"
+    result = acutance("niirs", *files, "--json")
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["inputs"]["rer_across"] != document["inputs"]["rer_along"]
+    assert "one direction" not in [note["name"] for note in document["notes"]]
+    together = json.loads(acutance("niirs", two_regions, "--json").stdout)
+    assert together["value"] == pytest.approx(document["value"], abs=0.01)
+    told = acutance("niirs", *files, "--gsd-m", "0.3").stdout
+    assert "(stated; the document's own is 0.7 m)" in told
+    result = acutance("niirs", files[0], files[0])
+    assert result.exit_code == 2
+    assert "the same measurement" in result.stderr
+
+
+def test_niirs_tells_the_verdict_of_each_file(acutance, folder, tmp_path):
+    document = json.loads((folder / "along.json").read_text())
+    document["checks"][0] |= {"passed": False, "severity": "fail", "message": "it is a mask"}
+    (tmp_path / "mask.json").write_text(json.dumps(document))
+    for files in ([tmp_path / "mask.json"], [folder / "across.json", tmp_path / "mask.json"]):
+        result = acutance("niirs", *files)
+        assert result.exit_code == 0, result.stderr
+        assert "invalid measurement: mask.json: it is a mask" in result.stdout
+
+
 @pytest.mark.parametrize("gsd", ["-0.7", "-1,1", "-1,-1", "nan", "0"])
 def test_a_gsd_that_no_image_has_is_refused(acutance, gsd):
     result = acutance("niirs", "--rer", "0.4", "--snr", "80", "--gsd-m", gsd)

@@ -26,6 +26,7 @@ from acutance.report import (
     text,
 )
 from acutance.report.figure import KIND_PANELS
+from acutance.report.paper import new_page, styled
 from acutance.report.tables.combined import PARAMETERS
 from acutance.report.tables.result import KIND_TABLES
 from acutance.targets.combine.sensor_forms import SensorForm
@@ -146,6 +147,37 @@ def test_every_parameter_of_a_combined_sensor_has_its_words():
     found = [name for form in forms for name in form.numbers(form.mean)]
     assert len(found) >= len(TERMS)
     assert set(found) == set(PARAMETERS)
+
+
+def drawn_panel(measured, title):
+    """One drawing on half of a page."""
+    (panel,) = [one for one in panels(measured) if one.title == title]
+    with styled():
+        figure = new_page(5.6, panel.height_in)
+        panel.draw(figure)
+        figure.canvas.draw()
+    return figure
+
+
+def test_the_title_of_a_narrow_map_of_bars_is_whole():
+    narrow = bars()
+    narrow = replace(narrow, details=replace(narrow.details, pixels=narrow.details.pixels[:, :12]))
+    assert not outside(drawn_panel(narrow, "Groups"))
+
+
+def test_numbers_of_sources_cover_neither_sources_nor_one_another():
+    places = np.array([(10 + 5.25 * i, 10 + 5.25 * j) for i in range(4) for j in range(5)])
+    image, _ = ac.simulate.points(SENSOR, positions=places, snr=80.0, rng=np.random.default_rng(1))
+    figure = drawn_panel(ac.measure_points(image, positions=places), "Sources")
+    (axes,) = figure.axes
+    boxes = [one.get_bbox_patch().get_window_extent() for one in axes.texts]
+    assert len(boxes) == 20
+    assert {one.get_color() for one in axes.texts} == {"white"}
+    for i, box in enumerate(boxes):
+        assert not any(box.overlaps(other) for other in boxes[:i])
+        for row, col in places:
+            x, y = axes.transData.transform((col, row))
+            assert not box.contains(x, y)
 
 
 def test_a_source_darker_than_its_ground_is_drawn():

@@ -11,8 +11,10 @@ from matplotlib.text import Text
 
 from acutance import optics, simulate
 from acutance.report import compare, draw, figure_bytes, panels, save_figure
+from acutance.report.figures.campaign import campaign_figure
 from acutance.report.figures.pixels import show_pixels
 from acutance.report.paper import new_page, styled
+from acutance.report.tables.campaign import CampaignEntry
 from acutance.targets import Check, TargetResult
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.many_edges import combine_edges
@@ -93,6 +95,24 @@ def test_the_figure_of_an_edge_shows_every_step(measurement):
         "0.2890 ± 0.0039",
     ):
         assert title in shown, title
+
+
+def test_what_leaves_the_drawing_of_a_campaign_is_an_arrow(make_edge, truth):
+    def entry(target, reference, **blur):
+        response = make_edge(**blur).response
+        return CampaignEntry(target, "any", "across", response, truth, reference)
+
+    entries = [
+        entry("in", True, scatter=0.004),
+        entry("interval out", False, scatter=0.02),
+        entry("out", False, sigma_px=0.6),
+    ]
+    axes = campaign_figure(entries).axes[0]
+    reach = axes.get_xlim()[1]
+    arrows = [(line.get_ydata()[0], line.get_marker()) for line in axes.lines
+              if line.get_marker() in ("<", ">")]  # fmt: skip
+    assert sorted(arrows) == [(1.0, "<"), (1.0, ">"), (2.0, "<")]
+    assert reach < 0.02
 
 
 def test_the_figure_of_a_pulse_shows_both_sides_the_width_and_the_zeros(pulse):

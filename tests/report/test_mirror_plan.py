@@ -30,3 +30,9 @@ def test_a_bias_is_named_where_it_is_more_than_chance():
     by_chance = replace(many, bias=plan.bias | {name: 0.3 * plan.std[name]})
     assert "average out" not in mirror_plan_text(replace(by_chance, scatter=plan.std))
     assert "40 simulated images, 3 of them refused" in mirror_plan_text(replace(many, refused=3))
+
+
+def test_mirrors_too_large_for_a_field_are_told():
+    plan = plan_mirrors(MirrorPlanOptions(optics.Sensor(SENSOR.blocks, gsd_m=70.0), draws=0))
+    assert "note: caps 62.4 m across" in mirror_plan_text(plan)
+    assert "note" not in mirror_plan_text(replace(plan, diameter_m=1.0))

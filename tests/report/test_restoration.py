@@ -128,3 +128,26 @@ def test_a_proof_and_a_number_in_words(sharpening):
     told = niirs_text(ac.niirs(gsd_m=0.7, rer=0.4, snr=3))
     assert "low SNR" in told
     assert "NIIRS (GIQE 5)" in told
+
+
+def test_a_number_below_0_has_the_minus_sign_of_all_reports():
+    told = niirs_text(ac.niirs(gsd_m=70, rer=0.4, snr=30))
+    assert "-" not in told
+    assert told.count("−") == 3
+
+
+def test_a_stated_gsd_is_told_beside_the_measured_one():
+    pixels, _ = ac.simulate.edge(
+        ac.Sensor([ac.optics.Gaussian(0.5), ac.optics.Detector()]), shape=(60, 60), snr=200,
+        rng=np.random.default_rng(1),
+    )  # fmt: skip
+    edge = ac.measure_edge(pixels, gsd_m=1.0)
+    assert "0.3 (stated; the document's own is 1 m)" in niirs_text(ac.niirs(edge, gsd_m=0.3))
+    assert "stated;" not in niirs_text(ac.niirs(edge, gsd_m=1.0))
+
+
+def test_a_kernel_that_blurs_is_told_in_text_and_page():
+    sensor = ac.Sensor([ac.optics.Gaussian(0.5), ac.optics.Detector()])
+    filter = ac.design_restoration(sensor, noise_gain=0.2, snr=80, size=7)
+    for shown in (restoration_text(filter), restoration_page(filter)):
+        assert "the kernel blurs edges, it does not sharpen" in shown

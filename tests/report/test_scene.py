@@ -89,6 +89,22 @@ def test_the_map_has_every_edge_of_a_small_scene_and_some_of_a_large_one(measure
     assert all(one.get_rasterized() for one in axes[0].collections if len(one.get_paths()) > 1000)
 
 
+def test_a_few_used_edges_are_thicker_and_longer_than_many(measured):
+    used = np.zeros(measured.edges.size, bool)
+    used[np.flatnonzero(measured.edges.used)[:12]] = True
+    edges = replace(measured.edges, used=used, length_px=np.full(used.size, 5.0))
+    few = panel_axes(replace(measured, edges=edges), PANELS[0])[0][0].collections[1]
+    which = np.tile(np.flatnonzero(measured.edges.used), 20)
+    many = replace(measured, edges=some_edges(measured.edges, which))
+    thin = panel_axes(many, PANELS[0])[0][0].collections[1]
+    assert few.get_linewidth()[0] == pytest.approx(4.8)
+    assert few.get_linewidth()[0] > 3 * thin.get_linewidth()[0]
+    (start, end) = few.get_segments()[0]
+    assert np.hypot(*(end - start)) == pytest.approx(0.032 * 480)
+    assert "Short ones are drawn longer" in panel_axes(replace(measured, edges=edges),
+                                                       PANELS[0])[1].caption  # fmt: skip
+
+
 def test_a_map_is_drawn_on_a_quick_look(measured):
     assert not panel_axes(measured, PANELS[0])[0][0].images
     quick = RNG.normal(100.0, 5.0, (60, 70))

@@ -36,6 +36,21 @@ def test_what_is_predicted_is_what_the_kernel_does(sensor, sharpening):
         assert after.mtf_nyquist > sharpening.before.directions[name].mtf_nyquist
 
 
+@pytest.mark.parametrize("knob", [{"noise_gain": 0.2}, {"mtf_nyquist": 0.01}, {"snr": 3}])
+def test_a_kernel_that_blurs_is_noted(sensor, knob):
+    filter = ac.design_restoration(sensor, **knob, size=11)
+    (note,) = [one for one in filter.notes if "blurs" in one]
+    for name in ("across", "along"):
+        before, after = (one.directions[name] for one in (filter.before, filter.after))
+        assert f"RER {name} falls from {before.rer.value:.3f} to {after.rer.value:.3f}" in note
+
+
+def test_what_sharpens_or_was_asked_to_be_softer_has_no_note_of_blur(sensor, sharpening):
+    softer = ac.Sensor([*sensor.blocks, ac.optics.Gaussian(0.5)])
+    for filter in (sharpening, ac.design_restoration(sensor, target=softer, snr=80)):
+        assert not [one for one in filter.notes if "blurs" in one]
+
+
 def test_directions_are_not_swapped(sensor):
     """Smear along the rows' axis is undone along it: there the kernel amplifies more."""
     filter = ac.design_restoration(sensor, snr=80, noise_gain=1.8)

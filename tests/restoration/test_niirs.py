@@ -83,7 +83,7 @@ def test_an_ordinary_image_has_no_note():
 
 def test_the_jump_of_version_4_is_told():
     low, high = (ac.niirs(gsd_m=0.7, rer=one, snr=50, version=4) for one in (0.89999999, 0.9))
-    told = float(high.notes[0].message.split("by ")[1])
+    told = float(high.notes[0].message.split("by ")[1].replace("−", "-"))
     assert high.value - low.value == pytest.approx(told, abs=0.005)
 
 
@@ -109,6 +109,60 @@ def test_a_measurement_gives_what_is_not_stated(edges):
     assert "one direction" in [note.name for note in found.notes]
     both = ac.niirs(edges[0], rer=(edges[0].rer, edges[1].rer))
     assert "one direction" not in [note.name for note in both.notes]
+
+
+def failed(edge, severity):
+    """The document of an edge whose first two checks failed."""
+    document = edge.to_dict()
+    for check, message in zip(document["checks"], ("it is a mask", "it is bent"), strict=False):
+        check |= {"passed": False, "severity": severity, "message": message}
+        severity = "note"
+    return document
+
+
+@pytest.mark.parametrize(("severity", "word"), [("fail", "invalid"), ("caution", "doubtful")])
+def test_the_verdict_of_a_measurement_is_told_and_the_number_kept(edges, severity, word):
+    document = failed(edges[0], severity)
+    found = ac.niirs(document)
+    assert found.value == ac.niirs(edges[0]).value
+    assert found.verdict == found.to_dict()["verdict"] == word
+    note = found.notes[0]
+    assert note.name == f"{word} measurement"
+    assert note.message == f"it is a mask (failed too: {document['checks'][1]['name']})"
+    assert f"{word} measurement" in str(found)
+    assert str(ac.niirs(document, names=["a/mask.json"]).notes[0]).endswith(
+        f"measurement: mask.json: {note.message}"
+    )
+
+
+def test_what_is_stated_has_no_verdict():
+    assert ac.niirs(gsd_m=0.7, rer=0.45, snr=80).verdict is None
+
+
+def test_measurements_of_two_directions_are_combined(edges):
+    both = ac.combine(edges)
+    found = ac.niirs([edges[0], failed(edges[1], "fail")], names=["across.json", "along.json"])
+    assert found.inputs.rer_across == pytest.approx(both.across.rer.value)
+    assert found.inputs.rer_along == pytest.approx(both.along.rer.value)
+    assert found.inputs.snr == pytest.approx((edges[0].snr + edges[1].snr) / 2)
+    assert found.verdict == "doubtful"
+    names = [note.name for note in found.notes]
+    assert names[:2] == ["invalid measurement", "combination"]
+    assert "one direction" not in names
+    assert "failed check of their own" not in "".join(note.message for note in found.notes)
+
+
+@pytest.mark.parametrize(("gsd_m", "own"), [(0.3, 0.7), ((0.7, 0.7), None), (None, None)])
+def test_a_stated_gsd_has_that_of_the_measurement_beside_it(edges, gsd_m, own):
+    found = ac.niirs(edges[0], gsd_m=gsd_m)
+    assert found.measured_gsd_m == (None if own is None else pytest.approx(own))
+    assert found.to_dict()["measured_gsd_m"] == found.measured_gsd_m
+    assert ac.niirs(gsd_m=0.3, rer=0.5, snr=50).measured_gsd_m is None
+
+
+def test_an_image_without_noise_has_a_number(edges):
+    document = edges[0].to_dict() | {"snr": 7e14}
+    assert ac.niirs(document).value == pytest.approx(ac.niirs(edges[0], snr=1e9).value)
 
 
 @pytest.mark.parametrize(

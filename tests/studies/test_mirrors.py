@@ -50,6 +50,14 @@ def test_a_mirror_is_as_bright_as_asked():
     assert brighter.radius_m == pytest.approx(math.sqrt(2) * plan.radius_m)
 
 
+@pytest.mark.parametrize(("gsd_m", "is_noted"), [(0.7, False), (2.8, False), (70.0, True)])
+def test_mirrors_too_large_for_a_field_are_noted(gsd_m, is_noted):
+    plan = plan_mirrors(MirrorPlanOptions(optics.Sensor(SENSOR.blocks, gsd_m=gsd_m), draws=0))
+    assert bool(plan.notes) is is_noted
+    assert plan.to_dict()["notes"] == list(plan.notes)
+    assert all(f"{plan.diameter_m:.3g} m across" in note for note in plan.notes)
+
+
 def test_the_expected_deviations_are_those_of_measurements():
     plan = plan_mirrors(MirrorPlanOptions(SENSOR, draws=3, snr=60.0))
     assert plan.std["mtf_nyquist across"] == pytest.approx(0.008, rel=0.6)

@@ -55,6 +55,15 @@ def test_of_several_widths_the_best_is_planned_and_named():
     assert "planned_width_px" not in [found.name for found in single.findings]
 
 
+def test_a_width_in_metres_over_the_gsd_is_no_second_width():
+    width_px = 2.1 / 0.7
+    assert width_px != 3.0
+    plan = plan_target(PlanOptions(target="pulse", widths_px=(width_px,), draws=0), ALONE)
+    widths = plan.table.where(varied="width")["target_width_px"]
+    assert widths.tolist() == [1.5, 2.0, 2.5, width_px, 3.5, 4.0]
+    assert "within 10 % of it: 3 px" in plan.finding("best_target_width_px").text
+
+
 def test_an_edge_without_simulation_has_bounds_alone():
     plan = plan_target(PlanOptions(draws=0), ALONE)
     assert set(plan.table.columns["varied"]) == {"plan", "rows", "angle"}

@@ -193,8 +193,8 @@ def _truth_sections(entries: Sequence[CampaignEntry]) -> Iterator[Section]:
         "Against the truth",
         paragraphs=(
             "Blue: the reference method of each target, with all of its uncertainty. Grey: "
-            "published methods; an arrow lies outside the drawing. Black: all reference "
-            "methods combined.",
+            "published methods; an arrow where they or their intervals lie outside the drawing. "
+            "Black: all reference methods combined.",
             *_explanations(entries),
         ),
         plates=(

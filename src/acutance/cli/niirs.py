@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from statistics import median
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -13,29 +11,31 @@ from acutance.cli.documents import read_json
 from acutance.cli.options import JsonOption
 from acutance.errors import OptionError
 
-if TYPE_CHECKING:
-    from acutance.targets import Record
-
 __all__ = ["EXAMPLE", "niirs"]
 
 EXAMPLE = (
     "\b\nExamples:\n"
     "  acutance niirs measurement.json --gsd-m 0.7 --snr 80 --elevation-deg 70\n"
+    "  acutance niirs across.json along.json\n"
     "  acutance niirs --rer 0.45,0.42 --gsd-m 0.7 --snr 80 --version 4 --noise-gain 2"
 )
 
 
 def niirs(
-    file: Annotated[
-        str | None,
+    files: Annotated[
+        list[str] | None,
         typer.Argument(
-            metavar="FILE",
-            help="A measurement as JSON, or several of one sensor; without it state --rer.",
+            metavar="FILE...",
+            help="A measurement as JSON, or several of one sensor, as one of each direction; "
+            "without it state --rer.",
         ),
     ] = None,
     gsd_m: Annotated[
         str | None,
-        typer.Option(metavar="M[,M]", help="Ground sampling distance normal to the line of sight."),
+        typer.Option(
+            metavar="M[,M]",
+            help="Ground sampling distance normal to the line of sight; else the measurement's.",
+        ),
     ] = None,
     rer: Annotated[
         str | None, typer.Option(metavar="RER[,RER]", help="Relative edge response, across,along.")
@@ -59,46 +59,32 @@ def niirs(
 ) -> None:
     """NIIRS by the General Image Quality Equation, with its standard deviation.
 
-    It is that of the measurement and the equation's own; notes tell where the equation was not made
-    for such an image.
+    It is that of the measurement and the equation's own; several measurements are combined. Notes
+    have the checks that a measurement failed, and where the equation was not made for such an
+    image.
     """
-    if file is None and rer is None:
+    inputs = tuple(files or ())
+    if not inputs and rer is None:
         raise OptionError("give the JSON document of a measurement, or state --rer")
 
     from acutance.report import json_text, niirs_text
     from acutance.restoration import niirs as niirs_of
 
-    record, own_snr = (None, None) if file is None else _measured(file)
     found = niirs_of(
-        record,
+        [read_json(name) for name in inputs] or None,
         gsd_m=_gsd(gsd_m),
         rer=None if rer is None else _one_or_two("--rer", rer),
-        snr=own_snr if snr is None else snr,
+        snr=snr,
         elevation_deg=elevation_deg,
         version=version,  # type: ignore[arg-type]
         giqe_h=giqe_h,
         noise_gain=noise_gain,
+        names=inputs or None,
     )
     if as_json:
         typer.echo(json_text({"schema": "acutance/niirs/1", **found.to_dict()}))
     else:
         typer.echo(niirs_text(found))
-
-
-def _measured(name: str) -> tuple[Record, float | None]:
-    """The measurement of a file, several combined, and their SNR."""
-    from acutance.targets.combine import combine
-    from acutance.targets.combine.inputs import records_of
-
-    records = records_of(read_json(name), name)
-    snrs = [one.snr for one in records if math.isfinite(one.snr)]
-    snr = median(snrs) if snrs else None
-    if len(records) == 1:
-        return records[0], snr
-    try:
-        return combine(records).record, snr
-    except OptionError as error:
-        raise OptionError(f"{name}: {error}") from error
 
 
 def _gsd(text: str | None) -> tuple[float, float] | None:

@@ -2,12 +2,14 @@
 
 A filter, from what is known of a sensor to what its kernel does, in this order:
 
+- `named_records.py` measurements and documents by name, and what their failed checks warn of
 - `known_otf.py` the OTF over the plane, of measurements, documents or a described sensor
 - `scene_spectrum.py`, `measured_scene.py` the power of the scene: natural, stated, or of an image
 - `kernel_family.py` kernels of least expected error, one for each weight of the noise
 - `knobs.py` noise gain, MTF at Nyquist or overshoot choose among them; `trade.py` all others
 - `filtered_otf.py` the sensor with the kernel behind it, covariance included; `aliasing.py`
-- `giqe.py`, `interpretability.py`, `niirs_change.py` the General Image Quality Equation
+- `giqe.py`, `interpretability.py`, `niirs_notes.py`, `niirs_change.py` the General Image Quality
+  Equation
 - `design.py` puts it together; `restoration_filter.py` is the result and its document
 
 An image, filtered:

@@ -282,11 +282,25 @@ def _notes(
             notes.append(
                 f"edges {name} will overshoot by {100 * worst.value:.0f} % of their contrast"
             )
-    if target is not None:
-        notes += _missed(known, after, target)
+    # A target may be softer than the sensor: then a smoother image is what was asked for.
+    notes += _missed(known, after, target) if target is not None else _blurred(before, after)
     if snr is None:
         notes.append("no SNR is known: that after the filter and the change of NIIRS are not told")
     return tuple(dict.fromkeys(notes))
+
+
+def _blurred(before: dict[str, Response], after: dict[str, Response]) -> list[str]:
+    """The directions whose edges the kernel makes softer, in one note."""
+    softer = [
+        f"RER {name} falls from {before[name].rer.value:.3f} to {one.rer.value:.3f}, MTF at "
+        f"Nyquist from {before[name].mtf_nyquist.value:.3f} to {one.mtf_nyquist.value:.3f}"
+        for name, one in after.items()
+        if one.rer.value < before[name].rer.value
+    ]
+    if not softer:
+        return []
+    listed = "; ".join(softer)
+    return [f"the kernel blurs edges, it does not sharpen: {listed}: a larger noise gain sharpens"]
 
 
 def _missed(known: KnownOtf, after: dict[str, Response], target: Sensor | Otf2d) -> list[str]:

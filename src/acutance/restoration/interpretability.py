@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from statistics import median
+from typing import Any
 
 from acutance.curves import Estimate
 from acutance.errors import OptionError
-from acutance.restoration.giqe import EQUATION_STD, JUMP_RER, GiqeInputs, giqe, giqe4_jump
-from acutance.targets import Measurement, Record
+from acutance.restoration.giqe import EQUATION_STD, GiqeInputs, giqe
+from acutance.restoration.named_records import (
+    Measured,
+    combination_warnings,
+    measured_inputs,
+    named_records,
+    warnings_of,
+)
+from acutance.restoration.niirs_notes import ONE_DIRECTION, GiqeVersion, Note, equation_notes
+from acutance.targets import Record
+from acutance.targets.check import VerdictWord
+from acutance.targets.combine import combine
 
-__all__ = ["GiqeVersion", "Niirs", "Note", "niirs", "read_niirs_inputs"]
+__all__ = ["Niirs", "niirs"]
 
-GiqeVersion = Literal[3, 4, 5]
-
-_MIN_SNR = 5.0
-_RER_RANGE = (0.2, 1.3)
-"""Outside of these an equation is extrapolated: few images are that soft or that sharpened."""
-_GSD_RANGE_M = (0.05, 10.0)
-"""Bounds of ours: levels 1 to 9 of the scale are those of some 9 m to .1 m."""
-_MIN_ELEVATION_DEG = 30.0
-"""A bound of ours: below it the two sides of a pixel on the ground differ by more than two."""
-_SCALE = (0.0, 9.0)
 _POSSIBLE = {
     "gsd_m": (1e-3, 1e5),
     "rer_across": (1e-3, 2.0),
@@ -34,27 +35,9 @@ _POSSIBLE = {
     "elevation_deg": (5.0, 90.0),
 }
 """What any image may have, also one that was sharpened; the equations have no meaning beyond."""
-_EXTRAPOLATED = "the equation is extrapolated, and its own deviation is not known there"
-_NEAR_JUMP_STDS = 2.0
 _STEP = 1e-4
-
-
-@dataclass(frozen=True)
-class Note:
-    """A warning that belongs to a result.
-
-    Parameters
-    ----------
-    name : str
-    message : str
-        What was found, and what it means.
-    """
-
-    name: str
-    message: str
-
-    def __str__(self) -> str:
-        return f"{self.name}: {self.message}"
+_SAME_GSD = 1e-4
+"""Share by which ground sampling distances differ by rounding alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +55,12 @@ class Niirs(Estimate):
     inputs : GiqeInputs
         What it was computed from.
     notes : tuple of Note
-        Where the equation was not made for such an image.
+        What the checks of the measurement warn of, and where the equation was not made for such an
+        image.
+    verdict : {"good", "usable", "doubtful", "invalid"} or None
+        Of the measurement, or of the combination; ``None`` of stated numbers.
+    measured_gsd_m : float or None
+        GSD of the measurement, where another was stated.
 
     Examples
     --------
@@ -85,6 +73,8 @@ class Niirs(Estimate):
     equation_std: float = 0.0
     inputs: GiqeInputs | None = None
     notes: tuple[Note, ...] = ()
+    verdict: VerdictWord | None = None
+    measured_gsd_m: float | None = None
 
     def __str__(self) -> str:
         plain = Estimate(self.value, self.std)
@@ -92,7 +82,7 @@ class Niirs(Estimate):
         return f"{plain} (GIQE {self.version}{noted})"
 
     def to_dict(self) -> dict[str, Any]:
-        """Value, deviations, interval, inputs and notes, for JSON."""
+        """Value, deviations, interval, inputs, verdict and notes, for JSON."""
         own = self.inputs
         return {
             **super().to_dict(),
@@ -100,12 +90,14 @@ class Niirs(Estimate):
             "inputs_std": self.inputs_std,
             "equation_std": self.equation_std,
             "inputs": None if own is None else dict(vars(own)),
+            "measured_gsd_m": self.measured_gsd_m,
+            "verdict": self.verdict,
             "notes": [{"name": one.name, "message": one.message} for one in self.notes],
         }
 
 
 def niirs(
-    measurement: Measurement | Record | None = None,
+    measurement: Measured | Sequence[Measured] | None = None,
     *,
     gsd_m: float | tuple[float, float] | None = None,
     rer: float | Estimate | Sequence[float | Estimate] | None = None,
@@ -114,13 +106,15 @@ def niirs(
     version: GiqeVersion = 5,
     giqe_h: float | Estimate | None = None,
     noise_gain: float = 1.0,
+    names: Sequence[str] | None = None,
 ) -> Niirs:
     """NIIRS by the General Image Quality Equation (GIQE).
 
     Parameters
     ----------
-    measurement : Measurement or Record, optional
-        Gives RER, overshoot H, GSD and SNR, unless they are stated.
+    measurement : Measurement, Record, dict, or a sequence of them, optional
+        Gives RER, overshoot H, GSD and SNR, unless they are stated. Several are combined
+        (`acutance.combine`), and their median SNR counts.
     gsd_m : float or (float, float), optional
         Ground sampling distance normal to the line of sight in metres; of two their geometric
         mean counts.
@@ -135,6 +129,8 @@ def niirs(
         Edge height overshoot H of versions 3 and 4 (`Response.giqe_h`); without a measurement 1.
     noise_gain : float, optional
         Of the sharpening (versions 3 and 4).
+    names : sequence of str, optional
+        What to call the measurements in notes: the names of their files.
 
     Returns
     -------
@@ -144,10 +140,12 @@ def niirs(
     Raises
     ------
     OptionError
-        If GSD, RER or SNR is missing or out of the range of any image.
+        If GSD, RER or SNR is missing or out of the range of any image, or measurements do not
+        belong together.
     """
     _require(version, elevation_deg, noise_gain)
-    known = read_niirs_inputs(measurement, gsd_m, rer, snr, giqe_h)
+    source = _Source() if measurement is None else _Source.of(measurement, names)
+    known = _read_inputs(source.numbers, gsd_m, rer, snr, giqe_h)
     values = [float(known[name]) for name in ("rer_across", "rer_along", "snr", "giqe_h")]
     inputs = _inputs(values, float(known["gsd_m"]), elevation_deg, noise_gain)
     spread = _inputs_std(inputs, values, known, version)
@@ -160,30 +158,71 @@ def niirs(
         equation_std=EQUATION_STD,
         inputs=inputs,
         notes=(
-            *_notes(inputs, value, version, float(known["rer_std"])),
+            *source.warnings,
+            *equation_notes(inputs, value, version, float(known["rer_std"])),
             *((ONE_DIRECTION,) if known.get("one_direction") else ()),
         ),
+        verdict=source.verdict,
+        measured_gsd_m=_other_gsd(source.numbers.get("gsd_m"), inputs.gsd_m),
     )
 
 
-def read_niirs_inputs(
-    measurement: Measurement | Record | None,
+@dataclass(frozen=True, eq=False)
+class _Source:
+    """What measurements give: numbers by name, the verdict, what it warns of."""
+
+    numbers: Mapping[str, Any] = field(default_factory=dict)
+    verdict: VerdictWord | None = None
+    warnings: tuple[Note, ...] = ()
+
+    @classmethod
+    def of(cls, given: Measured | Sequence[Measured], names: Sequence[str] | None) -> _Source:
+        """Of one measurement, or of several combined."""
+        inputs = measured_inputs(given, names)
+        records = named_records(inputs, names)
+        is_nameless = len(records) == 1 and names is None
+        warnings = [
+            Note(f"{one.verdict.word} measurement", words if is_nameless else f"{name}: {words}")
+            for name, one in records.items()
+            for words in warnings_of(one)
+        ]
+        snrs = [one.snr for one in records.values() if math.isfinite(one.snr)]
+        if len(records) == 1:
+            (record,) = records.values()
+        else:
+            both = combine(list(records.values()), names=list(records))
+            record = both.record
+            warnings += [Note("combination", words) for words in combination_warnings(both)]
+        # Next to no noise has no SNR that could be told: its terms in the equation vanish.
+        snr = {"snr": min(median(snrs), _POSSIBLE["snr"][1])} if snrs else {}
+        numbers = _of_record(record) | snr
+        return cls(numbers, record.verdict.word, tuple(warnings))
+
+
+def _other_gsd(measured_m: float | None, used_m: float) -> float | None:
+    """The GSD of the measurement, if that used is another."""
+    if measured_m is None or math.isclose(measured_m, used_m, rel_tol=_SAME_GSD):
+        return None
+    return measured_m
+
+
+def _read_inputs(
+    measured: Mapping[str, Any],
     gsd_m: float | tuple[float, float] | None,
     rer: float | Estimate | Sequence[float | Estimate] | None,
     snr: float | Estimate | None,
     giqe_h: float | Estimate | None,
 ) -> dict[str, Any]:
-    """What the equations need, of a measurement or as stated, by name.
+    """What the equations need, measured or as stated, by name.
 
     Raises
     ------
     OptionError
         If something is missing, or out of the range of any image.
     """
-    record = measurement.record if isinstance(measurement, Measurement) else measurement
-    found: dict[str, Any] = {} if record is None else _of_record(record)
+    found = dict(measured)
     if rer is not None:
-        both = list(rer) if isinstance(rer, Sequence) else [rer, rer]
+        both = list(rer) if isinstance(rer, tuple | list) else [rer, rer]
         if len(both) != 2:
             raise OptionError(f"rer has {len(both)} values: give one, or those across and along")
         found |= {
@@ -193,7 +232,7 @@ def read_niirs_inputs(
             "one_direction": False,
         }
     if gsd_m is not None:
-        sides = list(gsd_m) if isinstance(gsd_m, Sequence) else [gsd_m, gsd_m]
+        sides = list(gsd_m) if isinstance(gsd_m, tuple | list) else [gsd_m, gsd_m]
         if len(sides) != 2:
             raise OptionError(f"gsd_m has {len(sides)} values: give one, or those of both sides")
         row_m, col_m = (_possible("gsd_m", side) for side in sides)
@@ -214,7 +253,7 @@ def _of_record(record: Record) -> dict[str, Any]:
     heights = [one.giqe_h for one in directions if math.isfinite(one.giqe_h.value)]
     mean_h = math.exp(sum(math.log(max(one.value, 1e-3)) for one in heights) / max(len(heights), 1))
     pixel_m = record.image.pixel_gsd_m
-    found = {
+    found: dict[str, Any] = {
         "rer_across": first.rer,
         "rer_along": last.rer,
         "giqe_h": Estimate(mean_h, max((one.std for one in heights), default=0.0)),
@@ -223,7 +262,7 @@ def _of_record(record: Record) -> dict[str, Any]:
     }
     if pixel_m is not None:
         found["gsd_m"] = math.sqrt(pixel_m[0] * pixel_m[1])
-    return found | ({"snr": record.snr} if math.isfinite(record.snr) else {})
+    return found
 
 
 def _require_numbers(found: dict[str, Any]) -> None:
@@ -299,99 +338,3 @@ def _slope(function: Callable[[Sequence[float]], float], values: Sequence[float]
 
 def _std(value: float | Estimate) -> float:
     return value.std if isinstance(value, Estimate) and math.isfinite(value.std) else 0.0
-
-
-def _notes(
-    inputs: GiqeInputs, value: float, version: GiqeVersion, rer_std: float
-) -> tuple[Note, ...]:
-    """Where the equation was not made for such an image."""
-    return tuple(
-        note
-        for note in (
-            _low_snr(inputs),
-            _rer_range(inputs),
-            _gsd_range(inputs),
-            _low_elevation(inputs),
-            _off_the_scale(value),
-            _jump(inputs, version, rer_std),
-            _sharpened(inputs, version),
-        )
-        if note is not None
-    )
-
-
-ONE_DIRECTION = Note(
-    "one direction",
-    "the measurement shows one direction, whose RER stands for both: state the other (rer, --rer), "
-    "or give a combination",
-)
-
-
-def _low_snr(inputs: GiqeInputs) -> Note | None:
-    if inputs.snr >= _MIN_SNR:
-        return None
-    return Note(
-        "low SNR",
-        f"SNR is {inputs.snr:.3g}, below {_MIN_SNR:g}: the equation overrates such images",
-    )
-
-
-def _rer_range(inputs: GiqeInputs) -> Note | None:
-    low, high = _RER_RANGE
-    found = [one for one in (inputs.rer_across, inputs.rer_along) if not low <= one <= high]
-    if not found:
-        return None
-    return Note(
-        "RER out of range",
-        f"RER is {found[0]:.3g}, outside {low:g} to {high:g}: {_EXTRAPOLATED}",
-    )
-
-
-def _gsd_range(inputs: GiqeInputs) -> Note | None:
-    low, high = _GSD_RANGE_M
-    if low <= inputs.gsd_m <= high:
-        return None
-    return Note(
-        "GSD out of range",
-        f"GSD is {inputs.gsd_m:.3g} m, outside {low:g} to {high:g} m: {_EXTRAPOLATED}",
-    )
-
-
-def _low_elevation(inputs: GiqeInputs) -> Note | None:
-    if inputs.elevation_deg >= _MIN_ELEVATION_DEG:
-        return None
-    return Note(
-        "low elevation",
-        f"the line of sight has an elevation of {inputs.elevation_deg:.3g} degrees, below "
-        f"{_MIN_ELEVATION_DEG:g}: {_EXTRAPOLATED}",
-    )
-
-
-def _off_the_scale(value: float) -> Note | None:
-    low, high = _SCALE
-    if low <= value <= high:
-        return None
-    return Note("off the scale", f"NIIRS has levels from {low:g} to {high:g} only")
-
-
-def _jump(inputs: GiqeInputs, version: GiqeVersion, rer_std: float) -> Note | None:
-    if version != 4:
-        return None
-    near = max(_NEAR_JUMP_STDS * rer_std, 0.01)
-    if abs(inputs.rer_mean - JUMP_RER) > near:
-        return None
-    return Note(
-        "jump at RER 0.9",
-        f"RER is {inputs.rer_mean:.3f}, and version 4 changes its coefficients at {JUMP_RER:g}: "
-        f"it jumps there by {giqe4_jump(inputs):+.2f}",
-    )
-
-
-def _sharpened(inputs: GiqeInputs, version: GiqeVersion) -> Note | None:
-    if version != 5 or (math.isclose(inputs.noise_gain, 1.0) and inputs.rer_weighted <= 1.0):
-        return None
-    return Note(
-        "sharpened image",
-        "version 5 is of images before sharpening, and has no term for overshoot or noise gain: "
-        "give RER and SNR before it, or use version 4",
-    )

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import PurePath
 from statistics import median
 from typing import Any
 
@@ -19,19 +18,22 @@ from acutance.optics import Sensor
 from acutance.raster import Gsd
 from acutance.raster.image import AlongTrack
 from acutance.restoration.filtered_otf import RememberedOtf, SensorOtf
-from acutance.targets import Measurement, Record, TargetResult
+from acutance.restoration.named_records import (
+    Measured,
+    combination_warnings,
+    measured_inputs,
+    named_records,
+    warnings_of,
+)
+from acutance.targets import Measurement, Record
 from acutance.targets.check import VerdictWord
 from acutance.targets.combine import combine
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import combine_curves
-from acutance.targets.combine.inputs import records_of
 from acutance.targets.combine.weighted_forms import CombinedOtf
 from acutance.targets.slices import SLICE_DIRECTIONS_DEG, OtfSlices
 
 __all__ = ["KnownOtf", "Measured", "known_otf"]
-
-Measured = Measurement | Record | TargetResult[Measurement] | Mapping[str, Any]
-"""A measurement, its record, or its JSON document."""
 
 ISOTROPIC = "the same blur in all directions is assumed: only one was measured"
 
@@ -111,37 +113,12 @@ def _found(
         return KnownOtf(Otf2d(SensorOtf(given), given.pixel_m), sources=("a described sensor",))
     if isinstance(given, Otf2d):
         return KnownOtf(given, sources=("an OTF",))
-    several = isinstance(given, Sequence) and not isinstance(given, str | bytes)
-    inputs: list[Any] = list(given) if several else [given]
-    for one in inputs:
-        if not isinstance(one, Measurement | Record | TargetResult | Mapping):
-            raise OptionError(
-                f"a {type(one).__name__} describes no sensor: give a measurement, its record or "
-                "JSON document, several of them, a Sensor or an Otf2d"
-            )
-    if names is not None and len(names) != len(inputs):
-        raise OptionError(
-            f"{len(names)} names were given for {len(inputs)} measurements: give one for each"
-        )
-    records = _named_records(inputs, names)
+    inputs = measured_inputs(given, names, also=", a Sensor or an Otf2d")
+    records = named_records(inputs, names)
     if len(records) == 1:
         ((name, record),) = records.items()
         return _measured(inputs[0], name, record, isotropic)
     return _combined(records, gsd_m)
-
-
-def _named_records(inputs: Sequence[Any], names: Sequence[str] | None) -> dict[str, Record]:
-    """Every single measurement, by the name of its file and region, or by its number and kind."""
-    found: dict[str, Record] = {}
-    for number, one in enumerate(inputs, start=1):
-        origin = f"measurement {number}" if names is None else PurePath(names[number - 1]).name
-        own = records_of(one, origin)
-        for place, record in enumerate(own, start=1):
-            name = origin if names is not None else f"{origin} ({record.kind})"
-            if len(own) > 1:
-                name = f"{name}, {record.document.get('region') or place}"
-            found[f"{name} ({number})" if name in found else name] = record
-    return found
 
 
 def _combined(records: Mapping[str, Record], gsd_m: float | Gsd | None) -> KnownOtf:
@@ -155,8 +132,6 @@ def _combined(records: Mapping[str, Record], gsd_m: float | Gsd | None) -> Known
     both = combine(list(records.values()), names=list(records), gsd_m=gsd_m)
     bands = {one.image.band for one in records.values()}
     snrs = [one.snr for one in records.values() if math.isfinite(one.snr)]
-    # Each input that failed a check has a caution of its own.
-    own = [one for one in both.failed_checks if one.name != "failed_inputs"]
     return KnownOtf(
         both.otf,
         median(snrs) if snrs else None,
@@ -165,7 +140,7 @@ def _combined(records: Mapping[str, Record], gsd_m: float | Gsd | None) -> Known
         tuple(_in_words(one) for one in records.values()),
         (
             *(word for name, one in records.items() for word in _cautions(name, one)),
-            *(f"the combination: {check.message}" for check in own),
+            *(f"the combination: {one}" for one in combination_warnings(both)),
         ),
         both.verdict.word,
     )
@@ -242,13 +217,6 @@ def _in_words(record: Record) -> str:
 
 
 def _cautions(name: str, record: Record) -> tuple[str, ...]:
-    """What its verdict warns of: of a combination each check that failed."""
-    failed = record.failed_checks
-    if not failed:
-        return ()
-    if record.kind == "combined":
-        return tuple(f"{name}: {check.message}" for check in failed)
-    verdict = record.verdict
-    others = [check.name for check in failed if check.message != verdict.sentence]
-    also = f" (failed too: {', '.join(others)})" if others else ""
-    return (f"{name}: {verdict.word}: {verdict.sentence}{also}",)
+    """What its failed checks warn of, by its name."""
+    word = "" if record.kind == "combined" else f"{record.verdict.word}: "
+    return tuple(f"{name}: {word}{one}" for one in warnings_of(record))

@@ -43,6 +43,9 @@ _GSD_CHANGES = (-0.05, -0.02, 0.0, 0.02, 0.05)
 POSITION_BOUND = 0.80
 """Standard deviation of a place times the peak's SNR, in pixels: a well sampled Gaussian's."""
 
+_MAX_DIAMETER_M = 3.0
+"""A bound of ours for the cap of a mirror that somebody carries to a field."""
+
 
 @dataclass(frozen=True)
 class MirrorPlanOptions:
@@ -166,6 +169,18 @@ class MirrorPlan:
         """Standard deviation of a place that no method beats, by the peak's SNR."""
         return POSITION_BOUND / self.options.snr
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What has to be said of the mirrors: that they are too large."""
+        if self.diameter_m <= _MAX_DIAMETER_M:
+            return ()
+        return (
+            f"caps {self.diameter_m:.3g} m across are no mirrors for a field (at most "
+            f"{_MAX_DIAMETER_M:g} m): they grow with the pixel, {self.layout.pixel_m[1]:g} m here; "
+            "check the GSD (gsd_m, --gsd), choose a lower level (level, --level), or tilt smaller "
+            "caps towards the middle between sun and satellite",
+        )
+
     def to_dict(self) -> dict[str, Any]:
         """The plan for JSON."""
         layout, options = self.layout, self.options
@@ -195,6 +210,7 @@ class MirrorPlan:
             "std": dict(self.std),
             "scatter": dict(self.scatter),
             "bias": dict(self.bias),
+            "notes": list(self.notes),
         }
 
     def to_csv(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -152,10 +152,19 @@ def _designs(options: PlanOptions) -> Iterator[tuple[str, Design]]:
     more_widths = (1.5, 2.0, 2.5, 3.0, 3.5, 4.0) if single else options.widths_px
     for count in sorted({rows, *more_rows}):
         yield "rows", _wide_enough(replace(plan, rows=count), options.sensor)
-    for tilt in sorted({angle, *more_angles}):
+    for tilt in _with_own(angle, more_angles):
         yield "angle", _wide_enough(replace(plan, angle_deg=tilt), options.sensor)
-    for size in sorted({width, *more_widths}) if is_pulse else ():
+    for size in _with_own(width, more_widths) if is_pulse else ():
         yield "width", _wide_enough(replace(plan, width_px=size), options.sensor)
+
+
+def _with_own(own: float, others: Sequence[float]) -> list[float]:
+    """The plan's own number and others, rising; one that differs by rounding is the own one.
+
+    A width in metres over the GSD is seldom exactly a number of pixels.
+    """
+    different = [one for one in set(others) if not math.isclose(one, own)]
+    return sorted([own, *different])
 
 
 def _planned_width(options: PlanOptions) -> float:

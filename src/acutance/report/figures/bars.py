@@ -74,7 +74,8 @@ def _draw_groups(axes: Axes, measurement: BarsMeasurement) -> None:
             textcoords="offset points", fontsize=7, color="white", va="center", fontweight="bold",
             bbox={"boxstyle": "round,pad=0.15", "facecolor": VERMILION, "edgecolor": "none"},
         )  # fmt: skip
-    axes.set_title(f"{len(measurement.groups)} groups of bars (number: cycles per pixel)")
+    # In two lines: a map of bars is often narrow, and a panel cuts off what is wider.
+    axes.set_title(f"{len(measurement.groups)} groups of bars\n(number: cycles per pixel)")
 
 
 def _draw_mtf(axes: Axes, measurement: BarsMeasurement) -> None:

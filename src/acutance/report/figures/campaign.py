@@ -137,7 +137,7 @@ def _label(entry: CampaignEntry, entries: Sequence[CampaignEntry]) -> str:
 def _draw_deviations(
     axes: Axes, entries: Sequence[CampaignEntry], rows: Sequence[float], name: str
 ) -> None:
-    """Deviations from the truth; what lies far outside is an arrow at the border."""
+    """Deviations from the truth; an arrow at the border where one or its interval goes on."""
     offs = np.array([one.numbers(name)[0].value - one.numbers(name)[1] for one in entries])
     stds = np.array([one.numbers(name)[0].std for one in entries])
     trusted = np.array([one.reference for one in entries])
@@ -145,11 +145,14 @@ def _draw_deviations(
     axes.axvline(0.0, color=INK, linewidth=1.0)
     for off, std, row, one in zip(offs, stds, rows, entries, strict=True):
         color = INK if one.target == "all combined" else (BLUE if one.reference else FAINT)
+        ends = off - TWO_SIDED_95 * std, off + TWO_SIDED_95 * std
+        for side, outside in ((-1, ends[0] < -reach), (1, ends[1] > reach)):
+            if outside:
+                axes.plot(
+                    side * reach * 0.97, row, marker=">" if side > 0 else "<", color=color,
+                    markersize=6,
+                )  # fmt: skip
         if abs(off) > reach:
-            axes.plot(
-                np.sign(off) * reach * 0.97, row, marker=">" if off > 0 else "<", color=color,
-                markersize=6,
-            )  # fmt: skip
             continue
         axes.errorbar(
             off, row, xerr=TWO_SIDED_95 * std, fmt="D" if color == INK else "o", color=color,

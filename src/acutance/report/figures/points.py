@@ -10,6 +10,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.report.figures.curves import axis_labels
+from acutance.report.figures.labels_apart import labels_apart
 from acutance.report.figures.panel import Panel, on_axes
 from acutance.report.figures.pixels import show_pixels
 from acutance.report.paper import BLUE, FAINT, INK, ORANGE, VERMILION
@@ -28,8 +29,14 @@ GALLERY_COLUMNS = 10
 MAX_NAMED = 40
 MAX_REJECTED_SHOWN = 40
 LABEL_STEP = 0.055
+"""Of a number to its point, over half the width of the axes."""
 LABEL_SIDES = ((1, -0.6), (-1, -0.6), (1, 0.8), (-1, 0.8), (0, -1), (0, 1))
-"""Where a number may stand, over half the width of the axes; rows go downwards."""
+"""Where a number may stand, in such steps; rows go downwards."""
+BOX_PT = (12.5, 10.0)
+"""Width and height of a number in its box, on the map."""
+BOX_SIDES = ((1.15, 0), (-1.15, 0), (0, -1.15), (0, 1.15), (0.9, -0.8), (-0.9, -0.8), (0.9, 0.8),
+             (-0.9, 0.8))  # fmt: skip
+"""Where it may stand beside its circle, in widths and heights."""
 
 
 def points_panels(measurement: PointsMeasurement) -> tuple[Panel, ...]:
@@ -104,13 +111,10 @@ def _draw_places(axes: Axes, measurement: PointsMeasurement) -> None:
         places[:, 1], places[:, 0], "o", markersize=9, markerfacecolor="none",
         markeredgecolor=ORANGE, markeredgewidth=1.2,
     )  # fmt: skip
-    if len(places) <= MAX_NAMED:
-        for number, (down, right) in enumerate(places.tolist(), start=1):
-            axes.annotate(
-                str(number), (right, down), (6, 3), textcoords="offset points", fontsize=7,
-                color=ORANGE,
-            )  # fmt: skip
     plain = [one for one in measurement.rejected if one.reason != "faint"]
+    if len(places) <= MAX_NAMED:
+        crosses = np.array([(one.row, one.col) for one in plain], float).reshape(-1, 2)
+        _number_sources(axes, places, crosses)
     for one in plain[:MAX_REJECTED_SHOWN]:
         axes.plot(one.col, one.row, "x", markersize=6, color=VERMILION, markeredgewidth=1.3)
         if len(plain) <= MAX_NAMED // 2:
@@ -119,6 +123,26 @@ def _draw_places(axes: Axes, measurement: PointsMeasurement) -> None:
                 color=VERMILION,
             )  # fmt: skip
     axes.set_title(f"{len(places)} sources, {len(measurement.rejected)} rejected")
+
+
+def _number_sources(axes: Axes, places: Floats, crosses: Floats) -> None:
+    """Numbers in boxes beside the circles at (row, col), legible on every ground."""
+    box = axes.get_window_extent()
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    # Pixels are square: one side of the axes limits the map.
+    scale_pt = min(box.width / abs(right - left), box.height / abs(top - bottom))
+    scale_pt *= 72 / axes.figure.dpi
+    size = np.array(BOX_PT)
+    found = labels_apart(
+        places[:, ::-1] * scale_pt / size, BOX_SIDES, crosses[:, ::-1] * scale_pt / size
+    )
+    away = found * size - places[:, ::-1] * scale_pt
+    for number, (place, (x, y)) in enumerate(zip(places.tolist(), away, strict=True), start=1):
+        axes.annotate(
+            str(number), (place[1], place[0]), (x, -y), textcoords="offset points", fontsize=7,
+            color="white", fontweight="bold", ha="center", va="center",
+            bbox={"boxstyle": "round,pad=0.15", "facecolor": VERMILION, "edgecolor": "none"},
+        )  # fmt: skip
 
 
 def _draw_phases(axes: Axes, measurement: PointsMeasurement) -> None:
@@ -171,15 +195,10 @@ def _draw_survey(axes: Axes, measurement: PointsMeasurement) -> None:
 
 
 def _number_apart(axes: Axes, places: Floats, points: Sequence[int], reach: float) -> None:
-    """Numbers next to points (x, y), each on the side where nothing else is written."""
-    taken = list(places / reach)
-    for number, place in zip(points, places / reach, strict=True):
-        candidates = [place + LABEL_STEP * np.array(side) for side in LABEL_SIDES]
-        apart = [min(float(np.hypot(*(one - spot))) for one in taken) for spot in candidates]
-        chosen = candidates[int(np.argmax(apart))]
-        taken.append(chosen)
-        x, y = (reach * chosen).tolist()
-        axes.text(x, y, str(number + 1), fontsize=7, ha="center", va="center")
+    """Numbers next to points (x, y)."""
+    step = LABEL_STEP * reach
+    for number, (x, y) in zip(points, labels_apart(places / step, LABEL_SIDES), strict=True):
+        axes.text(step * x, step * y, str(number + 1), fontsize=7, ha="center", va="center")
 
 
 def _draw_aligned(page: FigureBase, measurement: PointsMeasurement) -> None:

@@ -22,6 +22,8 @@ __all__ = ["map_panel"]
 
 _FEW_LINES, _MAX_LINES = 200, 2500
 """So many of the used edges are drawn, and of the others: more lie over one another."""
+_MAX_GAIN = 2.0
+"""How much thicker a dozen lines are than `_FEW_LINES`."""
 _MIN_SHARE = 0.008
 """Shortest line, a share of the map's side: a shorter one has no colour that can be seen."""
 _VECTOR_LINES = 1000
@@ -39,17 +41,19 @@ def map_panel(measurement: SceneMeasurement, backdrop: Floats | None = None) -> 
     used = int(edges.used.sum())
     steps = [_step(used), _step(edges.size - used)]
     thinned = (
-        f" One in {steps[0]} of the used edges and one in {steps[1]} of the others is drawn, "
-        "short ones longer than they are."
+        f" One in {steps[0]} of the used edges and one in {steps[1]} of the others is drawn."
         if max(steps) > 1
         else ""
     )
+    is_short = edges.length_px < np.where(edges.used, _shortest(measurement, used), 0.0)
+    lengthened = " Short ones are drawn longer than they are." if is_short.any() else ""
     return Panel(
         "Edges of the scene",
         "Edges that are used, in the colour of their MTF at Nyquist minus that of the sensor at "
         "their place along their normal, in standard deviations of the edge: pale as sharp as the "
         "sensor, orange softer, blue sharper than it. Thin dark lines: left out."
         + thinned
+        + lengthened
         + behind_words(measurement),
         lambda page: _draw(page, measurement, backdrop),
         height_in=_HEIGHT_IN,
@@ -62,6 +66,11 @@ def _step(count: int) -> int:
     return max(1, math.ceil(count / _MAX_LINES))
 
 
+def _shortest(measurement: SceneMeasurement, used: int) -> float:
+    """Length of the shortest of so many lines in pixels: a few are thick, and longer than thick."""
+    return _MIN_SHARE * max(measurement.image.roi[2:]) * max(1.0, _gain(used)) ** 2
+
+
 def _draw(page: FigureBase, measurement: SceneMeasurement, backdrop: Floats | None) -> None:
     from matplotlib.collections import LineCollection
     from matplotlib.colors import LinearSegmentedColormap
@@ -72,26 +81,25 @@ def _draw(page: FigureBase, measurement: SceneMeasurement, backdrop: Floats | No
     axes.set_facecolor(_GROUND)
     if backdrop is not None:
         _draw_backdrop(axes, backdrop, extent)
-    shortest = _MIN_SHARE * max(height, width)
     edges, seen = measurement.edges, edges_seen(measurement)
     some = np.flatnonzero(~edges.used)[:: _step(int(np.sum(~edges.used)))]
     lines = _lines(
         edges.row[some], edges.col[some], edges.normal_deg[some],
-        np.maximum(edges.length_px[some], shortest),
+        np.maximum(edges.length_px[some], _MIN_SHARE * max(height, width)),
     )  # fmt: skip
     axes.add_collection(
         LineCollection(
-            list(lines), colors=INK, linewidths=_width(len(lines), 0.9), alpha=0.75,
+            list(lines), colors=INK, linewidths=0.9 * min(1.0, _gain(len(lines))), alpha=0.75,
             rasterized=len(lines) > _VECTOR_LINES,
         )
     )  # fmt: skip
     few = slice(None, None, _step(seen.row.size))
     lines = _lines(
         seen.row[few], seen.col[few], seen.normal_deg[few],
-        np.maximum(seen.length_px[few], shortest),
+        np.maximum(seen.length_px[few], _shortest(measurement, seen.row.size)),
     )  # fmt: skip
     coloured = LineCollection(
-        list(lines), linewidths=_width(len(lines), 2.4),
+        list(lines), linewidths=2.4 * _gain(len(lines)),
         cmap=LinearSegmentedColormap.from_list("sharpness", [VERMILION, _IDEAL, SKY]),
         rasterized=len(lines) > _VECTOR_LINES,
     )  # fmt: skip
@@ -117,9 +125,9 @@ def _lines(row: Floats, col: Floats, normal_deg: Floats, length_px: Floats) -> F
     return np.stack([middle - away, middle + away], axis=1)
 
 
-def _width(count: int, widest: float) -> float:
-    """Width of lines in points: the more there are, the thinner."""
-    return widest * min(1.0, math.cbrt(_FEW_LINES / max(count, 1)))
+def _gain(count: int) -> float:
+    """Factor of the width of lines: the more there are, the thinner."""
+    return min(_MAX_GAIN, math.cbrt(_FEW_LINES / max(count, 1)))
 
 
 def _draw_backdrop(axes: Axes, pixels: Floats, extent: tuple[float, float, float, float]) -> None:

@@ -63,6 +63,7 @@ def mirror_plan_text(plan: MirrorPlan) -> str:
         f"ground of {options.ground:g};\n  the brightest pixel holds {100 * plan.peak_share:.0f} % "
         "of a mirror's light",
         _expected(plan),
+        *(f"note: {note}" for note in plan.notes),
     ]
     return "\n\n".join(blocks)
 

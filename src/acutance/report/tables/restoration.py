@@ -192,12 +192,15 @@ def niirs_table(found: Niirs) -> Table:
     own = found.inputs
     assert own is not None
     low, high = found.interval(0.95)
+    gsd = format_number(own.gsd_m)
+    if found.measured_gsd_m is not None:
+        gsd += f" (stated; the document's own is {format_number(found.measured_gsd_m)} m)"
     rows = (
         (f"NIIRS (GIQE {found.version})", word_estimate(found).value_and_std),
-        ("95 % interval", f"{low:.2f} … {high:.2f}"),
+        ("95 % interval", f"{write_fixed(low, 2)} … {write_fixed(high, 2)}"),
         ("of the measurement", write_fixed(found.inputs_std, 3)),
         ("of the equation", write_fixed(found.equation_std, 1)),
-        ("GSD [m]", format_number(own.gsd_m)),
+        ("GSD [m]", gsd),
         ("RER across, along", f"{own.rer_across:.4f}, {own.rer_along:.4f}"),
         ("SNR", format_number(own.snr)),
         ("elevation [°]", format_number(own.elevation_deg)),
