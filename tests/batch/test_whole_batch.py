@@ -234,6 +234,19 @@ def test_bands_by_name_and_number(field_pixels, tmp_path, run, rows, write_field
     assert named.to_dict()["missing_bands"] == ["blue", 4]
 
 
+def test_bands_without_names_are_not_one(tmp_path, run, rows, write_field):
+    """Their numbers tell them apart: pooled, two bands look like one sensor that is neither."""
+    image = write_field(0, edit=lambda pixels: np.stack([pixels, pixels // 2]))
+    assert run(image).measured == 4
+    measured, _ = rows()
+    assert sorted(measured["band"]) == ["1", "1", "2", "2"]
+    with Archive(tmp_path / "kept.db", read_only=True) as archive:
+        assert len(archive.measurements(band="2")) == 2
+    # Of a file with one band the number says nothing.
+    run(write_field(1))
+    assert None in set(rows()[0]["band"])
+
+
 def test_workers_give_the_same_rows(write_field, run, rows, tmp_path):
     images = [write_field(number) for number in range(3)]
     run(*images)

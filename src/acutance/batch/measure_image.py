@@ -189,9 +189,21 @@ def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[E
                 described = target_entry(target)
             found, seconds = _row(target, chosen, opened, place, work.scan_workers)
             yield (
-                Entry(**found, image=opened.entry, target=described, band=band.name, key=key),
+                Entry(
+                    **found,
+                    image=opened.entry,
+                    target=described,
+                    band=_kept_name(band, opened),
+                    key=key,
+                ),
                 seconds,
             )
+
+
+def _kept_name(band: Band, opened: _Opened) -> str | None:
+    """The name of a band; the number of one of several without a name, so that it is told apart."""
+    is_one_of_several = len(opened.bands) > 1
+    return band.name or (str(band.number) if is_one_of_several else None)
 
 
 def _row(
