@@ -5,7 +5,7 @@ import pytest
 
 from acutance.curves import Otf2d
 from acutance.optics import Detector, Gaussian, Sensor
-from acutance.scan.blur_modes import blur_modes, changed, edge_modes, fit_modes
+from acutance.scan.blur_modes import blur_modes, changed, edge_modes, fit_modes, quartic_modes
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field import Field, field_polynomials
 from acutance.scan.field_fit import fit_field
@@ -72,6 +72,17 @@ def test_modes_are_blurs():
         blur_modes(np.array([0.25]), np.array([0.0]))[0, 0]
     )
     assert blur_modes(np.array([0.0, 0.5, 0.9]), np.zeros(3))[:, 3] == pytest.approx(0, abs=1e-12)
+
+
+def test_modes_of_fourth_order_are_all_there_are():
+    """Any homogeneous polynomial of fourth order in both frequencies is a sum of the five."""
+    normals = np.linspace(-90, 80, 18)
+    u, v = np.cos(np.radians(normals))[:, None] * FREQ, np.sin(np.radians(normals))[:, None] * FREQ
+    modes = quartic_modes(normals, FREQ).reshape(-1, 5)
+    for power in range(5):
+        wanted = (u ** (4 - power) * v**power).ravel()
+        amount, *_ = np.linalg.lstsq(modes, wanted, rcond=None)
+        assert modes @ amount == pytest.approx(wanted, abs=1e-12)
 
 
 @pytest.mark.parametrize("off", [-0.03, 0.03])

@@ -8,7 +8,7 @@ from scipy import stats
 
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.information import expected_information, observed_information, sensor_terms
-from acutance.scan.population import SoftnessGrid, fit_shares, rises_along, softness_grid
+from acutance.scan.population import SoftnessGrid, fit_shares, softness_grid
 from acutance.scan.shares import SECTORS, START, sectors_of, share_covariances
 from acutance.scan.softness import KINDS, PARTS, PSEUDO_COUNTS, law_chances
 
@@ -234,40 +234,3 @@ def test_ideal_edges_alone_give_the_mean_of_all():
     (information,), (projection,) = expected_information(edges, member)
     mean = np.linalg.solve(information, projection)
     assert mean[:4] == pytest.approx(TRUE[:4], abs=4 * STD / 20)
-
-
-def way_between(edges, first_px, last_px):
-    """Sensors whose further blur goes from one standard deviation to another, evenly."""
-    ends = [
-        TRUE * np.tile(np.exp(-2 * (np.pi * one * FREQ) ** 2), 2) for one in (first_px, last_px)
-    ]
-    return [(edges, ((1 - w) * ends[0] + w * ends[1])[None]) for w in np.linspace(0, 1, 9)]
-
-
-def rises(way):
-    top = fit_shares(*way[-1], START).log_likelihood
-    return rises_along(way, START, top, dip=0.5, excess=5.0)
-
-
-def test_towards_the_only_sensor_that_edges_allow_their_likelihood_rises():
-    edges, _ = drawn(0.0)
-    assert rises(way_between(edges, 0.4, 0.0))
-    assert not rises(way_between(edges, 0.0, 0.4))
-
-
-def test_between_two_sensors_of_which_either_has_its_ideal_objects_lies_a_valley():
-    rng = np.random.default_rng(4)
-    blur = np.exp(-2 * (np.pi * np.outer(np.repeat([0.0, 0.5], [20, 80]), FREQ)) ** 2)
-    edges = known_to_std(TRUE * np.hstack([blur, blur]) + rng.normal(0, STD, (100, 8)))
-    assert not rises(way_between(edges, 0.5, 0.0))
-    assert not rises(way_between(edges, 0.0, 0.5))
-    # Of a guess beside one of them the way leads there.
-    assert rises(way_between(edges, 0.55, 0.5))
-
-
-def test_beyond_an_end_the_likelihood_may_rise_a_little():
-    edges, _ = drawn(0.0)
-    found = fit_shares(edges, TRUE[None], START).log_likelihood
-    way = way_between(edges, 0.4, 0.0)
-    assert rises_along(way, START, found - 4.0, dip=0.5, excess=5.0)
-    assert not rises_along(way, START, found - 6.0, dip=0.5, excess=5.0)

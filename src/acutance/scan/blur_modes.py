@@ -28,6 +28,7 @@ __all__ = [
     "changed",
     "edge_modes",
     "fit_modes",
+    "quartic_modes",
 ]
 
 BLUR_MODES: Final = ("all around", "across more than along", "oblique", "middle of the band")
@@ -85,6 +86,20 @@ def edge_modes(normal_deg: Floats, freq_cpp: Floats) -> Floats:
     """The modes along directions, (n, k, 4)."""
     angle = np.radians(normal_deg)[:, None]
     return blur_modes(freq_cpp * np.cos(angle), freq_cpp * np.sin(angle))
+
+
+def quartic_modes(normal_deg: Floats, freq_cpp: Floats) -> Floats:
+    """Modes of fourth order along directions, (n, k, 5): what is left of blurs beyond the second.
+
+    The first three are those of `BLUR_MODES`, steeper, the others turn four times all around: the
+    five span the homogeneous polynomials of fourth order in both frequencies.
+    """
+    fourth = (freq_cpp / NYQUIST_CPP) ** 2
+    turned = 4 * np.radians(normal_deg)[:, None]
+    steeper = edge_modes(normal_deg, freq_cpp)[:, :, :COMMON_MODES] * fourth[:, None]
+    size = -2 * np.pi**2 * freq_cpp**2 * fourth
+    four_fold = np.stack([size * np.cos(turned), size * np.sin(turned)], axis=-1)
+    return np.concatenate([steeper, four_fold], axis=2)
 
 
 def changed(otf: Floats, log_gain: Floats) -> Floats:

@@ -15,7 +15,6 @@ laws of softness have their probability of every cell of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
@@ -29,7 +28,7 @@ from acutance.scan.shares import likeliest_shares, sectors_of
 from acutance.scan.softness import NEARLY_IDEAL_PX, STRANGE, below_steps
 from acutance.scan.softness_sums import cell_chances
 
-__all__ = ["Membership", "SoftnessGrid", "fit_shares", "rises_along", "softness_grid"]
+__all__ = ["Membership", "SoftnessGrid", "fit_shares", "softness_grid"]
 
 _COARSE_PX2: Final[Floats] = np.array([
     0.0, 0.01, 0.03, 0.06, 0.1, 0.16, 0.25, 0.4, 0.6, 0.9, 1.4, 2.0, 3.0, 4.5, 7.0, 11.0, 16.0
@@ -166,33 +165,3 @@ def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> Membership
     whole = np.sum(by_part * share[sector], axis=1)
     log_likelihood = float(np.sum(largest) + np.sum(np.log(whole)))
     return Membership(objects, grid, sector, share, odds, by_part, log_likelihood)
-
-
-def rises_along(
-    way: Iterable[tuple[EdgeLikelihoods, Floats]],
-    share: Floats,
-    top: float,
-    *,
-    dip: float,
-    excess: float,
-) -> bool:
-    """Whether the log likelihood of edges rises on a way of sensors, up to that of its end.
-
-    Parameters
-    ----------
-    way : iterable of (EdgeLikelihoods, (b, 2 k) array)
-        The edges, as they see a sensor, and that sensor.
-    share : (g, p) array
-        First guess of the shares.
-    top : float
-        Log likelihood of the end.
-    dip, excess : float
-        By so much it may fall on the way there, and lie above the end.
-    """
-    highest = -np.inf
-    for edges, otf in way:
-        found = fit_shares(edges, otf, share)
-        if not min(highest, top) - dip <= found.log_likelihood <= top + excess:
-            return False
-        share, highest = found.share, max(highest, found.log_likelihood)
-    return True
