@@ -356,13 +356,18 @@ _COMBINED = {
         "of one sensor, or one of them is wrong; leave out the one that fits least",
         severity="fail",
     ),
+    "beyond_members": Question(
+        "How far does the MTF lie beyond that of every measurement?", "<=", 0.02,
+        "no sensor is less, or more, sharp than each of its measurements: they are of several, or "
+        "one of them is wrong; leave out the one that fits least", severity="fail",
+    ),
     "directions": Question(
         "How many directions differ by 15 degrees?", ">=", 3.0,
         "rotation and asymmetry follow from the prior alone: add an edge at 30 to 60 degrees, "
         "points or a star", severity="note",
     ),
     "failed_inputs": Question(
-        "How many measurements have a failed check of their own?", "<=", 0.0,
+        "How many measurements are doubtful or invalid themselves?", "<=", 0.0,
         "read those checks, or leave the measurements out",
     ),
     "shared_targets": Question(

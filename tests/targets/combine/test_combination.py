@@ -145,6 +145,35 @@ def test_sensors_that_only_a_large_correction_would_join_are_no_sensor():
     assert "not of one sensor" in found.verdict.sentence
 
 
+def test_a_combination_beyond_all_its_members_is_of_no_sensor():
+    """Two curves of one direction that lie far apart pull a form to where neither is."""
+    sharper, softer = (optics.Sensor([optics.Gaussian(s), optics.Detector()]) for s in (0.4, 0.75))
+    parts = [
+        edge(6, "across", 1, softer),
+        edge(6, "across", 2, sharper),
+        edge(8, "along", 3, softer),
+    ]
+    found = ac.combine(parts)
+    assert found.verdict.word == "invalid"
+    (beyond,) = (check for check in found.checks if check.name == "beyond_members")
+    assert not beyond.passed
+    assert all(np.mean(one.value - one.fitted) > beyond.value for one in found.parts)
+
+
+def test_members_that_agree_have_the_combination_between_them(together):
+    (beyond,) = (check for check in together.checks if check.name == "beyond_members")
+    assert beyond.value < 0.001
+
+
+@pytest.mark.parametrize(("severity", "counted"), [("note", 0), ("caution", 1), ("fail", 1)])
+def test_notes_of_a_member_only_widened_its_deviations(edges, severity, counted):
+    documents = [one.to_dict() for one in edges]
+    documents[0]["checks"][0] |= {"passed": False, "severity": severity}
+    found = ac.combine(documents)
+    (failed,) = (check for check in found.checks if check.name == "failed_inputs")
+    assert failed.value == counted
+
+
 def test_limits_can_be_changed(edges):
     options = ac.CombineOptions(limits={"directions": 2})
     assert ac.combine(edges[:2], options=options).trusted

@@ -7,27 +7,31 @@ from collections.abc import Sequence
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
 from acutance.geometry.angles import axis_difference, direction_difference
 from acutance.targets.check import Check, Limits, answer
+from acutance.targets.combine.combined_measurement import CombinedPart
 from acutance.targets.combine.fit import CombinedFit
 from acutance.targets.combine.inputs import MeasuredInput
 
 __all__ = ["COMBINE_CHECKS", "check_combination", "count_directions", "direction_gap_deg"]
 
 COMBINE_CHECKS = (
-    "agreement", "worst_member", "plain_sensor", "correction", "directions", "failed_inputs",
-    "shared_targets", "assumed_covariance", "unknown_gsd",
+    "agreement", "worst_member", "plain_sensor", "correction", "beyond_members", "directions",
+    "failed_inputs", "shared_targets", "assumed_covariance", "unknown_gsd",
 )  # fmt: skip
 """Names of all checks of a combination."""
 
 _DISTINCT_DEG = 15.0
 _SAME_LINE_PX = 3.0
 _SAME_LINE_DEG = 5.0
+_SURE_STDS = 2.0
 
 
 def check_combination(
     inputs: Sequence[MeasuredInput],
     fit: CombinedFit,
+    parts: Sequence[CombinedPart],
     limits: Limits,
     without_gsd: Sequence[str] = (),
 ) -> tuple[Check, ...]:
@@ -37,12 +41,14 @@ def check_combination(
     ----------
     inputs : sequence of MeasuredInput
     fit : CombinedFit
+    parts : sequence of CombinedPart
+        The measurements beside the combination.
     limits : mapping of str to float
         Limits the caller changed.
     without_gsd : sequence of str, optional
         Names of measurements without a GSD among others that have one.
     """
-    failed = [f"{one.name} ({', '.join(one.failed_checks)})" for one in inputs if one.failed_checks]
+    failed = [f"{one.name} ({', '.join(one.warnings)})" for one in inputs if one.warnings]
     assumed = [one.name for one in inputs if not one.covariance_known]
     directions = count_directions(inputs)
     return (
@@ -50,8 +56,9 @@ def check_combination(
         _worst(inputs, fit, limits),
         _plain(fit, limits),
         _correction(fit, limits),
+        _beyond(parts, limits),
         answer("directions", directions, f"{directions} directions were measured", limits),
-        _counted("failed_inputs", failed, "with a failed check of their own", limits),
+        _counted("failed_inputs", failed, "that may be biased by checks of their own", limits),
         _counted("shared_targets", _shared(inputs), "of the same pixels", limits, "pair"),
         _counted("assumed_covariance", assumed, "without covariance", limits),
         _counted("unknown_gsd", without_gsd, "without a GSD", limits),
@@ -112,6 +119,27 @@ def _correction(fit: CombinedFit, limits: Limits) -> Check:
         else "no correction was added"
     )
     return answer("correction", share, found, limits)
+
+
+def _beyond(parts: Sequence[CombinedPart], limits: Limits) -> Check:
+    """Whether the combination lies between its members: a mean of whatever kind does.
+
+    Of each counts the mean of its MTF up to Nyquist, and how far that may be off by its deviations.
+    """
+    below = [one.freq_cpp <= NYQUIST_CPP for one in parts]
+    off = np.array([
+        np.mean((one.value - one.fitted)[:, some]) for one, some in zip(parts, below, strict=True)
+    ])  # fmt: skip
+    std = [np.mean(one.std[:, some]) for one, some in zip(parts, below, strict=True)]
+    same_side = bool(np.all(off > 0) or np.all(off < 0))
+    value = max(float(np.min(np.abs(off) - _SURE_STDS * np.array(std))), 0.0) if same_side else 0
+    where = "below" if np.all(off > 0) else "above"
+    found = (
+        f"in the mean up to Nyquist the MTF lies {value:.3f} {where} that of every measurement"
+        if value > 0
+        else "the MTF lies between those of the measurements"
+    )
+    return answer("beyond_members", value, found, limits)
 
 
 def _shared(inputs: Sequence[MeasuredInput]) -> list[str]:

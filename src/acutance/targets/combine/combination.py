@@ -76,22 +76,23 @@ def combine(
         [_curve(one) for one in inputs], detector_px=chosen.detector_px, forms=chosen.forms
     )
     otf = Otf2d(fit.otf, None if gsd is None else (gsd.row_m, gsd.col_m))
+    parts = tuple(
+        _part(one, chi_square, otf) for one, chi_square in zip(inputs, fit.members, strict=True)
+    )
     paths = {one.image.path for one in inputs}
     return CombinedMeasurement(
         kind="combined",
         method="least-squares",
         transfer=otf,
         snr=math.nan,
-        checks=check_combination(inputs, fit, chosen.limits, unknown),
+        checks=check_combination(inputs, fit, parts, chosen.limits, unknown),
         image=ImageInfo(
             paths.pop() if len(paths) == 1 else None,
             along_track=common_flight(inputs),
             pixel_gsd_m=otf.gsd_m,
         ),
         options=chosen.to_dict(),
-        parts=tuple(
-            _part(one, chi_square, otf) for one, chi_square in zip(inputs, fit.members, strict=True)
-        ),
+        parts=parts,
         chi_square=fit.total,
         plain_sensor=fit.plain,
         details=fit,

@@ -65,9 +65,10 @@ class MeasuredInput(ShortRepr):
         return self.record.image
 
     @property
-    def failed_checks(self) -> tuple[str, ...]:
-        """Names of the checks that did not pass."""
-        return tuple(check.name for check in self.record.failed_checks)
+    def warnings(self) -> tuple[str, ...]:
+        """Names of the checks by which its numbers may be off; notes only widen deviations."""
+        failed = self.record.failed_checks
+        return tuple(check.name for check in failed if check.severity != "note")
 
     @property
     def place(self) -> tuple[float, ...]:
