@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 
 import pytest
 
-from acutance.batch.image_list import list_images, stated_of
+from acutance.batch.image_list import list_images, require_stated_images, stated_of
 from acutance.batch.plan import StatedOfImages, plan_of, read_plan
 from acutance.errors import OptionError
 
@@ -114,6 +114,16 @@ def test_later_statements_go_before_earlier_ones(tmp_path):
     found = stated_of("images/K3_1.tif", stated)
     assert (found.sensor, found.level) == ("B", "L1")
     assert stated_of(str(tmp_path / "deep" / "K3_1.tif"), stated).sensor == "C"
+
+
+def test_what_is_stated_of_no_image_is_refused(tmp_path):
+    (tmp_path / "K3_1.tif").write_bytes(b"x")
+    files = list_images([str(tmp_path / "*.tif")])
+    right = StatedOfImages(images=("K3_*.tif",), sensor="B")
+    require_stated_images(files, (StatedOfImages(sensor="A"), right))
+    wrong = StatedOfImages(images=("K3_*.tif", "K4_*.tif"), sensor="C")
+    with pytest.raises(OptionError, match=r"stated\.2 is of images that match K4_\*\.tif"):
+        require_stated_images(files, (right, wrong))
 
 
 def test_images_are_listed_once(tmp_path):

@@ -23,7 +23,7 @@ def test_what_an_image_says(acutance, tmp_path, refused):
     refused(("image", tmp_path / "none.tif"), "does not exist")
 
 
-def test_documents_elsewhere_and_contradictions(acutance, tmp_path):
+def test_documents_elsewhere_and_contradictions(acutance, refused, tmp_path):
     path, document = tmp_path / "scene.tif", tmp_path / "other.IMD"
     write_geotiff(path, np.ones((16, 16), np.uint16), tags={"SENSOR": "SIM-1"})
     document.write_text(
@@ -32,5 +32,8 @@ def test_documents_elsewhere_and_contradictions(acutance, tmp_path):
     shown = acutance("image", path, "--metadata", document)
     assert "WV02   (other.IMD: satId)" in shown.stdout
     assert "contradiction: sensor: WV02 (other.IMD: satId), but SIM-1" in shown.stdout
-    damaged = acutance("image", path, "--metadata", tmp_path / "none.xml")
-    assert "note: none.xml cannot be read" in damaged.stdout
+    (tmp_path / "damaged.xml").write_text("<a>")
+    damaged = acutance("image", path, "--metadata", tmp_path / "damaged.xml")
+    assert "note: damaged.xml cannot be read" in damaged.stdout
+    # Who names a document that is not there has mistyped its name.
+    refused(("image", path, "--metadata", tmp_path / "none.xml"), "there is no such file")

@@ -64,15 +64,21 @@ def test_of_many_edges_some_of_every_direction_choose_the_start():
     assert chosen.tolist() == np.ceil(count / 15).tolist()
 
 
-@pytest.mark.parametrize("seed", [2, 5, 7])
-def test_a_sensor_that_is_sharper_along_the_diagonals_is_found(seed):
+@pytest.mark.parametrize(("seed", "has_rival"), [(2, False), (5, True), (7, True)])
+def test_a_sensor_that_is_sharper_along_the_diagonals_is_found(seed, has_rival):
     """A round sensor, as sharp as the diagonals, under edges that are soft along rows and columns.
 
     From the likeliest start alone turns end there, off by .1 at Nyquist.
     """
     edges, normal_deg, guesses = half_soft(seed, 64, 0.08)
-    found = first_sensor(edges, normal_deg, guesses).otf
+    state, rival = first_sensor(edges, normal_deg, guesses)
+    found = state.otf
     nyquist = np.flatnonzero(np.isclose(FREQ, 0.5)).item()
     modulus = np.hypot(found[:, nyquist], found[:, FREQ.size + nyquist])
     off = modulus - true_modulus(normal_deg)[:, nyquist]
     assert np.sqrt(np.mean(off**2)) < 0.03
+    # Where that other sensor was found, too, it is not so unlikely: few edges tell little.
+    assert (rival is not None) == has_rival
+    if rival is not None:
+        assert 0 < rival.behind < 20
+        assert rival.apart > 0.02

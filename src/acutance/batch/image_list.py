@@ -13,7 +13,7 @@ from acutance.batch.plan import StatedOfImages
 from acutance.errors import OptionError
 from acutance.raster.metadata.files_beside import files_beside
 
-__all__ = ["ImageFile", "content_of", "list_images", "stated_of"]
+__all__ = ["ImageFile", "content_of", "list_images", "require_stated_images", "stated_of"]
 
 _BLOCK_BYTES = 2**20
 
@@ -89,6 +89,23 @@ def content_of(path: str) -> str | None:
     except OSError:
         return None
     return digest.hexdigest()
+
+
+def require_stated_images(files: Sequence[ImageFile], stated: Sequence[StatedOfImages]) -> None:
+    """Refuse patterns of the plan by which something is stated of no image.
+
+    Raises
+    ------
+    OptionError
+        If there are some: they are mistyped, and what they state would go unsaid.
+    """
+    for number, one in enumerate(stated, start=1):
+        idle = [name for name in one.images if not any(_matches(file.path, name) for file in files)]
+        if idle:
+            raise OptionError(
+                f"stated.{number} is of images that match {', '.join(idle)}, and none does: "
+                "correct the names, or leave them out"
+            )
 
 
 def stated_of(path: str, stated: Sequence[StatedOfImages]) -> StatedOfImages:

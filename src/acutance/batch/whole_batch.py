@@ -12,7 +12,13 @@ from typing import Any
 from acutance.archive import Archive, Entry
 from acutance.archive.connection import is_there
 from acutance.archive.outcomes import Outcome
-from acutance.batch.image_list import ImageFile, content_of, list_images, stated_of
+from acutance.batch.image_list import (
+    ImageFile,
+    content_of,
+    list_images,
+    require_stated_images,
+    stated_of,
+)
 from acutance.batch.measure_image import BatchTask, BatchWork, MeasuredImage
 from acutance.batch.plan import BatchPlan, read_plan
 from acutance.batch.plan_options import choose_options, require_options
@@ -104,6 +110,7 @@ def run_batch(
     wanted = _wanted(plan, images, targets, archive, bands, workers, scheduler)
     work = _work(wanted)
     files = list_images(wanted.images)
+    require_stated_images(files, wanted.stated)
     if not is_there(wanted.archive):
         # No new archive is made for a plan that cannot be done.
         require_options(work.targets, work.chosen, wanted.options)

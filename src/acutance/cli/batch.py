@@ -204,10 +204,16 @@ def _text(found: BatchSummary) -> str:
         f"{found.archive}, {there}",
         _counts("measured", found.measured, found.verdicts),
         _counts("rejected", found.rejected, found.reasons),
+        *(
+            [f"every reason: acutance archive list {found.archive} --rejected"]
+            * (found.rejected > 0)
+        ),
         *(f"unreadable: {path}" for path in found.unreadable[:_NAMED]),
     ]
     if len(found.unreadable) > _NAMED:
         lines.append(f"and {len(found.unreadable) - _NAMED} more that cannot be read")
+    if found.rejected:
+        lines.append(f"reasons in full: acutance archive list {found.archive} --rejected")
     if found.missing_bands:
         asked = ", ".join(map(str, found.missing_bands))
         lines.append(f"no image has band {asked}: choose from {', '.join(found.bands)}")

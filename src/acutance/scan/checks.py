@@ -15,7 +15,8 @@ from acutance.scan.field import Field
 from acutance.scan.parts import PartsFit
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.sensor_fit import SensorFit
-from acutance.targets.check import Check, Limits, answer
+from acutance.scan.sensor_turns import Rival
+from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.full_pixel import full_pixel
 
@@ -23,8 +24,8 @@ __all__ = ["SCENE_CHECKS", "check_scene"]
 
 SCENE_CHECKS = (
     "edges_used", "trusted_share", "scene_directions", "ideal_share", "ideal_borders",
-    "strange_share", "scene_settled", "form_agrees", "parts_agree", "diagonals", "field_change",
-    "full_pixel",
+    "strange_share", "scene_settled", "form_agrees", "rival", "parts_agree", "diagonals",
+    "field_change", "full_pixel",
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -80,6 +81,7 @@ def check_scene(
             + ("" if fit.settled else ", and did not settle"), limits,
         ),
         _form_agrees(fit.agreement, limits),
+        _rival(fit.rival, limits),
         _parts_agree(fit.parts, limits),
         _diagonals(transfer, limits),
         _field_change(field, limits),
@@ -118,6 +120,17 @@ def _form_agrees(chi_square: ChiSquare, limits: Limits) -> Check:
         f"{chi_square.expected:.0f} degrees of freedom, {ratio:.2f} times as much"
     )
     return answer("form_agrees", ratio, found, limits)
+
+
+def _rival(rival: Rival | None, limits: Limits) -> Check:
+    """By how much another sensor is less likely, in the log likelihood of the edges."""
+    if rival is None:
+        return answer("rival", MAX_RATIO, "no other sensor was found to be likely", limits)
+    found = (
+        f"another sensor, whose MTF differs by {rival.apart:.2f} in the mean, has a log likelihood "
+        f"smaller by {rival.behind:.0f}"
+    )
+    return answer("rival", min(rival.behind, MAX_RATIO), found, limits)
 
 
 def _parts_agree(parts: PartsFit | None, limits: Limits) -> Check:

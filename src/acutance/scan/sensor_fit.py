@@ -25,7 +25,7 @@ from acutance.scan.form_agreement import agreement_of_form
 from acutance.scan.information import observed_information
 from acutance.scan.parts import PartsFit, compare_parts
 from acutance.scan.population import Membership, fit_shares
-from acutance.scan.sensor_turns import first_sensor, otf_samples, settled
+from acutance.scan.sensor_turns import Rival, first_sensor, otf_samples, settled
 from acutance.scan.shared_blur import integrate_shared_blur
 from acutance.scan.shares import SECTOR_DEG, share_covariances
 from acutance.scan.softness import KINDS
@@ -80,6 +80,8 @@ class SensorFit:
         Whether the parts of the scene agree; None of too few edges.
     agreement : ChiSquare
         Whether the edges agree with the form of the sensor.
+    rival : Rival or None
+        The likeliest other sensor that was found.
     turns : int
     settled : bool
     """
@@ -91,6 +93,7 @@ class SensorFit:
     shared_px2: Floats
     parts: PartsFit | None
     agreement: ChiSquare
+    rival: Rival | None
     turns: int
     settled: bool
 
@@ -161,7 +164,7 @@ def fit_sensor(
         Places of the edges, -1 to 1 over the field.
     """
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
-    state = first_sensor(edges, normal_deg, guesses)
+    state, rival = first_sensor(edges, normal_deg, guesses)
     field = fit_field(state.along, state.otf, state.share, x, y)
     for _ in range(_MAX_FIELD_TURNS):
         if field.chance_constant > _CONSTANT or not field.amount.any():
@@ -185,5 +188,5 @@ def fit_sensor(
         field, normal_deg, member, shared.errors_px2,
         compare_parts(seen, otf, member.share, x, y),
         agreement_of_form(seen, otf, member),
-        state.turns, state.settled,
+        rival, state.turns, state.settled,
     )  # fmt: skip

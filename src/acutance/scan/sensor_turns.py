@@ -37,7 +37,7 @@ from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
 from acutance.targets.otf_likelihood import OtfLikelihood
 from acutance.targets.slices import places_along
 
-__all__ = ["SensorState", "first_sensor", "otf_samples", "settled", "some_of_each"]
+__all__ = ["Rival", "SensorState", "first_sensor", "otf_samples", "settled", "some_of_each"]
 
 _SETTLED: Final = 0.1
 """Square of a turn's change, in standard deviations of what the edges say."""
@@ -59,6 +59,8 @@ _MOST_FOLLOWED: Final = 5
 """So many starts are followed to their end, the likeliest of those that differ. In 25 scenes of
 60 to 90 edges under a sensor that is sharper along the diagonals four led to the likeliest end of
 all; the likeliest start alone did in sixteen."""
+_OTHER: Final = 0.02
+"""Difference of the MTF, as of starts, by which an end is another sensor."""
 _ENOUGH_EDGES: Final = 600
 _LIKELIER: Final = 3.0
 """By so much in the log likelihood another sensor has to be likelier than that of a better start:
@@ -109,10 +111,25 @@ class SensorState(NamedTuple):
         return () if self.combined is None else self.combined.near
 
 
+class Rival(NamedTuple):
+    """The likeliest other sensor to which guesses led.
+
+    Attributes
+    ----------
+    behind : float
+        By so much its log likelihood is smaller.
+    apart : float
+        Root mean square difference of both MTFs over all directions, up to Nyquist.
+    """
+
+    behind: float
+    apart: float
+
+
 def first_sensor(
     edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
-) -> SensorState:
-    """The likeliest sensor to which guesses lead, without a change over the field.
+) -> tuple[SensorState, Rival | None]:
+    """The likeliest sensor to which guesses lead, without a change over the field, and its rival.
 
     Parameters
     ----------
@@ -123,11 +140,25 @@ def first_sensor(
         First guesses of the OTF in every direction, real parts first.
     """
     some = some_of_each(edges.bin)
-    state = _likeliest(edges.chosen(some), normal_deg, guesses)
-    if some.size == edges.size or state.combined is None:
-        return state
-    along = _along_bins(edges, normal_deg, state.combined.unwidened)
-    return settled(edges, normal_deg, state._replace(along=along), np.zeros_like(edges.gain))
+    state, *others = _ends(edges.chosen(some), normal_deg, guesses)
+    rival = _rival(state, others, edges.freq_cpp, edges.size / some.size)
+    if some.size < edges.size and state.combined is not None:
+        along = _along_bins(edges, normal_deg, state.combined.unwidened)
+        nothing = np.zeros_like(edges.gain)
+        state = settled(edges, normal_deg, state._replace(along=along), nothing)
+    return state, rival
+
+
+def _rival(
+    best: SensorState, others: Sequence[SensorState], freq_cpp: Floats, per_edge: float
+) -> Rival | None:
+    """The likeliest of the ends that are another sensor; `per_edge` edges stand behind each."""
+    found = [
+        Rival(per_edge * (best.log_likelihood - one.log_likelihood), apart)
+        for one in others
+        if (apart := _apart(one.otf, best.otf, freq_cpp)) > _OTHER
+    ]
+    return min(found, default=None)
 
 
 def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -140,22 +171,20 @@ def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:
     return np.sort(np.concatenate(list(own)))
 
 
-def _likeliest(
+def _ends(
     edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
-) -> SensorState:
-    """The likeliest of the sensors to which the guesses lead."""
+) -> list[SensorState]:
+    """Sensors to which the guesses lead, or led until they were given up; the likeliest first."""
     nothing = np.zeros_like(edges.gain)
-    best: SensorState | None = None
-    for start in _different(_starts(edges, normal_deg, guesses), edges.freq_cpp):
-        if best is None:
-            best = settled(edges, normal_deg, start, nothing)
-            continue
+    first, *others = _different(_starts(edges, normal_deg, guesses), edges.freq_cpp)
+    best = settled(edges, normal_deg, first, nothing)
+    ends = [best]
+    for start in others:
         start = start._replace(combined=best.combined)
-        end = settled(edges, normal_deg, start, nothing, best.log_likelihood)
-        if end.log_likelihood > best.log_likelihood + _LIKELIER:
-            best = end
-    assert best is not None
-    return best
+        ends.append(settled(edges, normal_deg, start, nothing, best.log_likelihood))
+        if ends[-1].log_likelihood > best.log_likelihood + _LIKELIER:
+            best = ends[-1]
+    return [best, *(one for one in ends if one is not best)]
 
 
 def _different(starts: Sequence[SensorState], freq_cpp: Floats) -> list[SensorState]:

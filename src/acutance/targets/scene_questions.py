@@ -53,6 +53,11 @@ SCENE_QUESTIONS: Final = {
         "their objects differ in a softness that all of them have; compare other scenes",
         severity="note",
     ),
+    "rival": Question(
+        "How much smaller is the log likelihood of the likeliest other sensor?", ">=", 20.0,
+        "its ideal objects would be others, of few borders: so small a difference may be theirs; "
+        "scan a larger part, or another image, and compare",
+    ),
     "diagonals": Question(
         "By which share do the MTFs along the two diagonals surely differ?", "<=", 0.1,
         "the blur of a sensor lies along rows and columns: unless this image was turned, the "

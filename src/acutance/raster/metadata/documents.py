@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
 
+from acutance.errors import ImageError
 from acutance.raster.metadata import (
     digital_globe,
     dimap,
@@ -38,8 +39,18 @@ def read_document(path: Path, image: str, *, stated: bool = False) -> Findings:
         Name of the image file.
     stated : bool, optional
         The user named the document: it is of this image, whatever names stand in it.
+
+    Raises
+    ------
+    ImageError
+        If the user named it, and there is no such file.
     """
     source = path.name
+    if stated and not path.is_file():
+        raise ImageError(
+            f"{path} was named as a document of {image}, and there is no such file: correct its "
+            "name (metadata, --metadata), or name none"
+        )
     try:
         if path.stat().st_size > _MAX_BYTES:
             raise ValueError("it is far larger than metadata are")

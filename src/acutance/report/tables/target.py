@@ -93,15 +93,17 @@ def notes_on_means(result: TargetResult[Any]) -> tuple[str, ...]:
                 f"The edges {orientation} differ by more than their standard deviations explain "
                 "(p): the means' deviations are widened; find out why before using them."
             )
-    if any(
-        group.degrees_of_freedom and math.isnan(found)
+    plain = {
+        metric_words(name).label
         for group in result.groups.values()
-        for found in group.chi_square.values()
-    ):
+        for name, found in group.chi_square.items()
+        if group.degrees_of_freedom and math.isnan(found)
+    }
+    if plain:
         notes.append(
-            "No chi²: the interval of an edge reaches 0, below which there is no such number, and "
-            "deviations do not tell how edges scatter there. The mean is a plain one, and no more "
-            "certain than one edge."
+            f"No chi² of {', '.join(sorted(plain))}: the interval of an edge reaches 0, below "
+            "which there is no such number, and deviations do not tell how edges scatter there. "
+            "The mean is a plain one, and no more certain than one edge."
         )
     return tuple(notes)
 
