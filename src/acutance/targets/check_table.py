@@ -101,6 +101,11 @@ _STRAIGHT = {
         "so much rounding is no noise: it is equal for the pixels of a plateau and shifts its "
         "level by more than the intervals; use data of more bits",
     ),
+    "block_steps": Question(
+        "How much larger are steps at every eighth row and column than between?", "<=", 1.5,
+        "the image was compressed in blocks of 8 by 8 pixels (JPEG), which takes noise and fine "
+        "detail away: MTFs come out low, by more than the intervals; use the original",
+    ),
     "nonlinearity": Question(
         "How far from a straight line between the plateaus is the image's characteristic?",
         "<=", 0.01,

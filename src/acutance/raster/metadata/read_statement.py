@@ -42,7 +42,7 @@ def read_statement(
     Raises
     ------
     ImageError
-        If the image cannot be read.
+        If the image cannot be read, or a document that was named is not there.
     """
     image = open_image(path)
     name = Path(str(image.path)).name

@@ -24,6 +24,7 @@ from acutance.targets.straight.edge_checks import (
 from acutance.targets.straight.fit_pulse import PulsePixels
 from acutance.targets.straight.ground_checks import ground_checks
 from acutance.targets.straight.pixel_checks import (
+    compression,
     correlated_noise,
     gradient,
     nonlinearity,
@@ -55,9 +56,9 @@ PULSE_CHECKS = (
     "contrast_snr", "uniformity_before", "uniformity_behind", "uniformity_target", "angle_deg",
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
     "full_pixel", "plateau_before_px", "plateau_behind_px", "saturation", "undeclared_fill",
-    "quantisation", "nonlinearity", "gradient", "correlated_noise", "asymmetric_lsf", "profile",
-    "outliers", "parallel_deg", "background_step", "width_px", "width_sigmas", "zero_distance_cpp",
-    "ground", "close_ground", "mirrored_ground",
+    "quantisation", "block_steps", "nonlinearity", "gradient", "correlated_noise",
+    "asymmetric_lsf", "profile", "outliers", "parallel_deg", "background_step", "width_px",
+    "width_sigmas", "zero_distance_cpp", "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of a pulse."""
 
@@ -114,6 +115,7 @@ def check_pulse(
         saturation(region, values, data, limits, ("before", "behind")),
         undeclared_fill([region.fill], limits),
         quantisation(region, values, data, limits),
+        compression(region, limits),
         _nonlinearity(data, limits, width.value, height_ratio.value),
         gradient(data, limits),
         correlated_noise(data, limits),
