@@ -21,7 +21,9 @@ __all__ = [
     "outlier_share",
     "outlier_weights",
     "robust_scale",
+    "rounding_std",
     "side_variances",
+    "smallest_step",
 ]
 
 _MIN_DOWNWEIGHTED = 3.0
@@ -32,6 +34,8 @@ _NEAREST = ((0, 1), (1, 0))
 _FURTHER = ((1, 1), (1, -1), (0, 2), (2, 0))
 _ALL_LAGS: NDArray[np.intp] = np.array(_NEAREST + _FURTHER)
 _MIN_PAIRS = 20
+_MANY = 2**16
+"""So many of an image's numbers have two that differ by one step."""
 _FREQ_CPP: Floats = np.linspace(0.0, 0.5, 11)
 _SIGNIFICANT = 4.0
 _OUTLYING = 4.5
@@ -93,6 +97,20 @@ def _scatter(residual: Floats, esf: Floats, low: float, high: float) -> tuple[in
 def robust_scale(residual: Floats) -> float:
     """Standard deviation of the bulk of the residuals, by their median modulus."""
     return 1.4826 * median(np.abs(residual))
+
+
+def smallest_step(value: Floats) -> float:
+    """The step of an image's numbers: the smallest difference between two of them; 0 of one."""
+    ordered = np.sort(value)
+    steps = ordered[1:] - ordered[:-1]
+    steps = steps[steps > 0]
+    return float(steps.min()) if steps.size else 0.0
+
+
+def rounding_std(value: Floats) -> float:
+    """Standard deviation that rounding to the step of an image's numbers adds to noise."""
+    some = value[:: max(value.size // _MANY, 1)]
+    return smallest_step(some) / math.sqrt(12)
 
 
 def median(values: Floats) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -81,7 +82,7 @@ def check_scene(
             + ("" if fit.settled else ", and did not settle"), limits,
         ),
         _form_agrees(fit.agreement, limits),
-        _rival(fit.rival, limits),
+        _rival(fit.rivals, transfer, limits),
         _parts_agree(fit.parts, limits),
         _diagonals(transfer, limits),
         _field_change(field, limits),
@@ -122,10 +123,18 @@ def _form_agrees(chi_square: ChiSquare, limits: Limits) -> Check:
     return answer("form_agrees", ratio, found, limits)
 
 
-def _rival(rival: Rival | None, limits: Limits) -> Check:
-    """By how much another sensor is less likely, in the log likelihood of the edges."""
-    if rival is None:
+def _rival(rivals: Sequence[Rival], transfer: Otf2d, limits: Limits) -> Check:
+    """By how much another sensor is less likely, in the log likelihood of the edges.
+
+    One that lies within the deviations is no other.
+    """
+    freq = np.arange(1, 11) * (NYQUIST_CPP / 10)
+    curves = [transfer.response(deg).mtf for deg in (0.0, 45.0, 90.0, 135.0)]
+    std = float(np.sqrt(np.mean([curve(f).std ** 2 for curve in curves for f in freq.tolist()])))
+    others = [one for one in rivals if one.apart > _SIGNIFICANT * std]
+    if not others:
         return answer("rival", MAX_RATIO, "no other sensor was found to be likely", limits)
+    rival = min(others)
     found = (
         f"another sensor, whose MTF differs by {rival.apart:.2f} in the mean, has a log likelihood "
         f"smaller by {rival.behind:.0f}"

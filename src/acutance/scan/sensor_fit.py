@@ -80,8 +80,8 @@ class SensorFit:
         Whether the parts of the scene agree; None of too few edges.
     agreement : ChiSquare
         Whether the edges agree with the form of the sensor.
-    rival : Rival or None
-        The likeliest other sensor that was found.
+    rivals : tuple of Rival
+        The sensors to which other starts led.
     turns : int
     settled : bool
     """
@@ -93,7 +93,7 @@ class SensorFit:
     shared_px2: Floats
     parts: PartsFit | None
     agreement: ChiSquare
-    rival: Rival | None
+    rivals: tuple[Rival, ...]
     turns: int
     settled: bool
 
@@ -164,7 +164,7 @@ def fit_sensor(
         Places of the edges, -1 to 1 over the field.
     """
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
-    state, rival = first_sensor(edges, normal_deg, guesses)
+    state, rivals = first_sensor(edges, normal_deg, guesses)
     field = fit_field(state.along, state.otf, state.share, x, y)
     for _ in range(_MAX_FIELD_TURNS):
         if field.chance_constant > _CONSTANT or not field.amount.any():
@@ -188,5 +188,5 @@ def fit_sensor(
         field, normal_deg, member, shared.errors_px2,
         compare_parts(seen, otf, member.share, x, y),
         agreement_of_form(seen, otf, member),
-        rival, state.turns, state.settled,
+        rivals, state.turns, state.settled,
     )  # fmt: skip

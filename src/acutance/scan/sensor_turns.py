@@ -59,8 +59,6 @@ _MOST_FOLLOWED: Final = 5
 """So many starts are followed to their end, the likeliest of those that differ. In 25 scenes of
 60 to 90 edges under a sensor that is sharper along the diagonals four led to the likeliest end of
 all; the likeliest start alone did in sixteen."""
-_OTHER: Final = 0.02
-"""Difference of the MTF, as of starts, by which an end is another sensor."""
 _ENOUGH_EDGES: Final = 600
 _LIKELIER: Final = 3.0
 """By so much in the log likelihood another sensor has to be likelier than that of a better start:
@@ -112,7 +110,7 @@ class SensorState(NamedTuple):
 
 
 class Rival(NamedTuple):
-    """The likeliest other sensor to which guesses led.
+    """Another sensor to which guesses led.
 
     Attributes
     ----------
@@ -128,8 +126,8 @@ class Rival(NamedTuple):
 
 def first_sensor(
     edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
-) -> tuple[SensorState, Rival | None]:
-    """The likeliest sensor to which guesses lead, without a change over the field, and its rival.
+) -> tuple[SensorState, tuple[Rival, ...]]:
+    """The likeliest sensor to which guesses lead, without a change over the field, and its rivals.
 
     Parameters
     ----------
@@ -141,24 +139,20 @@ def first_sensor(
     """
     some = some_of_each(edges.bin)
     state, *others = _ends(edges.chosen(some), normal_deg, guesses)
-    rival = _rival(state, others, edges.freq_cpp, edges.size / some.size)
+    # So many edges stand behind each that chose.
+    per_edge, best = edges.size / some.size, state
+    rivals = tuple(
+        Rival(
+            per_edge * (best.log_likelihood - one.log_likelihood),
+            _apart(one.otf, best.otf, edges.freq_cpp),
+        )
+        for one in others
+    )
     if some.size < edges.size and state.combined is not None:
         along = _along_bins(edges, normal_deg, state.combined.unwidened)
         nothing = np.zeros_like(edges.gain)
         state = settled(edges, normal_deg, state._replace(along=along), nothing)
-    return state, rival
-
-
-def _rival(
-    best: SensorState, others: Sequence[SensorState], freq_cpp: Floats, per_edge: float
-) -> Rival | None:
-    """The likeliest of the ends that are another sensor; `per_edge` edges stand behind each."""
-    found = [
-        Rival(per_edge * (best.log_likelihood - one.log_likelihood), apart)
-        for one in others
-        if (apart := _apart(one.otf, best.otf, freq_cpp)) > _OTHER
-    ]
-    return min(found, default=None)
+    return state, rivals
 
 
 def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:

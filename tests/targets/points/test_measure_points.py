@@ -208,3 +208,18 @@ def test_a_psf_without_light_at_its_centre_is_refused():
     stamps = cut_stamps(image, places, 11.0)
     with pytest.raises(np.linalg.LinAlgError, match="no light at its centre"):
         fit_points(stamps, fit_first_gaussian(stamps, places))
+
+
+@pytest.mark.parametrize("level", [30.0, 30.3])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_numbers_with_less_noise_than_their_step_refuse_no_mirror(seed, level):
+    """Most pixels of an even background have one number: their median deviation is nothing."""
+    sensor = ac.simulate.reference_systems()["gaussian"]
+    image, _ = ac.simulate.points(sensor, snr=200, rng=np.random.default_rng(seed))
+    light = image - np.median(image)
+    found = ac.measure_points(np.rint(level + 100.0 * light / light.max()))
+    assert len(found.sources) == 20
+    assert not found.verdict.warns
+    for direction in (found.across, found.along):
+        error = direction.mtf_nyquist.value - sensor.mtf()(0.5).value
+        assert abs(error) < 3 * direction.mtf_nyquist.std < 0.05

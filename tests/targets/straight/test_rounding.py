@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import acutance as ac
+from acutance.numerics.noise import smallest_step
 from acutance.simulate import Noise
-from acutance.targets.straight.rounding import NO_ROUNDING, level_step, rounding_of, smallest_step
+from acutance.targets.straight.rounding import NO_ROUNDING, level_step, rounding_of
 
 SYSTEMS = ac.simulate.reference_systems()
 

@@ -69,7 +69,7 @@ class Background:
             ],
             axis=1,
         )
-        noise = robust_scale(first.residual)
+        noise = max(robust_scale(first.residual), stamps.least_noise)
         scatter = _scatter(stamps, first, anchors[:, 0], noise)
         levels = first.backgrounds[:, 0]
         scale = np.full(_PLANE, 10 * (float(np.abs(levels).max()) + noise) + 1e-9)

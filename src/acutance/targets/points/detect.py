@@ -27,7 +27,7 @@ from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
 from acutance.numerics.clipping import piled_up_share
-from acutance.numerics.noise import robust_scale
+from acutance.numerics.noise import robust_scale, rounding_std
 from acutance.targets.points import tuned
 from acutance.targets.points.moments import (
     BROAD_WINDOW_PX,
@@ -136,7 +136,10 @@ def find_spots(image: Floats) -> tuple[tuple[Spot, ...], Floats, float]:
     """
     known = np.isfinite(image)
     residual = np.where(known, image - _background(image), 0.0)
-    noise = max(robust_scale(residual[known]), 1e-9 * float(np.abs(image[known]).max()), 1e-300)
+    noise = max(
+        robust_scale(residual[known]), rounding_std(image[known]),
+        1e-9 * float(np.abs(image[known]).max()), 1e-300,
+    )  # fmt: skip
     smooth = gaussian_filter(residual, _SMOOTHING_PX)
     tops = (smooth == maximum_filter(smooth, 3)) & known
     # Smoothing leaves this share of white noise.

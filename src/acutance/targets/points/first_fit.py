@@ -111,7 +111,7 @@ def unlike_sources(stamps: Stamps, found: FirstFit) -> tuple[Floats, NDArray[np.
     unlike : (k,) bool array
         Where that is significant, large, and several times what is usual.
     """
-    noise = max(robust_scale(found.residual), 1e-300)
+    noise = max(robust_scale(found.residual), stamps.least_noise, 1e-300)
     x, y = stamps.offsets(found.places)
     core = np.hypot(x, y) <= _CORE_PX
     count = np.maximum(np.bincount(stamps.owner[core], minlength=found.fluxes.size), 1)

@@ -160,7 +160,7 @@ def _settle(
     """
     peaks = first.fluxes * first.blur.peak
     brightest = float(peaks.max())
-    min_floor = tuned.NOISE_FLOOR * brightest
+    min_floor = max(tuned.NOISE_FLOOR * brightest, stamps.least_noise)
     floor = max(min_floor, _first_bend(stamps, first, peaks))
     noise, earlier = PointNoise.white(stamps.value.size), None
     for passes in range(_MAX_PASSES):
@@ -201,7 +201,8 @@ def _first_bend(stamps: Stamps, first: FirstFit, peaks: Floats) -> float:
     """
     power = np.bincount(stamps.owner, first.residual**2, peaks.size)
     count = np.bincount(stamps.owner, minlength=peaks.size)
-    excess = np.maximum(power - count * robust_scale(first.residual) ** 2, 0.0)
+    noise = max(robust_scale(first.residual), stamps.least_noise)
+    excess = np.maximum(power - count * noise**2, 0.0)
     away = np.minimum(np.sqrt(excess) / peaks, _MAX_STEP_PX)
     return tuned.BEND * float((peaks * away**2).max())
 
@@ -297,7 +298,7 @@ def _growth(
     """
     if noise.growth == 0:
         leverage = _leverage(blocks, posterior, state.light)
-        if not noise_grows(state.residual, state.light, leverage):
+        if not noise_grows(state.residual, state.light, leverage, prior.noise_floor):
             return 0.0
     dark = state.light < _DARK * float(state.light.max())
     if not dark.any():

@@ -74,7 +74,7 @@ def noise_around(
     """
     floor = tuned.NOISE_FLOOR * float(light.max())
     standard = residual / np.sqrt(1 + growth * np.maximum(light, 0.0))
-    scale = math.hypot(robust_scale(standard), floor)
+    scale = math.hypot(max(robust_scale(standard), stamps.least_noise), floor)
     standard = standard / np.hypot(scale, tuned.MODEL_ERROR * light)
     outlier = outlier_weights(standard) if robust else np.ones(standard.size)
     if float(np.sqrt(np.mean(residual**2))) < 3 * floor:
@@ -85,7 +85,7 @@ def noise_around(
     return PointNoise(outlier, growth, correlation(bounded, rows, cols))
 
 
-def noise_grows(residual: Floats, light: Floats, leverage: Floats) -> bool:
+def noise_grows(residual: Floats, light: Floats, leverage: Floats, least: float) -> bool:
     """Whether bright pixels scatter significantly more than the background.
 
     Parameters
@@ -94,12 +94,14 @@ def noise_grows(residual: Floats, light: Floats, leverage: Floats) -> bool:
         What a fit with equal weights leaves of every pixel, and what the sources give it.
     leverage : (n,) array
         How much of a pixel's own noise the fit took up, 0 to 1.
+    least : float
+        The smallest noise, that of rounding and of the model.
     """
     bright = light > tuned.BRIGHT_SHARE * float(light.max())
     dark, bright = ~bright, bright & (leverage < tuned.MAX_LEVERAGE)
     if bright.sum() < _MIN_PIXELS or dark.sum() < _MIN_PIXELS:
         return False
-    base = math.hypot(robust_scale(residual[dark]), tuned.NOISE_FLOOR * float(light.max()))
+    base = math.hypot(robust_scale(residual[dark]), least)
     free = 1 - leverage[bright]
     power = np.maximum(residual[bright] ** 2 - (tuned.SHAPE_ERROR * light[bright]) ** 2, 0.0)
     excess = float(power.sum()) / base**2 - float(free.sum())

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
+from acutance.numerics.noise import rounding_std
 from acutance.targets.points import tuned
 
 __all__ = ["Stamps", "cut_stamps"]
@@ -39,6 +40,14 @@ class Stamps:
     owner: _Indices
     pair_pixel: _Indices
     pair_source: _Indices
+
+    @cached_property
+    def least_noise(self) -> float:
+        """What rounding to the step of the image's numbers alone leaves: a standard deviation.
+
+        Where most pixels of an even background have one number, their median deviation is nothing.
+        """
+        return rounding_std(self.value)
 
     @cached_property
     def starts(self) -> _Indices:

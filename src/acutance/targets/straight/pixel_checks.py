@@ -8,7 +8,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.numerics.clipping import at_limit_share, piled_up_share
-from acutance.numerics.noise import median, outlier_share
+from acutance.numerics.noise import median, outlier_share, smallest_step
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels
@@ -16,7 +16,7 @@ from acutance.targets.straight.block_steps import block_steps
 from acutance.targets.straight.check_data import MISFIT, CheckData
 from acutance.targets.straight.check_loops import far_side, rise_outwards, side_upwards
 from acutance.targets.straight.nonlinearity import find_curvature, gamma_of
-from acutance.targets.straight.rounding import level_step, smallest_step
+from acutance.targets.straight.rounding import level_step
 from acutance.targets.straight.step_profile import Profile
 from acutance.targets.straight.tuned import (
     APERTURE_TAIL_PX,

@@ -21,9 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.numerics.noise import smallest_step
 from acutance.targets.straight.tuned import MAX_FINE_STEP
 
-__all__ = ["NO_ROUNDING", "Rounding", "level_step", "rounding_of", "smallest_step"]
+__all__ = ["NO_ROUNDING", "Rounding", "level_step", "rounding_of"]
 
 _MAX_NOISE_STEPS: Final = 0.5
 _HARMONICS: Final = np.arange(1, 4)
@@ -56,14 +57,6 @@ class Rounding(NamedTuple):
 
 
 NO_ROUNDING: Final = Rounding(np.empty((0, 0)), np.empty(0), 0.0)
-
-
-def smallest_step(value: Floats) -> float:
-    """The step of an image's numbers: the smallest difference between two of them; 0 of one."""
-    ordered = np.sort(value)
-    steps = ordered[1:] - ordered[:-1]
-    steps = steps[steps > 0]
-    return float(steps.min()) if steps.size else 0.0
 
 
 def level_step(value: Floats, level: float) -> float:
