@@ -83,7 +83,10 @@ def _season_words(trend: Trend) -> list[str]:
         return []
     amplitude = 100 * trend.season_amplitude / abs(trend.level.value or 1.0)
     sure = "" if trend.season_probability > _SURE else f" ({trend.season_probability:.2f} sure)"
-    return [f"A season of {amplitude.value:.1f} ± {amplitude.std:.1f} %{sure}."]
+    return [
+        f"A season of {amplitude.value:.1f} ± {amplitude.std:.1f} %{sure}, of which the level is "
+        "free."
+    ]
 
 
 def _bad_day_words(trend: Trend) -> list[str]:
