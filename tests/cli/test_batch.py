@@ -95,6 +95,7 @@ def test_nothing_that_can_be_measured(acutance, given, flat_image, tmp_path):
     assert result.exit_code == 4
     assert "rejected 1: 1 not found" in result.stdout
     assert "reasons in full: acutance archive list" in result.stdout
+    assert result.stdout.count("acutance archive list") == 1
     assert "nothing could be measured" in result.stderr
 
 

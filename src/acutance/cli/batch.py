@@ -204,10 +204,6 @@ def _text(found: BatchSummary) -> str:
         f"{found.archive}, {there}",
         _counts("measured", found.measured, found.verdicts),
         _counts("rejected", found.rejected, found.reasons),
-        *(
-            [f"every reason: acutance archive list {found.archive} --rejected"]
-            * (found.rejected > 0)
-        ),
         *(f"unreadable: {path}" for path in found.unreadable[:_NAMED]),
     ]
     if len(found.unreadable) > _NAMED:

@@ -44,6 +44,9 @@ def test_missing_pixels_and_small_regions():
     torn = image.copy()
     torn[20:30, 40:60] = np.nan
     assert block_steps(torn) == pytest.approx(block_steps(image), rel=0.1)
+    dead = noisy_edge(1)
+    dead[:, ::8] = np.nan
+    assert 1.0 <= block_steps(dead) < 1.3
     assert block_steps(image[:31]) == 1.0
     assert block_steps(np.full((40, 40), np.nan)) == 1.0
     assert block_steps(np.full((40, 40), 7.0)) == 1.0

@@ -49,16 +49,22 @@ def _steps_of_columns(pixels: Floats) -> float:
     if usual == 0:
         return 1.0
     by_phase = np.sort(_phase_means(third, _BOUND * usual))
-    return float(by_phase[-1] / by_phase[_BLOCK // 2 - 1])
+    # Dead columns at every eighth leave phases of which nothing is known.
+    by_phase = by_phase[np.isfinite(by_phase)]
+    middle = float(by_phase[max(by_phase.size // 2 - 1, 0)])
+    return float(by_phase[-1]) / middle if middle > 0 else 1.0
 
 
 @compiled
 def _phase_means(third: Floats, bound: float) -> Floats:
-    """Mean of what is known of every eighth column, each value at most the bound, (8,)."""
+    """Mean of what is known of every eighth column, each value at most the bound, (8,).
+
+    NaN where nothing is.
+    """
     total, count = np.zeros(_BLOCK), np.zeros(_BLOCK)
     for i in range(third.shape[0]):
         for j in range(third.shape[1]):
             if np.isfinite(third[i, j]):
                 total[j % _BLOCK] += min(third[i, j], bound)
                 count[j % _BLOCK] += 1
-    return total / np.maximum(count, 1.0)
+    return total / count
