@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from statistics import median
 from typing import Any
 
 from acutance.curves import Estimate
@@ -15,6 +14,7 @@ from acutance.restoration.named_records import (
     Measured,
     combination_warnings,
     measured_inputs,
+    median_snr,
     named_records,
     warnings_of,
 )
@@ -186,7 +186,6 @@ class _Source:
             for name, one in records.items()
             for words in warnings_of(one)
         ]
-        snrs = [one.snr for one in records.values() if math.isfinite(one.snr)]
         if len(records) == 1:
             (record,) = records.values()
         else:
@@ -194,9 +193,9 @@ class _Source:
             record = both.record
             warnings += [Note("combination", words) for words in combination_warnings(both)]
         # Next to no noise has no SNR that could be told: its terms in the equation vanish.
-        snr = {"snr": min(median(snrs), _POSSIBLE["snr"][1])} if snrs else {}
-        numbers = _of_record(record) | snr
-        return cls(numbers, record.verdict.word, tuple(warnings))
+        snr = median_snr(records.values())
+        known = {} if snr is None else {"snr": min(snr, _POSSIBLE["snr"][1])}
+        return cls(_of_record(record) | known, record.verdict.word, tuple(warnings))
 
 
 def _other_gsd(measured_m: float | None, used_m: float) -> float | None:

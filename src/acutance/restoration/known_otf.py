@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from statistics import median
 from typing import Any
 
 import numpy as np
@@ -22,6 +21,7 @@ from acutance.restoration.named_records import (
     Measured,
     combination_warnings,
     measured_inputs,
+    median_snr,
     named_records,
     warnings_of,
 )
@@ -131,10 +131,9 @@ def _combined(records: Mapping[str, Record], gsd_m: float | Gsd | None) -> Known
     """
     both = combine(list(records.values()), names=list(records), gsd_m=gsd_m)
     bands = {one.image.band for one in records.values()}
-    snrs = [one.snr for one in records.values() if math.isfinite(one.snr)]
     return KnownOtf(
         both.otf,
-        median(snrs) if snrs else None,
+        median_snr(records.values()),
         bands.pop() if len(bands) == 1 else None,
         both.image.along_track,
         tuple(_in_words(one) for one in records.values()),

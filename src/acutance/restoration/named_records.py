@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import PurePath
+from statistics import median
 from typing import Any
 
 from acutance.errors import OptionError
@@ -11,7 +13,14 @@ from acutance.targets import Measurement, Record, TargetResult
 from acutance.targets.combine import CombinedMeasurement
 from acutance.targets.combine.inputs import records_of
 
-__all__ = ["Measured", "combination_warnings", "measured_inputs", "named_records", "warnings_of"]
+__all__ = [
+    "Measured",
+    "combination_warnings",
+    "measured_inputs",
+    "median_snr",
+    "named_records",
+    "warnings_of",
+]
 
 Measured = Measurement | Record | TargetResult[Measurement] | Mapping[str, Any]
 """A measurement, its record, or its JSON document."""
@@ -70,6 +79,12 @@ def named_records(inputs: Sequence[Measured], names: Sequence[str] | None) -> di
                 name = f"{name}, {record.document.get('region') or place}"
             found[f"{name} ({number})" if name in found else name] = record
     return found
+
+
+def median_snr(records: Iterable[Record]) -> float | None:
+    """The median of those SNRs that are known: one without noise, or of a combination, has none."""
+    known = [one.snr for one in records if math.isfinite(one.snr)]
+    return median(known) if known else None
 
 
 def warnings_of(record: Record) -> tuple[str, ...]:

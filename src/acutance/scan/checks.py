@@ -20,6 +20,7 @@ from acutance.scan.sensor_turns import Rival
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.full_pixel import full_pixel
+from acutance.targets.slices import SLICE_FREQ_CPP
 
 __all__ = ["SCENE_CHECKS", "check_scene"]
 
@@ -128,9 +129,9 @@ def _rival(rivals: Sequence[Rival], transfer: Otf2d, limits: Limits) -> Check:
 
     One that lies within the deviations is no other.
     """
-    freq = np.arange(1, 11) * (NYQUIST_CPP / 10)
+    freq = SLICE_FREQ_CPP[SLICE_FREQ_CPP <= NYQUIST_CPP]
     curves = [transfer.response(deg).mtf for deg in (0.0, 45.0, 90.0, 135.0)]
-    std = float(np.sqrt(np.mean([curve(f).std ** 2 for curve in curves for f in freq.tolist()])))
+    std = float(np.sqrt(np.mean([curve.near(freq).std ** 2 for curve in curves])))
     others = [one for one in rivals if one.apart > _SIGNIFICANT * std]
     if not others:
         return answer("rival", MAX_RATIO, "no other sensor was found to be likely", limits)

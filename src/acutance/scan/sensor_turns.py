@@ -138,9 +138,9 @@ def first_sensor(
         First guesses of the OTF in every direction, real parts first.
     """
     some = some_of_each(edges.bin)
-    state, *others = _ends(edges.chosen(some), normal_deg, guesses)
+    best, *others = _ends(edges.chosen(some), normal_deg, guesses)
     # So many edges stand behind each that chose.
-    per_edge, best = edges.size / some.size, state
+    per_edge = edges.size / some.size
     rivals = tuple(
         Rival(
             per_edge * (best.log_likelihood - one.log_likelihood),
@@ -148,11 +148,10 @@ def first_sensor(
         )
         for one in others
     )
-    if some.size < edges.size and state.combined is not None:
-        along = _along_bins(edges, normal_deg, state.combined.unwidened)
-        nothing = np.zeros_like(edges.gain)
-        state = settled(edges, normal_deg, state._replace(along=along), nothing)
-    return state, rivals
+    if some.size == edges.size or best.combined is None:
+        return best, rivals
+    best = best._replace(along=_along_bins(edges, normal_deg, best.combined.unwidened))
+    return settled(edges, normal_deg, best, np.zeros_like(edges.gain)), rivals
 
 
 def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -207,9 +206,14 @@ def _starts(
     """
     blurs = edge_modes(normal_deg, edges.freq_cpp)
     near: list[SensorState] = []
-    for guess, modes in product(guesses, _free_modes(normal_deg, edges.freq_cpp)):
-        tried = [changed(guess, blurs[:, :, ALL_AROUND] * blur) for blur in _BLUR_STARTS_PX2]
-        start = max(tried, key=lambda one: fit_shares(edges, one, START).log_likelihood)
+    tried = (
+        [changed(guess, blurs[:, :, ALL_AROUND] * blur) for blur in _BLUR_STARTS_PX2]
+        for guess in guesses
+    )
+    likeliest = [
+        max(some, key=lambda one: fit_shares(edges, one, START).log_likelihood) for some in tried
+    ]
+    for start, modes in product(likeliest, _free_modes(normal_deg, edges.freq_cpp)):
         fit = fit_modes(edges, start, START, modes[edges.bin], std=_FREE_PX2)
         otf = changed(start, modes @ fit.amount)
         near.append(

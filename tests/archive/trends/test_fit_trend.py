@@ -10,6 +10,7 @@ import pytest
 
 import acutance as ac
 from acutance.archive.trends import Event, Series, date_of, decimal_year, fit_trend
+from acutance.archive.trends.words import trend_text
 
 Make = Callable[..., Series]
 DRAWS = 250
@@ -82,6 +83,7 @@ def test_a_season_is_found(series_of: Make) -> None:
     trend = fit_trend(series_of(season=0.05))
     assert trend.season_probability > 0.95
     assert abs(trend.season_amplitude.value - 0.16 * 0.05) < 3 * trend.season_amplitude.std
+    assert "of which the level is free" in trend_text(trend)
     winter, summer = trend.at(date_of(2022.0)), trend.at(date_of(2022.5))
     assert winter.value - summer.value == pytest.approx(2 * 0.16 * 0.05, rel=0.4)
     assert fit_trend(series_of()).season_probability < 0.3

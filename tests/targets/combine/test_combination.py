@@ -15,6 +15,10 @@ from acutance.targets.combine.sensor_forms import FORMS
 SENSOR = optics.Sensor([optics.Gaussian(0.36, 0.48), optics.Detector()], gsd_m=0.7)
 
 
+def gaussian(sigma_px):
+    return optics.Sensor([optics.Gaussian(sigma_px), optics.Detector()])
+
+
 def edge(angle, orientation, seed, sensor=SENSOR):
     image, _ = simulate.edge(
         sensor, angle_deg=angle, orientation=orientation, shape=(50, 50), dark=200, bright=1200,
@@ -123,8 +127,7 @@ def test_two_directions_leave_the_rotation_to_the_prior(edges):
 
 
 def test_another_sensor_among_them_is_named():
-    blurred = optics.Sensor([optics.Gaussian(0.6), optics.Detector()])
-    parts = [edge(6, "across", 1), edge(7, "along", 2), edge(9, "across", 5, blurred)]
+    parts = [edge(6, "across", 1), edge(7, "along", 2), edge(9, "across", 5, gaussian(0.6))]
     found = ac.combine(parts, names=["tarp", "roof", "road"])
     failed = {check.name: check for check in found.failed_checks}
     assert {"agreement", "worst_member"} <= set(failed)
@@ -133,13 +136,9 @@ def test_another_sensor_among_them_is_named():
 
 
 def test_sensors_that_only_a_large_correction_would_join_are_no_sensor():
-    sharper, softer = (optics.Sensor([optics.Gaussian(s), optics.Detector()]) for s in (0.4, 0.5))
-    parts = [
-        edge(6, "across", 1, sharper),
-        edge(8, "across", 2, softer),
-        edge(6, "along", 3, sharper),
-    ]
-    found = ac.combine(parts)
+    sharper, softer = gaussian(0.4), gaussian(0.5)
+    kinds = ((6, "across", 1, sharper), (8, "across", 2, softer), (6, "along", 3, sharper))
+    found = ac.combine([edge(*one) for one in kinds])
     assert found.sensor.correction_share > 0.1
     assert found.verdict.word == "invalid"
     assert "not of one sensor" in found.verdict.sentence
@@ -147,13 +146,9 @@ def test_sensors_that_only_a_large_correction_would_join_are_no_sensor():
 
 def test_a_combination_beyond_all_its_members_is_of_no_sensor():
     """Two curves of one direction that lie far apart pull a form to where neither is."""
-    sharper, softer = (optics.Sensor([optics.Gaussian(s), optics.Detector()]) for s in (0.4, 0.75))
-    parts = [
-        edge(6, "across", 1, softer),
-        edge(6, "across", 2, sharper),
-        edge(8, "along", 3, softer),
-    ]
-    found = ac.combine(parts)
+    sharper, softer = gaussian(0.4), gaussian(0.75)
+    kinds = ((6, "across", 1, softer), (6, "across", 2, sharper), (8, "along", 3, softer))
+    found = ac.combine([edge(*one) for one in kinds])
     assert found.verdict.word == "invalid"
     (beyond,) = (check for check in found.checks if check.name == "beyond_members")
     assert not beyond.passed

@@ -130,12 +130,12 @@ def _beyond(parts: Sequence[CombinedPart], limits: Limits) -> Check:
     off = np.array([
         np.mean((one.value - one.fitted)[:, some]) for one, some in zip(parts, below, strict=True)
     ])  # fmt: skip
-    std = [np.mean(one.std[:, some]) for one, some in zip(parts, below, strict=True)]
-    same_side = bool(np.all(off > 0) or np.all(off < 0))
-    value = max(float(np.min(np.abs(off) - _SURE_STDS * np.array(std))), 0.0) if same_side else 0
-    where = "below" if np.all(off > 0) else "above"
+    std = np.array([np.mean(one.std[:, some]) for one, some in zip(parts, below, strict=True)])
+    under, over = (float(np.min(side * off - _SURE_STDS * std)) for side in (1, -1))
+    value = max(under, over, 0.0)
     found = (
-        f"in the mean up to Nyquist the MTF lies {value:.3f} {where} that of every measurement"
+        f"in the mean up to Nyquist the MTF lies {value:.3f} {'below' if under > 0 else 'above'} "
+        "that of every measurement"
         if value > 0
         else "the MTF lies between those of the measurements"
     )

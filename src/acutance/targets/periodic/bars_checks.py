@@ -66,10 +66,13 @@ def bars_checks(
 
 
 def _stated_levels(solved: BarsSolution, limits: Limits) -> tuple[Check, ...]:
-    """The background is dark beside bright bars, and bright beside dark ones."""
-    stated, is_dark = solved.stated, solved.otf.level > 0
-    own = 0.0 if stated is None else (stated.levels.dark if is_dark else stated.levels.bright)
-    return stated_levels(stated, "beside the bars", median(solved.backgrounds), own, limits)
+    """Of bars whose levels are stated; beside bright ones it is dark, beside dark ones bright."""
+    stated = solved.stated
+    if stated is None:
+        return ()
+    own = stated.levels.dark if solved.otf.level > 0 else stated.levels.bright
+    seen = median(solved.backgrounds)
+    return (stated_levels(stated, "beside the bars", seen, own, limits),)
 
 
 def _bars(solved: BarsSolution, limits: Limits) -> Check:

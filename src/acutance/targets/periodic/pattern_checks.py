@@ -41,9 +41,9 @@ def level(otf: FittedOtf, contrast: str, limits: Limits) -> Check:
 
 
 def stated_levels(
-    stated: StatedContrast | None, place: str, seen: float, expected: float, limits: Limits
-) -> tuple[Check, ...]:
-    """Whether the stated levels, if there are any, can be those of the image.
+    stated: StatedContrast, place: str, seen: float, expected: float, limits: Limits
+) -> Check:
+    """Whether the stated levels can be those of the image.
 
     Levels of another band or another unit pass for a sensor: they scale its whole MTF. But what
     lies beside the bars, or half way between the spokes, is one of them; and the contrast that the
@@ -51,15 +51,13 @@ def stated_levels(
 
     Parameters
     ----------
-    stated : StatedContrast or None
+    stated : StatedContrast
     place : str
         Where the image shows a level: "half way between the spokes".
     seen, expected : float
         The value there, and that by the stated levels.
     limits : mapping of str to float
     """
-    if stated is None:
-        return ()
     levels, free = stated.levels, stated.free
     contrast = levels.bright - levels.dark
     apart = abs(free.value - contrast)
@@ -69,7 +67,7 @@ def stated_levels(
         f"{place} the image has {seen:.5g} and the stated levels {expected:.5g}; the contrast is "
         f"{free} by the pattern and {contrast:.5g} by them"
     )
-    return (answer("stated_levels", value, found, limits),)
+    return answer("stated_levels", value, found, limits)
 
 
 def saturation(

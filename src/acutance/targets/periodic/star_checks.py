@@ -59,9 +59,13 @@ def star_checks(
 
 
 def _stated_levels(solved: StarSolution, limits: Limits) -> tuple[Check, ...]:
-    place, stated = "half way between the spokes", solved.stated
-    half = 0.0 if stated is None else 0.5 * (stated.levels.dark + stated.levels.bright)
-    return stated_levels(stated, place, solved.middle, half, limits)
+    """Of a star whose levels are stated; dark and bright spokes are equally wide."""
+    stated = solved.stated
+    if stated is None:
+        return ()
+    half = 0.5 * (stated.levels.dark + stated.levels.bright)
+    place = "half way between the spokes"
+    return (stated_levels(stated, place, solved.middle, half, limits),)
 
 
 def _frequencies(solved: StarSolution, limits: Limits) -> tuple[Check, Check]:

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.noise import robust_scale
 from acutance.targets.points import tuned
 from acutance.targets.points.first_fit import FirstFit
 from acutance.targets.points.stamps import Stamps
@@ -69,7 +68,7 @@ class Background:
             ],
             axis=1,
         )
-        noise = max(robust_scale(first.residual), stamps.least_noise)
+        noise = stamps.noise_of(first.residual)
         scatter = _scatter(stamps, first, anchors[:, 0], noise)
         levels = first.backgrounds[:, 0]
         scale = np.full(_PLANE, 10 * (float(np.abs(levels).max()) + noise) + 1e-9)

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel_2d import WIDE_WIDTHS, GaussianPixel2d, PixelSlopes
-from acutance.numerics.noise import robust_scale
 from acutance.targets.points import tuned
 from acutance.targets.points.per_source import SourceProblem
 from acutance.targets.points.stamps import Stamps
@@ -111,7 +110,7 @@ def unlike_sources(stamps: Stamps, found: FirstFit) -> tuple[Floats, NDArray[np.
     unlike : (k,) bool array
         Where that is significant, large, and several times what is usual.
     """
-    noise = max(robust_scale(found.residual), stamps.least_noise, 1e-300)
+    noise = max(stamps.noise_of(found.residual), 1e-300)
     x, y = stamps.offsets(found.places)
     core = np.hypot(x, y) <= _CORE_PX
     count = np.maximum(np.bincount(stamps.owner[core], minlength=found.fluxes.size), 1)

@@ -201,8 +201,7 @@ def _first_bend(stamps: Stamps, first: FirstFit, peaks: Floats) -> float:
     """
     power = np.bincount(stamps.owner, first.residual**2, peaks.size)
     count = np.bincount(stamps.owner, minlength=peaks.size)
-    noise = max(robust_scale(first.residual), stamps.least_noise)
-    excess = np.maximum(power - count * noise**2, 0.0)
+    excess = np.maximum(power - count * stamps.noise_of(first.residual) ** 2, 0.0)
     away = np.minimum(np.sqrt(excess) / peaks, _MAX_STEP_PX)
     return tuned.BEND * float((peaks * away**2).max())
 

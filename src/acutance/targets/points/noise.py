@@ -74,7 +74,7 @@ def noise_around(
     """
     floor = tuned.NOISE_FLOOR * float(light.max())
     standard = residual / np.sqrt(1 + growth * np.maximum(light, 0.0))
-    scale = math.hypot(max(robust_scale(standard), stamps.least_noise), floor)
+    scale = math.hypot(stamps.noise_of(standard), floor)
     standard = standard / np.hypot(scale, tuned.MODEL_ERROR * light)
     outlier = outlier_weights(standard) if robust else np.ones(standard.size)
     if float(np.sqrt(np.mean(residual**2))) < 3 * floor:

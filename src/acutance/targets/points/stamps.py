@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
-from acutance.numerics.noise import rounding_std
+from acutance.numerics.noise import robust_scale, rounding_std
 from acutance.targets.points import tuned
 
 __all__ = ["Stamps", "cut_stamps"]
@@ -48,6 +48,10 @@ class Stamps:
         Where most pixels of an even background have one number, their median deviation is nothing.
         """
         return rounding_std(self.value)
+
+    def noise_of(self, residual: Floats) -> float:
+        """Standard deviation of the bulk of residuals, (n,): that of rounding at least."""
+        return max(robust_scale(residual), self.least_noise)
 
     @cached_property
     def starts(self) -> _Indices:
