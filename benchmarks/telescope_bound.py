@@ -25,13 +25,12 @@ from acutance import optics
 from acutance.curves.grid import Floats
 from acutance.optics.population import UNEVEN_FAMILIES
 from acutance.simulate import Truth
+from acutance.targets.straight.tuned import FAMILY_WEIGHTS
 
 HIGHEST_CPP, STEP_CPP = 2.4, 1 / 256
 """No aperture passes more; the step makes images repeat after 256 px."""
 FAMILIES = {
-    name: 3.0 if name == "telescope" else 1.0
-    for name in optics.FAMILIES
-    if name not in UNEVEN_FAMILIES
+    name: FAMILY_WEIGHTS.get(name, 1.0) for name in optics.FAMILIES if name not in UNEVEN_FAMILIES
 }
 """How often each is drawn, as the estimator expects them; uneven ones have no real OTF."""
 ANGLE_DEG = (5.0, 20.0)
@@ -110,7 +109,7 @@ class Population:
 
     @classmethod
     def of_families(cls, count: int, rng: np.random.Generator) -> Population:
-        """Sensors of all families, telescopes thrice as often as any other."""
+        """Sensors of all families, as often as the estimator expects them (`FAMILIES`)."""
         often = np.array(list(FAMILIES.values())) / sum(FAMILIES.values())
         names = rng.choice(list(FAMILIES), count, p=often)
         sensors = (optics.draw_sensor(name, rng) for name in names)

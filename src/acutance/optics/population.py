@@ -18,6 +18,7 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Final
 
@@ -37,6 +38,8 @@ __all__ = ["FAMILIES", "UNEVEN_FAMILIES", "draw_sensor"]
 
 _LOWEST_MTF, _HIGHEST_MTF = 0.01, 1.0
 """MTF at Nyquist beyond which there is nothing to measure, or no detector behind it."""
+_BY_HAND = 0.05, 0.8
+"""Strength of kernels set by hand: light ones are as common as heavy ones, by their logarithm."""
 
 
 def draw_sensor(family: str, rng: np.random.Generator) -> Sensor:
@@ -61,7 +64,7 @@ def draw_sensor(family: str, rng: np.random.Generator) -> Sensor:
 
 def _telescope(rng: np.random.Generator) -> list[Block]:
     cutoff_cpp = rng.uniform(0.8, 2.2)
-    obscuration = rng.uniform(0.0, 0.5) if rng.random() < 0.8 else 0.0
+    obscuration = rng.uniform(0.0, 0.6) if rng.random() < 0.8 else 0.0
     blocks: list[Block] = []
     if rng.random() < 0.4:
         blocks.append(Defocus(rng.uniform(0.0, 0.45), cutoff_cpp, obscuration))
@@ -70,7 +73,7 @@ def _telescope(rng: np.random.Generator) -> list[Block]:
         if rng.random() < 0.5:
             wavefront = rng.uniform(0.0, 0.14), rng.uniform(0.1, 0.4)
             blocks.append(WavefrontError(*wavefront, cutoff_cpp))
-    blocks.append(Gaussian(rng.uniform(0.05, 0.5)))
+    blocks.append(Gaussian(rng.uniform(0.0, 0.5)))
     if rng.random() < 0.5:
         blocks.append(Smear(rng.uniform(0.0, 1.2), "across"))
     if rng.random() < 0.3:
@@ -104,8 +107,9 @@ def _restored(rng: np.random.Generator) -> list[Block]:
 
 def _compensated(blocks: list[Block], rng: np.random.Generator) -> list[Block]:
     """A blur, and a kernel set by hand or designed for it, or for what it was thought to be."""
-    if rng.random() < 0.4:
-        return [*blocks, Sharpening.both_axes(rng.uniform(0.05, 0.8))]
+    if rng.random() < 0.5:
+        strength = math.exp(rng.uniform(*np.log(_BY_HAND)))
+        return [*blocks, Sharpening.both_axes(strength)]
     freq_cpp = np.linspace(0.0, 0.5, 101)
     if rng.random() < 0.5:
         blur = Sensor(blocks).otf(freq_cpp, 0.0).real

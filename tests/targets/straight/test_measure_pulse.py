@@ -248,6 +248,18 @@ def test_a_spectrum_without_a_zero_has_none_to_be_near_to():
     assert "no zero" in zero.message
 
 
+@pytest.mark.parametrize("fit_width", [True, False])
+def test_a_blur_sharper_than_a_pixel_is_seen_behind_a_pulse(fit_width):
+    sharp = ac.Sensor([ac.optics.Gaussian(0.2), ac.optics.Detector()])
+    missed = []
+    for seed in range(8):
+        image, truth = simulated(seed, system=sharp)
+        found = ac.measure_pulse(image, width_px=3.0, fit_width=fit_width).fwhm_px
+        missed.append((found.value - truth.fwhm_px.value) / found.std)
+    # Held at a pixel, the aperture made every one of them 1.2 to 2.5 deviations too narrow.
+    assert abs(np.mean(missed)) < 1.0
+
+
 def test_the_published_ratio_underestimates_and_says_its_zeros():
     image, truth = simulated(snr=None, angle_deg=6.0, shape=(60, 60))
     published = ac.measure_pulse(image, width_px=3.0, method="sdsu-2005")

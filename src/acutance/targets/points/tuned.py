@@ -241,7 +241,7 @@ HALO_GRID: Final = (-2.4, -1.6, -0.8, 0.0, 0.8)
 pixels neither show nor exclude were taken for absent; from -4 on, 80 % of those intervals hold."""
 
 # Density of sensors ------------------------------------------------------------------------------
-FAMILY_WEIGHTS: Final = {"telescope": 3.0}
+FAMILY_WEIGHTS: Final = {"telescope": 3.0, "restored": 2.0}
 """How often sensors of a family are expected, those of the others once."""
 OTHER_WEIGHT: Final = 0.05
 """How often a sensor is like none of the families, on the same scale."""

@@ -182,7 +182,7 @@ def draw_density(counts: Mapping[str, int], seed: int) -> dict[str, Floats]:
 def _drawn(family: str, rng: np.random.Generator) -> Sensor:
     if family != "plain":
         return draw_sensor(family, rng)
-    return Sensor([Gaussian(rng.uniform(0.15, 1.1)), Detector(rng.uniform(0.85, 1.0))])
+    return Sensor([Gaussian(rng.uniform(0.05, 1.1)), Detector(rng.uniform(0.85, 1.0))])
 
 
 def write_density(path: Path, density: dict[str, Floats]) -> None:
