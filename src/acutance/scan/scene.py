@@ -241,7 +241,7 @@ def _measurement(
         method="population",
         transfer=transfer,
         snr=float(np.median(edges.snr[edges.used])),
-        checks=check_scene(edges, fit, field, transfer, options.limits),
+        checks=check_scene(edges, fit, field, transfer, (image, box), options.limits),
         image=image_info(image, box, gsd),
         options=options.to_dict(),
         edges=known,

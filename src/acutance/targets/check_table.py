@@ -35,6 +35,15 @@ _ANY_TARGET = {
         "Which share of the pixels lies far from the fit?", "<=", 0.02,
         "objects on the target, or a fit that does not hold; choose a cleaner region",
     ),
+    "repeated_pixels": Question(
+        "Which share of the pixels repeats a neighbour?", "<=", 0.01,
+        "the image was resampled by taking the nearest pixel, which breaks edges in steps of a "
+        "pixel: its MTF is not the sensor's; use the original grid",
+    ),
+    "jpeg_blocks": Question(
+        "How many times less detail do blocks of 8 by 8 pixels have at one place?", "<=", 1.25,
+        "the image was compressed (JPEG): MTFs err by more than their intervals; use the original",
+    ),
     "full_pixel": Question(
         "Which MTF at Nyquist is surely exceeded?", "<=", 0.66,
         "no sensor whose pixels touch is that sharp: the image was sharpened, decimated or drawn",
@@ -100,11 +109,6 @@ _STRAIGHT = {
         "How many steps of the image's numbers is the noise?", ">=", 0.2,
         "so much rounding is no noise: it is equal for the pixels of a plateau and shifts its "
         "level by more than the intervals; use data of more bits",
-    ),
-    "block_steps": Question(
-        "How much larger are steps at every eighth row and column than between?", "<=", 1.5,
-        "the image was compressed in blocks of 8 by 8 pixels (JPEG), which takes noise and fine "
-        "detail away: MTFs come out low, by more than the intervals; use the original",
     ),
     "nonlinearity": Question(
         "How far from a straight line between the plateaus is the image's characteristic?",
