@@ -7,6 +7,7 @@ source were set by simulation: documentation, "Edges", "Pulses", "Points" and so
 
 from __future__ import annotations
 
+from acutance.targets.processing_questions import PROCESSING_QUESTIONS
 from acutance.targets.question import PLACES, Question
 from acutance.targets.scene_questions import SCENE_QUESTIONS
 
@@ -34,15 +35,6 @@ _ANY_TARGET = {
     "outliers": Question(
         "Which share of the pixels lies far from the fit?", "<=", 0.02,
         "objects on the target, or a fit that does not hold; choose a cleaner region",
-    ),
-    "repeated_pixels": Question(
-        "Which share of the pixels repeats a neighbour?", "<=", 0.01,
-        "the image was resampled by taking the nearest pixel, which breaks edges in steps of a "
-        "pixel: its MTF is not the sensor's; use the original grid",
-    ),
-    "jpeg_blocks": Question(
-        "How many times less detail do blocks of 8 by 8 pixels have at one place?", "<=", 1.25,
-        "the image was compressed (JPEG): MTFs err by more than their intervals; use the original",
     ),
     "full_pixel": Question(
         "Which MTF at Nyquist is surely exceeded?", "<=", 0.66,
@@ -395,6 +387,7 @@ _COMBINED = {
 }  # fmt: skip
 
 QUESTIONS: dict[str, Question] = {
-    **_ANY_TARGET, **_STRAIGHT, **_POINTS, **_PERIODIC, **_PAIR, **_COMBINED, **SCENE_QUESTIONS,
+    **_ANY_TARGET, **PROCESSING_QUESTIONS, **_STRAIGHT, **_POINTS, **_PERIODIC, **_PAIR,
+    **_COMBINED, **SCENE_QUESTIONS,
 }  # fmt: skip
 """All questions by name; each kind of target asks some of them."""

@@ -17,6 +17,7 @@ from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
 from acutance.targets.straight.check_loops import change_along
 from acutance.targets.straight.ground_checks import ground_checks, rim
+from acutance.targets.straight.odd_even import odd_even
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,
     gradient,
@@ -65,8 +66,9 @@ EDGE_CHECKS = (
     "rows", "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px",
     "lsf_narrow_px", "full_pixel", "plateau_dark_px", "plateau_bright_px", "saturation",
     "undeclared_fill", "quantisation", *PROCESSING_CHECKS, "nonlinearity", "gradient",
-    "correlated_noise", "structure", "one_sided_overshoot", "double_edge", "asymmetric_lsf",
-    "asymmetric_wings", "profile", "outliers", "ground", "close_ground", "mirrored_ground", "rim",
+    "correlated_noise", "odd_even", "structure", "one_sided_overshoot", "double_edge",
+    "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground", "close_ground",
+    "mirrored_ground", "rim",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -110,6 +112,7 @@ def check_edge(
         nonlinearity(data, limits, EDGE),
         gradient(data, limits),
         correlated_noise(data, limits),
+        odd_even(data, limits),
         structure(data, limits),
         one_sided_overshoot(data, limits),
         double_edge(data, limits),

@@ -24,6 +24,7 @@ from acutance.targets.straight.edge_checks import (
 )
 from acutance.targets.straight.fit_pulse import PulsePixels
 from acutance.targets.straight.ground_checks import ground_checks
+from acutance.targets.straight.odd_even import odd_even
 from acutance.targets.straight.pixel_checks import (
     correlated_noise,
     gradient,
@@ -56,7 +57,7 @@ PULSE_CHECKS = (
     "contrast_snr", "uniformity_before", "uniformity_behind", "uniformity_target", "angle_deg",
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
     "full_pixel", "plateau_before_px", "plateau_behind_px", "saturation", "undeclared_fill",
-    "quantisation", *PROCESSING_CHECKS, "nonlinearity", "gradient", "correlated_noise",
+    "quantisation", *PROCESSING_CHECKS, "nonlinearity", "gradient", "correlated_noise", "odd_even",
     "asymmetric_lsf", "profile", "outliers", "parallel_deg", "background_step", "width_px",
     "width_sigmas", "zero_distance_cpp", "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
@@ -119,6 +120,7 @@ def check_pulse(
         _nonlinearity(data, limits, width.value, height_ratio.value),
         gradient(data, limits),
         correlated_noise(data, limits),
+        odd_even(data, limits),
         asymmetric_lsf(data, limits),
         profile(
             data,
