@@ -84,6 +84,17 @@ def test_equal_rows_that_are_no_copies():
         assert repeated_share(np.ascontiguousarray(image.T)) == 0.0
 
 
+@pytest.mark.parametrize("angle_deg", [0.0, 3.0])
+@pytest.mark.parametrize("step", [0.0, 1.0, 20.0])
+def test_bars_and_stars_without_noise_do_not_repeat(angle_deg, step):
+    """Rows on both sides of the middle of a bar are equal, and those next to them differ."""
+    for system in SYSTEMS.values():
+        star, _ = ac.simulate.star(system, cycles=36, radius_px=32.0, shape=(80, 80))
+        bars, _ = ac.simulate.bars(system, angle_deg=angle_deg)
+        for image in (star, bars):
+            assert repeated_share(np.round(image / step) * step if step else image) == 0.0
+
+
 def test_one_copied_row_and_missing_pixels():
     image = np.random.default_rng(5).normal(size=(48, 48))
     image[20] = image[19]

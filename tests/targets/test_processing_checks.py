@@ -104,6 +104,12 @@ def test_scenes_are_asked_once_and_not_by_their_edges():
     assert not any("JPEG" in reason for reason in compressed.edges.reason)
 
 
+def test_an_enlarged_scene_without_edges_says_why():
+    image, _ = simulate.landscape(SENSOR, shape=(200, 200), snr=60, rng=np.random.default_rng(3))
+    with pytest.raises(ac.FewEdgesError, match=r"\d % of the pixels repeat .* the nearest pixel"):
+        ac.scan_scene(enlarged(image))
+
+
 def test_large_images_are_sampled_all_over():
     boxes = list(sample_boxes(ac.Box(100, 50, 5000, 300)))
     assert [box.row for box in boxes[::2]] == [891, 2472, 4053]
