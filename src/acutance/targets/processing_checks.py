@@ -15,7 +15,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.jpeg_blocks import jpeg_blocks
 from acutance.numerics.repeated_pixels import repeated_share
 from acutance.raster import Box, Image
-from acutance.targets.check import MAX_RATIO, Check, Limits, answer
+from acutance.targets.check import Check, Limits, answer
 from acutance.targets.region import read_data
 
 __all__ = ["PROCESSING_CHECKS", "image_processing_checks", "processing_checks", "sample_boxes"]
@@ -73,7 +73,7 @@ def _answers(repeated: float, blocks: float, limits: Limits) -> tuple[Check, Che
             f"{100 * repeated:.1f} % of the pixels repeat the one above or beside them", limits,
         ),
         answer(
-            "jpeg_blocks", min(blocks, MAX_RATIO),
+            "jpeg_blocks", blocks,
             f"blocks of 8 x 8 pixels cut at one place have {blocks:.2f} times less detail than at "
             "any other", limits,
         ),
