@@ -74,8 +74,8 @@ def _answers(repeated: float, blocks: float, limits: Limits) -> tuple[Check, Che
         ),
         answer(
             "jpeg_blocks", blocks,
-            f"blocks of 8 x 8 pixels cut at one place have {blocks:.2f} times less detail than at "
-            "any other", limits,
+            f"detail is {blocks:.2f} times rarer in blocks of 8 x 8 pixels cut at one place than "
+            "at any other", limits,
         ),
     )  # fmt: skip
 

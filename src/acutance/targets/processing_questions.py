@@ -18,7 +18,7 @@ PROCESSING_QUESTIONS: Final = {
         "pixel: its MTF is not the sensor's; use the original grid",
     ),
     "jpeg_blocks": Question(
-        "How many times less detail do blocks of 8 by 8 pixels have at one place?", "<=", 1.25,
+        "How many times rarer is detail in blocks of 8 by 8 pixels at one place?", "<=", 1.25,
         "the image was compressed by JPEG, which takes noise and fine detail away: MTFs err by "
         "more than the intervals; use the original",
     ),
