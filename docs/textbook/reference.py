@@ -62,6 +62,8 @@ PACKAGES = (
     "targets.points.fit",
     "numerics.noise",
     "numerics.clipping",
+    "numerics.repeated_pixels",
+    "numerics.jpeg_blocks",
     "numerics.normal_equations",
     "numerics.process_modes",
 )

@@ -6,7 +6,8 @@
 - process_modes, lorentz_tail: the corrections that a prior allows; shape_error: what they leave.
 - otf_modes, otf_families (learned by learn_otf), combined_prior: those of a transfer function in
   two dimensions, and directions in them that sensors of a family take.
-- clipping: pixels at the end of the scale.
+- clipping: pixels at the end of the scale; repeated_pixels, jpeg_blocks: what resampling and
+  compression left of them (pixel_steps: the step of their numbers).
 - stacked: complex values as real ones.
 - lookup: cubic interpolation of tables; one_thread: linear algebra of many small matrices.
 """

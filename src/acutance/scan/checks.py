@@ -11,6 +11,7 @@ import numpy as np
 from acutance.curves import Otf2d
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
+from acutance.raster import Box, Image
 from acutance.scan.borders import border_of_each
 from acutance.scan.field import Field
 from acutance.scan.parts import PartsFit
@@ -20,6 +21,7 @@ from acutance.scan.sensor_turns import Rival
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.full_pixel import full_pixel
+from acutance.targets.processing_checks import PROCESSING_CHECKS, image_processing_checks
 from acutance.targets.slices import SLICE_FREQ_CPP
 
 __all__ = ["SCENE_CHECKS", "check_scene"]
@@ -27,7 +29,7 @@ __all__ = ["SCENE_CHECKS", "check_scene"]
 SCENE_CHECKS = (
     "edges_used", "trusted_share", "scene_directions", "ideal_share", "ideal_borders",
     "strange_share", "scene_settled", "form_agrees", "rival", "parts_agree", "diagonals",
-    "field_change", "full_pixel",
+    "field_change", "full_pixel", *PROCESSING_CHECKS,
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -38,7 +40,12 @@ _DECIMATED = 0.7
 
 
 def check_scene(
-    edges: SceneEdges, fit: SensorFit, field: Field, transfer: Otf2d, limits: Limits
+    edges: SceneEdges,
+    fit: SensorFit,
+    field: Field,
+    transfer: Otf2d,
+    image: tuple[Image, Box],
+    limits: Limits,
 ) -> tuple[Check, ...]:
     """All checks of a scene.
 
@@ -49,6 +56,8 @@ def check_scene(
     field : Field
     transfer : Otf2d
         The mean over the field.
+    image : (Image, Box)
+        And the part of it that was scanned.
     limits : mapping of str to float
         Limits the caller changed.
     """
@@ -90,6 +99,7 @@ def check_scene(
         full_pixel(
             [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
         ),
+        *image_processing_checks([image], limits),
     )  # fmt: skip
 
 

@@ -27,6 +27,7 @@ from acutance.scan.stated_objects import behind_objects, gsd_of_part, require_st
 from acutance.scan.window_edges import UsedEdge, WindowEdges
 from acutance.scan.windows import windows
 from acutance.targets.options import chosen_options
+from acutance.targets.processing_checks import image_processing_checks
 from acutance.targets.region import RoiLike, image_info, read_data
 
 __all__ = ["measured_scene", "scan_scene"]
@@ -141,7 +142,7 @@ def measured_scene(
     used = [edge for window in found for edge in window.used]
     if not edges.size:
         _require_data(image, box, options)
-    fit = _fit(used, edges, box.as_tuple())
+    fit = _fit(used, edges, image, box)
     return _measurement(image, box, gsd, options, edges, fit)
 
 
@@ -159,7 +160,7 @@ def _require_data(image: Image, box: Box, options: ScanOptions) -> None:
 
 
 @one_thread
-def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, int]) -> SensorFit:
+def _fit(used: Sequence[UsedEdge], edges: SceneEdges, image: Image, box: Box) -> SensorFit:
     """The sensor and the objects.
 
     Raises
@@ -169,16 +170,16 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, 
     """
     if not edges.size:
         raise FewEdgesError(
-            f"no straight edge stands out in the {roi[2]} x {roi[3]} pixels: they are flat, or "
-            "hold nothing straight; scan a larger part, or another image",
+            f"no straight edge stands out in the {box.height} x {box.width} pixels: they are flat, "
+            "or hold nothing straight; scan a larger part, or another image",
             edges,
         )
     if len(used) < _MIN_EDGES:
         raise FewEdgesError(
             f"{_counted(edges.size)} found, and {len(used)} of them can be used, where "
-            f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}scan a larger part, or "
-            "another image, or measure single edges; the table of the edges has every reason "
-            "(--edges FILE; in Python, error.edges)",
+            f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}{_processing(image, box)}"
+            "scan a larger part, or another image, or measure single edges; the table of the edges "
+            "has every reason (--edges FILE; in Python, error.edges)",
             edges,
         )
     axis_deg = np.array([one.axis_deg for one in used])
@@ -193,7 +194,7 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, roi: tuple[int, int, int, 
             edges,
         )
     likelihoods = _likelihoods(used, number, axis_deg)
-    x, y = field_places(roi, edges.row[edges.used], edges.col[edges.used])
+    x, y = field_places(box.as_tuple(), edges.row[edges.used], edges.col[edges.used])
     return fit_sensor(likelihoods, normal_deg, sensor_guesses(used, normal_deg), x, y)
 
 
@@ -204,6 +205,12 @@ def _common_reason(edges: SceneEdges) -> str:
     unused = edges.verdict[~edges.used]
     words, counts = np.unique(unused, return_counts=True)
     return f"most of the others are {words[int(np.argmax(counts))]}; "
+
+
+def _processing(image: Image, box: Box) -> str:
+    """What processing left in the pixels: few edges of a resampled image are straight."""
+    found = image_processing_checks([(image, box)], {})
+    return "".join(f"{check.message}; " for check in found if not check.passed)
 
 
 def _counted(edges: int) -> str:
@@ -241,7 +248,7 @@ def _measurement(
         method="population",
         transfer=transfer,
         snr=float(np.median(edges.snr[edges.used])),
-        checks=check_scene(edges, fit, field, transfer, options.limits),
+        checks=check_scene(edges, fit, field, transfer, (image, box), options.limits),
         image=image_info(image, box, gsd),
         options=options.to_dict(),
         edges=known,

@@ -21,6 +21,7 @@ from acutance.scan.edge_points import gradient
 from acutance.scan.options import ScanOptions
 from acutance.scan.pieces import region_box
 from acutance.scan.windows import Window
+from acutance.targets.processing_checks import PROCESSING_CHECKS
 from acutance.targets.region import RegionPixels, read_data
 from acutance.targets.straight import StraightMeasurement
 from acutance.targets.straight.edge import measure_segment
@@ -31,8 +32,9 @@ from acutance.targets.straight.surroundings import line_distances
 __all__ = ["UsedEdge", "WindowEdges", "scan_window"]
 
 _MIN_SIDE_PX = 16
-_EDGE_OPTIONS = EdgeOptions(limits={"full_pixel": math.inf})
-"""Whether it is too sharp for a sensor is asked of the scene: all edges of a sharpened one are."""
+_EDGE_OPTIONS = EdgeOptions(limits=dict.fromkeys(("full_pixel", *PROCESSING_CHECKS), math.inf))
+"""Whether it is too sharp for a sensor, resampled or compressed is asked of the scene: all its
+edges are."""
 
 
 @dataclass(frozen=True, eq=False)

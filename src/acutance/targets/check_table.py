@@ -7,6 +7,7 @@ source were set by simulation: documentation, "Edges", "Pulses", "Points" and so
 
 from __future__ import annotations
 
+from acutance.targets.processing_questions import PROCESSING_QUESTIONS
 from acutance.targets.question import PLACES, Question
 from acutance.targets.scene_questions import SCENE_QUESTIONS
 
@@ -100,11 +101,6 @@ _STRAIGHT = {
         "How many steps of the image's numbers is the noise?", ">=", 0.2,
         "so much rounding is no noise: it is equal for the pixels of a plateau and shifts its "
         "level by more than the intervals; use data of more bits",
-    ),
-    "block_steps": Question(
-        "How much larger are steps at every eighth row and column than between?", "<=", 1.5,
-        "the image was compressed in blocks of 8 by 8 pixels (JPEG), which takes noise and fine "
-        "detail away: MTFs come out low, by more than the intervals; use the original",
     ),
     "nonlinearity": Question(
         "How far from a straight line between the plateaus is the image's characteristic?",
@@ -391,6 +387,7 @@ _COMBINED = {
 }  # fmt: skip
 
 QUESTIONS: dict[str, Question] = {
-    **_ANY_TARGET, **_STRAIGHT, **_POINTS, **_PERIODIC, **_PAIR, **_COMBINED, **SCENE_QUESTIONS,
+    **_ANY_TARGET, **PROCESSING_QUESTIONS, **_STRAIGHT, **_POINTS, **_PERIODIC, **_PAIR,
+    **_COMBINED, **SCENE_QUESTIONS,
 }  # fmt: skip
 """All questions by name; each kind of target asks some of them."""

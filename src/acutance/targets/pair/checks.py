@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.raster import Fill
+from acutance.raster import Box, Fill, Image
 from acutance.targets.check import Check, Limits, answer
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.grid import PairGrid
@@ -20,6 +20,7 @@ from acutance.targets.pair.kernel_fit import KernelFit
 from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit
 from acutance.targets.pair.spectral_ratio import PairSpectra
+from acutance.targets.processing_checks import PROCESSING_CHECKS, image_processing_checks
 from acutance.targets.region import undeclared_fill
 
 __all__ = ["PAIR_CHECKS", "check_pair"]
@@ -38,6 +39,7 @@ PAIR_CHECKS = (
     "inflation",
     "saturation",
     "undeclared_fill",
+    *PROCESSING_CHECKS,
     "iteration_change",
 )
 """The checks of a pair; "reference_directions" only where the reference was measured in one."""
@@ -55,6 +57,7 @@ def check_pair(
     stop_change: float,
     clipped: float,
     fills: Sequence[Fill | None],
+    images: Sequence[tuple[Image, Box]],
     inverted: bool,
 ) -> tuple[Check, ...]:
     """All checks of a pair.
@@ -76,6 +79,8 @@ def check_pair(
         Share of clipped pixels, of the worse image.
     fills : sequence of Fill or None
         Undeclared fill of both images, tile by tile.
+    images : sequence of (Image, Box)
+        Both images, and which part of them is used.
     inverted : bool
         Whether the images match better with opposite sign.
     """
@@ -91,6 +96,7 @@ def check_pair(
             "saturation", clipped, f"{100 * clipped:.2f} % of an image's pixels are clipped", limits
         ),
         undeclared_fill(fills, limits),
+        *image_processing_checks(images, limits),
         _iteration(gaussian, stop_change, limits),
     )
 

@@ -157,6 +157,11 @@ class PairTiles:
         # Interpolated samples share the noise of fewer pixels, or average that of more.
         return found[len(found) // 2].times(stretch)
 
+    @property
+    def parts(self) -> tuple[tuple[Image, Box], tuple[Image, Box]]:
+        """Both images, and the part of them that shows the low image's box."""
+        return (self.low, self.box), (self.high, self._high_box(self.box))
+
     def fills(self) -> list[Fill | None]:
         """Undeclared fill of the low image's tiles, and of the high image's next to them."""
         fills = []

@@ -10,11 +10,11 @@ from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
 from acutance.numerics.noise import Correlation
-from acutance.raster import Fill
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.points.sources import PointSource
 from acutance.targets.points.survey import SurveyErrors
-from acutance.targets.region import undeclared_fill
+from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
+from acutance.targets.region import RegionPixels, undeclared_fill
 
 __all__ = ["POINTS_CHECKS", "check_points", "check_survey", "phase_gap_px"]
 
@@ -27,6 +27,7 @@ POINTS_CHECKS = (
     "psf_width_px",
     "source_misfit",
     "undeclared_fill",
+    *PROCESSING_CHECKS,
     "full_scale",
     "correlated_noise",
     "outliers",
@@ -40,10 +41,10 @@ _MIN_ABOUT_PLANE = 5
 
 def check_points(
     sources: Sequence[PointSource],
+    region: RegionPixels,
     limits: Limits,
     *,
     fwhm_px: Mapping[str, float],
-    fill: Fill | None = None,
     full_scale: float | None = None,
     correlation: Correlation | None = None,
     outliers: float | None = None,
@@ -53,12 +54,11 @@ def check_points(
     Parameters
     ----------
     sources : sequence of PointSource
+    region : RegionPixels
     limits : mapping of str to float
         Limits the caller changed.
     fwhm_px : mapping of str to float
         Full width of the point spread function at half maximum by direction, NaN where it has none.
-    fill : Fill, optional
-        Undeclared fill that was left out.
     full_scale : float, optional
         The brightest pixel of a source over the detector's limit, where that is known.
     correlation : Correlation, optional
@@ -74,7 +74,8 @@ def check_points(
         _background_uniformity(sources, limits),
         _psf_width(fwhm_px, limits),
         _source_misfit(sources, limits),
-        undeclared_fill([fill], limits),
+        undeclared_fill([region.fill], limits),
+        *processing_checks(region.pixels, limits),
     ]
     if full_scale is not None:
         found = f"the brightest pixel is at {100 * full_scale:.0f} % of the detector's range"

@@ -7,7 +7,7 @@ curves, with `spline`, `spline_equations`, `lsf`, `lsf_prior`, `gradients`, `gro
 `step_profile`; the last pass is `among_sensors`, its prior `sensor_density`; `learn_lsf` learned
 both priors), `edge` and `pulse` (the public functions; `many_edges`, `many_pulses` for all edges
 of a target and for many regions),
-`edge_checks`, `pulse_checks`, `pixel_checks`, `structure_checks` and
+`edge_checks`, `pulse_checks`, `pixel_checks`, `structure_checks`, `odd_even` and
 `ground_checks` (is the target good enough; `check_data` is their input). What takes a model of its
 own: `rim` (a strip along the border), `nonlinearity` (a characteristic that curves: of edges
 `mirror_sum` and `side_noise`, of pulses `curved_model` with `lsf_parity`).

@@ -11,13 +11,14 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.geometry.line import Line
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_ratio
 from acutance.targets.full_pixel import full_pixel
+from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
 from acutance.targets.straight.check_loops import change_along
 from acutance.targets.straight.ground_checks import ground_checks, rim
+from acutance.targets.straight.odd_even import odd_even
 from acutance.targets.straight.pixel_checks import (
-    compression,
     correlated_noise,
     gradient,
     nonlinearity,
@@ -64,9 +65,10 @@ EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases",
     "rows", "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px",
     "lsf_narrow_px", "full_pixel", "plateau_dark_px", "plateau_bright_px", "saturation",
-    "undeclared_fill", "quantisation", "block_steps", "nonlinearity", "gradient",
-    "correlated_noise", "structure", "one_sided_overshoot", "double_edge", "asymmetric_lsf",
-    "asymmetric_wings", "profile", "outliers", "ground", "close_ground", "mirrored_ground", "rim",
+    "undeclared_fill", "quantisation", *PROCESSING_CHECKS, "nonlinearity", "gradient",
+    "correlated_noise", "odd_even", "structure", "one_sided_overshoot", "double_edge",
+    "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground", "close_ground",
+    "mirrored_ground", "rim",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -106,10 +108,11 @@ def check_edge(
         saturation(region, values, data, limits, ("dark", "bright")),
         undeclared_fill([region.fill], limits),
         quantisation(region, values, data, limits),
-        compression(region, limits),
+        *processing_checks(region.pixels, limits),
         nonlinearity(data, limits, EDGE),
         gradient(data, limits),
         correlated_noise(data, limits),
+        odd_even(data, limits),
         structure(data, limits),
         one_sided_overshoot(data, limits),
         double_edge(data, limits),

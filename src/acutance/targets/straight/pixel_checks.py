@@ -12,7 +12,6 @@ from acutance.numerics.noise import median, outlier_share, smallest_step
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels
-from acutance.targets.straight.block_steps import block_steps
 from acutance.targets.straight.check_data import MISFIT, CheckData
 from acutance.targets.straight.check_loops import far_side, rise_outwards, side_upwards
 from acutance.targets.straight.nonlinearity import find_curvature, gamma_of
@@ -33,7 +32,6 @@ from acutance.targets.straight.tuned import (
 )
 
 __all__ = [
-    "compression",
     "correlated_noise",
     "gradient",
     "nonlinearity",
@@ -109,13 +107,6 @@ def _uneven_quantisation(data: CheckData, values: Floats, contrast: float, limit
             value = ratio
             found = f"the noise {PLACES[name]} is {ratio:.2f} steps of the image's numbers there"
     return answer("quantisation", value, found, limits)
-
-
-def compression(region: RegionPixels, limits: Limits) -> Check:
-    """Whether the image was compressed in blocks, as by JPEG."""
-    value = min(block_steps(region.pixels), MAX_RATIO)
-    found = f"steps at every eighth row and column are {value:.2f} times those between"
-    return answer("block_steps", value, found, limits)
 
 
 def nonlinearity(data: CheckData, limits: Limits, profile: Profile, sign: float = 1.0) -> Check:

@@ -11,6 +11,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, limit_of
 from acutance.targets.full_pixel import full_pixel
+from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
 from acutance.targets.region import RegionPixels, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
 from acutance.targets.straight.edge_checks import (
@@ -23,8 +24,8 @@ from acutance.targets.straight.edge_checks import (
 )
 from acutance.targets.straight.fit_pulse import PulsePixels
 from acutance.targets.straight.ground_checks import ground_checks
+from acutance.targets.straight.odd_even import odd_even
 from acutance.targets.straight.pixel_checks import (
-    compression,
     correlated_noise,
     gradient,
     nonlinearity,
@@ -56,7 +57,7 @@ PULSE_CHECKS = (
     "contrast_snr", "uniformity_before", "uniformity_behind", "uniformity_target", "angle_deg",
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
     "full_pixel", "plateau_before_px", "plateau_behind_px", "saturation", "undeclared_fill",
-    "quantisation", "block_steps", "nonlinearity", "gradient", "correlated_noise",
+    "quantisation", *PROCESSING_CHECKS, "nonlinearity", "gradient", "correlated_noise", "odd_even",
     "asymmetric_lsf", "profile", "outliers", "parallel_deg", "background_step", "width_px",
     "width_sigmas", "zero_distance_cpp", "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
@@ -115,10 +116,11 @@ def check_pulse(
         saturation(region, values, data, limits, ("before", "behind")),
         undeclared_fill([region.fill], limits),
         quantisation(region, values, data, limits),
-        compression(region, limits),
+        *processing_checks(region.pixels, limits),
         _nonlinearity(data, limits, width.value, height_ratio.value),
         gradient(data, limits),
         correlated_noise(data, limits),
+        odd_even(data, limits),
         asymmetric_lsf(data, limits),
         profile(
             data,
