@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -102,6 +104,27 @@ def test_without_dates_the_mean_stands_in() -> None:
     assert found.word == "met"
     assert found.day is None
     assert "the mean of the images stands in" in found.summary
+
+
+def test_the_interval_written_is_that_of_the_probability() -> None:
+    """A deviation would be read with a normal density; of three images the tails are longer."""
+    made = series(1, images=3, days=False)
+    found = check_requirement(at_least(0.09), made)
+    assert found.mean is not None
+    low, high = found.mean.interval(0.95)
+    edge = check_requirement(at_least(low), made)
+    assert edge.probability == pytest.approx(0.975, abs=0.002)
+    assert "±" not in found.summary
+    words = re.search(r"\(95 %: ([\d.]+) to ([\d.]+)\)", found.summary)
+    assert words is not None
+    assert [float(one) for one in words.groups()] == pytest.approx([low, high], abs=0.0006)
+
+
+def test_a_level_without_its_season_says_so() -> None:
+    made = series(1, images=40)
+    seasonal = replace(made, value=made.value + 0.01 * np.cos(2 * np.pi * made.when))
+    assert "of which the level is free" in check_requirement(at_least(0.09), seasonal).summary
+    assert "season" not in check_requirement(at_least(0.09), made).summary
 
 
 def test_one_image_tells_nothing() -> None:
