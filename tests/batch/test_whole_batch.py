@@ -41,6 +41,26 @@ def test_targets_are_found_where_the_map_is_metres_off(write_field, run, rows):
         assert line["normal_deg"] % 180 == pytest.approx(tarp.normal_deg, abs=1)
 
 
+def test_the_distance_from_the_survey_is_kept(write_field, run, rows, tmp_path):
+    """The map of the second image is 3.1 m off across the lines, 2.2 m along them."""
+    run(write_field(0), write_field(1, (3.1, -2.2)))
+    measured, _ = rows()
+    for at in range(len(measured)):
+        found = measured.record(at).document["survey_line"]
+        off_m = (0.0, 0.0) if "field-0" in measured["image"][at] else (3.1, -2.2)
+        angle = np.radians(EDGE.normal_deg)
+        true_m = abs(off_m[0] * np.cos(angle) - off_m[1] * np.sin(angle))
+        assert found["distance_m"] == pytest.approx(true_m, abs=0.05)
+        assert found["distance_px"] == pytest.approx(2 * true_m, abs=0.1)
+        assert found["turn_deg"] < 0.6
+        assert found["search_px"] == 9.0
+    outline = feature("place", "edge", "Polygon", [[on_map(30, 25), on_map(80, 25),
+                      on_map(80, 75), on_map(30, 75), on_map(30, 25)]])  # fmt: skip
+    run(write_field(0), targets=survey(outline), archive=tmp_path / "outline.db")
+    with Archive(tmp_path / "outline.db") as archive:
+        assert "survey_line" not in archive.measurements().record(0).document
+
+
 def test_what_is_done_is_not_done_again_and_not_even_opened(write_field, run, monkeypatch):
     images = [write_field(number) for number in range(2)]
     first = run(*images)

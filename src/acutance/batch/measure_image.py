@@ -212,6 +212,7 @@ def _row(
     """A record or a rejection, and the processor time of the measurement."""
     # The rooms of the kinds are loaded where something is measured.
     from acutance.batch.measure_target import measure_target
+    from acutance.batch.survey_distance import with_survey_distance
 
     image, begin = opened.images[place], None
     try:
@@ -220,7 +221,7 @@ def _row(
         begin = _processor_s()
         with interruptible():
             record = measure_target(placed, image, chosen, scan_workers).record
-        return {"record": record}, _processor_s() - begin
+        return {"record": with_survey_distance(record, placed)}, _processor_s() - begin
     except NotHereError as error:
         rejected = _rejected(error.stage, str(error), error.why, chosen, image)
     except AcutanceError as error:

@@ -69,7 +69,7 @@ def _pulse(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measure
         image, region, gsd_m=placed.gsd, method=chosen.method, options=chosen.build(), **stated
     )
     if is_line:
-        require_near(placed, found.line)
+        require_near(placed, found.line, found.width_px.value)
     return found
 
 

@@ -113,6 +113,7 @@ def entry_text(entry: Entry) -> str:
         "level": image.level,
         "GSD": None if image.gsd_m is None else _gsd_words(image.gsd_m),
         "target": None if target is None else target.name,
+        "survey": None if record is None else _survey_words(record),
         "place": _place(target),
         "site": None if target is None else target.site,
         "key": entry.key,
@@ -128,6 +129,18 @@ def _place(target: TargetEntry | None) -> str | None:
     if target is None or target.lon is None or target.lat is None:
         return None
     return f"longitude {target.lon:.5f}, latitude {target.lat:.5f}"
+
+
+def _survey_words(record: Record) -> str | None:
+    """How far a batch found a line from where the survey has it."""
+    found = record.document.get("survey_line")
+    if found is None:
+        return None
+    metres = "" if found["distance_m"] is None else f" ({found['distance_m']:.2f} m)"
+    return (
+        f"the line lies {found['distance_px']:.2f} px{metres} from the surveyed one, turned by "
+        f"{found['turn_deg']:.1f} degrees; looked for within {found['search_px']:.1f} px"
+    )
 
 
 def _gsd_words(sides_m: tuple[float, float]) -> str:
