@@ -162,12 +162,12 @@ def test_all_that_is_wrong_is_named_at_once(tmp_path: Path) -> None:
     path = tmp_path / "spec.toml"
     path.write_text(
         'titel = "T"\n[[requirement]]\nmetric = "mtf"\nminimum = 1\nlimits = 2\n'
-        '[[requirement]]\nmetric = "rer"\n'
+        '[[requirement]]\nname = "second"\nmetric = "rer"\n'
     )
     with pytest.raises(ac.OptionError) as error:
         read_specification(path)
-    for part in ("titel: is no key", "requirement.1.limits: is no key", "'mtf' is none of",
-                 "requirement.2: give a minimum or a maximum"):  # fmt: skip
+    for part in ("titel: is no key", "requirement 1, limits: is no key", "'mtf' is none of",
+                 "requirement 2 (second): give a minimum or a maximum"):  # fmt: skip
         assert part in str(error.value)
 
 

@@ -78,10 +78,10 @@ def test_all_faults_at_once():
         "the key 'targets' is missing",
         "the key 'archive' is missing",
         "workers is 0",
-        "there is no key 'stated.0.sensr'",
-        "stated.0.acquired is 20260105",
-        "stated.0.gsd_m is -1.0",
-        "stated.0.height_m is 100000.0",
+        "there is no key 'sensr' in stated 1",
+        "stated 1, acquired is 20260105",
+        "stated 1, gsd_m is -1.0",
+        "stated 1, height_m is 100000.0",
         "edge is 'spline'",
     ):
         assert words in str(caught.value)
@@ -122,7 +122,7 @@ def test_what_is_stated_of_no_image_is_refused(tmp_path):
     right = StatedOfImages(images=("K3_*.tif",), sensor="B")
     require_stated_images(files, (StatedOfImages(sensor="A"), right))
     wrong = StatedOfImages(images=("K3_*.tif", "K4_*.tif"), sensor="C")
-    with pytest.raises(OptionError, match=r"stated\.2 is of images that match K4_\*\.tif"):
+    with pytest.raises(OptionError, match=r"stated 2 is of images that match K4_\*\.tif"):
         require_stated_images(files, (right, wrong))
 
 

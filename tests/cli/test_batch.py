@@ -128,8 +128,8 @@ def test_what_is_refused(refused, given, tmp_path, edge_image):
 
 def test_faults_of_targets_are_named_together(refused, given, tmp_path):
     targets_file(tmp_path, edge("a", kind="wires"), edge("b", colour=1))
-    refused(given, "feature 1 (a): kind is 'wires'")
-    refused(given, "feature 2 (b): there is no property 'colour'")
+    refused(given, "target 1 (a): kind is 'wires'")
+    refused(given, "target 2 (b): there is no property 'colour'")
 
 
 def test_ctrl_c(acutance, given, monkeypatch):

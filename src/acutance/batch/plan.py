@@ -13,6 +13,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from acutance.errors import OptionError
+from acutance.raster.document_faults import DocumentFault, document_faults
 from acutance.raster.metadata.findings import ANGLES
 
 __all__ = ["BatchPlan", "StatedOfImages", "plan_of", "read_plan"]
@@ -230,7 +231,7 @@ def plan_of(document: Mapping[str, Any], name: str, folder: Path | None = None) 
     try:
         given = _Plan.model_validate(document)
     except ValidationError as error:
-        faults = "\n".join(f"  - {_fault(one)}" for one in error.errors())
+        faults = "\n".join(f"  - {_fault(one)}" for one in document_faults(error, document))
         raise OptionError(f"the plan {name} cannot be used:\n{faults}") from None
     at = Path() if folder is None else folder
     return BatchPlan(
@@ -274,10 +275,10 @@ def _below(folder: Path, path: str) -> str:
     return str(folder / path)
 
 
-def _fault(error: Any) -> str:
-    place = ".".join(str(one) for one in error["loc"])
-    if error["type"] == "extra_forbidden":
-        return f"there is no key {place!r}"
-    if error["type"] == "missing":
-        return f"the key {place!r} is missing"
-    return f"{place} is {error['input']!r:.60}: {error['msg']}"
+def _fault(fault: DocumentFault) -> str:
+    if fault.kind == "extra_forbidden":
+        where = f" in {fault.within}" if fault.within else ""
+        return f"there is no key {fault.key!r}{where}"
+    if fault.kind == "missing":
+        return f"the key {fault.place!r} is missing"
+    return f"{fault.place} is {fault.found!r:.60}: {fault.message}"
