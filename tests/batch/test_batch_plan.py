@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 
 import pytest
 
@@ -97,11 +97,13 @@ def test_files_that_are_no_plan(tmp_path, text):
         read_plan(tmp_path / "none.toml")
 
 
-def test_a_day_is_no_time():
-    from datetime import date
-
-    with pytest.raises(OptionError, match="write the time too"):
-        plan_of({**NEEDED, "stated": {"acquired": date(2026, 1, 5)}}, "plan")
+@pytest.mark.parametrize("day", ["2026-01-05", date(2026, 1, 5)])
+def test_a_day_is_a_date_to_the_day(day):
+    (stated,) = plan_of({**NEEDED, "stated": {"acquired": day}}, "plan").stated
+    assert stated.acquired == date(2026, 1, 5)
+    assert type(stated.acquired) is date
+    with pytest.raises(OptionError, match="or a day, 2026-01-05"):
+        plan_of({**NEEDED, "stated": {"acquired": "last week"}}, "plan")
 
 
 def test_later_statements_go_before_earlier_ones(tmp_path):

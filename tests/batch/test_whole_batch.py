@@ -61,6 +61,12 @@ def test_the_distance_from_the_survey_is_kept(write_field, run, rows, tmp_path):
         assert "survey_line" not in archive.measurements().record(0).document
 
 
+def test_a_date_to_the_day_dates_the_rows(write_field, run, rows):
+    run(write_field(0, tags={"SENSOR": "S", "ACQUISITION_DATE": "2026-01-05"}))
+    measured, _ = rows()
+    assert {str(one)[:16] for one in measured["acquired"]} == {"2026-01-05T00:00"}
+
+
 def test_what_is_done_is_not_done_again_and_not_even_opened(write_field, run, monkeypatch):
     images = [write_field(number) for number in range(2)]
     first = run(*images)
@@ -490,10 +496,10 @@ def test_options_of_plan_and_targets_are_refused_together(write_field, tmp_path)
         ac.run_batch(plan)
     for words in (
         "the plan: pulse has no option 'width'",
-        "target a: edge has no option 'colour'",
-        "target b: there is no edge method 'magic'",
-        "target c: ",
-        "target d: target_softness_m is",
+        "target 1 (a): edge has no option 'colour'",
+        "target 2 (b): there is no edge method 'magic'",
+        "target 3 (c): ",
+        "target 4 (d): target_softness_m is",
     ):
         assert words in str(caught.value)
 

@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from acutance.errors import OptionError
 from acutance.raster.document_faults import DocumentFault, document_faults
 from acutance.raster.metadata.findings import ANGLES
+from acutance.raster.metadata.times import time_or_day
 
 __all__ = ["BatchPlan", "StatedOfImages", "plan_of", "read_plan"]
 
@@ -36,7 +37,7 @@ class _Stated(_Model):
     images: Texts | None = None
     sensor: str | None = Field(default=None, min_length=1)
     level: str | None = Field(default=None, min_length=1)
-    acquired: datetime | None = None
+    acquired: datetime | date | None = None
     band_names: list[str] | None = Field(default=None, min_length=1)
     gsd_m: float | list[float] | None = None
     height_m: float | None = Field(default=None, ge=-1000, le=10000)
@@ -52,12 +53,13 @@ class _Stated(_Model):
     @field_validator("acquired", mode="before")
     @classmethod
     def _a_time(cls, value: Any) -> Any:
-        # A number would be taken for seconds since 1970, a day for its midnight.
-        if isinstance(value, date) and not isinstance(value, datetime):
-            raise ValueError("write the time too, 2026-01-05T10:00:00Z")
-        if value is not None and not isinstance(value, str | datetime):
-            raise ValueError("write a time, 2026-01-05T10:00:00Z")
-        return value
+        # A number would be taken for seconds since 1970.
+        if value is None or isinstance(value, date):
+            return value
+        found = time_or_day(value)
+        if found is None:
+            raise ValueError("write a time, 2026-01-05T10:00:00Z, or a day, 2026-01-05")
+        return found
 
     @field_validator("gsd_m")
     @classmethod
@@ -103,7 +105,8 @@ class StatedOfImages:
     images : tuple of str
         Patterns of paths; all images without any.
     sensor, level : str or None
-    acquired : datetime or None
+    acquired : datetime or date, or None
+        A date where the time is not known.
     band_names : tuple of str or None
         In the order of the file.
     gsd_m : (row, col) or None
@@ -122,7 +125,7 @@ class StatedOfImages:
     images: tuple[str, ...] = ()
     sensor: str | None = None
     level: str | None = None
-    acquired: datetime | None = None
+    acquired: datetime | date | None = None
     band_names: tuple[str, ...] | None = None
     gsd_m: tuple[float, float] | None = None
     height_m: float | None = None
@@ -182,7 +185,7 @@ class BatchPlan:
 def _set_values(stated: StatedOfImages) -> dict[str, Any]:
     values = ((one.name, getattr(stated, one.name)) for one in fields(stated))
     return {
-        name: value.isoformat() if isinstance(value, datetime) else value
+        name: value.isoformat() if isinstance(value, date) else value
         for name, value in values
         if value is not None
     }

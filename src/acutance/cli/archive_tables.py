@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import sys
 from collections.abc import Iterable, Mapping, Sequence
+from datetime import datetime, time
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -107,7 +108,7 @@ def entry_text(entry: Entry) -> str:
     known = {
         "sensor": image.sensor,
         "band": entry.band,
-        "acquired": None if image.acquired is None else f"{image.acquired:%Y-%m-%d %H:%M} UTC",
+        "acquired": None if image.acquired is None else _moment_words(image.acquired),
         "image": image.path,
         "content": image.content,
         "level": image.level,
@@ -123,6 +124,12 @@ def entry_text(entry: Entry) -> str:
     }
     lines += [f"  {name:<9} {value}" for name, value in known.items() if value is not None]
     return "\n".join(lines)
+
+
+def _moment_words(when: datetime) -> str:
+    """Day and minute; of what is dated to the day its midnight is no time."""
+    day = f"{when:%Y-%m-%d}"
+    return day if when.time() == time.min else f"{day} {when:%H:%M} UTC"
 
 
 def _place(target: TargetEntry | None) -> str | None:
