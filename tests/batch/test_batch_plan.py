@@ -148,3 +148,9 @@ def test_a_document_beside_an_image_changes_its_stamp(tmp_path):
     (tmp_path / "a.IMD").write_text("A = 1")
     (after,) = list_images([str(image)])
     assert before.stamp != after.stamp
+
+
+@pytest.mark.parametrize("gsd_m", [1e9, [0.5, 1e9], [0.5, 0.5, 0.5], -1.0])
+def test_a_gsd_that_no_image_has(gsd_m):
+    with pytest.raises(OptionError, match="stated 1, gsd_m is"):
+        plan_of({**NEEDED, "stated": {"gsd_m": gsd_m}}, "plan")

@@ -61,6 +61,16 @@ def test_the_distance_from_the_survey_is_kept(write_field, run, rows, tmp_path):
         assert "survey_line" not in archive.measurements().record(0).document
 
 
+def test_a_gsd_in_centimetres_is_named_for_every_target(write_field, run, rows):
+    image = write_field(0)
+    plan = BatchPlan((), {}, "", stated=(StatedOfImages(gsd_m=(50.0, 50.0)),))
+    found = run(image, plan=plan)
+    assert dict(found.reasons) == {"stated GSD": 2}
+    _, rejected = rows()
+    assert "the stated GSD is 50 m, the image's own 0.5 m" in rejected["reason"][0]
+    assert run(image).measured == 2
+
+
 def test_a_date_to_the_day_dates_the_rows(write_field, run, rows):
     run(write_field(0, tags={"SENSOR": "S", "ACQUISITION_DATE": "2026-01-05"}))
     measured, _ = rows()

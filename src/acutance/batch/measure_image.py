@@ -24,6 +24,8 @@ from acutance.raster import Gsd, Image, open_bands
 from acutance.raster.metadata import ImageStatement, read_statement
 from acutance.raster.sensor_model import SensorModel, georeference_of
 from acutance.raster.surveyed_targets import SurveyedTarget
+from acutance.targets.record import ImageInfo
+from acutance.targets.region import stated_gsd
 from acutance.targets.target_result import Rejected
 
 __all__ = ["BatchTask", "BatchWork", "MeasuredImage", "measure_image"]
@@ -264,11 +266,32 @@ def _require_valid(target: SurveyedTarget, acquired: date | None) -> None:
 def _placed(target: SurveyedTarget, image: Image, opened: _Opened) -> PlacedTarget:
     height_m = opened.height_m if target.height_m is None else target.height_m
     georeference = None if target.in_pixels else georeference_of(image, height_m)
+    if georeference is not None:
+        _require_credible_gsd(image)
     stated = opened.entry.gsd_m
     gsd = None
     if image.own_gsd is None and image.geolocation is None and stated is not None:
         gsd = Gsd(*stated)
     return place_target(target, image, georeference, gsd)
+
+
+def _require_credible_gsd(image: Image) -> None:
+    """Refuse to look for a target by a map whose pixels are quite others than the stated ones.
+
+    Raises
+    ------
+    RegionError
+        As `NotHereError`, where the check `stated_gsd` would fail.
+    """
+    own = image.gsd_of_file()
+    info = ImageInfo(pixel_gsd_m=_sides(image.own_gsd), file_gsd_m=_sides(own))
+    for check in stated_gsd(info, {}):
+        if not check.passed:
+            raise NotHereError("stated GSD", check.message, "options")
+
+
+def _sides(gsd: Gsd | None) -> tuple[float, float] | None:
+    return None if gsd is None else (gsd.row_m, gsd.col_m)
 
 
 def _stage(error: AcutanceError) -> str:

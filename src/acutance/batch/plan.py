@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from acutance.errors import OptionError
 from acutance.raster.document_faults import DocumentFault, document_faults
+from acutance.raster.gsd import Gsd
 from acutance.raster.metadata.findings import ANGLES
 from acutance.raster.metadata.times import time_or_day
 
@@ -63,10 +64,12 @@ class _Stated(_Model):
 
     @field_validator("gsd_m")
     @classmethod
-    def _positive(cls, value: Any) -> Any:
+    def _of_an_image(cls, value: Any) -> Any:
         sides = value if isinstance(value, list) else [value]
-        if value is not None and not (len(sides) in (1, 2) and all(one > 0 for one in sides)):
+        if len(sides) not in (1, 2):
             raise ValueError("write metres, .7, or [ROW, COLUMN] where they differ")
+        if value is not None:
+            Gsd.given(Gsd(sides[0], sides[-1]))
         return value
 
 

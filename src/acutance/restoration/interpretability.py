@@ -9,6 +9,7 @@ from typing import Any
 
 from acutance.curves import Estimate
 from acutance.errors import OptionError
+from acutance.raster.gsd import GSD_RANGE_M
 from acutance.restoration.giqe import EQUATION_STD, GiqeInputs, giqe
 from acutance.restoration.named_records import (
     Measured,
@@ -26,7 +27,7 @@ from acutance.targets.combine import combine
 __all__ = ["Niirs", "niirs"]
 
 _POSSIBLE = {
-    "gsd_m": (1e-3, 1e5),
+    "gsd_m": GSD_RANGE_M,
     "rer_across": (1e-3, 2.0),
     "rer_along": (1e-3, 2.0),
     "snr": (1e-3, 1e9),

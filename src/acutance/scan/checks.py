@@ -20,6 +20,8 @@ from acutance.scan.sensor_turns import Rival
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.full_pixel import full_pixel
+from acutance.targets.record import ImageInfo
+from acutance.targets.region import stated_gsd
 from acutance.targets.slices import SLICE_FREQ_CPP
 
 __all__ = ["SCENE_CHECKS", "check_scene"]
@@ -27,7 +29,7 @@ __all__ = ["SCENE_CHECKS", "check_scene"]
 SCENE_CHECKS = (
     "edges_used", "trusted_share", "scene_directions", "ideal_share", "ideal_borders",
     "strange_share", "scene_settled", "form_agrees", "rival", "parts_agree", "diagonals",
-    "field_change", "full_pixel",
+    "field_change", "full_pixel", "stated_gsd",
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -38,7 +40,12 @@ _DECIMATED = 0.7
 
 
 def check_scene(
-    edges: SceneEdges, fit: SensorFit, field: Field, transfer: Otf2d, limits: Limits
+    edges: SceneEdges,
+    fit: SensorFit,
+    field: Field,
+    transfer: Otf2d,
+    info: ImageInfo,
+    limits: Limits,
 ) -> tuple[Check, ...]:
     """All checks of a scene.
 
@@ -49,6 +56,7 @@ def check_scene(
     field : Field
     transfer : Otf2d
         The mean over the field.
+    info : ImageInfo
     limits : mapping of str to float
         Limits the caller changed.
     """
@@ -90,6 +98,7 @@ def check_scene(
         full_pixel(
             [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
         ),
+        *stated_gsd(info, limits),
     )  # fmt: skip
 
 

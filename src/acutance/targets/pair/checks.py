@@ -20,7 +20,8 @@ from acutance.targets.pair.kernel_fit import KernelFit
 from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit
 from acutance.targets.pair.spectral_ratio import PairSpectra
-from acutance.targets.region import undeclared_fill
+from acutance.targets.record import ImageInfo
+from acutance.targets.region import stated_gsd, undeclared_fill
 
 __all__ = ["PAIR_CHECKS", "check_pair"]
 
@@ -38,6 +39,7 @@ PAIR_CHECKS = (
     "inflation",
     "saturation",
     "undeclared_fill",
+    "stated_gsd",
     "iteration_change",
 )
 """The checks of a pair; "reference_directions" only where the reference was measured in one."""
@@ -55,6 +57,7 @@ def check_pair(
     stop_change: float,
     clipped: float,
     fills: Sequence[Fill | None],
+    info: ImageInfo,
     inverted: bool,
 ) -> tuple[Check, ...]:
     """All checks of a pair.
@@ -76,6 +79,8 @@ def check_pair(
         Share of clipped pixels, of the worse image.
     fills : sequence of Fill or None
         Undeclared fill of both images, tile by tile.
+    info : ImageInfo
+        Of the low image.
     inverted : bool
         Whether the images match better with opposite sign.
     """
@@ -91,6 +96,7 @@ def check_pair(
             "saturation", clipped, f"{100 * clipped:.2f} % of an image's pixels are clipped", limits
         ),
         undeclared_fill(fills, limits),
+        *stated_gsd(info, limits),
         _iteration(gaussian, stop_change, limits),
     )
 

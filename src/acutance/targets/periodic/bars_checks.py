@@ -16,13 +16,14 @@ from acutance.targets.periodic.pattern_checks import (
     saturation,
     stated_levels,
 )
-from acutance.targets.region import RegionPixels, undeclared_fill
+from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 
 __all__ = ["BARS_CHECKS", "bars_checks"]
 
 BARS_CHECKS = (
     "contrast_snr", "level", "stated_levels", "bars", "bar_directions", "coarsest_cpp",
-    "finest_cpp", "misfit", "saturation", "undeclared_fill", "correlated_noise", "outliers",
+    "finest_cpp", "misfit", "saturation", "undeclared_fill", "stated_gsd",
+    "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of bars."""
 
@@ -56,6 +57,7 @@ def bars_checks(
         _misfit(solved, limits),
         saturation(pixels, region.saturation_level, solved.snr, "the pixels", limits),
         undeclared_fill([region.fill], limits),
+        *stated_gsd(region.info, limits),
         correlated_noise(
             solved.correlation, solved.snr, limits,
             advice="the image was resampled, or the bars are not as they were taken to be (place, "

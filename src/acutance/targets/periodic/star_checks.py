@@ -16,13 +16,13 @@ from acutance.targets.periodic.pattern_checks import (
     saturation,
     stated_levels,
 )
-from acutance.targets.region import RegionPixels, undeclared_fill
+from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 
 __all__ = ["STAR_CHECKS", "star_checks", "third_harmonic"]
 
 STAR_CHECKS = (
     "contrast_snr", "level", "stated_levels", "rim_cpp", "centre_cpp", "sweep_deg", "wave",
-    "saturation", "undeclared_fill", "correlated_noise", "outliers",
+    "saturation", "undeclared_fill", "stated_gsd", "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of a star."""
 
@@ -50,6 +50,7 @@ def star_checks(
         _wave(solved, limits),
         saturation(solved.value, region.saturation_level, snr, "the star's pixels", limits),
         undeclared_fill([region.fill], limits),
+        *stated_gsd(region.info, limits),
         correlated_noise(
             solved.correlation, snr, limits,
             advice="the image was resampled, or the spokes are not those of a perfect star",

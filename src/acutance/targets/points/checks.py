@@ -14,7 +14,8 @@ from acutance.raster import Fill
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.points.sources import PointSource
 from acutance.targets.points.survey import SurveyErrors
-from acutance.targets.region import undeclared_fill
+from acutance.targets.record import ImageInfo
+from acutance.targets.region import stated_gsd, undeclared_fill
 
 __all__ = ["POINTS_CHECKS", "check_points", "check_survey", "phase_gap_px"]
 
@@ -27,6 +28,7 @@ POINTS_CHECKS = (
     "psf_width_px",
     "source_misfit",
     "undeclared_fill",
+    "stated_gsd",
     "full_scale",
     "correlated_noise",
     "outliers",
@@ -43,6 +45,7 @@ def check_points(
     limits: Limits,
     *,
     fwhm_px: Mapping[str, float],
+    info: ImageInfo,
     fill: Fill | None = None,
     full_scale: float | None = None,
     correlation: Correlation | None = None,
@@ -57,6 +60,8 @@ def check_points(
         Limits the caller changed.
     fwhm_px : mapping of str to float
         Full width of the point spread function at half maximum by direction, NaN where it has none.
+    info : ImageInfo
+        Of the region.
     fill : Fill, optional
         Undeclared fill that was left out.
     full_scale : float, optional
@@ -75,6 +80,7 @@ def check_points(
         _psf_width(fwhm_px, limits),
         _source_misfit(sources, limits),
         undeclared_fill([fill], limits),
+        *stated_gsd(info, limits),
     ]
     if full_scale is not None:
         found = f"the brightest pixel is at {100 * full_scale:.0f} % of the detector's range"

@@ -58,7 +58,7 @@ def _fit_jointly(
     fit, rejected = _fit_alike(region, selected, options)
     sources, shown = sources_of_fit(fit, region.pixels, _origin(region))
     checks = partial(
-        check_points, sources, options.limits, fill=region.fill,
+        check_points, sources, options.limits, info=region.info, fill=region.fill,
         full_scale=_full_scale(shown, region), correlation=fit.correlation,
         outliers=outlier_share(fit.standard_residual, 1.0),
     )  # fmt: skip
@@ -109,7 +109,7 @@ def _fit_gaussians(
     found = sdsu_2003_mirrors(cover_rejected(region.pixels, rejected), places, chosen)
     sources, shown = sources_of_mirrors(found, region.pixels, _origin(region), chosen.window_px)
     checks = partial(
-        check_points, sources, options.limits, fill=region.fill,
+        check_points, sources, options.limits, info=region.info, fill=region.fill,
         full_scale=_full_scale(shown, region),
     )  # fmt: skip
     return _measurement(
