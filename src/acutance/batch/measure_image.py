@@ -285,9 +285,9 @@ def _require_credible_gsd(image: Image) -> None:
     """
     own = image.gsd_of_file()
     info = ImageInfo(pixel_gsd_m=_sides(image.own_gsd), file_gsd_m=_sides(own))
-    for check in stated_gsd(info, {}):
-        if not check.passed:
-            raise NotHereError("stated GSD", check.message, "options")
+    check = stated_gsd(info, {})
+    if not check.passed:
+        raise NotHereError("stated GSD", check.message, "options")
 
 
 def _sides(gsd: Gsd | None) -> tuple[float, float] | None:

@@ -98,7 +98,7 @@ def check_scene(
         full_pixel(
             [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
         ),
-        *stated_gsd(info, limits),
+        stated_gsd(info, limits),
     )  # fmt: skip
 
 

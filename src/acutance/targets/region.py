@@ -176,8 +176,8 @@ def undeclared_fill(fills: Sequence[Fill | None], limits: Limits) -> Check:
     return answer("undeclared_fill", count, found, limits)
 
 
-def stated_gsd(info: ImageInfo, limits: Limits) -> tuple[Check, ...]:
-    """The check that names a stated GSD far from the image's own; none where none was stated.
+def stated_gsd(info: ImageInfo, limits: Limits) -> Check:
+    """The check that names a stated GSD far from the image's own.
 
     Parameters
     ----------
@@ -187,13 +187,13 @@ def stated_gsd(info: ImageInfo, limits: Limits) -> tuple[Check, ...]:
     """
     stated, own = info.pixel_gsd_m, info.file_gsd_m
     if stated is None or own is None:
-        return ()
+        return answer("stated_gsd", 1.0, "no GSD is stated that the image has otherwise", limits)
     factor = max(max(one / other, other / one) for one, other in zip(stated, own, strict=True))
     found = (
         f"the stated GSD is {_in_metres(stated)}, the image's own {_in_metres(own)}: another by a "
         f"factor of {factor:.3g}"
     )
-    return (answer("stated_gsd", min(factor, MAX_RATIO), found, limits),)
+    return answer("stated_gsd", min(factor, MAX_RATIO), found, limits)
 
 
 def _in_metres(sides_m: tuple[float, float]) -> str:

@@ -96,7 +96,7 @@ def check_pair(
             "saturation", clipped, f"{100 * clipped:.2f} % of an image's pixels are clipped", limits
         ),
         undeclared_fill(fills, limits),
-        *stated_gsd(info, limits),
+        stated_gsd(info, limits),
         _iteration(gaussian, stop_change, limits),
     )
 

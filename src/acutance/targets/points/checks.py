@@ -80,7 +80,7 @@ def check_points(
         _psf_width(fwhm_px, limits),
         _source_misfit(sources, limits),
         undeclared_fill([fill], limits),
-        *stated_gsd(info, limits),
+        stated_gsd(info, limits),
     ]
     if full_scale is not None:
         found = f"the brightest pixel is at {100 * full_scale:.0f} % of the detector's range"

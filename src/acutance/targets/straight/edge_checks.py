@@ -105,7 +105,7 @@ def check_edge(
         plateau(limits, "bright", extent.bright_px),
         saturation(region, values, data, limits, ("dark", "bright")),
         undeclared_fill([region.fill], limits),
-        *stated_gsd(region.info, limits),
+        stated_gsd(region.info, limits),
         quantisation(region, values, data, limits),
         compression(region, limits),
         nonlinearity(data, limits, EDGE),

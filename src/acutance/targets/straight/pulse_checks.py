@@ -114,7 +114,7 @@ def check_pulse(
         plateau(limits, "behind", extent.bright_px),
         saturation(region, values, data, limits, ("before", "behind")),
         undeclared_fill([region.fill], limits),
-        *stated_gsd(region.info, limits),
+        stated_gsd(region.info, limits),
         quantisation(region, values, data, limits),
         compression(region, limits),
         _nonlinearity(data, limits, width.value, height_ratio.value),
