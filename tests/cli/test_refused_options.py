@@ -51,6 +51,11 @@ def test_scenes_that_cannot_be_rendered(refused, folder, words, message):
     ("words", "message"),
     [
         (("edge", "--limit", "rows=nan"), "--limit rows=nan: write NAME=VALUE with a number"),
+        (
+            ("edge", "--limit", "rows=-5"),
+            "limit of rows is -5, and what is compared",
+        ),
+        (("edge", "--limit", "saturation=3"), "is from 0 to 1 (limits, --limit)"),
         (("edge", "--limit", "rows=many"), "with a number, as in rows=10"),
         (("edge", "--limit", "rows"), "write NAME=VALUE"),
         (
