@@ -220,6 +220,8 @@ def test_an_image_that_cannot_be_read_stops_no_other(write_field, run, rows, tmp
     assert found.measured == 2
     assert str(none) in found.unreadable
     assert found.reasons["unreadable image"] >= 2
+    assert found.reasons["no such file"] == 1
+    assert found.missing == (str(tmp_path / "missing.tif"),)
     again = run(none, cut, whole, tmp_path / "missing.tif")
     assert again.kept == 0
     _, rejected = rows()

@@ -1,6 +1,7 @@
 """``acutance batch``: words, files, exit codes."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -106,6 +107,19 @@ def test_strict(acutance, given, flat_image):
     assert "1 row is rejected" in result.stderr
     assert "rejected 1: 1 not found" in result.stdout
     assert acutance(*given, flat_image).exit_code == 0
+
+
+def test_a_misspelt_image_is_told_with_the_nearest_name(acutance, given, tmp_path, edge_image):
+    edge_image = Path(edge_image)
+    wrong = edge_image.with_name(f"{edge_image.stem}0{edge_image.suffix}")
+    done = acutance(*given, wrong)
+    assert f"no such file: {wrong} (is {edge_image.name} meant?)" in done.stdout
+    assert "rejected 1: 1 no such file" in done.stdout
+    document = json.loads(acutance(*given, wrong, "--json").stdout)
+    assert document["reasons"] == {"no such file": 1}
+    assert document["missing"] == [str(wrong)]
+    listed = acutance("archive", "list", tmp_path / "kept.db", "--rejected", "--json").stdout
+    assert f"is {edge_image} meant?" in listed
 
 
 def test_unreadable_images_are_named(acutance, given, tmp_path):

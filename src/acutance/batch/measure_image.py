@@ -17,6 +17,7 @@ from acutance.batch.plan import StatedOfImages
 from acutance.batch.plan_options import ChosenOptions
 from acutance.batch.row_key import Reading, day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
+from acutance.batch.summary import NO_FILE
 from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
 from acutance.execution import interruptible, is_ending
 from acutance.numerics.one_thread import one_thread
@@ -167,7 +168,9 @@ def _opened(task: BatchTask) -> _Opened:
 
 
 def _unreadable(task: BatchTask, error: AcutanceError) -> Entry:
-    rejected = Rejected("image", str(error), {"why": "unreadable image", "path": task.path})
+    is_missing = task.content is None and not os.path.lexists(task.path)
+    why = NO_FILE if is_missing else "unreadable image"
+    rejected = Rejected("image", str(error), {"why": why, "path": task.path})
     image = ImageEntry(path=task.path, content=task.content, sensor=task.stated.sensor)
     return Entry(rejected=rejected, image=image, key=unreadable_key(task.content, task.path))
 

@@ -31,6 +31,8 @@ _WORDS = {
     "ModelError": "target described in contradiction",
 }
 """Reasons that are names of errors, in words."""
+NO_FILE = "no such file"
+"""Why an image that is not there has no measurement."""
 VERDICTS = ("good", "usable", "doubtful", "invalid")
 _ELSEWHERE = ("outside", "not there then")
 """Rejections of targets that the image does not show: nothing went wrong."""
@@ -47,6 +49,8 @@ class BatchSummary(ShortRepr):
         Of the plan.
     unreadable : tuple of str
         Images that could not be read now.
+    missing : tuple of str
+        Those among them that do not exist.
     missing_bands : tuple of (str or int)
         Bands that were asked for and that no image has.
     bands : tuple of str
@@ -69,6 +73,7 @@ class BatchSummary(ShortRepr):
     archive: str
     images: int
     unreadable: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
     missing_bands: tuple[str | int, ...] = ()
     bands: tuple[str, ...] = ()
     done_before: int = 0
@@ -112,6 +117,7 @@ class BatchSummary(ShortRepr):
             "archive": self.archive,
             "images": self.images,
             "unreadable": list(self.unreadable),
+            "missing": list(self.missing),
             "missing_bands": list(self.missing_bands),
             "done_before": self.done_before,
             "kept": self.kept,
@@ -133,6 +139,7 @@ class Tally:
         self.reasons: Counter[str] = Counter()
         self.earlier, self.kept, self.measuring_s = 0, 0, 0.0
         self.unreadable: list[str] = []
+        self.missing: list[str] = []
         self.bands: set[Band] = set()
 
     def add_earlier(self, rows: Sequence[Outcome]) -> None:
@@ -154,7 +161,10 @@ class Tally:
             if entry.record is not None:
                 self._count(entry.record.verdict.word, None)
             elif entry.rejected is not None:
-                self._count(None, str(entry.rejected.values.get("why") or entry.rejected.stage))
+                why = str(entry.rejected.values.get("why") or entry.rejected.stage)
+                self._count(None, why)
+                if why == NO_FILE:
+                    self.missing.append(path)
 
     def _count(self, verdict: str | None, why: str | None) -> None:
         if verdict is not None:
@@ -189,6 +199,7 @@ class Tally:
             archive=archive,
             images=images,
             unreadable=tuple(self.unreadable),
+            missing=tuple(self.missing),
             missing_bands=without_band(bands, there) if there else (),
             bands=tuple(
                 f"{one.number} ({one.name})" if one.name else f"{one.number}" for one in there

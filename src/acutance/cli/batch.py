@@ -204,7 +204,7 @@ def _text(found: BatchSummary) -> str:
         f"{found.archive}, {there}",
         _counts("measured", found.measured, found.verdicts),
         _counts("rejected", found.rejected, found.reasons),
-        *(f"unreadable: {path}" for path in found.unreadable[:_NAMED]),
+        *(_unreadable_words(path, path in found.missing) for path in found.unreadable[:_NAMED]),
     ]
     if len(found.unreadable) > _NAMED:
         lines.append(f"and {len(found.unreadable) - _NAMED} more that cannot be read")
@@ -214,6 +214,16 @@ def _text(found: BatchSummary) -> str:
         asked = ", ".join(map(str, found.missing_bands))
         lines.append(f"no image has band {asked}: choose from {', '.join(found.bands)}")
     return "\n".join(lines)
+
+
+def _unreadable_words(path: str, is_missing: bool) -> str:
+    """An image that cannot be read; of one that does not exist the name that may be meant."""
+    from acutance.raster.nearest_name import nearest_name
+
+    if not is_missing:
+        return f"unreadable: {path}"
+    near = nearest_name(path)
+    return f"no such file: {path}" + ("" if near is None else f" (is {near} meant?)")
 
 
 _NAMED = 5
