@@ -113,13 +113,22 @@ def test_a_misspelt_image_is_told_with_the_nearest_name(acutance, given, tmp_pat
     edge_image = Path(edge_image)
     wrong = edge_image.with_name(f"{edge_image.stem}0{edge_image.suffix}")
     done = acutance(*given, wrong)
-    assert f"no such file: {wrong} (is {edge_image.name} meant?)" in done.stdout
+    told = f"unreadable: {wrong} does not exist (its folder exists): is {edge_image} meant?"
+    assert told in done.stdout
     assert "rejected 1: 1 no such file" in done.stdout
     document = json.loads(acutance(*given, wrong, "--json").stdout)
     assert document["reasons"] == {"no such file": 1}
     assert document["missing"] == [str(wrong)]
     listed = acutance("archive", "list", tmp_path / "kept.db", "--rejected", "--json").stdout
     assert f"is {edge_image} meant?" in listed
+
+
+def test_a_copy_is_measured_once_and_told(acutance, given, tmp_path, edge_image):
+    copy = tmp_path / "a copy é.tif"
+    copy.write_bytes(Path(edge_image).read_bytes())
+    done = acutance(*given, copy)
+    assert "2 images: 1 row added" in done.stdout
+    assert f"measured once: {copy} has the content of {edge_image}" in done.stdout
 
 
 def test_unreadable_images_are_named(acutance, given, tmp_path):

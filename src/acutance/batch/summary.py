@@ -51,6 +51,10 @@ class BatchSummary(ShortRepr):
         Images that could not be read now.
     missing : tuple of str
         Those among them that do not exist.
+    faults : mapping of str to str
+        By path why an image could not be read.
+    copies : mapping of str to str
+        Images with the content of another, which stands for them; by path that of the other.
     missing_bands : tuple of (str or int)
         Bands that were asked for and that no image has.
     bands : tuple of str
@@ -74,6 +78,8 @@ class BatchSummary(ShortRepr):
     images: int
     unreadable: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
+    faults: Mapping[str, str] = field(default_factory=dict)
+    copies: Mapping[str, str] = field(default_factory=dict)
     missing_bands: tuple[str | int, ...] = ()
     bands: tuple[str, ...] = ()
     done_before: int = 0
@@ -118,6 +124,8 @@ class BatchSummary(ShortRepr):
             "images": self.images,
             "unreadable": list(self.unreadable),
             "missing": list(self.missing),
+            "faults": dict(self.faults),
+            "copies": dict(self.copies),
             "missing_bands": list(self.missing_bands),
             "done_before": self.done_before,
             "kept": self.kept,
@@ -138,8 +146,9 @@ class Tally:
         self.verdicts: Counter[str] = Counter()
         self.reasons: Counter[str] = Counter()
         self.earlier, self.kept, self.measuring_s = 0, 0, 0.0
-        self.unreadable: list[str] = []
+        self.faults: dict[str, str] = {}
         self.missing: list[str] = []
+        self.copies: dict[str, str] = {}
         self.bands: set[Band] = set()
 
     def add_earlier(self, rows: Sequence[Outcome]) -> None:
@@ -154,7 +163,8 @@ class Tally:
         self.earlier += len(found.entries) - new
         self.measuring_s += found.measuring_s
         if found.bands is None:
-            self.unreadable.append(path)
+            self.faults[path] = next((one.rejected.reason for one in found.entries
+                                      if one.rejected is not None), "")  # fmt: skip
         else:
             self.bands.update(found.bands)
         for entry in found.entries:
@@ -198,8 +208,10 @@ class Tally:
         return BatchSummary(
             archive=archive,
             images=images,
-            unreadable=tuple(self.unreadable),
+            unreadable=tuple(self.faults),
             missing=tuple(self.missing),
+            faults=self.faults,
+            copies=self.copies,
             missing_bands=without_band(bands, there) if there else (),
             bands=tuple(
                 f"{one.number} ({one.name})" if one.name else f"{one.number}" for one in there
