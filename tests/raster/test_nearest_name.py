@@ -14,7 +14,9 @@ def test_the_nearest_name_of_the_folder(tmp_path):
                          ("sim-1-20260114.TIF", "SIM-1-20260114.tif"),
                          ("grösse 1.tif", "größe 1.tif")):  # fmt: skip
         assert nearest_name(tmp_path / wrong) == meant
-    assert nearest_name(tmp_path / "another.jp2") is None
+    (tmp_path / "e2.tif").write_bytes(b"x")
+    for unlike in ("another.jp2", "nope.tif"):
+        assert nearest_name(tmp_path / unlike) is None
     assert nearest_name(tmp_path / "no folder" / "notes.txt") is None
     with pytest.raises(ImageError, match=r"its folder exists\): is .*notes.txt meant\?"):
         open_image(tmp_path / "note.txt")

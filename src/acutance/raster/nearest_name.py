@@ -33,6 +33,12 @@ def nearest_name(path: str | os.PathLike[str]) -> str | None:
             names = [one.name for one in islice(found, _MAX_NAMES)]
     except OSError:
         return None
-    by_folded = {name.casefold(): name for name in sorted(names)}
+    # An ending in common makes no two short names alike: "edge.tif" is not meant by "star.tif".
+    stem = wanted.stem.casefold()
+    alike = [
+        name for name in sorted(names)
+        if get_close_matches(stem, [Path(name).stem.casefold()], n=1, cutoff=_LIKE)
+    ]  # fmt: skip
+    by_folded = {name.casefold(): name for name in alike}
     close = get_close_matches(wanted.name.casefold(), by_folded, n=1, cutoff=_LIKE)
     return by_folded[close[0]] if close else None
