@@ -130,7 +130,7 @@ def test_a_level_without_its_season_says_so() -> None:
 def test_one_image_tells_nothing() -> None:
     found = check_requirement(at_least(0.01), series(1, images=1))
     assert (found.word, found.probability) == ("cannot be told yet", None)
-    assert "one image" in found.summary
+    assert "there is one image with a measurement that is usable or better" in found.summary
 
 
 def test_a_window_leaves_out_what_is_older() -> None:

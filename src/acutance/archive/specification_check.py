@@ -198,7 +198,8 @@ def _nothing(requirement: Requirement) -> Answer:
     """Nothing in the archive is what a requirement is about."""
     chosen = (requirement.selection.get(name) for name in ("sensor", "band", "orientation"))
     what = ", ".join(one if isinstance(one, str) else " or ".join(one) for one in chosen if one)
-    return Answer(requirement, what, OPEN, None, None, None, 0, MIN_IMAGES, "there is no image")
+    reason = f"there is no image{_trusted_words(requirement)}"
+    return Answer(requirement, what, OPEN, None, None, None, 0, MIN_IMAGES, reason)
 
 
 def check_requirement(
@@ -237,12 +238,19 @@ def _in_window(series: Series, requirement: Requirement) -> Series:
 
 
 def _untold(requirement: Requirement, series: Series, images: int) -> Answer:
+    trusted = _trusted_words(requirement)
     reason = (
-        "there is no image" if images == 0 else
-        "there is one image, which does not show how much images scatter"
+        f"there is no image{trusted}" if images == 0 else
+        f"there is one image{trusted}, which does not show how much images scatter"
     )  # fmt: skip
     return Answer(requirement, series.name, OPEN, None, None, None, images,
                   MIN_IMAGES - images, reason)  # fmt: skip
+
+
+def _trusted_words(requirement: Requirement) -> str:
+    """Which measurements count: images with others may well be there."""
+    word = requirement.verdict
+    return f" with a measurement that is {word}{'' if word == 'good' else ' or better'}"
 
 
 def _by_trend(requirement: Requirement, trend: Trend) -> Answer:

@@ -17,6 +17,7 @@ from acutance.raster.document_faults import DocumentFault, document_faults
 from acutance.raster.gsd import Gsd
 from acutance.raster.metadata.findings import ANGLES
 from acutance.raster.metadata.times import time_or_day
+from acutance.raster.nearest_name import nearest_name
 
 __all__ = ["BatchPlan", "StatedOfImages", "plan_of", "read_plan"]
 
@@ -213,7 +214,12 @@ def read_plan(path: str | os.PathLike[str]) -> BatchPlan:
     name = Path(path)
     try:
         document = tomllib.loads(name.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError) as error:
+    except OSError as error:
+        near = nearest_name(name)
+        meant = "" if near is None else f", is {name.with_name(near)} meant?"
+        reason = error.strerror or str(error)
+        raise OptionError(f"the plan {name} cannot be read ({reason}){meant}") from error
+    except (ValueError, RecursionError) as error:
         raise OptionError(f"the plan {name} cannot be read ({error}): write a TOML file") from error
     return plan_of(document, str(name), name.parent)
 
