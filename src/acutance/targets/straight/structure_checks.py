@@ -183,7 +183,7 @@ def _grave_asymmetry(data: CheckData, noted: float, rer_std: float) -> tuple[flo
     if isinstance(data.fit, SplineEdge):
         if data.fit.correlation.inflation > _TEXTURED:
             caution = max(_TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS * rer_std)
-            why = ", since the ground is textured, where strips are frequent"
+            why = ", since the noise is that of textured ground, where strips are frequent"
         unlike = data.fit.families.get("other", 0.0)
         stds = [most for least, most in _UNLIKE_RER_STDS if unlike > least]
         if stds and max(noted, stds[-1] * rer_std) < caution:
