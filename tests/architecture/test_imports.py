@@ -27,6 +27,7 @@ FLOORS = (
     "curves",
     "execution",
     "errors",
+    "names_on_use",
 )
 
 # The kinds of target: rooms of one floor that do not know one another.
@@ -43,7 +44,7 @@ FORBIDDEN = {
 
 # Libraries, and the floors that may use them.
 LIBRARIES = {
-    "numpy": set(FLOORS) - {"errors"},
+    "numpy": set(FLOORS) - {"errors", "names_on_use"},
     "scipy": {
         "archive",
         "restoration",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 from datetime import UTC, date, datetime, timedelta, timezone
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 import acutance as ac
-from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
+from acutance.archive import Archive, Entry, ImageCorrection, ImageEntry, TargetEntry
 from acutance.curves import METRICS
 from acutance.errors import OptionError
 
@@ -50,6 +51,33 @@ def test_adding_twice_adds_once(archive, edge_record):
     assert archive.add(edge_record, sensor="QB02", target="another").new
     assert archive.add(edge_record, sensor="QB02", target="tarp", band="green").new
     assert len(archive.measurements()) == 3
+
+
+def test_what_is_stated_anew_is_not_kept_in_silence(archive, edge_record):
+    document = edge_record.document
+    edge_record = ac.Record({**document, "image": {**document["image"], "path": "/new/B4.tif"}})
+    archive.add(edge_record, sensor="QB02")
+    with pytest.raises(OptionError, match=r"number 1, with sensor QB02, not K3, and keeps"):
+        archive.add(edge_record, sensor="K3")
+    with pytest.raises(OptionError, match="acquired not known, not 2026-05-01T00:00:00"):
+        archive.add(edge_record, sensor="QB02", acquired="2026-05-01")
+    assert not archive.add(edge_record).new
+    assert archive.measurements()["sensor"].tolist() == ["QB02"]
+    archive.correct_images([ImageCorrection(image="B4.tif", sensor="K3", acquired="2026-05-01")])
+    assert not archive.add(edge_record, sensor="K3", acquired="2026-05-01").new
+    archive.add(ac.Record(document))
+    with pytest.raises(OptionError, match="give it a key of its own"):
+        archive.add(ac.Record(document), sensor="K3")
+
+
+def test_an_import_refuses_what_contradicts_as_add_does(archive, edge_record, tmp_path):
+    file = tmp_path / "edge.json"
+    file.write_text(json.dumps(edge_record.to_dict()))
+    assert archive.import_documents(file, sensor="QB02").new == 1
+    assert archive.import_documents(file, sensor="QB02").refused == {}
+    done = archive.import_documents(file, sensor="K3")
+    assert (done.read, done.new) == (1, 0)
+    assert "sensor QB02, not K3" in done.refused[str(file)]
 
 
 def test_images_of_one_name_are_not_one_image(archive, edge_record):

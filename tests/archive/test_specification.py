@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -104,10 +106,31 @@ def test_without_dates_the_mean_stands_in() -> None:
     assert "the mean of the images stands in" in found.summary
 
 
+def test_the_interval_written_is_that_of_the_probability() -> None:
+    """A deviation would be read with a normal density; of three images the tails are longer."""
+    made = series(1, images=3, days=False)
+    found = check_requirement(at_least(0.09), made)
+    assert found.mean is not None
+    low, high = found.mean.interval(0.95)
+    edge = check_requirement(at_least(low), made)
+    assert edge.probability == pytest.approx(0.975, abs=0.002)
+    assert "±" not in found.summary
+    words = re.search(r"\(95 %: ([\d.]+) to ([\d.]+)\)", found.summary)
+    assert words is not None
+    assert [float(one) for one in words.groups()] == pytest.approx([low, high], abs=0.0006)
+
+
+def test_a_level_without_its_season_says_so() -> None:
+    made = series(1, images=40)
+    seasonal = replace(made, value=made.value + 0.01 * np.cos(2 * np.pi * made.when))
+    assert "of which the level is free" in check_requirement(at_least(0.09), seasonal).summary
+    assert "season" not in check_requirement(at_least(0.09), made).summary
+
+
 def test_one_image_tells_nothing() -> None:
     found = check_requirement(at_least(0.01), series(1, images=1))
     assert (found.word, found.probability) == ("cannot be told yet", None)
-    assert "one image" in found.summary
+    assert "there is one image with a measurement that is usable or better" in found.summary
 
 
 def test_a_window_leaves_out_what_is_older() -> None:
@@ -139,12 +162,12 @@ def test_all_that_is_wrong_is_named_at_once(tmp_path: Path) -> None:
     path = tmp_path / "spec.toml"
     path.write_text(
         'titel = "T"\n[[requirement]]\nmetric = "mtf"\nminimum = 1\nlimits = 2\n'
-        '[[requirement]]\nmetric = "rer"\n'
+        '[[requirement]]\nname = "second"\nmetric = "rer"\n'
     )
     with pytest.raises(ac.OptionError) as error:
         read_specification(path)
-    for part in ("titel: is no key", "requirement.1.limits: is no key", "'mtf' is none of",
-                 "requirement.2: give a minimum or a maximum"):  # fmt: skip
+    for part in ("titel: is no key", "requirement 1, limits: is no key", "'mtf' is none of",
+                 "requirement 2 (second): give a minimum or a maximum"):  # fmt: skip
         assert part in str(error.value)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 
 import pytest
 
@@ -78,10 +78,10 @@ def test_all_faults_at_once():
         "the key 'targets' is missing",
         "the key 'archive' is missing",
         "workers is 0",
-        "there is no key 'stated.0.sensr'",
-        "stated.0.acquired is 20260105",
-        "stated.0.gsd_m is -1.0",
-        "stated.0.height_m is 100000.0",
+        "there is no key 'sensr' in stated 1",
+        "stated 1, acquired is 20260105",
+        "stated 1, gsd_m is -1.0",
+        "stated 1, height_m is 100000.0",
         "edge is 'spline'",
     ):
         assert words in str(caught.value)
@@ -97,11 +97,13 @@ def test_files_that_are_no_plan(tmp_path, text):
         read_plan(tmp_path / "none.toml")
 
 
-def test_a_day_is_no_time():
-    from datetime import date
-
-    with pytest.raises(OptionError, match="write the time too"):
-        plan_of({**NEEDED, "stated": {"acquired": date(2026, 1, 5)}}, "plan")
+@pytest.mark.parametrize("day", ["2026-01-05", date(2026, 1, 5)])
+def test_a_day_is_a_date_to_the_day(day):
+    (stated,) = plan_of({**NEEDED, "stated": {"acquired": day}}, "plan").stated
+    assert stated.acquired == date(2026, 1, 5)
+    assert type(stated.acquired) is date
+    with pytest.raises(OptionError, match="or a day, 2026-01-05"):
+        plan_of({**NEEDED, "stated": {"acquired": "last week"}}, "plan")
 
 
 def test_later_statements_go_before_earlier_ones(tmp_path):
@@ -122,7 +124,7 @@ def test_what_is_stated_of_no_image_is_refused(tmp_path):
     right = StatedOfImages(images=("K3_*.tif",), sensor="B")
     require_stated_images(files, (StatedOfImages(sensor="A"), right))
     wrong = StatedOfImages(images=("K3_*.tif", "K4_*.tif"), sensor="C")
-    with pytest.raises(OptionError, match=r"stated\.2 is of images that match K4_\*\.tif"):
+    with pytest.raises(OptionError, match=r"stated 2 is of images that match K4_\*\.tif"):
         require_stated_images(files, (right, wrong))
 
 
@@ -146,3 +148,9 @@ def test_a_document_beside_an_image_changes_its_stamp(tmp_path):
     (tmp_path / "a.IMD").write_text("A = 1")
     (after,) = list_images([str(image)])
     assert before.stamp != after.stamp
+
+
+@pytest.mark.parametrize("gsd_m", [1e9, [0.5, 1e9], [0.5, 0.5, 0.5], -1.0])
+def test_a_gsd_that_no_image_has(gsd_m):
+    with pytest.raises(OptionError, match="stated 1, gsd_m is"):
+        plan_of({**NEEDED, "stated": {"gsd_m": gsd_m}}, "plan")

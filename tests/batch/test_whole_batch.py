@@ -41,6 +41,42 @@ def test_targets_are_found_where_the_map_is_metres_off(write_field, run, rows):
         assert line["normal_deg"] % 180 == pytest.approx(tarp.normal_deg, abs=1)
 
 
+def test_the_distance_from_the_survey_is_kept(write_field, run, rows, tmp_path):
+    """The map of the second image is 3.1 m off across the lines, 2.2 m along them."""
+    run(write_field(0), write_field(1, (3.1, -2.2)))
+    measured, _ = rows()
+    for at in range(len(measured)):
+        found = measured.record(at).document["survey_line"]
+        off_m = (0.0, 0.0) if "field-0" in measured["image"][at] else (3.1, -2.2)
+        angle = np.radians(EDGE.normal_deg)
+        true_m = abs(off_m[0] * np.cos(angle) - off_m[1] * np.sin(angle))
+        assert found["distance_m"] == pytest.approx(true_m, abs=0.05)
+        assert found["distance_px"] == pytest.approx(2 * true_m, abs=0.1)
+        assert found["turn_deg"] < 0.6
+        assert found["search_px"] == 9.0
+    outline = feature("place", "edge", "Polygon", [[on_map(30, 25), on_map(80, 25),
+                      on_map(80, 75), on_map(30, 75), on_map(30, 25)]])  # fmt: skip
+    run(write_field(0), targets=survey(outline), archive=tmp_path / "outline.db")
+    with Archive(tmp_path / "outline.db") as archive:
+        assert "survey_line" not in archive.measurements().record(0).document
+
+
+def test_a_gsd_in_centimetres_is_named_for_every_target(write_field, run, rows):
+    image = write_field(0)
+    plan = BatchPlan((), {}, "", stated=(StatedOfImages(gsd_m=(50.0, 50.0)),))
+    found = run(image, plan=plan)
+    assert dict(found.reasons) == {"stated GSD": 2}
+    _, rejected = rows()
+    assert "the stated GSD is 50 m, the image's own 0.5 m" in rejected["reason"][0]
+    assert run(image).measured == 2
+
+
+def test_a_date_to_the_day_dates_the_rows(write_field, run, rows):
+    run(write_field(0, tags={"SENSOR": "S", "ACQUISITION_DATE": "2026-01-05"}))
+    measured, _ = rows()
+    assert {str(one)[:16] for one in measured["acquired"]} == {"2026-01-05T00:00"}
+
+
 def test_what_is_done_is_not_done_again_and_not_even_opened(write_field, run, monkeypatch):
     images = [write_field(number) for number in range(2)]
     first = run(*images)
@@ -184,6 +220,8 @@ def test_an_image_that_cannot_be_read_stops_no_other(write_field, run, rows, tmp
     assert found.measured == 2
     assert str(none) in found.unreadable
     assert found.reasons["unreadable image"] >= 2
+    assert found.reasons["no such file"] == 1
+    assert found.missing == (str(tmp_path / "missing.tif"),)
     again = run(none, cut, whole, tmp_path / "missing.tif")
     assert again.kept == 0
     _, rejected = rows()
@@ -470,10 +508,10 @@ def test_options_of_plan_and_targets_are_refused_together(write_field, tmp_path)
         ac.run_batch(plan)
     for words in (
         "the plan: pulse has no option 'width'",
-        "target a: edge has no option 'colour'",
-        "target b: there is no edge method 'magic'",
-        "target c: ",
-        "target d: target_softness_m is",
+        "target 1 (a): edge has no option 'colour'",
+        "target 2 (b): there is no edge method 'magic'",
+        "target 3 (c): ",
+        "target 4 (d): target_softness_m is",
     ):
         assert words in str(caught.value)
 

@@ -91,7 +91,7 @@ def test_one_is_shown(acutance, campaign, measured):
     shown = acutance("archive", "show", campaign, "1").stdout
     for part in ("mtf_nyquist", "band 1, rows 0–", "GSD 0.7 m", "° to the grid, measured 20"):
         assert part in shown
-    assert "2026-05-01 00:00 UTC" in shown
+    assert "acquired  2026-05-01\n" in shown
     document = json.loads(acutance("archive", "show", campaign, "1", "--json").stdout)
     assert document == json.loads(measured.read_text(encoding="utf-8"))
     shown = acutance("archive", "show", campaign, "3").stdout

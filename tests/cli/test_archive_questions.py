@@ -83,7 +83,7 @@ def test_a_wrong_specification_is_refused(acutance, place, tmp_path):
     spec = spec_file(tmp_path, "minimum = 0.3\nfoo = 1")
     done = acutance("archive", "check", place, "--spec", spec)
     assert done.exit_code == 2
-    assert "requirement.1.foo: is no key" in done.stderr
+    assert "requirement 1, foo: is no key" in done.stderr
 
 
 def test_tables(acutance, place):

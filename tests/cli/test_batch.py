@@ -1,6 +1,7 @@
 """``acutance batch``: words, files, exit codes."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -108,6 +109,28 @@ def test_strict(acutance, given, flat_image):
     assert acutance(*given, flat_image).exit_code == 0
 
 
+def test_a_misspelt_image_is_told_with_the_nearest_name(acutance, given, tmp_path, edge_image):
+    edge_image = Path(edge_image)
+    wrong = edge_image.with_name(f"{edge_image.stem}0{edge_image.suffix}")
+    done = acutance(*given, wrong)
+    told = f"unreadable: {wrong} does not exist (its folder exists): is {edge_image} meant?"
+    assert told in done.stdout
+    assert "rejected 1: 1 no such file" in done.stdout
+    document = json.loads(acutance(*given, wrong, "--json").stdout)
+    assert document["reasons"] == {"no such file": 1}
+    assert document["missing"] == [str(wrong)]
+    listed = acutance("archive", "list", tmp_path / "kept.db", "--rejected", "--json").stdout
+    assert f"is {edge_image} meant?" in listed
+
+
+def test_a_copy_is_measured_once_and_told(acutance, given, tmp_path, edge_image):
+    copy = tmp_path / "a copy é.tif"
+    copy.write_bytes(Path(edge_image).read_bytes())
+    done = acutance(*given, copy)
+    assert "2 images: 1 row added" in done.stdout
+    assert f"measured once: {copy} has the content of {edge_image}" in done.stdout
+
+
 def test_unreadable_images_are_named(acutance, given, tmp_path):
     bad = tmp_path / "bad.tif"
     bad.write_bytes(b"II*\x00")
@@ -128,8 +151,8 @@ def test_what_is_refused(refused, given, tmp_path, edge_image):
 
 def test_faults_of_targets_are_named_together(refused, given, tmp_path):
     targets_file(tmp_path, edge("a", kind="wires"), edge("b", colour=1))
-    refused(given, "feature 1 (a): kind is 'wires'")
-    refused(given, "feature 2 (b): there is no property 'colour'")
+    refused(given, "target 1 (a): kind is 'wires'")
+    refused(given, "target 2 (b): there is no property 'colour'")
 
 
 def test_ctrl_c(acutance, given, monkeypatch):

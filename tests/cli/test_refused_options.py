@@ -36,8 +36,9 @@ def test_the_seed_of_a_demo_is_0_or_more(refused, folder):
         (("points", "--peak", 0), "peak is 0"),
         (("points", "--peak", -3), "peak is -3"),
         (("pair", "--high", "b.tif", "--gain", 0), "the gain cannot be 0"),
-        (("pair", "--high", "b.tif", "--gsd", -1), "--gsd -1: the GSD has to be above 0 m"),
-        (("pair", "--high", "b.tif", "--gsd", "nan"), "above 0 m"),
+        (("pair", "--high", "b.tif", "--gsd", -1), "a GSD of -1 m between rows means nothing"),
+        (("pair", "--high", "b.tif", "--gsd", "nan"), "a GSD of nan m"),
+        (("pair", "--high", "b.tif", "--gsd", "1e9"), "have 0.005 to 100000 m"),
         (("pair", "--high", "b.tif", "--shift", "1e9,0"), "at most half of the image"),
     ],
 )
@@ -50,6 +51,11 @@ def test_scenes_that_cannot_be_rendered(refused, folder, words, message):
     ("words", "message"),
     [
         (("edge", "--limit", "rows=nan"), "--limit rows=nan: write NAME=VALUE with a number"),
+        (
+            ("edge", "--limit", "rows=-5"),
+            "limit of rows is -5, and what is compared",
+        ),
+        (("edge", "--limit", "saturation=3"), "is from 0 to 1 (limits, --limit)"),
         (("edge", "--limit", "rows=many"), "with a number, as in rows=10"),
         (("edge", "--limit", "rows"), "write NAME=VALUE"),
         (

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 import acutance as ac
@@ -209,3 +210,15 @@ def test_a_change_has_the_sign_of_the_numbers_it_is_made_of(sharpening):
     expected -= 0.344 * (sharpening.noise_gain - 1) / sharpening.snr
     assert change[4].value == pytest.approx(expected, abs=1e-3)
     assert 0 < change[4].std < 0.1
+
+
+def test_the_ratio_of_two_sensors_has_no_niirs():
+    """Of two resolutions without the MTF of the finer one the curves are no sensor's own."""
+    sensor = ac.simulate.reference_systems()["gaussian"]
+    low, high, _ = ac.simulate.pair(
+        sensor, sensor, ratio=4, shape=(64, 64), snr=200, rng=np.random.default_rng(1)
+    )
+    found = ac.measure_biresolution(low, high, ratio=4)
+    for given in (found, found.record, found.to_dict(), [found, found.record]):
+        with pytest.raises(ac.OptionError, match=r"is the ratio MTF_low / MTF_high.*--reference"):
+            ac.niirs(given, gsd_m=10.0, snr=80)

@@ -21,6 +21,7 @@ from acutance.targets.periodic.star_checks import STAR_CHECKS
 from acutance.targets.points import PointsOptions
 from acutance.targets.points.checks import POINTS_CHECKS
 from acutance.targets.points.published import SdsuMirrorsOptions
+from acutance.targets.question import limit_range
 from acutance.targets.straight import EdgeOptions, PulseOptions
 from acutance.targets.straight.edge_checks import EDGE_CHECKS
 from acutance.targets.straight.published import (
@@ -67,8 +68,8 @@ def test_limits_are_numbers(of, wrong):
     name = CHECKS[of][0]
     with pytest.raises(ac.OptionError, match=f"the limit of {name} has to be a number, found"):
         of(limits={name: wrong})
-    assert of(limits={name: 3}).limits[name] == 3
-    assert of(limits={name: np.float32(3)}).to_dict()["limits"] == {name: 3}
+    assert of(limits={name: 1}).limits[name] == 1
+    assert of(limits={name: np.float32(1)}).to_dict()["limits"] == {name: 1}
 
 
 @pytest.mark.parametrize("of", CHECKS)
@@ -134,3 +135,19 @@ def test_what_means_the_same_is_taken():
     assert EdgeOptions(robust=np.bool_(False)).robust == False  # noqa: E712
     assert tuple(StarOptions(centre=np.array([3.0, 4.0])).centre) == (3.0, 4.0)
     assert BarsOptions(groups=[Bars(20.0, 20.0, 0.0, 8.0, 5, 40.0)]).groups
+
+
+@pytest.mark.parametrize("name", sorted(QUESTIONS))
+def test_the_limit_of_the_table_is_one_that_may_be_given(name):
+    low, high = limit_range(name)
+    assert low <= QUESTIONS[name].limit <= high
+
+
+@pytest.mark.parametrize(
+    ("name", "limit"),
+    [("rows", -5), ("saturation", 1.5), ("correlated_noise", -2), ("angle_deg", 720)],
+)
+def test_limits_that_mean_nothing_are_refused(name, limit):
+    with pytest.raises(ac.OptionError, match=rf"limit of {name} is {limit:g}, and what"):
+        EdgeOptions(limits={name: limit})
+    assert EdgeOptions(limits={name: -math.inf}).limits[name] == -math.inf

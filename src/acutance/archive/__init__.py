@@ -26,8 +26,9 @@ Sees records only, never pixels. In the order the data take:
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from acutance.names_on_use import names_on_use
 
 if TYPE_CHECKING:
     from acutance.archive.archive import Archive
@@ -70,8 +71,4 @@ _HOMES = {
     "weighted_mean": "weighted_means",
 }
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(importlib.import_module(f"acutance.archive.{_HOMES[name]}"), name)
-    raise AttributeError(f"module 'acutance.archive' has no attribute {name!r}")
+__getattr__ = names_on_use(__name__, _HOMES)

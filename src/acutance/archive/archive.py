@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self, Unpack
 
 from acutance.archive.adding import add_entries, add_entry, record_of
 from acutance.archive.connection import open_database
+from acutance.archive.contradictions import contradictions
 from acutance.archive.dates import When, as_utc
 from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
 from acutance.archive.image_corrections import CorrectedImage, ImageCorrection, correct_images
@@ -130,7 +131,8 @@ class Archive(Questions):
         Raises
         ------
         OptionError
-            If it is no measurement, or described twice.
+            If it is no measurement, or described twice, or kept already with another sensor, date
+            or level than is stated now: `correct_images` changes what is kept.
         ArchiveError
             If it cannot be kept.
         """
@@ -149,7 +151,11 @@ class Archive(Questions):
         if not isinstance(target, TargetEntry | None):
             raise OptionError(f"target is a {type(target).__name__}: give a name or a TargetEntry")
         entry = Entry(record=record, image=image, target=target, band=band, key=key)
-        return add_entry(self._database, entry, run)
+        kept = add_entry(self._database, entry, run)
+        if not kept.new:
+            for reason in contradictions(self._database, {kept.key: image}).values():
+                raise OptionError(reason)
+        return kept
 
     def add_entries(
         self,
@@ -361,7 +367,8 @@ class Archive(Questions):
         Returns
         -------
         Imported
-            How many were read, how many were new, and which files were refused.
+            How many were read, how many were new, and which files were refused: also those whose
+            measurements are kept already with another sensor, date or level than is stated now.
         """
         from acutance.archive.exchange.documents import Stated
         from acutance.archive.exchange.importing import import_files

@@ -27,6 +27,7 @@ from acutance.archive.named_images import ImageKey, named_images
 from acutance.archive.packing import plain_json
 from acutance.archive.tables import directions, images, measurements
 from acutance.errors import OptionError
+from acutance.raster.gsd import Gsd
 from acutance.raster.metadata.findings import ANGLES
 
 __all__ = [
@@ -101,6 +102,11 @@ class ImageCorrection:
                 yield str(error)
         if self.gsd_m is not None and not all(_is_number(one) and one > 0 for one in self._sides()):
             yield f"gsd_m is {self.gsd_m!r}: write metres, .7, or two where they differ"
+        elif self.gsd_m is not None:
+            try:
+                Gsd.given(Gsd(*self._sides()))
+            except OptionError as error:
+                yield str(error)
         for name, (low, high) in ANGLES.items():
             value = getattr(self, name)
             if value is not None and not (_is_number(value) and low <= value <= high):

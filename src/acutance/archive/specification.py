@@ -30,6 +30,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from acutance.curves import METRICS
 from acutance.errors import OptionError
+from acutance.raster.document_faults import document_faults
 
 __all__ = ["Requirement", "Specification", "read_specification"]
 
@@ -150,7 +151,7 @@ class Specification(BaseModel):
         try:
             return cls.model_validate(document)
         except ValidationError as error:
-            raise OptionError(f"{source}: {'; '.join(_wrong(error))}") from None
+            raise OptionError(f"{source}: {'; '.join(_wrong(error, document))}") from None
 
 
 def read_specification(path: str | os.PathLike[str]) -> Specification:
@@ -184,16 +185,14 @@ def read_specification(path: str | os.PathLike[str]) -> Specification:
     return Specification.of(document, str(path))
 
 
-def _wrong(error: ValidationError) -> list[str]:
+def _wrong(error: ValidationError, document: Mapping[str, Any]) -> list[str]:
     """What is wrong, each with its place."""
     found = []
-    for one in error.errors():
-        place = ".".join(str(part + 1 if isinstance(part, int) else part) for part in one["loc"])
-        kind, message = one["type"], one["msg"].removeprefix("Value error, ")
-        if kind == "extra_forbidden":
-            model = Specification if len(one["loc"]) == 1 else Requirement
+    for one in document_faults(error, document):
+        if one.kind == "extra_forbidden":
+            model = Requirement if one.within else Specification
             said = f"is no key, only {', '.join(model.model_fields)}"
         else:
-            said = message[:1].lower() + message[1:]
-        found.append(f"{place}: {said}")
+            said = one.message[:1].lower() + one.message[1:]
+        found.append(f"{one.place}: {said}")
     return found

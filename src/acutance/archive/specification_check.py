@@ -24,6 +24,7 @@ from acutance.archive.trends.measured_series import all_series
 from acutance.archive.trends.series import Event, Series, date_of, decimal_year
 from acutance.archive.trends.trend import Trend
 from acutance.archive.trends.tuned import MIN_IMAGES
+from acutance.archive.trends.words import season_words
 from acutance.curves import METRICS, Estimate
 from acutance.curves.estimate import normal_quantile
 from acutance.errors import OptionError
@@ -88,7 +89,7 @@ class Answer:
         text = (
             f"{what}{asked} is {self.word}" if self.word != OPEN else f"{what}{asked} {self.word}"
         )
-        text += f" (probability of being met {_written(self.probability)}): {self.mean}"
+        text += f" (probability of being met {_written(self.probability)}): {_interval(self.mean)}"
         if self.day is not None:
             text += f" on {self.day}"
         text += f", {counted(self.images, 'image')}."
@@ -197,7 +198,8 @@ def _nothing(requirement: Requirement) -> Answer:
     """Nothing in the archive is what a requirement is about."""
     chosen = (requirement.selection.get(name) for name in ("sensor", "band", "orientation"))
     what = ", ".join(one if isinstance(one, str) else " or ".join(one) for one in chosen if one)
-    return Answer(requirement, what, OPEN, None, None, None, 0, MIN_IMAGES, "there is no image")
+    reason = f"there is no image{_trusted_words(requirement)}"
+    return Answer(requirement, what, OPEN, None, None, None, 0, MIN_IMAGES, reason)
 
 
 def check_requirement(
@@ -236,12 +238,19 @@ def _in_window(series: Series, requirement: Requirement) -> Series:
 
 
 def _untold(requirement: Requirement, series: Series, images: int) -> Answer:
+    trusted = _trusted_words(requirement)
     reason = (
-        "there is no image" if images == 0 else
-        "there is one image, which does not show how much images scatter"
+        f"there is no image{trusted}" if images == 0 else
+        f"there is one image{trusted}, which does not show how much images scatter"
     )  # fmt: skip
     return Answer(requirement, series.name, OPEN, None, None, None, images,
                   MIN_IMAGES - images, reason)  # fmt: skip
+
+
+def _trusted_words(requirement: Requirement) -> str:
+    """Which measurements count: images with others may well be there."""
+    word = requirement.verdict
+    return f" with a measurement that is {word}{'' if word == 'good' else ' or better'}"
 
 
 def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
@@ -257,7 +266,10 @@ def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
     mean = density.estimate(0.0 if trend.metric in METRICS else None)
     found = _answer(
         requirement, trend.name, met, mean, date_of(year), trend.images.images, square * lost,
-        trend.images.systematic_std, " ".join((*_skewed(requirement, mean, below), *trend.notes)),
+        trend.images.systematic_std,
+        " ".join(filter(None, (
+            season_words(trend), *_skewed(requirement, mean, below), *trend.notes
+        ))),
     )  # fmt: skip
     nearest = date_of(min(max(year, first), last))
     if found.word != OPEN or found.day is None or nearest == found.day:
@@ -317,6 +329,19 @@ def _images_that_tell(
         return None
     count = max(1, ceil(square * (1 / wanted - 1 / now)))
     return count if count <= _MOST else None
+
+
+def _interval(mean: Estimate) -> str:
+    """A mean with its 95 % interval, which is that of the density the probability is of.
+
+    A deviation would be read with a normal density, whose tails are shorter than Student's.
+    """
+    value, _, std = str(mean).partition(" ± ")
+    if not std:
+        return value
+    digits = len(value.partition(".")[2])
+    low, high = mean.interval(0.95)
+    return f"{value} (95 %: {low:.{digits}f} to {high:.{digits}f})"
 
 
 def _written(probability: float) -> str:

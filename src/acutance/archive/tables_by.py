@@ -8,7 +8,7 @@ documents are of this form.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -36,6 +36,11 @@ PRINTED: Final = ("prf_fwhm_px", "prf_fwhm_m")
 They are read from the documents."""
 _NONE: Final = "–"
 AVERAGE: Final = "average"
+_MEANS: Final = (
+    "± of a mean holds the scatter between images (of one image: between its targets) and is "
+    "widened for how few they are: 1.96 of it hold 95 % (Student's t)."
+)
+_SINGLE: Final = "* one measurement: ± is its own deviation, without that scatter."
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,10 @@ class TableRow:
         Smallest and largest.
     cells : dict of (str, str) to Estimate
         By orientation and metric; what was not measured is missing.
+    counts : dict of (str, str) to int
+        The measurements of every cell.
+    images_by : dict of str to int
+        Images in which something of a direction was measured.
     """
 
     group: tuple[str, ...]
@@ -59,6 +68,8 @@ class TableRow:
     measurements: int
     gsd_m: tuple[float, float] | None
     cells: dict[tuple[str, str], Estimate]
+    counts: dict[tuple[str, str], int]
+    images_by: dict[str, int]
 
     @property
     def is_average(self) -> bool:
@@ -92,13 +103,50 @@ class MeasurementTable:
     @property
     def header(self) -> tuple[str, ...]:
         """Titles of all columns."""
-        return (*self.by, "images", "GSD [m]", *(f"{metric} {one}" for one, metric in self.columns))
+        return (*self.by, *self._image_header, "GSD [m]",
+                *(f"{metric} {one}" for one, metric in self.columns))  # fmt: skip
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What has to be known of the deviations to read them."""
+        if not any(count > 1 for row in self.rows for count in row.counts.values()):
+            return ()
+        return (_MEANS, _SINGLE) if any(map(_has_single, self.rows)) else (_MEANS,)
+
+    @property
+    def _image_header(self) -> tuple[str, ...]:
+        """One column of images, or one a direction where these were seen in different ones."""
+        if all(count == row.images for row in self.rows for count in row.images_by.values()):
+            return ("images",)
+        shown = dict.fromkeys(orientation for orientation, _ in self.columns)
+        return tuple(f"images {orientation}" for orientation in shown)
 
     def texts(self) -> Iterator[tuple[str, ...]]:
-        """The rows as text."""
+        """The rows as text; where some cells are means, those of one measurement have a star."""
+        sides, is_mixed = [title.partition(" ")[2] for title in self._image_header], self.notes
         for row in self.rows:
-            cells = (_text(row.cells.get(key)) for key in self.columns)
-            yield (*row.group, str(row.images), _gsd_text(row.gsd_m), *cells)
+            images = (row.images_by.get(side, 0) if side else row.images for side in sides)
+            starred = _single_cells(row) if is_mixed else set()
+            cells = (
+                f"{'*' if key in starred else ''}{_text(row.cells.get(key))}"
+                for key in self.columns
+            )
+            yield (*row.group, *map(str, images), _gsd_text(row.gsd_m), *cells)
+
+    def of_direction(self, orientation: str) -> MeasurementTable:
+        """What was measured in one direction; images are those in which it was."""
+        rows = tuple(
+            replace(
+                row,
+                images=row.images_by[orientation],
+                cells={key: one for key, one in row.cells.items() if key[0] == orientation},
+                counts={key: one for key, one in row.counts.items() if key[0] == orientation},
+                images_by={orientation: row.images_by[orientation]},
+            )
+            for row in self.rows
+            if orientation in row.images_by
+        )
+        return replace(self, rows=rows)
 
     def to_dict(self) -> dict[str, Any]:
         """All rows as strict JSON types."""
@@ -106,6 +154,7 @@ class MeasurementTable:
             "schema": "acutance/archive-table/1",
             "by": list(self.by),
             "metrics": list(self.metrics),
+            "notes": list(self.notes),
             "rows": [_row_document(row, self.by) for row in self.rows],
         }
 
@@ -197,27 +246,30 @@ def _mask(keys: list[tuple[str, ...]], prefix: tuple[str, ...]) -> NDArray[np.bo
 def _row(
     rows: Columns, group: tuple[str, ...], mask: NDArray[np.bool_], metrics: Sequence[str]
 ) -> TableRow:
-    cells = {}
+    cells, counts, images_by = {}, {}, {}
     for orientation in ORIENTATIONS:
         own = mask & (rows["orientation"] == orientation)
+        seen = np.zeros(own.size, bool)
         for metric in metrics:
-            estimate = _cell(rows, metric, own)
-            if estimate is not None:
-                cells[orientation, metric] = estimate
+            known = own & np.isfinite(rows[metric])
+            if known.any():
+                cells[orientation, metric] = _cell(rows, metric, known)
+                counts[orientation, metric] = int(known.sum())
+                seen |= known
+        if seen.any():
+            images_by[orientation] = np.unique(rows["image_id"][seen]).size
     gsd_m = rows["gsd_m"][mask]
     known = gsd_m[np.isfinite(gsd_m)]
     return TableRow(
         group, np.unique(rows["image_id"][mask]).size, np.unique(rows["id"][mask]).size,
-        (float(known.min()), float(known.max())) if known.size else None, cells,
+        (float(known.min()), float(known.max())) if known.size else None, cells, counts,
+        images_by,
     )  # fmt: skip
 
 
-def _cell(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Estimate | None:
+def _cell(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Estimate:
     """One measurement as it is, of several the mean of the means of images."""
-    mask = mask & np.isfinite(rows[metric])
     value, std = rows[metric][mask], rows[f"{metric}_std"][mask]
-    if value.size == 0:
-        return None
     if value.size == 1:
         return Estimate(float(value[0]), float(std[0]))
     random, systematic = random_and_systematic(rows, metric, mask)
@@ -257,6 +309,18 @@ def _with_averages(
                 yield _row(rows, group, _mask(keys, prefix), metrics)
 
 
+def _single_cells(row: TableRow) -> set[tuple[str, str]]:
+    """Cells with the deviation of one measurement."""
+    return {
+        key for key, count in row.counts.items()
+        if count == 1 and np.isfinite(row.cells[key].std)
+    }  # fmt: skip
+
+
+def _has_single(row: TableRow) -> bool:
+    return bool(_single_cells(row))
+
+
 def _text(estimate: Estimate | None) -> str:
     return _NONE if estimate is None else str(estimate)
 
@@ -271,11 +335,13 @@ def _gsd_text(gsd_m: tuple[float, float] | None) -> str:
 def _row_document(row: TableRow, by: tuple[str, ...]) -> dict[str, Any]:
     cells: dict[str, dict[str, Any]] = {}
     for (orientation, metric), estimate in row.cells.items():
-        cells.setdefault(orientation, {})[metric] = estimate.to_dict()
+        count = row.counts[orientation, metric]
+        cells.setdefault(orientation, {})[metric] = {**estimate.to_dict(), "count": count}
     return {
         **dict(zip(by, row.group, strict=True)),
         "is_average": row.is_average,
         "images": row.images,
+        "images_by_direction": row.images_by,
         "measurements": row.measurements,
         "gsd_m": None if row.gsd_m is None else list(row.gsd_m),
         **cells,

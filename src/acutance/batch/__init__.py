@@ -10,8 +10,9 @@ archive), `whole_batch` (all of it, by `spread_images`) and `summary` (what came
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from acutance.names_on_use import names_on_use
 
 if TYPE_CHECKING:
     from acutance.batch.plan import BatchPlan, read_plan
@@ -27,8 +28,4 @@ _HOMES = {
     "run_batch": "whole_batch",
 }
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(importlib.import_module(f"acutance.batch.{_HOMES[name]}"), name)
-    raise AttributeError(f"module 'acutance.batch' has no attribute {name!r}")
+__getattr__ = names_on_use(__name__, _HOMES)

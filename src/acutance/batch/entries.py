@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from acutance.archive.dates import as_utc
 from acutance.archive.entry import ImageEntry, TargetEntry
 from acutance.errors import RegionError
 from acutance.geometry.angles import wrap_direction
 from acutance.raster.geolocation import LONLAT_CRS, transform_points
 from acutance.raster.metadata import ImageStatement
+from acutance.raster.metadata.times import is_day
 from acutance.raster.surveyed_targets import SurveyedTarget
 
 if TYPE_CHECKING:
@@ -46,8 +47,10 @@ def image_entry(task: BatchTask, statement: ImageStatement) -> ImageEntry:
     if statement.notes:
         sources["notes"] = list(statement.notes)
     when = values.get("acquired")
-    if isinstance(when, datetime):
-        values["acquired"] = when.astimezone(UTC) if when.tzinfo else when.replace(tzinfo=UTC)
+    if when is not None:
+        values["acquired"] = as_utc(when, "acquired")
+        if is_day(when):
+            sources["acquired"] += ": a day without a time, kept as its beginning"
     return ImageEntry(path=task.path, content=task.content, sources=sources, **values)
 
 

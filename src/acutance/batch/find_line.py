@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +16,7 @@ from acutance.raster import Image, Region
 from acutance.targets.region import RegionPixels, read_region
 from acutance.targets.straight.find_edges import Segment, find_segments
 
-__all__ = ["edge_candidates", "grown", "line_region", "require_near"]
+__all__ = ["Away", "away_from_survey", "edge_candidates", "grown", "line_region", "require_near"]
 
 _MAX_TURN_DEG = 12.0
 """Between a surveyed line and what is found: maps turn, and a line of two points is rough."""
@@ -24,6 +26,13 @@ _MIN_OVERLAP = 0.5
 """Of the surveyed length that what is found has to cover."""
 _CANDIDATES = 24
 _TRIED = 4
+
+
+class Away(NamedTuple):
+    """How far something lies from where the survey has it, and how it is turned."""
+
+    distance_px: float
+    turn_deg: float
 
 
 def line_region(placed: PlacedTarget, width_px: float = 0.0) -> Region:
@@ -167,16 +176,43 @@ def _own_ends(
     return start, stop
 
 
-def require_near(placed: PlacedTarget, line: Line) -> None:
-    """Refuse what was measured if it is not where the survey has its line.
+def away_from_survey(placed: PlacedTarget, line: Line, width_px: float = 0.0) -> Away:
+    """How far a measured line lies from the surveyed one, and how it is turned against it.
+
+    Parameters
+    ----------
+    placed : PlacedTarget
+        Of a line.
+    line : Line
+        An edge, or the first side of a pulse, in the whole image.
+    width_px : float, optional
+        Of the pulse: its middle is what was surveyed.
+
+    Returns
+    -------
+    Away
+        Distance in pixels at the middle of the surveyed line, angle in degrees.
+    """
+    angle = math.radians(line.normal_deg)
+    middle = replace(
+        line,
+        row=line.row + 0.5 * width_px * math.sin(angle),
+        col=line.col + 0.5 * width_px * math.cos(angle),
+    )
+    half = 0.5 * (line.length_px or 0.0)
+    offset_px, turn_deg, _ = _against(Segment(middle, -half, half, 0.0), *placed.points)
+    return Away(offset_px, turn_deg)
+
+
+def require_near(placed: PlacedTarget, line: Line, width_px: float) -> None:
+    """Refuse a pulse that was measured if it is not where the survey has its line.
 
     Raises
     ------
     RegionError
         As `NotHereError`, if it lies farther away than the place is uncertain, or is turned.
     """
-    segment = Segment(line, -0.5 * line.length_px, 0.5 * line.length_px, 0.0)
-    offset_px, turn_deg, _ = _against(segment, *placed.points)
+    offset_px, turn_deg = away_from_survey(placed, line, width_px)
     if offset_px > placed.search_px + 1.0 or turn_deg > _MAX_TURN_DEG:
         raise NotHereError(
             "not found",

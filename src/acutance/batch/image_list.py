@@ -103,7 +103,7 @@ def require_stated_images(files: Sequence[ImageFile], stated: Sequence[StatedOfI
         idle = [name for name in one.images if not any(_matches(file.path, name) for file in files)]
         if idle:
             raise OptionError(
-                f"stated.{number} is of images that match {', '.join(idle)}, and none does: "
+                f"stated {number} is of images that match {', '.join(idle)}, and none does: "
                 "correct the names, or leave them out"
             )
 

@@ -17,6 +17,7 @@ from acutance.batch.plan import StatedOfImages
 from acutance.batch.plan_options import ChosenOptions
 from acutance.batch.row_key import Reading, day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
+from acutance.batch.summary import NO_FILE
 from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
 from acutance.execution import interruptible, is_ending
 from acutance.numerics.one_thread import one_thread
@@ -24,6 +25,8 @@ from acutance.raster import Gsd, Image, open_bands
 from acutance.raster.metadata import ImageStatement, read_statement
 from acutance.raster.sensor_model import SensorModel, georeference_of
 from acutance.raster.surveyed_targets import SurveyedTarget
+from acutance.targets.record import ImageInfo
+from acutance.targets.region import stated_gsd
 from acutance.targets.target_result import Rejected
 
 __all__ = ["BatchTask", "BatchWork", "MeasuredImage", "measure_image"]
@@ -165,7 +168,9 @@ def _opened(task: BatchTask) -> _Opened:
 
 
 def _unreadable(task: BatchTask, error: AcutanceError) -> Entry:
-    rejected = Rejected("image", str(error), {"why": "unreadable image", "path": task.path})
+    is_missing = task.content is None and not os.path.lexists(task.path)
+    why = NO_FILE if is_missing else "unreadable image"
+    rejected = Rejected("image", str(error), {"why": why, "path": task.path})
     image = ImageEntry(path=task.path, content=task.content, sensor=task.stated.sensor)
     return Entry(rejected=rejected, image=image, key=unreadable_key(task.content, task.path))
 
@@ -212,6 +217,7 @@ def _row(
     """A record or a rejection, and the processor time of the measurement."""
     # The rooms of the kinds are loaded where something is measured.
     from acutance.batch.measure_target import measure_target
+    from acutance.batch.survey_distance import with_survey_distance
 
     image, begin = opened.images[place], None
     try:
@@ -220,7 +226,7 @@ def _row(
         begin = _processor_s()
         with interruptible():
             record = measure_target(placed, image, chosen, scan_workers).record
-        return {"record": record}, _processor_s() - begin
+        return {"record": with_survey_distance(record, placed)}, _processor_s() - begin
     except NotHereError as error:
         rejected = _rejected(error.stage, str(error), error.why, chosen, image)
     except AcutanceError as error:
@@ -263,11 +269,32 @@ def _require_valid(target: SurveyedTarget, acquired: date | None) -> None:
 def _placed(target: SurveyedTarget, image: Image, opened: _Opened) -> PlacedTarget:
     height_m = opened.height_m if target.height_m is None else target.height_m
     georeference = None if target.in_pixels else georeference_of(image, height_m)
+    if georeference is not None:
+        _require_credible_gsd(image)
     stated = opened.entry.gsd_m
     gsd = None
     if image.own_gsd is None and image.geolocation is None and stated is not None:
         gsd = Gsd(*stated)
     return place_target(target, image, georeference, gsd)
+
+
+def _require_credible_gsd(image: Image) -> None:
+    """Refuse to look for a target by a map whose pixels are quite others than the stated ones.
+
+    Raises
+    ------
+    RegionError
+        As `NotHereError`, where the check `stated_gsd` would fail.
+    """
+    own = image.gsd_of_file()
+    info = ImageInfo(pixel_gsd_m=_sides(image.own_gsd), file_gsd_m=_sides(own))
+    check = stated_gsd(info, {})
+    if not check.passed:
+        raise NotHereError("stated GSD", check.message, "options")
+
+
+def _sides(gsd: Gsd | None) -> tuple[float, float] | None:
+    return None if gsd is None else (gsd.row_m, gsd.col_m)
 
 
 def _stage(error: AcutanceError) -> str:

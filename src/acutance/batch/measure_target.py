@@ -69,7 +69,8 @@ def _pulse(placed: PlacedTarget, image: Image, chosen: ChosenOptions) -> Measure
         image, region, gsd_m=placed.gsd, method=chosen.method, options=chosen.build(), **stated
     )
     if is_line:
-        require_near(placed, found.line)
+        width_px = 0.0 if found.width_px is None else found.width_px.value
+        require_near(placed, found.line, width_px)
     return found
 
 

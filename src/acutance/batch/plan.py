@@ -13,7 +13,11 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from acutance.errors import OptionError
+from acutance.raster.document_faults import DocumentFault, document_faults
+from acutance.raster.gsd import Gsd
 from acutance.raster.metadata.findings import ANGLES
+from acutance.raster.metadata.times import time_or_day
+from acutance.raster.nearest_name import nearest_name
 
 __all__ = ["BatchPlan", "StatedOfImages", "plan_of", "read_plan"]
 
@@ -35,7 +39,7 @@ class _Stated(_Model):
     images: Texts | None = None
     sensor: str | None = Field(default=None, min_length=1)
     level: str | None = Field(default=None, min_length=1)
-    acquired: datetime | None = None
+    acquired: datetime | date | None = None
     band_names: list[str] | None = Field(default=None, min_length=1)
     gsd_m: float | list[float] | None = None
     height_m: float | None = Field(default=None, ge=-1000, le=10000)
@@ -51,19 +55,22 @@ class _Stated(_Model):
     @field_validator("acquired", mode="before")
     @classmethod
     def _a_time(cls, value: Any) -> Any:
-        # A number would be taken for seconds since 1970, a day for its midnight.
-        if isinstance(value, date) and not isinstance(value, datetime):
-            raise ValueError("write the time too, 2026-01-05T10:00:00Z")
-        if value is not None and not isinstance(value, str | datetime):
-            raise ValueError("write a time, 2026-01-05T10:00:00Z")
-        return value
+        # A number would be taken for seconds since 1970.
+        if value is None or isinstance(value, date):
+            return value
+        found = time_or_day(value)
+        if found is None:
+            raise ValueError("write a time, 2026-01-05T10:00:00Z, or a day, 2026-01-05")
+        return found
 
     @field_validator("gsd_m")
     @classmethod
-    def _positive(cls, value: Any) -> Any:
+    def _of_an_image(cls, value: Any) -> Any:
         sides = value if isinstance(value, list) else [value]
-        if value is not None and not (len(sides) in (1, 2) and all(one > 0 for one in sides)):
+        if len(sides) not in (1, 2):
             raise ValueError("write metres, .7, or [ROW, COLUMN] where they differ")
+        if value is not None:
+            Gsd.given(Gsd(sides[0], sides[-1]))
         return value
 
 
@@ -102,7 +109,8 @@ class StatedOfImages:
     images : tuple of str
         Patterns of paths; all images without any.
     sensor, level : str or None
-    acquired : datetime or None
+    acquired : datetime or date, or None
+        A date where the time is not known.
     band_names : tuple of str or None
         In the order of the file.
     gsd_m : (row, col) or None
@@ -121,7 +129,7 @@ class StatedOfImages:
     images: tuple[str, ...] = ()
     sensor: str | None = None
     level: str | None = None
-    acquired: datetime | None = None
+    acquired: datetime | date | None = None
     band_names: tuple[str, ...] | None = None
     gsd_m: tuple[float, float] | None = None
     height_m: float | None = None
@@ -181,7 +189,7 @@ class BatchPlan:
 def _set_values(stated: StatedOfImages) -> dict[str, Any]:
     values = ((one.name, getattr(stated, one.name)) for one in fields(stated))
     return {
-        name: value.isoformat() if isinstance(value, datetime) else value
+        name: value.isoformat() if isinstance(value, date) else value
         for name, value in values
         if value is not None
     }
@@ -206,7 +214,12 @@ def read_plan(path: str | os.PathLike[str]) -> BatchPlan:
     name = Path(path)
     try:
         document = tomllib.loads(name.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError) as error:
+    except OSError as error:
+        near = nearest_name(name)
+        meant = "" if near is None else f", is {name.with_name(near)} meant?"
+        reason = error.strerror or str(error)
+        raise OptionError(f"the plan {name} cannot be read ({reason}){meant}") from error
+    except (ValueError, RecursionError) as error:
         raise OptionError(f"the plan {name} cannot be read ({error}): write a TOML file") from error
     return plan_of(document, str(name), name.parent)
 
@@ -230,7 +243,7 @@ def plan_of(document: Mapping[str, Any], name: str, folder: Path | None = None) 
     try:
         given = _Plan.model_validate(document)
     except ValidationError as error:
-        faults = "\n".join(f"  - {_fault(one)}" for one in error.errors())
+        faults = "\n".join(f"  - {_fault(one)}" for one in document_faults(error, document))
         raise OptionError(f"the plan {name} cannot be used:\n{faults}") from None
     at = Path() if folder is None else folder
     return BatchPlan(
@@ -274,10 +287,10 @@ def _below(folder: Path, path: str) -> str:
     return str(folder / path)
 
 
-def _fault(error: Any) -> str:
-    place = ".".join(str(one) for one in error["loc"])
-    if error["type"] == "extra_forbidden":
-        return f"there is no key {place!r}"
-    if error["type"] == "missing":
-        return f"the key {place!r} is missing"
-    return f"{place} is {error['input']!r:.60}: {error['msg']}"
+def _fault(fault: DocumentFault) -> str:
+    if fault.kind == "extra_forbidden":
+        where = f" in {fault.within}" if fault.within else ""
+        return f"there is no key {fault.key!r}{where}"
+    if fault.kind == "missing":
+        return f"the key {fault.place!r} is missing"
+    return f"{fault.place} is {fault.found!r:.60}: {fault.message}"

@@ -98,9 +98,10 @@ def require_options(
         found = _faults("the plan", _chosen(kind, None, given, {}))
         faults.extend(found)
         wrong |= {kind} if found else set()
-    for target, one in zip(targets, chosen, strict=True):
+    for number, (target, one) in enumerate(zip(targets, chosen, strict=True), start=1):
         if target.kind not in wrong:
-            faults.extend(_faults(f"target {target.name}", one))
+            named = f" ({target.name})" if target.name != str(number) else ""
+            faults.extend(_faults(f"target {number}{named}", one))
     if faults:
         raise OptionError("options cannot be used:\n" + "\n".join(f"  - {one}" for one in faults))
 

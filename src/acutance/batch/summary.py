@@ -31,6 +31,8 @@ _WORDS = {
     "ModelError": "target described in contradiction",
 }
 """Reasons that are names of errors, in words."""
+NO_FILE = "no such file"
+"""Why an image that is not there has no measurement."""
 VERDICTS = ("good", "usable", "doubtful", "invalid")
 _ELSEWHERE = ("outside", "not there then")
 """Rejections of targets that the image does not show: nothing went wrong."""
@@ -47,6 +49,12 @@ class BatchSummary(ShortRepr):
         Of the plan.
     unreadable : tuple of str
         Images that could not be read now.
+    missing : tuple of str
+        Those among them that do not exist.
+    faults : mapping of str to str
+        By path why an image could not be read.
+    copies : mapping of str to str
+        Images with the content of another, which stands for them; by path that of the other.
     missing_bands : tuple of (str or int)
         Bands that were asked for and that no image has.
     bands : tuple of str
@@ -69,6 +77,9 @@ class BatchSummary(ShortRepr):
     archive: str
     images: int
     unreadable: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+    faults: Mapping[str, str] = field(default_factory=dict)
+    copies: Mapping[str, str] = field(default_factory=dict)
     missing_bands: tuple[str | int, ...] = ()
     bands: tuple[str, ...] = ()
     done_before: int = 0
@@ -112,6 +123,9 @@ class BatchSummary(ShortRepr):
             "archive": self.archive,
             "images": self.images,
             "unreadable": list(self.unreadable),
+            "missing": list(self.missing),
+            "faults": dict(self.faults),
+            "copies": dict(self.copies),
             "missing_bands": list(self.missing_bands),
             "done_before": self.done_before,
             "kept": self.kept,
@@ -132,7 +146,9 @@ class Tally:
         self.verdicts: Counter[str] = Counter()
         self.reasons: Counter[str] = Counter()
         self.earlier, self.kept, self.measuring_s = 0, 0, 0.0
-        self.unreadable: list[str] = []
+        self.faults: dict[str, str] = {}
+        self.missing: list[str] = []
+        self.copies: dict[str, str] = {}
         self.bands: set[Band] = set()
 
     def add_earlier(self, rows: Sequence[Outcome]) -> None:
@@ -147,14 +163,18 @@ class Tally:
         self.earlier += len(found.entries) - new
         self.measuring_s += found.measuring_s
         if found.bands is None:
-            self.unreadable.append(path)
+            self.faults[path] = next((one.rejected.reason for one in found.entries
+                                      if one.rejected is not None), "")  # fmt: skip
         else:
             self.bands.update(found.bands)
         for entry in found.entries:
             if entry.record is not None:
                 self._count(entry.record.verdict.word, None)
             elif entry.rejected is not None:
-                self._count(None, str(entry.rejected.values.get("why") or entry.rejected.stage))
+                why = str(entry.rejected.values.get("why") or entry.rejected.stage)
+                self._count(None, why)
+                if why == NO_FILE:
+                    self.missing.append(path)
 
     def _count(self, verdict: str | None, why: str | None) -> None:
         if verdict is not None:
@@ -188,7 +208,10 @@ class Tally:
         return BatchSummary(
             archive=archive,
             images=images,
-            unreadable=tuple(self.unreadable),
+            unreadable=tuple(self.faults),
+            missing=tuple(self.missing),
+            faults=self.faults,
+            copies=self.copies,
             missing_bands=without_band(bands, there) if there else (),
             bands=tuple(
                 f"{one.number} ({one.name})" if one.name else f"{one.number}" for one in there

@@ -209,14 +209,15 @@ def _tasks(
     by_content: dict[str, set[str]] = {}
     for key, one in there.items():
         by_content.setdefault(str(one.content), set()).add(key)
-    found, seen = [], set[tuple[str, Reading]]()
+    found, seen = [], dict[tuple[str, Reading], str]()
     for file in files:
         stated, image = stated_of(file.path, plan.stated), known.get(file.path)
         reading = reading_of({name: getattr(stated, name) for name in _READING})
         content = None if image is None else image.content
         if content is not None and (content, reading) in seen:
+            tally.copies[file.path] = seen[content, reading]
             continue
-        seen.add((content or file.path, reading))
+        seen[content or file.path, reading] = file.path
         if image is not None:
             tally.bands.update(Band(*one) for one in image.bands or ())
         done = by_content.get(content or "", set())

@@ -39,8 +39,9 @@ def table(
 ) -> None:
     """Print means across and along, with the averages of leading groups.
 
-    Means are over images and have their scatter in their deviation. Measurements count whose
-    verdict is usable or good (--verdict).
+    Means are over images and have their scatter in their deviation; a star is before the numbers
+    of one measurement, which have their own. Measurements count whose verdict is usable or good
+    (--verdict).
     """
     from acutance.archive import Archive
     from acutance.report import json_text
@@ -55,3 +56,5 @@ def table(
         return
     sides = "l" * len(found.by) + "r" * (len(found.header) - len(found.by))
     typer.echo(align_columns([found.header, *found.texts()], sides, indent=""))
+    if found.notes:
+        typer.echo("\n" + "\n".join(found.notes))

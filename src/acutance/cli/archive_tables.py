@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import sys
 from collections.abc import Iterable, Mapping, Sequence
+from datetime import datetime, time
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -107,12 +108,13 @@ def entry_text(entry: Entry) -> str:
     known = {
         "sensor": image.sensor,
         "band": entry.band,
-        "acquired": None if image.acquired is None else f"{image.acquired:%Y-%m-%d %H:%M} UTC",
+        "acquired": None if image.acquired is None else _moment_words(image.acquired),
         "image": image.path,
         "content": image.content,
         "level": image.level,
         "GSD": None if image.gsd_m is None else _gsd_words(image.gsd_m),
         "target": None if target is None else target.name,
+        "survey": None if record is None else _survey_words(record),
         "place": _place(target),
         "site": None if target is None else target.site,
         "key": entry.key,
@@ -124,10 +126,28 @@ def entry_text(entry: Entry) -> str:
     return "\n".join(lines)
 
 
+def _moment_words(when: datetime) -> str:
+    """Day and minute; of what is dated to the day its midnight is no time."""
+    day = f"{when:%Y-%m-%d}"
+    return day if when.time() == time.min else f"{day} {when:%H:%M} UTC"
+
+
 def _place(target: TargetEntry | None) -> str | None:
     if target is None or target.lon is None or target.lat is None:
         return None
     return f"longitude {target.lon:.5f}, latitude {target.lat:.5f}"
+
+
+def _survey_words(record: Record) -> str | None:
+    """How far a batch found a line from where the survey has it."""
+    found = record.document.get("survey_line")
+    if found is None:
+        return None
+    metres = "" if found["distance_m"] is None else f" ({found['distance_m']:.2f} m)"
+    return (
+        f"the line lies {found['distance_px']:.2f} px{metres} from the surveyed one, turned by "
+        f"{found['turn_deg']:.1f} degrees; looked for within {found['search_px']:.1f} px"
+    )
 
 
 def _gsd_words(sides_m: tuple[float, float]) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+import shlex
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
@@ -204,16 +205,30 @@ def _text(found: BatchSummary) -> str:
         f"{found.archive}, {there}",
         _counts("measured", found.measured, found.verdicts),
         _counts("rejected", found.rejected, found.reasons),
-        *(f"unreadable: {path}" for path in found.unreadable[:_NAMED]),
-    ]
-    if len(found.unreadable) > _NAMED:
-        lines.append(f"and {len(found.unreadable) - _NAMED} more that cannot be read")
+        *_named(f"unreadable: {_fault(*one)}" for one in found.faults.items()),
+        *_named(f"measured once: {path} has the content of {other}"
+                for path, other in found.copies.items()),
+    ]  # fmt: skip
     if found.rejected:
-        lines.append(f"reasons in full: acutance archive list {found.archive} --rejected")
+        lines.append(
+            f"reasons in full: acutance archive list {shlex.quote(found.archive)} --rejected"
+        )
     if found.missing_bands:
         asked = ", ".join(map(str, found.missing_bands))
         lines.append(f"no image has band {asked}: choose from {', '.join(found.bands)}")
     return "\n".join(lines)
+
+
+def _named(lines: Iterable[str]) -> list[str]:
+    """The first lines, and how many more there are."""
+    every = list(lines)
+    more = len(every) - _NAMED
+    return [*every[:_NAMED], *([f"and {more} more of these"] if more > 0 else [])]
+
+
+def _fault(path: str, reason: str) -> str:
+    """Why an image cannot be read, with its name."""
+    return reason if path in reason else f"{path}: {reason}"
 
 
 _NAMED = 5

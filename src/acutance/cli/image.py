@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from datetime import datetime
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -80,6 +81,8 @@ def _shown(stated: Stated[Any] | None) -> str:
         shown = f"{value:.6g}"
     elif isinstance(value, str):
         shown = value
+    elif not isinstance(value, datetime):
+        shown = value.isoformat()
     else:
         shown = value.isoformat(timespec="milliseconds").replace("+00:00", "Z")
     return f"{shown}   ({stated.source})"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -61,21 +62,64 @@ def measure_target(
     kept = (path, pixels.roi, pixels.linearize, *inputs)
     outputs = Outputs.checked(wanted, kept)
     chosen = kind.load(kind.options)(**options, limits=wanted.limits)
-    image, regions = pixels.open(path)
-    given = {**arguments(image), "options": chosen}
+    images, regions = pixels.open(path)
+    parts = [
+        _Part(image, region, name if len(regions) > 1 else "", pixels.are_several)
+        for image in images
+        for name, region in regions.items()
+    ]
     names = methods or kind.methods[:1]
 
-    def measure(region: Region | None) -> Shown:
+    def measure(part: _Part) -> Shown:
+        given = {**arguments(part.image), "options": chosen}
         if measure_all:
-            return _every_target(kind, image, region, {**given, "method": names[0]})
-        function = partial(kind.load(kind.measure), image, roi=region, **given)
+            return _every_target(kind, part.image, part.region, {**given, "method": names[0]})
+        function = partial(kind.load(kind.measure), part.image, roi=part.region, **given)
         return Shown(function(method=names[0]) if len(names) == 1 else _compared(function, names))
 
-    if len(regions) == 1:
-        (region,) = regions.values()
-        outputs.deliver(measure(region))
+    if len(parts) == 1 and not pixels.are_several:
+        outputs.deliver(measure(parts[0]))
     else:
-        _deliver_regions(outputs, regions, measure, kept)
+        _deliver_parts(outputs, parts, measure, kept)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A region of a band: one of those that are measured, each by itself.
+
+    Parameters
+    ----------
+    image : Image
+    region : Region or None
+    name : str
+        Of the region, where there are several.
+    is_of_bands : bool
+        Whether several bands were asked for.
+    """
+
+    image: Image
+    region: Region | None
+    name: str
+    is_of_bands: bool
+
+    @property
+    def label(self) -> str:
+        """What it is called in messages."""
+        band = [f"band {self.image.band}"] if self.is_of_bands else []
+        return ", ".join([*band, *([f"region {self.name}"] if self.name else [])])
+
+    @property
+    def stem(self) -> str:
+        """What it is called in the names of files."""
+        return "-".join(
+            [*([f"band-{self.image.band}"] if self.is_of_bands else []), *filter(None, [self.name])]
+        )
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """What its document is marked with."""
+        band = {"band": str(self.image.band)} if self.is_of_bands else {}
+        return band | ({"region": self.name} if self.name else {})
 
 
 def _compared(function: Callable[..., Measurement], names: Sequence[str]) -> Comparison:
@@ -139,53 +183,64 @@ def _every_target(
     return Shown(result, {"backdrop": read_data(image, box)[0], "origin": (box.row, box.col)})
 
 
-def _deliver_regions(
+def _deliver_parts(
     outputs: Outputs,
-    regions: Mapping[str, Region | None],
-    measure: Callable[[Region | None], Shown],
+    parts: Sequence[_Part],
+    measure: Callable[[_Part], Shown],
     kept: tuple[str | None, ...],
 ) -> None:
-    """Measure every region; one that holds no target is named, and the others go on."""
+    """Measure every region of every band; one that holds no target is named, and the others go on.
+
+    Raises
+    ------
+    TargetError
+        If none of them does.
+    """
     from acutance import report
 
-    found: dict[str, Shown] = {}
-    rejected: dict[str, str] = {}
-    for (name, region), own in zip(
-        regions.items(), outputs.of_regions(list(regions), kept), strict=True
-    ):
+    found: dict[int, Shown] = {}
+    rejected: dict[int, str] = {}
+    owns = outputs.of_regions([one.stem for one in parts], kept)
+    for place, (part, own) in enumerate(zip(parts, owns, strict=True)):
         try:
-            found[name] = measure(region)
+            found[place] = measure(part)
         except (TargetError, RegionError) as error:
-            rejected[name] = str(error)
-            say(f"acutance: region {name}: {error}")
-            own.write_rejection(f"Region {name}", str(error))
+            rejected[place] = str(error)
+            say(f"acutance: {part.label}: {error}")
+            own.write_rejection(part.label[:1].upper() + part.label[1:], str(error))
             continue
-        own.write_files(found[name])
+        own.write_files(found[place])
     if not found:
-        raise TargetError(f"none of the {len(regions)} regions could be measured")
+        what = "bands and regions" if parts[0].is_of_bands else "regions"
+        raise TargetError(f"none of the {len(parts)} {what} could be measured")
     if outputs.as_json:
-        typer.echo(report.json_text(_regions_document(found, rejected, outputs.covariance)))
+        typer.echo(report.json_text(_parts_document(parts, found, rejected, outputs.covariance)))
     else:
-        texts = {name: report.text(shown.result) for name, shown in found.items()}
-        texts |= {name: f"not measured: {reason}" for name, reason in rejected.items()}
-        typer.echo("\n\n".join(f"region {name}: {texts[name]}" for name in regions))
+        texts = {place: report.text(shown.result) for place, shown in found.items()}
+        texts |= {place: f"not measured: {reason}" for place, reason in rejected.items()}
+        labelled = (f"{one.label}: {texts[place]}" for place, one in enumerate(parts))
+        typer.echo("\n\n".join(labelled))
     outputs.require_checks(found.values(), missing=len(rejected))
 
 
-def _regions_document(
-    found: Mapping[str, Shown], rejected: Mapping[str, str], covariance: bool
-) -> dict[str, Any]:
-    """The document ``acutance/regions/1``: one result a region, and the regions without one."""
+def _parts_document(
+    parts: Sequence[_Part], found: Mapping[int, Shown], rejected: Mapping[int, str],
+    covariance: bool,
+) -> dict[str, Any]:  # fmt: skip
+    """The document ``acutance/regions/1``, of several bands ``acutance/bands/1``.
+
+    It holds one result a region and band, and those without one.
+    """
     from acutance import report
 
     return {
-        "schema": "acutance/regions/1",
+        "schema": "acutance/bands/1" if parts[0].is_of_bands else "acutance/regions/1",
         "results": [
-            {"region": name, **report.document(shown.result, covariance=covariance)}
-            for name, shown in found.items()
+            {**parts[place].document, **report.document(shown.result, covariance=covariance)}
+            for place, shown in found.items()
         ],
         "rejected": [
-            {"stage": "measurement", "reason": reason, "values": {"region": name}}
-            for name, reason in rejected.items()
+            {"stage": "measurement", "reason": reason, "values": parts[place].document}
+            for place, reason in rejected.items()
         ],
     }

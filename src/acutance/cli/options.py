@@ -104,7 +104,13 @@ class PixelOptions:
     site: Annotated[
         str | None, typer.Option(metavar="NAME", help="Region: a known site (see acutance sites).")
     ] = None
-    band: Annotated[str, typer.Option(metavar="N", help="Which band, from 1.")] = "1"
+    band: Annotated[
+        str,
+        typer.Option(
+            metavar="N,...|all",
+            help="Which band, from 1. Of several, 1,2,3 or all, each is measured by itself.",
+        ),
+    ] = "1"
     nodata: Annotated[
         float | None,
         typer.Option(
@@ -133,27 +139,26 @@ class PixelOptions:
         ),
     ] = None
 
-    def open(self, path: str) -> tuple[Image, dict[str, Region | None]]:
-        """Open the image and find the regions the options ask for, by name.
+    @property
+    def bands(self) -> Sequence[int] | None:
+        """The numbers of the bands; None for all of them."""
+        return None if self.band == "all" else [parse_band(one) for one in self.band.split(",")]
+
+    @property
+    def are_several(self) -> bool:
+        """Whether several bands are asked for, be there one in the end."""
+        bands = self.bands
+        return bands is None or len(bands) > 1
+
+    def open(self, path: str) -> tuple[tuple[Image, ...], dict[str, Region | None]]:
+        """Open the bands of the image and find the regions the options ask for, by name.
 
         Raises
         ------
         OptionError, ImageError, RegionError
             If the options contradict each other, or the image or a region cannot be had.
         """
-        (image,), regions = self.open_bands(path, (parse_band(self.band),))
-        return image, regions
-
-    def open_bands(
-        self, path: str, bands: Sequence[int] | None
-    ) -> tuple[tuple[Image, ...], dict[str, Region | None]]:
-        """Open several bands of the image, all without `bands`, and find the regions, by name.
-
-        Raises
-        ------
-        OptionError, ImageError, RegionError
-            As of `open`.
-        """
+        bands = self.bands
         if self.roi is not None and self.site is not None:
             raise OptionError("--roi and --site both name a region: give one of them")
         if self.along_track not in _AXES:

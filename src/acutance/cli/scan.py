@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.choices import parse_band, parse_grid
+from acutance.cli.choices import parse_grid
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions, SoftnessOptions
 from acutance.cli.output import OutputFile, check_optional
@@ -50,11 +50,6 @@ class ScenePixelOptions(PixelOptions):
             "the shifts between them.",
         ),
     ] = "1"
-
-    @property
-    def bands(self) -> Sequence[int] | None:
-        """The numbers of the bands; None for all of them."""
-        return None if self.band == "all" else [parse_band(one) for one in self.band.split(",")]
 
 
 @dataclass(frozen=True)
@@ -124,8 +119,8 @@ def scan(
     table = check_optional("--edges", edges, (".csv", ".parquet", ".geojson"), keep=kept)
     if dask is not None and workers is not None:
         raise OptionError("--workers and --dask cannot be combined: the cluster has its own")
-    bands, places = pixels.bands, parse_grid("--field", field)
-    images, regions = pixels.open_bands(image, bands)
+    places = parse_grid("--field", field)
+    images, regions = pixels.open(image)
     if len(regions) > 1:
         raise OptionError(
             f"--roi names {len(regions)} regions, and a scene is one: give one of them"
@@ -149,7 +144,7 @@ def scan(
         }
         found: SceneMeasurement | BandScenes
         try:
-            if bands is None or len(bands) > 1:
+            if pixels.are_several:
                 found = scan_bands(images, roi=region, **how)
             else:
                 found = scan_scene(images[0], region, **how)

@@ -66,7 +66,12 @@ def named_sensor(name: str, gsd_m: float | None = None) -> Sensor:
         sensor = read_sensor(name)
     else:
         raise OptionError(f"the sensor {name} is no .toml file and none of {', '.join(ready)}")
-    return sensor if gsd_m is None else replace(sensor, gsd_m=gsd_m, gsd_along_m=None)
+    if gsd_m is None:
+        return sensor
+    from acutance.raster import Gsd
+
+    Gsd.given(gsd_m)
+    return replace(sensor, gsd_m=gsd_m, gsd_along_m=None)
 
 
 def sensor_budget(

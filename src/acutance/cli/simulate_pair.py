@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated
 
 import typer
@@ -61,9 +60,11 @@ def pair(
     fine = check_output("--high", high, (".tif", ".tiff"), keep=inputs)
     if fine.place == files.image.place:
         raise OptionError("--out and --high name the same file: give two")
-    if not 0 < gsd < math.inf:
-        raise OptionError(f"--gsd {gsd:g}: the GSD has to be above 0 m")
     rows, cols = parse_pair("--shift", shift, "rows and columns, as in 0.4,-1.2")
+
+    from acutance.raster import Gsd
+
+    Gsd.given(gsd)
     system, reference = named_sensor(sensor), named_sensor(high_sensor)
 
     import numpy as np

@@ -9,7 +9,10 @@ from numbers import Real
 from acutance.curves.direction import gsd_along
 from acutance.errors import OptionError
 
-__all__ = ["GSD_TAGS", "Gsd"]
+__all__ = ["GSD_RANGE_M", "GSD_TAGS", "Gsd"]
+
+GSD_RANGE_M = (0.005, 100_000.0)
+"""No image of the Earth's surface has other pixels: centimetres or degrees look like metres."""
 
 GSD_TAGS = ("ACUTANCE_GSD_ROW_M", "ACUTANCE_GSD_COL_M")
 """Metadata of a file that was written with a GSD: metres from row to row, column to column."""
@@ -60,16 +63,35 @@ class Gsd:
         Raises
         ------
         OptionError
-            If it is something else.
+            If it is something else, or no GSD of an image of the Earth's surface (`GSD_RANGE_M`).
         """
-        if gsd_m is None or isinstance(gsd_m, Gsd):
-            return gsd_m
+        if gsd_m is None:
+            return None
+        if isinstance(gsd_m, Gsd):
+            return gsd_m.required_in_range()
         if not isinstance(gsd_m, Real):
             raise OptionError(
                 f"gsd_m is {gsd_m!r}: give a positive number of metres, or Gsd(row_m, col_m) where "
                 "pixels are not square"
             )
-        return cls.square(gsd_m)
+        return cls.square(gsd_m).required_in_range()
+
+    def required_in_range(self) -> Gsd:
+        """The same, if an image of the Earth's surface can have it.
+
+        Raises
+        ------
+        OptionError
+            If it is smaller or larger than any (`GSD_RANGE_M`).
+        """
+        low, high = GSD_RANGE_M
+        for value in (self.row_m, self.col_m):
+            if not low <= value <= high:
+                raise OptionError(
+                    f"a GSD of {value:g} m was stated, and images of the Earth's surface have "
+                    f"{low:g} to {high:g} m: give metres (gsd_m, --gsd)"
+                )
+        return self
 
     def along_normal(self, normal_deg: float) -> float:
         """Metres per pixel for distances along an edge's normal; see `curves.gsd_along`.

@@ -16,6 +16,7 @@ from acutance.errors import ImageError, OptionError
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import AlongTrack, Image
 from acutance.raster.linearization import LinearizeLike
+from acutance.raster.nearest_name import nearest_name
 from acutance.raster.pixels import (
     NpyPixels,
     is_nan,
@@ -183,4 +184,6 @@ def _require_file(name: str) -> None:
         raise ImageError(f"{name} is empty (0 bytes): write or copy it again")
     if not is_file and not is_folder and not _GDAL_NAME.match(name):
         found = "its folder exists" if path.parent.is_dir() else "nor does its folder"
-        raise ImageError(f"{name} does not exist ({found}): check the path")
+        near = nearest_name(path)
+        advice = "check the path" if near is None else f"is {path.with_name(near)} meant?"
+        raise ImageError(f"{name} does not exist ({found}): {advice}")

@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError, RegionError
 from acutance.raster.coordinates import PIXELS
+from acutance.raster.document_faults import DocumentFault, document_faults
 from acutance.raster.geojson import declared_crs, load_geojson
 from acutance.raster.geolocation import LONLAT_CRS, require_known_crs
 from acutance.raster.site import find_site
@@ -241,7 +242,7 @@ class _FaultsError(ValueError):
 
 
 def _target(feature: Any, number: int, crs: str) -> SurveyedTarget:
-    label = f"feature {number}"
+    label = f"target {number}"
     if not isinstance(feature, Mapping) or feature.get("type") != "Feature":
         raise _FaultsError(label, ["it is no GeoJSON Feature"])
     given = feature.get("properties")
@@ -252,7 +253,7 @@ def _target(feature: Any, number: int, crs: str) -> SurveyedTarget:
     try:
         properties = _Properties.model_validate(known)
     except ValidationError as error:
-        faults = [_fault(one) for one in error.errors()]
+        faults = [_fault(one) for one in document_faults(error, known)]
         raise _FaultsError(label, [*faults, *_faults_beside(feature, known, crs)]) from None
     return _checked(feature, properties, label, title, crs)
 
@@ -275,13 +276,13 @@ def _of_other_kinds(names: Iterable[str], kind: str | None) -> list[str]:
     return [f"{one} is no property of the kind {kind!r}" for one in sorted(others & set(names))]
 
 
-def _fault(error: Any) -> str:
-    place = ".".join(map(str, error["loc"]))
-    if error["type"] == "extra_forbidden":
-        return f"there is no property {place!r}"
-    if error["type"] == "missing":
-        return f"the property {place!r} is missing: one of {', '.join(KINDS)}"
-    return f"{place} is {error['input']!r:.60}: {error['msg']}"
+def _fault(fault: DocumentFault) -> str:
+    if fault.kind == "extra_forbidden":
+        where = f" in {fault.within}" if fault.within else ""
+        return f"there is no property {fault.key!r}{where}"
+    if fault.kind == "missing":
+        return f"the property {fault.place!r} is missing: one of {', '.join(KINDS)}"
+    return f"{fault.place} is {fault.found!r:.60}: {fault.message}"
 
 
 def _checked(

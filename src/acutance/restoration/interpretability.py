@@ -9,6 +9,7 @@ from typing import Any
 
 from acutance.curves import Estimate
 from acutance.errors import OptionError
+from acutance.raster.gsd import GSD_RANGE_M
 from acutance.restoration.giqe import EQUATION_STD, GiqeInputs, giqe
 from acutance.restoration.named_records import (
     Measured,
@@ -22,11 +23,12 @@ from acutance.restoration.niirs_notes import ONE_DIRECTION, GiqeVersion, Note, e
 from acutance.targets import Record
 from acutance.targets.check import VerdictWord
 from acutance.targets.combine import combine
+from acutance.targets.own_mtf import require_own_mtf
 
 __all__ = ["Niirs", "niirs"]
 
 _POSSIBLE = {
-    "gsd_m": (1e-3, 1e5),
+    "gsd_m": GSD_RANGE_M,
     "rer_across": (1e-3, 2.0),
     "rer_along": (1e-3, 2.0),
     "snr": (1e-3, 1e9),
@@ -140,8 +142,8 @@ def niirs(
     Raises
     ------
     OptionError
-        If GSD, RER or SNR is missing or out of the range of any image, or measurements do not
-        belong together.
+        If GSD, RER or SNR is missing or out of the range of any image, measurements do not belong
+        together, or one is the ratio of two sensors' MTFs.
     """
     _require(version, elevation_deg, noise_gain)
     source = _Source() if measurement is None else _Source.of(measurement, names)
@@ -180,6 +182,8 @@ class _Source:
         """Of one measurement, or of several combined."""
         inputs = measured_inputs(given, names)
         records = named_records(inputs, names)
+        for name, one in records.items():
+            require_own_mtf(one, name)
         is_nameless = len(records) == 1 and names is None
         warnings = [
             Note(f"{one.verdict.word} measurement", words if is_nameless else f"{name}: {words}")

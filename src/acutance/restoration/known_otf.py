@@ -31,6 +31,7 @@ from acutance.targets.combine import combine
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import combine_curves
 from acutance.targets.combine.weighted_forms import CombinedOtf
+from acutance.targets.own_mtf import require_own_mtf
 from acutance.targets.slices import SLICE_DIRECTIONS_DEG, OtfSlices
 
 __all__ = ["KnownOtf", "Measured", "known_otf"]
@@ -147,11 +148,7 @@ def _combined(records: Mapping[str, Record], gsd_m: float | Gsd | None) -> Known
 
 def _measured(given: Any, name: str, record: Record, isotropic: bool) -> KnownOtf:
     """One measurement: of all directions, or of one where the others are stated to be equal."""
-    if record.kind == "biresolution" and not record.options.get("reference_given", True):
-        raise OptionError(
-            f"{name} is the ratio of two sensors' MTFs, since the finer one's own was not "
-            "given: measure it again with --reference"
-        )
+    require_own_mtf(record, name)
     one_direction = record.slices.normal_deg.size == 1
     if one_direction and not isotropic:
         raise OptionError(

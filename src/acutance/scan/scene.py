@@ -243,13 +243,14 @@ def _measurement(
     field = Field(box.as_tuple(), *fit.field[:4])
     sensor = behind_objects(fit.otf, options, gsd, fit.common_errors_px2)
     transfer = Otf2d(field.mean_of(sensor), None if gsd is None else (gsd.row_m, gsd.col_m))
+    info = image_info(image, box, gsd)
     return SceneMeasurement(
         kind="scene",
         method="population",
         transfer=transfer,
         snr=float(np.median(edges.snr[edges.used])),
-        checks=check_scene(edges, fit, field, transfer, (image, box), options.limits),
-        image=image_info(image, box, gsd),
+        checks=check_scene(edges, fit, field, transfer, (image, box), info, options.limits),
+        image=info,
         options=options.to_dict(),
         edges=known,
         field=field,

@@ -87,22 +87,27 @@ class PlanOptions:
             )
         if not self.rows or min(self.rows) < _MIN_ROWS or max(self.rows) > _MAX_ROWS:
             raise OptionError(
-                f"rows (--rows) are {self.rows}: a target needs at least {_MIN_ROWS} to be "
+                f"rows (--rows): {_listed(self.rows)}; a target needs at least {_MIN_ROWS} to be "
                 f"measured, and {_MAX_ROWS} are the most that are planned; beyond, deviations "
                 "fall with the square root of the rows"
             )
         if not self.angles_deg or not all(0 < angle <= 30 for angle in self.angles_deg):
             raise OptionError(
-                f"angles_deg (--angle) are {self.angles_deg}: an edge without tilt has no "
+                f"angles_deg (--angle): {_listed(self.angles_deg)}; an edge without tilt has no "
                 "sub-pixel phases, and more than 30 degrees is not planned; 5 to 10 are best"
             )
         if not self.widths_px or not all(0.5 <= width <= 20 for width in self.widths_px):
             raise OptionError(
-                f"widths_px (--width-px, --width-m) are {self.widths_px}: a pulse is 0.5 to 20 px "
-                "wide, 3 is best; check the width and the GSD"
+                f"widths_px (--width-px, --width-m): {_listed(self.widths_px)}; a pulse is 0.5 to "
+                "20 px wide, 3 is best; check the width and the GSD"
             )
         if self.accuracy is not None and not self.accuracy > 0:
             raise OptionError(f"accuracy is {self.accuracy:g}: it has to be above 0")
+
+
+def _listed(numbers: Sequence[float]) -> str:
+    """Numbers as they are typed."""
+    return ", ".join(f"{one:.4g}" for one in numbers) or "none"
 
 
 def plan_target(

@@ -17,9 +17,9 @@ which imports another:
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from acutance.names_on_use import names_on_use
 from acutance.targets.kinds import KINDS, Kind
 
 if TYPE_CHECKING:
@@ -65,8 +65,4 @@ _HOMES = {
     "Verdict": "check",
 }
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(importlib.import_module(f"acutance.targets.{_HOMES[name]}"), name)
-    raise AttributeError(f"module 'acutance.targets' has no attribute {name!r}")
+__getattr__ = names_on_use(__name__, _HOMES)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from acutance.errors import OptionError
 from acutance.targets.check_table import QUESTIONS
-from acutance.targets.question import Question, Sense, Severity
+from acutance.targets.question import Question, Sense, Severity, limit_range
 
 __all__ = [
     "MAX_RATIO",
@@ -261,7 +261,9 @@ class HasChecks:
 
 
 def require_limits(limits: Any, known: Sequence[str], options: str) -> None:
-    """Refuse limits that no check has, and those that are no numbers.
+    """Refuse limits that no check has, and those that are no numbers or mean nothing.
+
+    An infinite limit is one that all answers keep, or none.
 
     Parameters
     ----------
@@ -289,6 +291,15 @@ def require_limits(limits: Any, known: Sequence[str], options: str) -> None:
             )
         if not isinstance(limit, Real) or isinstance(limit, bool) or math.isnan(limit):
             raise OptionError(f"{options}: the limit of {name} has to be a number, found {limit!r}")
+        low, high = limit_range(name)
+        number = float(limit)
+        if math.isfinite(number) and not low <= number <= high:
+            wanted = f"from {low:g} to {high:g}" if math.isfinite(high) else f"{low:g} or more"
+            raise OptionError(
+                f"{options}: the limit of {name} is {number:g}, and what is compared with it is "
+                f"{wanted} (limits, --limit): give such a number; inf or -inf for a check that "
+                "always or never passes"
+            )
 
 
 class Checks(Sequence[Check]):

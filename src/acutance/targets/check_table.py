@@ -28,6 +28,10 @@ _ANY_TARGET = {
         "they are left out; declare the value (nodata, --nodata), or state that every value is "
         "data (nan)", severity="note",
     ),
+    "stated_gsd": Question(
+        "By which factor does the stated GSD differ from the image's own?", "<=", 3.0,
+        "numbers in metres follow the stated one; give metres, not centimetres (gsd_m, --gsd)",
+    ),
     "correlated_noise": Question(
         "How much do neighbouring pixels' noise correlate?", "<=", 0.1,
         "texture, resampling or structure, which the intervals allow for", severity="note",

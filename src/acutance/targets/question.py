@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["PLACES", "Question", "Sense", "Severity"]
+__all__ = ["PLACES", "Question", "Sense", "Severity", "limit_range"]
 
 Sense = Literal[">=", "<="]
 Severity = Literal["note", "caution", "fail"]
@@ -45,3 +46,29 @@ class Question:
     source: str = ""
     severity: Severity = "caution"
     caution: float | None = None
+
+
+_SHARES = frozenset((
+    "saturation", "outliers", "full_scale", "rim", "left_out", "coherence", "agreement",
+    "worst_member", "plain_sensor", "trusted_share", "ideal_share", "strange_share",
+))  # fmt: skip
+"""Questions whose answers are shares or probabilities."""
+_CORRELATIONS = frozenset((
+    "correlated_noise", "correlation", "residual_correlation", "mirrored_ground"
+))  # fmt: skip
+
+
+def limit_range(name: str) -> tuple[float, float]:
+    """The least and the greatest limit of a question that means something.
+
+    Beyond it every answer would keep the limit, or none would.
+
+    Parameters
+    ----------
+    name : str
+    """
+    if name in _CORRELATIONS:
+        return -1.0, 1.0
+    if name in _SHARES:
+        return 0.0, 1.0
+    return 0.0, 360.0 if name.endswith("_deg") else math.inf

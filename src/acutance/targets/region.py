@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from acutance.curves.grid import Floats
 from acutance.errors import NoDataError, RegionError
 from acutance.raster import Box, Fill, Gsd, Image, Region, find_fill
-from acutance.targets.check import Check, Limits, answer
+from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.record import ImageInfo
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "image_info",
     "read_data",
     "read_region",
+    "stated_gsd",
     "undeclared_fill",
 ]
 
@@ -173,6 +174,31 @@ def undeclared_fill(fills: Sequence[Fill | None], limits: Limits) -> Check:
             "which ends more sharply than any sensor's image"
         )
     return answer("undeclared_fill", count, found, limits)
+
+
+def stated_gsd(info: ImageInfo, limits: Limits) -> Check:
+    """The check that names a stated GSD far from the image's own.
+
+    Parameters
+    ----------
+    info : ImageInfo
+    limits : mapping of str to float
+        Limits the caller changed.
+    """
+    stated, own = info.pixel_gsd_m, info.file_gsd_m
+    if stated is None or own is None:
+        return answer("stated_gsd", 1.0, "no GSD is stated that the image has otherwise", limits)
+    factor = max(max(one / other, other / one) for one, other in zip(stated, own, strict=True))
+    found = (
+        f"the stated GSD is {_in_metres(stated)}, the image's own {_in_metres(own)}: another by a "
+        f"factor of {factor:.3g}"
+    )
+    return answer("stated_gsd", min(factor, MAX_RATIO), found, limits)
+
+
+def _in_metres(sides_m: tuple[float, float]) -> str:
+    row_m, col_m = (f"{side:.4g}" for side in sides_m)
+    return f"{row_m} m" if row_m == col_m else f"{row_m} m between rows, {col_m} m between columns"
 
 
 def chosen_region(roi: Any) -> Region | Box:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 
 import pytest
 
@@ -405,11 +405,33 @@ def test_a_time_without_a_zone_is_named(product):
     assert found.notes == ("scene.tif: tag ACQUISITION_DATETIME names no time zone: taken as UTC",)
 
 
-@pytest.mark.parametrize("text", ["20021216151629", "yesterday", "2026-01-05", "9999-99-99 1:2:3"])
+@pytest.mark.parametrize("text", ["20021216151629", "yesterday", "2026-13-05", "9999-99-99 1:2:3"])
 def test_what_is_no_time_of_acquisition(product, text):
     found = product("scene.tif", {}, tags={"NITF_IDATIM": text})
     assert found.acquired is None
     assert f"tag NITF_IDATIM, {text}, is" in found.notes[0]
+
+
+@pytest.mark.parametrize("text", ["2026-01-05", "20260105", "2026:01:05", "2026/01/05"])
+def test_a_day_without_a_time_is_a_date(product, text):
+    found = product("scene.tif", {}, tags={"ACQUISITION_DATE": text})
+    assert found.acquired.value == date(2026, 1, 5)
+    assert type(found.acquired.value) is date
+    assert found.notes == ("scene.tif: tag ACQUISITION_DATE names a day and no time",)
+    assert found.to_dict()["acquired"]["value"] == "2026-01-05"
+
+
+def test_the_time_of_the_same_day_goes_before_the_day(product):
+    def dated(when):
+        item = {"scene.json": stac(datetime=when)}
+        return product("scene.tif", item, tags={"ACQUISITION_DATETIME": "2026-01-05T10:00:00Z"})
+
+    same = dated("2026-01-05")
+    assert same.acquired.value == datetime(2026, 1, 5, 10, tzinfo=UTC)
+    assert same.conflicts == ()
+    other = dated("2026-01-06")
+    assert other.acquired.value == date(2026, 1, 6)
+    assert other.conflicts[0].startswith("acquired: 2026-01-06")
 
 
 def test_gml_of_a_data_strip(product):

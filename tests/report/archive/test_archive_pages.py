@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import re
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -14,6 +15,7 @@ from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
 from acutance.archive.trends import Event, Series, fit_trend
 from acutance.errors import OptionError
 from acutance.report.archive import sensor_page, trend_figure, trend_page
+from acutance.report.archive.trend_page import trend_verdict
 from acutance.report.archive.wording import signed, with_minus
 from acutance.targets import Rejected
 
@@ -87,6 +89,14 @@ def test_the_page_of_a_trend_begins_with_what_has_changed():
     still = words_of(trend_page(fit_trend(series_of(step=0.0, rate=0.0))))
     assert "no change is found" in still
     assert '<div class="verdict good">' in still
+
+
+def test_a_level_without_its_season_says_so():
+    series = series_of(rate=0.0, step=0.0)
+    seasonal = replace(series, value=series.value + 0.02 * np.cos(2 * np.pi * series.when))
+    details = trend_verdict(fit_trend(seasonal)).details
+    assert any("of which the level is free" in text for _, text in details)
+    assert all("season" not in name for name, _ in trend_verdict(fit_trend(series)).details)
 
 
 def test_a_bad_day_is_marked_and_does_not_flatten_the_drawing():

@@ -92,7 +92,9 @@ def _measured(document: Mapping[str, Any], stated: Stated) -> Entry:
     target = stated.target if stated.target is not None else document.get("region") or None
     if isinstance(target, str):
         target = TargetEntry(name=target, kind=record.kind)
-    return Entry(record=record, image=image, target=target, band=stated.band)
+    # Documents of several bands name that of each.
+    band = stated.band if stated.band is not None else document.get("band")
+    return Entry(record=record, image=image, target=target, band=band)
 
 
 def _rejected(document: Mapping[str, Any], stated: Stated) -> Entry:
@@ -107,4 +109,5 @@ def _rejected(document: Mapping[str, Any], stated: Stated) -> Entry:
     target = stated.target if stated.target is not None else region
     if isinstance(target, str):
         target = TargetEntry(name=target, kind="unknown")
-    return Entry(rejected=rejected, image=image, target=target, band=stated.band)
+    band = stated.band if stated.band is not None else rejected.values.get("band")
+    return Entry(rejected=rejected, image=image, target=target, band=band)

@@ -11,11 +11,13 @@ import orjson
 
 from acutance.archive.adding import add_entries
 from acutance.archive.connection import Database
-from acutance.archive.entry import Entry
+from acutance.archive.contradictions import contradictions
+from acutance.archive.entry import Entry, ImageEntry
 from acutance.archive.exchange.csv_tables import read_csv
 from acutance.archive.exchange.documents import Stated, entries_of
 from acutance.archive.exchange.jsonl import read_jsonl
 from acutance.archive.exchange.parquet import read_parquet
+from acutance.archive.identity import key_of
 from acutance.errors import OptionError
 
 __all__ = ["Imported", "import_files", "refused_files"]
@@ -36,7 +38,8 @@ class Imported:
     new : int
         Entries that were not there.
     refused : mapping of str to str
-        By file (and line) why it could not be read.
+        By file (and line) why it could not be read, or what is stated of it and is not what the
+        archive has.
     """
 
     read: int
@@ -69,16 +72,22 @@ def import_files(
         If the archive cannot keep them.
     """
     refused: dict[str, str] = {}
+    described: dict[str, tuple[str, ImageEntry]] = {}
     count = 0
 
     def entries() -> Iterator[Entry]:
         nonlocal count
         for path in paths:
-            for entry in _readable(Path(path), stated, refused):
+            for place, entry in _readable(Path(path), stated, refused):
                 count += 1
+                if entry.key is None:
+                    described[key_of(entry)] = place, entry.image
                 yield entry
 
     new = add_entries(database, entries(), run, progress)
+    images = {key: image for key, (_, image) in described.items()}
+    for key, reason in contradictions(database, images).items():
+        refused[described[key][0]] = reason
     return Imported(count, new, refused)
 
 
@@ -97,14 +106,14 @@ def refused_files(paths: Iterable[str | os.PathLike[str]], stated: Stated) -> di
     return refused
 
 
-def _readable(path: Path, stated: Stated, refused: dict[str, str]) -> Iterator[Entry]:
-    """Entries of a path; what cannot be read is put down instead."""
+def _readable(path: Path, stated: Stated, refused: dict[str, str]) -> Iterator[tuple[str, Entry]]:
+    """Places and entries of a path; what cannot be read is put down instead."""
     where = str(path)
     try:
         for file in _files(path):
             where = str(file)
             for place, text in _reader(file)(file):
-                yield from _entries(place, text, stated, refused)
+                yield from ((place, one) for one in _entries(place, text, stated, refused))
     except (OptionError, OSError, UnicodeDecodeError) as error:
         refused[where] = _reason(error, where)
 

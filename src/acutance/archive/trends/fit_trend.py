@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from acutance.archive.counted import counted
 from acutance.archive.trends.design import Design
 from acutance.archive.trends.gsd import gsd_events
 from acutance.archive.trends.images import ImageMeans, image_means, joined_images
@@ -60,9 +61,10 @@ def fit_trend(series: Series, events: Sequence[Event] = ()) -> Trend:
 def _require_time(images: ImageMeans, series: Series) -> None:
     days = _YEAR_DAYS * float(images.when[-1] - images.when[0])
     if images.size < MIN_IMAGES:
+        are = "has a date" if images.size == 1 else "have dates"
         raise OptionError(
-            f"{series.title}: {images.size} images have dates, a trend needs {MIN_IMAGES}: select "
-            "more, or take their mean"
+            f"{series.title}: {counted(images.size, 'image')} {are}, a trend needs {MIN_IMAGES}: "
+            "select more (verdict, since, until), or take their mean"
         )
     if days < _MIN_DAYS:
         raise OptionError(

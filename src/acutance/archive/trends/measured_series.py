@@ -117,6 +117,11 @@ def _require_metric(metric: str) -> None:
         raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRICS)}")
 
 
+def _band_words(band: str | None) -> str | None:
+    """The name of a band; of one that is known by its number alone, that it is a band."""
+    return f"band {band}" if band is not None and band.isdecimal() else band
+
+
 def _words(rows: Columns, name: str) -> list[str]:
     return sorted({"unknown" if one is None else str(one) for one in rows[name].tolist()})
 
@@ -126,12 +131,13 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | Non
     std, systematic = random_and_systematic(rows, metric, mask)
     image = rows["image_id"][mask]
     names = dict(zip(image.tolist(), rows["image"][mask].tolist(), strict=True))
-    *title, orientation = (rows[name][mask][0] for name in _ONE_OF)
+    sensor, band, level, orientation = (rows[name][mask][0] for name in _ONE_OF)
+    title = (sensor, _band_words(band), level, size, orientation)
     return Series(
         metric=metric, when=years_of(rows["acquired"][mask]), value=value, std=std,
         systematic_std=systematic, image=image, gsd_m=rows["gsd_m"][mask],
         image_names={number: name for number, name in names.items() if name is not None},
-        name=", ".join(str(part) for part in (*title, size, orientation) if part is not None),
+        name=", ".join(str(part) for part in title if part is not None),
         notes=(*_unnamed(rows, mask), *_mixed(rows, mask)),
     )  # fmt: skip
 

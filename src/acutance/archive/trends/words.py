@@ -11,7 +11,7 @@ from acutance.curves import Estimate
 if TYPE_CHECKING:
     from acutance.archive.trends.trend import Trend
 
-__all__ = ["percent", "signed", "trend_text"]
+__all__ = ["percent", "season_words", "signed", "trend_text"]
 
 _SURE = 0.95
 _WORTH = 0.1
@@ -36,7 +36,7 @@ def trend_text(trend: Trend) -> str:
         _drift_words(trend),
         *_event_words(trend),
         *_step_words(trend),
-        *_season_words(trend),
+        season_words(trend),
         f"Images scatter by {trend.scatter.value:.2g} "
         f"({100 * trend.scatter.value / abs(trend.level.value or 1.0):.1f} %).",
         *_bad_day_words(trend),
@@ -78,15 +78,16 @@ def _event_words(trend: Trend) -> list[str]:
     return [f"{event.name} ({event.date}): {signed(event.size)}." for event in trend.events]
 
 
-def _season_words(trend: Trend) -> list[str]:
+def season_words(trend: Trend) -> str:
+    """That the level is without the season, in a sentence; "" where there hardly is one."""
     if trend.season_probability < 0.5:
-        return []
+        return ""
     amplitude = 100 * trend.season_amplitude / abs(trend.level.value or 1.0)
     sure = "" if trend.season_probability > _SURE else f" ({trend.season_probability:.2f} sure)"
-    return [
+    return (
         f"A season of {amplitude.value:.1f} ± {amplitude.std:.1f} %{sure}, of which the level is "
         "free."
-    ]
+    )
 
 
 def _bad_day_words(trend: Trend) -> list[str]:

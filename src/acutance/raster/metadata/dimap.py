@@ -5,7 +5,7 @@ from __future__ import annotations
 from xml.etree.ElementTree import Element
 
 from acutance.raster.metadata.findings import Findings, find, lon_lat, number, word
-from acutance.raster.metadata.times import utc_time
+from acutance.raster.metadata.times import time_or_day
 from acutance.raster.metadata.xml_document import text_at
 
 __all__ = ["image_names", "read_dimap"]
@@ -26,7 +26,7 @@ def read_dimap(root: Element, source: str) -> Findings:
     sun, angles = "Solar_Incidences/", "Acquisition_Angles/"
     time, place = text_at(centre, "TIME"), "TIME (Center)"
     if time is None:
-        time, place = _strip_time(strip), "IMAGING_DATE, IMAGING_TIME"
+        time, place = _strip_time(strip)
     gsd, gsd_place = _gsd(root, centre)
     zenith = number(text_at(centre, angles + "INCIDENCE_ANGLE"))
     return find(
@@ -37,7 +37,7 @@ def read_dimap(root: Element, source: str) -> Findings:
                 "MISSION, MISSION_INDEX",
             ),
             "level": (text_at(root, ".//Product_Settings/PROCESSING_LEVEL"), "PROCESSING_LEVEL"),
-            "acquired": (utc_time(time), place),
+            "acquired": (time_or_day(time), place),
             "bands": (_bands(root), "BAND_ID"),
             "gsd_m": (gsd, gsd_place),
             "view_zenith_deg": (zenith, "INCIDENCE_ANGLE"),
@@ -66,8 +66,12 @@ def _centre(root: Element) -> Element | None:
     return None
 
 
-def _strip_time(strip: Element | None) -> str | None:
-    return word(text_at(strip, "IMAGING_DATE"), text_at(strip, "IMAGING_TIME"), joined="T")
+def _strip_time(strip: Element | None) -> tuple[str | None, str]:
+    """Of a strip without a time the day."""
+    day, time = text_at(strip, "IMAGING_DATE"), text_at(strip, "IMAGING_TIME")
+    if time is None:
+        return day, "IMAGING_DATE"
+    return word(day, time, joined="T"), "IMAGING_DATE, IMAGING_TIME"
 
 
 def _notes(root: Element, centre: Element | None, source: str) -> tuple[str, ...]:

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
+from acutance.raster.gsd import GSD_RANGE_M
+
 __all__ = ["ANGLES", "FIELDS", "Findings", "Stated", "find", "lon_lat", "number", "word"]
 
 Value = TypeVar("Value", covariant=True)
@@ -24,8 +26,6 @@ ANGLES = {
     "sun_azimuth_deg": (-180.0, 360.0),
 }
 """Angles of view and sun, with their least and greatest degrees."""
-_GSD_M = (0.005, 100_000.0)
-"""No image of the Earth's surface has smaller pixels; a GSD in degrees looks like one."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ def find(
 
 def _is_possible(name: str, value: Any) -> bool:
     if name == "gsd_m":
-        return all(_GSD_M[0] <= one <= _GSD_M[1] for one in value)
+        return all(GSD_RANGE_M[0] <= one <= GSD_RANGE_M[1] for one in value)
     low, high = ANGLES.get(name, (None, None))
     return low is None or high is None or low <= value <= high
 

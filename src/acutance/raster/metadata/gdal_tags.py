@@ -8,7 +8,7 @@ from typing import Any
 
 from acutance.raster.metadata.findings import Findings, find, number, word
 from acutance.raster.metadata.gml import read_gml
-from acutance.raster.metadata.times import has_zone, utc_time
+from acutance.raster.metadata.times import has_zone, is_day, time_or_day
 
 __all__ = ["FileTags", "file_tags", "read_tags"]
 
@@ -17,7 +17,7 @@ _NAMES = {
     "level": ("PROCESSING_LEVEL", "PRODUCT_LEVEL"),
     "acquired": (
         "ACQUISITIONDATETIME", "ACQUISITION_DATETIME", "ACQUISITION_TIME", "SENSING_TIME",
-        "NITF_IDATIM",
+        "NITF_IDATIM", "ACQUISITION_DATE", "DATE_ACQUIRED", "SENSING_DATE",
     ),
     "view_zenith_deg": ("VIEW_ZENITH",),
     "view_azimuth_deg": ("VIEW_AZIMUTH",),
@@ -98,7 +98,7 @@ def read_tags(found: FileTags, source: str) -> Findings:
 
 def _value(name: str, text: str) -> Any:
     if name == "acquired":
-        return None if text == _NITF_DEFAULT else utc_time(text)
+        return None if text == _NITF_DEFAULT else time_or_day(text)
     return number(text) if name.endswith("_deg") else text
 
 
@@ -107,8 +107,10 @@ def _notes(tags: Mapping[str, str], source: str, said: Mapping[str, tuple[Any, s
     time, place = said.get("acquired", (None, ""))
     name = place.removeprefix("tag ")
     if name and time is None:
-        why = "GDAL's default" if tags[name] == _NITF_DEFAULT else "no time"
+        why = "GDAL's default" if tags[name] == _NITF_DEFAULT else "no date"
         notes.append(f"{source}: tag {name}, {tags[name][:40]}, is {why}: not taken")
+    elif name and is_day(time):
+        notes.append(f"{source}: tag {name} names a day and no time")
     elif name and name not in _UTC and not has_zone(tags[name]):
         notes.append(f"{source}: tag {name} names no time zone: taken as UTC")
     notes.extend(

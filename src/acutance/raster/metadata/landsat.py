@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from datetime import date, datetime
 from typing import Any
 from xml.etree.ElementTree import Element
 
 from acutance.raster.metadata.findings import Findings, find, lon_lat, number, word
-from acutance.raster.metadata.times import utc_time
+from acutance.raster.metadata.times import time_or_day, utc_time
 
 __all__ = ["ROOTS", "groups_of_xml", "read_mtl"]
 
@@ -32,14 +33,13 @@ def read_mtl(document: Mapping[str, Any], source: str, image: str) -> Findings:
     """
     items = _flat(next((document[name] for name in ROOTS if name in document), document))
     band = _band(items, image)
-    day, time = items.get("DATE_ACQUIRED"), items.get("SCENE_CENTER_TIME")
     gsd, gsd_place = _gsd(items, band)
     return find(
         source,
         {
             "sensor": (word(items.get("SPACECRAFT_ID")), "SPACECRAFT_ID"),
             "level": _level(items),
-            "acquired": (utc_time(word(day, time, joined="T")), "DATE_ACQUIRED, SCENE_CENTER_TIME"),
+            "acquired": _acquired(items),
             "bands": (None if band is None else (f"B{band}",), f"FILE_NAME_BAND_{band}"),
             "gsd_m": (gsd, gsd_place),
             "sun_elevation_deg": (number(items.get("SUN_ELEVATION")), "SUN_ELEVATION"),
@@ -66,6 +66,15 @@ def _band(items: Mapping[str, Any], image: str) -> str | None:
         if found and str(value).rpartition(".")[0].upper() == stem:
             return found[1]
     return None
+
+
+def _acquired(items: Mapping[str, Any]) -> tuple[datetime | date | None, str]:
+    """The time of the scene's middle; the day where that is missing."""
+    day, time = items.get("DATE_ACQUIRED"), items.get("SCENE_CENTER_TIME")
+    found = utc_time(word(day, time, joined="T"))
+    if found is None:
+        return time_or_day(day), "DATE_ACQUIRED"
+    return found, "DATE_ACQUIRED, SCENE_CENTER_TIME"
 
 
 def _level(items: Mapping[str, Any]) -> tuple[str | None, str]:

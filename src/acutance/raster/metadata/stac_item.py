@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from acutance.raster.metadata.findings import Findings, find, lon_lat, number, word
-from acutance.raster.metadata.times import utc_time
+from acutance.raster.metadata.times import time_or_day
 
 __all__ = ["is_stac_item", "names_image", "read_stac_item"]
 
@@ -36,7 +36,7 @@ def read_stac_item(document: Mapping[str, Any], source: str, image: str) -> Find
     properties, asset = _mapping(document.get("properties")), _asset(document, image)
     own = {**properties, **(asset or {})}
     time, place = own.get("datetime"), "datetime"
-    if utc_time(time) is None:
+    if time_or_day(time) is None:
         time, place = own.get("start_datetime"), "start_datetime"
     notes = () if asset is not None else (f"{source}: none of its assets is {image}",)
     gsd = number(own.get("gsd")) if asset is not None else None
@@ -45,7 +45,7 @@ def read_stac_item(document: Mapping[str, Any], source: str, image: str) -> Find
         {
             "sensor": (word(own.get("platform")), "platform"),
             "level": (word(own.get("processing:level")), "processing:level"),
-            "acquired": (utc_time(time), place),
+            "acquired": (time_or_day(time), place),
             "bands": (_bands(asset), "bands"),
             "gsd_m": (None if gsd is None else (gsd, gsd), "gsd"),
             "view_zenith_deg": (number(own.get("view:incidence_angle")), "view:incidence_angle"),

@@ -6,12 +6,13 @@ import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import date, datetime
 from typing import Any
 
 from acutance.curves.short_repr import ShortRepr
 from acutance.raster.metadata.findings import FIELDS, Findings, Stated
 from acutance.raster.metadata.sun import sun_angles
+from acutance.raster.metadata.times import is_day
 
 __all__ = ["ImageStatement", "state"]
 
@@ -34,8 +35,8 @@ class ImageStatement(ShortRepr):
     ----------
     path : str
     sensor, level : Stated of str, or None
-    acquired : Stated of datetime, or None
-        In UTC.
+    acquired : Stated of datetime or date, or None
+        In UTC; a date where no time is stated.
     bands : Stated of tuple of str, or None
         Names in the order of the file.
     gsd_m : Stated of (row, col), or None
@@ -52,7 +53,7 @@ class ImageStatement(ShortRepr):
     path: str
     sensor: Stated[str] | None = None
     level: Stated[str] | None = None
-    acquired: Stated[datetime] | None = None
+    acquired: Stated[datetime | date] | None = None
     bands: Stated[tuple[str, ...]] | None = None
     gsd_m: Stated[tuple[float, float]] | None = None
     view_zenith_deg: Stated[float] | None = None
@@ -115,12 +116,21 @@ def state(
         said = [one.values[name] for one in sources if name in one.values]
         if not said:
             continue
-        values[name] = said[0]
+        values[name] = _timed(said) if name == "acquired" else said[0]
         conflicts.extend(_contradictions(name, said))
     centre = place or next((one.centre for one in sources if one.centre is not None), None)
     notes = tuple(dict.fromkeys(note for one in sources for note in one.notes))
     conflicts.extend(_sun_contradiction(values, centre))
     return ImageStatement(path, **values, conflicts=tuple(conflicts), notes=notes)
+
+
+def _timed(said: Sequence[Stated[Any]]) -> Stated[Any]:
+    """The first word on the date; where it is a day, the first time of that day."""
+    first = said[0]
+    if not is_day(first.value):
+        return first
+    times = (one for one in said if not is_day(one.value))
+    return next((one for one in times if _same_time(first.value, one.value)), first)
 
 
 def _contradictions(name: str, said: Sequence[Stated[Any]]) -> list[str]:
@@ -138,6 +148,8 @@ def _sun_contradiction(
 ) -> list[str]:
     """Whether the sun stood where it is stated, at the stated time and place."""
     if centre is None or not {"acquired", "sun_elevation_deg"} <= set(values):
+        return []
+    if is_day(values["acquired"].value):
         return []
     stated = values["sun_elevation_deg"]
     elevation, azimuth = sun_angles(values["acquired"].value, *centre)
@@ -169,7 +181,9 @@ def _same_level(one: str, other: str) -> bool:
     return _letters(one).replace("level", "l") == _letters(other).replace("level", "l")
 
 
-def _same_time(one: datetime, other: datetime) -> bool:
+def _same_time(one: datetime | date, other: datetime | date) -> bool:
+    if not (isinstance(one, datetime) and isinstance(other, datetime)):
+        return f"{one:%Y-%m-%d}" == f"{other:%Y-%m-%d}"
     return abs((one - other).total_seconds()) <= _TIME_S
 
 
@@ -198,6 +212,8 @@ def _plain(value: Any) -> Any:
     """A value as JSON has it, with no more digits than it deserves."""
     if isinstance(value, datetime):
         return value.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    if isinstance(value, date):
+        return value.isoformat()
     if isinstance(value, float):
         return round(value, 6)
     return [_plain(one) for one in value] if isinstance(value, tuple) else value

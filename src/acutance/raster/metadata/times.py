@@ -1,13 +1,14 @@
-"""Times as documents write them, in UTC."""
+"""Times and days as documents write them, in UTC."""
 
 from __future__ import annotations
 
 import re
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 
-__all__ = ["has_zone", "utc_time"]
+__all__ = ["has_zone", "is_day", "time_or_day", "utc_time"]
 
 _COMPACT = re.compile(r"^(\d{4})(\d\d)(\d\d)[T ]?(\d\d)(\d\d)(\d\d)(?:\.(\d+))?(Z?)$")
+_DAY = re.compile(r"^(\d{4})([-:/]?)(\d\d)\2(\d\d)Z?$")
 _COLONS = re.compile(r"^(\d{4}):(\d\d):(\d\d) ")
 _YEARS = (1957, 2200)
 """Since there are satellites."""
@@ -43,6 +44,37 @@ def utc_time(text: object) -> datetime | None:
     except (ValueError, OverflowError):
         return None
     return found if _YEARS[0] <= found.year < _YEARS[1] else None
+
+
+def time_or_day(text: object) -> datetime | date | None:
+    """The time of a text, or its day where no time stands beside it.
+
+    Parameters
+    ----------
+    text : object
+        As of `utc_time`, or "2020-12-21", "20201221", "2020:12:21", "2020/12/21".
+
+    Returns
+    -------
+    datetime, date or None
+        A plain date is known to the day; None if it is something else.
+    """
+    if isinstance(text, date) and not isinstance(text, datetime):
+        return text
+    found = utc_time(text)
+    written = _DAY.match(text.strip()) if found is None and isinstance(text, str) else None
+    if written is None:
+        return found
+    try:
+        day = date(int(written[1]), int(written[3]), int(written[4]))
+    except ValueError:
+        return None
+    return day if _YEARS[0] <= day.year < _YEARS[1] else None
+
+
+def is_day(when: datetime | date) -> bool:
+    """Whether a moment is known to the day only."""
+    return not isinstance(when, datetime)
 
 
 def has_zone(text: object) -> bool:

@@ -75,7 +75,7 @@ def specification_table(check: SpecificationCheck) -> Table:
             answer.requirement.name or answer.requirement.sentence, answer.what,
             answer.requirement.sentence, answer.word,
             MISSING if answer.probability is None else f"{answer.probability:.3f}",
-            MISSING if mean is None else word_estimate(mean).value_and_std,
+            MISSING if mean is None else word_estimate(mean).value,
             MISSING if mean is None else interval_words(mean),
             str(answer.images), MISSING if answer.more_images is None else str(answer.more_images),
         ))  # fmt: skip
@@ -83,8 +83,9 @@ def specification_table(check: SpecificationCheck) -> Table:
         ("Requirement", "Of", "Limit", "Answer", "Probability", "Mean", "95 %", "Images", "More"),
         tuple(rows), "lllllrrrr", alerts=frozenset(alerts), title="Specification",
         notes=(
-            "Probability: that the sensor's mean meets the limit. More: images that would tell, if "
-            "the mean is what it is now.",
+            "Probability: that the sensor's mean over the year (without the season) meets the "
+            "limit; 95 %: the interval of the same density. More: images that would tell, if the "
+            "mean is what it is now.",
         ),
     )  # fmt: skip
 
@@ -102,19 +103,14 @@ def means_tables(rows: Measurements) -> list[Table]:
 
 def _means_table(means: MeasurementTable, direction: str, title: str) -> Table:
     """The means of one direction; groups that were not seen in it are left out."""
-    chosen = [at for at, (own, _) in enumerate(means.columns) if own == direction]
-    first = len(means.header) - len(means.columns)
-    rows = tuple(
-        (*text[:first], *(text[first + at] for at in chosen))
-        for row, text in zip(means.rows, means.texts(), strict=True)
-        if any(own == direction for own, _ in row.cells)
-    )
-    labels = (METRIC_WORDS[means.columns[at][1]].label_with_unit for at in chosen)
-    names = (name[:1].upper() + name[1:] for name in means.header[:first])
-    sides = "l" * len(means.by) + "r" * (first - len(means.by) + len(chosen))
+    own = means.of_direction(direction)
+    first = len(own.header) - len(own.columns)
+    labels = (METRIC_WORDS[metric].label_with_unit for _, metric in own.columns)
+    names = (name[:1].upper() + name[1:] for name in own.header[:first])
+    sides = "l" * len(own.by) + "r" * (len(own.header) - len(own.by))
     return Table(
-        (*names, *labels), rows, sides, title=f"{title}, {direction}",
-        notes=("Means over images; their deviation holds the scatter between images.",),
+        (*names, *labels), tuple(own.texts()), sides, title=f"{title}, {direction}",
+        notes=own.notes,
     )  # fmt: skip
 
 

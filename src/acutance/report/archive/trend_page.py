@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from acutance.archive.trends.series import date_of
+from acutance.archive.trends.words import season_words
 from acutance.curves import Estimate
 from acutance.report.archive.trend_figure import are_bad, trend_figure
 from acutance.report.archive.wording import (
@@ -99,7 +100,8 @@ def trend_verdict(trend: Trend, limit: float | None = None, label: str = "") -> 
         words = [f"no change is found: {percent(rate)} a year"]
     level = f"{METRIC_WORDS[trend.metric].label} {_value(trend.level)} on {trend.last}"
     word: Literal["good", "doubtful"] = "doubtful" if changed else "good"
-    details = [("steps", text) for text in _open_steps(trend)]
+    details = [("season", text) for text in (with_minus(season_words(trend)),) if text]
+    details += [("steps", text) for text in _open_steps(trend)]
     if limit is not None:
         details.append(("limit", f"{trend.crosses(limit).summary()}."))
     return Verdict(word, f"{label}{level}; {', '.join(words)}.", tuple(details))

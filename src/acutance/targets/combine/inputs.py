@@ -16,6 +16,7 @@ from acutance.errors import OptionError
 from acutance.geometry.angles import wrap_axis
 from acutance.raster.image import AlongTrack
 from acutance.targets.measurement import Measurement
+from acutance.targets.own_mtf import require_own_mtf
 from acutance.targets.record import SCHEMA, ImageInfo, Record
 from acutance.targets.slices import OtfSlices
 from acutance.targets.target_result import TargetResult
@@ -206,11 +207,7 @@ def _input(record: Record, origin: str, name: str | None) -> MeasuredInput:
             f"{origin} is a combination already: combine the measurements it was made of, so "
             "that none counts twice"
         )
-    if record.kind == "biresolution" and not record.options.get("reference_given", True):
-        raise OptionError(
-            f"{origin} is the ratio MTF_low / MTF_high, since the reference's own MTF was not "
-            "given: measure it again with --reference"
-        )
+    require_own_mtf(record, origin)
     try:
         slices, known = _slices(record)
     except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:

@@ -21,7 +21,8 @@ from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit
 from acutance.targets.pair.spectral_ratio import PairSpectra
 from acutance.targets.processing_checks import PROCESSING_CHECKS, image_processing_checks
-from acutance.targets.region import undeclared_fill
+from acutance.targets.record import ImageInfo
+from acutance.targets.region import stated_gsd, undeclared_fill
 
 __all__ = ["PAIR_CHECKS", "check_pair"]
 
@@ -39,6 +40,7 @@ PAIR_CHECKS = (
     "inflation",
     "saturation",
     "undeclared_fill",
+    "stated_gsd",
     *PROCESSING_CHECKS,
     "iteration_change",
 )
@@ -58,6 +60,7 @@ def check_pair(
     clipped: float,
     fills: Sequence[Fill | None],
     images: Sequence[tuple[Image, Box]],
+    info: ImageInfo,
     inverted: bool,
 ) -> tuple[Check, ...]:
     """All checks of a pair.
@@ -81,6 +84,8 @@ def check_pair(
         Undeclared fill of both images, tile by tile.
     images : sequence of (Image, Box)
         Both images, and which part of them is used.
+    info : ImageInfo
+        Of the low image.
     inverted : bool
         Whether the images match better with opposite sign.
     """
@@ -96,6 +101,7 @@ def check_pair(
             "saturation", clipped, f"{100 * clipped:.2f} % of an image's pixels are clipped", limits
         ),
         undeclared_fill(fills, limits),
+        stated_gsd(info, limits),
         *image_processing_checks(images, limits),
         _iteration(gaussian, stop_change, limits),
     )

@@ -121,7 +121,7 @@ def measure_biresolution(
         checks=check_pair(
             tiles.grid, gaussian, pixel_fit, model, spectra, local, chosen.limits,
             stop_change=chosen.stop_change, clipped=_clipped(tiles), fills=tiles.fills(),
-            images=tiles.parts, inverted=match.inverted,
+            images=tiles.parts, info=info, inverted=match.inverted,
         ),
         image=info,
         options={**chosen.to_dict(), "ratio": ratio, "reference_given": reference is not None},

@@ -17,6 +17,7 @@ from acutance.geometry.angles import axis_difference, wrap_axis
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.raster import Gsd
 from acutance.targets.measurement import Measurement
+from acutance.targets.own_mtf import require_own_mtf
 from acutance.targets.pair.reference_otf import ReferenceOtf
 from acutance.targets.record import Record, RecordedDirection
 from acutance.targets.target_result import TargetResult
@@ -33,7 +34,6 @@ __all__ = [
 Complexes = NDArray[np.complex128]
 
 _MAX_GSD_DIFFERENCE = 0.05
-_RATIO = "mtf_low_over_mtf_high"
 _MIN_FREQUENCIES = 4
 
 
@@ -200,8 +200,7 @@ def known_curves(reference: ReferenceLike) -> MeasuredCurves | None:
 
 
 def _of_measurement(reference: Measurement) -> MeasuredCurves:
-    if reference.is_ratio:
-        raise OptionError(_no_ratio("the reference"))
+    require_own_mtf(reference.record, "the reference")
     gsd_m, normal_deg = reference.image.pixel_gsd_m, reference.normal_deg
     if normal_deg is not None:
         only = _plain(reference.response.mtf)
@@ -223,8 +222,7 @@ def _of_edges(reference: TargetResult[Any]) -> MeasuredCurves:
 
 
 def _of_record(reference: Record, origin: str = "the reference") -> MeasuredCurves:
-    if reference.document.get("quantity") == _RATIO:
-        raise OptionError(_no_ratio(origin))
+    require_own_mtf(reference, origin)
     found, gsd_m = reference.directions, reference.image.pixel_gsd_m
     try:
         curves = {name: _recorded(one) for name, one in found.items()}
@@ -237,13 +235,6 @@ def _of_record(reference: Record, origin: str = "the reference") -> MeasuredCurv
     # Across track is along the rows of pixels only where the columns are the track.
     names = ("across", "along") if reference.image.along_track == "y" else ("along", "across")
     return MeasuredCurves(curves[names[0]], curves[names[1]], gsd_m)
-
-
-def _no_ratio(origin: str) -> str:
-    return (
-        f"{origin} is the ratio MTF_low / MTF_high, no sensor's own MTF: measure it again with a "
-        "reference (reference_mtf, --reference)"
-    )
 
 
 def _recorded(direction: RecordedDirection) -> Mtf:

@@ -17,13 +17,13 @@ from acutance.targets.periodic.pattern_checks import (
     stated_levels,
 )
 from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
-from acutance.targets.region import RegionPixels, undeclared_fill
+from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 
 __all__ = ["BARS_CHECKS", "bars_checks"]
 
 BARS_CHECKS = (
     "contrast_snr", "level", "stated_levels", "bars", "bar_directions", "coarsest_cpp",
-    "finest_cpp", "misfit", "saturation", "undeclared_fill", *PROCESSING_CHECKS,
+    "finest_cpp", "misfit", "saturation", "undeclared_fill", "stated_gsd", *PROCESSING_CHECKS,
     "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of bars."""
@@ -58,6 +58,7 @@ def bars_checks(
         _misfit(solved, limits),
         saturation(pixels, region.saturation_level, solved.snr, "the pixels", limits),
         undeclared_fill([region.fill], limits),
+        stated_gsd(region.info, limits),
         *processing_checks(region.pixels, limits),
         correlated_noise(
             solved.correlation, solved.snr, limits,

@@ -17,13 +17,13 @@ from acutance.targets.periodic.pattern_checks import (
     stated_levels,
 )
 from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
-from acutance.targets.region import RegionPixels, undeclared_fill
+from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 
 __all__ = ["STAR_CHECKS", "star_checks", "third_harmonic"]
 
 STAR_CHECKS = (
     "contrast_snr", "level", "stated_levels", "rim_cpp", "centre_cpp", "sweep_deg", "wave",
-    "saturation", "undeclared_fill", *PROCESSING_CHECKS,
+    "saturation", "undeclared_fill", "stated_gsd", *PROCESSING_CHECKS,
     "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of a star."""
@@ -52,6 +52,7 @@ def star_checks(
         _wave(solved, limits),
         saturation(solved.value, region.saturation_level, snr, "the star's pixels", limits),
         undeclared_fill([region.fill], limits),
+        stated_gsd(region.info, limits),
         *processing_checks(region.pixels, limits),
         correlated_noise(
             solved.correlation, snr, limits,

@@ -14,7 +14,7 @@ from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.points.sources import PointSource
 from acutance.targets.points.survey import SurveyErrors
 from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
-from acutance.targets.region import RegionPixels, undeclared_fill
+from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 
 __all__ = ["POINTS_CHECKS", "check_points", "check_survey", "phase_gap_px"]
 
@@ -27,6 +27,7 @@ POINTS_CHECKS = (
     "psf_width_px",
     "source_misfit",
     "undeclared_fill",
+    "stated_gsd",
     *PROCESSING_CHECKS,
     "full_scale",
     "correlated_noise",
@@ -75,6 +76,7 @@ def check_points(
         _psf_width(fwhm_px, limits),
         _source_misfit(sources, limits),
         undeclared_fill([region.fill], limits),
+        stated_gsd(region.info, limits),
         *processing_checks(region.pixels, limits),
     ]
     if full_scale is not None:

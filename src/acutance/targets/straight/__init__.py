@@ -17,8 +17,9 @@ own: `rim` (a strip along the border), `nonlinearity` (a characteristic that cur
 the methods of the literature, biases included.
 """
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from acutance.names_on_use import names_on_use
 
 if TYPE_CHECKING:
     from acutance.targets.straight.edge import METHODS, measure_edge
@@ -59,8 +60,4 @@ _HOMES = {
     "measure_pulses": "many_pulses",
 }
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(importlib.import_module(f"acutance.targets.straight.{_HOMES[name]}"), name)
-    raise AttributeError(f"module 'acutance.targets.straight' has no attribute {name!r}")
+__getattr__ = names_on_use(__name__, _HOMES)

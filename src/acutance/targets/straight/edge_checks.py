@@ -13,7 +13,7 @@ from acutance.targets.check import MAX_RATIO, Check, Limits, answer, bounded_rat
 from acutance.targets.full_pixel import full_pixel
 from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
 from acutance.targets.question import PLACES
-from acutance.targets.region import RegionPixels, undeclared_fill
+from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
 from acutance.targets.straight.check_loops import change_along
 from acutance.targets.straight.ground_checks import ground_checks, rim
@@ -65,7 +65,7 @@ EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases",
     "rows", "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px",
     "lsf_narrow_px", "full_pixel", "plateau_dark_px", "plateau_bright_px", "saturation",
-    "undeclared_fill", "quantisation", *PROCESSING_CHECKS, "nonlinearity", "gradient",
+    "undeclared_fill", "stated_gsd", "quantisation", *PROCESSING_CHECKS, "nonlinearity", "gradient",
     "correlated_noise", "odd_even", "structure", "one_sided_overshoot", "double_edge",
     "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground", "close_ground",
     "mirrored_ground", "rim",
@@ -107,6 +107,7 @@ def check_edge(
         plateau(limits, "bright", extent.bright_px),
         saturation(region, values, data, limits, ("dark", "bright")),
         undeclared_fill([region.fill], limits),
+        stated_gsd(region.info, limits),
         quantisation(region, values, data, limits),
         *processing_checks(region.pixels, limits),
         nonlinearity(data, limits, EDGE),

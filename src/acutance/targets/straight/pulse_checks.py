@@ -12,7 +12,7 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, limit_of
 from acutance.targets.full_pixel import full_pixel
 from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
-from acutance.targets.region import RegionPixels, undeclared_fill
+from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
 from acutance.targets.straight.edge_checks import (
     angle,
@@ -57,7 +57,8 @@ PULSE_CHECKS = (
     "contrast_snr", "uniformity_before", "uniformity_behind", "uniformity_target", "angle_deg",
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
     "full_pixel", "plateau_before_px", "plateau_behind_px", "saturation", "undeclared_fill",
-    "quantisation", *PROCESSING_CHECKS, "nonlinearity", "gradient", "correlated_noise", "odd_even",
+    "stated_gsd", "quantisation", *PROCESSING_CHECKS, "nonlinearity", "gradient",
+    "correlated_noise", "odd_even",
     "asymmetric_lsf", "profile", "outliers", "parallel_deg", "background_step", "width_px",
     "width_sigmas", "zero_distance_cpp", "ground", "close_ground", "mirrored_ground",
 )  # fmt: skip
@@ -115,6 +116,7 @@ def check_pulse(
         plateau(limits, "behind", extent.bright_px),
         saturation(region, values, data, limits, ("before", "behind")),
         undeclared_fill([region.fill], limits),
+        stated_gsd(region.info, limits),
         quantisation(region, values, data, limits),
         *processing_checks(region.pixels, limits),
         _nonlinearity(data, limits, width.value, height_ratio.value),

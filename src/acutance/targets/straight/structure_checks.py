@@ -166,20 +166,30 @@ def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
     rer_std = min(data.fit.response.rer.std, 1.0)
     noted = max(limit_of("asymmetric_lsf", {}), _NOTED_RER_STDS * rer_std)
     found = f"the ESF is asymmetric about its middle by {100 * value:.1f} % of the contrast"
-    caution = max(_MAX_ASYMMETRY, _MAX_RER_STDS * rer_std)
+    caution, why = _grave_asymmetry(data, noted, rer_std)
+    if value > noted:
+        found += f"; from {100 * caution:.2g} % on a caution{why}"
+    return answer(
+        "asymmetric_lsf", value, found, limits, default=float(f"{noted:.2g}"), caution=caution
+    )
+
+
+def _grave_asymmetry(data: CheckData, noted: float, rer_std: float) -> tuple[float, str]:
+    """From which asymmetry on it is a caution, and why from there."""
+    by_rer = _MAX_RER_STDS * rer_std
+    caution, why = max(_MAX_ASYMMETRY, by_rer), ""
+    if by_rer > _MAX_ASYMMETRY:
+        why = f", {_MAX_RER_STDS:g} deviations of RER"
     if isinstance(data.fit, SplineEdge):
         if data.fit.correlation.inflation > _TEXTURED:
             caution = max(_TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS * rer_std)
+            why = ", since the noise is that of textured ground, where strips are frequent"
         unlike = data.fit.families.get("other", 0.0)
         stds = [most for least, most in _UNLIKE_RER_STDS if unlike > least]
-        if stds:
-            caution = min(caution, max(noted, stds[-1] * rer_std))
-            found += f", and the LSF like that of no sensor known (probability {unlike:.2f})"
-    return answer(
-        "asymmetric_lsf", value, found, limits,
-        default=float(f"{noted:.2g}"),
-        caution=min(caution, _ANY_ASYMMETRY),
-    )  # fmt: skip
+        if stds and max(noted, stds[-1] * rer_std) < caution:
+            caution = max(noted, stds[-1] * rer_std)
+            why = f", since the LSF is like that of no sensor known (probability {unlike:.2f})"
+    return (_ANY_ASYMMETRY, "") if caution > _ANY_ASYMMETRY else (caution, why)
 
 
 def asymmetric_wings(data: CheckData, limits: Limits) -> Check:

@@ -1,0 +1,92 @@
+"""What is stated of a measurement that is kept already, where the archive has something else.
+
+A measurement is kept once, whatever is stated of its image: the key does not depend on it
+(`acutance.archive.identity`), so that corrections make no measurement another one. What is stated
+anew is therefore not written, and has to be told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import partial
+from typing import Any, Final
+
+from sqlalchemy import Connection, select
+
+from acutance.archive.connection import Database
+from acutance.archive.entry import ImageEntry
+from acutance.archive.rows import image_row
+from acutance.archive.tables import images, measurements
+
+__all__ = ["contradictions"]
+
+_STATED: Final = (
+    "sensor", "level", "acquired", "view_zenith_deg", "view_azimuth_deg", "sun_elevation_deg",
+    "sun_azimuth_deg",
+)  # fmt: skip
+"""What callers state of an image; the GSD is that of the measurement."""
+_CHUNK: Final = 2000
+"""Keys of one question: databases take some ten thousand values."""
+
+
+def contradictions(database: Database, stated: Mapping[str, ImageEntry]) -> dict[str, str]:
+    """What is stated of images and is not what is kept, by the keys of their measurements.
+
+    Parameters
+    ----------
+    database : Database
+    stated : mapping of str to ImageEntry
+        By the keys of measurements that are kept.
+
+    Returns
+    -------
+    dict of str to str
+        A sentence each, with both; keys without a contradiction are left out.
+    """
+    keys = list(stated)
+    found: dict[str, str] = {}
+    for at in range(0, len(keys), _CHUNK):
+        some = keys[at : at + _CHUNK]
+        for row in database.read(partial(_kept, keys=some)):
+            differing = list(_differing(row, image_row(stated[row["key"]])))
+            if differing:
+                found[row["key"]] = (
+                    f"the archive has this measurement already, as number {row['id']}, with "
+                    f"{' and '.join(differing)}, and keeps a measurement once: {_advice(row)}"
+                )
+    return found
+
+
+def _kept(connection: Connection, keys: list[str]) -> list[Mapping[str, Any]]:
+    """What is kept of the images of some measurements."""
+    columns = (images.c[name] for name in _STATED)
+    asked = (
+        select(measurements.c.key, measurements.c.id, images.c.name, *columns)
+        .join(images, images.c.id == measurements.c.image_id)
+        .where(measurements.c.key.in_(keys))
+    )
+    return [dict(row) for row in connection.execute(asked).mappings()]
+
+
+def _differing(kept: Mapping[str, Any], stated: Mapping[str, Any]) -> Iterator[str]:
+    """What is stated and is not what is kept, in words."""
+    for name in _STATED:
+        if stated[name] is not None and stated[name] != kept[name]:
+            yield f"{name} {_written(kept[name])}, not {_written(stated[name])}"
+
+
+def _advice(row: Mapping[str, Any]) -> str:
+    if row["name"] is None:
+        return (
+            "its image has no name to correct it by, give it a key of its own (key=) to keep both"
+        )
+    return (
+        f"correct the image {row['name']} where the archive is wrong (acutance archive correct, "
+        "correct_images)"
+    )
+
+
+def _written(value: Any) -> str:
+    if value is None:
+        return "not known"
+    return value.isoformat() if hasattr(value, "isoformat") else str(value)

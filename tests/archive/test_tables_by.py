@@ -1,0 +1,55 @@
+"""Tables of means: what they count, and whose deviations stand in a column."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import acutance as ac
+from acutance.archive import Archive
+
+BY_TARGET = (("target",), ("mtf_nyquist",))
+
+
+@pytest.fixture
+def filled(archive: Archive, edge_record: ac.Record, entry_of: Any) -> Archive:
+    """Of one sensor: tarp 0 across in two images and along in a third; tarp 1 in one of the two."""
+    turned = ac.Record(
+        {**edge_record.document, "orientation": "along", "measured_directions": ["along"]}
+    )
+    archive.add_entries([entry_of(0), entry_of(4), entry_of(8, record=turned), entry_of(5)])
+    return archive
+
+
+def test_images_are_those_of_the_direction(filled: Archive) -> None:
+    """The mean across of all is one of two images, not of the three of both directions."""
+    table = filled.table(*BY_TARGET)
+    assert [row.images for row in table.rows] == [3, 1, 3]
+    assert table.rows[-1].images_by == {"across": 2, "along": 1}
+    assert table.header[:4] == ("target", "images across", "images along", "GSD [m]")
+    assert [text[1:3] for text in table.texts()] == [("2", "1"), ("1", "0"), ("2", "1")]
+    across = table.of_direction("across")
+    assert across.header == ("target", "images", "GSD [m]", "mtf_nyquist across")
+    assert [text[1] for text in across.texts()] == ["2", "1", "2"]
+    assert table.to_dict()["rows"][0]["images_by_direction"] == {"across": 2, "along": 1}
+
+
+def test_deviations_of_single_measurements_are_marked_among_those_of_means(filled: Archive) -> None:
+    across = filled.table(*BY_TARGET).of_direction("across")
+    mean, single, average = (text[-1] for text in across.texts())
+    assert single.startswith("*")
+    assert not mean.startswith("*")
+    assert not average.startswith("*")
+    assert "Student's t" in across.notes[0]
+    assert across.notes[1].startswith("* one measurement")
+    assert [row["across"]["mtf_nyquist"]["count"] for row in across.to_dict()["rows"]] == [2, 1, 3]
+
+
+def test_a_column_of_one_kind_has_no_marks(filled: Archive) -> None:
+    singles = filled.table(("image", "target"), ("mtf_nyquist",), target="tarp 1")
+    assert singles.notes == ()
+    assert not any("*" in cell for text in singles.texts() for cell in text)
+    means = filled.table(("sensor",), ("mtf_nyquist",), target="tarp 0", orientation="across")
+    assert len(means.notes) == 1
+    assert not any("*" in cell for text in means.texts() for cell in text)

@@ -1,0 +1,63 @@
+"""Several bands of one image: each is measured by itself, one result a band."""
+
+import json
+
+import numpy as np
+import pytest
+
+from acutance import optics, simulate
+from acutance.archive import Archive
+from acutance.raster import write_geotiff
+
+SENSORS = [optics.Sensor([optics.Gaussian(size), optics.Detector()]) for size in (0.35, 0.5)]
+
+
+@pytest.fixture(scope="module")
+def image(tmp_path_factory):
+    """Two bands of one edge, the second softer, and a third without it."""
+    rng = np.random.default_rng(3)
+    bands = [
+        simulate.edge(sensor, angle_deg=6.0, shape=(48, 48), snr=100, rng=rng)[0]
+        for sensor in SENSORS
+    ]
+    place = tmp_path_factory.mktemp("bands") / "bands.tif"
+    write_geotiff(place, np.stack([*bands, rng.normal(500.0, 5.0, (48, 48))]))
+    return place
+
+
+def test_every_band_has_a_result_and_one_without_an_edge_is_named(acutance, image, tmp_path):
+    done = acutance("edge", image, "--band", "all", "--json", "--figure", tmp_path / "e.png")
+    assert done.exit_code == 0
+    document = json.loads(done.stdout)
+    assert document["schema"] == "acutance/bands/1"
+    assert [one["band"] for one in document["results"]] == ["1", "2"]
+    assert [one["image"]["band"] for one in document["results"]] == [1, 2]
+    sharp, soft = (one["mtf_nyquist"]["value"] for one in document["results"])
+    assert sharp > soft + 0.1
+    assert [one["values"] for one in document["rejected"]] == [{"band": "3"}]
+    assert "acutance: band 3: " in done.stderr
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["e-band-1.png", "e-band-2.png"]
+    assert acutance("edge", image, "--band", "all", "--strict").exit_code == 3
+
+
+def test_bands_of_several_regions(acutance, image):
+    done = acutance("edge", image, "--band", "1,2", "--roi", "2,2,40,44", "--strict")
+    assert done.exit_code == 0
+    assert [line[:7] for line in done.stdout.splitlines() if line.startswith("band")] == [
+        "band 1:", "band 2:",
+    ]  # fmt: skip
+    assert "region" not in done.stdout.split("\n")[0]
+
+
+def test_bands_are_kept_apart_in_an_archive(acutance, image, tmp_path):
+    file = tmp_path / "edges.json"
+    file.write_text(acutance("edge", image, "--band", "1,2", "--json").stdout)
+    assert acutance("archive", "import", tmp_path / "kept.db", file, "--sensor", "S").exit_code == 0
+    with Archive(tmp_path / "kept.db", read_only=True) as archive:
+        assert sorted(archive.measurements()["band"]) == ["1", "2"]
+
+
+def test_other_kinds_take_several_bands(acutance, image):
+    done = acutance("pulse", image, "--band", "all", "--width-px", "3")
+    assert done.exit_code == 4
+    assert "none of the 3 bands and regions could be measured" in done.stderr
