@@ -20,6 +20,10 @@ LANES = 4
 """Coordinates are filled up with zeros to a multiple of this: so many are taken at once."""
 _SOME = 256
 """Kernels whose distances are worked out side by side."""
+_AT_ONCE = 32
+"""Kernels that an unrolled loop takes at once; `_SOME` is a multiple of it."""
+_TOLD_BEST = 8
+"""Combinations after which most kernels are known to be negligible; a multiple of `LANES`."""
 _NEGLIGIBLE = 9.0
 """Kernels whose log weight is less than the largest by this are left out."""
 
@@ -92,6 +96,7 @@ def kernel_weights(
 
     A centre c is off by ``x = axes c - told``, in standard deviations of a kernel of its family's
     first size, with the factor L of `seen_kernels`; for that of another size, L', by ``L'^-1 L x``.
+    The sum of squares only grows: what the combinations told best make negligible, is left out.
 
     Parameters
     ----------
@@ -109,16 +114,18 @@ def kernel_weights(
     Returns
     -------
     log_weight : (g, m) array
-        Of the m or less centres of a group.
+        Of the m or less centres of a group; minus infinity of one that was left out.
     largest : float
     """
     families, (groups, r, q), p = len(members), axes.shape, len(coordinates)
-    sizes = groups // families
+    sizes, soon = groups // families, min(r, _TOLD_BEST)
     found = np.full((groups, np.max(members[:, 1] - members[:, 0])), -np.inf)
     # The last columns are zeros: four products are summed at a time.
     own, filled = np.zeros((r, p), np.float32), r + -r % LANES
     others = np.zeros((sizes, r, filled), np.float32)
-    off, here = np.zeros((filled, _SOME), np.float32), np.empty(_SOME, np.float32)
+    off, misfit = np.zeros((filled, _SOME), np.float32), np.empty((sizes, _SOME), np.float32)
+    left, place = np.zeros((p, _SOME), np.float32), np.empty(_SOME, np.intp)
+    best, minus = np.empty(_SOME), np.empty(r, np.float32)
     for f in range(families):
         g, (first, last) = f * sizes, members[f]
         for size in range(1, sizes):
@@ -128,28 +135,69 @@ def kernel_weights(
                 for i in range(r):
                     others[size, j, i] = turn[j, i]
         for j in range(r):
+            minus[j] = -told[g, j]
             for i in range(q):
                 own[j, i] = axes[g, j, i]
         for start in range(first, last, _SOME):
-            count = min(_SOME, last - start)
+            some = min(_SOME, last - start)
+            misfit[:] = 0.0
+            _add_squares(misfit, off, own, others, minus, coordinates, start, some, 0, soon)
+            best[:some] = -np.inf
             for size in range(sizes):
-                misfit = np.zeros(_SOME, np.float32)
-                for j in range(r):
-                    if size == 0:
-                        here[:] = -told[g, j]
-                        _add_products(here, own[j], coordinates, start, count)
-                        for k in range(count):
-                            off[j, k] = here[k]
-                    else:
-                        here[:] = 0.0
-                        _add_products(here, others[size, j, : j + LANES - j % LANES], off, 0, count)
-                    for k in range(count):
-                        misfit[k] += here[k] * here[k]
+                for k in range(some):
+                    best[k] = max(best[k], log_density[g + size] - 0.5 * misfit[size, k])
+            count = 0
+            for k in range(some):
+                place[count] = k
+                count += log_before[start + k] + best[k] >= largest - _NEGLIGIBLE
+            for i in range(q):
                 for k in range(count):
-                    weight = log_before[start + k] + log_density[g + size] - 0.5 * misfit[k]
-                    found[g + size, start - first + k] = weight
+                    left[i, k] = coordinates[i, start + place[k]]
+            for j in range(soon):
+                for k in range(count):
+                    off[j, k] = off[j, place[k]]
+            for size in range(sizes):
+                for k in range(count):
+                    misfit[size, k] = misfit[size, place[k]]
+            # Columns beyond the count are some of no use, and cost nothing.
+            filled_up = count + -count % _AT_ONCE
+            _add_squares(misfit, off, own, others, minus, left, 0, filled_up, soon, r)
+            for size in range(sizes):
+                for k in range(count):
+                    there = start + place[k]
+                    weight = log_before[there] + log_density[g + size] - 0.5 * misfit[size, k]
+                    found[g + size, there - first] = weight
                     largest = max(largest, weight)
     return found, largest
+
+
+@inlined
+def _add_squares(
+    misfit: NDArray[np.float32],
+    off: NDArray[np.float32],
+    own: NDArray[np.float32],
+    others: NDArray[np.float32],
+    minus: NDArray[np.float32],
+    coordinates: NDArray[np.float32],
+    start: int,
+    count: int,
+    j: int,
+    stop: int,
+) -> None:
+    """Add the squares of the combinations from j to `stop` to the misfits (sizes, count)."""
+    here = np.empty(_SOME, np.float32)
+    for size in range(len(others)):
+        for i in range(j, stop):
+            if size == 0:
+                here[:count] = minus[i]
+                _add_products(here, own[i], coordinates, start, count)
+                for k in range(count):
+                    off[i, k] = here[k]
+            else:
+                here[:count] = 0.0
+                _add_products(here, others[size, i, : i + LANES - i % LANES], off, 0, count)
+            for k in range(count):
+                misfit[size, k] += here[k] * here[k]
 
 
 @inlined
