@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled, inlined
 from acutance.numerics.small_matrices import add_product, factorize, forward_substitution
+from acutance.targets.straight.tuned import KERNEL_LOG_WIDTH
 
 __all__ = ["LANES", "kernel_moments", "kernel_weights", "mixture", "seen_kernels"]
 
@@ -30,7 +31,11 @@ _NEGLIGIBLE = 9.0
 
 @compiled
 def seen_kernels(
-    covariance: Floats, combinations: Floats, values: Floats
+    covariance: Floats,
+    part: NDArray[np.intp],
+    power: Floats,
+    combinations: Floats,
+    values: Floats,
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     """What combinations ``K^T c`` with an error of one tell of kernels of covariance S.
 
@@ -38,7 +43,10 @@ def seen_kernels(
 
     Parameters
     ----------
-    covariance : (g, q, q) array
+    covariance : (f, q, q) array
+        Of families.
+    part, power : (g,) arrays
+        The kernels of group g have the covariance ``power[g] * covariance[part[g]]``.
     combinations : (q, r) array
     values : (r,) array
 
@@ -55,20 +63,25 @@ def seen_kernels(
     log_density : (g,) array
         Logarithm of the density of a kernel that is where the pixels say.
     """
-    groups = len(covariance)
+    groups = len(part)
     q, r = combinations.shape
     lower, root = np.zeros((groups, r, r)), np.zeros((groups, q, r))
     axes, told = np.zeros((groups, r, q)), np.zeros((groups, r))
     log_density = np.zeros(groups)
-    rows = combinations.T.copy()
+    rows, value = combinations.T.copy(), np.zeros((r, 1))
+    across, within, half = np.zeros((r, q)), np.zeros((r, r)), np.zeros((r, q))
     for g in range(groups):
-        half, value = np.zeros((r, q)), np.zeros((r, 1))
-        add_product(half, rows, covariance[g])
+        if g == 0 or part[g] != part[g - 1]:
+            across[:], within[:] = 0.0, 0.0
+            add_product(across, rows, covariance[part[g]])
+            add_product(within, across, combinations)
         for i in range(r):
-            lower[g, i, i], value[i, 0] = 1.0, values[i]
+            value[i, 0] = values[i]
             for j in range(q):
-                axes[g, i, j] = rows[i, j]
-        add_product(lower[g], half, combinations)
+                axes[g, i, j], half[i, j] = rows[i, j], power[g] * across[i, j]
+            for j in range(r):
+                lower[g, i, j] = power[g] * within[i, j]
+            lower[g, i, i] += 1.0
         factorize(lower[g])
         forward_substitution(lower[g], half)
         forward_substitution(lower[g], axes[g])
@@ -84,14 +97,16 @@ def seen_kernels(
 @compiled
 def kernel_weights(
     coordinates: NDArray[np.float32],
-    log_before: Floats,
+    log_share: Floats,
+    log_width: Floats,
+    log_middle: float,
     members: NDArray[np.intp],
     lower: Floats,
     axes: Floats,
     told: Floats,
     log_density: Floats,
     largest: float,
-) -> tuple[Floats, float]:
+) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats, float]:
     """Logarithm of the weight of every kernel after the pixels are seen.
 
     A centre c is off by ``x = axes c - told``, in standard deviations of a kernel of its family's
@@ -102,8 +117,10 @@ def kernel_weights(
     ----------
     coordinates : (p, n) array
         The q coordinates of every centre, filled up with zeros.
-    log_before : (n,) array
-        Logarithm of the weight of a centre before.
+    log_share, log_width : (n,) arrays
+        Logarithms of the weight of a centre among all, and of the width of its blur.
+    log_middle : float
+        Logarithm of the width of the pixels' blur: a centre of another has less weight.
     members : (f, 2) int array
         First centre of every family, and the one after its last.
     lower, axes, told, log_density
@@ -113,19 +130,23 @@ def kernel_weights(
 
     Returns
     -------
-    log_weight : (g, m) array
-        Of the m or less centres of a group; minus infinity of one that was left out.
+    counts : (g,) int array
+        How many centres of a group are kept.
+    kept, log_weight : (g, m) arrays
+        Which ones they are, and the logarithms of their weights; what follows the count is empty.
     largest : float
     """
     families, (groups, r, q), p = len(members), axes.shape, len(coordinates)
     sizes, soon = groups // families, min(r, _TOLD_BEST)
-    found = np.full((groups, np.max(members[:, 1] - members[:, 0])), -np.inf)
+    most = np.max(members[:, 1] - members[:, 0])
+    counts, kept = np.zeros(groups, np.intp), np.empty((groups, most), np.intp)
+    log_weight = np.empty((groups, most))
     # The last columns are zeros: four products are summed at a time.
     own, filled = np.zeros((r, p), np.float32), r + -r % LANES
     others = np.zeros((sizes, r, filled), np.float32)
     off, misfit = np.zeros((filled, _SOME), np.float32), np.empty((sizes, _SOME), np.float32)
     left, place = np.zeros((p, _SOME), np.float32), np.empty(_SOME, np.intp)
-    best, minus = np.empty(_SOME), np.empty(r, np.float32)
+    before, best, minus = np.empty(_SOME), np.empty(_SOME), np.empty(r, np.float32)
     for f in range(families):
         g, (first, last) = f * sizes, members[f]
         for size in range(1, sizes):
@@ -143,13 +164,16 @@ def kernel_weights(
             misfit[:] = 0.0
             _add_squares(misfit, off, own, others, minus, coordinates, start, some, 0, soon)
             best[:some] = -np.inf
+            for k in range(some):
+                away = (log_width[start + k] - log_middle) / KERNEL_LOG_WIDTH
+                before[k] = log_share[start + k] - 0.5 * away * away
             for size in range(sizes):
                 for k in range(some):
                     best[k] = max(best[k], log_density[g + size] - 0.5 * misfit[size, k])
             count = 0
             for k in range(some):
                 place[count] = k
-                count += log_before[start + k] + best[k] >= largest - _NEGLIGIBLE
+                count += before[k] + best[k] >= largest - _NEGLIGIBLE
             for i in range(q):
                 for k in range(count):
                     left[i, k] = coordinates[i, start + place[k]]
@@ -163,12 +187,14 @@ def kernel_weights(
             filled_up = count + -count % _AT_ONCE
             _add_squares(misfit, off, own, others, minus, left, 0, filled_up, soon, r)
             for size in range(sizes):
+                n = counts[g + size]
                 for k in range(count):
-                    there = start + place[k]
-                    weight = log_before[there] + log_density[g + size] - 0.5 * misfit[size, k]
-                    found[g + size, there - first] = weight
-                    largest = max(largest, weight)
-    return found, largest
+                    here = before[place[k]] + log_density[g + size] - 0.5 * misfit[size, k]
+                    largest = max(largest, here)
+                    kept[g + size, n], log_weight[g + size, n] = start + place[k], here
+                    n += here >= largest - _NEGLIGIBLE
+                counts[g + size] = n
+    return counts, kept, log_weight, largest
 
 
 @inlined
@@ -218,43 +244,48 @@ def _add_products(
 
 @compiled
 def kernel_moments(
-    centres: NDArray[np.float32], members: NDArray[np.intp], log_weight: Floats, largest: float
+    centres: NDArray[np.float32],
+    counts: NDArray[np.intp],
+    kept: NDArray[np.intp],
+    log_weight: Floats,
+    largest: float,
 ) -> tuple[Floats, Floats, Floats]:
     """Of every group the weight relative to the largest, and mean and covariance of its centres.
 
     Parameters
     ----------
     centres : (n, q) array
-    members, log_weight, largest
+    counts, kept, log_weight, largest
         As of `kernel_weights`.
 
     Returns
     -------
-    (g,), (g, q) and (g, q, q) arrays
+    (g + 1,), (g + 1, q) and (g + 1, q, q) arrays
+        All zero of one more group, about none.
     """
-    groups, q = log_weight.shape[0], centres.shape[1]
-    sizes = groups // len(members)
-    total, mean, spread = np.zeros(groups), np.zeros((groups, q)), np.zeros((groups, q, q))
-    kept, share = np.empty(log_weight.shape[1] + 3, np.intp), np.empty(log_weight.shape[1] + 3)
+    groups, q = len(counts), centres.shape[1]
+    total, mean = np.zeros(groups + 1), np.zeros((groups + 1, q))
+    spread = np.zeros((groups + 1, q, q))
+    most = np.max(counts) + 3
+    some, share = np.empty(most, np.intp), np.empty(most)
     for g in range(groups):
-        first, last = members[g // sizes]
         count = 0
-        for k in range(last - first):
+        for k in range(counts[g]):
             if log_weight[g, k] >= largest - _NEGLIGIBLE:
-                kept[count], share[count] = first + k, np.exp(log_weight[g, k] - largest)
+                some[count], share[count] = kept[g, k], np.exp(log_weight[g, k] - largest)
                 total[g] += share[count]
                 count += 1
         if count == 0:
             continue
         # Four centres at a time, the last ones filled up with some of no weight.
         for k in range(count, count + 3):
-            kept[k], share[k] = first, 0.0
+            some[k], share[k] = 0, 0.0
         for k in range(0, count, 4):
             a, b, c, d = (
-                centres[kept[k]],
-                centres[kept[k + 1]],
-                centres[kept[k + 2]],
-                centres[kept[k + 3]],
+                centres[some[k]],
+                centres[some[k + 1]],
+                centres[some[k + 2]],
+                centres[some[k + 3]],
             )
             for i in range(q):
                 at_a, at_b = share[k] * a[i], share[k + 1] * b[i]
@@ -277,6 +308,8 @@ def mixture(
     centre: Floats,
     spread: Floats,
     covariance: Floats,
+    part: NDArray[np.intp],
+    power: Floats,
     root: Floats,
     axes: Floats,
     told: Floats,
@@ -296,7 +329,7 @@ def mixture(
         Probability of every group.
     centre, spread : (g, q) and (g, q, q) arrays
         Mean and covariance of its centres.
-    covariance, root, axes, told
+    covariance, part, power, root, axes, told
         As of `seen_kernels`.
     """
     groups, r, q = axes.shape
@@ -321,10 +354,11 @@ def mixture(
                 off -= axes[g, j, i] * centre[g, i]
             for i in range(q):
                 means[g, i] += root[g, i, j] * off
+        before, size = covariance[part[g]], power[g]
         for i in range(q):
             mean[i] += share[g] * means[g, i]
             for j in range(q):
-                own = covariance[g, i, j] + spread[g, i, j] + crossed[i, j] + crossed[j, i]
+                own = size * before[i, j] + spread[g, i, j] + crossed[i, j] + crossed[j, i]
                 whole[i, j] += share[g] * own
     for g in range(groups):
         for i in range(q):
