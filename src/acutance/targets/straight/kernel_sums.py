@@ -19,7 +19,7 @@ __all__ = ["LANES", "kernel_moments", "kernel_weights", "mixture", "seen_kernels
 
 LANES = 4
 """Coordinates are filled up with zeros to a multiple of this: so many are taken at once."""
-_SOME = 256
+_SOME = 1024
 """Kernels whose distances are worked out side by side."""
 _AT_ONCE = 32
 """Kernels that an unrolled loop takes at once; `_SOME` is a multiple of it."""
@@ -137,16 +137,16 @@ def kernel_weights(
     largest : float
     """
     families, (groups, r, q), p = len(members), axes.shape, len(coordinates)
-    sizes, soon = groups // families, min(r, _TOLD_BEST)
+    sizes, rows = groups // families, r + -r % LANES
+    soon = min(rows, _TOLD_BEST)
     most = np.max(members[:, 1] - members[:, 0])
     counts, kept = np.zeros(groups, np.intp), np.empty((groups, most), np.intp)
     log_weight = np.empty((groups, most))
-    # The last columns are zeros: four products are summed at a time.
-    own, filled = np.zeros((r, p), np.float32), r + -r % LANES
-    others = np.zeros((sizes, r, filled), np.float32)
-    off, misfit = np.zeros((filled, _SOME), np.float32), np.empty((sizes, _SOME), np.float32)
+    # The last rows and columns are zeros: four sums of four products are worked out at a time.
+    own, others = np.zeros((rows, p), np.float32), np.zeros((sizes, rows, rows), np.float32)
+    off, misfit = np.zeros((rows, _SOME), np.float32), np.empty((sizes, _SOME), np.float32)
     left, place = np.zeros((p, _SOME), np.float32), np.empty(_SOME, np.intp)
-    before, best, minus = np.empty(_SOME), np.empty(_SOME), np.empty(r, np.float32)
+    before, best, minus = np.empty(_SOME), np.empty(_SOME), np.zeros(rows, np.float32)
     for f in range(families):
         g, (first, last) = f * sizes, members[f]
         for size in range(1, sizes):
@@ -185,7 +185,7 @@ def kernel_weights(
                     misfit[size, k] = misfit[size, place[k]]
             # Columns beyond the count are some of no use, and cost nothing.
             filled_up = count + -count % _AT_ONCE
-            _add_squares(misfit, off, own, others, minus, left, 0, filled_up, soon, r)
+            _add_squares(misfit, off, own, others, minus, left, 0, filled_up, soon, rows)
             for size in range(sizes):
                 n = counts[g + size]
                 for k in range(count):
@@ -211,19 +211,20 @@ def _add_squares(
     stop: int,
 ) -> None:
     """Add the squares of the combinations from j to `stop` to the misfits (sizes, count)."""
-    here = np.empty(_SOME, np.float32)
-    for size in range(len(others)):
-        for i in range(j, stop):
-            if size == 0:
-                here[:count] = minus[i]
-                _add_products(here, own[i], coordinates, start, count)
+    here = np.empty((LANES, _SOME), np.float32)
+    for i in range(j, stop, LANES):
+        for a in range(LANES):
+            off[i + a, :count] = minus[i + a]
+        _add_products(off[i : i + LANES], own[i : i + LANES], coordinates, start, count)
+        for size in range(1, len(others)):
+            here[:, :count] = 0.0
+            _add_products(here, others[size, i : i + LANES, : i + LANES], off, 0, count)
+            for a in range(LANES):
                 for k in range(count):
-                    off[i, k] = here[k]
-            else:
-                here[:count] = 0.0
-                _add_products(here, others[size, i, : i + LANES - i % LANES], off, 0, count)
+                    misfit[size, k] += here[a, k] * here[a, k]
+        for a in range(LANES):
             for k in range(count):
-                misfit[size, k] += here[k] * here[k]
+                misfit[0, k] += off[i + a, k] * off[i + a, k]
 
 
 @inlined
@@ -234,12 +235,20 @@ def _add_products(
     start: int,
     count: int,
 ) -> None:
-    """Add factors (m,) times the same part of rows (m, n), m being a multiple of four."""
-    for i in range(0, factors.size, LANES):
-        a, b, c, d = factors[i], factors[i + 1], factors[i + 2], factors[i + 3]
+    """Add factors (4, m) times the same part of rows (m, n), m being a multiple of four."""
+    w, x, y, z = found[0], found[1], found[2], found[3]
+    for i in range(0, factors.shape[1], LANES):
+        a, b, c, d = factors[:, i], factors[:, i + 1], factors[:, i + 2], factors[:, i + 3]
+        a0, a1, a2, a3 = a[0], a[1], a[2], a[3]
+        b0, b1, b2, b3 = b[0], b[1], b[2], b[3]
+        c0, c1, c2, c3 = c[0], c[1], c[2], c[3]
+        d0, d1, d2, d3 = d[0], d[1], d[2], d[3]
         p, q, r, s = rows[i, start:], rows[i + 1, start:], rows[i + 2, start:], rows[i + 3, start:]
         for k in range(count):
-            found[k] += a * p[k] + b * q[k] + c * r[k] + d * s[k]
+            w[k] += a0 * p[k] + b0 * q[k] + c0 * r[k] + d0 * s[k]
+            x[k] += a1 * p[k] + b1 * q[k] + c1 * r[k] + d1 * s[k]
+            y[k] += a2 * p[k] + b2 * q[k] + c2 * r[k] + d2 * s[k]
+            z[k] += a3 * p[k] + b3 * q[k] + c3 * r[k] + d3 * s[k]
 
 
 @compiled
