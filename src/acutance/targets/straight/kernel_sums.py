@@ -12,7 +12,12 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled, inlined
-from acutance.numerics.small_matrices import add_product, factorize, forward_substitution
+from acutance.numerics.small_matrices import (
+    add_four_rows,
+    add_product,
+    factorize,
+    forward_substitution,
+)
 from acutance.targets.straight.tuned import KERNEL_LOG_WIDTH
 
 __all__ = ["LANES", "kernel_moments", "kernel_weights", "mixture", "seen_kernels"]
@@ -215,40 +220,16 @@ def _add_squares(
     for i in range(j, stop, LANES):
         for a in range(LANES):
             off[i + a, :count] = minus[i + a]
-        _add_products(off[i : i + LANES], own[i : i + LANES], coordinates, start, count)
+        add_four_rows(off[i : i + LANES], own[i : i + LANES], coordinates, start, count)
         for size in range(1, len(others)):
             here[:, :count] = 0.0
-            _add_products(here, others[size, i : i + LANES, : i + LANES], off, 0, count)
+            add_four_rows(here, others[size, i : i + LANES, : i + LANES], off, 0, count)
             for a in range(LANES):
                 for k in range(count):
                     misfit[size, k] += here[a, k] * here[a, k]
         for a in range(LANES):
             for k in range(count):
                 misfit[0, k] += off[i + a, k] * off[i + a, k]
-
-
-@inlined
-def _add_products(
-    found: NDArray[np.float32],
-    factors: NDArray[np.float32],
-    rows: NDArray[np.float32],
-    start: int,
-    count: int,
-) -> None:
-    """Add factors (4, m) times the same part of rows (m, n), m being a multiple of four."""
-    w, x, y, z = found[0], found[1], found[2], found[3]
-    for i in range(0, factors.shape[1], LANES):
-        a, b, c, d = factors[:, i], factors[:, i + 1], factors[:, i + 2], factors[:, i + 3]
-        a0, a1, a2, a3 = a[0], a[1], a[2], a[3]
-        b0, b1, b2, b3 = b[0], b[1], b[2], b[3]
-        c0, c1, c2, c3 = c[0], c[1], c[2], c[3]
-        d0, d1, d2, d3 = d[0], d[1], d[2], d[3]
-        p, q, r, s = rows[i, start:], rows[i + 1, start:], rows[i + 2, start:], rows[i + 3, start:]
-        for k in range(count):
-            w[k] += a0 * p[k] + b0 * q[k] + c0 * r[k] + d0 * s[k]
-            x[k] += a1 * p[k] + b1 * q[k] + c1 * r[k] + d1 * s[k]
-            y[k] += a2 * p[k] + b2 * q[k] + c2 * r[k] + d2 * s[k]
-            z[k] += a3 * p[k] + b3 * q[k] + c3 * r[k] + d3 * s[k]
 
 
 @compiled
