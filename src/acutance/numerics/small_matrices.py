@@ -62,27 +62,43 @@ def add_four_rows(
 
 @compiled
 def factorize(matrix: Floats) -> None:
-    """Put the lower triangular factor of a matrix, (n, n), in its place (Cholesky)."""
-    for i in range(len(matrix)):
-        for j in range(i + 1):
-            left = matrix[i, j]
-            for k in range(j):
-                left -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] = np.sqrt(left) if i == j else left / matrix[j, j]
-        for j in range(i + 1, len(matrix)):
-            matrix[i, j] = 0.0
+    """Put the lower triangular factor of a symmetric matrix, (n, n), in its place (Cholesky).
+
+    The rows of its transpose are worked out above the diagonal, where they are contiguous.
+    """
+    n = len(matrix)
+    for i in range(n):
+        own = matrix[i]
+        scale = 1 / np.sqrt(own[i])
+        for k in range(i, n):
+            own[k] *= scale
+        for j in range(i + 1, n):
+            factor, row = own[j], matrix[j]
+            for k in range(j, n):
+                row[k] -= factor * own[k]
+    for i in range(n):
+        for j in range(i):
+            matrix[i, j], matrix[j, i] = matrix[j, i], 0.0
 
 
 @compiled
 def forward_substitution(lower: Floats, right: Floats) -> None:
-    """Put the solution of a triangular system, (n, k), in the place of its right side."""
-    for i in range(len(lower)):
-        row = right[i]
-        for j in range(i):
-            for k in range(row.size):
-                row[k] -= lower[i, j] * right[j, k]
-        for k in range(row.size):
-            row[k] /= lower[i, i]
+    """Put the solution of a triangular system, (n, k), in the place of its right side.
+
+    Four rows at a time are freed of those before them, then of one another.
+    """
+    n, count = len(lower), right.shape[1]
+    minus, fours = -lower, n - n % 4
+    for i in range(n):
+        row, first = right[i], i - i % 4
+        if i < fours and i == first:
+            add_four_rows(right[i : i + 4], minus[i : i + 4, :i], right, 0, count)
+        for j in range(first if i < fours else 0, i):
+            for k in range(count):
+                row[k] += minus[i, j] * right[j, k]
+        scale = 1 / lower[i, i]
+        for k in range(count):
+            row[k] *= scale
 
 
 @compiled
