@@ -121,8 +121,7 @@ class Linear:
         that of the first fit.
         """
         profile, width = first_fit.profile, first_fit.blur.width_px
-        s = first_fit.line.normal_distance(pixels.row, pixels.col)
-        t = first_fit.line.tangent_distance(pixels.row, pixels.col)
+        s, t = first_fit.line.distances(pixels.row, pixels.col)
         seen = profile.seen(first_fit.blur, s)
         mean, slope = profile.response(seen)
         sides, is_edge = profile.sides(seen, s), len(profile.shares) == 1
