@@ -43,7 +43,7 @@ def block_steps(pixels: Floats) -> float:
 
 def _steps_of_columns(pixels: Floats) -> float:
     """Largest mean of a phase over the middle one of the others."""
-    third = np.abs(np.diff(pixels, n=3, axis=1))
+    third = _third_differences(pixels)
     known = third[np.isfinite(third)]
     usual = float(np.partition(known, known.size // 2)[known.size // 2]) if known.size else 0.0
     if usual == 0:
@@ -53,6 +53,18 @@ def _steps_of_columns(pixels: Floats) -> float:
     by_phase = by_phase[np.isfinite(by_phase)]
     middle = float(by_phase[max(by_phase.size // 2 - 1, 0)])
     return float(by_phase[-1]) / middle if middle > 0 else 1.0
+
+
+@compiled
+def _third_differences(pixels: Floats) -> Floats:
+    """Moduli of the third differences from column to column, (rows, cols - 3)."""
+    rows, cols = pixels.shape
+    third = np.empty((rows, cols - 3))
+    for i in range(rows):
+        for j in range(cols - 3):
+            inner, outer = pixels[i, j + 2] - pixels[i, j + 1], pixels[i, j + 3] - pixels[i, j]
+            third[i, j] = abs(outer - 3 * inner)
+    return third
 
 
 @compiled
