@@ -228,9 +228,7 @@ class Whitened:
 def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Whitened:
     """Posterior mean and covariance at given amplitudes and noise variance, by one Cholesky."""
     sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
-    precision = sigma[:, None] * normal.gram
-    precision *= sigma / noise
-    precision.reshape(-1)[:: sigma.size + 1] += 1.0
+    precision = _precision(normal.gram, sigma, noise)
     # The transpose has Fortran's order: LAPACK copies nothing, and its upper factor is our lower.
     upper, failed = _potrf(precision.T, lower=0, clean=1, overwrite_a=1)
     _require_solution(failed)
@@ -238,6 +236,18 @@ def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) ->
     covariance = lower_square(inverse)
     mean = covariance @ (sigma * normal.projection / noise + prior.mean / sigma)
     return Whitened(sigma, mean, covariance, inverse.T)
+
+
+@compiled
+def _precision(gram: Floats, sigma: Floats, noise: float) -> Floats:
+    """Inverse covariance of the whitened coefficients, (m, m), in units of the prior's."""
+    found = np.empty(gram.shape)
+    for i in range(sigma.size):
+        own = sigma[i] / noise
+        for j in range(sigma.size):
+            found[i, j] = own * gram[i, j] * sigma[j]
+        found[i, i] += 1.0
+    return found
 
 
 def _require_solution(failed: int) -> None:

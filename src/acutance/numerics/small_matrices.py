@@ -131,12 +131,8 @@ def lower_square(lower: Floats) -> Floats:
     """The product ``L^T L`` of a lower triangular matrix, (n, n), four of its rows at a time."""
     n = len(lower)
     found, fours = np.zeros((n, n)), n - n % 4
-    for k in range(0, fours, 4):
-        p, q, r, s = lower[k], lower[k + 1], lower[k + 2], lower[k + 3]
-        for i in range(k + 4):
-            a, b, c, d, row = p[i], q[i], r[i], s[i], found[i]
-            for j in range(i + 1):
-                row[j] += a * p[j] + b * q[j] + c * r[j] + d * s[j]
+    for i in range(0, fours, 4):
+        add_four_rows(found[i : i + 4], lower.T[i : i + 4, i:fours], lower[i:], 0, i + 4)
     for k in range(fours, n):
         for i in range(k + 1):
             for j in range(i + 1):
