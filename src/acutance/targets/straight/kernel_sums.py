@@ -234,7 +234,8 @@ def _add_squares(
 
 @compiled
 def kernel_moments(
-    centres: NDArray[np.float32],
+    coordinates: NDArray[np.float32],
+    q: int,
     counts: NDArray[np.intp],
     kept: NDArray[np.intp],
     log_weight: Floats,
@@ -244,7 +245,9 @@ def kernel_moments(
 
     Parameters
     ----------
-    centres : (n, q) array
+    coordinates : (p, n) array
+    q : int
+        How many coordinates are no filling.
     counts, kept, log_weight, largest
         As of `kernel_weights`.
 
@@ -253,43 +256,52 @@ def kernel_moments(
     (g + 1,), (g + 1, q) and (g + 1, q, q) arrays
         All zero of one more group, about none.
     """
-    groups, q = len(counts), centres.shape[1]
+    groups, p, most = len(counts), len(coordinates), np.max(counts)
     total, mean = np.zeros(groups + 1), np.zeros((groups + 1, q))
-    spread = np.zeros((groups + 1, q, q))
-    most = np.max(counts) + 3
-    some, share = np.empty(most, np.intp), np.empty(most)
+    spread, square = np.zeros((groups + 1, q, q)), np.zeros((p, p))
+    place, share = np.empty(most, np.intp), np.empty(most)
+    own, weighted = np.empty((p, most)), np.empty((p, most))
     for g in range(groups):
         count = 0
         for k in range(counts[g]):
             if log_weight[g, k] >= largest - _NEGLIGIBLE:
-                some[count], share[count] = kept[g, k], np.exp(log_weight[g, k] - largest)
+                place[count], share[count] = kept[g, k], np.exp(log_weight[g, k] - largest)
                 total[g] += share[count]
                 count += 1
         if count == 0:
             continue
-        # Four centres at a time, the last ones filled up with some of no weight.
-        for k in range(count, count + 3):
-            some[k], share[k] = 0, 0.0
-        for k in range(0, count, 4):
-            a, b, c, d = (
-                centres[some[k]],
-                centres[some[k + 1]],
-                centres[some[k + 2]],
-                centres[some[k + 3]],
-            )
-            for i in range(q):
-                at_a, at_b = share[k] * a[i], share[k + 1] * b[i]
-                at_c, at_d = share[k + 2] * c[i], share[k + 3] * d[i]
-                mean[g, i] += at_a + at_b + at_c + at_d
-                for j in range(i + 1):
-                    spread[g, i, j] += at_a * a[j] + at_b * b[j] + at_c * c[j] + at_d * d[j]
+        for i in range(p):
+            for k in range(count):
+                own[i, k] = coordinates[i, place[k]]
+            for k in range(count):
+                weighted[i, k] = share[k] * own[i, k]
+        _add_squares_of_centres(square, weighted, own, count)
         for i in range(q):
+            for k in range(count):
+                mean[g, i] += weighted[i, k]
             mean[g, i] /= total[g]
         for i in range(q):
             for j in range(i + 1):
-                spread[g, i, j] = spread[g, i, j] / total[g] - mean[g, i] * mean[g, j]
+                spread[g, i, j] = square[i, j] / total[g] - mean[g, i] * mean[g, j]
                 spread[g, j, i] = spread[g, i, j]
     return total, mean, spread
+
+
+@inlined
+def _add_squares_of_centres(square: Floats, weighted: Floats, own: Floats, count: int) -> None:
+    """Put the sums of products of coordinates, (p, p), below the diagonal: two by two."""
+    for i in range(0, len(own), 2):
+        w, x = weighted[i], weighted[i + 1]
+        for j in range(0, i + 1, 2):
+            a, b = own[j], own[j + 1]
+            wa, wb, xa, xb = 0.0, 0.0, 0.0, 0.0
+            for k in range(count):
+                wa += w[k] * a[k]
+                wb += w[k] * b[k]
+                xa += x[k] * a[k]
+                xb += x[k] * b[k]
+            square[i, j], square[i, j + 1] = wa, wb
+            square[i + 1, j], square[i + 1, j + 1] = xa, xb
 
 
 @compiled

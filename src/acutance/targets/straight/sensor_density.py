@@ -148,7 +148,9 @@ class Sensors:
             self._about(log_middle), lower[:-1], axes[:-1], told[:-1], log_density[:-1], none,
         )  # fmt: skip
         # The last group is about none: its centre, and their spread, are zero.
-        weight, centre, spread = kernel_moments(self._rows, counts, kept, log_weight, largest)
+        weight, centre, spread = kernel_moments(
+            self._columns, len(other), counts, kept, log_weight, largest
+        )
         weight[-1] = math.exp(none - largest)
         share = weight / weight.sum()
         mean, whole = mixture(share, centre, spread, covariance, part, power, root, axes, told)
@@ -185,15 +187,11 @@ class Sensors:
         return np.concatenate([family.coordinates for family in self.families])
 
     @cached_property
-    def _rows(self) -> NDArray[np.float32]:
-        """The coordinates, (n, q): the file has no more digits, and half the memory is read."""
-        return np.asarray(self._centres, np.float32)
-
-    @cached_property
     def _columns(self) -> NDArray[np.float32]:
-        """The same, (p, n), filled up with zeros."""
+        """The coordinates, (p, n), filled up with zeros: the file has no more digits than these."""
         count, q = self._centres.shape
-        return np.vstack([self._rows.T, np.zeros((-q % LANES, count), np.float32)])
+        filling = np.zeros((-q % LANES, count), np.float32)
+        return np.vstack([self._centres.T.astype(np.float32), filling])
 
     @cached_property
     def _log_width(self) -> Floats:
