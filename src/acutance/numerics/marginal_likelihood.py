@@ -241,11 +241,10 @@ def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) ->
 @compiled
 def _precision(gram: Floats, sigma: Floats, noise: float) -> Floats:
     """Inverse covariance of the whitened coefficients, (m, m), in units of the prior's."""
-    found = np.empty(gram.shape)
+    found, weighted = np.empty(gram.shape), sigma / noise
     for i in range(sigma.size):
-        own = sigma[i] / noise
         for j in range(sigma.size):
-            found[i, j] = own * gram[i, j] * sigma[j]
+            found[i, j] = sigma[i] * gram[i, j] * weighted[j]
         found[i, i] += 1.0
     return found
 
