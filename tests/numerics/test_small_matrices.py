@@ -33,10 +33,11 @@ def test_factors_and_solutions_in_place(size):
     assert np.allclose(found @ solved, right, rtol=0, atol=1e-10)
 
 
+@pytest.mark.parametrize("rows", [3, 4, 9])
 @pytest.mark.parametrize("inner", [1, 3, 4, 6, 8])
-def test_a_product_is_added(inner):
+def test_a_product_is_added(rows, inner):
     rng = np.random.default_rng(inner)
-    left, right = rng.standard_normal((3, inner)), rng.standard_normal((inner, 5))
-    found = np.ones((3, 5))
+    left, right = rng.standard_normal((rows, inner)), rng.standard_normal((inner, 5))
+    found = np.ones((rows, 5))
     add_product(found, left, right)
     assert np.allclose(found, 1 + left @ right, rtol=0, atol=1e-12)

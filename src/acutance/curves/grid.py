@@ -55,7 +55,8 @@ class Rows(Protocol):
 
     def __matmul__(self, matrix: Floats, /) -> Floats: ...
 
-    def __rmatmul__(self, vector: Floats, /) -> Floats: ...
+    def blend(self, first: int, weights: tuple[float, float, float, float], /) -> Floats:
+        """Weighted sum of four rows, from the first one on, (k,)."""
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats: ...
 
@@ -155,8 +156,11 @@ def sample(grid: Floats, values: NDArray[Any] | Rows, at: float | Floats) -> Any
         found = np.einsum("i...,...ij->...j", np.array(_cubic_weights(places)), columns[cells])
         return found if len(values.shape) == 2 else found[..., 0]
     window, t, _ = _cell(grid, at)
-    weights, near = _cubic_weights(t), values[window]
-    return np.array(weights) @ near if len(values.shape) == 2 else _sum(weights, near)
+    weights = _cubic_weights(t)
+    if not isinstance(values, np.ndarray):
+        return values.blend(window.start, weights)
+    near = values[window]
+    return np.array(weights) @ near if near.ndim == 2 else _sum(weights, near)
 
 
 def slope(grid: Floats, values: Floats, at: float) -> float:

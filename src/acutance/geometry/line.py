@@ -66,16 +66,20 @@ class Line:
 
     def normal_distance(self, row: ArrayLike, col: ArrayLike) -> Floats:
         """Signed distance along the normal in pixels, positive on the bright side."""
-        x, y = self.normal
-        straight = x * (np.asarray(col, float) - self.col) + y * (np.asarray(row, float) - self.row)
-        if self.curvature_per_px == 0:
-            return straight
-        return straight - 0.5 * self.curvature_per_px * self.tangent_distance(row, col) ** 2
+        return self.distances(row, col)[0]
 
     def tangent_distance(self, row: ArrayLike, col: ArrayLike) -> Floats:
         """Signed distance along the line in pixels, from its point (row, col)."""
+        return self.distances(row, col)[1]
+
+    def distances(self, row: ArrayLike, col: ArrayLike) -> tuple[Floats, Floats]:
+        """Signed distances along the normal and along the line: the one needs the other."""
         x, y = self.normal
-        return -y * (np.asarray(col, float) - self.col) + x * (np.asarray(row, float) - self.row)
+        right, down = np.asarray(col, float) - self.col, np.asarray(row, float) - self.row
+        away, along = x * right + y * down, x * down - y * right
+        if self.curvature_per_px != 0:
+            away -= 0.5 * self.curvature_per_px * along**2
+        return away, along
 
     def moved(self, offset_px: float, turn_deg: float) -> Line:
         """The line shifted along its normal, then turned about its point (small changes)."""

@@ -90,6 +90,12 @@ class Prior:
         return np.asarray(np.add.reduce(self.members))
 
     @cached_property
+    def precision(self) -> Floats:
+        """Inverse variances of the log amplitudes, (k,)."""
+        every = np.broadcast_to(np.asarray(self.log_amplitude_std, float), self.log_amplitude.shape)
+        return np.asarray(1 / np.square(every))
+
+    @cached_property
     def own_scale(self) -> Floats:
         """Standard deviations in data units, (m,), where every amplitude is one."""
         return self.height * self.scale
@@ -222,9 +228,7 @@ class Whitened:
 def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Whitened:
     """Posterior mean and covariance at given amplitudes and noise variance, by one Cholesky."""
     sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
-    precision = sigma[:, None] * normal.gram
-    precision *= sigma / noise
-    precision.reshape(-1)[:: sigma.size + 1] += 1.0
+    precision = _precision(normal.gram, sigma, noise)
     # The transpose has Fortran's order: LAPACK copies nothing, and its upper factor is our lower.
     upper, failed = _potrf(precision.T, lower=0, clean=1, overwrite_a=1)
     _require_solution(failed)
@@ -232,6 +236,17 @@ def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) ->
     covariance = lower_square(inverse)
     mean = covariance @ (sigma * normal.projection / noise + prior.mean / sigma)
     return Whitened(sigma, mean, covariance, inverse.T)
+
+
+@compiled
+def _precision(gram: Floats, sigma: Floats, noise: float) -> Floats:
+    """Inverse covariance of the whitened coefficients, (m, m), in units of the prior's."""
+    found, weighted = np.empty(gram.shape), sigma / noise
+    for i in range(sigma.size):
+        for j in range(sigma.size):
+            found[i, j] = sigma[i] * gram[i, j] * weighted[j]
+        found[i, i] += 1.0
+    return found
 
 
 def _require_solution(failed: int) -> None:
@@ -311,14 +326,13 @@ def log_evidence_slopes(white: Whitened, prior: Prior, log_amplitude: Floats) ->
                          - delta_kj (2 |m_k|^2 + 2 tr N_kk + 1 / s^2)
         d beta / d a_j = 2 sigma N E_j m
     """
-    precision = 1 / np.square(prior.log_amplitude_std)
+    precision = prior.precision
     shifts, explained, crossed = _block_sums(
         white.covariance, white.mean, prior.own_block, prior.sizes.size
     )
     gradient = explained - prior.sizes - (log_amplitude - prior.log_amplitude) * precision
-    hessian = 2 * crossed
-    hessian.reshape(-1)[:: gradient.size + 1] -= 2 * explained + precision
-    return LogEvidence(gradient, hessian, 2 * shifts, float(np.min(precision)) / 4)
+    crossed.reshape(-1)[:: gradient.size + 1] -= 2 * explained + precision
+    return LogEvidence(gradient, crossed, shifts, float(precision.min()) / 4)
 
 
 @compiled
@@ -328,7 +342,7 @@ def _block_sums(
     """What the slopes of the log evidence consist of, block by block.
 
     With the covariance N (m, m) and the mean m (m,), and -1 the block of what belongs to none:
-    ``N E_j m`` (m, k), ``|m_k|^2 + tr N_kk`` (k,) and ``2 m_k (N E_j m)_k + |N_kj|^2`` (k, k).
+    ``2 N E_j m`` (m, k), ``|m_k|^2 + tr N_kk`` (k,), ``4 m_k (N E_j m)_k + 2 |N_kj|^2`` (k, k).
     """
     size = mean.size
     shifts, explained = np.zeros((size, blocks)), np.zeros(blocks)
@@ -343,9 +357,9 @@ def _block_sums(
                 square += covariance[i, j] ** 2
                 j += 1
             if other >= 0:
-                shifts[i, other] += shift
+                shifts[i, other] += 2 * shift
                 if own >= 0:
-                    crossed[own, other] += 2 * mean[i] * shift + square
+                    crossed[own, other] += 4 * mean[i] * shift + 2 * square
         if own >= 0:
             explained[own] += mean[i] ** 2 + covariance[i, i]
     return shifts, explained, crossed

@@ -6,53 +6,99 @@ time is that of the call.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.numerics.compiled import compiled
+from acutance.numerics.compiled import compiled, inlined
 
-__all__ = ["add_product", "factorize", "forward_substitution", "lower_inverse", "lower_square"]
+__all__ = [
+    "add_four_rows",
+    "add_product",
+    "factorize",
+    "forward_substitution",
+    "lower_inverse",
+    "lower_square",
+]
 
 
 @compiled
 def add_product(found: Floats, left: Floats, right: Floats) -> None:
-    """Add to a matrix (n, k) the product of two, (n, m) and (m, k), four rows at a time."""
-    fours = len(right) - len(right) % 4
-    for i in range(len(left)):
-        row = found[i]
-        for j in range(0, fours, 4):
-            a, b, c, d = left[i, j], left[i, j + 1], left[i, j + 2], left[i, j + 3]
-            p, q, r, s = right[j], right[j + 1], right[j + 2], right[j + 3]
-            for k in range(row.size):
-                row[k] += a * p[k] + b * q[k] + c * r[k] + d * s[k]
-        for j in range(fours, len(right)):
-            for k in range(row.size):
-                row[k] += left[i, j] * right[j, k]
+    """Add to a matrix (n, k) the product of two, (n, m) and (m, k), four rows of each at a time."""
+    n, m, count = len(left), len(right), right.shape[1]
+    rows, fours = n - n % 4, m - m % 4
+    for i in range(0, rows, 4):
+        add_four_rows(found[i : i + 4], left[i : i + 4, :fours], right, 0, count)
+    for i in range(n):
+        for j in range(fours if i < rows else 0, m):
+            for k in range(count):
+                found[i, k] += left[i, j] * right[j, k]
+
+
+@inlined
+def add_four_rows(
+    found: NDArray[Any], factors: NDArray[Any], rows: NDArray[Any], start: int, count: int
+) -> None:
+    """Add factors (4, m) times so many columns of rows (m, n), from one on, to the first of found.
+
+    Sixteen factors stay in registers while the columns pass. m is a multiple of four.
+    """
+    w, x, y, z = found[0], found[1], found[2], found[3]
+    for i in range(0, factors.shape[1], 4):
+        a, b, c, d = factors[:, i], factors[:, i + 1], factors[:, i + 2], factors[:, i + 3]
+        a0, a1, a2, a3 = a[0], a[1], a[2], a[3]
+        b0, b1, b2, b3 = b[0], b[1], b[2], b[3]
+        c0, c1, c2, c3 = c[0], c[1], c[2], c[3]
+        d0, d1, d2, d3 = d[0], d[1], d[2], d[3]
+        p, q, r, s = rows[i, start:], rows[i + 1, start:], rows[i + 2, start:], rows[i + 3, start:]
+        for k in range(count):
+            w[k] += a0 * p[k] + b0 * q[k] + c0 * r[k] + d0 * s[k]
+            x[k] += a1 * p[k] + b1 * q[k] + c1 * r[k] + d1 * s[k]
+            y[k] += a2 * p[k] + b2 * q[k] + c2 * r[k] + d2 * s[k]
+            z[k] += a3 * p[k] + b3 * q[k] + c3 * r[k] + d3 * s[k]
 
 
 @compiled
 def factorize(matrix: Floats) -> None:
-    """Put the lower triangular factor of a matrix, (n, n), in its place (Cholesky)."""
-    for i in range(len(matrix)):
-        for j in range(i + 1):
-            left = matrix[i, j]
-            for k in range(j):
-                left -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] = np.sqrt(left) if i == j else left / matrix[j, j]
-        for j in range(i + 1, len(matrix)):
-            matrix[i, j] = 0.0
+    """Put the lower triangular factor of a symmetric matrix, (n, n), in its place (Cholesky).
+
+    The rows of its transpose are worked out above the diagonal, where they are contiguous.
+    """
+    n = len(matrix)
+    for i in range(n):
+        own = matrix[i]
+        scale = 1 / np.sqrt(own[i])
+        for k in range(i, n):
+            own[k] *= scale
+        for j in range(i + 1, n):
+            factor, row = own[j], matrix[j]
+            for k in range(j, n):
+                row[k] -= factor * own[k]
+    for i in range(n):
+        for j in range(i):
+            matrix[i, j], matrix[j, i] = matrix[j, i], 0.0
 
 
 @compiled
 def forward_substitution(lower: Floats, right: Floats) -> None:
-    """Put the solution of a triangular system, (n, k), in the place of its right side."""
-    for i in range(len(lower)):
-        row = right[i]
-        for j in range(i):
-            for k in range(row.size):
-                row[k] -= lower[i, j] * right[j, k]
-        for k in range(row.size):
-            row[k] /= lower[i, i]
+    """Put the solution of a triangular system, (n, k), in the place of its right side.
+
+    Four rows at a time are freed of those before them, then of one another.
+    """
+    n, count = len(lower), right.shape[1]
+    minus, fours = -lower, n - n % 4
+    for i in range(n):
+        row, first = right[i], i - i % 4
+        if i < fours and i == first:
+            add_four_rows(right[i : i + 4], minus[i : i + 4, :i], right, 0, count)
+        for j in range(first if i < fours else 0, i):
+            for k in range(count):
+                row[k] += minus[i, j] * right[j, k]
+        scale = 1 / lower[i, i]
+        for k in range(count):
+            row[k] *= scale
 
 
 @compiled
@@ -85,12 +131,8 @@ def lower_square(lower: Floats) -> Floats:
     """The product ``L^T L`` of a lower triangular matrix, (n, n), four of its rows at a time."""
     n = len(lower)
     found, fours = np.zeros((n, n)), n - n % 4
-    for k in range(0, fours, 4):
-        p, q, r, s = lower[k], lower[k + 1], lower[k + 2], lower[k + 3]
-        for i in range(k + 4):
-            a, b, c, d, row = p[i], q[i], r[i], s[i], found[i]
-            for j in range(i + 1):
-                row[j] += a * p[j] + b * q[j] + c * r[j] + d * s[j]
+    for i in range(0, fours, 4):
+        add_four_rows(found[i : i + 4], lower.T[i : i + 4, i:fours], lower[i:], 0, i + 4)
     for k in range(fours, n):
         for i in range(k + 1):
             for j in range(i + 1):

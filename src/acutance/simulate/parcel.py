@@ -60,7 +60,7 @@ class Border:
     def along_and_across(self, rows: ArrayLike, cols: ArrayLike) -> tuple[Floats, Floats]:
         """Distances of places along the tangent at the middle, and from the border (inside > 0)."""
         line = Line(self.row, self.col, self.normal_deg)
-        s, t = line.normal_distance(rows, cols), line.tangent_distance(rows, cols)
+        s, t = line.distances(rows, cols)
         k = self.curvature_per_px
         if k == 0:
             return t, s

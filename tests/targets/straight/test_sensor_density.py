@@ -61,6 +61,49 @@ def test_the_posterior_is_that_of_the_density_times_the_likelihood(small):
         assert found.share[name] == pytest.approx(float(likelihood @ own / weight.sum()), abs=2e-3)
 
 
+def test_of_thousands_of_sensors_none_that_counts_is_left_out():
+    """Kernel by kernel: a dozen combinations, of which the first eight exclude most sensors."""
+    rng = np.random.default_rng(3)
+    size, q, noise = 1500, 12, 0.02 * np.diag(np.linspace(1, 3, 12))
+    families = tuple(
+        SensorFamily(
+            name, centre + rng.standard_normal((size, q)), np.full(size, np.log(WIDTH_PX)),
+            np.full(size, 1 / size), spread * np.eye(q),
+        )
+        for name, centre, spread in (("halo", 0.0, 0.8), ("trail", 0.3, 0.5))
+    )  # fmt: skip
+    best, other = rng.standard_normal(q) / 2, 0.3 * np.eye(q)
+    information = np.linalg.inv(noise)
+    found = Sensors(np.eye(79)[:, :q], families).seen(
+        information, information @ best, WIDTH_PX, other
+    )
+    kernels = [
+        (family.coordinates, family.weight, scale**2 * family.covariance)
+        for family in families
+        for scale in KERNEL_SCALES
+    ]
+    kernels.append((np.zeros((1, q)), np.array([OTHER_WEIGHT]), other))
+    weights, means, lefts = [], [], []
+    for centres, weight, covariance in kernels:
+        seen = np.linalg.inv(covariance + noise)
+        off = best - centres
+        density = np.exp(-0.5 * np.einsum("ij,jk,ik->i", off, seen, off))
+        weights.append(weight * density * np.sqrt(np.linalg.det(seen)))
+        means.append(centres + off @ seen @ covariance)
+        lefts.append(covariance - covariance @ seen @ covariance)
+    least = max(one.max() for one in weights) * np.exp(-9.0)
+    weights = [np.where(one >= least, one, 0.0) for one in weights]
+    assert 20 < sum(np.count_nonzero(one) for one in weights) < 2000
+    total = sum(one.sum() for one in weights)
+    parts = list(zip(weights, means, lefts, strict=True))
+    mean = sum(one @ own for one, own, _ in parts) / total
+    second = sum(one.sum() * left + (one[:, None] * own).T @ own for one, own, left in parts)
+    assert found.mean == pytest.approx(mean, abs=1e-5)
+    assert found.covariance == pytest.approx(second / total - np.outer(mean, mean), abs=1e-5)
+    halo = (weights[0].sum() + weights[1].sum()) / total
+    assert found.share["halo"] == pytest.approx(halo, abs=1e-5)
+
+
 def test_sensors_of_another_width_say_nothing(small):
     found = small.seen(np.eye(2), np.zeros(2), 4 * WIDTH_PX, np.eye(2))
     assert found.share["other"] == pytest.approx(1)

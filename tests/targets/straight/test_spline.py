@@ -94,8 +94,10 @@ def test_products_of_rows_are_those_of_the_whole_matrix(own):
     assert np.array_equal(whole[:, :-3], expected[:, :-3])
     matrix = rng.standard_normal((rows.shape[1], 3))
     assert np.max(np.abs(rows @ matrix - whole @ matrix)) < 1e-13
-    vector = rng.standard_normal(rows.shape[0])
-    assert np.max(np.abs(vector @ rows - vector @ whole)) < 1e-12
+    factors = (-0.1, 0.6, 0.7, -0.2)
+    for first in (0, rows.shape[0] - 4):
+        wanted = np.array(factors) @ whole[first : first + 4]
+        assert np.max(np.abs(rows.blend(first, factors) - wanted)) < 1e-13
 
 
 def test_esf_from_lsf_takes_columns():

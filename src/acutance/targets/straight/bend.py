@@ -62,9 +62,8 @@ def _curvature(
     slope of the image.
     """
     first, part_px, power, offset = _part_offsets(
-        fit.line.normal_distance(row, col), fit.line.tangent_distance(row, col),
-        (value - fit.dark) / fit.height, fit.profile.steps, fit.blur.sigma_px,
-        fit.blur.aperture_px, _NEAR_WIDTHS * fit.blur.width_px,
+        *fit.line.distances(row, col), (value - fit.dark) / fit.height, fit.profile.steps,
+        fit.blur.sigma_px, fit.blur.aperture_px, _NEAR_WIDTHS * fit.blur.width_px,
     )  # fmt: skip
     if power.size < _MIN_PARTS:
         return 0.0, np.inf, 1.0

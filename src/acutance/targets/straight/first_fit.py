@@ -83,7 +83,7 @@ def fit_first(
     NoEdgeError
         If no step survives the fit, or it leaves the pixels.
     """
-    s, t = line.normal_distance(row, col), line.tangent_distance(row, col)
+    s, t = line.distances(row, col)
     # A bad pixel counts with no more than a whole height.
     levels = (dark, bright, dark + (bright - dark) * sum(profile.shares))
     span = max(levels) - min(levels)

@@ -109,8 +109,7 @@ def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
     response = model.response(middle)
     line = first_fit.line.moved(middle, math.degrees(solution.rotation_rad))
     line = line.bent(solution.curvature_per_px)
-    t = line.tangent_distance(pixels.row, pixels.col)
-    s = line.normal_distance(pixels.row, pixels.col)
+    s, t = line.distances(pixels.row, pixels.col)
     near = np.abs(s) < first_fit.blur.width_px
     length = float(np.ptp(t[near])) if near.any() else math.nan
     dark, height = solved.dark, model.height

@@ -150,6 +150,7 @@ class GroundSide:
         return cls(_PLACES[: step.size] * width_px, step, np.cumsum(step), std)
 
 
+@cache
 def near_ground() -> Ground:
     """The steps beside an edge within the spline's support; no pixels beyond it."""
     near = NEAR_GROUND_STEPS.size

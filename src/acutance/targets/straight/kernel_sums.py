@@ -12,21 +12,35 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled, inlined
-from acutance.numerics.small_matrices import add_product, factorize, forward_substitution
+from acutance.numerics.small_matrices import (
+    add_four_rows,
+    add_product,
+    factorize,
+    forward_substitution,
+)
+from acutance.targets.straight.tuned import KERNEL_LOG_WIDTH
 
 __all__ = ["LANES", "kernel_moments", "kernel_weights", "mixture", "seen_kernels"]
 
 LANES = 4
 """Coordinates are filled up with zeros to a multiple of this: so many are taken at once."""
-_SOME = 256
+_SOME = 1024
 """Kernels whose distances are worked out side by side."""
+_AT_ONCE = 32
+"""Kernels that an unrolled loop takes at once; `_SOME` is a multiple of it."""
+_TOLD_BEST = 8
+"""Combinations after which most kernels are known to be negligible; a multiple of `LANES`."""
 _NEGLIGIBLE = 9.0
 """Kernels whose log weight is less than the largest by this are left out."""
 
 
 @compiled
 def seen_kernels(
-    covariance: Floats, combinations: Floats, values: Floats
+    covariance: Floats,
+    part: NDArray[np.intp],
+    power: Floats,
+    combinations: Floats,
+    values: Floats,
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     """What combinations ``K^T c`` with an error of one tell of kernels of covariance S.
 
@@ -34,7 +48,10 @@ def seen_kernels(
 
     Parameters
     ----------
-    covariance : (g, q, q) array
+    covariance : (f, q, q) array
+        Of families.
+    part, power : (g,) arrays
+        The kernels of group g have the covariance ``power[g] * covariance[part[g]]``.
     combinations : (q, r) array
     values : (r,) array
 
@@ -51,20 +68,25 @@ def seen_kernels(
     log_density : (g,) array
         Logarithm of the density of a kernel that is where the pixels say.
     """
-    groups = len(covariance)
+    groups = len(part)
     q, r = combinations.shape
     lower, root = np.zeros((groups, r, r)), np.zeros((groups, q, r))
     axes, told = np.zeros((groups, r, q)), np.zeros((groups, r))
     log_density = np.zeros(groups)
-    rows = combinations.T.copy()
+    rows, value = combinations.T.copy(), np.zeros((r, 1))
+    across, within, half = np.zeros((r, q)), np.zeros((r, r)), np.zeros((r, q))
     for g in range(groups):
-        half, value = np.zeros((r, q)), np.zeros((r, 1))
-        add_product(half, rows, covariance[g])
+        if g == 0 or part[g] != part[g - 1]:
+            across[:], within[:] = 0.0, 0.0
+            add_product(across, rows, covariance[part[g]])
+            add_product(within, across, combinations)
         for i in range(r):
-            lower[g, i, i], value[i, 0] = 1.0, values[i]
+            value[i, 0] = values[i]
             for j in range(q):
-                axes[g, i, j] = rows[i, j]
-        add_product(lower[g], half, combinations)
+                axes[g, i, j], half[i, j] = rows[i, j], power[g] * across[i, j]
+            for j in range(r):
+                lower[g, i, j] = power[g] * within[i, j]
+            lower[g, i, i] += 1.0
         factorize(lower[g])
         forward_substitution(lower[g], half)
         forward_substitution(lower[g], axes[g])
@@ -80,25 +102,30 @@ def seen_kernels(
 @compiled
 def kernel_weights(
     coordinates: NDArray[np.float32],
-    log_before: Floats,
+    log_share: Floats,
+    log_width: Floats,
+    log_middle: float,
     members: NDArray[np.intp],
     lower: Floats,
     axes: Floats,
     told: Floats,
     log_density: Floats,
     largest: float,
-) -> tuple[Floats, float]:
+) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats, float]:
     """Logarithm of the weight of every kernel after the pixels are seen.
 
     A centre c is off by ``x = axes c - told``, in standard deviations of a kernel of its family's
     first size, with the factor L of `seen_kernels`; for that of another size, L', by ``L'^-1 L x``.
+    The sum of squares only grows: what the combinations told best make negligible, is left out.
 
     Parameters
     ----------
     coordinates : (p, n) array
         The q coordinates of every centre, filled up with zeros.
-    log_before : (n,) array
-        Logarithm of the weight of a centre before.
+    log_share, log_width : (n,) arrays
+        Logarithms of the weight of a centre among all, and of the width of its blur.
+    log_middle : float
+        Logarithm of the width of the pixels' blur: a centre of another has less weight.
     members : (f, 2) int array
         First centre of every family, and the one after its last.
     lower, axes, told, log_density
@@ -108,17 +135,23 @@ def kernel_weights(
 
     Returns
     -------
-    log_weight : (g, m) array
-        Of the m or less centres of a group.
+    counts : (g,) int array
+        How many centres of a group are kept.
+    kept, log_weight : (g, m) arrays
+        Which ones they are, and the logarithms of their weights; what follows the count is empty.
     largest : float
     """
     families, (groups, r, q), p = len(members), axes.shape, len(coordinates)
-    sizes = groups // families
-    found = np.full((groups, np.max(members[:, 1] - members[:, 0])), -np.inf)
-    # The last columns are zeros: four products are summed at a time.
-    own, filled = np.zeros((r, p), np.float32), r + -r % LANES
-    others = np.zeros((sizes, r, filled), np.float32)
-    off, here = np.zeros((filled, _SOME), np.float32), np.empty(_SOME, np.float32)
+    sizes, rows = groups // families, r + -r % LANES
+    soon = min(rows, _TOLD_BEST)
+    most = np.max(members[:, 1] - members[:, 0])
+    counts, kept = np.zeros(groups, np.intp), np.empty((groups, most), np.intp)
+    log_weight = np.empty((groups, most))
+    # The last rows and columns are zeros: four sums of four products are worked out at a time.
+    own, others = np.zeros((rows, p), np.float32), np.zeros((sizes, rows, rows), np.float32)
+    off, misfit = np.zeros((rows, _SOME), np.float32), np.empty((sizes, _SOME), np.float32)
+    left, place = np.zeros((p, _SOME), np.float32), np.empty(_SOME, np.intp)
+    before, best, minus = np.empty(_SOME), np.empty(_SOME), np.zeros(rows, np.float32)
     for f in range(families):
         g, (first, last) = f * sizes, members[f]
         for size in range(1, sizes):
@@ -128,99 +161,147 @@ def kernel_weights(
                 for i in range(r):
                     others[size, j, i] = turn[j, i]
         for j in range(r):
+            minus[j] = -told[g, j]
             for i in range(q):
                 own[j, i] = axes[g, j, i]
         for start in range(first, last, _SOME):
-            count = min(_SOME, last - start)
+            some = min(_SOME, last - start)
+            misfit[:] = 0.0
+            _add_squares(misfit, off, own, others, minus, coordinates, start, some, 0, soon)
+            best[:some] = -np.inf
+            for k in range(some):
+                away = (log_width[start + k] - log_middle) / KERNEL_LOG_WIDTH
+                before[k] = log_share[start + k] - 0.5 * away * away
             for size in range(sizes):
-                misfit = np.zeros(_SOME, np.float32)
-                for j in range(r):
-                    if size == 0:
-                        here[:] = -told[g, j]
-                        _add_products(here, own[j], coordinates, start, count)
-                        for k in range(count):
-                            off[j, k] = here[k]
-                    else:
-                        here[:] = 0.0
-                        _add_products(here, others[size, j, : j + LANES - j % LANES], off, 0, count)
-                    for k in range(count):
-                        misfit[k] += here[k] * here[k]
+                for k in range(some):
+                    best[k] = max(best[k], log_density[g + size] - 0.5 * misfit[size, k])
+            count = 0
+            for k in range(some):
+                place[count] = k
+                count += before[k] + best[k] >= largest - _NEGLIGIBLE
+            for i in range(q):
                 for k in range(count):
-                    weight = log_before[start + k] + log_density[g + size] - 0.5 * misfit[k]
-                    found[g + size, start - first + k] = weight
-                    largest = max(largest, weight)
-    return found, largest
+                    left[i, k] = coordinates[i, start + place[k]]
+            for j in range(soon):
+                for k in range(count):
+                    off[j, k] = off[j, place[k]]
+            for size in range(sizes):
+                for k in range(count):
+                    misfit[size, k] = misfit[size, place[k]]
+            # Columns beyond the count are some of no use, and cost nothing.
+            filled_up = count + -count % _AT_ONCE
+            _add_squares(misfit, off, own, others, minus, left, 0, filled_up, soon, rows)
+            for size in range(sizes):
+                n = counts[g + size]
+                for k in range(count):
+                    here = before[place[k]] + log_density[g + size] - 0.5 * misfit[size, k]
+                    largest = max(largest, here)
+                    kept[g + size, n], log_weight[g + size, n] = start + place[k], here
+                    n += here >= largest - _NEGLIGIBLE
+                counts[g + size] = n
+    return counts, kept, log_weight, largest
 
 
 @inlined
-def _add_products(
-    found: NDArray[np.float32],
-    factors: NDArray[np.float32],
-    rows: NDArray[np.float32],
+def _add_squares(
+    misfit: NDArray[np.float32],
+    off: NDArray[np.float32],
+    own: NDArray[np.float32],
+    others: NDArray[np.float32],
+    minus: NDArray[np.float32],
+    coordinates: NDArray[np.float32],
     start: int,
     count: int,
+    j: int,
+    stop: int,
 ) -> None:
-    """Add factors (m,) times the same part of rows (m, n), m being a multiple of four."""
-    for i in range(0, factors.size, LANES):
-        a, b, c, d = factors[i], factors[i + 1], factors[i + 2], factors[i + 3]
-        p, q, r, s = rows[i, start:], rows[i + 1, start:], rows[i + 2, start:], rows[i + 3, start:]
-        for k in range(count):
-            found[k] += a * p[k] + b * q[k] + c * r[k] + d * s[k]
+    """Add the squares of the combinations from j to `stop` to the misfits (sizes, count)."""
+    here = np.empty((LANES, _SOME), np.float32)
+    for i in range(j, stop, LANES):
+        for a in range(LANES):
+            off[i + a, :count] = minus[i + a]
+        add_four_rows(off[i : i + LANES], own[i : i + LANES], coordinates, start, count)
+        for size in range(1, len(others)):
+            here[:, :count] = 0.0
+            add_four_rows(here, others[size, i : i + LANES, : i + LANES], off, 0, count)
+            for a in range(LANES):
+                for k in range(count):
+                    misfit[size, k] += here[a, k] * here[a, k]
+        for a in range(LANES):
+            for k in range(count):
+                misfit[0, k] += off[i + a, k] * off[i + a, k]
 
 
 @compiled
 def kernel_moments(
-    centres: NDArray[np.float32], members: NDArray[np.intp], log_weight: Floats, largest: float
+    coordinates: NDArray[np.float32],
+    q: int,
+    counts: NDArray[np.intp],
+    kept: NDArray[np.intp],
+    log_weight: Floats,
+    largest: float,
 ) -> tuple[Floats, Floats, Floats]:
     """Of every group the weight relative to the largest, and mean and covariance of its centres.
 
     Parameters
     ----------
-    centres : (n, q) array
-    members, log_weight, largest
+    coordinates : (p, n) array
+    q : int
+        How many coordinates are no filling.
+    counts, kept, log_weight, largest
         As of `kernel_weights`.
 
     Returns
     -------
-    (g,), (g, q) and (g, q, q) arrays
+    (g + 1,), (g + 1, q) and (g + 1, q, q) arrays
+        All zero of one more group, about none.
     """
-    groups, q = log_weight.shape[0], centres.shape[1]
-    sizes = groups // len(members)
-    total, mean, spread = np.zeros(groups), np.zeros((groups, q)), np.zeros((groups, q, q))
-    kept, share = np.empty(log_weight.shape[1] + 3, np.intp), np.empty(log_weight.shape[1] + 3)
+    groups, p, most = len(counts), len(coordinates), np.max(counts)
+    total, mean = np.zeros(groups + 1), np.zeros((groups + 1, q))
+    spread, square = np.zeros((groups + 1, q, q)), np.zeros((p, p))
+    place, share = np.empty(most, np.intp), np.empty(most)
+    own, weighted = np.empty((p, most)), np.empty((p, most))
     for g in range(groups):
-        first, last = members[g // sizes]
         count = 0
-        for k in range(last - first):
+        for k in range(counts[g]):
             if log_weight[g, k] >= largest - _NEGLIGIBLE:
-                kept[count], share[count] = first + k, np.exp(log_weight[g, k] - largest)
+                place[count], share[count] = kept[g, k], np.exp(log_weight[g, k] - largest)
                 total[g] += share[count]
                 count += 1
         if count == 0:
             continue
-        # Four centres at a time, the last ones filled up with some of no weight.
-        for k in range(count, count + 3):
-            kept[k], share[k] = first, 0.0
-        for k in range(0, count, 4):
-            a, b, c, d = (
-                centres[kept[k]],
-                centres[kept[k + 1]],
-                centres[kept[k + 2]],
-                centres[kept[k + 3]],
-            )
-            for i in range(q):
-                at_a, at_b = share[k] * a[i], share[k + 1] * b[i]
-                at_c, at_d = share[k + 2] * c[i], share[k + 3] * d[i]
-                mean[g, i] += at_a + at_b + at_c + at_d
-                for j in range(i + 1):
-                    spread[g, i, j] += at_a * a[j] + at_b * b[j] + at_c * c[j] + at_d * d[j]
+        for i in range(p):
+            for k in range(count):
+                own[i, k] = coordinates[i, place[k]]
+            for k in range(count):
+                weighted[i, k] = share[k] * own[i, k]
+        _add_squares_of_centres(square, weighted, own, count)
         for i in range(q):
+            for k in range(count):
+                mean[g, i] += weighted[i, k]
             mean[g, i] /= total[g]
         for i in range(q):
             for j in range(i + 1):
-                spread[g, i, j] = spread[g, i, j] / total[g] - mean[g, i] * mean[g, j]
+                spread[g, i, j] = square[i, j] / total[g] - mean[g, i] * mean[g, j]
                 spread[g, j, i] = spread[g, i, j]
     return total, mean, spread
+
+
+@inlined
+def _add_squares_of_centres(square: Floats, weighted: Floats, own: Floats, count: int) -> None:
+    """Put the sums of products of coordinates, (p, p), below the diagonal: two by two."""
+    for i in range(0, len(own), 2):
+        w, x = weighted[i], weighted[i + 1]
+        for j in range(0, i + 1, 2):
+            a, b = own[j], own[j + 1]
+            wa, wb, xa, xb = 0.0, 0.0, 0.0, 0.0
+            for k in range(count):
+                wa += w[k] * a[k]
+                wb += w[k] * b[k]
+                xa += x[k] * a[k]
+                xb += x[k] * b[k]
+            square[i, j], square[i, j + 1] = wa, wb
+            square[i + 1, j], square[i + 1, j + 1] = xa, xb
 
 
 @compiled
@@ -229,6 +310,8 @@ def mixture(
     centre: Floats,
     spread: Floats,
     covariance: Floats,
+    part: NDArray[np.intp],
+    power: Floats,
     root: Floats,
     axes: Floats,
     told: Floats,
@@ -248,7 +331,7 @@ def mixture(
         Probability of every group.
     centre, spread : (g, q) and (g, q, q) arrays
         Mean and covariance of its centres.
-    covariance, root, axes, told
+    covariance, part, power, root, axes, told
         As of `seen_kernels`.
     """
     groups, r, q = axes.shape
@@ -273,10 +356,11 @@ def mixture(
                 off -= axes[g, j, i] * centre[g, i]
             for i in range(q):
                 means[g, i] += root[g, i, j] * off
+        before, size = covariance[part[g]], power[g]
         for i in range(q):
             mean[i] += share[g] * means[g, i]
             for j in range(q):
-                own = covariance[g, i, j] + spread[g, i, j] + crossed[i, j] + crossed[j, i]
+                own = size * before[i, j] + spread[g, i, j] + crossed[i, j] + crossed[j, i]
                 whole[i, j] += share[g] * own
     for g in range(groups):
         for i in range(q):

@@ -10,7 +10,7 @@ those of line, width and height ratio: they are derivatives of the response, and
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -121,8 +121,7 @@ class Linear:
         that of the first fit.
         """
         profile, width = first_fit.profile, first_fit.blur.width_px
-        s = first_fit.line.normal_distance(pixels.row, pixels.col)
-        t = first_fit.line.tangent_distance(pixels.row, pixels.col)
+        s, t = first_fit.line.distances(pixels.row, pixels.col)
         seen = profile.seen(first_fit.blur, s)
         mean, slope = profile.response(seen)
         sides, is_edge = profile.sides(seen, s), len(profile.shares) == 1
@@ -225,11 +224,15 @@ class Linear:
     def model(self, posterior: Posterior) -> LsfModel:
         """The LSF of the unknowns: the tail is added to the spline in closed form."""
         esf, tail, block = self.directions
-        own = slice(1, 1 + block.size)
-        beta, factor = posterior.beta[own], self.latent(posterior)[: block.size]
-        latent = np.vstack([esf @ factor, tail @ factor])
+        factor = self.latent(posterior)[: block.size]
+        return replace(self.mean_model(posterior), latent=np.vstack([esf @ factor, tail @ factor]))
+
+    def mean_model(self, posterior: Posterior) -> LsfModel:
+        """The same as if it were known exactly."""
+        esf, tail, block = self.directions
+        beta, exact = posterior.beta[1 : 1 + block.size], np.zeros((len(esf) + 1, 0))
         return LsfModel(
-            self.first_fit.blur, self.first_fit.height, esf @ beta, float(tail @ beta), latent
+            self.first_fit.blur, self.first_fit.height, esf @ beta, float(tail @ beta), exact
         )
 
     def latent(self, posterior: Posterior) -> Floats:

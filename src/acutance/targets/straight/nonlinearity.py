@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
 import numpy as np
@@ -229,6 +230,7 @@ def _folded(mirrored: MirrorSum, noise: SideNoise | None, log_linear: Floats) ->
     return Curvature(mean, spread, log_odds, float(_BEGINS[best]))
 
 
+@cache
 def _log_prior() -> Floats:
     """Of a curve, and of every shoulder, where the characteristic is not straight, (k,)."""
     shoulders = np.full(_SHOULDERS.size, _PRIOR_SHOULDER / _SHOULDERS.size)

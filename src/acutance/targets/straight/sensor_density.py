@@ -136,22 +136,24 @@ class Sensors:
             Covariance of the coordinates of sensors like none that was drawn, about none.
         """
         combinations, values = _told(information, projection, self.spread + other)
-        covariance = np.concatenate([self.kernel_covariances, other[None]])
-        lower, root, axes, told, log_density = seen_kernels(covariance, combinations, values)
-        members, log_before = self._about(width_px)
-        none = math.log(OTHER_WEIGHT) + float(log_density[-1] - 0.5 * (told[-1] @ told[-1]))
-        log_weight, largest = kernel_weights(
-            self._columns, log_before, members, lower[:-1], axes[:-1], told[:-1],
-            log_density[:-1], none,
-        )  # fmt: skip
-        weight, centre, spread = kernel_moments(self._rows, members, log_weight, largest)
-        weight = np.append(weight, math.exp(none - largest))
-        # The last group is about none: its centre, and their spread, are zero.
-        centre, spread = (
-            np.concatenate([part, np.zeros_like(part[:1])]) for part in (centre, spread)
+        covariance = np.concatenate([self.covariances, other[None]])
+        part, power = self._groups
+        lower, root, axes, told, log_density = seen_kernels(
+            covariance, part, power, combinations, values
         )
+        log_middle = math.log(width_px)
+        none = math.log(OTHER_WEIGHT) + float(log_density[-1] - 0.5 * (told[-1] @ told[-1]))
+        counts, kept, log_weight, largest = kernel_weights(
+            self._columns, self._log_share, self._log_width, log_middle,
+            self._about(log_middle), lower[:-1], axes[:-1], told[:-1], log_density[:-1], none,
+        )  # fmt: skip
+        # The last group is about none: its centre, and their spread, are zero.
+        weight, centre, spread = kernel_moments(
+            self._columns, len(other), counts, kept, log_weight, largest
+        )
+        weight[-1] = math.exp(none - largest)
         share = weight / weight.sum()
-        mean, whole = mixture(share, centre, spread, covariance, root, axes, told)
+        mean, whole = mixture(share, centre, spread, covariance, part, power, root, axes, told)
         families: dict[str, float] = {}
         for name, one in zip(self.group_names, share.tolist(), strict=True):
             if one > 0:
@@ -164,11 +166,16 @@ class Sensors:
         return (*np.repeat([family.name for family in self.families], _SIZES).tolist(), "other")
 
     @cached_property
-    def kernel_covariances(self) -> Floats:
-        """Of the kernels of every group but the last, (g - 1, q, q)."""
-        return np.array([
-            scale**2 * family.covariance for family in self.families for scale in KERNEL_SCALES
-        ])  # fmt: skip
+    def covariances(self) -> Floats:
+        """Of every family, (f, q, q)."""
+        return np.array([family.covariance for family in self.families])
+
+    @cached_property
+    def _groups(self) -> tuple[NDArray[np.intp], Floats]:
+        """Covariance of the kernels of every group: which one, and by what factor."""
+        count = len(self.families)
+        part = np.append(np.repeat(np.arange(count), _SIZES), count)
+        return part, np.append(np.tile(np.square(KERNEL_SCALES), count), 1.0)
 
     @cached_property
     def spread(self) -> Floats:
@@ -180,15 +187,11 @@ class Sensors:
         return np.concatenate([family.coordinates for family in self.families])
 
     @cached_property
-    def _rows(self) -> NDArray[np.float32]:
-        """The coordinates, (n, q): the file has no more digits, and half the memory is read."""
-        return np.asarray(self._centres, np.float32)
-
-    @cached_property
     def _columns(self) -> NDArray[np.float32]:
-        """The same, (p, n), filled up with zeros."""
+        """The coordinates, (p, n), filled up with zeros: the file has no more digits than these."""
         count, q = self._centres.shape
-        return np.vstack([self._rows.T, np.zeros((-q % LANES, count), np.float32)])
+        filling = np.zeros((-q % LANES, count), np.float32)
+        return np.vstack([self._centres.T.astype(np.float32), filling])
 
     @cached_property
     def _log_width(self) -> Floats:
@@ -201,15 +204,14 @@ class Sensors:
             np.log(FAMILY_WEIGHTS.get(family.name, 1.0) * family.weight) for family in self.families
         ])  # fmt: skip
 
-    def _about(self, width_px: float) -> tuple[NDArray[np.intp], Floats]:
-        """Sensors of about that blur: first and last of every family, and all log weights."""
-        away = (self._log_width - math.log(width_px)) / KERNEL_LOG_WIDTH
-        start, members, ends = 0, [], np.array([-_REACH, _REACH])
+    def _about(self, log_middle: float) -> NDArray[np.intp]:
+        """Sensors of about that width of the blur: first of every family, and the one after."""
+        ends = log_middle + np.array([-_REACH, _REACH]) * KERNEL_LOG_WIDTH
+        start, members = 0, []
         for family in self.families:
-            own = away[start : start + family.log_width.size]
-            members.append(start + own.searchsorted(ends))
-            start += own.size
-        return np.array(members, np.intp), self._log_share - 0.5 * away**2
+            members.append(start + family.log_width.searchsorted(ends))
+            start += family.log_width.size
+        return np.array(members, np.intp)
 
 
 def _told(information: Floats, projection: Floats, spread: Floats) -> tuple[Floats, Floats]:

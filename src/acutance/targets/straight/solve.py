@@ -145,6 +145,11 @@ class Solution:
         return self.linear.model(self.posterior)
 
     @property
+    def mean_model(self) -> LsfModel:
+        """The same without its covariance: the next pass takes no more of it."""
+        return self.linear.mean_model(self.posterior)
+
+    @property
     def rotation_rad(self) -> float:
         """Rotation of the line in this pass."""
         return float(self.posterior.beta[-self.linear.derivatives])
@@ -297,7 +302,7 @@ def _pass(
     """Solve for the correction of the LSF, the levels, the line and the profile."""
     noise = linear.noise(outlier, roughness)
     weight = outlier / noise.relative
-    columns = linear.columns(None if earlier is None else earlier.model)
+    columns = linear.columns(None if earlier is None else earlier.mean_model)
     normal = _equations(linear, weight, columns, float(np.add.reduce(outlier)), earlier)
     equations = normal.combined(linear.design)
     posterior = regress(

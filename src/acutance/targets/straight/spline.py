@@ -149,8 +149,9 @@ class SplineRows:
     def __matmul__(self, matrix: Floats) -> Floats:
         return _times(self.cell, self.weights, self.dense, matrix)
 
-    def __rmatmul__(self, vector: Floats) -> Floats:
-        return _weighted(vector, self.cell, self.weights, self.dense, self.shape[1])
+    def blend(self, first: int, weights: tuple[float, float, float, float]) -> Floats:
+        """Weighted sum of four rows, from the first one on, (columns,)."""
+        return _blend(first, weights, self.cell, self.weights, self.dense, self.shape[1])
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats:
         matrix = expand(self.cell, self.weights, self.further)
@@ -184,17 +185,22 @@ def _times(cell: NDArray[np.intp], weights: Floats, dense: Floats, matrix: Float
 
 
 @compiled
-def _weighted(
-    vector: Floats, cell: NDArray[np.intp], weights: Floats, dense: Floats, columns: int
+def _blend(
+    first: int,
+    factors: tuple[float, float, float, float],
+    cell: NDArray[np.intp],
+    weights: Floats,
+    dense: Floats,
+    columns: int,
 ) -> Floats:
-    """``vector @ SplineRows`` of a vector (n,), (columns,)."""
-    n, q = dense.shape
-    found = np.zeros(columns)
-    for i in range(n):
+    """Weighted sum of four rows of ``SplineRows``, from the first one on, (columns,)."""
+    found, q = np.zeros(columns), dense.shape[1]
+    for k in range(4):
+        i = first + k
         for a in range(4):
-            found[cell[i] + a] += vector[i] * weights[a, i]
+            found[cell[i] + a] += factors[k] * weights[a, i]
         for a in range(q):
-            found[columns - q + a] += vector[i] * dense[i, a]
+            found[columns - q + a] += factors[k] * dense[i, a]
     return found
 
 

@@ -37,7 +37,7 @@ _SHORTEST_RUN = 5
 def line_distances(shape: tuple[int, ...], line: Line) -> tuple[Floats, Floats]:
     """Distance of every pixel from a line, along its normal and along it, (rows, cols) each."""
     row, col = np.arange(float(shape[0]))[:, None], np.arange(float(shape[1]))
-    return line.normal_distance(row, col), line.tangent_distance(row, col)
+    return line.distances(row, col)
 
 
 @compiled

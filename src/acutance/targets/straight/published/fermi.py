@@ -107,8 +107,7 @@ def fermi(trimmed: EdgePixels, options: FermiOptions = _DEFAULT) -> EdgeFit:
             f"found {row.size}: use a larger region or fewer terms"
         )
     pixels = _Pixels(
-        trimmed.line.normal_distance(row, col),
-        trimmed.line.tangent_distance(row, col),
+        *trimmed.line.distances(row, col),
         trimmed.pixels.value,
     )
     fit = _best_sum(pixels, trimmed, options)
