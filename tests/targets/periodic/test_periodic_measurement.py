@@ -1,5 +1,6 @@
 """What bars and stars have in common as measurements: limits of checks, and light copies."""
 
+import math
 import pickle
 from dataclasses import replace
 
@@ -31,7 +32,7 @@ MEASURED = {"bars": measured_bars, "star": measured_star}
 
 def _absurd(checks):
     """Limits that nothing keeps."""
-    return {check.name: 1e9 if check.sense == ">=" else -1.0 for check in checks}
+    return {check.name: math.inf if check.sense == ">=" else -math.inf for check in checks}
 
 
 def test_every_check_of_bars_has_its_limit():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,7 @@ from acutance.targets.points.checks import phase_gap_px
 
 SENSOR = ac.Sensor([ac.optics.Gaussian(0.45), ac.optics.Detector()])
 LAYOUT = ac.simulate.mirror_columns((12.3, 12.1), count=3)
-ABSURD = {name: 1e9 if QUESTIONS[name].sense == ">=" else -1.0 for name in POINTS_CHECKS}
+ABSURD = {name: math.inf if QUESTIONS[name].sense == ">=" else -math.inf for name in POINTS_CHECKS}
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,7 @@ from acutance.targets.points.learn_sensors import (
 from acutance.targets.points.psf_families import learned_families
 from acutance.targets.points.psf_spline import GRIDS
 from acutance.targets.points.sensor_density import Basis, drawn_sensors, sensors_of
+from acutance.targets.points.tuned import FAMILY_WEIGHTS
 
 PIXEL = Detector()
 
@@ -81,7 +82,7 @@ def test_the_file_holds_all_sensors():
     kernels = drawn_sensors().kernels
     whole = {name: np.exp(kernels.log_weight[kernels.name[kernels.part] == name]).sum()
              for name in DENSITY_COUNTS}  # fmt: skip
-    assert whole == pytest.approx({name: 3.0 if name == "telescope" else 1.0 for name in whole})
+    assert whole == pytest.approx({name: FAMILY_WEIGHTS.get(name, 1.0) for name in whole})
 
 
 def test_sensors_of_another_blur_have_no_part():
