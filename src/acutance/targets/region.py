@@ -15,6 +15,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoDataError, RegionError
 from acutance.raster import Box, Fill, Gsd, Image, Region, find_fill
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
+from acutance.targets.processing_traces import ProcessingTraces, traces_of_pixels
 from acutance.targets.record import ImageInfo
 
 __all__ = [
@@ -64,6 +65,11 @@ class RegionPixels:
     def info(self) -> ImageInfo:
         """What a measurement records of its image: the same for every kind of target."""
         return image_info(self.image, self.box, self.gsd)
+
+    @cached_property
+    def traces(self) -> ProcessingTraces:
+        """What processing left in the pixels: the same for all edges of a region."""
+        return traces_of_pixels(self.pixels)
 
 
 def image_info(image: Image, box: Box, gsd: Gsd | None) -> ImageInfo:
