@@ -99,6 +99,8 @@ def print_table(
 
 def entry_text(entry: Entry) -> str:
     """The numbers of an entry, and what is known of its image and its target."""
+    from acutance.raster.gsd import gsd_in_words
+
     image, target, record = entry.image, entry.target, entry.record
     if record is not None:
         lines = [*_record_lines(record)]
@@ -112,7 +114,7 @@ def entry_text(entry: Entry) -> str:
         "image": image.path,
         "content": image.content,
         "level": image.level,
-        "GSD": None if image.gsd_m is None else _gsd_words(image.gsd_m),
+        "GSD": None if image.gsd_m is None else gsd_in_words(image.gsd_m),
         "target": None if target is None else target.name,
         "survey": None if record is None else _survey_words(record),
         "place": _place(target),
@@ -148,11 +150,6 @@ def _survey_words(record: Record) -> str | None:
         f"the line lies {found['distance_px']:.2f} px{metres} from the surveyed one, turned by "
         f"{found['turn_deg']:.1f} degrees; looked for within {found['search_px']:.1f} px"
     )
-
-
-def _gsd_words(sides_m: tuple[float, float]) -> str:
-    row_m, col_m = (f"{side:.4g}" for side in sides_m)
-    return f"{row_m} m" if row_m == col_m else f"rows {row_m} m, columns {col_m} m"
 
 
 def _record_lines(record: Record) -> Iterable[str]:
