@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from datetime import datetime, time
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -99,6 +98,7 @@ def print_table(
 
 def entry_text(entry: Entry) -> str:
     """The numbers of an entry, and what is known of its image and its target."""
+    from acutance.archive.dates import day_or_minute
     from acutance.raster.gsd import gsd_in_words
 
     image, target, record = entry.image, entry.target, entry.record
@@ -110,7 +110,7 @@ def entry_text(entry: Entry) -> str:
     known = {
         "sensor": image.sensor,
         "band": entry.band,
-        "acquired": None if image.acquired is None else _moment_words(image.acquired),
+        "acquired": None if image.acquired is None else day_or_minute(image.acquired, " UTC"),
         "image": image.path,
         "content": image.content,
         "level": image.level,
@@ -126,12 +126,6 @@ def entry_text(entry: Entry) -> str:
     }
     lines += [f"  {name:<9} {value}" for name, value in known.items() if value is not None]
     return "\n".join(lines)
-
-
-def _moment_words(when: datetime) -> str:
-    """Day and minute; of what is dated to the day its midnight is no time."""
-    day = f"{when:%Y-%m-%d}"
-    return day if when.time() == time.min else f"{day} {when:%H:%M} UTC"
 
 
 def _place(target: TargetEntry | None) -> str | None:
