@@ -65,6 +65,11 @@ def test_what_is_stated_anew_is_not_kept_in_silence(archive, edge_record):
     assert archive.measurements()["sensor"].tolist() == ["QB02"]
     archive.correct_images([ImageCorrection(image="B4.tif", sensor="K3", acquired="2026-05-01")])
     assert not archive.add(edge_record, sensor="K3", acquired="2026-05-01").new
+    archive.correct_images([ImageCorrection(image="B4.tif", acquired="2026-05-01T10:00Z")])
+    assert not archive.add(edge_record, acquired="2026-05-01").new
+    for other in ("2026-05-02", "2026-05-01T11:00Z"):
+        with pytest.raises(OptionError, match=r"acquired 2026-05-01T10:00:00.*, not 2026-05"):
+            archive.add(edge_record, acquired=other)
     archive.add(ac.Record(document))
     with pytest.raises(OptionError, match="give it a key of its own"):
         archive.add(ac.Record(document), sensor="K3")

@@ -40,13 +40,42 @@ def test_every_band_has_a_result_and_one_without_an_edge_is_named(acutance, imag
     assert acutance("edge", image, "--band", "all", "--strict").exit_code == 3
 
 
-def test_bands_of_several_regions(acutance, image):
+def test_bands_of_one_region(acutance, image):
     done = acutance("edge", image, "--band", "1,2", "--roi", "2,2,40,44", "--strict")
     assert done.exit_code == 0
     assert [line[:7] for line in done.stdout.splitlines() if line.startswith("band")] == [
         "band 1:", "band 2:",
     ]  # fmt: skip
     assert "region" not in done.stdout.split("\n")[0]
+
+
+def test_bands_of_several_regions(acutance, image, tmp_path):
+    """The second region lies on one side of the edge of both bands."""
+    squares = {"north": (2, 40, 2, 46), "corner": (36, 46, 2, 12)}
+    features = [
+        {
+            "type": "Feature", "properties": {"name": name},
+            "geometry": {"type": "Polygon", "coordinates": [
+                [[left, top], [right, top], [right, low], [left, low], [left, top]]
+            ]},
+        }
+        for name, (top, low, left, right) in squares.items()
+    ]  # fmt: skip
+    file = tmp_path / "two.geojson"
+    file.write_text(json.dumps({"type": "FeatureCollection", "crs": "pixel", "features": features}))
+    done = acutance(
+        "edge", image, "--band", "1,2", "--roi", file, "--json", "--csv", tmp_path / "e.csv"
+    )
+    document = json.loads(done.stdout)
+    assert [(one["band"], one["region"]) for one in document["results"]] == [
+        ("1", "north"), ("2", "north"),
+    ]  # fmt: skip
+    assert [one["values"] for one in document["rejected"]] == [
+        {"band": "1", "region": "corner"}, {"band": "2", "region": "corner"},
+    ]  # fmt: skip
+    assert "acutance: band 2, region corner: " in done.stderr
+    written = sorted(one.name for one in tmp_path.glob("*.csv"))
+    assert written == ["e-band-1-north.csv", "e-band-2-north.csv"]
 
 
 def test_bands_are_kept_apart_in_an_archive(acutance, image, tmp_path):

@@ -145,7 +145,13 @@ def test_the_limit_of_the_table_is_one_that_may_be_given(name):
 
 @pytest.mark.parametrize(
     ("name", "limit"),
-    [("rows", -5), ("saturation", 1.5), ("correlated_noise", -2), ("angle_deg", 720)],
+    [
+        ("rows", -5),
+        ("saturation", 1.5),
+        ("repeated_pixels", 2),
+        ("correlated_noise", -2),
+        ("angle_deg", 720),
+    ],
 )
 def test_limits_that_mean_nothing_are_refused(name, limit):
     with pytest.raises(ac.OptionError, match=rf"limit of {name} is {limit:g}, and what"):

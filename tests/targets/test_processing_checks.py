@@ -6,8 +6,10 @@ from rasterio.io import MemoryFile
 
 import acutance as ac
 from acutance import optics, simulate
+from acutance.targets import region
 from acutance.targets.kinds import KINDS
-from acutance.targets.processing_checks import PROCESSING_CHECKS, sample_boxes
+from acutance.targets.processing_checks import PROCESSING_CHECKS
+from acutance.targets.processing_traces import sample_boxes
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()])
@@ -98,8 +100,10 @@ def test_scenes_are_asked_once_and_not_by_their_edges():
     image, _ = simulate.landscape(SENSOR, shape=(400, 400), snr=60, rng=np.random.default_rng(3))
     plain = ac.scan_scene(np.rint(image))
     assert not failed(plain)
-    compressed = ac.scan_scene(as_jpeg(image, 85))
+    written = ac.Image.from_array(as_jpeg(image, 85), gsd_m=0.5)
+    compressed = ac.scan_scene(written, gsd_m=30.0)
     assert failed(compressed) == {"jpeg_blocks"}
+    assert "stated_gsd" in {check.name for check in compressed.failed_checks}
     assert compressed.verdict.word == "doubtful"
     assert not any("JPEG" in reason for reason in compressed.edges.reason)
 
@@ -108,6 +112,17 @@ def test_an_enlarged_scene_without_edges_says_why():
     image, _ = simulate.landscape(SENSOR, shape=(200, 200), snr=60, rng=np.random.default_rng(3))
     with pytest.raises(ac.FewEdgesError, match=r"\d % of the pixels repeat .* the nearest pixel"):
         ac.scan_scene(enlarged(image))
+
+
+def test_the_pixels_of_a_region_are_looked_at_once_for_all_its_edges(monkeypatch):
+    looked, traces = [], region.traces_of_pixels
+    monkeypatch.setattr(
+        region, "traces_of_pixels", lambda pixels: looked.append(1) or traces(pixels)
+    )
+    image = simulate.checkerboard(SENSOR, snr=100, rng=np.random.default_rng(4)).image
+    edges = ac.measure_edges(image).measurements
+    assert not any(failed(edge) for edge in edges)
+    assert (len(edges), len(looked)) == (4, 1)
 
 
 def test_large_images_are_sampled_all_over():

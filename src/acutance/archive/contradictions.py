@@ -8,6 +8,7 @@ anew is therefore not written, and has to be told.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from datetime import datetime, time
 from functools import partial
 from typing import Any, Final
 
@@ -71,8 +72,15 @@ def _kept(connection: Connection, keys: list[str]) -> list[Mapping[str, Any]]:
 def _differing(kept: Mapping[str, Any], stated: Mapping[str, Any]) -> Iterator[str]:
     """What is stated and is not what is kept, in words."""
     for name in _STATED:
-        if stated[name] is not None and stated[name] != kept[name]:
+        if stated[name] is not None and not _agree(kept[name], stated[name]):
             yield f"{name} {_written(kept[name])}, not {_written(stated[name])}"
+
+
+def _agree(kept: Any, stated: Any) -> bool:
+    """Whether what is stated is kept: of a day, which is written as its beginning, any time."""
+    if isinstance(kept, datetime) and isinstance(stated, datetime) and stated.time() == time.min:
+        return kept.date() == stated.date()
+    return bool(kept == stated)
 
 
 def _advice(row: Mapping[str, Any]) -> str:

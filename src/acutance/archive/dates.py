@@ -11,7 +11,7 @@ from datetime import UTC, date, datetime, time
 
 from acutance.errors import OptionError
 
-__all__ = ["When", "as_utc", "end_of"]
+__all__ = ["When", "as_utc", "day_or_minute", "end_of"]
 
 When = datetime | date | str
 """A moment, a day, or either in the notation of ISO 8601."""
@@ -43,6 +43,21 @@ def end_of(when: When, name: str = "the date") -> datetime:
         If it is no date.
     """
     return _moment(when, name, time.max)
+
+
+def day_or_minute(when: datetime, zone: str = "") -> str:
+    """A kept moment in words, to the minute.
+
+    Days without a time are kept as their beginning, so that of a midnight only the day is written.
+
+    Parameters
+    ----------
+    when : datetime
+        In UTC.
+    zone : str, optional
+        What is written behind a time.
+    """
+    return f"{when:%Y-%m-%d}" if when.time() == time.min else f"{when:%Y-%m-%d %H:%M}{zone}"
 
 
 def _moment(when: When, name: str, of_day: time) -> datetime:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from datetime import datetime, time
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -99,6 +98,9 @@ def print_table(
 
 def entry_text(entry: Entry) -> str:
     """The numbers of an entry, and what is known of its image and its target."""
+    from acutance.archive.dates import day_or_minute
+    from acutance.raster.gsd import gsd_in_words
+
     image, target, record = entry.image, entry.target, entry.record
     if record is not None:
         lines = [*_record_lines(record)]
@@ -108,11 +110,11 @@ def entry_text(entry: Entry) -> str:
     known = {
         "sensor": image.sensor,
         "band": entry.band,
-        "acquired": None if image.acquired is None else _moment_words(image.acquired),
+        "acquired": None if image.acquired is None else day_or_minute(image.acquired, " UTC"),
         "image": image.path,
         "content": image.content,
         "level": image.level,
-        "GSD": None if image.gsd_m is None else _gsd_words(image.gsd_m),
+        "GSD": None if image.gsd_m is None else gsd_in_words(image.gsd_m),
         "target": None if target is None else target.name,
         "survey": None if record is None else _survey_words(record),
         "place": _place(target),
@@ -124,12 +126,6 @@ def entry_text(entry: Entry) -> str:
     }
     lines += [f"  {name:<9} {value}" for name, value in known.items() if value is not None]
     return "\n".join(lines)
-
-
-def _moment_words(when: datetime) -> str:
-    """Day and minute; of what is dated to the day its midnight is no time."""
-    day = f"{when:%Y-%m-%d}"
-    return day if when.time() == time.min else f"{day} {when:%H:%M} UTC"
 
 
 def _place(target: TargetEntry | None) -> str | None:
@@ -148,11 +144,6 @@ def _survey_words(record: Record) -> str | None:
         f"the line lies {found['distance_px']:.2f} px{metres} from the surveyed one, turned by "
         f"{found['turn_deg']:.1f} degrees; looked for within {found['search_px']:.1f} px"
     )
-
-
-def _gsd_words(sides_m: tuple[float, float]) -> str:
-    row_m, col_m = (f"{side:.4g}" for side in sides_m)
-    return f"{row_m} m" if row_m == col_m else f"rows {row_m} m, columns {col_m} m"
 
 
 def _record_lines(record: Record) -> Iterable[str]:

@@ -164,8 +164,8 @@ def parse_band(text: str) -> int:
         return int(text)
     except ValueError:
         raise OptionError(
-            f"--band {text or '(nothing)'} is not the number of a band: write one, counted from 1 "
-            "(acutance image FILE lists them with their names)"
+            f"--band {text or '(nothing)'} is not the number of a band: write one, or several as "
+            "in 1,2,3, counted from 1 (acutance image FILE lists them with their names)"
         ) from None
 
 

@@ -188,16 +188,16 @@ class ResultOptions:
         str | None,
         typer.Option(
             metavar="FILE",
-            help="Draw the steps: .png, .svg or .pdf. Of several regions, or bands of a scene, one "
-            "file each: FILE-NAME.png.",
+            help="Draw the steps: .png, .svg or .pdf. Of several regions or bands one file each: "
+            "FILE-NAME.png.",
         ),
     ] = None
     report: Annotated[
         str | None,
         typer.Option(
             metavar="FILE",
-            help="Write a self-contained page: .html. Of several regions one page each: "
-            "FILE-NAME.html, and no FILE.html.",
+            help="Write a self-contained page: .html. Of several regions, or bands of a target, "
+            "one page each: FILE-NAME.html, and no FILE.html.",
         ),
     ] = None
     csv: Annotated[

@@ -1,4 +1,8 @@
-"""The range of an image's numbers and their step, from pixel to pixel."""
+"""The range of an image's numbers and their step, from pixel to pixel.
+
+`acutance.numerics.noise.smallest_step` finds the step of any values by sorting them. Of an image
+neighbours are enough, as some differ by one step only, and each pixel is looked at once.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +17,8 @@ __all__ = ["smallest_neighbour_step", "value_range"]
 @compiled
 def smallest_neighbour_step(pixels: Floats) -> float:
     """The smallest difference of neighbours that are not equal; infinite where there is none.
+
+    In the units of the pixels.
 
     Parameters
     ----------
@@ -31,7 +37,7 @@ def smallest_neighbour_step(pixels: Floats) -> float:
 
 @compiled
 def value_range(pixels: Floats) -> float:
-    """Largest minus smallest of the known pixels; minus infinity of none.
+    """Largest minus smallest of the known pixels, in their units; minus infinity of none.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from numbers import Real
 from acutance.curves.direction import gsd_along
 from acutance.errors import OptionError
 
-__all__ = ["GSD_RANGE_M", "GSD_TAGS", "Gsd"]
+__all__ = ["GSD_RANGE_M", "GSD_TAGS", "Gsd", "gsd_in_words"]
 
 GSD_RANGE_M = (0.005, 100_000.0)
 """No image of the Earth's surface has other pixels: centimetres or degrees look like metres."""
@@ -107,3 +107,17 @@ class Gsd:
             Metres; `col_m` at 0 degrees, `row_m` at 90 degrees.
         """
         return gsd_along((self.row_m, self.col_m), normal_deg)
+
+
+def gsd_in_words(pixel_gsd_m: tuple[float, float]) -> str:
+    """A GSD as messages have it: "0.7 m", both sides where they differ by more than a thousandth.
+
+    Parameters
+    ----------
+    pixel_gsd_m : (float, float)
+        Metres from row to row and from column to column.
+    """
+    row_m, col_m = pixel_gsd_m
+    if math.isclose(row_m, col_m, rel_tol=1e-3):
+        return f"{col_m:.4g} m"
+    return f"{row_m:.4g} m between rows, {col_m:.4g} m between columns"

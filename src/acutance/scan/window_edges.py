@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -21,7 +20,6 @@ from acutance.scan.edge_points import gradient
 from acutance.scan.options import ScanOptions
 from acutance.scan.pieces import region_box
 from acutance.scan.windows import Window
-from acutance.targets.processing_checks import PROCESSING_CHECKS
 from acutance.targets.region import RegionPixels, read_data
 from acutance.targets.straight import StraightMeasurement
 from acutance.targets.straight.edge import measure_segment
@@ -32,9 +30,7 @@ from acutance.targets.straight.surroundings import line_distances
 __all__ = ["UsedEdge", "WindowEdges", "scan_window"]
 
 _MIN_SIDE_PX = 16
-_EDGE_OPTIONS = EdgeOptions(limits=dict.fromkeys(("full_pixel", *PROCESSING_CHECKS), math.inf))
-"""Whether it is too sharp for a sensor, resampled or compressed is asked of the scene: all its
-edges are."""
+_EDGE_OPTIONS = EdgeOptions()
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +153,7 @@ def _measured(
         around, own = _around(image, gsd, pixels, whole, segment, options)
         row = _place(segment, whole)
         try:
-            found = measure_segment(around, own, "spline", _EDGE_OPTIONS)
+            found = measure_segment(around, own, "spline", _EDGE_OPTIONS, of_scene=True)
         except TargetError as error:
             rows.append(row | {"reason": str(error)})
             continue

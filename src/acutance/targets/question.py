@@ -51,6 +51,7 @@ class Question:
 _SHARES = frozenset((
     "saturation", "outliers", "full_scale", "rim", "left_out", "coherence", "agreement",
     "worst_member", "plain_sensor", "trusted_share", "ideal_share", "strange_share",
+    "repeated_pixels",
 ))  # fmt: skip
 """Questions whose answers are shares or probabilities."""
 _CORRELATIONS = frozenset((

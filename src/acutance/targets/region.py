@@ -14,7 +14,9 @@ from numpy.typing import ArrayLike
 from acutance.curves.grid import Floats
 from acutance.errors import NoDataError, RegionError
 from acutance.raster import Box, Fill, Gsd, Image, Region, find_fill
+from acutance.raster.gsd import gsd_in_words
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
+from acutance.targets.processing_traces import ProcessingTraces, traces_of_pixels
 from acutance.targets.record import ImageInfo
 
 __all__ = [
@@ -64,6 +66,11 @@ class RegionPixels:
     def info(self) -> ImageInfo:
         """What a measurement records of its image: the same for every kind of target."""
         return image_info(self.image, self.box, self.gsd)
+
+    @cached_property
+    def traces(self) -> ProcessingTraces:
+        """What processing left in the pixels: the same for all edges of a region."""
+        return traces_of_pixels(self.pixels)
 
 
 def image_info(image: Image, box: Box, gsd: Gsd | None) -> ImageInfo:
@@ -190,15 +197,10 @@ def stated_gsd(info: ImageInfo, limits: Limits) -> Check:
         return answer("stated_gsd", 1.0, "no GSD is stated that the image has otherwise", limits)
     factor = max(max(one / other, other / one) for one, other in zip(stated, own, strict=True))
     found = (
-        f"the stated GSD is {_in_metres(stated)}, the image's own {_in_metres(own)}: another by a "
-        f"factor of {factor:.3g}"
+        f"the stated GSD is {gsd_in_words(stated)}, the image's own {gsd_in_words(own)}: another "
+        f"by a factor of {factor:.3g}"
     )
     return answer("stated_gsd", min(factor, MAX_RATIO), found, limits)
-
-
-def _in_metres(sides_m: tuple[float, float]) -> str:
-    row_m, col_m = (f"{side:.4g}" for side in sides_m)
-    return f"{row_m} m" if row_m == col_m else f"{row_m} m between rows, {col_m} m between columns"
 
 
 def chosen_region(roi: Any) -> Region | Box:

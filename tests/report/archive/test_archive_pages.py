@@ -15,8 +15,10 @@ from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
 from acutance.archive.trends import Event, Series, fit_trend
 from acutance.errors import OptionError
 from acutance.report.archive import sensor_page, trend_figure, trend_page
+from acutance.report.archive.sensor_tables import images_table
 from acutance.report.archive.trend_page import trend_verdict
 from acutance.report.archive.wording import signed, with_minus
+from acutance.report.labels import MISSING
 from acutance.targets import Rejected
 
 BEGIN = datetime(2024, 1, 10, 10, tzinfo=UTC)
@@ -218,6 +220,15 @@ def test_numbers_of_a_table_have_the_digits_of_their_deviations(archive):
     shown = re.findall(r">(0\.\d+) ± (0\.\d+)<", images)
     assert shown
     assert all(len(value) == len(std) for value, std in shown)
+
+
+def test_an_image_dated_to_the_day_has_no_time(tmp_path, edge_record):
+    with Archive(tmp_path / "days.db") as days:
+        for number, day in enumerate(("2026-01-05", "2026-01-06T10:20Z", None)):
+            days.add(edge_record, sensor="S", acquired=day, key=f"key {number}")
+        rows = days.measurements()
+        shown = [row[0] for row in images_table(rows, days.rejected()).rows]
+    assert shown == ["2026-01-05", "2026-01-06 10:20", MISSING]
 
 
 def test_a_sensor_that_is_not_there_is_named(archive):

@@ -131,5 +131,5 @@ def test_swapped_gsds_are_other_pixels() -> None:
     coarse = ac.Image.from_array(low, Gsd(30.0, 20.0))
     assert ac.measure_biresolution(coarse, high, reference_mtf=known).reference_known
     swapped = ac.Image.from_array(high, Gsd(10.0, 15.0))
-    with pytest.raises(ac.OptionError, match=r"15 by 10 m .* 10 by 15 m"):
+    with pytest.raises(ac.OptionError, match=r"15 m between rows, 10 m .* 10 m between rows"):
         ac.measure_biresolution(low, swapped, reference_mtf=known)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from acutance.archive.columns import Columns
+from acutance.archive.dates import day_or_minute
 from acutance.archive.specification_check import SpecificationCheck
 from acutance.archive.tables_by import MeasurementTable, table_by
 from acutance.archive.trends import Trend
@@ -132,9 +133,9 @@ def images_table(rows: Columns, rejected: Columns) -> Table:
         acquired, name = one["what"]
         counts = Counter(one["ids"].values())
         words = ", ".join(f"{counts[word]} {word}" for word in _VERDICTS if counts[word])
-        day = MISSING if np.isnat(acquired) else str(acquired.astype("datetime64[m]"))
+        day = MISSING if np.isnat(acquired) else day_or_minute(acquired.astype("M8[us]").item())
         listed.append((
-            day.replace("T", " "), name or MISSING, str(len(one["ids"])), words or MISSING,
+            day, name or MISSING, str(len(one["ids"])), words or MISSING,
             str(one["rejected"]),
         ))  # fmt: skip
     left = len(images) - len(listed)

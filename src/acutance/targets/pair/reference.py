@@ -16,6 +16,7 @@ from acutance.errors import OptionError
 from acutance.geometry.angles import axis_difference, wrap_axis
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.raster import Gsd
+from acutance.raster.gsd import gsd_in_words
 from acutance.targets.measurement import Measurement
 from acutance.targets.own_mtf import require_own_mtf
 from acutance.targets.pair.reference_otf import ReferenceOtf
@@ -85,17 +86,11 @@ class MeasuredCurves(ShortRepr):
             _MAX_GSD_DIFFERENCE
         ):
             raise OptionError(
-                f"the reference was measured in pixels of {_in_metres(self.pixel_gsd_m)}, those of "
-                f"the high image have {_in_metres(of_image)}: its frequencies in cycles per pixel "
-                "mean something else there. Measure the reference in the high image's own product, "
-                "or state its MTF at Nyquist or its sensor"
+                f"the reference was measured in pixels of {gsd_in_words(self.pixel_gsd_m)}, those "
+                f"of the high image have {gsd_in_words(of_image)}: its frequencies in cycles per "
+                "pixel mean something else there. Measure the reference in the high image's own "
+                "product, or state its MTF at Nyquist or its sensor"
             )
-
-
-def _in_metres(pixel_gsd_m: tuple[float, float]) -> str:
-    row_m, col_m = pixel_gsd_m
-    square = math.isclose(row_m, col_m, rel_tol=1e-3)
-    return f"{col_m:.4g} m" if square else f"{row_m:.4g} by {col_m:.4g} m (rows, columns)"
 
 
 ReferenceLike = (

@@ -59,7 +59,7 @@ def bars_checks(
         saturation(pixels, region.saturation_level, solved.snr, "the pixels", limits),
         undeclared_fill([region.fill], limits),
         stated_gsd(region.info, limits),
-        *processing_checks(region.pixels, limits),
+        *processing_checks(region, limits),
         correlated_noise(
             solved.correlation, solved.snr, limits,
             advice="the image was resampled, or the bars are not as they were taken to be (place, "

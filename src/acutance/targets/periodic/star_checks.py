@@ -53,7 +53,7 @@ def star_checks(
         saturation(solved.value, region.saturation_level, snr, "the star's pixels", limits),
         undeclared_fill([region.fill], limits),
         stated_gsd(region.info, limits),
-        *processing_checks(region.pixels, limits),
+        *processing_checks(region, limits),
         correlated_noise(
             solved.correlation, snr, limits,
             advice="the image was resampled, or the spokes are not those of a perfect star",

@@ -77,7 +77,7 @@ def check_points(
         _source_misfit(sources, limits),
         undeclared_fill([region.fill], limits),
         stated_gsd(region.info, limits),
-        *processing_checks(region.pixels, limits),
+        *processing_checks(region, limits),
     ]
     if full_scale is not None:
         found = f"the brightest pixel is at {100 * full_scale:.0f} % of the detector's range"

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +20,7 @@ from acutance.errors import NoEdgeError, OptionError, PhaseError, TargetError
 from acutance.geometry.line import Line
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image, value_far_off
-from acutance.targets.check import Checks, limit_of
+from acutance.targets.check import Check, Checks, limit_of
 from acutance.targets.options import chosen_options, published_options
 from acutance.targets.region import RegionPixels, RoiLike, read_region
 from acutance.targets.straight.check_data import CheckData
@@ -32,7 +33,7 @@ from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published import PUBLISHED, PUBLISHED_OPTIONS
 from acutance.targets.straight.stated_target import stated_target
 from acutance.targets.straight.straight_measurement import StraightDetails, StraightMeasurement
-from acutance.targets.straight.trim import Extent, trim
+from acutance.targets.straight.trim import trim
 from acutance.targets.straight.tuned import MIN_PHASES
 
 __all__ = [
@@ -171,14 +172,26 @@ def _named(error: TargetError, region: RegionPixels) -> TargetError:
 
 
 def measure_segment(
-    region: RegionPixels, segment: Segment, method: str, options: EdgeOptions
+    region: RegionPixels,
+    segment: Segment,
+    method: str,
+    options: EdgeOptions,
+    *,
+    of_scene: bool = False,
 ) -> StraightMeasurement:
-    """Measure one segment that was found in a region; see `measure_edge`."""
+    """Measure one segment that was found in a region; see `measure_edge`.
+
+    Of a segment of a scene what is asked of the whole scene is not checked.
+    """
     estimate = require_method(method)
     trimmed, extent = trim(region.pixels, segment)
     require_phases(trimmed, trimmed.line, limit_of("sample_phases", options.limits))
     fit = estimate(trimmed, options)
-    return _measurement(region, trimmed, extent, fit, method, options)
+    check = partial(
+        check_edge, region, extent=extent, limits=options.limits, by_rows=method in PUBLISHED,
+        of_scene=of_scene,
+    )  # fmt: skip
+    return _measurement(region, trimmed, fit, method, options, check)
 
 
 def require_method(name: str) -> Callable[[EdgePixels, EdgeOptions], EdgeFit]:
@@ -255,17 +268,16 @@ def _advice(line: Line, wanted: float) -> str:
 def _measurement(
     region: RegionPixels,
     trimmed: EdgePixels,
-    extent: Extent,
     fit: EdgeFit,
     method: str,
     options: EdgeOptions,
+    check: Callable[[CheckData], tuple[Check, ...]],
 ) -> StraightMeasurement:
     """The measurement, its line in pixels of the whole image."""
     fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
     # The checks compare curves with pixels: they read those of the image.
     data = CheckData.of(trimmed, fit)
     stated = stated_target(options, fit.response.gsd_m)
-    by_rows = method in PUBLISHED
     return StraightMeasurement(
         kind="edge",
         method=method,
@@ -275,7 +287,7 @@ def _measurement(
         bright=fit.bright,
         stated=stated,
         snr=edge_snr(data),
-        checks=Checks(lambda: check_edge(region, data, extent, options.limits, by_rows=by_rows)),
+        checks=Checks(lambda: check(data)),
         image=region.info,
         options=options.to_dict(),
         details=details_of(region, trimmed, fit),

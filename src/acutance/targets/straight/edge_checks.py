@@ -64,8 +64,8 @@ __all__ = [
 EDGE_CHECKS = (
     "contrast_snr", "uniformity_dark", "uniformity_bright", "angle_deg", "sample_phases",
     "rows", "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px",
-    "lsf_narrow_px", "full_pixel", "plateau_dark_px", "plateau_bright_px", "saturation",
-    "undeclared_fill", "stated_gsd", "quantisation", *PROCESSING_CHECKS, "nonlinearity", "gradient",
+    "lsf_narrow_px", "plateau_dark_px", "plateau_bright_px", "saturation", "undeclared_fill",
+    "quantisation", "full_pixel", "stated_gsd", *PROCESSING_CHECKS, "nonlinearity", "gradient",
     "correlated_noise", "odd_even", "structure", "one_sided_overshoot", "double_edge",
     "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground", "close_ground",
     "mirrored_ground", "rim",
@@ -74,7 +74,13 @@ EDGE_CHECKS = (
 
 
 def check_edge(
-    region: RegionPixels, data: CheckData, extent: Extent, limits: Limits, *, by_rows: bool
+    region: RegionPixels,
+    data: CheckData,
+    extent: Extent,
+    limits: Limits,
+    *,
+    by_rows: bool,
+    of_scene: bool = False,
 ) -> tuple[Check, ...]:
     """All checks of an edge.
 
@@ -88,6 +94,9 @@ def check_edge(
         Limits the caller changed.
     by_rows : bool
         Whether the method works row by row, which limits the angle.
+    of_scene : bool, optional
+        Whether it is one of the many edges of a scene: what has one answer for all of them is asked
+        of the scene.
     """
     values = region.pixels[data.trimmed.pixels.at]
     return (
@@ -102,14 +111,12 @@ def check_edge(
         edge_roughness(data, limits),
         lsf_width(data, limits),
         lsf_narrow(data, limits),
-        full_pixel([data.fit.response.mtf_nyquist], limits),
         plateau(limits, "dark", extent.dark_px),
         plateau(limits, "bright", extent.bright_px),
         saturation(region, values, data, limits, ("dark", "bright")),
         undeclared_fill([region.fill], limits),
-        stated_gsd(region.info, limits),
         quantisation(region, values, data, limits),
-        *processing_checks(region.pixels, limits),
+        *(() if of_scene else _of_the_image(region, data, limits)),
         nonlinearity(data, limits, EDGE),
         gradient(data, limits),
         correlated_noise(data, limits),
@@ -123,6 +130,15 @@ def check_edge(
         outliers(data, limits),
         *ground_checks(data, limits, ("dark", "bright")),
         *rim(data, limits),
+    )
+
+
+def _of_the_image(region: RegionPixels, data: CheckData, limits: Limits) -> tuple[Check, ...]:
+    """Whether a sensor made the pixels, and of which size they are."""
+    return (
+        full_pixel([data.fit.response.mtf_nyquist], limits),
+        stated_gsd(region.info, limits),
+        *processing_checks(region, limits),
     )
 
 
