@@ -1,6 +1,6 @@
 """Learn the prior of two-dimensional transfer functions from sensors drawn at random, and keep it.
 
-Example: python benchmarks/learn_otf.py --sensors 120 --out otf_families.npz
+Example: python benchmarks/learn_otf.py --sensors 400 --out otf_families.npz
 The file lies beside numerics/otf_families.py.
 """
 
@@ -14,7 +14,7 @@ from acutance.numerics.learn_otf import learn_families, write_families
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--sensors", type=int, default=120, help="sensors a family")
+    parser.add_argument("--sensors", type=int, default=400, help="sensors a family")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, required=True)
     arguments = parser.parse_args()
