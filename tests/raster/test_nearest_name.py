@@ -20,3 +20,16 @@ def test_the_nearest_name_of_the_folder(tmp_path):
     assert nearest_name(tmp_path / "no folder" / "notes.txt") is None
     with pytest.raises(ImageError, match=r"its folder exists\): is .*notes.txt meant\?"):
         open_image(tmp_path / "note.txt")
+
+
+def test_of_thousands_of_names_the_nearest_is_found(tmp_path):
+    for day in range(1, 29):
+        for number in range(40):
+            (tmp_path / f"S2A_MSIL1C_202605{day:02d}T1010{number:02d}_N0500.tif").touch()
+    wrong = tmp_path / "S2A_MSIL1C_20260517T10102_N0500.tif"
+    meant = nearest_name(wrong)
+    assert meant is not None
+    assert meant.startswith("S2A_MSIL1C_20260517T1010")
+    assert nearest_name(tmp_path / "s2a_MSIL1C_20260517T101023_NO500.tiff") == (
+        "S2A_MSIL1C_20260517T101023_N0500.tif"
+    )

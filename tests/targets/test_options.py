@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -78,6 +79,11 @@ def test_limits_are_those_of_the_same_target(of):
         of(limits={"sharpness": 3.0})
     with pytest.raises(ac.OptionError, match="limits has to be a dict"):
         of(limits=[3.0])
+
+
+def test_the_readme_counts_the_questions_of_an_edge():
+    readme = Path(__file__).parents[2] / "README.md"
+    assert f"(of an edge {len(EDGE_CHECKS)}:" in readme.read_text(encoding="utf-8")
 
 
 def test_every_question_is_asked_of_some_target():
