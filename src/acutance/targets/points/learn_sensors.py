@@ -109,7 +109,7 @@ def draw_departures(counts: Mapping[str, int], seed: int) -> dict[str, Departure
 def _drawn(family: str, rng: np.random.Generator) -> Sensor:
     if family != "plain":
         return draw_sensor(family, rng)
-    return Sensor([Gaussian(rng.uniform(0.05, 1.1)), Detector(rng.uniform(0.85, 1.0))])
+    return Sensor([Gaussian(rng.uniform(0.15, 1.1)), Detector(rng.uniform(0.85, 1.0))])
 
 
 def density(drawn: Mapping[str, Departures]) -> dict[str, Floats]:
