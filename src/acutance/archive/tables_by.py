@@ -111,7 +111,7 @@ class MeasurementTable:
         """What has to be known of the deviations to read them."""
         if not any(count > 1 for row in self.rows for count in row.counts.values()):
             return ()
-        return (_MEANS, _SINGLE) if any(map(_has_single, self.rows)) else (_MEANS,)
+        return (_MEANS, _SINGLE) if any(map(_single_cells, self.rows)) else (_MEANS,)
 
     @property
     def _image_header(self) -> tuple[str, ...]:
@@ -315,10 +315,6 @@ def _single_cells(row: TableRow) -> set[tuple[str, str]]:
         key for key, count in row.counts.items()
         if count == 1 and np.isfinite(row.cells[key].std)
     }  # fmt: skip
-
-
-def _has_single(row: TableRow) -> bool:
-    return bool(_single_cells(row))
 
 
 def _text(estimate: Estimate | None) -> str:

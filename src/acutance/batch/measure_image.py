@@ -21,12 +21,11 @@ from acutance.batch.summary import NO_FILE
 from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
 from acutance.execution import interruptible, is_ending
 from acutance.numerics.one_thread import one_thread
-from acutance.raster import Gsd, Image, open_bands
+from acutance.raster import Box, Gsd, Image, open_bands
 from acutance.raster.metadata import ImageStatement, read_statement
 from acutance.raster.sensor_model import SensorModel, georeference_of
 from acutance.raster.surveyed_targets import SurveyedTarget
-from acutance.targets.record import ImageInfo
-from acutance.targets.region import stated_gsd
+from acutance.targets.region import image_info, stated_gsd
 from acutance.targets.target_result import Rejected
 
 __all__ = ["BatchTask", "BatchWork", "MeasuredImage", "measure_image"]
@@ -286,15 +285,9 @@ def _require_credible_gsd(image: Image) -> None:
     RegionError
         As `NotHereError`, where the check `stated_gsd` would fail.
     """
-    own = image.gsd_of_file()
-    info = ImageInfo(pixel_gsd_m=_sides(image.own_gsd), file_gsd_m=_sides(own))
-    check = stated_gsd(info, {})
+    check = stated_gsd(image_info(image, Box.whole(image.shape), image.own_gsd), {})
     if not check.passed:
         raise NotHereError("stated GSD", check.message, "options")
-
-
-def _sides(gsd: Gsd | None) -> tuple[float, float] | None:
-    return None if gsd is None else (gsd.row_m, gsd.col_m)
 
 
 def _stage(error: AcutanceError) -> str:

@@ -13,7 +13,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from acutance.errors import OptionError
-from acutance.raster.document_faults import DocumentFault, document_faults
+from acutance.raster.document_faults import document_faults
 from acutance.raster.gsd import Gsd
 from acutance.raster.metadata.findings import ANGLES
 from acutance.raster.metadata.times import time_or_day
@@ -243,7 +243,7 @@ def plan_of(document: Mapping[str, Any], name: str, folder: Path | None = None) 
     try:
         given = _Plan.model_validate(document)
     except ValidationError as error:
-        faults = "\n".join(f"  - {_fault(one)}" for one in document_faults(error, document))
+        faults = "\n".join(f"  - {one.in_words('key')}" for one in document_faults(error, document))
         raise OptionError(f"the plan {name} cannot be used:\n{faults}") from None
     at = Path() if folder is None else folder
     return BatchPlan(
@@ -285,12 +285,3 @@ def _below(folder: Path, path: str) -> str:
     if path.startswith(("/vsi", "~")) or ":" in path[2:]:
         return os.path.expanduser(path)
     return str(folder / path)
-
-
-def _fault(fault: DocumentFault) -> str:
-    if fault.kind == "extra_forbidden":
-        where = f" in {fault.within}" if fault.within else ""
-        return f"there is no key {fault.key!r}{where}"
-    if fault.kind == "missing":
-        return f"the key {fault.place!r} is missing"
-    return f"{fault.place} is {fault.found!r:.60}: {fault.message}"

@@ -41,6 +41,21 @@ class DocumentFault:
     found: Any
     message: str
 
+    def in_words(self, part: str) -> str:
+        """A sentence without its full stop.
+
+        Parameters
+        ----------
+        part : str
+            What the document calls its parts: "key", "property".
+        """
+        if self.kind == "extra_forbidden":
+            where = f" in {self.within}" if self.within else ""
+            return f"there is no {part} {self.key!r}{where}"
+        if self.kind == "missing":
+            return f"the {part} {self.place!r} is missing"
+        return f"{self.place} is {self.found!r:.60}: {self.message}"
+
 
 def document_faults(error: ValidationError, document: Any) -> list[DocumentFault]:
     """The faults of a document, each place once.

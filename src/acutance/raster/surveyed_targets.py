@@ -277,12 +277,8 @@ def _of_other_kinds(names: Iterable[str], kind: str | None) -> list[str]:
 
 
 def _fault(fault: DocumentFault) -> str:
-    if fault.kind == "extra_forbidden":
-        where = f" in {fault.within}" if fault.within else ""
-        return f"there is no property {fault.key!r}{where}"
-    if fault.kind == "missing":
-        return f"the property {fault.place!r} is missing: one of {', '.join(KINDS)}"
-    return f"{fault.place} is {fault.found!r:.60}: {fault.message}"
+    one_of = f": one of {', '.join(KINDS)}" if fault.kind == "missing" else ""
+    return fault.in_words("property") + one_of
 
 
 def _checked(
