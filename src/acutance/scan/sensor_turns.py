@@ -302,8 +302,10 @@ def _combined(
 
 def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:
     """What the edges say of the sensor along their bins; along their own normals it differs."""
-    fine, mean = (np.abs(_along(sensor, one, edges.freq_cpp)) for one in (_FINE_DEG, normal_deg))
-    own = [np.interp(edges.normal_deg, _FINE_DEG, column) for column in fine.T]
+    # Of few edges the directions themselves are fewer.
+    fine_deg = _FINE_DEG if edges.size > _FINE_DEG.size else np.sort(edges.normal_deg)
+    fine, mean = (np.abs(_along(sensor, one, edges.freq_cpp)) for one in (fine_deg, normal_deg))
+    own = [np.interp(edges.normal_deg, fine_deg, column) for column in fine.T]
     low, high = _GAINS
     gain = np.transpose(own) / np.maximum(mean[edges.bin], 1e-3)
     return edges.turned(np.clip(gain, low, high))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 from acutance.scan.softness import FREE, PARTS, PSEUDO_COUNTS
 
 __all__ = [
@@ -49,16 +50,29 @@ def likeliest_shares(by_part: Floats, sector: NDArray[np.intp], share: Floats) -
 
     Every sector by itself.
     """
-    return np.array([_likeliest(by_part[sector == g], own) for g, own in enumerate(share)])
+    return np.array([_likeliest(by_part[sector == g], own, _BEFORE) for g, own in enumerate(share)])
 
 
-def _likeliest(by_part: Floats, share: Floats) -> Floats:
+@compiled
+def _likeliest(by_part: Floats, first: Floats, before: Floats) -> Floats:
     """The likeliest shares of a sector, (p,), by expectation and maximisation."""
+    edges, parts = by_part.shape
+    share, counts = first.copy(), np.empty(parts)
     for _ in range(_MAX_PASSES):
-        counts = share * (by_part.T @ (1 / (by_part @ share))) + _BEFORE
-        updated = counts / counts.sum()
-        moved = float(np.abs(updated - share).max())
-        share = updated
+        counts[:] = 0.0
+        for i in range(edges):
+            whole = 0.0
+            for j in range(parts):
+                whole += by_part[i, j] * share[j]
+            for j in range(parts):
+                counts[j] += by_part[i, j] / whole
+        moved, total = 0.0, 0.0
+        for j in range(parts):
+            counts[j] = share[j] * counts[j] + before[j]
+            total += counts[j]
+        for j in range(parts):
+            moved = max(moved, abs(counts[j] / total - share[j]))
+            share[j] = counts[j] / total
         if moved < _SETTLED:
             break
     return share
