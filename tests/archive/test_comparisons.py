@@ -235,8 +235,9 @@ def test_what_cannot_be_compared_is_refused() -> None:
         compare_groups(rows, "mtf")
     with pytest.raises(OptionError, match="'moon' cannot be compared"):
         compare_groups(rows, "mtf_nyquist", "moon")
-    with pytest.raises(OptionError, match="margin is 0"):
-        compare_groups(rows, "mtf_nyquist", margin=0)
+    for margin in (0, 5, float("nan")):
+        with pytest.raises(OptionError, match=f"margin is {margin}: .* 0.05 for 5 %"):
+            compare_groups(rows, "mtf_nyquist", margin=margin)
     many = rows_of(*(
         {"method": f"m{at}", "image_id": [1], "mtf_nyquist": [0.1]} for at in range(13)
     ))  # fmt: skip

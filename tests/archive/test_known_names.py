@@ -65,3 +65,17 @@ def test_images_of_several_gsds_are_not_joined(archive: Archive, entry_of: Any) 
     refused = "of 3 GSDs, GSD 10 to 10.3 m, GSD 20 m, GSD 30 m: select one"
     with pytest.raises(OptionError, match=re.escape(refused)):
         archive.mean("rer")
+
+
+def test_bands_without_a_name_are_selected_as_the_message_says(
+    archive: Archive, entry_of: Any
+) -> None:
+    archive.add_entries(entry_of(i, band=None if i % 2 else "pan") for i in range(8))
+    whole: dict[str, Any] = {"sensor": "QB02", "orientation": "across"}
+    with pytest.raises(OptionError, match=r"of 2 bands, pan, '' \(of those without a name\)"):
+        archive.trend("rer", **whole)
+    assert set(archive.measurements(band="")["band"].tolist()) == {None}
+    assert len(archive.measurements(band=["", "pan"])) == len(archive.measurements())
+    with pytest.raises(NothingSelectedError, match="holds nothing that is selected"):
+        archive.trend("rer", sensor="")
+    assert len(archive.check(specification(band="", sensor="QB02")).answers) == 1

@@ -210,6 +210,17 @@ def test_nodata_on_the_target(write_field, run, rows):
     assert (rejected["target"][0], rejected["stage"][0]) == ("edge", "region")
 
 
+def test_nodata_on_the_target_and_ground_beside_it(write_field, run, rows):
+    def cover(pixels):
+        pixels[:, :66] = 0
+        return pixels
+
+    found = run(write_field(0, edit=cover, nodata=0))
+    assert (found.measured, found.reasons) == (1, {"no data": 1})
+    _, rejected = rows()
+    assert "100 % of the surveyed line lie on pixels without data" in rejected["reason"][0]
+
+
 def test_an_image_that_cannot_be_read_stops_no_other(write_field, run, rows, tmp_path):
     whole = write_field(0)
     cut = tmp_path / "cut.tif"
@@ -236,6 +247,8 @@ def test_an_image_without_georeference_and_date(write_field, run, rows):
     )
     found = run(plain, targets=targets)
     assert found.reasons == {"no georeference": 1, "no date": 1}
+    _, rejected = rows()
+    assert "neither a geotransform with a CRS, RPC nor" in " ".join(rejected["reason"])
     turned = [[one.col + s, one.row + t] for one, s, t in ((EDGE, 1.5, -14), (EDGE, -1.5, 14))]
     pixels = survey(feature("pixels", "edge", "LineString", turned), crs="pixel")
     assert run(plain, targets=pixels).measured == 1

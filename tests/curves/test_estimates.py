@@ -59,7 +59,7 @@ def test_estimates_are_indexed_sliced_and_iterated() -> None:
     assert list(found)[-1] == found[-1] == Estimate(0.1, 0.2, 0.0)
     assert found[1:].value.tolist() == [0.5, 0.1]
     assert found[found.value > 0.3].std.tolist() == [0.01, 0.02]
-    assert repr(found) == "<Estimates: value array of 3, std array of 3, lowest 0>"
+    assert repr(found) == "<Estimates: 0.900 ± 0.010, 0.500 ± 0.020, 0.10 ± 0.20>"
 
 
 def test_intervals_are_those_of_each_number() -> None:
@@ -88,3 +88,11 @@ def test_outside_the_curve_is_an_error_that_says_where(places) -> None:
 def test_what_is_no_number_is_refused_by_name(places) -> None:
     with pytest.raises(OptionError, match=r"freq_cpp is .*, which is no number"):
         MTF(places)
+
+
+def test_estimates_print_their_numbers() -> None:
+    few, many = MTF([0.1, 0.2]), MTF(FREQ_CPP)
+    assert repr(few) == f"<Estimates: {few[0]}, {few[1]}>"
+    assert repr(many) == f"<Estimates: 101 of them, {many[0]} to {many[100]}>"
+    assert repr(MTF([[0.1, 0.2]])) == f"<Estimates: 1 x 2 of them, {few[0]} to {few[1]}>"
+    assert repr(MTF([])) == "<Estimates: 0 of them>"

@@ -292,6 +292,11 @@ def test_an_image_without_any_data_stays_so(sharpening):
     assert counts.nodata == 900
 
 
+def test_an_open_image_is_refused_with_what_to_give(landscape, sharpening):
+    with pytest.raises(ac.OptionError, match=r"give its pixels, image\.read\(\)"):
+        ac.restore(ac.Image.from_array(landscape), sharpening)
+
+
 def test_outputs_that_cannot_be_are_refused(sharpening, tmp_path):
     path = scene(tmp_path)
     with pytest.raises(ac.OptionError, match="the input itself"):

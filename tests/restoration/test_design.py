@@ -184,6 +184,7 @@ def test_an_mtf_that_reaches_zero_is_told():
         ({}, "no SNR is known"),
         ({"noise_gain": 1.5, "snr": 0.0}, "snr is"),
         ({"noise_gain": 1.5, "scene": "moon"}, "scene is"),
+        ({"noise_gain": 1.5, "scene": np.zeros((64, 64))}, r"of an array Image\.from_array"),
         ({"noise_gain": 1.5, "desired": "line"}, "desired is"),
     ],
 )

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import acutance as ac
+from acutance.curves import METRICS
 from acutance.targets import OtfSlices, Record
 from acutance.targets.document_fields import DocumentFields, WrittenLater
 from acutance.targets.record import rounded
@@ -45,6 +46,13 @@ def test_what_is_written_later_is_written_once_in_its_place():
 def test_it_takes_15_kilobytes_pickled_and_less_stored(record):
     assert len(record.to_bytes()) < len(pickle.dumps(record)) <= 15_000
     assert Record.from_bytes(record.to_bytes()) == record
+
+
+def test_a_direction_has_every_number_by_its_name(record):
+    across = record.across
+    assert {name: getattr(across, name) for name in METRICS} == across.numbers
+    without = Record.from_dict({**record.to_dict(), "fwhm_m": None})
+    assert without.across.fwhm_m is None
 
 
 def test_what_does_not_fit_quickly_is_compressed_as_it_is_stored(record):

@@ -46,7 +46,7 @@ def _unknown(connection: Connection, selections: list[Selection]) -> list[str]:
         known = sorted(connection.execute(
             select(column).where(column.is_not(None)).distinct()
         ).scalars())  # fmt: skip
-        missing = [repr(one) for one in names if one not in known]
+        missing = [repr(one) for one in names if one and one not in known]
         if missing:
             found.append(f"no {name} is called {' or '.join(missing)}, {_listed(known)}")
     return found

@@ -18,7 +18,7 @@ from acutance.targets.kinds import KINDS
 __all__ = ["Limits", "Selection", "SelectionWords", "names_of"]
 
 Names = str | Sequence[str]
-"""A name, or several any of which may be the one."""
+"""A name, or several any of which may be the one; an empty one is that of rows without."""
 
 _KINDS = (*KINDS, "scene")
 
@@ -52,7 +52,7 @@ class Selection:
     Parameters
     ----------
     sensor, band, level, site, target, kind, method, orientation : str or sequence of str, optional
-        Whole names, as they were written; of several, any.
+        Whole names, as they were written; of several, any. ``""`` selects what has no name.
     since, until : datetime, date or str, optional
         Of the acquisition, both included; a day is all of the day, and without a zone UTC. What has
         no date does not pass.
@@ -145,7 +145,7 @@ class Selection:
         """Conditions on measurements and rejections, with their images and targets."""
         for _, column, wanted in self.by_name():
             if wanted is not None:
-                yield column.in_(names_of(wanted))
+                yield _is_named(column, names_of(wanted))
         if self.since is not None:
             yield images.c.acquired >= as_utc(self.since)
         if self.until is not None:
@@ -168,6 +168,12 @@ class Selection:
         yield "target", targets.c.name, self.target
         yield "kind", measurements.c.kind, self.kind
         yield "method", measurements.c.method, self.method
+
+
+def _is_named(column: Column[Any], names: list[str]) -> ColumnElement[bool]:
+    """Whether a row has one of some names; the empty one is that of rows without."""
+    named = column.in_(names)
+    return or_(named, column.is_(None)) if "" in names else named
 
 
 def _require_limits(metric: str, limits: Any) -> None:

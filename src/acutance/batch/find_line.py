@@ -24,6 +24,8 @@ _SIDE_PX = 20.0
 """How far the region reaches to either side of a line; what is not its own is trimmed."""
 _MIN_OVERLAP = 0.5
 """Of the surveyed length that what is found has to cover."""
+_MAX_EMPTY = 0.5
+"""Of the surveyed line: where more of it has no data, that is why nothing was found."""
 _CANDIDATES = 24
 _TRIED = 4
 
@@ -123,6 +125,7 @@ def _nearest(placed: PlacedTarget, region: RegionPixels) -> Segment:
         if best is None or score > best[0]:
             best = score, one
     if best is None:
+        _require_data_along(region, start, stop)
         found = (
             "none of its direction was found"
             if math.isinf(nearest_px)
@@ -135,6 +138,22 @@ def _nearest(placed: PlacedTarget, region: RegionPixels) -> Segment:
             "find",
         )
     return best[1]
+
+
+def _require_data_along(region: RegionPixels, start: Floats, stop: Floats) -> None:
+    """Refuse a line from `start` to `stop`, (row, col) in the region, on pixels without data."""
+    count = max(round(float(np.hypot(*(stop - start)))), 1)
+    places = np.rint(start + np.linspace(0.0, 1.0, count + 1)[:, np.newaxis] * (stop - start))
+    row, col = places.astype(int).T
+    height, width = region.pixels.shape
+    inside = (row >= 0) & (row < height) & (col >= 0) & (col < width)
+    empty = float(np.mean(np.isnan(region.pixels[row[inside], col[inside]]))) if inside.any() else 0
+    if empty > _MAX_EMPTY:
+        raise NotHereError(
+            "no data",
+            f"{100 * empty:.0f} % of the surveyed line lie on pixels without data, and no straight "
+            "edge of its direction lies beside them",
+        )
 
 
 def _against(segment: Segment, start: Floats, stop: Floats) -> tuple[float, float, float]:

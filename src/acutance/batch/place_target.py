@@ -103,8 +103,9 @@ def _in_pixels(target: SurveyedTarget, image: Image, georeference: Georeference)
     if georeference is None:
         raise NotHereError(
             "no georeference",
-            f"the image has neither geotransform, RPC nor ground control points to find "
-            f'{target.crs} by: give the target in pixels ("crs": "pixel")',
+            "the image has neither a geotransform with a CRS, RPC nor ground control points to "
+            f"find {target.crs} by: write the CRS into it, or give the target in pixels "
+            '("crs": "pixel")',
         )
     if isinstance(georeference, SensorModel) and georeference.needs_height:
         _require_near(points, target.crs, image, georeference)

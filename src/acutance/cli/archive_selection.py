@@ -32,7 +32,8 @@ class SelectionOptions:
         list[str] | None, typer.Option(metavar="NAME", help="Of this sensor; repeatable.")
     ] = None
     band: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Of this band; repeatable.")
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Of this band, '' of those without a name; repeatable."),
     ] = None
     level: Annotated[
         list[str] | None, typer.Option(metavar="LEVEL", help="Of this product level; repeatable.")

@@ -14,6 +14,8 @@ from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["Estimates", "estimates_of"]
 
+_FEW = 4
+
 
 @dataclass(frozen=True, eq=False)
 class Estimates(ShortRepr):
@@ -33,6 +35,8 @@ class Estimates(ShortRepr):
     >>> found = Estimates(np.array([0.9, 0.5]), np.array([0.01, 0.02]))
     >>> print(found[1], len(found))
     0.500 ± 0.020 2
+    >>> found
+    <Estimates: 0.900 ± 0.010, 0.500 ± 0.020>
     """
 
     value: Floats
@@ -50,6 +54,16 @@ class Estimates(ShortRepr):
         half = normal_quantile(level) * self.std
         low, high = self.value - half, self.value + half
         return low if self.lowest is None else np.maximum(low, self.lowest), high
+
+    def summary(self) -> str:
+        """The numbers, of many the first and the last."""
+        pairs = list(zip(self.value.flat, self.std.flat, strict=True))
+        shown = pairs if len(pairs) <= _FEW else [pairs[0], pairs[-1]]
+        words = [str(Estimate(float(value), float(std))) for value, std in shown]
+        if 0 < len(pairs) <= _FEW and self.value.ndim == 1:
+            return ", ".join(words)
+        count = f"{' x '.join(map(str, self.value.shape))} of them"
+        return f"{count}, {words[0]} to {words[-1]}" if words else count
 
     def __len__(self) -> int:
         return len(self.value)

@@ -136,7 +136,7 @@ def georeference_of(
     Returns
     -------
     Geolocation, SensorModel or None
-        ``None`` if the file has neither geotransform, RPC nor ground control points.
+        ``None`` if the file has neither a geotransform with a CRS, RPC nor ground control points.
 
     Raises
     ------

@@ -3,7 +3,8 @@
 A filter, from what is known of a sensor to what its kernel does, in this order:
 
 - `named_records.py` measurements and documents by name, and what their failed checks warn of
-- `known_otf.py` the OTF over the plane, of measurements, documents or a described sensor
+- `known_otf.py` the OTF over the plane, of measurements, documents or a described sensor;
+  `sliced_otf.py` the plane of a document, through the slices it holds
 - `scene_spectrum.py`, `measured_scene.py` the power of the scene: natural, stated, or of an image
 - `kernel_family.py` kernels of least expected error, one for each weight of the noise
 - `knobs.py` noise gain, MTF at Nyquist or overshoot choose among them; `trade.py` all others

@@ -144,6 +144,11 @@ def restore(
             f"the filter is a {type(filter).__name__}: give one of design_restoration, or "
             "RestorationFilter.read(path)"
         )
+    if isinstance(image, Image):
+        raise OptionError(
+            "the image is an Image, which is one band as it is measured: give its pixels, "
+            "image.read(), or the path of its file and the new one's (out)"
+        )
     if not isinstance(image, str | os.PathLike):
         if out is not None:
             raise OptionError("out was given with an array: the result is returned")

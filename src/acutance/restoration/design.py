@@ -183,8 +183,11 @@ def _scene(
         return scene
     if isinstance(scene, Image):
         return measured_scene(scene, known.otf.model)
-    if scene != "natural":
-        raise OptionError(f"scene is {scene!r}: give 'natural', a NaturalScene or an Image")
+    if not (isinstance(scene, str) and scene == "natural"):
+        raise OptionError(
+            f"scene is {scene!r:.80}: give 'natural', a NaturalScene or an Image, of an array "
+            "Image.from_array(array)"
+        )
     return NaturalScene(_CONTRAST * (snr or _USUAL_SNR))
 
 

@@ -25,12 +25,12 @@ from acutance.restoration.named_records import (
     named_records,
     warnings_of,
 )
+from acutance.restoration.sliced_otf import SlicedOtf
 from acutance.targets import Measurement, Record
 from acutance.targets.check import VerdictWord
 from acutance.targets.combine import combine
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import combine_curves
-from acutance.targets.combine.weighted_forms import CombinedOtf
 from acutance.targets.own_mtf import require_own_mtf
 from acutance.targets.slices import SLICE_DIRECTIONS_DEG, OtfSlices
 
@@ -170,25 +170,15 @@ def _measured(given: Any, name: str, record: Record, isotropic: bool) -> KnownOt
 
 def _plane(given: Any, slices: OtfSlices) -> OtfModel:
     """The OTF over the plane: of a whole measurement its own, of a record from its slices."""
-    if isinstance(given, Measurement) and isinstance(given.transfer, Otf2d):
-        return given.transfer.model
     likelihood = slices.likelihood
     if slices.normal_deg.size == 1:
+        # In other directions the own plane of such a measurement is its prior.
         slices, likelihood = _in_all_directions(slices), None
+    elif isinstance(given, Measurement) and isinstance(given.transfer, Otf2d):
+        return given.transfer.model
     u, v = slices.places
     samples = OtfSamples("measurement", u, v, slices.otf, slices.factor, likelihood)
-    plane = combine_curves([samples]).otf
-    return plane if likelihood is not None else _as_stated(plane, slices)
-
-
-def _as_stated(plane: CombinedOtf, slices: OtfSlices) -> CombinedOtf:
-    """The plane through slices with the deviations they state, on the whole.
-
-    They had a prior already: what that of the parametric forms adds is not known any better.
-    """
-    u, v = slices.places
-    stated, found = (float(np.linalg.norm(one)) for one in (slices.factor, plane.factor(u, v)))
-    return replace(plane, birge_ratio=plane.birge_ratio * max(1.0, stated / found))
+    return SlicedOtf(combine_curves([samples]).otf, slices)
 
 
 def _in_all_directions(slices: OtfSlices) -> OtfSlices:

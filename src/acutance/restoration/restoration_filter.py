@@ -21,7 +21,7 @@ from acutance.raster.image import AlongTrack
 from acutance.restoration.filtered_otf import kernel_otf
 from acutance.targets.check import VerdictWord
 from acutance.targets.document_fields import require_document
-from acutance.targets.record import RecordedDirection
+from acutance.targets.recorded_direction import RecordedDirection
 
 __all__ = ["SCHEMA", "RestorationFilter", "Sharpness"]
 

@@ -4,9 +4,9 @@ What the kinds share stands here: `kinds` (their names and methods), `region` (t
 of a measurement), `options` (what callers choose), `check` and `check_table` (is the
 target good enough), `processing_traces` (what processing left in its pixels, and
 `processing_checks` of it), `slices` (an OTF along some directions, with covariance), `measurement`
-and its light half, `record`, `directions` (what these two have in common), `uncertainty_budget`
-(what their deviations consist of), and `target_result` (several measurements of one target). The
-kinds, none of which imports another:
+and its light half, `record` (a direction of it: `recorded_direction`), `directions` (what these two
+have in common), `uncertainty_budget` (what their deviations consist of), and `target_result`
+(several measurements of one target). The kinds, none of which imports another:
 
 - `straight`: edges and pulses, along their normals
 - `points`: mirrors, lamps, stars of the sky

@@ -20,15 +20,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from acutance.curves import METRICS, Estimate
 from acutance.curves.direction import gsd_along
-from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.raster.image import AlongTrack
 from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.directions import HasDirections
 from acutance.targets.document_fields import require_document
+from acutance.targets.recorded_direction import RecordedDirection
 from acutance.targets.slices import OtfSlices
 from acutance.targets.uncertainty_budget import BudgetTerm
 
@@ -36,7 +35,6 @@ __all__ = [
     "SCHEMA",
     "ImageInfo",
     "Record",
-    "RecordedDirection",
     "rounded",
     "strict_json",
 ]
@@ -130,80 +128,6 @@ class ImageInfo:
             document.get("linearized"),
             None if of_file is None else (float(of_file[0]), float(of_file[1])),
         )
-
-
-@dataclass(frozen=True, eq=False)
-class RecordedDirection(ShortRepr):
-    """Numbers and curves of one direction, as a document holds them.
-
-    Parameters
-    ----------
-    document : mapping
-        The part of the document: numbers, and the curves "mtf", "lsf" and "esf".
-    """
-
-    document: Mapping[str, Any]
-
-    @cached_property
-    def numbers(self) -> dict[str, Estimate]:
-        """All numbers by name, in the order a report prints them.
-
-        Raises
-        ------
-        OptionError
-            If one of them is none.
-        """
-        return {
-            name: _number(name, self.document[name])
-            for name in METRICS
-            if self.document.get(name) is not None
-        }
-
-    @property
-    def mtf_nyquist(self) -> Estimate:
-        """MTF at 0.5 cycles per pixel."""
-        return self.numbers["mtf_nyquist"]
-
-    @property
-    def rer(self) -> Estimate:
-        """Relative edge response."""
-        return self.numbers["rer"]
-
-    @property
-    def fwhm_px(self) -> Estimate:
-        """Full width of the LSF at half maximum, pixels."""
-        return self.numbers["fwhm_px"]
-
-    @property
-    def overshoot(self) -> Estimate:
-        """Largest excess of the ESF over the bright plateau."""
-        return self.numbers["overshoot"]
-
-    @property
-    def undershoot(self) -> Estimate:
-        """Largest shortfall of the ESF under the dark plateau."""
-        return self.numbers["undershoot"]
-
-    @property
-    def giqe_h(self) -> Estimate:
-        """Edge height overshoot H of GIQE 4."""
-        return self.numbers["giqe_h"]
-
-    def curve(self, name: str) -> tuple[Floats, Floats, Floats]:
-        """Places, values and standard deviations of a curve, (n,) each.
-
-        Parameters
-        ----------
-        name : {"mtf", "lsf", "esf"}
-        """
-        found = self.document[name]
-        place = "freq_cpp" if name == "mtf" else "distance_px"
-        at, value, std = (np.array(found[key], float) for key in (place, "value", "std"))
-        return at, value, std
-
-    def summary(self) -> str:
-        """The three main numbers."""
-        return f"mtf_nyquist {self.mtf_nyquist}, rer {self.rer}, fwhm_px {self.fwhm_px}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -354,22 +278,6 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         """Target and method, the main numbers, and how many checks failed."""
         named = (f"{name}: {self.directions[name].summary()}" for name in self.measured_directions)
         return f"{self.kind} by {self.method}, {', '.join(named)}, {count_failed(self.checks)}"
-
-
-def _number(name: str, document: Any) -> Estimate:
-    """A number of a document.
-
-    Raises
-    ------
-    OptionError
-        Names what is written there instead.
-    """
-    try:
-        return Estimate.from_dict(document)
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise OptionError(
-            f"{name} is {document!r:.80}, no value with its standard deviation"
-        ) from error
 
 
 def _unpacked(packed: bytes) -> Record:

@@ -117,3 +117,8 @@ def testbounded_solution_obeys_its_bounds_and_is_the_minimum_within_them():
     assert bounded_solution(gram, gradient, low - 100, high + 100) == pytest.approx(
         np.linalg.solve(gram, gradient)
     )
+
+
+def test_a_step_beside_the_pixels_is_refused_without_its_meaningless_distance():
+    with pytest.raises(NoEdgeError, match="a step lies outside the pixels around the one"):
+        fit(edge(GaussianPixel(10.0), LINE.moved(30.0, 0.0)), LINE)

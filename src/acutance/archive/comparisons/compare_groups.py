@@ -68,8 +68,10 @@ def compare_groups(
     NothingSelectedError
         If there are no rows.
     """
-    if not (isinstance(margin, Real) and 0 < margin < math.inf):
-        raise OptionError(f"margin is {margin!r}: give a relative difference, such as 0.05")
+    if not (isinstance(margin, Real) and 0 < margin <= 1):
+        raise OptionError(
+            f"margin is {margin!r}: give a relative difference between 0 and 1, 0.05 for 5 %"
+        )
     differences: list[Difference] = []
     scatters = []
     for stratum in strata_of(rows, metric, by):

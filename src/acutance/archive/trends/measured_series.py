@@ -123,7 +123,10 @@ def _band_words(band: str | None) -> str | None:
 
 
 def _words(rows: Columns, name: str) -> list[str]:
-    return sorted({"unknown" if one is None else str(one) for one in rows[name].tolist()})
+    """All names of a column in order, last how rows without any are selected."""
+    names = set(rows[name].tolist())
+    without = ["'' (of those without a name)"] if None in names else []
+    return sorted(str(one) for one in names - {None}) + without
 
 
 def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | None = None) -> Series:

@@ -20,7 +20,8 @@ from acutance.raster.gsd import gsd_in_words
 from acutance.targets.measurement import Measurement
 from acutance.targets.own_mtf import require_own_mtf
 from acutance.targets.pair.reference_otf import ReferenceOtf
-from acutance.targets.record import Record, RecordedDirection
+from acutance.targets.record import Record
+from acutance.targets.recorded_direction import RecordedDirection
 from acutance.targets.target_result import TargetResult
 
 __all__ = [

@@ -119,8 +119,8 @@ def fit_first(
     offset_px = float(p[2])
     if not s.min() < offset_px < s.max():
         raise NoEdgeError(
-            f"no straight target was found: the best fit of a step lies {abs(offset_px):.3g} px "
-            "from where one was seen; choose a region with one edge, or one pulse, between uniform "
+            "no straight target was found: the best fit of a step lies outside the pixels around "
+            "the one that was seen; choose a region with one edge, or one pulse, between uniform "
             "plateaus"
         )
     found = profile if p.size == 7 else pulse_profile(float(p[7]), float(p[8]))
