@@ -57,14 +57,17 @@ class Correction(ShortRepr):
 
     def directions(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Change of the OTF for a unit of every direction, (n, m): exactly 0 at zero frequency."""
+        return self.directions_on(Plane(u_cpp, v_cpp))
+
+    def directions_on(self, plane: Plane) -> Complexes:
+        """The same at places of the plane."""
         p = np.array(self.parameters)
-        plane = Plane(u_cpp, v_cpp)
         size = np.abs(self.form.otf_on(p, plane))
         # Sharpening multiplies the blur by a gain: the blur is the detector's at most.
         blurred = np.minimum(size, np.abs(self.form.factors_on(p, plane)[-1]))
         reach = -math.e * size * np.log(np.maximum(blurred, 1e-30))
-        even = self._kernel(u_cpp, v_cpp, 1.0) @ self._roots[0]
-        odd = self._kernel(u_cpp, v_cpp, -1.0) @ self._roots[1]
+        even = self._kernel(plane.u_cpp, plane.v_cpp, 1.0) @ self._roots[0]
+        odd = self._kernel(plane.u_cpp, plane.v_cpp, -1.0) @ self._roots[1]
         return np.asarray(reach[:, None] * np.concatenate([even, 1j * odd], axis=1))
 
     def _kernel(self, u: Floats, v: Floats, parity: float) -> Floats:

@@ -57,17 +57,25 @@ class WeightedForm(ShortRepr):
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF, (n,), exactly 1 at zero frequency."""
-        plain = self.form.otf(self.parameters, u_cpp, v_cpp)
+        return self.otf_on(Plane(u_cpp, v_cpp))
+
+    def otf_on(self, plane: Plane) -> Complexes:
+        """OTF, (n,), at places of the plane."""
+        plain = self.form.otf_on(self.parameters, plane)
         if self.weights.size == 0:
             return plain
-        return np.asarray(plain + self.correction.directions(u_cpp, v_cpp) @ self.weights)
+        return np.asarray(plain + self.correction.directions_on(plane) @ self.weights)
 
     def slopes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Derivatives of the OTF by parameters and weights, (n, p + m)."""
-        own = self.form.slopes_on(self.parameters, Plane(u_cpp, v_cpp))
+        return self.slopes_on(Plane(u_cpp, v_cpp))
+
+    def slopes_on(self, plane: Plane) -> Complexes:
+        """The same at places of the plane."""
+        own = self.form.slopes_on(self.parameters, plane)
         if self.weights.size == 0:
             return own
-        return np.concatenate([own, self.correction.directions(u_cpp, v_cpp)], axis=1)
+        return np.concatenate([own, self.correction.directions_on(plane)], axis=1)
 
     def numbers(self, widened: float = 1.0) -> dict[str, Estimate]:
         """Parameters by name; the direction of a round or short shape has no value (NaN)."""
@@ -193,16 +201,21 @@ class CombinedOtf(ShortRepr):
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Mean OTF over the forms, (n,), exactly 1 at zero frequency."""
-        return np.asarray(sum(one.weight * one.otf(u_cpp, v_cpp) for one in self.forms))
+        return self._otf_on(Plane(u_cpp, v_cpp))
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Factor of its covariance, (n, k): that of each form, and their differences."""
-        mean = self.otf(u_cpp, v_cpp)
+        plane = Plane(u_cpp, v_cpp)
+        mean = self._otf_on(plane)
         parts = []
         for one in self.forms:
-            off = one.otf(u_cpp, v_cpp) - mean
-            own = np.concatenate([one.slopes(u_cpp, v_cpp) @ one.root, off[:, None]], axis=1)
+            off = one.otf_on(plane) - mean
+            own = np.concatenate([one.slopes_on(plane) @ one.root, off[:, None]], axis=1)
             parts.append(math.sqrt(one.weight) * own)
         found = self.birge_ratio * np.concatenate(parts, axis=1)
         found[(u_cpp == 0) & (v_cpp == 0)] = 0.0
         return np.asarray(found)
+
+    def _otf_on(self, plane: Plane) -> Complexes:
+        # What several forms ask of the plane is worked out once.
+        return np.asarray(sum(one.weight * one.otf_on(plane) for one in self.forms))
