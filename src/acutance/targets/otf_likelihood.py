@@ -10,8 +10,11 @@ pixels say of a spectrum g, the likelihood L, is the posterior over the prior::
 
 complex numbers being stacked, real parts first. The spectrum is the OTF f times the light h, whose
 place is x: ``g = h f exp(-2 pi i u x)``, and ``f(0) = 1``. Neither h nor x is a property of the
-sensor, so both are integrated out about an OTF near by. An error of the light that is taken from
-the data would make every OTF seem less (R. W. Peelle's puzzle; G. D'Agostini, Nucl. Instrum.
+sensor, so both are integrated out. The place is nearly known: about an OTF near by (`placed`). So
+is the light where that OTF is (`near`), but not of any other: half the OTF of twice the light is
+the same spectrum, and to first order about the whole OTF an OTF of nothing is, too. Fits that may
+go far leave it open (`acutance.targets.combine.lit_curves`). An error of the light that is taken
+from the data would make every OTF seem less (R. W. Peelle's puzzle; G. D'Agostini, Nucl. Instrum.
 Methods A 346, 306, 1994).
 
 Likelihoods of several measurements multiply; posteriors would count the prior that they share as
@@ -106,6 +109,15 @@ class OtfLikelihood(ShortRepr):
         waves : (n, j) complex array
             Derivatives of the logarithm of a spectrum by places.
         """
+        placed = self.placed(otf, waves)
+        whole = placed.whitened(otf) + placed.level
+        return placed._apart(whole[:, None], float(np.linalg.norm(whole)))
+
+    def placed(self, otf: Complexes, waves: Complexes) -> OtfLikelihood:
+        """The likelihood near an OTF (n,), whatever the place of the image, in units of its light.
+
+        Parameters as of `near`.
+        """
         light, found = 1.0, self
         for _ in range(_STEPS):
             whole = found.whitened(otf) + found.level
@@ -114,10 +126,8 @@ class OtfLikelihood(ShortRepr):
             step = np.linalg.lstsq(columns, self.values - light * whole, rcond=_DEPENDENT)[0]
             light += float(step[0])
             found = found.turned(np.exp(-waves @ step[1:]))
-        axes, size, _ = np.linalg.svd(columns)
-        rest = axes[:, np.count_nonzero(size > _DEPENDENT * size[0]) :]
-        root = light * unstacked(stacked(found.root) @ rest)
-        return OtfLikelihood(root, light * self.level @ rest, self.values @ rest)
+        lit = OtfLikelihood(light * found.root, light * found.level, found.values)
+        return lit._apart(by_place, light * float(np.linalg.norm(whole)))
 
     def whitened(self, values: Complexes) -> Floats:
         """``root.T @ values`` of values (n,) or (n, p)."""
@@ -134,6 +144,11 @@ class OtfLikelihood(ShortRepr):
     def _damped(self, matrix: Floats) -> OtfLikelihood:
         root = unstacked(stacked(self.root) @ matrix)
         return OtfLikelihood(root, self.level @ matrix, self.values @ matrix)
+
+    def _apart(self, columns: Floats, scale: float) -> OtfLikelihood:
+        """The likelihood of what no column (k, j) of whitened values of a scale changes."""
+        axes, size, _ = np.linalg.svd(columns)
+        return self._damped(axes[:, np.count_nonzero(size > _DEPENDENT * scale) :])
 
     def to_dict(self) -> dict[str, Any]:
         """Root, level and values as lists."""

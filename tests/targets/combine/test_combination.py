@@ -9,7 +9,9 @@ import pytest
 
 import acutance as ac
 from acutance import optics, simulate
+from acutance.targets.combine.checks import check_combination
 from acutance.targets.combine.curves import ChiSquare
+from acutance.targets.combine.inputs import read_inputs
 from acutance.targets.combine.sensor_forms import FORMS
 
 SENSOR = optics.Sensor([optics.Gaussian(0.36, 0.48), optics.Detector()], gsd_m=0.7)
@@ -144,17 +146,39 @@ def test_sensors_that_only_a_large_correction_would_join_are_no_sensor():
     assert "not of one sensor" in found.verdict.sentence
 
 
-def test_a_combination_beyond_all_its_members_is_of_no_sensor():
-    """Two curves of one direction that lie far apart pull a form to where neither is."""
+def test_sensors_far_apart_have_their_combination_between_them():
+    """About each one's light to first order, nothing at all explained them best."""
     sharper, softer = gaussian(0.4), gaussian(0.75)
     kinds = ((6, "across", 1, softer), (6, "across", 2, sharper), (8, "along", 3, softer))
     found = ac.combine([edge(*one) for one in kinds])
     assert found.verdict.word == "invalid"
+    assert found.chi_square.p_value < 1e-6
     (beyond,) = (check for check in found.checks if check.name == "beyond_members")
-    assert not beyond.passed
-    below = found.parts[0].freq_cpp <= 0.5
-    off = [np.mean((one.value - one.fitted)[:, below]) for one in found.parts]
-    assert min(off) > beyond.value > 0.1
+    assert beyond.passed
+    one, other, _ = found.parts
+    middle = (one.freq_cpp >= 0.1) & (one.freq_cpp <= 0.4)
+    assert np.all((one.value < one.fitted)[:, middle] & (other.fitted < other.value)[:, middle])
+
+
+def test_a_combination_beyond_all_its_members_is_of_no_sensor(together, edges, mirrors):
+    inputs = read_inputs([*edges, mirrors])
+
+    def beyond(changes):
+        parts = [
+            replace(one, fitted=one.fitted + change)
+            for one, change in zip(together.parts, changes, strict=True)
+        ]
+        checks = check_combination(inputs, together.details, parts, {})
+        return next(check for check in checks if check.name == "beyond_members")
+
+    count = len(together.parts)
+    for side, word in ((-0.1, "below"), (0.1, "above")):
+        found = beyond([side] * count)
+        assert not found.passed
+        assert found.severity == "fail"
+        assert 0.02 < found.value < 0.1
+        assert word in found.message
+    assert beyond([-0.1, *(count - 1) * [0.1]]).passed
 
 
 def test_members_that_agree_have_the_combination_between_them(together):

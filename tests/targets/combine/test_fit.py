@@ -11,6 +11,7 @@ from acutance.numerics.stacked import stacked
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
 from acutance.targets.combine.fit import combine_curves
+from acutance.targets.combine.lit_curves import LitCurves
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
 from acutance.targets.combine.sensor_terms import TERMS
@@ -194,6 +195,49 @@ def test_a_curve_that_tells_nothing_changes_nothing():
     assert std_at_nyquist(found) == pytest.approx(std_at_nyquist(alone), rel=1e-3)
 
 
+@pytest.fixture(scope="module")
+def spectra():
+    """Two spectra and a curve that is none, all of one sensor."""
+    rng, found = np.random.default_rng(8), []
+    for direction in DIRECTIONS[:3]:
+        one = curve(OBLIQUE.otf, direction, 0.003)
+        root = 40 * np.tensordot([1, 1j], rng.standard_normal((2, FREQ.size, 24)), axes=1)
+        level = 8 * rng.standard_normal(24)
+        values = 1.1 * (stacked(root).T @ stacked(one.otf) + level) + rng.standard_normal(24)
+        found.append(replace(one, likelihood=OtfLikelihood(root, level, values)))
+    return WhitenedCurves([replace(found[0], likelihood=None).centred(), *found[1:]])
+
+
+def test_an_otf_is_seen_in_the_light_that_suits_it_best(spectra):
+    otf = 0.6 * OBLIQUE.otf(spectra.u_cpp, spectra.v_cpp) + 0j
+    near = LitCurves(spectra, otf)
+    whole = spectra.of(otf) + spectra.level
+    first, *others = spectra.parts
+    np.testing.assert_allclose(near.residual[first], (spectra.values - whole)[first])
+    for part in others:
+        least = np.linalg.lstsq(whole[part, None], spectra.values[part], rcond=None)[1]
+        assert np.sum(near.residual[part] ** 2) == pytest.approx(least[0])
+
+
+def test_nothing_is_no_otf_whatever_the_light(spectra):
+    """To first order about the measured OTF, twice the light makes up for none."""
+    true = OBLIQUE.otf(spectra.u_cpp, spectra.v_cpp) + 0j
+    right, nothing = (LitCurves(spectra, share * true).residual for share in (1.0, 0.0))
+    assert np.sum(right**2) < 2 * right.size
+    for part in spectra.parts:
+        assert np.sum(nothing[part] ** 2) > 100 * np.sum(right[part] ** 2) + 100
+
+
+def test_slopes_of_lit_curves_are_those_of_the_sum_of_squares(spectra):
+    rng = np.random.default_rng(9)
+    true = OBLIQUE.otf(spectra.u_cpp, spectra.v_cpp) + 0j
+    otf = true * (1 - 0.3 * np.hypot(spectra.u_cpp, spectra.v_cpp))
+    move = 1e-5 * np.tensordot([1, 1j], rng.standard_normal((2, otf.size)), axes=1)
+    near = LitCurves(spectra, otf)
+    above, below = (np.sum(LitCurves(spectra, otf + one).residual ** 2) for one in (move, -move))
+    assert above - below == pytest.approx(-4 * near.residual @ near.of(move), rel=1e-4)
+
+
 def test_an_oblique_sensor_stays_oblique():
     fit = combine_curves([curve(OBLIQUE.otf, one, 0.003) for one in DIRECTIONS])
     assert fit.otf.best.form.terms[0] == "gaussian"
@@ -321,9 +365,10 @@ def test_a_measurement_that_is_not_what_its_pixels_say_counts_for_less():
         exact = OtfLikelihood(root, level, stacked(root).T @ stacked(otf) + level)
         samples = OtfSamples("edge", freq, 0 * freq, reported, np.zeros((8, 1), complex), exact)
         likelihood = samples.centred().likelihood
-        return np.mean(likelihood.residual(reported) ** 2), np.linalg.norm(likelihood.root)
+        return np.sum(likelihood.residual(reported) ** 2), np.linalg.norm(likelihood.root)
 
     right, wrong = residual(otf), residual(other)
     assert right[0] == pytest.approx(0.0, abs=1e-6)
-    assert wrong[0] == pytest.approx(1.0)
+    # Of twelve values one goes into the place, one into the light.
+    assert wrong[0] == pytest.approx(10.0)
     assert wrong[1] < 0.5 * right[1]

@@ -2,8 +2,8 @@
 
 In the order data take: `inputs` (records of measurements), `pixel_size` (do they have the same
 pixels), `curves` (the OTF of each), `sensor_forms` (products of OTF blocks: `sensor_terms`),
-`correction` (smooth corrections of them), `fit` (all forms, weighted), `checks`, `combination`
-(the public function).
+`correction` (smooth corrections of them), `lit_curves` (all curves about one OTF), `form_fit` (one
+form), `fit` (all forms, weighted), `checks`, `combination` (the public function).
 """
 
 from acutance.targets.combine.combination import combine

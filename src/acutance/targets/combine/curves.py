@@ -73,9 +73,9 @@ class OtfSamples:
         otf, factor = self.otf * turn, self.factor * turn[:, None]
         likelihood = None
         if self.likelihood is not None:
-            likelihood = self.likelihood.turned(turn).near(otf, np.asarray(-1j * places))
-            # A failed measurement is not what its own pixels say.
-            own = float(np.mean(likelihood.residual(otf) ** 2))
+            likelihood = self.likelihood.turned(turn).placed(otf, np.asarray(-1j * places))
+            # A failed measurement is not what its own pixels say; one value went into the light.
+            own = float(np.sum(likelihood.residual(otf) ** 2)) / max(1, likelihood.values.size - 1)
             likelihood = likelihood.widened(math.sqrt(max(1.0, own)))
         return replace(self, otf=otf, factor=factor, likelihood=likelihood)
 
@@ -85,11 +85,16 @@ class OtfSamples:
         return 2 * self.otf.size if self.likelihood is None else self.likelihood.values.size
 
     @cached_property
-    def whitened_otf(self) -> Floats:
-        """What the pixels say of the whitened OTF, (size,)."""
+    def values(self) -> Floats:
+        """What the pixels say of the whitened spectrum, or the whitened OTF, (size,)."""
         if self.likelihood is not None:
-            return np.asarray(self.likelihood.values - self.likelihood.level)
+            return self.likelihood.values
         return np.asarray(self.whitening @ stacked(self.otf))
+
+    @cached_property
+    def level(self) -> Floats:
+        """The part of zero frequency in a whitened spectrum, (size,); none in an OTF."""
+        return np.zeros(self.size) if self.likelihood is None else self.likelihood.level
 
     @cached_property
     def whitened_factor(self) -> Floats:
@@ -184,8 +189,20 @@ class WhitenedCurves:
 
     @cached_property
     def values(self) -> Floats:
-        """The OTFs, stacked and whitened."""
-        return np.concatenate([one.whitened_otf for one in self.curves])
+        """The spectra, or OTFs, stacked and whitened."""
+        return np.concatenate([one.values for one in self.curves])
+
+    @cached_property
+    def level(self) -> Floats:
+        """The part of zero frequency in them."""
+        return np.concatenate([one.level for one in self.curves])
+
+    @cached_property
+    def lit(self) -> Floats:
+        """Which values belong to which spectrum, (spectra, size): all of those of unknown light."""
+        rows = np.repeat(np.arange(len(self.curves)), [one.size for one in self.curves])
+        spectra = [i for i, one in enumerate(self.curves) if one.likelihood is not None]
+        return np.asarray(rows == np.array(spectra, int)[:, None], float)
 
     @cached_property
     def _ends(self) -> list[int]:

@@ -8,15 +8,19 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
 from acutance.targets.combine.form_fit import FIRST_STEPS, FormFit, fit_form, likely_starts
+from acutance.targets.combine.lit_curves import LitCurves
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
 from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
 
 __all__ = ["CombinedFit", "FormFit", "combine_curves"]
+
+Complexes = NDArray[np.complex128]
 
 _MIN_WEIGHT = 0.01
 _MIN_SINGULAR = 0.1
@@ -133,7 +137,8 @@ def combine_curves(
     plain = settled([fitted(SensorForm(terms, detector_px)) for terms in forms])
     first = min(plain, key=lambda one: one.score)
     correction = Correction(first.form, tuple(first.parameters.tolist()))
-    ways = data.of(correction.directions(data.u_cpp, data.v_cpp))
+    near_first = LitCurves(data, first.otf(data.u_cpp, data.v_cpp))
+    ways = near_first.of(correction.directions(data.u_cpp, data.v_cpp))
     aligned = [
         fitted(form, start)
         for one in _weighted(plain)
@@ -166,23 +171,26 @@ def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
 
 
 def _chi_squares(
-    data: WhitenedCurves, forms: Sequence[FormFit], ways: Floats | None = None
+    data: WhitenedCurves, forms: Sequence[FormFit], shapes: Complexes | None = None
 ) -> tuple[ChiSquare, tuple[ChiSquare, ...]]:
     """Chi-square of all curves and of each, with the mean and the variance they should have.
 
     Whitened errors e of covariance S leave the residuals ``M e``, M taking out what the
     parameters follow; a sum of their squares over a curve has the mean ``tr(P M S M)`` and the
-    variance ``2 tr((P M S M)^2)``, P choosing the curve, and of each curve the `ways` (n, k) that
-    are judged: a prior makes errors in other directions smaller than their standard deviations.
+    variance ``2 tr((P M S M)^2)``, P choosing the curve, and of each curve the `shapes` (n, k)
+    that are judged: a prior makes errors in other directions smaller than their deviations.
     """
     best = forms[0]
-    slopes = data.of(best.slopes(data.u_cpp, data.v_cpp))
     mean = sum(one.weight * one.otf(data.u_cpp, data.v_cpp) for one in forms)
-    residual = data.values - data.of(np.asarray(mean))
-    left = np.eye(residual.size) - slopes @ best.inverse @ slopes.T
+    near = LitCurves(data, np.asarray(mean))
+    residual = near.residual
+    slopes = near.of(best.slopes(data.u_cpp, data.v_cpp))
+    inverse = np.linalg.inv(slopes.T @ slopes + np.diag(best.prior_std**-2.0))
+    left = near.apart(np.eye(residual.size)) - slopes @ inverse @ slopes.T
     covariance = left @ data.covariance @ left.T
     axes = [np.eye(residual.size)[:, part] for part in data.parts]
-    if ways is not None:
+    if shapes is not None:
+        ways = near.of(shapes)
         axes = [own @ _span(ways[part]) for own, part in zip(axes, data.parts, strict=True)]
     members = tuple(_chi_square(own.T @ residual, own.T @ covariance @ own) for own in axes)
     whole = np.concatenate(axes, axis=1)
@@ -200,8 +208,8 @@ def _span(ways: Floats) -> Floats:
     return np.asarray(left[:, size > _MIN_SINGULAR * size[0]])
 
 
-def _shapes(data: WhitenedCurves, simplest: FormFit) -> Floats:
-    """How curves of sensors differ: in width, smear, halo and trail, (n, k).
+def _shapes(data: WhitenedCurves, simplest: FormFit) -> Complexes:
+    """How OTFs of sensors differ: in width, smear, halo and trail, (n, k).
 
     About the Gaussian of the simplest form: that of another may be half a sensor, as behind an
     unsharp mask.
@@ -213,7 +221,7 @@ def _shapes(data: WhitenedCurves, simplest: FormFit) -> Floats:
         at[:2] = math.log(found["sigma_across_px"]), math.log(found["sigma_along_px"])
         at[2] = math.atanh(found.get("correlation", 0.0))
     at[3:5] = 0.5
-    return data.of(form.slopes_on(at, data.plane))
+    return form.slopes_on(at, data.plane)
 
 
 def _chi_square(residual: Floats, covariance: Floats) -> ChiSquare:

@@ -13,6 +13,7 @@ from scipy.optimize import leastsq
 from acutance.curves.grid import Floats
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import WhitenedCurves
+from acutance.targets.combine.lit_curves import LitCurves
 from acutance.targets.combine.sensor_forms import SensorForm, product
 from acutance.targets.combine.weighted_forms import WeightedForm
 
@@ -39,14 +40,16 @@ class FormFit(WeightedForm):
 
     Parameters
     ----------
-    inverse : (p + m, p + m) array
-        Covariance of parameters and weights if the errors of different curves were independent.
     score : float
         Minus twice the log evidence of the form, by Laplace's approximation.
     """
 
-    inverse: Floats
     score: float
+
+    @property
+    def prior_std(self) -> Floats:
+        """Prior standard deviations of parameters and weights, (p + m,)."""
+        return np.concatenate([self.form.std, np.full(self.weights.size, self.share)])
 
 
 def fit_form(
@@ -91,10 +94,7 @@ def fit_form(
     nothing = Correction(form, tuple(p.tolist()))
     covariance = scale[:, None] * (inverse + moved.T @ data.shared @ moved) * scale
     root = np.asarray(np.linalg.cholesky(0.5 * (covariance + covariance.T)))
-    return FormFit(
-        form, share, nothing, p, share * amounts, root, 1.0,
-        inverse=scale[:, None] * inverse * scale, score=score,
-    )  # fmt: skip
+    return FormFit(form, share, nothing, p, share * amounts, root, 1.0, score=score)
 
 
 class _Misfit:
@@ -108,6 +108,7 @@ class _Misfit:
         self.mean, self.std = form.mean, form.std
         self.last = np.full(self.mean.size, np.nan)
         self.last_factors: list[NDArray[Any]] = []
+        self.last_curves: LitCurves
 
     def least(self, start: Floats, steps: int) -> tuple[float, Floats]:
         """The least sum of squares of the residual, and where it is, by Levenberg and Marquardt.
@@ -121,16 +122,16 @@ class _Misfit:
         left = info["fvec"]
         return float(left @ left), np.asarray(found)
 
-    def factors(self, p: Floats) -> list[NDArray[Any]]:
-        """Those of the OTF; slopes are asked for where the residual was."""
+    def curves(self, p: Floats) -> LitCurves:
+        """All curves about the OTF; slopes are asked for where the residual was."""
         if not np.array_equal(p, self.last):
             self.last, self.last_factors = p.copy(), self.form.factors_on(p, self.data.plane)
-        return self.last_factors
+            self.last_curves = LitCurves(self.data, product(self.last_factors))
+        return self.last_curves
 
     def parts(self, p: Floats) -> tuple[Floats, Floats]:
         """Of the curves, and of the parameters from their prior, in standard deviations."""
-        off = self.data.values - self.data.of(product(self.factors(p)))
-        return off, (p - self.mean) / self.std
+        return self.curves(p).residual, (p - self.mean) / self.std
 
     def residual(self, p: Floats) -> Floats:
         """All in one, the correction integrated out."""
@@ -139,7 +140,8 @@ class _Misfit:
 
     def slopes_of_curves(self, p: Floats) -> Floats:
         """Derivatives of the whitened OTF by the parameters, (n, p)."""
-        return self.data.of(self.form.slopes_on(p, self.data.plane, self.factors(p)))
+        near = self.curves(p)
+        return near.of(self.form.slopes_on(p, self.data.plane, self.last_factors))
 
     def slopes(self, p: Floats) -> Floats:
         """Derivatives of the residual."""

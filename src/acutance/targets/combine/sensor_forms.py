@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.targets.combine.plane import Plane
-from acutance.targets.combine.sensor_terms import TERMS, Term, Transfer, sinc_growth
+from acutance.targets.combine.sensor_terms import TERMS, sinc_growth
+from acutance.targets.combine.term import Term, Transfer
 
 __all__ = ["FORMS", "SensorForm", "product"]
 
@@ -199,6 +200,7 @@ FORMS: tuple[tuple[str, ...], ...] = (
     ("gaussian", "defocus"),
     ("gaussian", "sharpening"),
     ("gaussian", "unsharp"),
+    ("gaussian", "short kernel"),
     ("gaussian", "kernel"),
     ("gaussian", "interpolation"),
     ("gaussian", "smear", "halo"),
@@ -209,17 +211,34 @@ FORMS: tuple[tuple[str, ...], ...] = (
     ("gaussian", "diffraction", "halo"),
     ("gaussian", "diffraction", "sharpening"),
     ("gaussian", "diffraction", "unsharp"),
+    ("gaussian", "diffraction", "short kernel"),
     ("gaussian", "diffraction", "kernel"),
+    ("gaussian", "smear", "short kernel"),
     ("gaussian", "smear", "kernel"),
+    ("gaussian", "defocus", "sharpening"),
+    ("gaussian", "defocus", "short kernel"),
     ("gaussian", "defocus", "kernel"),
+    ("gaussian", "diffraction", "smear", "sharpening"),
+    ("gaussian", "diffraction", "smear", "short kernel"),
     ("gaussian", "diffraction", "smear", "kernel"),
     ("gaussian", "diffraction", "interpolation"),
     ("gaussian", "defocus", "interpolation"),
+    ("gaussian", "sharpening", "interpolation"),
+    ("gaussian", "short kernel", "interpolation"),
+    ("gaussian", "diffraction", "sharpening", "interpolation"),
+    ("gaussian", "diffraction", "short kernel", "interpolation"),
+    ("gaussian", "defocus", "sharpening", "interpolation"),
     ("gaussian", "phase"),
     ("gaussian", "diffraction", "phase"),
     ("gaussian", "halo", "phase"),
     ("gaussian", "defocus", "phase"),
+    ("gaussian", "sharpening", "phase"),
+    ("gaussian", "short kernel", "phase"),
     ("gaussian", "kernel", "phase"),
+    ("gaussian", "diffraction", "sharpening", "phase"),
+    ("gaussian", "diffraction", "short kernel", "phase"),
     ("gaussian", "diffraction", "kernel", "phase"),
+    ("gaussian", "defocus", "sharpening", "phase"),
+    ("gaussian", "defocus", "short kernel", "phase"),
 )
 """Forms that are tried, the simplest first."""

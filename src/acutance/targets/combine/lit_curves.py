@@ -1,0 +1,72 @@
+"""All curves near any optical transfer function (OTF), the light of each integrated out.
+
+Pixels show a spectrum, the OTF times the light h of the image. A whitened one is ``h w + e``, with
+``w = R^T f + level`` linear in the OTF f (`acutance.targets.otf_likelihood`) and errors e of unit
+variance. With a prior as wide as ``dh / h`` the integral over h is, to second order about its
+largest value at ``h = w y / w w``, the density there times the same number for every OTF: a
+variable projection (G. H. Golub and V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973). Of the
+slopes those of the projected OTF are kept (L. Kaufman, BIT 15, 49, 1975): the gradient of the sum
+of squares is exact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.targets.combine.curves import WhitenedCurves
+
+__all__ = ["LitCurves"]
+
+Complexes = NDArray[np.complex128]
+
+_NO_LIGHT = 1e-30
+
+
+@dataclass(frozen=True, eq=False)
+class LitCurves:
+    """All curves about an OTF, each in the light that suits it best.
+
+    Parameters
+    ----------
+    data : WhitenedCurves
+    otf : (n,) complex array
+        At all places.
+    """
+
+    data: WhitenedCurves
+    otf: Complexes
+
+    @cached_property
+    def _whole(self) -> Floats:
+        """The OTF as a whitened spectrum of unit light, (size,)."""
+        return self.data.of(self.otf) + self.data.level
+
+    @cached_property
+    def _square(self) -> Floats:
+        """Its square, of every spectrum."""
+        return np.maximum(self.data.lit @ self._whole**2, _NO_LIGHT)
+
+    @cached_property
+    def light(self) -> Floats:
+        """The light of every value's spectrum, (size,); 1 of curves that are no spectra."""
+        lit = self.data.lit
+        return 1 + ((lit @ (self._whole * self.data.values)) / self._square - 1) @ lit
+
+    @cached_property
+    def residual(self) -> Floats:
+        """What the OTF leaves of all values, (size,)."""
+        return self.data.values - self.light * self._whole
+
+    def of(self, values: Complexes) -> Floats:
+        """Changes of the OTF, (n,) or (n, p), in whitened values, less what light makes up for."""
+        return self.apart((self.light * self.data.of(values).T).T)
+
+    def apart(self, whitened: Floats) -> Floats:
+        """Whitened values (size,) or (size, p), less their part along each spectrum."""
+        lit = self.data.lit * self._whole
+        return np.asarray(whitened - (lit.T / self._square) @ (lit @ whitened))

@@ -1,0 +1,174 @@
+"""What ground processing does to a parametric sensor: kernels, masks, interpolation.
+
+Parameters are those of `acutance.targets.combine.sensor_terms`: unbounded, with a normal prior.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.optics.processing import interpolation_weight
+from acutance.targets.combine.plane import PIXELS, TAPS, Plane
+from acutance.targets.combine.term import Term, logistic, logistic_slope, wide_gaussian
+
+__all__ = ["PROCESSING_TERMS"]
+
+Complexes = NDArray[np.complex128]
+
+
+def _taps(p: Floats) -> tuple[float, float]:
+    """Outer taps of the kernel across and along with the opposite sign, by their logarithms."""
+    return math.exp(p[0] + p[1]), math.exp(p[0] - p[1])
+
+
+def _sharpening(p: Floats, plane: Plane) -> Floats:
+    across, along = _taps(p)
+    by_col, by_row = (gains[:, 0] for gains in plane.tap_gains)
+    return np.asarray((1 + across * by_col) * (1 + along * by_row))
+
+
+def _sharpening_slopes(p: Floats, plane: Plane) -> Floats:
+    across, along = _taps(p)
+    by_col, by_row = (gains[:, 0] for gains in plane.tap_gains)
+    one, other = across * by_col * (1 + along * by_row), along * by_row * (1 + across * by_col)
+    return np.stack([one + other, one - other], axis=1)
+
+
+def _sharpening_numbers(p: Floats) -> dict[str, float]:
+    across, along = _taps(p)
+    return {"sharpening_across": across, "sharpening_along": along}
+
+
+def _mask(p: Floats) -> tuple[float, float]:
+    """Gain (at most 2, as in use) and width of an unsharp mask."""
+    return 2.0 * logistic(p[0]), math.exp(p[1])
+
+
+def _unsharp(p: Floats, plane: Plane) -> Floats:
+    gain, sigma = _mask(p)
+    return np.asarray(1 + gain * (1 - wide_gaussian(sigma, plane)[0]))
+
+
+def _unsharp_slopes(p: Floats, plane: Plane) -> Floats:
+    gain, sigma = _mask(p)
+    blurred, by_width = wide_gaussian(sigma, plane)
+    return np.stack([2 * logistic_slope(p[0]) * (1 - blurred), -gain * by_width], axis=1)
+
+
+def _unsharp_numbers(p: Floats) -> dict[str, float]:
+    gain, sigma = _mask(p)
+    return {"unsharp_gain": gain, "unsharp_sigma_px": sigma}
+
+
+def _kernel(p: Floats, plane: Plane) -> Floats:
+    """An even kernel of 15 taps, the same in both axes: its outer taps are -p[0], -p[1], ..."""
+    across, along = plane.tap_gains
+    return np.asarray((1 + across @ p) * (1 + along @ p))
+
+
+def _kernel_slopes(p: Floats, plane: Plane) -> Floats:
+    across, along = plane.tap_gains
+    return np.asarray(across * (1 + along @ p)[:, None] + along * (1 + across @ p)[:, None])
+
+
+def _kernel_numbers(p: Floats) -> dict[str, float]:
+    return {f"tap_{k}": -float(tap) for k, tap in enumerate(p, 1)}
+
+
+def _short_taps(p: Floats) -> Floats:
+    """All taps of a kernel of seven, by standard normal parameters: its tap k is -p[k]."""
+    return np.pad(_SHORT_MEAN + _SHORT_ROOT @ p, (0, TAPS - _SHORT_MEAN.size))
+
+
+def _short_kernel(p: Floats, plane: Plane) -> Floats:
+    return _kernel(_short_taps(p), plane)
+
+
+def _short_kernel_slopes(p: Floats, plane: Plane) -> Floats:
+    by_tap = _kernel_slopes(_short_taps(p), plane)
+    return np.asarray(by_tap[:, : _SHORT_MEAN.size] @ _SHORT_ROOT)
+
+
+def _short_kernel_numbers(p: Floats) -> dict[str, float]:
+    return _kernel_numbers(_short_taps(p)[: _SHORT_MEAN.size])
+
+
+def _cubic(p: Floats) -> float:
+    """Parameter of a cubic convolution, -1 to 0."""
+    return -logistic(p[0])
+
+
+def _interpolation(p: Floats, plane: Plane) -> Floats:
+    at_none, by_unit = plane.cubic_parts
+    return np.asarray(np.prod(at_none + _cubic(p) * by_unit, axis=1))
+
+
+def _interpolation_slopes(p: Floats, plane: Plane) -> Floats:
+    at_none, by_unit = plane.cubic_parts
+    across, along = (at_none + _cubic(p) * by_unit).T
+    by_parameter = by_unit[:, 0] * along + across * by_unit[:, 1]
+    return np.asarray(-logistic_slope(p[0]) * by_parameter[:, None])
+
+
+def _interpolation_numbers(p: Floats) -> dict[str, float]:
+    return {"cubic_a": _cubic(p)}
+
+
+def _phases(p: Floats) -> tuple[float, float]:
+    """Sub-pixel places of interpolation across and along: equally likely from -1/2 to 1/2."""
+    return 0.5 * math.erf(p[0] * math.sqrt(0.5)), 0.5 * math.erf(p[1] * math.sqrt(0.5))
+
+
+def _phase(p: Floats, plane: Plane) -> Complexes:
+    """Cubic convolution at one phase of the pixels, as in a small part of a warped image."""
+    across, along = _phases(p)
+    by_col, by_row = plane.pixel_waves
+    a = _cubic(p[2:])
+    return _at_phase(across, a, plane.u_cpp, by_col) * _at_phase(along, a, plane.v_cpp, by_row)
+
+
+def _at_phase(phase_px: float, a: float, freq: Floats, pixel_waves: Complexes) -> Complexes:
+    """Along one axis; the mean place of the light is taken off.
+
+    Cubic convolution moves the image: only that of a = -1/2 keeps straight lines.
+    """
+    away_px = PIXELS - phase_px
+    weight = interpolation_weight("cubic", away_px, a)
+    middle_px = phase_px + float(away_px @ weight)
+    return np.asarray((pixel_waves @ weight) * np.exp(-2j * math.pi * middle_px * freq))
+
+
+def _phase_numbers(p: Floats) -> dict[str, float]:
+    across, along = _phases(p)
+    return {"phase_across_px": across, "phase_along_px": along, "cubic_a": _cubic(p[2:])}
+
+
+_TAP_MEAN = (0.4, *((TAPS - 1) * [0.0]))
+_TAP_STD = (0.5, 0.25, 0.12, 0.07, 0.05, 0.03, 0.02)
+_SHORT_MEAN: Floats = np.array([0.2, 0.0, 0.0])
+_SHORT_ROOT: Floats = np.array([[0.32, 0.0, 0.0], [-0.12, 0.09, 0.0], [0.025, -0.035, 0.04]])
+"""Mean and factor of the covariance of the taps of seven in ten of the Wiener kernels of
+`acutance.optics.FAMILIES`: their taps alternate, and fall by half to a third from one to the next.
+The others are held by `_TAP_STD`; two normal densities fitted to 2587 kernels."""
+
+PROCESSING_TERMS: dict[str, Term] = {
+    "sharpening": Term(
+        _sharpening, (math.log(0.2), 0.0), (0.8, 0.1), _sharpening_numbers, _sharpening_slopes
+    ),
+    "unsharp": Term(_unsharp, (-1.0, 0.0), (1.0, 0.3), _unsharp_numbers, _unsharp_slopes),
+    "kernel": Term(_kernel, _TAP_MEAN, _TAP_STD, _kernel_numbers, _kernel_slopes),
+    "short kernel": Term(
+        _short_kernel, (0.0,) * 3, (1.0,) * 3, _short_kernel_numbers, _short_kernel_slopes
+    ),
+    "interpolation": Term(
+        _interpolation, (0.0,), (0.6,), _interpolation_numbers, _interpolation_slopes
+    ),
+    "phase": Term(_phase, (0.0, 0.0, 0.0), (1.0, 1.0, 0.6), _phase_numbers),
+}
+"""Terms by name. Priors: outer taps of .05 to .8, nearly the same across and along, masks of a
+quarter to the whole of what is missing, kernels as those of Wiener filters, cubic convolutions of
+-.35 to -.65."""
