@@ -11,7 +11,7 @@ from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.form_agreement import agreement_of_form
 from acutance.scan.population import fit_shares
 from acutance.scan.shares import START
-from acutance.targets.combine.sensor_forms import FORMS
+from acutance.targets.combine.sensor_forms import SCENE_FORMS
 
 FREQ = np.array([0.1, 0.25, 0.4, 0.5])
 TRUE = np.concatenate([np.exp(-2 * (np.pi * 0.4 * FREQ) ** 2), np.zeros(4)])[None]
@@ -71,8 +71,8 @@ def test_a_scene_interpolated_at_one_phase_is_measured(shifted):
 
 
 def test_without_a_form_for_it_the_scan_is_doubtful(shifted, monkeypatch):
-    known = tuple(terms for terms in FORMS if "phase" not in terms)
-    monkeypatch.setattr(sensor_turns, "FORMS", known)
+    known = tuple(terms for terms in SCENE_FORMS if "phase" not in terms)
+    monkeypatch.setattr(sensor_turns, "SCENE_FORMS", known)
     scene = ac.scan_scene(shifted)
     assert check_of(scene).value > 1.8
     assert scene.verdict.word == "doubtful"

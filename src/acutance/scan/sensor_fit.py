@@ -31,6 +31,7 @@ from acutance.scan.shares import SECTOR_DEG, share_covariances
 from acutance.scan.softness import KINDS
 from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.combine.fit import CombinedFit, combine_curves
+from acutance.targets.combine.sensor_forms import SCENE_FORMS
 from acutance.targets.combine.weighted_forms import CombinedOtf
 
 __all__ = ["IdealShare", "SensorFit", "fit_sensor"]
@@ -184,7 +185,7 @@ def fit_sensor(
     # And forms with a kernel have several optima: they begin where the turns ended.
     samples = otf_samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
-        combine_curves([samples], near=state.near),
+        combine_curves([samples], forms=SCENE_FORMS, near=state.near),
         field, normal_deg, member, shared.errors_px2,
         compare_parts(seen, otf, member.share, x, y),
         agreement_of_form(seen, otf, member),

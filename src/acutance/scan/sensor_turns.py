@@ -32,7 +32,7 @@ from acutance.scan.population import fit_shares
 from acutance.scan.shares import START
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import CombinedFit, combine_curves
-from acutance.targets.combine.sensor_forms import FORMS
+from acutance.targets.combine.sensor_forms import SCENE_FORMS
 from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
 from acutance.targets.otf_likelihood import OtfLikelihood
 from acutance.targets.slices import places_along
@@ -217,7 +217,9 @@ def _starts(
         fit = fit_modes(edges, start, START, modes[edges.bin], std=_FREE_PX2)
         otf = changed(start, modes @ fit.amount)
         near.append(
-            SensorState(otf, fit.share, FORMS, None, edges, fit.log_posterior, 0, settled=False)
+            SensorState(
+                otf, fit.share, SCENE_FORMS, None, edges, fit.log_posterior, 0, settled=False
+            )
         )
     near.sort(key=lambda one: -one.log_likelihood)
     least = near[0].log_likelihood - _FAR * edges.size

@@ -20,7 +20,7 @@ from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.sensor_terms import TERMS, sinc_growth
 from acutance.targets.combine.term import Term, Transfer
 
-__all__ = ["FORMS", "SensorForm", "product"]
+__all__ = ["FORMS", "SCENE_FORMS", "SensorForm", "product"]
 
 Complexes = NDArray[np.complex128]
 
@@ -191,7 +191,7 @@ def product(values: list[NDArray[Any]]) -> Complexes:
     return np.asarray(reduce(np.multiply, values), complex)
 
 
-FORMS: tuple[tuple[str, ...], ...] = (
+SCENE_FORMS: tuple[tuple[str, ...], ...] = (
     ("gaussian",),
     ("gaussian", "smear"),
     ("gaussian", "halo"),
@@ -200,7 +200,6 @@ FORMS: tuple[tuple[str, ...], ...] = (
     ("gaussian", "defocus"),
     ("gaussian", "sharpening"),
     ("gaussian", "unsharp"),
-    ("gaussian", "short kernel"),
     ("gaussian", "kernel"),
     ("gaussian", "interpolation"),
     ("gaussian", "smear", "halo"),
@@ -211,34 +210,41 @@ FORMS: tuple[tuple[str, ...], ...] = (
     ("gaussian", "diffraction", "halo"),
     ("gaussian", "diffraction", "sharpening"),
     ("gaussian", "diffraction", "unsharp"),
-    ("gaussian", "diffraction", "short kernel"),
     ("gaussian", "diffraction", "kernel"),
-    ("gaussian", "smear", "short kernel"),
     ("gaussian", "smear", "kernel"),
-    ("gaussian", "defocus", "sharpening"),
-    ("gaussian", "defocus", "short kernel"),
     ("gaussian", "defocus", "kernel"),
-    ("gaussian", "diffraction", "smear", "sharpening"),
-    ("gaussian", "diffraction", "smear", "short kernel"),
     ("gaussian", "diffraction", "smear", "kernel"),
     ("gaussian", "diffraction", "interpolation"),
     ("gaussian", "defocus", "interpolation"),
+    ("gaussian", "phase"),
+    ("gaussian", "diffraction", "phase"),
+    ("gaussian", "halo", "phase"),
+    ("gaussian", "defocus", "phase"),
+    ("gaussian", "kernel", "phase"),
+    ("gaussian", "diffraction", "kernel", "phase"),
+)
+"""Forms that are tried under the edges of a scene, turn by turn, the simplest first."""
+
+FORMS: tuple[tuple[str, ...], ...] = (
+    *SCENE_FORMS,
+    ("gaussian", "short kernel"),
+    ("gaussian", "diffraction", "short kernel"),
+    ("gaussian", "smear", "short kernel"),
+    ("gaussian", "defocus", "sharpening"),
+    ("gaussian", "defocus", "short kernel"),
+    ("gaussian", "diffraction", "smear", "sharpening"),
+    ("gaussian", "diffraction", "smear", "short kernel"),
     ("gaussian", "sharpening", "interpolation"),
     ("gaussian", "short kernel", "interpolation"),
     ("gaussian", "diffraction", "sharpening", "interpolation"),
     ("gaussian", "diffraction", "short kernel", "interpolation"),
     ("gaussian", "defocus", "sharpening", "interpolation"),
-    ("gaussian", "phase"),
-    ("gaussian", "diffraction", "phase"),
-    ("gaussian", "halo", "phase"),
-    ("gaussian", "defocus", "phase"),
     ("gaussian", "sharpening", "phase"),
     ("gaussian", "short kernel", "phase"),
-    ("gaussian", "kernel", "phase"),
     ("gaussian", "diffraction", "sharpening", "phase"),
     ("gaussian", "diffraction", "short kernel", "phase"),
-    ("gaussian", "diffraction", "kernel", "phase"),
     ("gaussian", "defocus", "sharpening", "phase"),
     ("gaussian", "defocus", "short kernel", "phase"),
 )
-"""Forms that are tried, the simplest first."""
+"""Forms that are tried of targets. Those of light kernels, and of two kinds of processing, make
+the fit of a scene half as long again and its intervals hold no more often (39 small scenes)."""
