@@ -147,3 +147,16 @@ def test_a_changed_document_is_refused(edge, change):
     document["likelihood"] |= change
     with pytest.raises(ac.OptionError, match="slices of the OTF"):
         OtfSlices.from_dict(document)
+
+
+def test_of_more_values_than_an_otf_has_a_document_keeps_the_level():
+    root, level = complexes(PLACES, 2 * PLACES + 3), np.zeros(2 * PLACES + 3)
+    root[:, -1], level[-1] = 0.0, 1e5
+    values = np.append(RNG.standard_normal(2 * PLACES + 2), 1e5)
+    whole = OtfLikelihood(100 * root, level, values)
+    kept = OtfLikelihood.from_dict(json.loads(json.dumps(whole.to_dict())))
+    assert np.linalg.norm(kept.level) == pytest.approx(1e5)
+    for _ in range(4):
+        otf = complexes(PLACES)
+        wanted = np.sum(whole.residual(otf) ** 2)
+        assert np.sum(kept.residual(otf) ** 2) == pytest.approx(wanted, rel=1e-3)

@@ -12,6 +12,7 @@ from scipy.interpolate import CubicSpline
 from acutance.curves import OtfModel
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.numerics.direction_waves import between_directions
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.slices import OtfSlices
 
@@ -21,9 +22,6 @@ Complexes = NDArray[np.complex128]
 
 _FADE_CPP = (0.2, 0.4)
 """What slices say beyond their last frequency: nothing from the second of these distances on."""
-_ORDERS = np.arange(7)
-_WEIGHTS: Floats = np.asarray(0.25**_ORDERS, float)
-"""Of the waves over all directions that carry a slice to its neighbours: slow ones first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,22 +84,7 @@ class SlicedOtf(ShortRepr):
         spline = CubicSpline(nodes, known, axis=1, bc_type="clamped")
         radius = np.hypot(u_cpp, v_cpp)
         at = spline(np.minimum(radius, nodes[-1]))
-        angle = np.arctan2(v_cpp, u_cpp)
-        even, odd = (_between(np.radians(directions), angle, first) for first in (0, 1))
+        angle_deg = np.degrees(np.arctan2(v_cpp, u_cpp))
+        even, odd = (between_directions(directions, angle_deg, odd=odd) for odd in (False, True))
         real = np.einsum("pm,mpk->pk", even, at.real)
         return np.asarray(real + 1j * np.einsum("pm,mpk->pk", odd, at.imag))
-
-
-def _between(known: Floats, wanted: Floats, first: int) -> Floats:
-    """Weights (n, m) with which values of m directions give those of n others, in radians.
-
-    Opposite directions have equal real parts (waves of even order, `first` 0) and opposite
-    imaginary parts (odd order, `first` 1).
-    """
-    orders = 2 * _ORDERS + first
-
-    def waves(difference: Floats) -> Floats:
-        return np.asarray(np.cos(difference[..., None] * orders) @ _WEIGHTS)
-
-    among = waves(known[:, None] - known)
-    return np.asarray(waves(wanted[:, None] - known) @ np.linalg.pinv(among, hermitian=True))

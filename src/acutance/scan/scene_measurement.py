@@ -14,9 +14,11 @@ from acutance.errors import RegionError
 from acutance.geometry.line import Orientation
 from acutance.scan.field import Field, FieldOtf
 from acutance.scan.scene_edges import SceneEdges
+from acutance.scan.scene_likelihood import likelihood_of_slices
 from acutance.scan.sensor_fit import IdealShare
 from acutance.scan.stated_objects import OtfBehindObjects
 from acutance.targets.measurement import Measurement
+from acutance.targets.slices import OtfSlices
 from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_stds
 
 __all__ = ["SceneMeasurement", "ScenePlace"]
@@ -98,6 +100,17 @@ class SceneMeasurement(Measurement):
     objects: Mapping[str, Estimate]
     ideal_by_direction: tuple[IdealShare, ...]
     normal_deg_bins: tuple[float, ...]
+
+    @cached_property
+    def slices(self) -> OtfSlices:
+        """Slices of the OTF, their covariance, and what the edges alone say of them."""
+        if self.details is None and "record" in vars(self):
+            return self.record.slices
+        slices = OtfSlices.of_otf2d(self.otf)
+        if self.details is None:
+            return slices
+        found = likelihood_of_slices(self.details, self.otf.model, slices)
+        return replace(slices, likelihood=found)
 
     def at(self, row: float, col: float) -> ScenePlace:
         """The sensor at a place of the scene.

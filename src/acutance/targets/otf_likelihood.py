@@ -152,7 +152,9 @@ class OtfLikelihood(ShortRepr):
 
     def to_dict(self) -> dict[str, Any]:
         """Root, level and values as lists."""
-        short = self._damped(_triangular(stacked(self.root)))
+        # Of more values than the root has rows some have no part in it, but in the level.
+        rows = [stacked(self.root), self.level[None], self.values[None]]
+        short = self._damped(_triangular(np.concatenate(rows)))
         return {
             "root_real": _rounded(short.root.real),
             "root_imag": _rounded(short.root.imag),
