@@ -32,6 +32,8 @@ def edge():
         (lambda: ac.measure_edge(IMAGE, "abcd"), ac.RegionError, "the text 'abcd'"),
         (lambda: ac.measure_edge(IMAGE, gsd_m=(1, 2)), ac.OptionError, r"gsd_m is \(1, 2\).*Gsd"),
         (lambda: ac.measure_edge(IMAGE, gsd_m="a"), ac.OptionError, "gsd_m is 'a'"),
+        (lambda: ac.measure_edge(IMAGE, gsd_m=True), ac.OptionError, "gsd_m is True"),
+        (lambda: ac.measure_points(IMAGE, positions="a"), ac.OptionError, "positions are 'a'"),
         (lambda: ac.measure_edge(IMAGE, gsd_m=-1), ac.OptionError, "positive number"),
         (lambda: ac.Gsd("a", 1.0), ac.OptionError, "'a' between rows is no number"),
         (lambda: ac.Image.from_array(IMAGE, gsd_m=[1]), ac.OptionError, "gsd_m is"),

@@ -69,7 +69,7 @@ class Gsd:
             return None
         if isinstance(gsd_m, Gsd):
             return gsd_m.required_in_range()
-        if not isinstance(gsd_m, Real):
+        if isinstance(gsd_m, bool) or not isinstance(gsd_m, Real):
             raise OptionError(
                 f"gsd_m is {gsd_m!r}: give a positive number of metres, or Gsd(row_m, col_m) where "
                 "pixels are not square"

@@ -239,7 +239,12 @@ def _require_method(method: str) -> None:
 
 
 def _places_of(name: str, stated: ArrayLike) -> Floats:
-    places = np.asarray(stated, float)
+    try:
+        places = np.asarray(stated, float)
+    except (TypeError, ValueError):
+        raise OptionError(
+            f"{name} are {stated!r}: give an array of numbers, (n, 2): row, column"
+        ) from None
     if places.ndim != 2 or places.shape[0] == 0 or places.shape[1] != 2:
         raise OptionError(f"{name} have shape {places.shape}, they have to be (n, 2): row, column")
     if not np.isfinite(places).all():
