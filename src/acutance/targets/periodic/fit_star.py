@@ -23,6 +23,7 @@ from acutance.geometry.star_geometry import SiemensStar
 from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import Correlation, correlation
+from acutance.numerics.otf_kernels import blur_before
 from acutance.numerics.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
 from acutance.targets.periodic.otf_regression import (
@@ -33,8 +34,15 @@ from acutance.targets.periodic.otf_regression import (
     reweighted,
     weighted_normal,
 )
+from acutance.targets.periodic.star_kernels import KERNEL_REACH_PX, kernel_columns
 from acutance.targets.periodic.star_rings import ring_modulations, shape_error
-from acutance.targets.periodic.star_waves import StarTable, Wave, star_table
+from acutance.targets.periodic.star_waves import (
+    BlurredStar,
+    StarTable,
+    Wave,
+    blurred_star,
+    star_table,
+)
 from acutance.targets.periodic.stated_contrast import Levels, StatedContrast, with_level
 from acutance.targets.periodic.tuned import APERTURE_STD, STAR_FINEST_CPP, STAR_NOISE_FLOOR
 
@@ -162,7 +170,11 @@ def solve_star(
             mean, star.cycles, wave, math.floor(inner) - 1.0, math.ceil(outer) + 2.0,
             round(star.rim_px * 4) / 4,
         )  # fmt: skip
-        design = _design(star, rows, cols, table, level)
+        blurred = blurred_star(
+            blur_before(mean), star.cycles, wave, math.ceil(outer + KERNEL_REACH_PX) + 1.0,
+            round(star.rim_px * 4) / 4,
+        )  # fmt: skip
+        design = _design(star, rows, cols, table, blurred, level)
         fitted = _regression(
             design, value, weight, table, level, levels, noise_found.inflation, earlier, noise
         )
@@ -279,6 +291,7 @@ def _design(
     rows: NDArray[np.intp],
     cols: NDArray[np.intp],
     table: StarTable,
+    blurred: BlurredStar,
     level: float,
 ) -> Floats:
     """Columns of background, phase and modes, (n, m), with the star where it is taken to be."""
@@ -287,7 +300,8 @@ def _design(
     modes, by_phase = table.columns(radius, phase, angle)
     x, y = radius * np.cos(angle) / star.rim_px, radius * np.sin(angle) / star.rim_px
     background = (np.ones(x.size), x, y, x * x, x * y, y * y)
-    return np.column_stack([*background, level * by_phase, modes])
+    kernels = kernel_columns(blurred, star, rows, cols)
+    return np.column_stack([*background, level * by_phase, modes, kernels])
 
 
 def _regression(
