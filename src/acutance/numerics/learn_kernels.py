@@ -72,7 +72,7 @@ def _principal(taps: Floats) -> Floats:
     modes = stacked(blur_before(_USUAL_BLUR).otf(*_nodes())[:, None] * _tap_transfers())
     changes = taps @ modes.T / math.sqrt(len(modes))
     usual = tamed(changes)
-    sensors, power, _ = np.linalg.svd(usual[:, None] * changes, full_matrices=False)
+    sensors = np.linalg.svd(usual[:, None] * changes, full_matrices=False)[0]
     kept = sensors[:, :_DIRECTIONS]
     return np.asarray((usual[:, None] * taps).T @ kept / math.sqrt(len(taps)))
 

@@ -27,7 +27,14 @@ from acutance.numerics.otf_modes import MeanOtf, ProcessModes
 from acutance.numerics.stacked import stacked
 from acutance.optics import Sensor, draw_sensor
 
-__all__ = ["departure", "fitted_mean", "learn_families", "principal_directions", "tamed", "write_families"]
+__all__ = [
+    "departure",
+    "fitted_mean",
+    "learn_families",
+    "principal_directions",
+    "tamed",
+    "write_families",
+]
 
 _FREE: Final = 6
 """Modes of the mean that have no part in departures: level, three widths, two places."""
@@ -124,10 +131,11 @@ def learn_families(
     return found
 
 
-def write_families(path: Path, directions: dict[str, Floats]) -> None:
-    """Keep the directions of all families in a file that `otf_families` reads."""
+def write_families(path: Path, directions: dict[str, Floats], kernels: Floats) -> None:
+    """Keep the directions in a file that `otf_families` and, of kernels, `otf_kernels` read."""
+    parts = {**directions, "kernels": kernels}
     np.savez_compressed(
-        path, allow_pickle=False, **{name: d.astype("<f4") for name, d in directions.items()}
+        path, allow_pickle=False, **{name: d.astype("<f4") for name, d in parts.items()}
     )
 
 

@@ -24,7 +24,8 @@ from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import Correlation, correlation
 from acutance.numerics.otf_kernels import blur_before
-from acutance.numerics.otf_modes import MeanOtf, ProcessModes
+from acutance.numerics.otf_modes import HIGHEST_CPP, MeanOtf, ProcessModes
+from acutance.numerics.shape_error import ShapeError
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
@@ -44,7 +45,12 @@ from acutance.targets.periodic.star_waves import (
     star_table,
 )
 from acutance.targets.periodic.stated_contrast import Levels, StatedContrast, with_level
-from acutance.targets.periodic.tuned import APERTURE_STD, STAR_FINEST_CPP, STAR_NOISE_FLOOR
+from acutance.targets.periodic.tuned import (
+    APERTURE_STD,
+    STAR_FINEST_CPP,
+    STAR_NOISE_FLOOR,
+    STAR_SHAPE_SHARE,
+)
 
 __all__ = ["SIDE_MARGIN_PX", "StarSolution", "amplitude_of", "solve_star"]
 
@@ -198,10 +204,8 @@ def solve_star(
         weight, noise_found = again, found
     residual = np.full(image.shape, np.nan)
     residual[rows, cols] = fitted.residual
-    otf = replace(
-        fitted.otf,
-        shape_error=shape_error(residual, star, fitted.noise, fitted.otf.level, inner, outer),
-    )
+    seen = shape_error(residual, star, fitted.noise, fitted.otf.level, inner, outer)
+    otf = replace(fitted.otf, shape_error=_error_of_the_prior(fitted.otf).with_another(seen))
     stated = None
     if levels is not None:
         free = _regression(
@@ -339,6 +343,13 @@ def _prior(mean: MeanOtf, level: float, *, level_stated: bool) -> CombinedPrior:
         own_scale, np.zeros(_FIRST), np.repeat([FREE_STD, APERTURE_STD], [6, 2]),
         ProcessModes(mean.width_px), level, STAR_NOISE_FLOOR, level_stated=level_stated,
     )  # fmt: skip
+
+
+def _error_of_the_prior(otf: FittedOtf) -> ShapeError:
+    """What the prior does not know of a shape: few pixels of a star show any one direction."""
+    return ShapeError.of(
+        lambda u, v: otf.otf(u, v) - otf.mean.otf(u, v), HIGHEST_CPP, STAR_SHAPE_SHARE
+    )
 
 
 def _moved(

@@ -96,7 +96,7 @@ def mode_count(states: ProcessModes | None) -> int:
     """Number of all modes with `states`, or of the mean's own alone without."""
     if states is None:
         return MEAN_MODES
-    return MEAN_MODES + states.blocks().size + kernel_taps().shape[-1]
+    return MEAN_MODES + int(states.blocks().size) + int(kernel_taps().shape[-1])
 
 
 def all_modes(mean: MeanOtf, size: int, u_cpp: Floats, v_cpp: Floats) -> Complexes:

@@ -49,8 +49,8 @@ def _blurred_raster(
     blurred: BlurredStar, star: SiemensStar, top: int, left: int, shape: tuple[int, int]
 ) -> Floats:
     """The blurred image on a raster; nothing where no kernel reaches."""
-    rows, cols = np.indices(shape)
-    radius, angle = star.polar(rows + float(top), cols + float(left))
+    rows, cols = np.indices(shape).astype(float)
+    radius, angle = star.polar(rows + top, cols + left)
     inside = radius < blurred.outer_px
     image = np.zeros(shape)
     phase = star.cycles * angle[inside] + star.alpha_rad

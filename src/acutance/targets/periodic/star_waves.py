@@ -190,12 +190,10 @@ class BlurredStar:
     def _harmonics(self) -> list[tuple[int, float, dict[int, Complexes]]]:
         step = 1 / (2 * max(self.rim_px, self.outer_px) + 24)
         freq = np.asarray(step * np.arange(1, math.ceil(_COARSE_CPP / step)))
-        otf = _angular_parts(lambda u, v: self.blur.otf(u, v)[:, None], freq)
+        otf = _angular_parts(lambda u, v: self.blur.otf(u, v)[:, None].astype(complex), freq)
         found = []
         for number, share in _harmonics_of(self.wave, self.cycles, self.rim_px):
-            weights = _weights(
-                self._radii, freq, number * self.cycles, self.rim_px, _BLUR_ORDERS
-            )
+            weights = _weights(self._radii, freq, number * self.cycles, self.rim_px, _BLUR_ORDERS)
             # It looks the same from opposite directions.
             even = {m: w @ otf[:, :, m % _DIRECTIONS] for m, w in weights if m % 2 == 0}
             found.append((number, share, even))
