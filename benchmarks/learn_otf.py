@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from acutance.numerics.learn_kernels import learn_kernels
 from acutance.numerics.learn_otf import learn_families, write_families
 
 
@@ -19,9 +20,11 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     arguments = parser.parse_args()
     directions = learn_families(arguments.sensors, arguments.seed)
-    write_families(arguments.out, directions)
+    kernels = learn_kernels(arguments.sensors, arguments.seed)
+    write_families(arguments.out, directions, kernels)
     for name, columns in directions.items():
         print(f"{name}: {columns.shape[1]} directions")
+    print(f"kernels: {kernels.shape[2]} directions")
 
 
 if __name__ == "__main__":

@@ -27,7 +27,14 @@ from acutance.numerics.otf_modes import MeanOtf, ProcessModes
 from acutance.numerics.stacked import stacked
 from acutance.optics import Sensor, draw_sensor
 
-__all__ = ["departure", "learn_families", "principal_directions", "write_families"]
+__all__ = [
+    "departure",
+    "fitted_mean",
+    "learn_families",
+    "principal_directions",
+    "tamed",
+    "write_families",
+]
 
 _FREE: Final = 6
 """Modes of the mean that have no part in departures: level, three widths, two places."""
@@ -55,6 +62,19 @@ def departure(sensor: Sensor, *, turned: bool = False, signs: tuple[int, int] = 
     signs : (int, int), optional
         -1 mirrors the sensor, across and along.
     """
+    _, left = _fit_of_mean(sensor, turned=turned, signs=signs)
+    return np.asarray(_fit_of_states() @ left)
+
+
+def fitted_mean(sensor: Sensor) -> MeanOtf:
+    """The Gaussian through a pixel that a sensor's OTF is about."""
+    return _fit_of_mean(sensor)[0]
+
+
+def _fit_of_mean(
+    sensor: Sensor, *, turned: bool = False, signs: tuple[int, int] = (1, 1)
+) -> tuple[MeanOtf, Floats]:
+    """The mean, and what its own modes leave of the OTF at the nodes, (2 n,)."""
     mean = MeanOtf(0.2, 0.0, 0.2)
     for _ in range(_MEAN_STEPS):
         u, v = _nodes() / mean.width_px
@@ -65,7 +85,7 @@ def departure(sensor: Sensor, *, turned: bool = False, signs: tuple[int, int] = 
         if abs(moved.width_px - mean.width_px) < _SETTLED_PX:
             break
         mean = moved
-    return np.asarray(_fit_of_states() @ (wanted - free @ fitted))
+    return mean, wanted - free @ fitted
 
 
 def principal_directions(departures: Floats, negligible: float = _NEGLIGIBLE) -> Floats:
@@ -85,11 +105,16 @@ def principal_directions(departures: Floats, negligible: float = _NEGLIGIBLE) ->
     (r, k) array
         Columns times their standard normal variables give a random departure.
     """
-    size = np.sqrt(np.mean((departures @ _states().T) ** 2, axis=1))
-    usual = departures / np.hypot(1.0, size / np.median(size))[:, None]
+    usual = departures * tamed(departures @ _states().T)[:, None]
     sensors, power, _ = np.linalg.svd(usual @ _states().T, full_matrices=False)
     kept = power**2 > negligible * power[0] ** 2
     return np.asarray(usual.T @ sensors[:, kept] / math.sqrt(len(usual)))
+
+
+def tamed(changes: Floats) -> Floats:
+    """Factors (n,) by which changes of an OTF, (n, m), are no larger than about the usual one."""
+    size = np.sqrt(np.mean(changes**2, axis=1))
+    return np.asarray(1 / np.hypot(1.0, size / np.median(size)))
 
 
 def learn_families(
@@ -106,10 +131,11 @@ def learn_families(
     return found
 
 
-def write_families(path: Path, directions: dict[str, Floats]) -> None:
-    """Keep the directions of all families in a file that `otf_families` reads."""
+def write_families(path: Path, directions: dict[str, Floats], kernels: Floats) -> None:
+    """Keep the directions in a file that `otf_families` and, of kernels, `otf_kernels` read."""
+    parts = {**directions, "kernels": kernels}
     np.savez_compressed(
-        path, allow_pickle=False, **{name: d.astype("<f4") for name, d in directions.items()}
+        path, allow_pickle=False, **{name: d.astype("<f4") for name, d in parts.items()}
     )
 
 

@@ -65,6 +65,14 @@ class ShapeError:
         std[0] = 0.0
         return cls(freq, std)
 
+    def with_another(self, other: ShapeError | None) -> ShapeError:
+        """This one and an independent one."""
+        if other is None:
+            return self
+        freq = np.union1d(self.freq_cpp, other.freq_cpp)
+        stds = [np.interp(freq, one.freq_cpp, one.std) for one in (self, other)]
+        return ShapeError(freq, np.hypot(*stds))
+
     def factor(self, freq_cpp: Floats, otf: Complexes) -> Complexes:
         """Factor (n, m) of its covariance along an OTF (n,) at frequencies (n,)."""
         near = np.exp(-0.5 * ((freq_cpp[:, None] - _PLACES_CPP) / _LENGTH_CPP) ** 2)

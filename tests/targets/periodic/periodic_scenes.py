@@ -17,6 +17,12 @@ STATED_BARS = BarsOptions(dark=200.0, bright=1200.0, level_std=1.0)
 FREQ = np.arange(10, 51, 5) / 100
 TAPS = (-0.08, 0.16, -0.32, 0.7, -1.56, 3.2, -1.56, 0.7, -0.32, 0.16, -0.08)
 
+
+def _both_axes(taps):
+    """A kernel applied to rows and to columns."""
+    return Sharpening(tuple(map(tuple, np.outer(taps, taps).tolist())))
+
+
 SENSORS = {
     **reference_systems(),
     # Neither symmetric nor equal in both directions: its OTF has an imaginary part.
@@ -24,9 +30,9 @@ SENSORS = {
         [Gaussian(0.25, 0.45), Exponential(0.5, "across"), Exponential(0.2, "along"), Detector()]
     ),
     # Restored by a kernel whose lobes lie further out than fine states of the PSF do.
-    "long kernel": Sensor(
-        [Gaussian(0.75), Detector(), Sharpening(tuple(map(tuple, np.outer(TAPS, TAPS).tolist())))]
-    ),
+    "long kernel": Sensor([Gaussian(0.75), Detector(), _both_axes(TAPS)]),
+    # Repeated 9 px away, further than any kernel that was learned from.
+    "echo": Sensor([Gaussian(0.5), Detector(), _both_axes([0.06, *8 * [0], 1, *8 * [0], 0.06])]),
 }
 
 

@@ -39,12 +39,12 @@ def test_whole_curves_with_stated_levels(name):
 
 
 def test_a_shape_that_no_mode_follows_is_seen_in_the_residuals():
-    found, truth = measured_star("long kernel")
+    found, truth = measured_star("echo")
     error, std = _errors(found, truth)
     own = found.transfer.model.shape_error
     assert own is not None
     assert np.max(own.std) > 0.01
-    assert np.sqrt(np.mean((error / std) ** 2)) < 2.0
+    assert np.sqrt(np.mean((error / std) ** 2)) < 1.5
     without = replace(found.transfer.model, shape_error=None)
     plain = np.linalg.norm(without.factor(FREQ, np.zeros(FREQ.size)), axis=1)
     # Errors are 4 deviations without it.
@@ -55,7 +55,16 @@ def test_a_shape_that_no_mode_follows_is_seen_in_the_residuals():
 
 def test_a_plain_star_has_no_such_error():
     found, _ = measured_star("gaussian")
-    assert found.transfer.model.shape_error is None
+    assert np.max(found.transfer.model.shape_error.std) < 0.3 * found.across.mtf(0.25).std
+
+
+def test_long_kernels_are_followed():
+    """States about the middle alone leave residuals, and a deviation of 0.05 at 0.5 c/px."""
+    found, truth = measured_star("long kernel")
+    error, std = _errors(found, truth)
+    assert np.sqrt(np.mean((error / std) ** 2)) < 1.5
+    assert np.all(std < 0.02)
+    assert np.max(found.transfer.model.shape_error.std) < 0.01
 
 
 def test_square_wave_and_fan():

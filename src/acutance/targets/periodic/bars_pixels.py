@@ -14,12 +14,8 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.lookup import CubicLookup
-from acutance.numerics.otf_modes import (
-    HIGHEST_CPP,
-    Complexes,
-    MeanOtf,
-    ProcessModes,
-)
+from acutance.numerics.otf_modes import HIGHEST_CPP, MeanOtf, ProcessModes
+from acutance.targets.periodic.otf_model import all_modes, mode_count
 
 __all__ = ["GroupPixels", "group_columns"]
 
@@ -124,9 +120,7 @@ def _profiles(
     freq: Floats = np.asarray(step * (np.arange(math.ceil(HIGHEST_CPP / step)) + 0.5))
     x, y = unit_vector(bars.normal_deg)
     u, v = freq * x, freq * y
-    transfer: Complexes = blur.modes(u, v)
-    if states is not None:
-        transfer = np.hstack([transfer, states.otf_modes(u, v)])
+    transfer = all_modes(blur, mode_count(states), u, v)
     spectrum = bars.spectrum(freq)
     turns = np.exp(2j * math.pi * np.outer(places, freq))
     weighted = (2 * step) * turns * spectrum

@@ -25,10 +25,10 @@ from acutance.geometry.bar_group import Bars
 from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import Correlation, correlation
-from acutance.numerics.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
+from acutance.numerics.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.bars_ends import OtfTable, end_effect, light_of_neighbours
 from acutance.targets.periodic.bars_pixels import GroupPixels, group_columns
-from acutance.targets.periodic.otf_model import FittedOtf, level_row
+from acutance.targets.periodic.otf_model import FittedOtf, level_row, mode_count
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
     Regression,
@@ -290,8 +290,7 @@ def _design(
 ) -> Floats:
     """Columns of all pixels, (n, m): every group's own, the light around them, the modes."""
     first = _OWN * len(pixels) + 1
-    m = first + MEAN_MODES + (0 if states is None else states.blocks().size)
-    design = np.zeros((around.size, m))
+    design = np.zeros((around.size, first + mode_count(states)))
     design[:, first - 1] = around
     start = 0
     for number, one in enumerate(pixels):

@@ -23,7 +23,9 @@ from acutance.geometry.star_geometry import SiemensStar
 from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import Correlation, correlation
-from acutance.numerics.otf_modes import MeanOtf, ProcessModes
+from acutance.numerics.otf_kernels import blur_before
+from acutance.numerics.otf_modes import HIGHEST_CPP, MeanOtf, ProcessModes
+from acutance.numerics.shape_error import ShapeError
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
@@ -33,10 +35,22 @@ from acutance.targets.periodic.otf_regression import (
     reweighted,
     weighted_normal,
 )
+from acutance.targets.periodic.star_kernels import KERNEL_REACH_PX, kernel_columns
 from acutance.targets.periodic.star_rings import ring_modulations, shape_error
-from acutance.targets.periodic.star_waves import StarTable, Wave, star_table
+from acutance.targets.periodic.star_waves import (
+    BlurredStar,
+    StarTable,
+    Wave,
+    blurred_star,
+    star_table,
+)
 from acutance.targets.periodic.stated_contrast import Levels, StatedContrast, with_level
-from acutance.targets.periodic.tuned import APERTURE_STD, STAR_FINEST_CPP, STAR_NOISE_FLOOR
+from acutance.targets.periodic.tuned import (
+    APERTURE_STD,
+    STAR_FINEST_CPP,
+    STAR_NOISE_FLOOR,
+    STAR_SHAPE_SHARE,
+)
 
 __all__ = ["SIDE_MARGIN_PX", "StarSolution", "amplitude_of", "solve_star"]
 
@@ -162,7 +176,11 @@ def solve_star(
             mean, star.cycles, wave, math.floor(inner) - 1.0, math.ceil(outer) + 2.0,
             round(star.rim_px * 4) / 4,
         )  # fmt: skip
-        design = _design(star, rows, cols, table, level)
+        blurred = blurred_star(
+            blur_before(mean), star.cycles, wave, math.ceil(outer + KERNEL_REACH_PX) + 1.0,
+            round(star.rim_px * 4) / 4,
+        )  # fmt: skip
+        design = _design(star, rows, cols, table, blurred, level)
         fitted = _regression(
             design, value, weight, table, level, levels, noise_found.inflation, earlier, noise
         )
@@ -186,10 +204,8 @@ def solve_star(
         weight, noise_found = again, found
     residual = np.full(image.shape, np.nan)
     residual[rows, cols] = fitted.residual
-    otf = replace(
-        fitted.otf,
-        shape_error=shape_error(residual, star, fitted.noise, fitted.otf.level, inner, outer),
-    )
+    seen = shape_error(residual, star, fitted.noise, fitted.otf.level, inner, outer)
+    otf = replace(fitted.otf, shape_error=_error_of_the_prior(fitted.otf).with_another(seen))
     stated = None
     if levels is not None:
         free = _regression(
@@ -279,6 +295,7 @@ def _design(
     rows: NDArray[np.intp],
     cols: NDArray[np.intp],
     table: StarTable,
+    blurred: BlurredStar,
     level: float,
 ) -> Floats:
     """Columns of background, phase and modes, (n, m), with the star where it is taken to be."""
@@ -287,7 +304,8 @@ def _design(
     modes, by_phase = table.columns(radius, phase, angle)
     x, y = radius * np.cos(angle) / star.rim_px, radius * np.sin(angle) / star.rim_px
     background = (np.ones(x.size), x, y, x * x, x * y, y * y)
-    return np.column_stack([*background, level * by_phase, modes])
+    kernels = kernel_columns(blurred, star, rows, cols)
+    return np.column_stack([*background, level * by_phase, modes, kernels])
 
 
 def _regression(
@@ -325,6 +343,13 @@ def _prior(mean: MeanOtf, level: float, *, level_stated: bool) -> CombinedPrior:
         own_scale, np.zeros(_FIRST), np.repeat([FREE_STD, APERTURE_STD], [6, 2]),
         ProcessModes(mean.width_px), level, STAR_NOISE_FLOOR, level_stated=level_stated,
     )  # fmt: skip
+
+
+def _error_of_the_prior(otf: FittedOtf) -> ShapeError:
+    """What the prior does not know of a shape: few pixels of a star show any one direction."""
+    return ShapeError.of(
+        lambda u, v: otf.otf(u, v) - otf.mean.otf(u, v), HIGHEST_CPP, STAR_SHAPE_SHARE
+    )
 
 
 def _moved(

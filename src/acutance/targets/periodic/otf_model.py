@@ -9,6 +9,7 @@ import numpy as np
 
 from acutance.curves import OtfModel
 from acutance.curves.grid import Floats
+from acutance.numerics.otf_kernels import kernel_modes, kernel_taps
 from acutance.numerics.otf_modes import (
     HIGHEST_CPP,
     MEAN_MODES,
@@ -18,7 +19,7 @@ from acutance.numerics.otf_modes import (
 )
 from acutance.numerics.shape_error import ShapeError
 
-__all__ = ["FittedOtf", "all_modes", "level_row"]
+__all__ = ["FittedOtf", "all_modes", "level_row", "mode_count"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +31,8 @@ class FittedOtf:
     mean : MeanOtf
         Mean of the optical transfer function (OTF).
     beta : (m,) array
-        Coefficients of its modes and of the processes' (or of its own alone); their sum at zero
-        frequency is the level.
+        Coefficients of its modes, of the processes' and of the kernels' (or of its own alone);
+        their sum at zero frequency is the level.
     beta_factor : (m, k) array
         Factor of the covariance of beta.
     shape_error : ShapeError, optional
@@ -91,9 +92,17 @@ def level_row(mean: MeanOtf, size: int) -> Floats:
     return np.asarray(all_modes(mean, size, np.zeros(1), np.zeros(1))[0].real)
 
 
+def mode_count(states: ProcessModes | None) -> int:
+    """Number of all modes with `states`, or of the mean's own alone without."""
+    if states is None:
+        return MEAN_MODES
+    return MEAN_MODES + int(states.blocks().size) + int(kernel_taps().shape[-1])
+
+
 def all_modes(mean: MeanOtf, size: int, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-    """The mean's modes and, of more coefficients than those, the processes', (n, size)."""
+    """The mean's modes and, of more coefficients, the processes' and the kernels', (n, size)."""
     own = mean.modes(u_cpp, v_cpp)
     if size == MEAN_MODES:
         return own
-    return np.hstack([own, ProcessModes(mean.width_px).otf_modes(u_cpp, v_cpp)])
+    states = ProcessModes(mean.width_px).otf_modes(u_cpp, v_cpp)
+    return np.hstack([own, states, kernel_modes(mean, u_cpp, v_cpp)])

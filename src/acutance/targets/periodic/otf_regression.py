@@ -13,6 +13,7 @@ from acutance.numerics.marginal_likelihood import Posterior, Prior
 from acutance.numerics.noise import outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
 from acutance.numerics.otf_families import family_directions
+from acutance.numerics.otf_kernels import KERNEL_LOG_AMPLITUDE, kernel_taps
 from acutance.numerics.otf_modes import MEAN_MODES, ProcessModes
 from acutance.targets.periodic.otf_model import FittedOtf
 from acutance.targets.periodic.tuned import (
@@ -80,7 +81,7 @@ def otf_prior(
     *,
     level_stated: bool,
 ) -> CombinedPrior:
-    """Prior of a target's own coefficients, of the mean's modes, of processes and families.
+    """Prior of a target's own coefficients, of the mean's modes, processes, kernels and families.
 
     Parameters
     ----------
@@ -92,7 +93,7 @@ def otf_prior(
     mean_scale : (8,) array
         Standard deviations of the mean's modes, relative to `height`.
     states : ProcessModes or None
-        The states of processes and families; None for the mean alone.
+        The states of processes and families; None for the mean alone, without kernels.
     height : float
         Height of the target, in data units.
     noise_floor : float
@@ -103,28 +104,30 @@ def otf_prior(
     own = np.full(own_scale.size + MEAN_MODES, -1)
     families = family_directions()
     blocks, combination = own, np.eye(own.size)
-    amplitude = LOG_AMPLITUDE if level_stated else LOG_AMPLITUDE + FREE_LEVEL_LOG_AMPLITUDE
+    processes = LOG_AMPLITUDE if level_stated else LOG_AMPLITUDE + FREE_LEVEL_LOG_AMPLITUDE
+    amplitude = np.concatenate([processes, [KERNEL_LOG_AMPLITUDE], families.log_amplitude])
     stds = np.repeat(
         [LOG_AMPLITUDE_STD, FAMILY_LOG_AMPLITUDE_STD],
-        [amplitude.size, families.log_amplitude.size],
+        [processes.size, amplitude.size - processes.size],
     )
     if states is not None:
-        blocks = np.concatenate([own, states.blocks(), amplitude.size + families.family])
-        combination = _with_families(own.size, families.states)
+        kernels = np.full(kernel_taps().shape[-1], processes.size)
+        blocks = np.concatenate(
+            [own, states.blocks(), kernels, processes.size + 1 + families.family]
+        )
+        combination = _with_families(own.size, families.states, kernels.size)
     scale = np.ones(blocks.size)
     scale[: own.size] = np.append(own_scale, mean_scale)
     mean = np.zeros(blocks.size)
     mean[: own_mean.size] = own_mean
-    prior = Prior(
-        blocks, scale, mean, np.append(amplitude, families.log_amplitude), stds, height,
-        noise_floor * height,
-    )  # fmt: skip
+    prior = Prior(blocks, scale, mean, amplitude, stds, height, noise_floor * height)
     return CombinedPrior(prior, combination)
 
 
-def _with_families(own: int, directions: Floats) -> Floats:
-    """Coefficients of a target's own, of the states and of the families, in those two alone."""
+def _with_families(own: int, directions: Floats, kernels: int) -> Floats:
+    """Coefficients of a target's own, of states, kernels and families, in the first three alone."""
     states, families = directions.shape
-    combination = np.eye(own + states, own + states + families)
-    combination[own:, own + states :] = directions
+    model = own + states + kernels
+    combination = np.eye(model, model + families)
+    combination[own : own + states, model:] = directions
     return combination

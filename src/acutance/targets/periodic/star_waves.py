@@ -14,7 +14,7 @@ is the sum of its odd harmonics, each a star of n k cycles.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Final, Literal
@@ -32,7 +32,7 @@ from acutance.numerics.otf_modes import (
     ProcessModes,
 )
 
-__all__ = ["StarTable", "Wave", "star_table"]
+__all__ = ["BlurredStar", "StarTable", "Wave", "blurred_star", "star_table"]
 
 Wave = Literal["sine", "square"]
 
@@ -42,6 +42,10 @@ _STEP_PX: Final = 0.05
 _BESSEL_STEP: Final = 0.02
 _BESSEL_REACH: Final = 64.0
 _DIRECTIONS: Final = 64
+_COARSE_PX: Final = 0.1
+_COARSE_CPP: Final = 1.5
+_BLUR_ORDERS: Final = 12
+"""Of a Gaussian through a pixel alone: beyond, its transfer is below .005."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,37 +95,19 @@ class StarTable:
     @cached_property
     def _harmonics(self) -> list[_Harmonic]:
         states = ProcessModes(self.mean.width_px)
-        mean = _angular_parts(self.mean, self._freq)
+        mean = _angular_parts(self.mean.modes, self._freq)
         radial = [states.radial(m, self._freq) for m in range(states.orders + 1)]
-        highest = 1
-        if self.wave == "square":
-            highest = max(int(_HARMONICS_CPP * 2 * math.pi * self.rim_px / self.cycles), 1)
         found = []
-        for index, number in enumerate(range(1, highest + 1, 2)):
+        for number, share in _harmonics_of(self.wave, self.cycles, self.rim_px):
             tables: tuple[dict[int, Complexes], dict[int, Floats]] = ({}, {})
-            for m, kernel in self._kernels(number * self.cycles, states.orders):
-                tables[0][m] = kernel @ mean[:, :, m % _DIRECTIONS]
-                tables[1][m] = kernel @ radial[abs(m)]
-            found.append(_Harmonic(number, (-1.0) ** index / number, *tables))
+            weights = _weights(
+                self._radii, self._freq, number * self.cycles, self.rim_px, states.orders
+            )
+            for m, weight in weights:
+                tables[0][m] = weight @ mean[:, :, m % _DIRECTIONS]
+                tables[1][m] = weight @ radial[abs(m)]
+            found.append(_Harmonic(number, share, *tables))
         return found
-
-    def _kernels(self, cycles: int, orders: int) -> Iterator[tuple[int, Floats]]:
-        """The integral's weights (n_r, n_f) for every angular order, highest first."""
-        reach = _reach(max(float(self._radii[-1]), self.rim_px))
-        x = 2 * math.pi * np.outer(self._radii, self._freq)
-        step = self._freq[1] - self._freq[0]
-        weight = cycles * step / self._freq * _rim(cycles, self.rim_px, self._freq)
-        place = x / _BESSEL_STEP
-        cell = place.astype(np.intp)
-        part = place - cell
-        above, here = (
-            table[cell] * (1 - part) + table[cell + 1] * part
-            for table in (_bessel(cycles + orders + extra, reach) for extra in (1, 0))
-        )
-        for m in range(orders, -orders - 1, -1):
-            yield m, here * weight
-            # The recurrence is stable downwards.
-            above, here = here, 2 * (cycles + m) / x * here - above
 
     def columns(self, radius_px: Floats, phase: Floats, turn: Floats) -> tuple[Floats, Floats]:
         """The image of every mode at some pixels.
@@ -149,8 +135,8 @@ class StarTable:
         odd = [np.zeros(0)] * (orders + 1)
         for one in self._harmonics:
             for m in range(orders + 1):
-                ahead = _wave(one, phase, m * turn, m)
-                behind = _wave(one, phase, -m * turn, -m)
+                ahead = _wave(one.number, one.share, phase, m * turn, m)
+                behind = _wave(one.number, one.share, phase, -m * turn, -m)
                 for order, wave in ((m, ahead), (-m, behind))[: 2 if m else 1]:
                     seen = take(one.mean[order]) * wave[:, None]
                     mean += seen.real
@@ -165,10 +151,88 @@ class StarTable:
         return np.hstack([mean, *states]), by_phase
 
 
-def _wave(one: _Harmonic, phase: Floats, turn: Floats, order: int) -> Complexes:
+@dataclass(frozen=True)
+class BlurredStar:
+    """The image of a star through a Gaussian and a pixel, also at its centre and around it.
+
+    Parameters
+    ----------
+    blur : MeanOtf
+    cycles : int
+    wave : {"sine", "square"}
+    outer_px : float
+        Radius up to which pixels are looked up.
+    rim_px : float
+        Radius of the star.
+    """
+
+    blur: MeanOtf
+    cycles: int
+    wave: Wave
+    outer_px: float
+    rim_px: float
+
+    def __call__(self, radius_px: Floats, phase: Floats, turn: Floats) -> Floats:
+        """The image at pixels (n,), of unit amplitude; arguments as of `StarTable.columns`."""
+        take = CubicLookup.of(radius_px, self._radii)
+        image = np.zeros(radius_px.size)
+        for number, share, tables in self._harmonics:
+            for order, table in tables.items():
+                wave = _wave(number, share, phase, order * turn, order)
+                image += (take(table)[:, 0] * wave).real
+        return image
+
+    @cached_property
+    def _radii(self) -> Floats:
+        return np.asarray(_COARSE_PX * np.arange(1, math.ceil(self.outer_px / _COARSE_PX) + 4))
+
+    @cached_property
+    def _harmonics(self) -> list[tuple[int, float, dict[int, Complexes]]]:
+        step = 1 / (2 * max(self.rim_px, self.outer_px) + 24)
+        freq = np.asarray(step * np.arange(1, math.ceil(_COARSE_CPP / step)))
+        otf = _angular_parts(lambda u, v: self.blur.otf(u, v)[:, None].astype(complex), freq)
+        found = []
+        for number, share in _harmonics_of(self.wave, self.cycles, self.rim_px):
+            weights = _weights(self._radii, freq, number * self.cycles, self.rim_px, _BLUR_ORDERS)
+            # It looks the same from opposite directions.
+            even = {m: w @ otf[:, :, m % _DIRECTIONS] for m, w in weights if m % 2 == 0}
+            found.append((number, share, even))
+        return found
+
+
+def _harmonics_of(wave: Wave, cycles: int, rim_px: float) -> list[tuple[int, float]]:
+    """Number and share of the harmonics of a star that a pixel resolves at its rim."""
+    highest = 1
+    if wave == "square":
+        highest = max(int(_HARMONICS_CPP * 2 * math.pi * rim_px / cycles), 1)
+    return [(n, (-1.0) ** index / n) for index, n in enumerate(range(1, highest + 1, 2))]
+
+
+def _weights(
+    radii: Floats, freq: Floats, cycles: int, rim_px: float, orders: int
+) -> Iterator[tuple[int, Floats]]:
+    """The integral's weights (n_r, n_f) for every angular order, highest first."""
+    reach = _reach(max(float(radii[-1]), rim_px))
+    x = 2 * math.pi * np.outer(radii, freq)
+    step = freq[1] - freq[0]
+    weight = cycles * step / freq * _rim(cycles, rim_px, freq)
+    place = x / _BESSEL_STEP
+    cell = place.astype(np.intp)
+    part = place - cell
+    above, here = (
+        table[cell] * (1 - part) + table[cell + 1] * part
+        for table in (_bessel(cycles + orders + extra, reach) for extra in (1, 0))
+    )
+    for m in range(orders, -orders - 1, -1):
+        yield m, here * weight
+        # The recurrence is stable downwards.
+        above, here = here, 2 * (cycles + m) / x * here - above
+
+
+def _wave(number: int, share: float, phase: Floats, turn: Floats, order: int) -> Complexes:
     """``share i^m exp(i (n (k phi + alpha) + m phi))``."""
     unit = (1, 1j, -1, -1j)[order % 4]
-    return np.asarray(one.share * unit * np.exp(1j * (one.number * phase + turn)))
+    return np.asarray(share * unit * np.exp(1j * (number * phase + turn)))
 
 
 def _pair(
@@ -182,11 +246,11 @@ def _pair(
     return (factor * (one + other)).real, (-1j * factor * (one - other)).real
 
 
-def _angular_parts(blur: MeanOtf, freq: Floats) -> Complexes:
-    """Angular Fourier coefficients of the mean's modes, (n_f, MEAN_MODES, directions)."""
+def _angular_parts(modes_of: Callable[[Floats, Floats], Complexes], freq: Floats) -> Complexes:
+    """Angular Fourier coefficients of m modes, (n_f, m, directions)."""
     angle = 2 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     u, v = np.outer(freq, np.cos(angle)), np.outer(freq, np.sin(angle))
-    modes = blur.modes(u.ravel(), v.ravel()).reshape(freq.size, _DIRECTIONS, MEAN_MODES)
+    modes = modes_of(u.ravel(), v.ravel()).reshape(freq.size, _DIRECTIONS, -1)
     return np.asarray(np.fft.fft(modes, axis=1).transpose(0, 2, 1) / _DIRECTIONS)
 
 
@@ -216,3 +280,11 @@ def star_table(
 ) -> StarTable:
     """The table of a star; that of the same star is kept."""
     return StarTable(mean, cycles, wave, inner_px, outer_px, rim_px)
+
+
+@lru_cache(maxsize=8)
+def blurred_star(
+    blur: MeanOtf, cycles: int, wave: Wave, outer_px: float, rim_px: float
+) -> BlurredStar:
+    """The blurred image of a star; that of the same star is kept."""
+    return BlurredStar(blur, cycles, wave, outer_px, rim_px)

@@ -33,6 +33,7 @@ __all__ = [
     "STANDS_OUT",
     "STAR_FINEST_CPP",
     "STAR_NOISE_FLOOR",
+    "STAR_SHAPE_SHARE",
     "SURE_DIRECTION",
 ]
 
@@ -73,6 +74,12 @@ STAR_NOISE_FLOOR: Final = 2e-4
 
 STAR_FINEST_CPP: Final = 1.3
 """Pixels of finer spokes than this are left out: the printed centre may end there."""
+
+STAR_SHAPE_SHARE: Final = 0.015
+"""Standard deviation of what the prior does not know, over how far the transfer departs from a
+Gaussian through a pixel. Set by 234 curves behind products that were sharpened, restored or
+processed: 87 % of the intervals of MTF(0.5) held without, 94 % with it, and 93 and 98 % of those
+of MTF(0.25); deviations are wider by 10 and 22 %, those of other sensors hardly."""
 
 MAX_RAISED: Final = 3.0
 """No restoration raises the contrast of coarse spokes more: the fit of another wave does."""
