@@ -129,7 +129,7 @@ def test_an_unknown_term_is_refused_by_name():
 def test_a_correction_is_nothing_at_zero_frequency_and_hermitian():
     correction = Correction(SensorForm(("gaussian",)), (-0.9, -0.8, 0.1))
     u, v = np.array([0.0, 0.3, -0.3]), np.array([0.0, 0.2, -0.2])
-    ways = correction.directions(u, v)
+    ways = correction.directions_on(Plane(u, v))
     assert not ways[0].any()
     assert ways[1] == pytest.approx(np.conj(ways[2]))
 

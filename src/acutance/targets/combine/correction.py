@@ -55,12 +55,8 @@ class Correction(ShortRepr):
     form: SensorForm
     parameters: tuple[float, ...]
 
-    def directions(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Change of the OTF for a unit of every direction, (n, m): exactly 0 at zero frequency."""
-        return self.directions_on(Plane(u_cpp, v_cpp))
-
     def directions_on(self, plane: Plane) -> Complexes:
-        """The same at places of the plane."""
+        """Change of the OTF for a unit of every direction, (n, m): exactly 0 at zero frequency."""
         p = np.array(self.parameters)
         size = np.abs(self.form.otf_on(p, plane))
         # Sharpening multiplies the blur by a gain: the blur is the detector's at most.

@@ -137,8 +137,8 @@ def combine_curves(
     plain = settled([fitted(SensorForm(terms, detector_px)) for terms in forms])
     first = min(plain, key=lambda one: one.score)
     correction = Correction(first.form, tuple(first.parameters.tolist()))
-    near_first = LitCurves(data, first.otf(data.u_cpp, data.v_cpp))
-    ways = near_first.of(correction.directions(data.u_cpp, data.v_cpp))
+    near_first = LitCurves(data, first.otf_on(data.plane))
+    ways = near_first.of(correction.directions_on(data.plane))
     aligned = [
         fitted(form, start)
         for one in _weighted(plain)
@@ -181,10 +181,10 @@ def _chi_squares(
     that are judged: a prior makes errors in other directions smaller than their deviations.
     """
     best = forms[0]
-    mean = sum(one.weight * one.otf(data.u_cpp, data.v_cpp) for one in forms)
+    mean = sum(one.weight * one.otf_on(data.plane) for one in forms)
     near = LitCurves(data, np.asarray(mean))
     residual = near.residual
-    slopes = near.of(best.slopes(data.u_cpp, data.v_cpp))
+    slopes = near.of(best.slopes_on(data.plane))
     inverse = np.linalg.inv(slopes.T @ slopes + np.diag(best.prior_std**-2.0))
     left = near.apart(np.eye(residual.size)) - slopes @ inverse @ slopes.T
     covariance = left @ data.covariance @ left.T

@@ -55,23 +55,15 @@ class WeightedForm(ShortRepr):
     root: Floats
     weight: float
 
-    def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """OTF, (n,), exactly 1 at zero frequency."""
-        return self.otf_on(Plane(u_cpp, v_cpp))
-
     def otf_on(self, plane: Plane) -> Complexes:
-        """OTF, (n,), at places of the plane."""
+        """OTF, (n,), at places of the plane; exactly 1 at zero frequency."""
         plain = self.form.otf_on(self.parameters, plane)
         if self.weights.size == 0:
             return plain
         return np.asarray(plain + self.correction.directions_on(plane) @ self.weights)
 
-    def slopes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """Derivatives of the OTF by parameters and weights, (n, p + m)."""
-        return self.slopes_on(Plane(u_cpp, v_cpp))
-
     def slopes_on(self, plane: Plane) -> Complexes:
-        """The same at places of the plane."""
+        """Derivatives of the OTF by parameters and weights, (n, p + m)."""
         own = self.form.slopes_on(self.parameters, plane)
         if self.weights.size == 0:
             return own
