@@ -26,7 +26,7 @@ from acutance.optics import Sensor, draw_sensor
 
 __all__ = ["learn_kernels", "taps_of"]
 
-PROCESSED: Final = ("sharpened", "restored", "processed")
+_PROCESSED: Final = ("sharpened", "restored", "processed")
 """The families that kernels act in."""
 _DIRECTIONS: Final = 40
 _HIGHEST_CPP: Final = 1.2
@@ -45,7 +45,7 @@ _USUAL_BLUR: Final = MeanOtf(0.1, 0.0, 0.1)
 def learn_kernels(sensors_per_family: int, seed: int) -> Floats:
     """Principal directions of the taps, (15, 15, k)."""
     found = []
-    for number, family in enumerate(PROCESSED):
+    for number, family in enumerate(_PROCESSED):
         rng = np.random.default_rng((seed, number))
         found += [taps_of(draw_sensor(family, rng)) for _ in range(sensors_per_family)]
     every = product(found, (False, True), (1, -1), (1, -1))

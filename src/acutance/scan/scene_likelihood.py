@@ -27,9 +27,7 @@ from acutance.targets.slices import OtfSlices
 __all__ = ["likelihood_of_slices"]
 
 _UNSEEN: Final = 1.0
-"""Information of combinations that edges hardly show: errors of .1."""
-_EXACT: Final = 1e7
-"""One over the error of the OTF at zero frequency, which is 1 whatever light an image has."""
+"""Information of combinations that edges do not show: the OTF is between 0 and 1."""
 _DARK: Final = 1e-6
 """MTF below which an object's blur is no more told from the sensor's."""
 
@@ -64,11 +62,7 @@ def likelihood_of_slices(fit: SensorFit, model: OtfModel, slices: OtfSlices) -> 
     found = fit.otf.otf(edges.u_cpp, edges.v_cpp)
     rest = edges.likelihood.whitened(carried) - edges.likelihood.residual(found)
     errors = model.factor(*places)[:, fit.otf.factor(*places).shape[1] :]
-    said = _of_few_values(stacked(root), rest).with_errors(errors)
-    return OtfLikelihood(
-        np.column_stack([said.root, np.zeros(len(said.root))]),
-        np.append(said.level, _EXACT), np.append(said.values, _EXACT),
-    )  # fmt: skip
+    return _of_few_values(stacked(root), rest).with_errors(errors).of_known_light()
 
 
 def _of_few_values(root: Floats, values: Floats) -> OtfLikelihood:

@@ -104,7 +104,7 @@ class SceneMeasurement(Measurement):
     @cached_property
     def slices(self) -> OtfSlices:
         """Slices of the OTF, their covariance, and what the edges alone say of them."""
-        if self.details is None and "record" in vars(self):
+        if self._is_light:
             return self.record.slices
         slices = OtfSlices.of_otf2d(self.otf)
         if self.details is None:

@@ -46,8 +46,6 @@ _GAINS: Final = (0.7, 1.4)
 """Between these the sensor along an edge's normal is of that along its bin."""
 _LEAST: Final = 1e3
 """Information of a direction whose edges are all strange: it has no part in a turn."""
-_EXACT: Final = 1e7
-"""One over the error of what is exact."""
 _UNSEEN: Final = 1.0
 """Information of combinations that edges do not show: the OTF is between 0 and 1."""
 _BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
@@ -344,11 +342,8 @@ def otf_samples(
     seen = size > _UNSEEN
     root = axes[:, seen] * np.sqrt(size[seen])
     values = root.T @ otf[order] + (root / size[seen]).T @ pull[order]
-    # One more value: at zero frequency the OTF is 1, whatever light an image has.
-    root = np.column_stack([root, np.zeros(len(root))])
-    level = np.append(np.zeros(values.size), _EXACT)
-    likelihood = OtfLikelihood(unstacked(root), level, np.append(values, _EXACT))
-    likelihood = likelihood.with_errors(common_errors(normal_deg.size, freq_cpp))
+    likelihood = OtfLikelihood(unstacked(root), np.zeros(values.size), values)
+    likelihood = likelihood.with_errors(common_errors(normal_deg.size, freq_cpp)).of_known_light()
     u, v = places_along(normal_deg, freq_cpp)
     about = unstacked(otf[order])
     return OtfSamples("edges", u, v, about, np.zeros((about.size, 1), complex), likelihood)

@@ -174,7 +174,7 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
     @cached_property
     def budget(self) -> tuple[BudgetTerm, ...]:
         """The uncertainty budget: causes, their standard deviations and shares, by direction."""
-        if self.details is None and "record" in vars(self):
+        if self._is_light:
             return self.record.budget
         return self._budget()
 
@@ -185,6 +185,11 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
             for name in self.measured_directions
         )
         return tuple(row for some in rows for row in some)
+
+    @property
+    def _is_light(self) -> bool:
+        """Whether it is one `without_details`: what these told is in its record."""
+        return self.details is None and "record" in vars(self)
 
     def without_details(self) -> Self:
         """The same measurement without pixels and fits: light enough to be sent and kept.

@@ -45,6 +45,8 @@ _EXACT = 1e-3
 over its freedom is .8 then, over all families of sensors (benchmarks/combine.py)."""
 _NOTHING = 1.0
 """Precision of what the pixels do not show: an OTF is between 0 and 1, or little more."""
+_SURE = 1e7
+"""One over the error of an OTF at zero frequency, where its light is known."""
 _STEPS = 3
 """Steps to the light and the place of an image, both nearly known."""
 _DEPENDENT = 1e-6
@@ -95,6 +97,15 @@ class OtfLikelihood(ShortRepr):
             return self
         size, axes = np.linalg.eigh(seen @ seen.T)
         return self._damped((axes / np.sqrt(1 + size)) @ axes.T)
+
+    def of_known_light(self) -> OtfLikelihood:
+        """The likelihood with one more value: at zero frequency the OTF is 1, as if seen there.
+
+        For OTFs that were found whatever light their images have.
+        """
+        root = np.column_stack([self.root, np.zeros(len(self.root))])
+        level, values = (np.append(one, _SURE) for one in (self.level, self.values))
+        return OtfLikelihood(root, level, values)
 
     def turned(self, turn: Complexes) -> OtfLikelihood:
         """The likelihood of the OTF times a phasor (n,) at every place."""

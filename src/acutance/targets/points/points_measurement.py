@@ -90,7 +90,7 @@ class PointsMeasurement(Measurement):
     @cached_property
     def slices(self) -> OtfSlices:
         """Slices of the OTF, their covariance, and what the pixels alone say of them."""
-        if self.details is None and "record" in vars(self):
+        if self._is_light:
             return self.record.slices
         slices = OtfSlices.of_otf2d(self.otf)
         fit = None if self.details is None else self.details.fit

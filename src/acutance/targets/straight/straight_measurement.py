@@ -101,7 +101,7 @@ class StraightMeasurement(Measurement):
     @cached_property
     def slices(self) -> OtfSlices:
         """The OTF along the normal, its covariance, and what the pixels alone say of it."""
-        if self.details is None and "record" in vars(self):
+        if self._is_light:
             return self.record.slices
         return _slices(self.mtf, self.normal_deg, self._pixels_alone, self.stated)
 
