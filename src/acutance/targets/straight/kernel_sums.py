@@ -53,14 +53,15 @@ def seen_kernels(
     part, power : (g,) arrays
         The kernels of group g have the covariance ``power[g] * covariance[part[g]]``.
     combinations : (q, r) array
+        Filled up with zeros to a multiple of `LANES`: combinations of which nothing is known.
     values : (r,) array
 
     Returns
     -------
     lower : (g, r, r) array
         L.
-    root : (g, q, r) array
-        ``S K L^-T``: ``root @ root.T`` is what the pixels take from the covariance.
+    root : (g, r, q) array
+        ``L^-1 K^T S``: ``root.T @ root`` is what the pixels take from the covariance.
     axes : (g, r, q) array
         ``L^-1 K^T``: independent combinations of the coordinates, of unit variance.
     told : (g, r) array
@@ -70,11 +71,11 @@ def seen_kernels(
     """
     groups = len(part)
     q, r = combinations.shape
-    lower, root = np.zeros((groups, r, r)), np.zeros((groups, q, r))
-    axes, told = np.zeros((groups, r, q)), np.zeros((groups, r))
+    lower, root = np.empty((groups, r, r)), np.empty((groups, r, q))
+    axes, told = np.empty((groups, r, q)), np.empty((groups, r))
     log_density = np.zeros(groups)
-    rows, value = combinations.T.copy(), np.zeros((r, 1))
-    across, within, half = np.zeros((r, q)), np.zeros((r, r)), np.zeros((r, q))
+    rows, value = combinations.T.copy(), np.empty((r, 1))
+    across, within = np.empty((r, q)), np.empty((r, r))
     for g in range(groups):
         if g == 0 or part[g] != part[g - 1]:
             across[:], within[:] = 0.0, 0.0
@@ -83,19 +84,17 @@ def seen_kernels(
         for i in range(r):
             value[i, 0] = values[i]
             for j in range(q):
-                axes[g, i, j], half[i, j] = rows[i, j], power[g] * across[i, j]
+                axes[g, i, j], root[g, i, j] = rows[i, j], power[g] * across[i, j]
             for j in range(r):
                 lower[g, i, j] = power[g] * within[i, j]
             lower[g, i, i] += 1.0
         factorize(lower[g])
-        forward_substitution(lower[g], half)
+        forward_substitution(lower[g], root[g])
         forward_substitution(lower[g], axes[g])
         forward_substitution(lower[g], value)
         for i in range(r):
             told[g, i] = value[i, 0]
             log_density[g] -= np.log(lower[g, i, i])
-            for j in range(q):
-                root[g, j, i] = half[i, j]
     return lower, root, axes, told, log_density
 
 
@@ -142,16 +141,15 @@ def kernel_weights(
     largest : float
     """
     families, (groups, r, q), p = len(members), axes.shape, len(coordinates)
-    sizes, rows = groups // families, r + -r % LANES
-    soon = min(rows, _TOLD_BEST)
+    sizes, soon = groups // families, min(r, _TOLD_BEST)
     most = np.max(members[:, 1] - members[:, 0])
     counts, kept = np.zeros(groups, np.intp), np.empty((groups, most), np.intp)
     log_weight = np.empty((groups, most))
     # The last rows and columns are zeros: four sums of four products are worked out at a time.
-    own, others = np.zeros((rows, p), np.float32), np.zeros((sizes, rows, rows), np.float32)
-    off, misfit = np.zeros((rows, _SOME), np.float32), np.empty((sizes, _SOME), np.float32)
+    own, others = np.zeros((r, p), np.float32), np.zeros((sizes, r, r), np.float32)
+    off, misfit = np.zeros((r, _SOME), np.float32), np.empty((sizes, _SOME), np.float32)
     left, place = np.zeros((p, _SOME), np.float32), np.empty(_SOME, np.intp)
-    before, best, minus = np.empty(_SOME), np.empty(_SOME), np.zeros(rows, np.float32)
+    before, best, minus = np.empty(_SOME), np.empty(_SOME), np.zeros(r, np.float32)
     for f in range(families):
         g, (first, last) = f * sizes, members[f]
         for size in range(1, sizes):
@@ -190,7 +188,7 @@ def kernel_weights(
                     misfit[size, k] = misfit[size, place[k]]
             # Columns beyond the count are some of no use, and cost nothing.
             filled_up = count + -count % _AT_ONCE
-            _add_squares(misfit, off, own, others, minus, left, 0, filled_up, soon, rows)
+            _add_squares(misfit, off, own, others, minus, left, 0, filled_up, soon, r)
             for size in range(sizes):
                 n = counts[g + size]
                 for k in range(count):
@@ -289,19 +287,25 @@ def kernel_moments(
 
 @inlined
 def _add_squares_of_centres(square: Floats, weighted: Floats, own: Floats, count: int) -> None:
-    """Put the sums of products of coordinates, (p, p), below the diagonal: two by two."""
-    for i in range(0, len(own), 2):
-        w, x = weighted[i], weighted[i + 1]
-        for j in range(0, i + 1, 2):
+    """Put the sums of products of coordinates, (p, p), below the diagonal: four by two."""
+    for i in range(0, len(own), 4):
+        w, x, y, z = weighted[i], weighted[i + 1], weighted[i + 2], weighted[i + 3]
+        for j in range(0, i + 4, 2):
             a, b = own[j], own[j + 1]
-            wa, wb, xa, xb = 0.0, 0.0, 0.0, 0.0
+            wa, wb, xa, xb, ya, yb, za, zb = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             for k in range(count):
                 wa += w[k] * a[k]
                 wb += w[k] * b[k]
                 xa += x[k] * a[k]
                 xb += x[k] * b[k]
+                ya += y[k] * a[k]
+                yb += y[k] * b[k]
+                za += z[k] * a[k]
+                zb += z[k] * b[k]
             square[i, j], square[i, j + 1] = wa, wb
             square[i + 1, j], square[i + 1, j + 1] = xa, xb
+            square[i + 2, j], square[i + 2, j + 1] = ya, yb
+            square[i + 3, j], square[i + 3, j + 1] = za, zb
 
 
 @compiled
@@ -318,12 +322,12 @@ def mixture(
 ) -> tuple[Floats, Floats]:
     """Mean (q,) and covariance (q, q) of all kernels together: their own, and how means differ.
 
-    A kernel about c, of covariance S, is left with the mean ``c + R (t - A c)`` and the covariance
-    ``S - R R^T``, R being its root, A its axes and t what is told of them. With the covariance P of
-    the centres of a group, that of its kernels and their means is
+    A kernel about c, of covariance S, is left with the mean ``c + R^T (t - A c)`` and the
+    covariance ``S - R^T R``, R being its root, A its axes and t what is told of them. With the
+    covariance P of the centres of a group, that of its kernels and their means is
 
-        S - R R^T + (1 - R A) P (1 - R A)^T = S + P + R C + (R C)^T,
-        C = (A P A^T - 1) R^T / 2 - A P.
+        S - R^T R + (1 - R^T A) P (1 - R^T A)^T = S + P + R^T C + (R^T C)^T,
+        C = (A P A^T - 1) R / 2 - A P.
 
     Parameters
     ----------
@@ -335,33 +339,37 @@ def mixture(
         As of `seen_kernels`.
     """
     groups, r, q = axes.shape
-    mean, whole, means = np.zeros(q), np.zeros((q, q)), centre.copy()
+    mean, half, means = np.zeros(q), np.zeros((q, q)), centre.copy()
+    own = np.zeros(len(covariance))
+    by_axes, left, common = np.empty((r, q)), np.empty((r, r)), np.empty((r, q))
     for g in range(groups):
         if share[g] == 0:
             continue
-        by_axes, left = np.zeros((r, q)), np.zeros((r, r))
-        common, crossed = np.zeros((r, q)), np.zeros((q, q))
+        by_axes[:], left[:], common[:] = 0.0, 0.0, 0.0
         add_product(by_axes, axes[g], spread[g])
         add_product(left, by_axes, axes[g].T.copy())
         for i in range(r):
             left[i, i] -= 1.0
-        add_product(common, left, root[g].T.copy())
+        add_product(common, left, root[g])
         for i in range(r):
             for j in range(q):
-                common[i, j] = 0.5 * common[i, j] - by_axes[i, j]
-        add_product(crossed, root[g], common)
+                common[i, j] = share[g] * (0.5 * common[i, j] - by_axes[i, j])
+        add_product(half, root[g].T.copy(), common)
+        for i in range(q):
+            for j in range(q):
+                half[i, j] += 0.5 * share[g] * spread[g, i, j]
+        own[part[g]] += share[g] * power[g]
         for j in range(r):
             off = told[g, j]
             for i in range(q):
                 off -= axes[g, j, i] * centre[g, i]
             for i in range(q):
-                means[g, i] += root[g, i, j] * off
-        before, size = covariance[part[g]], power[g]
+                means[g, i] += root[g, j, i] * off
         for i in range(q):
             mean[i] += share[g] * means[g, i]
-            for j in range(q):
-                own = size * before[i, j] + spread[g, i, j] + crossed[i, j] + crossed[j, i]
-                whole[i, j] += share[g] * own
+    whole = half + half.T
+    for f in range(len(covariance)):
+        whole += own[f] * covariance[f]
     for g in range(groups):
         for i in range(q):
             away = share[g] * (means[g, i] - mean[i])

@@ -217,11 +217,16 @@ class Sensors:
 def _told(information: Floats, projection: Floats, spread: Floats) -> tuple[Floats, Floats]:
     """Independent combinations (q, r) of the coordinates that pixels tell, and their values.
 
-    Those told best are first, in coordinates whose covariance `spread` is one.
+    Those told best are first, in coordinates whose covariance `spread` is one; the last are zeros
+    that fill up a multiple of `LANES`.
     """
     lower = np.asarray(np.linalg.cholesky(spread), float)
     root = pivoted_root(lower.T @ information @ lower, _UNTOLD)
-    return lower_inverse(lower).T @ root, least_squares(root, lower.T @ projection)
+    q, r = root.shape
+    combinations, values = np.zeros((q, r + -r % LANES)), np.zeros(r + -r % LANES)
+    np.matmul(lower_inverse(lower).T, root, out=combinations[:, :r])
+    values[:r] = least_squares(root, lower.T @ projection)
+    return combinations, values
 
 
 @cache
