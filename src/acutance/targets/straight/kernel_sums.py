@@ -15,6 +15,7 @@ from acutance.numerics.compiled import compiled, inlined
 from acutance.numerics.small_matrices import (
     add_four_rows,
     add_product,
+    add_products_of_rows,
     factorize,
     forward_substitution,
 )
@@ -256,7 +257,7 @@ def kernel_moments(
     """
     groups, p, most = len(counts), len(coordinates), np.max(counts)
     total, mean = np.zeros(groups + 1), np.zeros((groups + 1, q))
-    spread, square = np.zeros((groups + 1, q, q)), np.zeros((p, p))
+    spread, square = np.zeros((groups + 1, q, q)), np.empty((p, p))
     place, share = np.empty(most, np.intp), np.empty(most)
     own, weighted = np.empty((p, most)), np.empty((p, most))
     for g in range(groups):
@@ -273,7 +274,8 @@ def kernel_moments(
                 own[i, k] = coordinates[i, place[k]]
             for k in range(count):
                 weighted[i, k] = share[k] * own[i, k]
-        _add_squares_of_centres(square, weighted, own, count)
+        square[:] = 0.0
+        add_products_of_rows(square, weighted, own, 0, count)
         for i in range(q):
             for k in range(count):
                 mean[g, i] += weighted[i, k]
@@ -283,29 +285,6 @@ def kernel_moments(
                 spread[g, i, j] = square[i, j] / total[g] - mean[g, i] * mean[g, j]
                 spread[g, j, i] = spread[g, i, j]
     return total, mean, spread
-
-
-@inlined
-def _add_squares_of_centres(square: Floats, weighted: Floats, own: Floats, count: int) -> None:
-    """Put the sums of products of coordinates, (p, p), below the diagonal: four by two."""
-    for i in range(0, len(own), 4):
-        w, x, y, z = weighted[i], weighted[i + 1], weighted[i + 2], weighted[i + 3]
-        for j in range(0, i + 4, 2):
-            a, b = own[j], own[j + 1]
-            wa, wb, xa, xb, ya, yb, za, zb = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-            for k in range(count):
-                wa += w[k] * a[k]
-                wb += w[k] * b[k]
-                xa += x[k] * a[k]
-                xb += x[k] * b[k]
-                ya += y[k] * a[k]
-                yb += y[k] * b[k]
-                za += z[k] * a[k]
-                zb += z[k] * b[k]
-            square[i, j], square[i, j + 1] = wa, wb
-            square[i + 1, j], square[i + 1, j + 1] = xa, xb
-            square[i + 2, j], square[i + 2, j + 1] = ya, yb
-            square[i + 3, j], square[i + 3, j + 1] = za, zb
 
 
 @compiled

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 from acutance.numerics.normal_equations import Normal
+from acutance.numerics.small_matrices import products_of_rows
 from acutance.targets.straight.spline import CELLS, edge_weights
 from acutance.targets.straight.step_profile import Profile
 
@@ -64,21 +65,22 @@ def accumulate(
     m, q = CELLS + 3, sum(map(len, columns))
     gram, projection = np.zeros((m + q, m + q)), np.zeros(m + q)
     root = np.sqrt(weight)
-    rows = np.empty((5 + q, y.size))
+    # Filled up to a multiple of four, as the products want them.
+    rows = np.empty((5 + q + (3 - q) % 4, y.size))
     np.multiply(y, root, out=rows[4])
     first = 5
     for some in columns:
         np.multiply(some, root, out=rows[first : first + len(some)])
         first += len(some)
+    rows[first:] = 0.0
     weighted = [(cell, basis * root) for cell, basis in stencils]
     for i, (cell, basis) in enumerate(weighted):
         rows[:4] = basis
-        _add_step(gram, projection, _sums_by_cell(cell, basis, rows))
+        _add_step(gram, projection, _sums_by_cell(cell, basis, rows[: 5 + q]))
         for other, other_basis in weighted[i + 1 :]:
             _add_pair(gram, cell, basis, other, other_basis)
     gram[m:, :m] = gram[:m, m:].T
-    # The product of a matrix with its own transpose takes half the time of any other.
-    products = rows[4:] @ rows[4:].T
+    products = products_of_rows(rows[4:])[: 1 + q, : 1 + q]
     gram[m:, m:], projection[m:] = products[1:, 1:], products[0, 1:]
     return Normal(gram, projection, products.item(0), count)
 
@@ -131,8 +133,8 @@ def _sums_by_cell(cell: NDArray[np.intp], basis: Floats, rows: Floats) -> Floats
     for first in range(0, cell.size, _SOME):
         count = min(_SOME, cell.size - first)
         # The values of one pixel side by side: the processor takes several at once.
-        for b in range(size):
-            for i in range(count):
+        for i in range(count):
+            for b in range(size):
                 some[i, b] = rows[b, first + i]
         for i in range(count):
             own = sums[cell[first + i]]
