@@ -75,11 +75,6 @@ class Prior:
     noise_floor: float
 
     @cached_property
-    def members(self) -> Floats:
-        """(m, k): 1 where a coefficient belongs to a block, else 0."""
-        return np.asarray(self.block[:, None] == np.arange(self.log_amplitude.size), float)
-
-    @cached_property
     def own_block(self) -> NDArray[np.intp]:
         """Block of each coefficient as integers, (m,)."""
         return np.asarray(self.block, np.intp)
@@ -87,7 +82,8 @@ class Prior:
     @cached_property
     def sizes(self) -> Floats:
         """Number of coefficients in every block, (k,)."""
-        return np.asarray(np.add.reduce(self.members))
+        own = self.own_block[self.own_block >= 0]
+        return np.bincount(own, minlength=self.log_amplitude.size).astype(float)
 
     @cached_property
     def precision(self) -> Floats:
@@ -99,6 +95,10 @@ class Prior:
     def own_scale(self) -> Floats:
         """Standard deviations in data units, (m,), where every amplitude is one."""
         return self.height * self.scale
+
+    def std(self, log_amplitude: Floats) -> Floats:
+        """Standard deviations at some amplitudes, (m,), in data units."""
+        return _prior_std(self.own_scale, self.own_block, log_amplitude)
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,26 +227,39 @@ class Whitened:
 
 def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Whitened:
     """Posterior mean and covariance at given amplitudes and noise variance, by one Cholesky."""
-    sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
-    precision = _precision(normal.gram, sigma, noise)
+    sigma = prior.std(log_amplitude)
+    precision, pull = _whitened_equations(normal.gram, normal.projection, sigma, prior.mean, noise)
     # The transpose has Fortran's order: LAPACK copies nothing, and its upper factor is our lower.
     upper, failed = _potrf(precision.T, lower=0, clean=1, overwrite_a=1)
     _require_solution(failed)
     inverse = lower_inverse(upper.T)
     covariance = lower_square(inverse)
-    mean = covariance @ (sigma * normal.projection / noise + prior.mean / sigma)
-    return Whitened(sigma, mean, covariance, inverse.T)
+    return Whitened(sigma, covariance @ pull, covariance, inverse.T)
 
 
 @compiled
-def _precision(gram: Floats, sigma: Floats, noise: float) -> Floats:
-    """Inverse covariance of the whitened coefficients, (m, m), in units of the prior's."""
-    found, weighted = np.empty(gram.shape), sigma / noise
+def _prior_std(scale: Floats, block: NDArray[np.intp], log_amplitude: Floats) -> Floats:
+    """Prior standard deviations of the coefficients at given amplitudes, (m,)."""
+    found, amplitude = scale.copy(), np.exp(log_amplitude)
+    for i in range(block.size):
+        if block[i] >= 0:
+            found[i] *= amplitude[block[i]]
+    return found
+
+
+@compiled
+def _whitened_equations(
+    gram: Floats, projection: Floats, sigma: Floats, mean: Floats, noise: float
+) -> tuple[Floats, Floats]:
+    """Inverse covariance of the whitened coefficients, (m, m), and that times their mean, (m,)."""
+    precision, pull = np.empty(gram.shape), np.empty(sigma.size)
+    weighted = sigma / noise
     for i in range(sigma.size):
         for j in range(sigma.size):
-            found[i, j] = sigma[i] * gram[i, j] * weighted[j]
-        found[i, i] += 1.0
-    return found
+            precision[i, j] = sigma[i] * gram[i, j] * weighted[j]
+        precision[i, i] += 1.0
+        pull[i] = weighted[i] * projection[i] + mean[i] / sigma[i]
+    return precision, pull
 
 
 def _require_solution(failed: int) -> None:
@@ -303,12 +316,11 @@ def log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: flo
     Up to a constant and the level of the noise, which those have in common that are compared at
     one noise.
     """
-    sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
-    precision = sigma[:, None] * normal.gram * (sigma / noise)
-    precision[np.diag_indices_from(precision)] += 1.0
-    lower = np.linalg.cholesky(precision)
+    sigma = prior.std(log_amplitude)
     left = normal.projection - normal.gram @ prior.mean
-    seen = solve_triangular(lower, sigma * left / noise, lower=True)
+    precision, pull = _whitened_equations(normal.gram, left, sigma, np.zeros(sigma.size), noise)
+    lower = np.linalg.cholesky(precision)
+    seen = solve_triangular(lower, pull, lower=True)
     beyond = normal.data - float(prior.mean @ (normal.projection + left))
     away = (log_amplitude - prior.log_amplitude) / prior.log_amplitude_std
     misfit = beyond / noise - float(seen @ seen) + float(away @ away)
@@ -345,21 +357,17 @@ def _block_sums(
     ``2 N E_j m`` (m, k), ``|m_k|^2 + tr N_kk`` (k,), ``4 m_k (N E_j m)_k + 2 |N_kj|^2`` (k, k).
     """
     size = mean.size
-    shifts, explained = np.zeros((size, blocks)), np.zeros(blocks)
-    crossed = np.zeros((blocks, blocks))
+    shifts, squares = np.zeros((blocks, size)), np.zeros((blocks, size))
+    explained, crossed = np.zeros(blocks), np.zeros((blocks, blocks))
     for i in range(size):
-        own, j = block[i], 0
-        while j < size:
-            other, shift, square = block[j], 0.0, 0.0
-            # Neighbours are mostly of one block: their sums stay in registers.
-            while j < size and block[j] == other:
-                shift += covariance[i, j] * mean[j]
-                square += covariance[i, j] ** 2
-                j += 1
-            if other >= 0:
-                shifts[i, other] += 2 * shift
-                if own >= 0:
-                    crossed[own, other] += 4 * mean[i] * shift + 2 * square
+        own, twice = block[i], 2 * mean[i]
         if own >= 0:
             explained[own] += mean[i] ** 2 + covariance[i, i]
-    return shifts, explained, crossed
+            for j in range(size):
+                shifts[own, j] += twice * covariance[i, j]
+                squares[own, j] += covariance[i, j] ** 2
+    for k in range(blocks):
+        for i in range(size):
+            if block[i] >= 0:
+                crossed[k, block[i]] += 2 * (mean[i] * shifts[k, i] + squares[k, i])
+    return shifts.T, explained, crossed

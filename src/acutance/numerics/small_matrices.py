@@ -67,7 +67,7 @@ def add_four_rows(
 
 @compiled
 def products_of_rows(rows: Floats) -> Floats:
-    """``rows @ rows.T`` of few long rows, (n, m), n a multiple of four: BLAS takes thrice as long."""
+    """``rows @ rows.T`` of long rows, (n, m), n a multiple of four: BLAS takes thrice as long."""
     n, m = rows.shape
     found = np.zeros((n, n))
     for start in range(0, m, _SOME):

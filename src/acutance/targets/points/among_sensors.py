@@ -182,7 +182,7 @@ class SensorModel:
         columns = np.zeros((prior.block.size, basis.shape[1]))
         columns[directions.learned] = basis
         gram, projection = normal.gram / noise, normal.projection / noise
-        std = (prior.own_scale * np.exp(prior.members @ prior.log_amplitude))[other]
+        std = prior.std(prior.log_amplitude)[other]
         factor = cho_factor(gram[np.ix_(other, other)] + np.diag(std**-2.0), lower=True)
         between = gram[other] @ columns
         follow, own_start = cho_solve(factor, between), cho_solve(factor, projection[other])

@@ -124,7 +124,7 @@ def determined_directions(
     (m, r) array
         Orthonormal in units of the prior; r is what is worth keeping.
     """
-    sigma = prior.own_scale * np.exp(prior.members @ log_amplitude)
+    sigma = prior.std(log_amplitude)
     power, axes = np.linalg.eigh(sigma[:, None] * normal.gram * (sigma / noise))
     return np.asarray(sigma[:, None] * axes[:, power > tuned.DETERMINED_POWER])
 
