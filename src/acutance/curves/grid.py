@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from acutance.errors import OptionError
 __all__ = [
     "DISTANCE_PX",
     "FREQ_CPP",
+    "Cubic",
     "Floats",
     "Places",
     "Rows",
@@ -21,7 +22,6 @@ __all__ = [
     "crossing",
     "listed",
     "sample",
-    "slope",
 ]
 
 Floats = NDArray[np.float64]
@@ -100,19 +100,62 @@ def _outside(grid: Floats, at: float) -> OptionError:
     )
 
 
-def _cell(grid: Floats, at: float) -> tuple[slice, float, float]:
-    """The four grid points around `at`, its place among them (0 to 3) and the grid's step."""
-    start, size = grid.item(0), grid.size
-    step = grid.item(1) - start
-    position = (at - start) / step
-    if not -1e-9 <= position <= size - 1 + 1e-9:
-        raise _outside(grid, at)
-    first = min(max(math.floor(position) - 1, 0), size - 4)
-    return slice(first, first + 4), position - first, step
+class Cubic(NamedTuple):
+    """Lagrange's cubic through the four points of a regular grid around a place.
+
+    Attributes
+    ----------
+    first : int
+        The first of the four points.
+    t : float
+        The place among them, 0 to 3.
+    step : float
+        Of the grid.
+    """
+
+    first: int
+    t: float
+    step: float
+
+    @classmethod
+    def at(cls, grid: Floats, place: float) -> Cubic:
+        """The cubic at one place of a regular grid (n,).
+
+        Raises
+        ------
+        OptionError
+            If the place lies outside the grid.
+        """
+        start, size = grid.item(0), grid.size
+        step = grid.item(1) - start
+        position = (place - start) / step
+        if not -1e-9 <= position <= size - 1 + 1e-9:
+            raise _outside(grid, place)
+        first = min(max(math.floor(position) - 1, 0), size - 4)
+        return cls(first, position - first, step)
+
+    def sample(self, values: NDArray[Any] | Rows) -> Any:
+        """Value there of a curve (n,), or of every column of (n, k)."""
+        weights = _cubic_weights(self.t)
+        if not isinstance(values, np.ndarray):
+            return values.blend(self.first, weights)
+        near = values[self.first : self.first + 4]
+        return np.array(weights) @ near if near.ndim == 2 else _sum(weights, near)
+
+    def slope(self, values: Floats) -> float:
+        """Derivative there of a curve (n,)."""
+        a, b, c, d = self.t, self.t - 1.0, self.t - 2.0, self.t - 3.0
+        weights = (
+            -(c * d + b * d + b * c) / 6.0,
+            (c * d + a * d + a * c) / 2.0,
+            -(b * d + a * d + a * b) / 2.0,
+            (b * c + a * c + a * b) / 6.0,
+        )
+        return float(_sum(weights, values[self.first : self.first + 4])) / self.step
 
 
 def _cells(grid: Floats, at: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """As `_cell`, at every place of an array: indices (..., 4) and places among them (...)."""
+    """As `Cubic.at`, at every place of an array: indices (..., 4) and places among them (...)."""
     size = grid.size
     position = (at - grid[0]) / (grid[1] - grid[0])
     inside = (position >= -1e-9) & (position <= size - 1 + 1e-9)
@@ -155,25 +198,7 @@ def sample(grid: Floats, values: NDArray[Any] | Rows, at: float | Floats) -> Any
         columns = columns if columns.ndim == 2 else columns[:, None]
         found = np.einsum("i...,...ij->...j", np.array(_cubic_weights(places)), columns[cells])
         return found if len(values.shape) == 2 else found[..., 0]
-    window, t, _ = _cell(grid, at)
-    weights = _cubic_weights(t)
-    if not isinstance(values, np.ndarray):
-        return values.blend(window.start, weights)
-    near = values[window]
-    return np.array(weights) @ near if near.ndim == 2 else _sum(weights, near)
-
-
-def slope(grid: Floats, values: Floats, at: float) -> float:
-    """Derivative of the interpolated curve at one place."""
-    window, t, step = _cell(grid, at)
-    a, b, c, d = t, t - 1.0, t - 2.0, t - 3.0
-    weights = (
-        -(c * d + b * d + b * c) / 6.0,
-        (c * d + a * d + a * c) / 2.0,
-        -(b * d + a * d + a * b) / 2.0,
-        (b * c + a * c + a * b) / 6.0,
-    )
-    return float(_sum(weights, values[window])) / step
+    return Cubic.at(grid, at).sample(values)
 
 
 def _sum(weights: tuple[float, float, float, float], values: Any) -> Any:
@@ -202,7 +227,7 @@ def crossing(grid: Floats, values: Floats, level: float, start: float, direction
     guess = x0 + (x1 - x0) * y0 / (y0 - y1)
     steepness = (y1 - y0) / (x1 - x0)
     # One step on the cubic removes what the chord leaves.
-    residual = float(sample(grid, values, guess)) - level
+    residual = float(Cubic.at(grid, guess).sample(values)) - level
     refined = guess - residual / steepness
     return refined if min(x0, x1) <= refined <= max(x0, x1) else guess
 

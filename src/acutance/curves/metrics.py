@@ -13,11 +13,12 @@ cause, gives its part of the variance by the same row.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 
-from acutance.curves.grid import crossing, sample, slope
+from acutance.curves.grid import Cubic, crossing
 from acutance.curves.reading import UNDEFINED, Reading
 from acutance.curves.spread import Esf, Lsf
 from acutance.curves.transfer import Mtf
@@ -65,9 +66,11 @@ def rer(esf: Esf, lsf: Lsf, centre: RerCentre = "half") -> Reading:
     before, behind = middle.value - 0.5, middle.value + 0.5
     if not (grid[0] <= before and behind <= grid[-1]):
         return UNDEFINED
-    value = sample(grid, esf.value, behind) - sample(grid, esf.value, before)
-    tilt = slope(grid, esf.value, behind) - slope(grid, esf.value, before)
-    return Reading(value, esf.row(behind) - esf.row(before) + tilt * middle.row)
+    low, high = esf.at(before), esf.at(behind)
+    value = high.sample(esf.value) - low.sample(esf.value)
+    tilt = high.slope(esf.value) - low.slope(esf.value)
+    row = high.sample(esf.factor) - low.sample(esf.factor)
+    return Reading(value, row + tilt * middle.row)
 
 
 def _peak(lsf: Lsf) -> float:
@@ -83,14 +86,14 @@ def full_width(lsf: Lsf, level: float = 0.5) -> Reading:
     """Full width of the LSF at `level` of its maximum, in pixels (level 0.5: the FWHM)."""
     grid = lsf.distance_px
     top = _peak(lsf)
-    height = level * sample(grid, lsf.value, top)
+    height = level * lsf.at(top).sample(lsf.value)
     left = crossing(grid, lsf.value, height, top, -1)
     right = crossing(grid, lsf.value, height, top, +1)
     if math.isnan(left) or math.isnan(right):
         return UNDEFINED
-    rise = level * lsf.row(top)
-    row = (rise - lsf.row(right)) / slope(grid, lsf.value, right)
-    row -= (rise - lsf.row(left)) / slope(grid, lsf.value, left)
+    rise, low, high = level * lsf.row(top), lsf.at(left), lsf.at(right)
+    row = (rise - high.sample(lsf.factor)) / high.slope(lsf.value)
+    row -= (rise - low.sample(lsf.factor)) / low.slope(lsf.value)
     return Reading(right - left, row, lowest=0.0)
 
 
@@ -104,7 +107,7 @@ def mtf_crossing(mtf: Mtf, level: float) -> Reading:
     place = crossing(mtf.freq_cpp, mtf.value, level, 0.0)
     if math.isnan(place):
         return UNDEFINED
-    row = mtf.row(place) / -slope(mtf.freq_cpp, mtf.value, place)
+    row = mtf.row(place) / -Cubic.at(mtf.freq_cpp, place).slope(mtf.value)
     return Reading(place, row, lowest=0.0)
 
 
@@ -154,25 +157,26 @@ def giqe_h(esf: Esf) -> Reading:
     1997, doi:10.1364/AO.36.008322).
     """
     middle = esf.half_point
-    places = [middle.value + 1.0 + 0.25 * i for i in range(9)]
-    if not places[-1] <= esf.distance_px[-1]:
+    if not middle.value + 3.0 <= esf.distance_px[-1]:
         return UNDEFINED
-    values = [sample(esf.distance_px, esf.value, place) for place in places]
+    places = [esf.at(middle.value + 1.0 + 0.25 * i) for i in range(9)]
+    values = [place.sample(esf.value) for place in places]
     highest = values.index(max(values)) if _falls(esf, places, values) else 1
-    tilt = slope(esf.distance_px, esf.value, places[highest])
-    return Reading(values[highest], esf.row(places[highest]) + tilt * middle.row)
+    there = places[highest]
+    row = there.sample(esf.factor) + there.slope(esf.value) * middle.row
+    return Reading(values[highest], row)
 
 
-def _falls(esf: Esf, places: list[float], values: list[float]) -> bool:
+def _falls(esf: Esf, places: list[Cubic], values: list[float]) -> bool:
     """Whether the ESF falls from one place to the next anywhere.
 
     Noise alone makes it fall here and there: a fall has to be more than two deviations deep.
     """
-    depth = -np.diff(values)
-    falls = [i for i, one in enumerate(depth.tolist()) if one > _ROUNDING]
+    depth = [before - behind for before, behind in pairwise(values)]
+    falls = [i for i, one in enumerate(depth) if one > _ROUNDING]
     if not falls:
         return False
-    row = {i: esf.row(places[i]) for i in {*falls, *(fall + 1 for fall in falls)}}
+    row = {i: places[i].sample(esf.factor) for i in {*falls, *(fall + 1 for fall in falls)}}
     rows = np.array([row[i + 1] - row[i] for i in falls])
     std = np.linalg.norm(rows if esf.latent is None else rows @ esf.latent, axis=1)
-    return bool((depth[falls] > 2 * std + _ROUNDING).any())
+    return any(depth[i] > 2 * one + _ROUNDING for i, one in zip(falls, std.tolist(), strict=True))

@@ -11,7 +11,7 @@ import numpy as np
 
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
-from acutance.curves.grid import Floats, Places, Rows, as_places, crossing, listed, sample, slope
+from acutance.curves.grid import Cubic, Floats, Places, Rows, as_places, crossing, listed, sample
 from acutance.curves.reading import UNDEFINED, Reading
 from acutance.curves.short_repr import ShortRepr
 
@@ -60,9 +60,13 @@ class _SpreadCurve(ShortRepr):
         """All of the covariance's factor, (n, m): its square is the curve's covariance."""
         return np.asarray(self.factor) if self.latent is None else self.factor @ self.latent
 
+    def at(self, distance_px: float) -> Cubic:
+        """Interpolation of the curve, and of the rows of its factor, at one distance."""
+        return Cubic.at(self.distance_px, distance_px)
+
     def row(self, distance_px: float) -> Floats:
         """The row of `factor` at any distance, (k,)."""
-        found: Floats = sample(self.distance_px, self.factor, distance_px)
+        found: Floats = self.at(distance_px).sample(self.factor)
         return found
 
     def passing(self, level: float, start_px: float, direction: int = 1) -> Reading:
@@ -70,7 +74,8 @@ class _SpreadCurve(ShortRepr):
         place = crossing(self.distance_px, self.value, level, start_px, direction)
         if math.isnan(place):
             return UNDEFINED
-        return Reading(place, self.row(place) / -slope(self.distance_px, self.value, place))
+        there = self.at(place)
+        return Reading(place, there.sample(self.factor) / -there.slope(self.value))
 
     def gradient(self, distance_px: float | Floats) -> Floats:
         """The row of `covariance_factor` at any distance, (m,); at an array of them (..., m)."""

@@ -26,7 +26,7 @@ _MIN_LINES: Final = 8
 
 def odd_even(data: CheckData, limits: Limits) -> Check:
     """How much odd and even columns or rows of the plateaus differ, beyond what noise explains."""
-    rows, cols = data.rows.astype(np.intp), data.cols.astype(np.intp)
+    rows, cols = data.trimmed.pixels.at
     worst, which = 0.0, "columns"
     for side in data.plateaus:
         for name, line, place in (("columns", rows, cols), ("rows", cols, rows)):
