@@ -31,6 +31,8 @@ _AT_ONCE = 32
 """Kernels that an unrolled loop takes at once; `_SOME` is a multiple of it."""
 _TOLD_BEST = 8
 """Combinations after which most kernels are known to be negligible; a multiple of `LANES`."""
+_REACH = 3.0
+"""Centres whose blur differs by more, in units of `KERNEL_LOG_WIDTH`, have no part."""
 _NEGLIGIBLE = 9.0
 """Kernels whose log weight is less than the largest by this are left out."""
 
@@ -105,7 +107,7 @@ def kernel_weights(
     log_share: Floats,
     log_width: Floats,
     log_middle: float,
-    members: NDArray[np.intp],
+    ends: NDArray[np.intp],
     lower: Floats,
     axes: Floats,
     told: Floats,
@@ -123,11 +125,12 @@ def kernel_weights(
     coordinates : (p, n) array
         The q coordinates of every centre, filled up with zeros.
     log_share, log_width : (n,) arrays
-        Logarithms of the weight of a centre among all, and of the width of its blur.
+        Logarithms of the weight of a centre among all, and of the width of its blur; of every
+        family ascending.
     log_middle : float
         Logarithm of the width of the pixels' blur: a centre of another has less weight.
-    members : (f, 2) int array
-        First centre of every family, and the one after its last.
+    ends : (f + 1,) int array
+        First centre of every family, and the one after the last.
     lower, axes, told, log_density
         Of all groups, family by family, as `seen_kernels` gives them.
     largest : float
@@ -141,9 +144,9 @@ def kernel_weights(
         Which ones they are, and the logarithms of their weights; what follows the count is empty.
     largest : float
     """
-    families, (groups, r, q), p = len(members), axes.shape, len(coordinates)
+    families, (groups, r, q), p = len(ends) - 1, axes.shape, len(coordinates)
     sizes, soon = groups // families, min(r, _TOLD_BEST)
-    most = np.max(members[:, 1] - members[:, 0])
+    most = np.max(ends[1:] - ends[:-1])
     counts, kept = np.zeros(groups, np.intp), np.empty((groups, most), np.intp)
     log_weight = np.empty((groups, most))
     # The last rows and columns are zeros: four sums of four products are worked out at a time.
@@ -152,7 +155,9 @@ def kernel_weights(
     left, place = np.zeros((p, _SOME), np.float32), np.empty(_SOME, np.intp)
     before, best, minus = np.empty(_SOME), np.empty(_SOME), np.zeros(r, np.float32)
     for f in range(families):
-        g, (first, last) = f * sizes, members[f]
+        g, own_width = f * sizes, log_width[ends[f] : ends[f + 1]]
+        first = ends[f] + np.searchsorted(own_width, log_middle - _REACH * KERNEL_LOG_WIDTH)
+        last = ends[f] + np.searchsorted(own_width, log_middle + _REACH * KERNEL_LOG_WIDTH)
         for size in range(1, sizes):
             turn = lower[g].copy()
             forward_substitution(lower[g + size], turn)

@@ -41,15 +41,12 @@ from acutance.targets.straight.kernel_sums import (
 from acutance.targets.straight.tuned import (
     FAMILY_WEIGHTS,
     KERNEL_FLOOR,
-    KERNEL_LOG_WIDTH,
     KERNEL_SCALES,
     OTHER_WEIGHT,
 )
 
 __all__ = ["SensorFamily", "Sensors", "SensorsSeen", "drawn_sensors"]
 
-_REACH = 3.0
-"""Sensors whose blur differs by more, in units of `KERNEL_LOG_WIDTH`, have no part."""
 _SIZES = len(KERNEL_SCALES)
 _UNTOLD = 1e-2
 """Information of combinations that pixels do not tell, whose prior variance is one."""
@@ -144,8 +141,8 @@ class Sensors:
         log_middle = math.log(width_px)
         none = math.log(OTHER_WEIGHT) + float(log_density[-1] - 0.5 * (told[-1] @ told[-1]))
         counts, kept, log_weight, largest = kernel_weights(
-            self._columns, self._log_share, self._log_width, log_middle,
-            self._about(log_middle), lower[:-1], axes[:-1], told[:-1], log_density[:-1], none,
+            self._columns, self._log_share, self._log_width, log_middle, self._ends,
+            lower[:-1], axes[:-1], told[:-1], log_density[:-1], none,
         )  # fmt: skip
         # The last group is about none: its centre, and their spread, are zero.
         weight, centre, spread = kernel_moments(
@@ -204,14 +201,10 @@ class Sensors:
             np.log(FAMILY_WEIGHTS.get(family.name, 1.0) * family.weight) for family in self.families
         ])  # fmt: skip
 
-    def _about(self, log_middle: float) -> NDArray[np.intp]:
-        """Sensors of about that width of the blur: first of every family, and the one after."""
-        ends = log_middle + np.array([-_REACH, _REACH]) * KERNEL_LOG_WIDTH
-        start, members = 0, []
-        for family in self.families:
-            members.append(start + family.log_width.searchsorted(ends))
-            start += family.log_width.size
-        return np.array(members, np.intp)
+    @cached_property
+    def _ends(self) -> NDArray[np.intp]:
+        """First sensor of every family among all, and the one after the last, (f + 1,)."""
+        return np.cumsum([0, *(family.log_width.size for family in self.families)])
 
 
 def _told(information: Floats, projection: Floats, spread: Floats) -> tuple[Floats, Floats]:
