@@ -156,24 +156,23 @@ def forward_substitution(lower: Floats, right: Floats) -> None:
 def lower_inverse(lower: Floats) -> Floats:
     """The inverse X of a lower triangular matrix L, (n, n): both are zero above the diagonal.
 
-    Row by row ``X_i = (e_i - sum_{k<i} L_ik X_k) / L_ii``, four of the rows X_k at a time.
+    Row by row ``X_i = (e_i - sum_{k<i} L_ik X_k) / L_ii``: the sums over those before four rows are
+    worked out at a time, then those over one another.
     """
-    n = lower.shape[0]
-    inverse = np.zeros((n, n))
+    n = len(lower)
+    inverse, fours = np.zeros((n, n)), n - n % 4
     for i in range(n):
-        row = inverse[i]
-        fours = i - i % 4
-        for k in range(0, fours, 4):
-            a, b, c, d = lower[i, k], lower[i, k + 1], lower[i, k + 2], lower[i, k + 3]
-            p, q, r, s = inverse[k], inverse[k + 1], inverse[k + 2], inverse[k + 3]
-            for j in range(k + 4):
-                row[j] -= a * p[j] + b * q[j] + c * r[j] + d * s[j]
-        for k in range(fours, i):
+        row, first = inverse[i], i - i % 4
+        if i < fours and i == first:
+            for k in range(0, i, 4):
+                add_four_rows(inverse[i : i + 4], lower[i : i + 4, k : k + 4], inverse[k:], 0, k + 4)
+        for k in range(first if i < fours else 0, i):
             for j in range(k + 1):
-                row[j] -= lower[i, k] * inverse[k, j]
+                row[j] += lower[i, k] * inverse[k, j]
+        scale = 1 / lower[i, i]
         for j in range(i):
-            row[j] /= lower[i, i]
-        row[i] = 1 / lower[i, i]
+            row[j] *= -scale
+        row[i] = scale
     return inverse
 
 
