@@ -165,7 +165,8 @@ def lower_inverse(lower: Floats) -> Floats:
         row, first = inverse[i], i - i % 4
         if i < fours and i == first:
             for k in range(0, i, 4):
-                add_four_rows(inverse[i : i + 4], lower[i : i + 4, k : k + 4], inverse[k:], 0, k + 4)
+                factors = lower[i : i + 4, k : k + 4]
+                add_four_rows(inverse[i : i + 4], factors, inverse[k:], 0, k + 4)
         for k in range(first if i < fours else 0, i):
             for j in range(k + 1):
                 row[j] += lower[i, k] * inverse[k, j]
