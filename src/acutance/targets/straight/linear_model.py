@@ -180,8 +180,7 @@ class Linear:
         sides = np.maximum(sides, self.rounding.floor**2)
         floor = (NOISE_FLOOR * self.first_fit.height) ** 2
         scale = float(0.5 * (sides[0] + sides[1])) + floor
-        share = np.minimum(np.maximum(self.mean, 0.0), 1.0)
-        relative = (sides[0] + floor + (sides[1] - sides[0]) * share) / scale
+        relative = _between_levels(self.mean, *((sides + floor) / scale).tolist())
         if roughness > 0:
             relative *= 1 + roughness * self.steepness
         return NoiseModel(sides / scale, scale, relative)
@@ -213,12 +212,13 @@ class Linear:
         r = self.design.shape[1]
         coefficients = self.design @ beta[:r]
         further = np.concatenate([coefficients[CELLS + 3 :], beta[r:]])
-        image, first = np.zeros(self.s.size), 0
+        image, *others = (combine(*own, coefficients[: CELLS + 3]) for own in self.stencils)
+        for other in others:
+            image += other
+        first = 0
         for some in columns:
             image += further[first : first + len(some)] @ some
             first += len(some)
-        for cell, basis in self.stencils:
-            image = image + combine(cell, basis, coefficients[: CELLS + 3])
         return image
 
     def model(self, posterior: Posterior) -> LsfModel:
@@ -275,6 +275,15 @@ class Linear:
             for own in (self.prior.block == GROUND_BLOCK + number for number in (0, 1))
         ]
         return sides[0], sides[1]
+
+
+@compiled
+def _between_levels(response: Floats, dark: float, bright: float) -> Floats:
+    """What rises from the dark plateau to the bright one with the response (0 dark, 1 bright)."""
+    found = np.empty(response.size)
+    for k in range(response.size):
+        found[k] = dark + (bright - dark) * min(max(response[k], 0.0), 1.0)
+    return found
 
 
 @compiled

@@ -12,11 +12,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
+from acutance.numerics.compiled import compiled
 from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
@@ -40,9 +42,10 @@ _SETTLED_RATIO = 0.003
 """Updates below these: the error of linearity is less than 1e-4 of the edge's height."""
 _NEGLIGIBLE_SIGMAS = 3.0
 _MAX_PASSES = 10
-_MIN_STEEP = 20
-_SIGNIFICANT = 4.0
-_OUTLYING = 4.0
+_STEEP: Final = 0.25
+_MIN_STEEP: Final = 20
+_SIGNIFICANT: Final = 4.0
+_OUTLYING: Final = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,8 +122,10 @@ class Solution:
         The same in the unknowns.
     posterior : Posterior
         Of the unknowns.
-    residual, noise : (n,) arrays
-        Residual of every pixel, and the standard deviation of its noise, in image units.
+    residual : (n,) array
+        Of every pixel, in image units.
+    standard : (n,) array
+        The same in standard deviations of the pixel's noise.
     side_noise : (float, float)
         Standard deviation of the noise on the dark and on the bright plateau.
     roughness : float
@@ -135,7 +140,7 @@ class Solution:
     equations: Normal
     posterior: Posterior
     residual: Floats
-    noise: Floats
+    standard: Floats
     side_noise: tuple[float, float]
     roughness: float
 
@@ -206,7 +211,7 @@ def solve(
     roughness = 0.0
     for _ in range(_MAX_PASSES):
         solved = _pass(linear, outlier, whiteness.inflation, roughness, earlier)
-        standard = solved.residual / solved.noise
+        standard = solved.standard
         heavy = robust and float(np.abs(standard).max()) > _OUTLYING
         again = _reweighted(standard, linear) if heavy else outlier
         found = correlation(_bounded(standard), *pixels.at, [linear.first_fit.line.normal])
@@ -310,12 +315,11 @@ def _pass(
         None if earlier is None else earlier.posterior,
     )  # fmt: skip
     residual = linear.first_residual - linear.image(columns, posterior.beta)
-    std = np.sqrt(posterior.variance * noise.relative)
-    standard, steep = _bounded(residual / std), linear.steepness
+    standard = residual / np.sqrt(posterior.variance * noise.relative)
     dark, bright = np.sqrt(posterior.variance * noise.sides).tolist()
     return Solution(
-        linear, weight, columns, normal, equations, posterior, residual, std, (dark, bright),
-        _edge_roughness(standard, np.where(np.abs(standard) < _OUTLYING, steep, 0.0), roughness),
+        linear, weight, columns, normal, equations, posterior, residual, standard, (dark, bright),
+        _edge_roughness(standard, linear.steepness, roughness),
     )  # fmt: skip
 
 
@@ -333,17 +337,25 @@ def _equations(
     return renewed(earlier.normal, stencils, residual, weight, columns)
 
 
+@compiled
 def _edge_roughness(standard: Floats, steep: Floats, assumed: float) -> float:
-    """Excess noise variance of the steep pixels, beyond chance, relative to the rest."""
-    there = steep > 0.25
-    count = int(np.count_nonzero(there))
+    """Excess noise variance of the steep pixels, beyond chance, relative to the rest.
+
+    Of those that are no outliers.
+    """
+    count, square, steepness = 0, 0.0, 0.0
+    for k in range(standard.size):
+        if steep[k] > _STEEP and abs(standard[k]) < _OUTLYING:
+            count += 1
+            # In units of the noise without edge roughness.
+            square += standard[k] ** 2 * (1 + assumed * steep[k])
+            steepness += steep[k]
     if count < _MIN_STEEP:
         return assumed
-    # Per pixel, in units of the noise without edge roughness.
-    power = float(np.mean(standard[there] ** 2 * (1 + assumed * steep[there])))
+    power = square / count
     if assumed == 0 and power < 1 + _SIGNIFICANT * math.sqrt(2 / count):
         return 0.0
-    return max((power - 1) / float(np.mean(steep[there])), 0.0)
+    return max((power - 1) * count / steepness, 0.0)
 
 
 def _norm(row: Floats) -> float:
