@@ -137,19 +137,17 @@ class Linear:
             further = np.vstack([further, np.ones(s.size)])
         derivatives = 2 if is_edge else 3 + fit_width
         directions = lsf_prior.directions(first_fit.blur)
-        residual = pixels.value - first_fit.dark - first_fit.height * mean
+        height, image = first_fit.height, first_fit.dark + first_fit.height * mean
         # A bad pixel counts with no more than a whole height.
-        np.clip(residual, -first_fit.height, first_fit.height, out=residual)
-        if fitted is None:
-            fitted = first_fit.dark + first_fit.height * mean
-        rounding = _rounding(first_fit, pixels, s, fitted)
+        residual = np.minimum(np.maximum(pixels.value - image, -height), height)
+        rounding = _rounding(first_fit, pixels, s, image if fitted is None else fitted)
         fixed = [further, trends, ground.columns]
         if rounding.std.size:
             fixed.append(rounding.modes)
         # Rotation (radians), width (pixels) and height ratio are known to about one.
         by_parameter = [1.0, CURVATURE_STD_PER_PX, *[1.0] * (derivatives - 2)]
         prior = model_prior(
-            first_fit.blur, first_fit.height, directions, ground, len(trends),
+            first_fit.blur, height, directions, ground, len(trends),
             np.concatenate([rounding.std, by_parameter]), rounding.floor,
         )  # fmt: skip
         return cls(
