@@ -5,10 +5,12 @@ import pytest
 
 from acutance.numerics.small_matrices import (
     add_product,
+    add_products_of_rows,
     factorize,
     forward_substitution,
     lower_inverse,
     lower_square,
+    products_of_rows,
 )
 
 
@@ -41,3 +43,19 @@ def test_a_product_is_added(rows, inner):
     found = np.ones((rows, 5))
     add_product(found, left, right)
     assert np.allclose(found, 1 + left @ right, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("size", [4, 8, 28])
+@pytest.mark.parametrize("columns", [1, 511, 512, 1300])
+def test_products_of_long_rows(size, columns):
+    rows = np.random.default_rng(columns).standard_normal((size, columns))
+    assert np.allclose(products_of_rows(rows), rows @ rows.T, rtol=0, atol=1e-11)
+
+
+def test_products_of_rows_are_added_below_the_diagonal_from_one_column_on():
+    left, right = np.random.default_rng(1).standard_normal((2, 8, 60))
+    found = np.ones((8, 8))
+    add_products_of_rows(found, left, right, 5, 20)
+    expected = 1 + left[:, 5:25] @ right[:, 5:25].T
+    below = np.tril(np.ones((8, 8), bool))
+    assert np.allclose(found[below], expected[below], rtol=0, atol=1e-12)
