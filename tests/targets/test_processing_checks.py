@@ -125,6 +125,22 @@ def test_the_pixels_of_a_region_are_looked_at_once_for_all_its_edges(monkeypatch
     assert (len(edges), len(looked)) == (4, 1)
 
 
+def test_compression_shows_around_a_region_too_small_to_show_it():
+    named, alone = [], []
+    for seed in range(8):
+        image, _ = simulate.edge(
+            SENSOR, angle_deg=8, shape=(64, 64), snr=80, rng=np.random.default_rng(seed)
+        )
+        written, roi = as_jpeg(image, 90), (20, 19, 24, 27)
+        named.append(bool(failed(ac.measure_edge(written, roi))))
+        cut = written[20:44, 19:46]
+        alone.append(bool(failed(ac.measure_edge(cut))))
+        assert not failed(ac.measure_edge(np.rint(image), roi))
+    assert all(named)
+    # Without what surrounds it none of them is.
+    assert not any(alone)
+
+
 def test_large_images_are_sampled_all_over():
     boxes = list(sample_boxes(ac.Box(100, 50, 5000, 300)))
     assert [box.row for box in boxes[::2]] == [891, 2472, 4053]

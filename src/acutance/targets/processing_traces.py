@@ -14,12 +14,21 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.numerics.jpeg_blocks import jpeg_blocks
 from acutance.numerics.repeated_pixels import repeated_share
-from acutance.raster import Box
+from acutance.raster import Box, Image
 
-__all__ = ["ProcessingTraces", "sample_boxes", "traces_of_parts", "traces_of_pixels"]
+__all__ = [
+    "ProcessingTraces",
+    "sample_boxes",
+    "traces_of_parts",
+    "traces_of_pixels",
+    "with_surroundings",
+]
 
 _SAMPLE_PX: Final = 256
 _SAMPLES_A_SIDE: Final = 3
+_AROUND_PX: Final = 16
+"""How far around a region blocks are looked for. Of 194 edges in JPEG of quality 85 to 96, regions
+of 19 to 74 px a side, 155 are named by their own pixels, 186 with those around them."""
 _QUANTILE: Final = 0.75
 """Of several parts: some are water or cloud, where nothing can be seen."""
 
@@ -48,6 +57,27 @@ def traces_of_pixels(pixels: Floats) -> ProcessingTraces:
         NaN where a pixel is not to be used.
     """
     return traces_of_parts(pixels[box.slices] for box in sample_boxes(Box.whole(pixels.shape)))
+
+
+def with_surroundings(found: ProcessingTraces, image: Image, box: Box) -> ProcessingTraces:
+    """The traces in a region, with the blocks of JPEG in what surrounds it.
+
+    An image is compressed as a whole, and a small region holds few whole blocks: a large one does
+    without. Copies of pixels are looked for in the region alone, as constant fill around it is no
+    resampling.
+
+    Parameters
+    ----------
+    found : ProcessingTraces
+        In the pixels of the region.
+    image : Image
+    box : Box
+        Where the region lies in it.
+    """
+    frame = box.grown(_AROUND_PX).intersection(Box.whole(image.shape))
+    if frame is None or frame == box or max(box.shape) > _SAMPLE_PX:
+        return found
+    return found._replace(blocks=max(found.blocks, jpeg_blocks(image.read(frame))))
 
 
 def traces_of_parts(parts: Iterable[Floats]) -> ProcessingTraces:

@@ -16,7 +16,11 @@ from acutance.errors import NoDataError, RegionError
 from acutance.raster import Box, Fill, Gsd, Image, Region, find_fill
 from acutance.raster.gsd import gsd_in_words
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
-from acutance.targets.processing_traces import ProcessingTraces, traces_of_pixels
+from acutance.targets.processing_traces import (
+    ProcessingTraces,
+    traces_of_pixels,
+    with_surroundings,
+)
 from acutance.targets.record import ImageInfo
 
 __all__ = [
@@ -69,8 +73,8 @@ class RegionPixels:
 
     @cached_property
     def traces(self) -> ProcessingTraces:
-        """What processing left in the pixels: the same for all edges of a region."""
-        return traces_of_pixels(self.pixels)
+        """What processing left in the pixels and around: the same for all edges of a region."""
+        return with_surroundings(traces_of_pixels(self.pixels), self.image, self.box)
 
 
 def image_info(image: Image, box: Box, gsd: Gsd | None) -> ImageInfo:

@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter
 
 import acutance as ac
 from acutance.optics import draw_sensor
-from acutance.simulate import Noise, edge, reference_systems
+from acutance.simulate import Noise, Regrid, edge, reference_systems
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.fit_edge import fit_edge
@@ -138,6 +138,52 @@ def test_an_asymmetry_like_that_of_no_sensor_is_a_caution():
         assert check.passed or "the LSF is like that of no sensor known" in check.message
     assert wrong >= 6
     assert warned >= 0.8 * wrong
+
+
+def like_interpolation(measured):
+    """Whether the asymmetry is a caution because only an interpolated product has such an LSF."""
+    check = next(one for one in measured.checks if one.name == "asymmetric_lsf")
+    named = "interpolated at one phase, and its noise is not" in check.message
+    return named and check.severity == "caution" and not check.passed
+
+
+def test_white_noise_tells_a_strip_from_interpolation_at_one_phase():
+    """Both make the LSF uneven, and only one of them mixes the noise of neighbours."""
+    wrong, warned, named = 0, 0, 0
+    for seed in range(16):
+        rng = np.random.default_rng((9, seed))
+        sensor = draw_sensor("telescope", rng)
+        image, truth = an_edge(sensor, seed, float(rng.uniform(0.7, 1.6)), -0.25, "bright", 100.0)
+        measured = ac.measure_edge(image)
+        if sigmas(measured, truth) > 3:
+            wrong += 1
+            warned += measured.verdict.word in ("doubtful", "invalid")
+        named += like_interpolation(measured)
+    assert wrong >= 12
+    assert warned >= 0.8 * wrong
+    assert named >= 8
+
+
+def test_products_interpolated_with_their_noise_are_not_taken_for_strips():
+    shifted, named = 0, 0
+    for seed in range(16):
+        rng = np.random.default_rng((8, seed))
+        image, _ = edge(
+            SYSTEMS["diffraction"], angle_deg=float(rng.uniform(4, 20)), shape=(50, 50), dark=200,
+            bright=1200, noise=Noise(read=10.0), rng=rng, regrid=Regrid(0.3, -0.25),
+        )  # fmt: skip
+        measured = ac.measure_edge(image)
+        shifted += measured.details.families.get("shifted", 0.0) > 0.3
+        named += like_interpolation(measured)
+    assert shifted >= 12
+    assert named == 0
+
+
+def test_noise_below_rounding_does_not_tell_its_colour():
+    image, _ = an_edge(SYSTEMS["gaussian"], 1, snr=2000.0)
+    for pixels, is_told in ((image, True), (np.round(image), False)):
+        trimmed, _ = trim(pixels, next(iter(find_segments(pixels, 1))))
+        assert CheckData.of(trimmed, fit_edge(trimmed)).is_noise_white is is_told
 
 
 def test_published_methods_do_not_ask():

@@ -124,7 +124,7 @@ def check_edge(
         structure(data, limits),
         one_sided_overshoot(data, limits),
         double_edge(data, limits),
-        asymmetric_lsf(data, limits),
+        asymmetric_lsf(data, limits, of_scene=of_scene),
         asymmetric_wings(data, limits),
         profile(data, limits, 0.0, own_misfit=by_rows),
         outliers(data, limits),

@@ -8,6 +8,7 @@ and its derivative, the line spread function, LSF (`structure`,
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
@@ -153,20 +154,22 @@ def tolerable_px(data: CheckData, name: str) -> float:
     return float(f"{max(limit_of(name, {}), min(blur_px, _MAX_OFFSET_PX)):.2g}")
 
 
-def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
+def asymmetric_lsf(data: CheckData, limits: Limits, *, of_scene: bool = False) -> Check:
     """How far the ESF is from symmetric about its middle, within two widths of it.
 
     The middle is where the ESF is the most symmetric. Light of a lens, a detector and a kernel is
     symmetric along most directions; a strip of the ground along the border that is narrower than
     the blur is not, and it moves the relative edge response (RER) about as much. On textured ground
     such strips are more frequent than sensors with charge trails. Where the LSF is like that of no
-    sensor drawn at random, trails among them, any asymmetry that is worth a note is the ground's.
+    sensor drawn at random, trails among them, any asymmetry that is worth a note is the ground's;
+    so it is where only an interpolated product has such an LSF and the noise was not interpolated
+    (of one edge; of the edges of a scene, `of_scene`, those that share it tell it from the ground).
     """
     value = data.asymmetry
     rer_std = min(data.fit.response.rer.std, 1.0)
     noted = max(limit_of("asymmetric_lsf", {}), _NOTED_RER_STDS * rer_std)
     found = f"the ESF is asymmetric about its middle by {100 * value:.1f} % of the contrast"
-    caution, why = _grave_asymmetry(data, noted, rer_std)
+    caution, why = _grave_asymmetry(data, noted, rer_std, of_scene)
     if value > noted:
         found += f"; from {100 * caution:.2g} % on a caution{why}"
     return answer(
@@ -174,7 +177,9 @@ def asymmetric_lsf(data: CheckData, limits: Limits) -> Check:
     )
 
 
-def _grave_asymmetry(data: CheckData, noted: float, rer_std: float) -> tuple[float, str]:
+def _grave_asymmetry(
+    data: CheckData, noted: float, rer_std: float, of_scene: bool
+) -> tuple[float, str]:
     """From which asymmetry on it is a caution, and why from there."""
     by_rer = _MAX_RER_STDS * rer_std
     caution, why = max(_MAX_ASYMMETRY, by_rer), ""
@@ -184,12 +189,27 @@ def _grave_asymmetry(data: CheckData, noted: float, rer_std: float) -> tuple[flo
         if data.fit.correlation.inflation > _TEXTURED:
             caution = max(_TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS * rer_std)
             why = ", since the noise is that of textured ground, where strips are frequent"
-        unlike = data.fit.families.get("other", 0.0)
+        unlike, of_what = _unlike_sensors(data, data.fit.families, of_scene)
         stds = [most for least, most in _UNLIKE_RER_STDS if unlike > least]
         if stds and max(noted, stds[-1] * rer_std) < caution:
             caution = max(noted, stds[-1] * rer_std)
-            why = f", since the LSF is like that of no sensor known (probability {unlike:.2f})"
+            why = f", since the LSF is like that of {of_what} (probability {unlike:.2f})"
     return (_ANY_ASYMMETRY, "") if caution > _ANY_ASYMMETRY else (caution, why)
+
+
+def _unlike_sensors(
+    data: CheckData, families: Mapping[str, float], of_scene: bool
+) -> tuple[float, str]:
+    """Probability that no sensor has this LSF, and what it is like in words.
+
+    Interpolation at one phase makes an LSF uneven by mixing neighbouring pixels, and it mixes their
+    noise as well. Where neighbours' noise is independent there was none, and the ground is uneven.
+    """
+    none, shifted = families.get("other", 0.0), families.get("shifted", 0.0)
+    is_likely = shifted > none and none + shifted > _UNLIKE_RER_STDS[0][0]
+    if of_scene or not is_likely or not data.is_noise_white:
+        return none, "no sensor known"
+    return none + shifted, "a product interpolated at one phase, and its noise is not"
 
 
 def asymmetric_wings(data: CheckData, limits: Limits) -> Check:
