@@ -31,8 +31,8 @@ _OBLIQUE = {
 _GAUSSIAN_WIDTHS = ("sigma_across_px", "sigma_along_px", "sigma_minor_px")
 _FILL_STD = 0.12
 """Of the logarithm of a detector's width over the stated one: fill factors are near one."""
-_DIFFUSION_MEAN, _DIFFUSION_STD = math.log(0.15), 0.7
-"""Of the logarithm of the depth from which charge spreads, px."""
+_DIFFUSION_MEAN, _DIFFUSION_STD = math.log(0.1), 1.0
+"""Of the logarithm of the depth from which charge spreads, px: every detector has some."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class SensorForm:
 
     @property
     def mean(self) -> Floats:
-        """Prior mean of all parameters, (p,): of the terms, then of diffusion and detector's fill."""
+        """Prior mean of all parameters, (p,): of terms, of diffusion, of the detector's fill."""
         own = [one for name in self.terms for one in TERMS[name].mean]
         return np.array([*own, _DIFFUSION_MEAN, 0.0])
 
@@ -164,13 +164,19 @@ def _diffusion(log_depth: float, plane: Plane) -> Floats:
 
     A Gaussian where it takes little, of tails that fall more slowly.
     """
-    return np.asarray(1 / np.cosh(math.exp(log_depth) * plane.waves))
+    return np.asarray(_sech(math.exp(log_depth) * plane.waves))
 
 
 def _diffusion_slopes(log_depth: float, plane: Plane) -> Floats:
     """Its derivative, (n, 1)."""
     travelled = math.exp(log_depth) * plane.waves
-    return np.asarray((-travelled * np.tanh(travelled) / np.cosh(travelled))[:, None])
+    return np.asarray((-travelled * np.tanh(travelled) * _sech(travelled))[:, None])
+
+
+def _sech(x: Floats) -> Floats:
+    """One over the hyperbolic cosine, where that is too large as well."""
+    falls = np.exp(-np.abs(x))
+    return np.asarray(2 * falls / (1 + falls**2))
 
 
 def _detector(p: Floats, plane: Plane, detector_px: tuple[float, float]) -> Floats:
