@@ -19,19 +19,26 @@ SHARPENED = optics.Sensor([
 """Kernels of rows and columns: .25 at Nyquist along both, and .43 along the diagonals."""
 
 
-def true_modulus(normal_deg):
-    """MTF of the sensor along directions, (n, k)."""
+RESTORED = optics.Sensor([
+    optics.Diffraction(1.37, 0.26), optics.Gaussian(0.22), optics.Smear(0.87, "across"),
+    optics.ChargeDiffusion(0.45), optics.Detector(0.85), optics.Sharpening.both_axes(0.685),
+])  # fmt: skip
+"""A kernel that lifts the MTF at .25 c/px above one."""
+
+
+def true_modulus(sensor, normal_deg):
+    """MTF of a sensor along directions, (n, k)."""
     turn = np.radians(np.asarray(normal_deg))[:, None]
     along = (np.cos(turn) * FREQ, np.sin(turn) * FREQ)
-    return np.abs(SHARPENED.otf(*(one.ravel() for one in along))).reshape(along[0].shape)
+    return np.abs(sensor.otf(*(one.ravel() for one in along))).reshape(along[0].shape)
 
 
-def half_soft(seed, count, std):
+def half_soft(sensor, seed, count, std):
     """Edges of all directions, half of them soft, their directions, and first guesses."""
     rng = np.random.default_rng(seed)
     normal_deg = rng.uniform(-90, 90, count)
     soft = np.where(rng.random(count) < 0.5, rng.uniform(0.2, 1.2, count), 0.0)
-    own = true_modulus(normal_deg) * np.exp(-2 * (np.pi * np.outer(soft, FREQ)) ** 2)
+    own = true_modulus(sensor, normal_deg) * np.exp(-2 * (np.pi * np.outer(soft, FREQ)) ** 2)
     stds = std * rng.uniform(0.5, 2.0, count)[:, None]
     seen = np.hstack([own, np.zeros_like(own)])
     seen += stds * rng.standard_normal(seen.shape)
@@ -64,20 +71,35 @@ def test_of_many_edges_some_of_every_direction_choose_the_start():
     assert chosen.tolist() == np.ceil(count / 15).tolist()
 
 
-@pytest.mark.parametrize(("seed", "has_rival"), [(2, False), (5, True), (7, True)])
+def rms_at_nyquist(sensor, normal_deg, otf):
+    """Root mean square error of OTFs (b, 2 k) at Nyquist."""
+    nyquist = np.flatnonzero(np.isclose(FREQ, 0.5)).item()
+    modulus = np.hypot(otf[:, nyquist], otf[:, FREQ.size + nyquist])
+    return np.sqrt(np.mean((modulus - true_modulus(sensor, normal_deg)[:, nyquist]) ** 2))
+
+
+@pytest.mark.parametrize(("seed", "has_rival"), [(4, False), (5, True), (7, True)])
 def test_a_sensor_that_is_sharper_along_the_diagonals_is_found(seed, has_rival):
     """A round sensor, as sharp as the diagonals, under edges that are soft along rows and columns.
 
     From the likeliest start alone turns end there, off by .1 at Nyquist.
     """
-    edges, normal_deg, guesses = half_soft(seed, 64, 0.08)
+    edges, normal_deg, guesses = half_soft(SHARPENED, seed, 64, 0.08)
     state, rivals = first_sensor(edges, normal_deg, guesses)
-    found = state.otf
-    nyquist = np.flatnonzero(np.isclose(FREQ, 0.5)).item()
-    modulus = np.hypot(found[:, nyquist], found[:, FREQ.size + nyquist])
-    off = modulus - true_modulus(normal_deg)[:, nyquist]
-    assert np.sqrt(np.mean(off**2)) < 0.03
+    assert rms_at_nyquist(SHARPENED, normal_deg, state.otf) < 0.03
     # Where that other sensor was found, too, it is not so unlikely: few edges tell little.
     others = [one for one in rivals if one.apart > 0.02]
     assert bool(others) == has_rival
     assert all(0 < one.behind < 20 for one in others)
+
+
+@pytest.mark.parametrize(("seed", "count", "std"), [(3, 40, 0.03), (2, 30, 0.015)])
+def test_turns_of_few_edges_reach_the_likeliest_sensor(seed, count, std):
+    """Two or three edges of a direction are soft or ideal together.
+
+    Turns of expectation and maximisation creep, and ended off by .47 and .19 at Nyquist.
+    """
+    edges, normal_deg, guesses = half_soft(RESTORED, seed, count, std)
+    state, _ = first_sensor(edges, normal_deg, guesses)
+    assert state.settled
+    assert rms_at_nyquist(RESTORED, normal_deg, state.otf) < std

@@ -23,6 +23,7 @@ __all__ = [
     "ALL_AROUND",
     "BLUR_MODES",
     "COMMON_MODES",
+    "LONGEST_PX2",
     "ModesFit",
     "blur_modes",
     "changed",
@@ -39,11 +40,11 @@ ALL_AROUND: Final = 0
 COMMON_MODES: Final = 3
 """The blurs: what a sensor and all of its objects have in common is none of shape."""
 _MAX_STEPS: Final = 12
-_MAX_HALVINGS: Final = 4
-_MAX_STEP: Final = 0.03
-"""Largest change of a variance in one step, px^2."""
-_LEAST: Final = 1e2
-"""Curvature below which a step is not trusted."""
+_DAMPINGS: Final = (0.0, 0.03, 0.3, 3.0, 30.0)
+"""Added to all curvatures in turn, in units of the largest, until a step leads upwards."""
+LONGEST_PX2: Final = 0.05
+"""Longest step of blurs."""
+_TINY: Final = 1e-30
 _SETTLED: Final = 0.05
 """Rise of the log likelihood, expected of a step, that is none."""
 
@@ -115,7 +116,9 @@ def fit_modes(
     modes: Floats,
     *,
     start: Floats | None = None,
+    mean: Floats | float = 0.0,
     std: Floats | float = np.inf,
+    longest: float = LONGEST_PX2,
 ) -> ModesFit:
     """How much of every mode makes the edges likeliest.
 
@@ -133,27 +136,28 @@ def fit_modes(
         Change of the logarithm of the OTF that every edge sees.
     start : (q,) array, optional
         First guess of the amounts.
-    std : (q,) array or float, optional
-        Prior standard deviations of the amounts.
+    mean, std : (q,) array or float, optional
+        Of the prior of the amounts.
+    longest : float, optional
+        Longest step of the amounts.
     """
     amount = np.zeros(modes.shape[2]) if start is None else start
     precision = np.broadcast_to(np.asarray(std) ** -2.0, amount.shape)
     seen = edges.turned(np.exp(modes @ amount))
     member = fit_shares(seen, otf, share)
-    reached = member.log_likelihood - 0.5 * float(precision @ amount**2)
+    reached = member.log_posterior - 0.5 * float(precision @ (amount - mean) ** 2)
     for _ in range(_MAX_STEPS):
         pull, information = mode_information(member, modes)
-        upwards = pull - precision * amount
-        step = _step(information, upwards, precision)
-        is_last = 0.5 * float(upwards @ step) < _SETTLED
-        for _ in range(_MAX_HALVINGS):
-            seen = edges.turned(np.exp(modes @ (amount + step)))
-            tried = fit_shares(seen, otf, member.share)
+        upwards = pull - precision * (amount - mean)
+        steps = _steps(information + np.diag(precision), upwards, longest)
+        is_last = 0.5 * float(upwards @ steps[0]) < _SETTLED
+        for step in steps:
             moved = amount + step
-            value = tried.log_likelihood - 0.5 * float(precision @ moved**2)
+            seen = edges.turned(np.exp(modes @ moved))
+            tried = fit_shares(seen, otf, member.share)
+            value = tried.log_posterior - 0.5 * float(precision @ (moved - mean) ** 2)
             if value > reached:
                 break
-            step = step / 3
         else:
             break
         amount, member, reached = moved, tried, value
@@ -162,8 +166,9 @@ def fit_modes(
     return ModesFit(amount, member.share, information, reached)
 
 
-def _step(information: Floats, pull: Floats, precision: Floats) -> Floats:
-    """Newton's step, upwards whatever the curvature."""
-    size, axes = np.linalg.eigh(information + np.diag(precision))
-    step = axes @ ((axes.T @ pull) / np.maximum(np.abs(size), _LEAST))
-    return np.asarray(np.clip(step, -_MAX_STEP, _MAX_STEP))
+def _steps(information: Floats, pull: Floats, longest: float) -> list[Floats]:
+    """Newton's step, upwards whatever the curvature, and shorter ones nearer to the gradient."""
+    size, axes = np.linalg.eigh(information)
+    size = np.maximum(np.abs(size), longest**-2.0)
+    damped = (axes @ ((axes.T @ pull) / (size + share * size.max())) for share in _DAMPINGS)
+    return [one * min(1.0, longest / max(float(np.linalg.norm(one)), _TINY)) for one in damped]

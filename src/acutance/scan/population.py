@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.scan.edge_likelihoods import EdgeLikelihoods, FactorLikelihoods, chunks
-from acutance.scan.shares import likeliest_shares, sectors_of
+from acutance.scan.shares import likeliest_shares, log_prior, sectors_of
 from acutance.scan.softness import NEARLY_IDEAL_PX, STRANGE, below_steps
 from acutance.scan.softness_sums import cell_chances
 
@@ -90,6 +90,8 @@ class Membership:
         Likelihood of every part of the population, over the same.
     log_likelihood : float
         Of all edges.
+    log_posterior : float
+        The same, the prior of the shares counted.
     """
 
     objects: FactorLikelihoods
@@ -99,6 +101,7 @@ class Membership:
     odds: Floats
     by_part: Floats
     log_likelihood: float
+    log_posterior: float
 
     @property
     def softness_px(self) -> Floats:
@@ -164,4 +167,5 @@ def fit_shares(edges: EdgeLikelihoods, otf: Floats, share: Floats) -> Membership
     share = likeliest_shares(by_part, sector, share)
     whole = np.sum(by_part * share[sector], axis=1)
     log_likelihood = float(np.sum(largest) + np.sum(np.log(whole)))
-    return Membership(objects, grid, sector, share, odds, by_part, log_likelihood)
+    log_posterior = log_likelihood + log_prior(share)
+    return Membership(objects, grid, sector, share, odds, by_part, log_likelihood, log_posterior)

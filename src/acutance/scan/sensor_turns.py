@@ -7,6 +7,7 @@ Each turn asks how much of the blur is the sensor's (`acutance.scan.blur_modes`)
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import product
 from typing import Final, NamedTuple
@@ -27,6 +28,7 @@ from acutance.scan.blur_modes import (
 )
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.form_agreement import common_errors
+from acutance.scan.form_modes import blur_ways, form_ways
 from acutance.scan.information import expected_information
 from acutance.scan.population import fit_shares
 from acutance.scan.shares import START
@@ -41,7 +43,7 @@ __all__ = ["Rival", "SensorState", "first_sensor", "otf_samples", "settled", "so
 
 _SETTLED: Final = 0.1
 """Square of a turn's change, in standard deviations of what the edges say."""
-_MAX_TURNS: Final = 12
+_MAX_TURNS: Final = 24
 _GAINS: Final = (0.7, 1.4)
 """Between these the sensor along an edge's normal is of that along its bin."""
 _LEAST: Final = 1e3
@@ -52,11 +54,19 @@ _BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
 """Blur that is added to first guesses: the sharpest edges are so by their noise, too."""
 _APART: Final = 0.03
 """Root mean square difference of the MTF, up to Nyquist, by which starts differ: those nearer to
-one another lead to one end."""
-_MOST_FOLLOWED: Final = 5
+one another lead to one end. The likelihoods of few edges have tops that are nearer."""
+_MANY: Final = 150
+"""So many edges are not few."""
+_SAME: Final = 0.003
+"""The same difference of sensors that are one."""
+_MOST_FOLLOWED: Final = 8
 """So many starts are followed to their end, the likeliest of those that differ. In 25 scenes of
 60 to 90 edges under a sensor that is sharper along the diagonals four led to the likeliest end of
-all; the likeliest start alone did in sixteen."""
+all; the likeliest start alone did in sixteen. Under one behind a kernel the sixth did."""
+_FIRST_TURNS: Final = 2
+_RISE: Final = 1.0
+"""Of the log likelihood in a turn: as long as it rises by so much, the next turn goes along the
+ways of the form. A mean over forms is none of them, and would go to and fro."""
 _ENOUGH_EDGES: Final = 600
 _LIKELIER: Final = 3.0
 """By so much in the log likelihood another sensor has to be likelier than that of a better start:
@@ -167,22 +177,25 @@ def _ends(
 ) -> list[SensorState]:
     """Sensors to which the guesses lead, or led until they were given up; the likeliest first."""
     nothing = np.zeros_like(edges.gain)
-    first, *others = _different(_starts(edges, normal_deg, guesses), edges.freq_cpp)
+    apart = _APART * min(1.0, math.sqrt(edges.size / _MANY))
+    first, *others = _different(_starts(edges, normal_deg, guesses), apart, edges.freq_cpp)
     best = settled(edges, normal_deg, first, nothing)
     ends = [best]
     for start in others:
         start = start._replace(combined=best.combined)
-        ends.append(settled(edges, normal_deg, start, nothing, best.log_likelihood))
-        if ends[-1].log_likelihood > best.log_likelihood + _LIKELIER:
-            best = ends[-1]
+        end = settled(edges, normal_deg, start, nothing, best)
+        ends.append(end)
+        is_likelier = end.log_likelihood > best.log_likelihood + _LIKELIER
+        if is_likelier and _apart(end.otf, best.otf, edges.freq_cpp) > _SAME:
+            best = end
     return [best, *(one for one in ends if one is not best)]
 
 
-def _different(starts: Sequence[SensorState], freq_cpp: Floats) -> list[SensorState]:
+def _different(starts: Sequence[SensorState], apart: float, freq_cpp: Floats) -> list[SensorState]:
     """The first starts of those that differ from the ones before, as many as are followed."""
     found: list[SensorState] = []
     for one in starts:
-        if all(_apart(one.otf, other.otf, freq_cpp) > _APART for other in found):
+        if all(_apart(one.otf, other.otf, freq_cpp) > apart for other in found):
             found.append(one)
     return found[:_MOST_FOLLOWED]
 
@@ -240,31 +253,37 @@ def settled(
     normal_deg: Floats,
     state: SensorState,
     log_gain: Floats,
-    rival: float = -np.inf,
+    rival: SensorState | None = None,
 ) -> SensorState:
     """The sensor after as many turns as it needs, under a given change over the field (n, k).
 
-    Or after so many that it will not reach the log likelihood of a `rival`.
+    Or after so many that it will not reach the log likelihood of a `rival`, or is where that is.
     """
-    modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
+    ways = blur_ways(normal_deg, edges.freq_cpp)
     otf, share, forms, combined, along, _, turns, _ = state
     near = state.near
     before: Floats | None = None
-    moved, last = np.zeros_like(otf), -np.inf
+    moved, last, is_rising = np.zeros_like(otf), -np.inf, True
     for turn in range(_MAX_TURNS + 1):
         seen = along.turned(np.exp(log_gain))
-        found = fit_modes(seen, otf, share, modes[edges.bin])
-        otf = changed(otf, modes @ found.amount)
+        found = fit_modes(
+            seen, otf, share, ways.modes[edges.bin],
+            mean=ways.mean, std=ways.std, longest=ways.longest,
+        )  # fmt: skip
+        otf = changed(otf, ways.modes @ found.amount)
         if before is not None:
             moved = _calmed(otf - before, moved)
             otf = before + moved
         member = fit_shares(seen, otf, found.share)
         share, reached = member.share, member.log_likelihood
+        is_rising = is_rising and (turn < _FIRST_TURNS or reached > last + _RISE)
         information, projection = expected_information(seen, member)
         size = float(np.einsum("bk,bkl,bl", moved, information, moved))
         is_settled = before is not None and size < _SETTLED
-        is_hopeless = rival - reached > _PATIENCE * max(reached - last, 0.0)
-        if is_settled or is_hopeless or turn == _MAX_TURNS:
+        if is_settled or turn == _MAX_TURNS:
+            break
+        rise = reached - last
+        if rival is not None and _leads_nowhere(otf, reached, rise, rival, edges.freq_cpp):
             break
         # Before the first turn the sensor has no form, and may be likelier than with one.
         before, last = otf, reached if turn > 0 else -np.inf
@@ -274,7 +293,20 @@ def settled(
         forms = tuple({form.form.oblique_terms: None for form in sensor.forms})
         otf = stacked(_along(sensor, normal_deg, edges.freq_cpp).T).T
         along = _along_bins(edges, normal_deg, sensor)
+        if is_rising:
+            ways = form_ways(combined.forms[0], normal_deg, edges.freq_cpp)
+        else:
+            ways = blur_ways(normal_deg, edges.freq_cpp)
     return SensorState(otf, share, forms, combined, along, reached, turns + turn, is_settled)
+
+
+def _leads_nowhere(
+    otf: Floats, reached: float, rise: float, rival: SensorState, freq_cpp: Floats
+) -> bool:
+    """Whether turns will not reach the log likelihood of a rival, or have come to where it is."""
+    if rival.log_likelihood - reached > _PATIENCE * max(rise, 0.0):
+        return True
+    return _apart(otf, rival.otf, freq_cpp) < _SAME
 
 
 def _calmed(move: Floats, last: Floats) -> Floats:

@@ -22,6 +22,7 @@ __all__ = [
     "SECTOR_DEG",
     "START",
     "likeliest_shares",
+    "log_prior",
     "sectors_of",
     "share_covariances",
     "share_information",
@@ -51,6 +52,11 @@ def likeliest_shares(by_part: Floats, sector: NDArray[np.intp], share: Floats) -
     Every sector by itself.
     """
     return np.array([_likeliest(by_part[sector == g], own, _BEFORE) for g, own in enumerate(share)])
+
+
+def log_prior(share: Floats) -> float:
+    """Logarithm of the prior density of shares (g, p), but for a constant."""
+    return float(np.sum(np.log(share) @ _BEFORE))
 
 
 @compiled

@@ -38,6 +38,7 @@ PARAMETERS = {
     "cubic_a": ("cubic convolution, a", ""),
     "phase_across_px": ("cubic convolution, place across", "px"),
     "phase_along_px": ("cubic convolution, place along", "px"),
+    "diffusion_px": ("depth from which charge spreads", "px"),
     "detector_fill": ("detector's width over the stated one", ""),
 }
 PART_COLUMNS = (

@@ -48,6 +48,11 @@ class Plane:
         return np.asarray(freq), where
 
     @cached_property
+    def waves(self) -> Floats:
+        """Distance of every place from zero frequency, radians per pixel, (n,)."""
+        return np.asarray(2 * math.pi * np.hypot(self.u_cpp, self.v_cpp))
+
+    @cached_property
     def tap_gains(self) -> tuple[Floats, Floats]:
         """What a unit of every outer tap adds to the gain across and along, (n, taps) each."""
         return _tap_gains(self.u_cpp), _tap_gains(self.v_cpp)

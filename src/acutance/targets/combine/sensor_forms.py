@@ -31,6 +31,8 @@ _OBLIQUE = {
 _GAUSSIAN_WIDTHS = ("sigma_across_px", "sigma_along_px", "sigma_minor_px")
 _FILL_STD = 0.12
 """Of the logarithm of a detector's width over the stated one: fill factors are near one."""
+_DIFFUSION_MEAN, _DIFFUSION_STD = math.log(0.1), 1.0
+"""Of the logarithm of the depth from which charge spreads, px: every detector has some."""
 
 
 @dataclass(frozen=True)
@@ -68,13 +70,15 @@ class SensorForm:
 
     @property
     def mean(self) -> Floats:
-        """Prior mean of all parameters, (p,): of the terms, then of the detector's fill."""
-        return np.array([*(one for name in self.terms for one in TERMS[name].mean), 0.0])
+        """Prior mean of all parameters, (p,): of terms, of diffusion, of the detector's fill."""
+        own = [one for name in self.terms for one in TERMS[name].mean]
+        return np.array([*own, _DIFFUSION_MEAN, 0.0])
 
     @property
     def std(self) -> Floats:
         """Prior standard deviation of all parameters, (p,)."""
-        return np.array([*(one for name in self.terms for one in TERMS[name].std), _FILL_STD])
+        own = [one for name in self.terms for one in TERMS[name].std]
+        return np.array([*own, _DIFFUSION_STD, _FILL_STD])
 
     def otf(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF (n,), exactly 1 at zero frequency."""
@@ -85,9 +89,9 @@ class SensorForm:
         return product(self.factors_on(p, plane))
 
     def factors_on(self, p: Floats, plane: Plane) -> list[NDArray[Any]]:
-        """OTFs of all terms, and of the detector as the last, (n,) each."""
+        """OTFs of all terms, of diffusion, and of the detector as the last, (n,) each."""
         own = [term.otf(own, plane) for term, own in self._split(p)]
-        return [*own, _detector(p[-1:], plane, self.detector_px)]
+        return [*own, _diffusion(p[-2], plane), _detector(p[-1:], plane, self.detector_px)]
 
     def slopes_on(
         self, p: Floats, plane: Plane, factors: list[NDArray[Any]] | None = None
@@ -99,6 +103,7 @@ class SensorForm:
             else term.slopes(own, plane)
             for (term, own), here in zip(self._split(p), values, strict=False)
         ]  # fmt: skip
+        slopes.append(_diffusion_slopes(p[-2], plane))
         slopes.append(_detector_slopes(p[-1:], plane, self.detector_px))
         others = [product(values[:i] + values[i + 1 :]) for i in range(len(values))]
         return np.concatenate(
@@ -110,7 +115,7 @@ class SensorForm:
         found: dict[str, float] = {}
         for term, own in self._split(p):
             found |= term.numbers(own)
-        return {**found, "detector_fill": math.exp(p[-1])}
+        return {**found, "diffusion_px": math.exp(p[-2]), "detector_fill": math.exp(p[-1])}
 
     def min_sigma_px(self, p: Floats) -> float:
         """Smallest standard deviation of the Gaussian: it limits the band."""
@@ -152,6 +157,26 @@ class SensorForm:
             found.append((TERMS[name], p[start:stop]))
             start = stop
         return found
+
+
+def _diffusion(log_depth: float, plane: Plane) -> Floats:
+    """OTF of charge that spreads before it is collected, (n,): `acutance.optics.ChargeDiffusion`.
+
+    A Gaussian where it takes little, of tails that fall more slowly.
+    """
+    return np.asarray(_sech(math.exp(log_depth) * plane.waves))
+
+
+def _diffusion_slopes(log_depth: float, plane: Plane) -> Floats:
+    """Its derivative, (n, 1)."""
+    travelled = math.exp(log_depth) * plane.waves
+    return np.asarray((-travelled * np.tanh(travelled) * _sech(travelled))[:, None])
+
+
+def _sech(x: Floats) -> Floats:
+    """One over the hyperbolic cosine, where that is too large as well."""
+    falls = np.exp(-np.abs(x))
+    return np.asarray(2 * falls / (1 + falls**2))
 
 
 def _detector(p: Floats, plane: Plane, detector_px: tuple[float, float]) -> Floats:
