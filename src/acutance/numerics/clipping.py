@@ -2,15 +2,73 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 
-__all__ = ["at_limit_share", "clipped_share", "piled_up_share"]
+__all__ = [
+    "NOT_CLIPPED",
+    "ClipLevels",
+    "at_limit_share",
+    "clip_levels",
+    "clipped_share",
+    "piled_up_share",
+]
 
 _MIN_PILED_UP = 5
 _MIN_EXCESS = 3
+_MIN_PILED_IN_IMAGE = 20
+"""Pixels of an image at the end of its range by which it is clipped there."""
+_MIN_LEVELS = 8
+"""Different values of an image that has noise."""
+
+
+class ClipLevels(NamedTuple):
+    """Values at which an image is clipped; None at an end where it is not.
+
+    Attributes
+    ----------
+    dark, bright : float or None
+    """
+
+    dark: float | None
+    bright: float | None
+
+
+NOT_CLIPPED = ClipLevels(None, None)
+
+
+def clip_levels(values: Floats) -> ClipLevels:
+    """Where the range of values of an image, (n,), was cut off, if it was.
+
+    A stretch to 8 bits cuts a few hundredths of the pixels off at either end, a detector the
+    brightest. At such an end lie many more pixels than at the next value. Where any other value
+    has as many more than its neighbours, noise is finer than the steps of the numbers, or there is
+    none: dark water may have one value then.
+    """
+    level, count = np.unique(values, return_counts=True)
+    if level.size < _MIN_LEVELS or _is_peaked(count[1:-1]):
+        return NOT_CLIPPED
+    dark, bright = (
+        _is_piled(int(last), int(before)) for last, before in (count[:2], count[:-3:-1])
+    )
+    return ClipLevels(float(level[0]) if dark else None, float(level[-1]) if bright else None)
+
+
+def _is_peaked(count: NDArray[np.intp]) -> bool:
+    """Whether the most frequent value stands out of both of its neighbours."""
+    most = int(np.argmax(count))
+    before, _, after = np.pad(count, 1)[most : most + 3].tolist()
+    return bool(count[most] > _MIN_EXCESS * max(before, after))
+
+
+def _is_piled(last: int, before: int) -> bool:
+    """Whether so many more pixels than at the value before lie at the last that it is an end."""
+    return last >= _MIN_PILED_IN_IMAGE and last > _MIN_EXCESS * before
 
 
 def clipped_share(

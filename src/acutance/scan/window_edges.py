@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
 from acutance.geometry.angles import direction_difference, wrap_axis
+from acutance.numerics.clipping import ClipLevels, clip_levels
 from acutance.numerics.one_thread import one_thread
 from acutance.numerics.stacked import stacked
 from acutance.raster import Box, Gsd, Image, Region
@@ -144,13 +145,15 @@ def _measured(
     """The edges of one band."""
     # Within a window no GSD changes that much that an edge would see it.
     gsd = gsd or image.gsd(whole.row + whole.height / 2, whole.col + whole.width / 2)
+    # The side of a shadow or a roof is too small to show that it is clipped: its window is not.
+    clipped = clip_levels(pixels[np.isfinite(pixels)])
     rows: list[dict[str, Any]] = []
     used: list[UsedEdge] = []
     for segment in segments:
         if isinstance(segment, Unseen):
             rows.append(_place(segment.segment, whole) | {"reason": segment.reason})
             continue
-        around, own = _around(image, gsd, pixels, whole, segment, options)
+        around, own = _around(image, gsd, pixels, clipped, whole, segment, options)
         row = _place(segment, whole)
         try:
             found = measure_segment(around, own, "spline", _EDGE_OPTIONS, of_scene=True)
@@ -168,6 +171,7 @@ def _around(
     image: Image,
     gsd: Gsd | None,
     pixels: Floats,
+    clipped: ClipLevels,
     whole: Box,
     segment: Segment,
     options: ScanOptions,
@@ -183,7 +187,7 @@ def _around(
     _, t = line_distances(box.shape, moved)
     beside = (segment.start_px <= t) & (t <= segment.stop_px)
     own = np.where(beside, pixels[box.slices], np.nan)
-    region = RegionPixels(own, at, image.saturation_level, gsd, image)
+    region = RegionPixels(own, at, image.saturation_level, gsd, image, clipped=clipped)
     return region, replace(segment, line=moved)
 
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoDataError, RegionError
+from acutance.numerics.clipping import NOT_CLIPPED, ClipLevels
 from acutance.raster import Box, Fill, Gsd, Image, Region, find_fill
 from acutance.raster.gsd import gsd_in_words
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
@@ -57,6 +58,8 @@ class RegionPixels:
     image : Image
     fill : Fill or None
         Undeclared fill that was left out: NaN in `pixels`.
+    clipped : ClipLevels
+        Values at which the image around the region was found to be clipped.
     """
 
     pixels: Floats
@@ -65,6 +68,7 @@ class RegionPixels:
     gsd: Gsd | None
     image: Image
     fill: Fill | None = None
+    clipped: ClipLevels = NOT_CLIPPED
 
     @cached_property
     def info(self) -> ImageInfo:

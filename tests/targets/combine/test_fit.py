@@ -61,6 +61,16 @@ def test_slopes_of_a_form_are_those_of_its_values(terms):
     assert change == pytest.approx(2 * form.slopes_on(p, Plane(u, v)) @ move, abs=2e-7)
 
 
+def test_a_square_kernel_is_the_transform_of_its_taps():
+    u, v = np.random.default_rng(4).uniform(-1.0, 1.0, (2, 9))
+    side, corner = 0.17, 0.06
+    taps = -np.array([[corner, side, corner], [side, 0.0, side], [corner, side, corner]])
+    taps[1, 1] = 1 - taps.sum()
+    waves = [np.exp(-2j * np.pi * (u * col + v * row)) for row in (-1, 0, 1) for col in (-1, 0, 1)]
+    otf = TERMS["square kernel"].otf(np.array([side, corner]), Plane(u, v))
+    np.testing.assert_allclose(otf, taps.ravel() @ np.array(waves), atol=1e-12)
+
+
 @pytest.mark.parametrize("name", [name for name, term in TERMS.items() if term.slopes])
 def test_slopes_in_closed_form_are_those_of_the_term(name):
     term, step = TERMS[name], 1e-6

@@ -32,6 +32,8 @@ PARAMETERS = {
     "defocus_waves": ("defocus, at the rim", "waves"),
     "sharpening_across": ("sharpening kernel, across", ""),
     "sharpening_along": ("sharpening kernel, along", ""),
+    "side_tap": ("3 x 3 kernel, taps at its sides", ""),
+    "corner_tap": ("3 x 3 kernel, taps at its corners", ""),
     "unsharp_gain": ("unsharp mask, gain", ""),
     "unsharp_sigma_px": ("unsharp mask, Gaussian", "px"),
     **{f"tap_{k}": (f"kernel, tap {k}", "") for k in range(1, 8)},

@@ -43,6 +43,26 @@ def _sharpening_numbers(p: Floats) -> dict[str, float]:
     return {"sharpening_across": across, "sharpening_along": along}
 
 
+def _square_parts(plane: Plane) -> Floats:
+    """What four side taps and four corner taps of a kernel of 3 x 3 add, of -1 each, (n, 2)."""
+    by_col, by_row = (gains[:, 0] for gains in plane.tap_gains)
+    sides = by_col + by_row
+    return np.stack([sides, 2 * sides - by_col * by_row], axis=1)
+
+
+def _square_kernel(p: Floats, plane: Plane) -> Floats:
+    """Any kernel of 3 x 3 taps with the symmetry of the grid: sharpening, a box's unsharp mask."""
+    return np.asarray(1 + _square_parts(plane) @ p)
+
+
+def _square_kernel_slopes(p: Floats, plane: Plane) -> Floats:
+    return _square_parts(plane)
+
+
+def _square_kernel_numbers(p: Floats) -> dict[str, float]:
+    return {"side_tap": -float(p[0]), "corner_tap": -float(p[1])}
+
+
 def _mask(p: Floats) -> tuple[float, float]:
     """Gain (at most 2, as in use) and width of an unsharp mask."""
     return 2.0 * logistic(p[0]), math.exp(p[1])
@@ -160,6 +180,9 @@ PROCESSING_TERMS: dict[str, Term] = {
         _sharpening, (math.log(0.2), 0.0), (0.8, 0.1), _sharpening_numbers, _sharpening_slopes
     ),
     "unsharp": Term(_unsharp, (-1.0, 0.0), (1.0, 0.3), _unsharp_numbers, _unsharp_slopes),
+    "square kernel": Term(
+        _square_kernel, (0.15, 0.05), (0.2, 0.1), _square_kernel_numbers, _square_kernel_slopes
+    ),
     "kernel": Term(_kernel, _TAP_MEAN, _TAP_STD, _kernel_numbers, _kernel_slopes),
     "short kernel": Term(
         _short_kernel, (0.0,) * 3, (1.0,) * 3, _short_kernel_numbers, _short_kernel_slopes
@@ -170,5 +193,5 @@ PROCESSING_TERMS: dict[str, Term] = {
     "phase": Term(_phase, (0.0, 0.0, 0.0), (1.0, 1.0, 0.6), _phase_numbers),
 }
 """Terms by name. Priors: outer taps of .05 to .8, nearly the same across and along, masks of a
-quarter to the whole of what is missing, kernels as those of Wiener filters, cubic convolutions of
--.35 to -.65."""
+quarter to the whole of what is missing, 3 x 3 kernels as in use for sharpening, kernels as those of
+Wiener filters, cubic convolutions of -.35 to -.65."""

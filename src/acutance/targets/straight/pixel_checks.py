@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.clipping import at_limit_share, piled_up_share
+from acutance.numerics.clipping import NOT_CLIPPED, at_limit_share, piled_up_share
 from acutance.numerics.noise import median, outlier_share, smallest_step
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.question import PLACES
@@ -51,7 +51,7 @@ def saturation(
 
     `values` (n,) are those of the image, `sides` the names of those before and behind the target.
     """
-    share, where = at_limit_share(values, region.saturation_level), ""
+    share, where = _clipped_share(region, values, data), ""
     middle = float(np.add.reduce(values)) / values.size
     # The two plateaus and, of a pulse, the pulse itself.
     places = (*(PLACES[side] for side in sides), "of the pulse")
@@ -67,11 +67,28 @@ def saturation(
     return answer("saturation", share, found, limits)
 
 
+def _clipped_share(region: RegionPixels, values: Floats, data: CheckData) -> float:
+    """Share of the pixels at the detector's limit, or piled up where the image is clipped."""
+    share = at_limit_share(values, region.saturation_level)
+    if region.clipped == NOT_CLIPPED or _is_noise_free(data):
+        return share
+    dark, bright = region.clipped
+    if bright is not None and np.max(values) >= bright:
+        share = max(share, piled_up_share(values))
+    if dark is not None and np.min(values) <= dark:
+        share = max(share, piled_up_share(-values))
+    return share
+
+
 def _quiet(data: CheckData, side: Floats) -> bool:
     """Whether a side has no noise that clipping could cut, and the transition none either."""
     contrast = abs(data.fit.bright - data.fit.dark)
-    quiet = float(np.std(side)) < QUIET_SIDE * contrast
-    return quiet and float(np.std(data.residual[data.outside < 1.0])) < QUIET_TRANSITION
+    return float(np.std(side)) < QUIET_SIDE * contrast and _is_noise_free(data)
+
+
+def _is_noise_free(data: CheckData) -> bool:
+    """Whether the transition has no noise, as of a drawn image."""
+    return float(np.std(data.residual[data.outside < 1.0])) < QUIET_TRANSITION
 
 
 def quantisation(region: RegionPixels, values: Floats, data: CheckData, limits: Limits) -> Check:
