@@ -78,19 +78,17 @@ def rms_at_nyquist(sensor, normal_deg, otf):
     return np.sqrt(np.mean((modulus - true_modulus(sensor, normal_deg)[:, nyquist]) ** 2))
 
 
-@pytest.mark.parametrize(("seed", "has_rival"), [(4, False), (5, True), (7, True)])
-def test_a_sensor_that_is_sharper_along_the_diagonals_is_found(seed, has_rival):
+@pytest.mark.parametrize("seed", [4, 5, 7])
+def test_a_sensor_that_is_sharper_along_the_diagonals_is_found(seed):
     """A round sensor, as sharp as the diagonals, under edges that are soft along rows and columns.
 
-    From the likeliest start alone turns end there, off by .1 at Nyquist.
+    From the likeliest start alone turns end there, off by .1 at Nyquist. Where a kernel of 3 x 3 is
+    among the forms, others do not.
     """
     edges, normal_deg, guesses = half_soft(SHARPENED, seed, 64, 0.08)
     state, rivals = first_sensor(edges, normal_deg, guesses)
     assert rms_at_nyquist(SHARPENED, normal_deg, state.otf) < 0.03
-    # Where that other sensor was found, too, it is not so unlikely: few edges tell little.
-    others = [one for one in rivals if one.apart > 0.02]
-    assert bool(others) == has_rival
-    assert all(0 < one.behind < 20 for one in others)
+    assert all(one.apart < 0.02 for one in rivals)
 
 
 @pytest.mark.parametrize(("seed", "count", "std"), [(3, 40, 0.03), (2, 30, 0.015)])
