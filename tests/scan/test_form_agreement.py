@@ -6,7 +6,7 @@ from bare_ground import bare_ground
 
 import acutance as ac
 from acutance import optics, simulate
-from acutance.scan import sensor_turns
+from acutance.scan import first_sensor
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.form_agreement import agreement_of_form
 from acutance.scan.population import fit_shares
@@ -72,7 +72,7 @@ def test_a_scene_interpolated_at_one_phase_is_measured(shifted):
 
 def test_without_a_form_for_it_the_scan_is_doubtful(shifted, monkeypatch):
     known = tuple(terms for terms in SCENE_FORMS if "phase" not in terms)
-    monkeypatch.setattr(sensor_turns, "SCENE_FORMS", known)
+    monkeypatch.setattr(first_sensor, "SCENE_FORMS", known)
     scene = ac.scan_scene(shifted)
     assert check_of(scene).value > 1.8
     assert scene.verdict.word == "doubtful"

@@ -8,7 +8,7 @@ import pytest
 from acutance import optics
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.first_guesses import BIN_DEG, sensor_guesses
-from acutance.scan.sensor_turns import first_sensor, some_of_each
+from acutance.scan.first_sensor import first_sensor, some_of_each
 from acutance.targets.slices import SLICE_FREQ_CPP as FREQ
 
 TAPS = (-0.25, 1.5, -0.25)
@@ -86,7 +86,7 @@ def test_a_sensor_that_is_sharper_along_the_diagonals_is_found(seed):
     among the forms, others do not.
     """
     edges, normal_deg, guesses = half_soft(SHARPENED, seed, 64, 0.08)
-    state, rivals = first_sensor(edges, normal_deg, guesses)
+    state, _, rivals = first_sensor(edges, normal_deg, guesses)
     assert rms_at_nyquist(SHARPENED, normal_deg, state.otf) < 0.03
     assert all(one.apart < 0.02 for one in rivals)
 
@@ -98,6 +98,6 @@ def test_turns_of_few_edges_reach_the_likeliest_sensor(seed, count, std):
     Turns of expectation and maximisation creep, and ended off by .47 and .19 at Nyquist.
     """
     edges, normal_deg, guesses = half_soft(RESTORED, seed, count, std)
-    state, _ = first_sensor(edges, normal_deg, guesses)
+    state, _, _ = first_sensor(edges, normal_deg, guesses)
     assert state.settled
     assert rms_at_nyquist(RESTORED, normal_deg, state.otf) < std

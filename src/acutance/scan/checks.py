@@ -14,10 +14,10 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.raster import Box, Image
 from acutance.scan.borders import border_of_each
 from acutance.scan.field import Field
+from acutance.scan.first_sensor import Rival
 from acutance.scan.parts import PartsFit
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.sensor_fit import SensorFit
-from acutance.scan.sensor_turns import Rival
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.full_pixel import full_pixel

@@ -21,11 +21,13 @@ from acutance.curves.grid import Floats
 from acutance.scan.blur_modes import COMMON_MODES, changed, edge_modes
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field_fit import FieldFit, fit_field
+from acutance.scan.first_sensor import Rival, first_sensor
 from acutance.scan.form_agreement import agreement_of_form
 from acutance.scan.information import observed_information
+from acutance.scan.other_tops import blur_of_tops
 from acutance.scan.parts import PartsFit, compare_parts
 from acutance.scan.population import Membership, fit_shares
-from acutance.scan.sensor_turns import Rival, first_sensor, otf_samples, settled
+from acutance.scan.sensor_turns import otf_samples, settled
 from acutance.scan.shared_blur import integrate_shared_blur
 from acutance.scan.shares import SECTOR_DEG, share_covariances
 from acutance.scan.softness import KINDS
@@ -76,7 +78,7 @@ class SensorFit:
         What every edge is.
     shared_px2 : (r, 3) array
         Independent errors of the blurs that may be the sensor's or the objects'
-        (`acutance.scan.shared_blur`), beside those of `combined`.
+        (`acutance.scan.shared_blur`, `acutance.scan.other_tops`), beside those of `combined`.
     parts : PartsFit or None
         Whether the parts of the scene agree; None of too few edges.
     agreement : ChiSquare
@@ -165,7 +167,7 @@ def fit_sensor(
         Places of the edges, -1 to 1 over the field.
     """
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
-    state, rivals = first_sensor(edges, normal_deg, guesses)
+    state, others, rivals = first_sensor(edges, normal_deg, guesses)
     field = fit_field(state.along, state.otf, state.share, x, y)
     for _ in range(_MAX_FIELD_TURNS):
         if field.chance_constant > _CONSTANT or not field.amount.any():
@@ -179,14 +181,15 @@ def fit_sensor(
     member = fit_shares(seen, state.otf, state.share)
     left = observed_information(seen, state.otf, member)
     shared = integrate_shared_blur(seen, state.otf, member, modes, left)
-    otf = changed(state.otf, modes @ shared.mean_px2)
+    tops = blur_of_tops(state, others, modes, edges.freq_cpp)
+    otf = changed(state.otf, modes @ (shared.mean_px2 + tops.mean_px2))
     member = fit_shares(seen, otf, member.share)
     # It is the mean already: a further step would follow what little is left of information.
     # And forms with a kernel have several optima: they begin where the turns ended.
     samples = otf_samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
         combine_curves([samples], forms=SCENE_FORMS, near=state.near),
-        field, normal_deg, member, shared.errors_px2,
+        field, normal_deg, member, np.concatenate([shared.errors_px2, tops.errors_px2]),
         compare_parts(seen, otf, member.share, x, y),
         agreement_of_form(seen, otf, member),
         rivals, state.turns, state.settled,

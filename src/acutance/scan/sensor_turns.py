@@ -1,15 +1,13 @@
 """Turns by which the sensor of a scene is found: what the edges are, and the sensor given that.
 
-Each turn asks how much of the blur is the sensor's (`acutance.scan.blur_modes`), what every edge is
+Each turn asks how the sensor may change (`acutance.scan.form_modes`), what every edge is
 (`acutance.scan.population`), and what sensor all directions together have then
-(`acutance.targets.combine`). Which start leads to the likeliest sensor some of the edges decide.
+(`acutance.targets.combine`).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from itertools import product
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -18,28 +16,19 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.stacked import stacked, unstacked
-from acutance.scan.blur_modes import (
-    ALL_AROUND,
-    COMMON_MODES,
-    changed,
-    edge_modes,
-    fit_modes,
-    quartic_modes,
-)
+from acutance.scan.blur_modes import changed, fit_modes
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.form_agreement import common_errors
 from acutance.scan.form_modes import blur_ways, form_ways
 from acutance.scan.information import expected_information
 from acutance.scan.population import fit_shares
-from acutance.scan.shares import START
 from acutance.targets.combine.curves import OtfSamples
 from acutance.targets.combine.fit import CombinedFit, combine_curves
-from acutance.targets.combine.sensor_forms import SCENE_FORMS
 from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
 from acutance.targets.otf_likelihood import OtfLikelihood
 from acutance.targets.slices import places_along
 
-__all__ = ["Rival", "SensorState", "first_sensor", "otf_samples", "settled", "some_of_each"]
+__all__ = ["AS_LIKELY", "SAME", "SensorState", "along_bins", "apart", "otf_samples", "settled"]
 
 _SETTLED: Final = 0.1
 """Square of a turn's change, in standard deviations of what the edges say."""
@@ -50,36 +39,18 @@ _LEAST: Final = 1e3
 """Information of a direction whose edges are all strange: it has no part in a turn."""
 _UNSEEN: Final = 1.0
 """Information of combinations that edges do not show: the OTF is between 0 and 1."""
-_BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
-"""Blur that is added to first guesses: the sharpest edges are so by their noise, too."""
-_APART: Final = 0.03
-"""Root mean square difference of the MTF, up to Nyquist, by which starts differ: those nearer to
-one another lead to one end. The likelihoods of few edges have tops that are nearer."""
-_MANY: Final = 150
-"""So many edges are not few."""
-_SAME: Final = 0.003
-"""The same difference of sensors that are one."""
-_MOST_FOLLOWED: Final = 8
-"""So many starts are followed to their end, the likeliest of those that differ. In 25 scenes of
-60 to 90 edges under a sensor that is sharper along the diagonals four led to the likeliest end of
-all; the likeliest start alone did in sixteen. Under one behind a kernel the sixth did."""
+SAME: Final = 0.003
+"""Root mean square difference of the MTF of sensors that are one."""
 _FIRST_TURNS: Final = 2
 _RISE: Final = 1.0
 """Of the log likelihood in a turn: as long as it rises by so much, the next turn goes along the
 ways of the form. A mean over forms is none of them, and would go to and fro."""
-_ENOUGH_EDGES: Final = 600
-_LIKELIER: Final = 3.0
-"""By so much in the log likelihood another sensor has to be likelier than that of a better start:
-less is what a form of more terms gains."""
-_FAR: Final = 10.0
-"""By so much an edge, in the log likelihood, a start may lie behind another: those that led to a
-likelier sensor in the end lay behind by 5 at most (benchmarks/scenes.py, twenty scenes)."""
+AS_LIKELY: Final = 4.0
+"""Sensors that are less likely by no more than this, in the log likelihood, count with the best."""
 _PATIENCE: Final = 5.0
 """Turns rise less and less: a start that lies behind by more than so many rises is given up."""
 _FINE_DEG: Final[Floats] = np.linspace(-90.0, 90.0, 181)
 """Directions between which the modulus of a sensor is linear."""
-_FREE_PX2: Final = 0.1
-"""Prior standard deviation of the modes by which first guesses may change."""
 
 
 class SensorState(NamedTuple):
@@ -117,135 +88,11 @@ class SensorState(NamedTuple):
         return () if self.combined is None else self.combined.near
 
 
-class Rival(NamedTuple):
-    """Another sensor to which guesses led.
-
-    Attributes
-    ----------
-    behind : float
-        By so much its log likelihood is smaller.
-    apart : float
-        Root mean square difference of both MTFs over all directions, up to Nyquist.
-    """
-
-    behind: float
-    apart: float
-
-
-def first_sensor(
-    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
-) -> tuple[SensorState, tuple[Rival, ...]]:
-    """The likeliest sensor to which guesses lead, without a change over the field, and its rivals.
-
-    Parameters
-    ----------
-    edges : EdgeLikelihoods
-    normal_deg : (b,) array
-        Mean direction of every bin.
-    guesses : sequence of (b, 2 k) arrays
-        First guesses of the OTF in every direction, real parts first.
-    """
-    some = some_of_each(edges.bin)
-    best, *others = _ends(edges.chosen(some), normal_deg, guesses)
-    # So many edges stand behind each that chose.
-    per_edge = edges.size / some.size
-    rivals = tuple(
-        Rival(
-            per_edge * (best.log_likelihood - one.log_likelihood),
-            _apart(one.otf, best.otf, edges.freq_cpp),
-        )
-        for one in others
-    )
-    if some.size == edges.size or best.combined is None:
-        return best, rivals
-    best = best._replace(along=_along_bins(edges, normal_deg, best.combined.unwidened))
-    return settled(edges, normal_deg, best, np.zeros_like(edges.gain)), rivals
-
-
-def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Edges by which a start is chosen: every m-th of each bin of directions.
-
-    All of them, of few; of many 600 to 1200, and few more where bins are sparse.
-    """
-    step = max(number.size // _ENOUGH_EDGES, 1)
-    own = (np.flatnonzero(number == b)[::step] for b in range(int(number.max()) + 1))
-    return np.sort(np.concatenate(list(own)))
-
-
-def _ends(
-    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
-) -> list[SensorState]:
-    """Sensors to which the guesses lead, or led until they were given up; the likeliest first."""
-    nothing = np.zeros_like(edges.gain)
-    apart = _APART * min(1.0, math.sqrt(edges.size / _MANY))
-    first, *others = _different(_starts(edges, normal_deg, guesses), apart, edges.freq_cpp)
-    best = settled(edges, normal_deg, first, nothing)
-    ends = [best]
-    for start in others:
-        start = start._replace(combined=best.combined)
-        end = settled(edges, normal_deg, start, nothing, best)
-        ends.append(end)
-        is_likelier = end.log_likelihood > best.log_likelihood + _LIKELIER
-        if is_likelier and _apart(end.otf, best.otf, edges.freq_cpp) > _SAME:
-            best = end
-    return [best, *(one for one in ends if one is not best)]
-
-
-def _different(starts: Sequence[SensorState], apart: float, freq_cpp: Floats) -> list[SensorState]:
-    """The first starts of those that differ from the ones before, as many as are followed."""
-    found: list[SensorState] = []
-    for one in starts:
-        if all(_apart(one.otf, other.otf, freq_cpp) > apart for other in found):
-            found.append(one)
-    return found[:_MOST_FOLLOWED]
-
-
-def _apart(one: Floats, other: Floats, freq_cpp: Floats) -> float:
+def apart(one: Floats, other: Floats, freq_cpp: Floats) -> float:
     """Root mean square difference of two sensors' MTF along the bins, up to Nyquist."""
     below = freq_cpp <= NYQUIST_CPP
     moduli = (np.abs(unstacked(otf.T))[below] for otf in (one, other))
     return float(np.sqrt(np.mean(np.subtract(*moduli) ** 2)))
-
-
-def _starts(
-    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
-) -> list[SensorState]:
-    """The likeliest sensors near the guesses, of free shape; the likeliest first.
-
-    The likelihood has several tops where few edges are sharp: a soft sensor whose sharpest edges
-    are noise, and a sharp one under soft objects.
-    """
-    blurs = edge_modes(normal_deg, edges.freq_cpp)
-    near: list[SensorState] = []
-    tried = (
-        [changed(guess, blurs[:, :, ALL_AROUND] * blur) for blur in _BLUR_STARTS_PX2]
-        for guess in guesses
-    )
-    likeliest = [
-        max(some, key=lambda one: fit_shares(edges, one, START).log_likelihood) for some in tried
-    ]
-    for start, modes in product(likeliest, _free_modes(normal_deg, edges.freq_cpp)):
-        fit = fit_modes(edges, start, START, modes[edges.bin], std=_FREE_PX2)
-        otf = changed(start, modes @ fit.amount)
-        near.append(
-            SensorState(
-                otf, fit.share, SCENE_FORMS, None, edges, fit.log_posterior, 0, settled=False
-            )
-        )
-    near.sort(key=lambda one: -one.log_likelihood)
-    least = near[0].log_likelihood - _FAR * edges.size
-    return [one for one in near if one.log_likelihood >= least]
-
-
-def _free_modes(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
-    """Ways in which a guess may change, (b, k, q): without and with those that turn four times.
-
-    Kernels of rows and columns make a sensor as sharp as they are along neither: along the
-    diagonals. Where few edges show it, a guess that may follow is led astray.
-    """
-    modes, quartic = edge_modes(normal_deg, freq_cpp), quartic_modes(normal_deg, freq_cpp)
-    few = np.concatenate([modes, quartic[:, :, :COMMON_MODES]], axis=2)
-    return few, np.concatenate([modes, quartic], axis=2)
 
 
 def settled(
@@ -292,7 +139,7 @@ def settled(
         # Forms without any weight have none in the next turn, either.
         forms = tuple({form.form.oblique_terms: None for form in sensor.forms})
         otf = stacked(_along(sensor, normal_deg, edges.freq_cpp).T).T
-        along = _along_bins(edges, normal_deg, sensor)
+        along = along_bins(edges, normal_deg, sensor)
         if is_rising:
             ways = form_ways(combined.forms[0], normal_deg, edges.freq_cpp)
         else:
@@ -304,9 +151,9 @@ def _leads_nowhere(
     otf: Floats, reached: float, rise: float, rival: SensorState, freq_cpp: Floats
 ) -> bool:
     """Whether turns will not reach the log likelihood of a rival, or have come to where it is."""
-    if rival.log_likelihood - reached > _PATIENCE * max(rise, 0.0):
+    if rival.log_likelihood - reached > max(_PATIENCE * rise, AS_LIKELY):
         return True
-    return _apart(otf, rival.otf, freq_cpp) < _SAME
+    return apart(otf, rival.otf, freq_cpp) < SAME
 
 
 def _calmed(move: Floats, last: Floats) -> Floats:
@@ -332,7 +179,7 @@ def _combined(
     return combine_curves(curves, forms=forms, near=near)
 
 
-def _along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:
+def along_bins(edges: EdgeLikelihoods, normal_deg: Floats, sensor: CombinedOtf) -> EdgeLikelihoods:
     """What the edges say of the sensor along their bins; along their own normals it differs."""
     # Of few edges the directions themselves are fewer.
     fine_deg = _FINE_DEG if edges.size > _FINE_DEG.size else np.sort(edges.normal_deg)

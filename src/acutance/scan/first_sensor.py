@@ -1,0 +1,194 @@
+"""Which start leads to the likeliest sensor of a scene, and which others are nearly as likely.
+
+The likelihood of few edges has several tops. First guesses, made likelier in a free shape, are
+followed to their ends (`acutance.scan.sensor_turns`); some of many edges decide.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import product
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.scan.blur_modes import (
+    ALL_AROUND,
+    COMMON_MODES,
+    changed,
+    edge_modes,
+    fit_modes,
+    quartic_modes,
+)
+from acutance.scan.edge_likelihoods import EdgeLikelihoods
+from acutance.scan.population import fit_shares
+from acutance.scan.sensor_turns import AS_LIKELY, SAME, SensorState, along_bins, apart, settled
+from acutance.scan.shares import START
+from acutance.targets.combine.sensor_forms import SCENE_FORMS
+
+__all__ = ["Rival", "first_sensor", "some_of_each"]
+
+_BLUR_STARTS_PX2: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
+"""Blur that is added to first guesses: the sharpest edges are so by their noise, too."""
+_APART: Final = 0.03
+"""Root mean square difference of the MTF, up to Nyquist, by which starts differ: those nearer to
+one another lead to one end. The likelihoods of few edges have tops that are nearer."""
+_MANY: Final = 150
+"""So many edges are not few."""
+_MOST_FOLLOWED: Final = 8
+"""So many starts are followed to their end, the likeliest of those that differ. In 25 scenes of
+60 to 90 edges under a sensor that is sharper along the diagonals four led to the likeliest end of
+all; the likeliest start alone did in sixteen. Under one behind a kernel the sixth did."""
+_ENOUGH_EDGES: Final = 600
+_LIKELIER: Final = 3.0
+"""By so much in the log likelihood another sensor has to be likelier than that of a better start:
+less is what a form of more terms gains."""
+_DISTINCT: Final = 0.01
+"""Root mean square difference of the MTF by which ends are no single top: turns end near it."""
+_FAR: Final = 10.0
+"""By so much an edge, in the log likelihood, a start may lie behind another: those that led to a
+likelier sensor in the end lay behind by 5 at most (benchmarks/scenes.py, twenty scenes)."""
+_FREE_PX2: Final = 0.1
+"""Prior standard deviation of the modes by which first guesses may change."""
+
+
+class Rival(NamedTuple):
+    """Another sensor to which guesses led.
+
+    Attributes
+    ----------
+    behind : float
+        By so much its log likelihood is smaller.
+    apart : float
+        Root mean square difference of both MTFs over all directions, up to Nyquist.
+    """
+
+    behind: float
+    apart: float
+
+
+def first_sensor(
+    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
+) -> tuple[SensorState, tuple[SensorState, ...], tuple[Rival, ...]]:
+    """The likeliest sensor to which guesses lead, others nearly as likely, and all rivals.
+
+    Without a change over the field. Of many edges no other is as likely.
+
+    Parameters
+    ----------
+    edges : EdgeLikelihoods
+    normal_deg : (b,) array
+        Mean direction of every bin.
+    guesses : sequence of (b, 2 k) arrays
+        First guesses of the OTF in every direction, real parts first.
+    """
+    some = some_of_each(edges.bin)
+    best, *others = _ends(edges.chosen(some), normal_deg, guesses)
+    # So many edges stand behind each that chose.
+    per_edge = edges.size / some.size
+    rivals = tuple(
+        Rival(
+            per_edge * (best.log_likelihood - one.log_likelihood),
+            apart(one.otf, best.otf, edges.freq_cpp),
+        )
+        for one in others
+    )
+    if some.size == edges.size or best.combined is None:
+        return best, _as_likely(best, others, edges.freq_cpp), rivals
+    best = best._replace(along=along_bins(edges, normal_deg, best.combined.unwidened))
+    return settled(edges, normal_deg, best, np.zeros_like(edges.gain)), (), rivals
+
+
+def _as_likely(
+    best: SensorState, others: Sequence[SensorState], freq_cpp: Floats
+) -> tuple[SensorState, ...]:
+    """Other ends that are nearly as likely as the best one, every top once."""
+    found: list[SensorState] = []
+    for one in others:
+        is_high = one.settled and one.log_likelihood > best.log_likelihood - AS_LIKELY
+        known = (best, *found)
+        if is_high and all(apart(one.otf, top.otf, freq_cpp) > _DISTINCT for top in known):
+            found.append(one)
+    return tuple(found)
+
+
+def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Edges by which a start is chosen: every m-th of each bin of directions.
+
+    All of them, of few; of many 600 to 1200, and few more where bins are sparse.
+    """
+    step = max(number.size // _ENOUGH_EDGES, 1)
+    own = (np.flatnonzero(number == b)[::step] for b in range(int(number.max()) + 1))
+    return np.sort(np.concatenate(list(own)))
+
+
+def _ends(
+    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
+) -> list[SensorState]:
+    """Sensors to which the guesses lead, or led until they were given up; the likeliest first."""
+    nothing = np.zeros_like(edges.gain)
+    least = _APART * min(1.0, math.sqrt(edges.size / _MANY))
+    first, *others = _different(_starts(edges, normal_deg, guesses), least, edges.freq_cpp)
+    best = settled(edges, normal_deg, first, nothing)
+    ends = [best]
+    for start in others:
+        start = start._replace(combined=best.combined)
+        end = settled(edges, normal_deg, start, nothing, best)
+        ends.append(end)
+        is_likelier = end.log_likelihood > best.log_likelihood + _LIKELIER
+        if is_likelier and apart(end.otf, best.otf, edges.freq_cpp) > SAME:
+            best = end
+    return [best, *(one for one in ends if one is not best)]
+
+
+def _different(starts: Sequence[SensorState], least: float, freq_cpp: Floats) -> list[SensorState]:
+    """The first starts of those that differ from the ones before, as many as are followed."""
+    found: list[SensorState] = []
+    for one in starts:
+        if all(apart(one.otf, other.otf, freq_cpp) > least for other in found):
+            found.append(one)
+    return found[:_MOST_FOLLOWED]
+
+
+def _starts(
+    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
+) -> list[SensorState]:
+    """The likeliest sensors near the guesses, of free shape; the likeliest first.
+
+    The likelihood has several tops where few edges are sharp: a soft sensor whose sharpest edges
+    are noise, and a sharp one under soft objects.
+    """
+    blurs = edge_modes(normal_deg, edges.freq_cpp)
+    near: list[SensorState] = []
+    tried = (
+        [changed(guess, blurs[:, :, ALL_AROUND] * blur) for blur in _BLUR_STARTS_PX2]
+        for guess in guesses
+    )
+    likeliest = [
+        max(some, key=lambda one: fit_shares(edges, one, START).log_likelihood) for some in tried
+    ]
+    for start, modes in product(likeliest, _free_modes(normal_deg, edges.freq_cpp)):
+        fit = fit_modes(edges, start, START, modes[edges.bin], std=_FREE_PX2)
+        otf = changed(start, modes @ fit.amount)
+        near.append(
+            SensorState(
+                otf, fit.share, SCENE_FORMS, None, edges, fit.log_posterior, 0, settled=False
+            )
+        )
+    near.sort(key=lambda one: -one.log_likelihood)
+    least = near[0].log_likelihood - _FAR * edges.size
+    return [one for one in near if one.log_likelihood >= least]
+
+
+def _free_modes(normal_deg: Floats, freq_cpp: Floats) -> tuple[Floats, Floats]:
+    """Ways in which a guess may change, (b, k, q): without and with those that turn four times.
+
+    Kernels of rows and columns make a sensor as sharp as they are along neither: along the
+    diagonals. Where few edges show it, a guess that may follow is led astray.
+    """
+    modes, quartic = edge_modes(normal_deg, freq_cpp), quartic_modes(normal_deg, freq_cpp)
+    few = np.concatenate([modes, quartic[:, :, :COMMON_MODES]], axis=2)
+    return few, np.concatenate([modes, quartic], axis=2)
