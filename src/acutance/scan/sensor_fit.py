@@ -24,11 +24,11 @@ from acutance.scan.field_fit import FieldFit, fit_field
 from acutance.scan.first_sensor import Rival, first_sensor
 from acutance.scan.form_agreement import agreement_of_form
 from acutance.scan.information import observed_information
-from acutance.scan.other_tops import blur_of_tops
+from acutance.scan.other_tops import blur_of_tops, log_evidence
 from acutance.scan.parts import PartsFit, compare_parts
 from acutance.scan.population import Membership, fit_shares
-from acutance.scan.sensor_turns import otf_samples, settled
-from acutance.scan.shared_blur import integrate_shared_blur
+from acutance.scan.sensor_turns import SensorState, otf_samples, settled
+from acutance.scan.shared_blur import SharedBlur, integrate_shared_blur
 from acutance.scan.shares import SECTOR_DEG, share_covariances
 from acutance.scan.softness import KINDS
 from acutance.targets.combine.curves import ChiSquare
@@ -181,7 +181,7 @@ def fit_sensor(
     member = fit_shares(seen, state.otf, state.share)
     left = observed_information(seen, state.otf, member)
     shared = integrate_shared_blur(seen, state.otf, member, modes, left)
-    tops = blur_of_tops(state, others, modes, edges.freq_cpp)
+    tops = _other_tops(state, others, normal_deg, modes)
     otf = changed(state.otf, modes @ (shared.mean_px2 + tops.mean_px2))
     member = fit_shares(seen, otf, member.share)
     # It is the mean already: a further step would follow what little is left of information.
@@ -194,3 +194,12 @@ def fit_sensor(
         agreement_of_form(seen, otf, member),
         rivals, state.turns, state.settled,
     )  # fmt: skip
+
+
+def _other_tops(
+    best: SensorState, others: Sequence[SensorState], normal_deg: Floats, modes: Floats
+) -> SharedBlur:
+    """What sensors that are nearly as likely change of the blurs, and the errors they make."""
+    found = [log_evidence(one, normal_deg) for one in (best, *others)] if others else [0.0]
+    otfs = [one.otf for one in others]
+    return blur_of_tops(best.otf, otfs, np.array(found), modes, best.along.freq_cpp)
