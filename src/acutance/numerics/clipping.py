@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
@@ -50,25 +49,35 @@ def clip_levels(values: Floats) -> ClipLevels:
     has as many more than its neighbours, noise is finer than the steps of the numbers, or there is
     none: dark water may have one value then.
     """
-    level, count = np.unique(values, return_counts=True)
-    if level.size < _MIN_LEVELS or _is_peaked(count[1:-1]):
+    dark, bright = _lowest_if_piled(values), _lowest_if_piled(-values)
+    # To count all values takes a hundred times longer, and few images need it.
+    if (dark is None and bright is None) or _is_peaked(values):
         return NOT_CLIPPED
-    dark, bright = (
-        _is_piled(int(last), int(before)) for last, before in (count[:2], count[:-3:-1])
-    )
-    return ClipLevels(float(level[0]) if dark else None, float(level[-1]) if bright else None)
+    return ClipLevels(dark, None if bright is None else -bright)
 
 
-def _is_peaked(count: NDArray[np.intp]) -> bool:
-    """Whether the most frequent value stands out of both of its neighbours."""
-    most = int(np.argmax(count))
-    before, _, after = np.pad(count, 1)[most : most + 3].tolist()
-    return bool(count[most] > _MIN_EXCESS * max(before, after))
+def _is_peaked(values: Floats) -> bool:
+    """Whether values are few, or the most frequent but the ends stands out of both neighbours."""
+    _, count = np.unique(values, return_counts=True)
+    if count.size < _MIN_LEVELS:
+        return True
+    inner = count[1:-1]
+    most = int(np.argmax(inner))
+    before, _, after = np.pad(inner, 1)[most : most + 3].tolist()
+    return bool(inner[most] > _MIN_EXCESS * max(before, after))
 
 
-def _is_piled(last: int, before: int) -> bool:
-    """Whether so many more pixels than at the value before lie at the last that it is an end."""
-    return last >= _MIN_PILED_IN_IMAGE and last > _MIN_EXCESS * before
+def _lowest_if_piled(values: Floats) -> float | None:
+    """The lowest value, if so many more pixels lie there than at the next that it is an end."""
+    if not values.size:
+        return None
+    lowest = values.min()
+    last = np.count_nonzero(values == lowest)
+    if last < _MIN_PILED_IN_IMAGE or last == values.size:
+        return None
+    others = values[values > lowest]
+    before = np.count_nonzero(others == others.min())
+    return float(lowest) if last > _MIN_EXCESS * before else None
 
 
 def clipped_share(
