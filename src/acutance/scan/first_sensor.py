@@ -46,8 +46,6 @@ _ENOUGH_EDGES: Final = 600
 _LIKELIER: Final = 3.0
 """By so much in the log likelihood another sensor has to be likelier than that of a better start:
 less is what a form of more terms gains."""
-_DISTINCT: Final = 0.01
-"""Root mean square difference of the MTF by which ends are no single top: turns end near it."""
 _FAR: Final = 10.0
 """By so much an edge, in the log likelihood, a start may lie behind another: those that led to a
 likelier sensor in the end lay behind by 5 at most (benchmarks/scenes.py, twenty scenes)."""
@@ -73,7 +71,7 @@ class Rival(NamedTuple):
 def first_sensor(
     edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
 ) -> tuple[SensorState, tuple[SensorState, ...], tuple[Rival, ...]]:
-    """The likeliest sensor to which guesses lead, others nearly as likely, and all rivals.
+    """The likeliest sensor to which guesses lead, others nearly as likely, and further rivals.
 
     Without a change over the field. Of many edges no other is as likely.
 
@@ -87,32 +85,29 @@ def first_sensor(
     """
     some = some_of_each(edges.bin)
     best, *others = _ends(edges.chosen(some), normal_deg, guesses)
-    # So many edges stand behind each that chose.
-    per_edge = edges.size / some.size
-    rivals = tuple(
+    if some.size < edges.size and best.combined is not None:
+        # So many edges stand behind each that chose.
+        rivals = _rivals(best, others, edges.size / some.size, edges.freq_cpp)
+        best = best._replace(along=along_bins(edges, normal_deg, best.combined.unwidened))
+        return settled(edges, normal_deg, best, np.zeros_like(edges.gain)), (), rivals
+    least = best.log_likelihood - AS_LIKELY
+    as_likely = [one for one in others if one.settled and one.log_likelihood > least]
+    less_likely = [one for one in others if not (one.settled and one.log_likelihood > least)]
+    tops = _different([best, *as_likely], SAME, edges.freq_cpp)[1:]
+    return best, tuple(tops), _rivals(best, less_likely, 1.0, edges.freq_cpp)
+
+
+def _rivals(
+    best: SensorState, others: Sequence[SensorState], per_edge: float, freq_cpp: Floats
+) -> tuple[Rival, ...]:
+    """How far other ends are from the best one, each edge that chose standing for several."""
+    return tuple(
         Rival(
             per_edge * (best.log_likelihood - one.log_likelihood),
-            apart(one.otf, best.otf, edges.freq_cpp),
+            apart(one.otf, best.otf, freq_cpp),
         )
         for one in others
     )
-    if some.size == edges.size or best.combined is None:
-        return best, _as_likely(best, others, edges.freq_cpp), rivals
-    best = best._replace(along=along_bins(edges, normal_deg, best.combined.unwidened))
-    return settled(edges, normal_deg, best, np.zeros_like(edges.gain)), (), rivals
-
-
-def _as_likely(
-    best: SensorState, others: Sequence[SensorState], freq_cpp: Floats
-) -> tuple[SensorState, ...]:
-    """Other ends that are nearly as likely as the best one, every top once."""
-    found: list[SensorState] = []
-    for one in others:
-        is_high = one.settled and one.log_likelihood > best.log_likelihood - AS_LIKELY
-        known = (best, *found)
-        if is_high and all(apart(one.otf, top.otf, freq_cpp) > _DISTINCT for top in known):
-            found.append(one)
-    return tuple(found)
 
 
 def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -131,26 +126,28 @@ def _ends(
     """Sensors to which the guesses lead, or led until they were given up; the likeliest first."""
     nothing = np.zeros_like(edges.gain)
     least = _APART * min(1.0, math.sqrt(edges.size / _MANY))
-    first, *others = _different(_starts(edges, normal_deg, guesses), least, edges.freq_cpp)
+    starts = _different(_starts(edges, normal_deg, guesses), least, edges.freq_cpp)
+    first, *others = starts[:_MOST_FOLLOWED]
     best = settled(edges, normal_deg, first, nothing)
     ends = [best]
     for start in others:
         start = start._replace(combined=best.combined)
         end = settled(edges, normal_deg, start, nothing, best)
+        if apart(end.otf, best.otf, edges.freq_cpp) < SAME:
+            continue
         ends.append(end)
-        is_likelier = end.log_likelihood > best.log_likelihood + _LIKELIER
-        if is_likelier and apart(end.otf, best.otf, edges.freq_cpp) > SAME:
+        if end.log_likelihood > best.log_likelihood + _LIKELIER:
             best = end
     return [best, *(one for one in ends if one is not best)]
 
 
-def _different(starts: Sequence[SensorState], least: float, freq_cpp: Floats) -> list[SensorState]:
-    """The first starts of those that differ from the ones before, as many as are followed."""
+def _different(some: Sequence[SensorState], least: float, freq_cpp: Floats) -> list[SensorState]:
+    """Those that differ from all before them."""
     found: list[SensorState] = []
-    for one in starts:
+    for one in some:
         if all(apart(one.otf, other.otf, freq_cpp) > least for other in found):
             found.append(one)
-    return found[:_MOST_FOLLOWED]
+    return found
 
 
 def _starts(
