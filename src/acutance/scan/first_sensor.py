@@ -90,9 +90,12 @@ def first_sensor(
         rivals = _rivals(best, others, edges.size / some.size, edges.freq_cpp)
         best = best._replace(along=along_bins(edges, normal_deg, best.combined.unwidened))
         return settled(edges, normal_deg, best, np.zeros_like(edges.gain)), (), rivals
-    least = best.log_likelihood - AS_LIKELY
-    as_likely = [one for one in others if one.settled and one.log_likelihood > least]
-    less_likely = [one for one in others if not (one.settled and one.log_likelihood > least)]
+    as_likely = [
+        one
+        for one in others
+        if one.settled and one.log_likelihood > best.log_likelihood - AS_LIKELY
+    ]
+    less_likely = [one for one in others if all(one is not other for other in as_likely)]
     tops = _different([best, *as_likely], SAME, edges.freq_cpp)[1:]
     return best, tuple(tops), _rivals(best, less_likely, 1.0, edges.freq_cpp)
 

@@ -172,6 +172,8 @@ def fit_sensor(
     for _ in range(_MAX_FIELD_TURNS):
         if field.chance_constant > _CONSTANT or not field.amount.any():
             break
+        # Others were sought under none: their evidence is no more to be compared.
+        others = ()
         moved = changed(state.otf, modes @ field.common)
         state = settled(edges, normal_deg, state._replace(otf=moved), field.log_gain)
         before, field = field, fit_field(state.along, state.otf, state.share, x, y, field)
