@@ -41,6 +41,7 @@ __all__ = [
 
 # Formulas of the blocks; f is the radial frequency.
 FORMULAS = {
+    "Aberrations": r"P e^{2\pi i W} \star P e^{2\pi i W} \text{ (annular pupil)}",
     "Aerosol": r"e^{-t (f/f_a)^2} \ (f < f_a), \quad e^{-t} \ (f \ge f_a)",
     "Butterworth": r"\frac{1}{1 + (f/D_0)^2}",
     "ChargeDiffusion": r"\frac{\cosh(d/L)}{\cosh\left(d \sqrt{(2\pi f)^2 + 1/L^2}\right)}",
@@ -49,6 +50,7 @@ FORMULAS = {
     "Detector": r"\mathrm{sinc}(w u) \, \mathrm{sinc}(h v)",
     "Diffraction": r"P \star P \text{ (annular pupil)}, \quad 0 \ (f \ge f_c)",
     "Exponential": r"\frac{1}{1 + 2\pi i f L}",
+    "ExponentialHalo": r"(1 - a) + a \left(1 + (2\pi d f)^2\right)^{-3/2}",
     "Gaussian": r"e^{-2\pi^2 (\sigma_x^2 u^2 + \sigma_y^2 v^2)}",
     "Halo": r"(1 - a) + a \, e^{-2\pi^2\sigma^2 f^2}",
     "Jitter": r"e^{-2\pi^2 \sigma^2 f^2}",

@@ -4,9 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import simpson
+from scipy.special import j0
 
 from acutance.errors import ModelError
 from acutance.optics import (
+    Aberrations,
     Aerosol,
     Butterworth,
     ChargeDiffusion,
@@ -14,6 +17,7 @@ from acutance.optics import (
     Detector,
     Diffraction,
     Exponential,
+    ExponentialHalo,
     Gaussian,
     Halo,
     Jitter,
@@ -30,6 +34,7 @@ from acutance.optics import (
 from acutance.optics.processing import interpolation_weight
 
 BLOCKS = [
+    Aberrations(1.2, 0.3, coma_across_waves=0.08, astigmatism_waves=0.05),
     Aerosol(0.3, 0.1),
     Butterworth(1.4),
     ChargeDiffusion(0.3),
@@ -41,6 +46,7 @@ BLOCKS = [
     Diffraction(1.2, 0.35),
     Exponential(0.4, "across"),
     Exponential(0.4, "along"),
+    ExponentialHalo(0.1, 2.0),
     Gaussian(0.4, 0.6),
     Halo(0.1, 2.5),
     Jitter(0.2),
@@ -154,6 +160,17 @@ def test_halo_keeps_the_core():
     assert low == pytest.approx(0.88 + 0.12 * math.exp(-2 * (math.pi * 2.5 * 0.05) ** 2))
 
 
+@pytest.mark.parametrize("decay_px", [0.8, 4.0])
+def test_an_exponential_halo_falls_over_its_decay(decay_px):
+    r = np.linspace(0.0, 40 * decay_px, 40001)
+    light = r * np.exp(-r / decay_px) / decay_px**2
+    for freq_cpp in (0.02, 0.1, 0.3):
+        expected = 0.9 + 0.1 * simpson(light * j0(2 * math.pi * freq_cpp * r), x=r)
+        u, v = np.array([0.6 * freq_cpp]), np.array([0.8 * freq_cpp])
+        found = ExponentialHalo(0.1, decay_px).otf(u, v)
+        assert found == pytest.approx(expected, abs=1e-6)
+
+
 @pytest.mark.parametrize("obscuration", [0.0, 0.3, 0.6])
 @pytest.mark.parametrize("nu", [0.1, 0.33, 0.5, 0.77])
 def test_diffraction_is_the_autocorrelation_of_the_pupil(obscuration, nu):
@@ -199,6 +216,8 @@ def test_a_vanishing_obscuration_leaves_the_open_pupil():
 def test_one_pupil_is_not_described_twice():
     with pytest.raises(ModelError, match=r"write Defocus\(0.3, 1.3, obscuration=0.35\) alone"):
         Sensor([Diffraction(1.3, 0.35), Defocus(0.3, 1.3)])
+    with pytest.raises(ModelError, match=r"2 times.* write Aberrations alone"):
+        Sensor([Aberrations(1.3, 0.35), Defocus(0.3, 1.3)])
 
 
 def test_defocus_of_nothing_is_diffraction_and_a_lot_reverses_contrast():
@@ -206,6 +225,41 @@ def test_defocus_of_nothing_is_diffraction_and_a_lot_reverses_contrast():
         Defocus(0.0, 1.2).otf(F, ZERO), Diffraction(1.2).otf(F, ZERO), atol=1e-12
     )
     assert Defocus(1.0, 1.2).otf(np.array([0.4]), ZERO[:1])[0] < -0.02
+
+
+@pytest.mark.parametrize(
+    ("waves", "obscuration", "error"), [(0.05, 0.0, 5e-5), (0.15, 0.3, 3e-4), (0.15, 0.6, 8e-4)]
+)
+def test_aberrations_hold_defocus(waves, obscuration, error):
+    freq_cpp = np.linspace(0.0, 1.3, 53)
+    found = Aberrations(1.2, obscuration, defocus_waves=waves).otf(0.6 * freq_cpp, 0.8 * freq_cpp)
+    # A wavefront of W20 r^2 has W20 / (2 sqrt 3) root mean square, without its mean.
+    expected = Defocus(2 * math.sqrt(3) * waves, 1.2, obscuration).otf(freq_cpp, 0 * freq_cpp)
+    np.testing.assert_allclose(found, expected, atol=error)
+
+
+def test_coma_is_the_autocorrelation_of_a_pupil_that_is_not_even():
+    x, y = np.meshgrid(*2 * [np.linspace(-1, 1, 1601)])
+    coma_waves, shift = 0.08, 0.5
+
+    def pupil(x):
+        square = x**2 + y**2
+        wavefront = coma_waves * math.sqrt(8) * (3 * square - 2) * x
+        return (square < 1) * np.exp(2j * math.pi * wavefront)
+
+    expected = np.sum(pupil(x + shift) * np.conj(pupil(x - shift))) / np.sum(x**2 + y**2 < 1)
+    found = Aberrations(1.2, coma_across_waves=coma_waves).otf(np.array([1.2 * shift]), ZERO[:1])
+    assert abs(found[0].imag) > 0.05
+    assert found[0] == pytest.approx(expected, abs=1e-3)
+    turned = Aberrations(1.2, coma_along_waves=coma_waves).otf(ZERO[:1], np.array([1.2 * shift]))
+    assert turned[0] == pytest.approx(found[0], abs=1e-9)
+
+
+def test_aberrations_of_opposite_sign_mirror_the_spread():
+    u, v = np.array([0.3, 0.5]), np.array([0.2, -0.1])
+    both = Aberrations(1.2, 0.2, coma_across_waves=0.06, coma_along_waves=-0.04)
+    opposite = Aberrations(1.2, 0.2, coma_across_waves=-0.06, coma_along_waves=0.04)
+    np.testing.assert_allclose(both.otf(u, v), np.conj(opposite.otf(u, v)), atol=1e-9)
 
 
 def test_wavefront_error_levels_off_at_the_strehl_ratio():
@@ -285,6 +339,8 @@ def test_larger_pixels_see_lower_frequencies():
         (lambda: Gaussian(-0.1), "Gaussian: sigma_px is -0.1"),
         (lambda: Gaussian(math.nan), "finite"),
         (lambda: Halo(1.2, 3.0), "at most 1"),
+        (lambda: ExponentialHalo(0.1, -1.0), "ExponentialHalo: decay_px is -1"),
+        (lambda: Aberrations(1.2, spherical_waves=2.0), "spherical_waves is 2"),
         (lambda: Diffraction(0.0), "above 0"),
         (lambda: Sharpening(((1.0, -1.0),)), "odd"),
         (lambda: Sharpening(((1.0, -2.0, 1.0),)), "sums to zero"),

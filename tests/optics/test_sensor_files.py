@@ -19,8 +19,10 @@ from acutance.optics.sensor_file import (
 EVERY_BLOCK = [
     optics.Gaussian(0.39, 0.41),
     optics.Halo(0.05, 2.5),
+    optics.ExponentialHalo(0.05, 1.5),
     optics.Diffraction(1.2, 0.3),
     optics.Defocus(-0.2, 1.2),
+    optics.Aberrations(1.2, 0.3, coma_across_waves=0.05),
     optics.WavefrontError(0.05, 0.2, 1.2),
     optics.Aerosol(0.2, 0.01),
     optics.Turbulence(40.0),
@@ -44,9 +46,11 @@ def sensor_of(block, head="gsd_m = 0.5"):
 def test_every_block_goes_round():
     assert {type(one).__name__ for one in EVERY_BLOCK} | {"Rescaled"} == set(BLOCKS)
     sources = tuple(f'from "{type(one).__name__}"\\' for one in EVERY_BLOCK)
-    # A sensor has one pupil: in focus, or out of it.
-    for pupil in (optics.Diffraction, optics.Defocus):
-        kept = [i for i, one in enumerate(EVERY_BLOCK) if type(one) is not pupil]
+    # A sensor has one pupil: in focus, out of it, or aberrated.
+    pupils = {optics.Diffraction, optics.Defocus, optics.Aberrations}
+    for pupil in pupils:
+        others = pupils - {pupil}
+        kept = [i for i, one in enumerate(EVERY_BLOCK) if type(one) not in others]
         described = SensorFile(
             Sensor([EVERY_BLOCK[i] for i in kept], 0.7, 0.72), "all", "Größe\nin two lines",
             tuple(sources[i] for i in kept),

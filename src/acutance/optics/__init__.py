@@ -1,6 +1,14 @@
 """Optical transfer functions: the blocks an imaging system is made of, and their product."""
 
-from acutance.optics.aperture import Defocus, Diffraction, Gaussian, Halo, WavefrontError
+from acutance.optics.aberrations import Aberrations
+from acutance.optics.aperture import (
+    Defocus,
+    Diffraction,
+    ExponentialHalo,
+    Gaussian,
+    Halo,
+    WavefrontError,
+)
 from acutance.optics.atmosphere import Aerosol, Turbulence
 from acutance.optics.block import Block
 from acutance.optics.budget import Budget, BudgetRow, budget
@@ -26,6 +34,7 @@ from acutance.optics.sensor_file import (
 __all__ = [
     "BLOCKS",
     "FAMILIES",
+    "Aberrations",
     "Aerosol",
     "Block",
     "BlockKind",
@@ -37,6 +46,7 @@ __all__ = [
     "Detector",
     "Diffraction",
     "Exponential",
+    "ExponentialHalo",
     "Gaussian",
     "GroundCurves",
     "Halo",

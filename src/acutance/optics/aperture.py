@@ -11,7 +11,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.optics.block import Transfer, require
 
-__all__ = ["Defocus", "Diffraction", "Gaussian", "Halo", "WavefrontError"]
+__all__ = ["Defocus", "Diffraction", "ExponentialHalo", "Gaussian", "Halo", "WavefrontError"]
 
 _PLACES = 4096
 """Of the plane at once: the quadrature needs some fifty numbers for each."""
@@ -64,6 +64,34 @@ class Halo:
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
         return (1 - self.fraction) + self.fraction * Gaussian(self.sigma_px).otf(u, v)
+
+
+@dataclass(frozen=True)
+class ExponentialHalo:
+    """A sharp core with part of the light around it, falling like ``exp(-r / decay)``: scatter.
+
+    The transform of the exponential in the plane: ``(1 - p) + p (1 + (2 pi decay f)^2)^(-3/2)``.
+    It is steeper at its middle and reaches farther than a Gaussian of the same width, which along
+    an axis is ``sqrt(3) decay``.
+
+    Parameters
+    ----------
+    fraction : float
+        Part p of the light that goes to the halo, 0 to 1.
+    decay_px : float
+        Distance in pixels over which the halo falls to 1/e.
+    """
+
+    fraction: float
+    decay_px: float
+
+    def __post_init__(self) -> None:
+        require(self, 0.0, 1.0, fraction=self.fraction)
+        require(self, decay_px=self.decay_px)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        square = (2 * math.pi * self.decay_px) ** 2 * (np.asarray(u) ** 2 + np.asarray(v) ** 2)
+        return np.asarray((1 - self.fraction) + self.fraction * (1 + square) ** -1.5)
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 
-from acutance.optics.aperture import Defocus, Diffraction, Gaussian, Halo, WavefrontError
+from acutance.optics.aberrations import Aberrations
+from acutance.optics.aperture import (
+    Defocus,
+    Diffraction,
+    ExponentialHalo,
+    Gaussian,
+    Halo,
+    WavefrontError,
+)
 from acutance.optics.atmosphere import Aerosol, Turbulence
 from acutance.optics.block import Block
 from acutance.optics.detector import ChargeDiffusion, Detector
@@ -45,6 +53,11 @@ BLOCKS: dict[str, BlockKind] = {
     "Halo": BlockKind(
         Halo, "1 - p + p exp(-2 pi^2 sigma^2 f^2)", "a fraction p of the light in a broad Gaussian"
     ),
+    "ExponentialHalo": BlockKind(
+        ExponentialHalo,
+        "1 - p + p (1 + (2 pi d f)^2)^(-3/2)",
+        "a fraction p of the light that falls as exp(-r / d)",
+    ),
     "Diffraction": BlockKind(
         Diffraction, "autocorrelation of an annular pupil", "O'Neill, JOSA 46, 285, 1956"
     ),
@@ -58,6 +71,11 @@ BLOCKS: dict[str, BlockKind] = {
         WavefrontError,
         "exp(-(2 pi w)^2 (1 - exp(-(f / (l f_c))^2)))",
         "Hufnagel; Shannon, Art and Science of Optical Design, 1997",
+    ),
+    "Aberrations": BlockKind(
+        Aberrations,
+        "autocorrelation of exp(2 pi i W), W of Zernike polynomials",
+        "Noll, JOSA 66, 207, 1976",
     ),
     "Aerosol": BlockKind(
         Aerosol,

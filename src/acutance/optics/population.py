@@ -5,7 +5,9 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
 
 - "telescope": an aperture with a central obscuration, in focus, out of it or with wavefront error,
   and any jitter, smear and diffusion of charge;
-- "halo": light scattered over some pixels, 2 to 15 % of it;
+- "aberrated": a telescope out of alignment: coma and other aberrations of low order;
+- "halo": light scattered over some pixels, 2 to 15 % of it, falling like a Gaussian or like an
+  exponential;
 - "trail": charge left behind, on one side;
 - "smear": motion of .5 to 2.2 px during the exposure;
 - "sharpened", "restored": compensation on the ground by kernels of 3 to 15 taps, set by hand or
@@ -26,7 +28,15 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
-from acutance.optics.aperture import Defocus, Diffraction, Gaussian, Halo, WavefrontError
+from acutance.optics.aberrations import Aberrations
+from acutance.optics.aperture import (
+    Defocus,
+    Diffraction,
+    ExponentialHalo,
+    Gaussian,
+    Halo,
+    WavefrontError,
+)
 from acutance.optics.block import Block
 from acutance.optics.detector import ChargeDiffusion, Detector
 from acutance.optics.electronics import Exponential
@@ -38,8 +48,12 @@ __all__ = ["FAMILIES", "UNEVEN_FAMILIES", "draw_sensor"]
 
 _LOWEST_MTF, _HIGHEST_MTF = 0.01, 1.0
 """MTF at Nyquist beyond which there is nothing to measure, or no detector behind it."""
+_DECAY_PX = 0.8, 4.0
+"""Over which exponential halos fall: a Gaussian of 1.4 to 7 px is as wide."""
 _BY_HAND = 0.05, 0.8
 """Strength of kernels set by hand: light ones are as common as heavy ones, by their logarithm."""
+_LEAST_SUM = 0.2
+"""Of a kernel whose sum was to be one: with few taps for a strong filter it may be anything."""
 
 
 def draw_sensor(family: str, rng: np.random.Generator) -> Sensor:
@@ -63,8 +77,7 @@ def draw_sensor(family: str, rng: np.random.Generator) -> Sensor:
 
 
 def _telescope(rng: np.random.Generator) -> list[Block]:
-    cutoff_cpp = rng.uniform(0.8, 2.2)
-    obscuration = rng.uniform(0.0, 0.6) if rng.random() < 0.8 else 0.0
+    cutoff_cpp, obscuration = _pupil(rng)
     blocks: list[Block] = []
     if rng.random() < 0.4:
         blocks.append(Defocus(rng.uniform(0.0, 0.45), cutoff_cpp, obscuration))
@@ -73,7 +86,25 @@ def _telescope(rng: np.random.Generator) -> list[Block]:
         if rng.random() < 0.5:
             wavefront = rng.uniform(0.0, 0.14), rng.uniform(0.1, 0.4)
             blocks.append(WavefrontError(*wavefront, cutoff_cpp))
-    blocks.append(Gaussian(rng.uniform(0.0, 0.5)))
+    return [*blocks, *_behind_the_telescope(rng)]
+
+
+def _aberrated(rng: np.random.Generator) -> list[Block]:
+    cutoff_cpp, obscuration = _pupil(rng)
+    waves = rng.normal(size=6)
+    waves *= rng.uniform(0.03, 0.12) / np.linalg.norm(waves)
+    return [Aberrations(cutoff_cpp, obscuration, *waves.tolist()), *_behind_the_telescope(rng)]
+
+
+def _pupil(rng: np.random.Generator) -> tuple[float, float]:
+    """Cut-off in cycles per pixel, and obscuration."""
+    cutoff_cpp = rng.uniform(0.8, 2.2)
+    return cutoff_cpp, rng.uniform(0.0, 0.6) if rng.random() < 0.8 else 0.0
+
+
+def _behind_the_telescope(rng: np.random.Generator) -> list[Block]:
+    """Jitter, smear, diffusion of charge and the detector."""
+    blocks: list[Block] = [Gaussian(rng.uniform(0.0, 0.5))]
     if rng.random() < 0.5:
         blocks.append(Smear(rng.uniform(0.0, 1.2), "across"))
     if rng.random() < 0.3:
@@ -86,7 +117,11 @@ def _plain(rng: np.random.Generator) -> list[Block]:
 
 
 def _halo(rng: np.random.Generator) -> list[Block]:
-    return [*_plain(rng), Halo(rng.uniform(0.02, 0.15), rng.uniform(1.5, 5.0))]
+    blocks = _telescope(rng) if rng.random() < 0.5 else _plain(rng)
+    fraction = rng.uniform(0.02, 0.15)
+    if rng.random() < 0.5:
+        return [*blocks, Halo(fraction, rng.uniform(1.5, 5.0))]
+    return [*blocks, ExponentialHalo(fraction, math.exp(rng.uniform(*np.log(_DECAY_PX))))]
 
 
 def _trail(rng: np.random.Generator) -> list[Block]:
@@ -134,6 +169,8 @@ def _wiener_kernel(freq_cpp: Floats, blur: Floats, rng: np.random.Generator) -> 
     cosines[:, 0] = 1.0
     taps = np.linalg.lstsq(cosines, wanted / wanted[0], rcond=None)[0]
     kernel = np.concatenate([taps[:0:-1], taps])
+    if kernel.sum() < _LEAST_SUM:
+        return _wiener_kernel(freq_cpp, blur, rng)
     return Sharpening(tuple(tuple(row) for row in np.outer(kernel, kernel).tolist()))
 
 
@@ -172,7 +209,8 @@ FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "resampled": _resampled,
     "shifted": _shifted,
     "processed": _processed,
+    "aberrated": _aberrated,
 }
 """How to draw the blocks of a sensor of each family."""
-UNEVEN_FAMILIES: Final = ("trail", "shifted", "processed")
+UNEVEN_FAMILIES: Final = ("trail", "shifted", "processed", "aberrated")
 """Those whose sensors' spread functions may differ from side to side."""

@@ -16,6 +16,7 @@ from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.direction import gsd_along, unit_vector
 from acutance.curves.grid import FREQ_CPP, Floats
 from acutance.errors import ModelError
+from acutance.optics.aberrations import Aberrations
 from acutance.optics.aperture import Defocus, Diffraction
 from acutance.optics.block import Axis, Block, Transfer
 from acutance.optics.profile import Profile
@@ -67,15 +68,23 @@ def _as_blocks(blocks: Any) -> tuple[Block, ...]:
 
 
 def _require_one_pupil(blocks: tuple[Block, ...]) -> None:
-    """Refuse an aperture described twice, once in focus and once out of it."""
-    sharp = next((one for one in blocks if isinstance(one, Diffraction)), None)
-    curved = next((one for one in blocks if isinstance(one, Defocus)), None)
-    if sharp is not None and curved is not None:
+    """Refuse an aperture described twice, such as once in focus and once out of it."""
+    pupils = [one for one in blocks if isinstance(one, Diffraction | Defocus | Aberrations)]
+    kinds = {type(one) for one in pupils}
+    if len(kinds) > 1:
         raise ModelError(
-            f"{sharp} and {curved} describe one pupil twice, and its OTF is not their product: "
-            f"write Defocus({curved.waves:g}, {curved.cutoff_cpp:g}, "
-            f"obscuration={sharp.obscuration:g}) alone, which holds the diffraction too"
+            f"{' and '.join(map(str, pupils))} describe one pupil {len(pupils)} times, and its OTF "
+            f"is not their product: write {_alone(pupils)} alone, which holds the diffraction too"
         )
+
+
+def _alone(pupils: Sequence[Diffraction | Defocus | Aberrations]) -> str:
+    """What describes one pupil, of several that do."""
+    obscuration = max(one.obscuration for one in pupils)
+    curved = next((one for one in pupils if isinstance(one, Defocus)), None)
+    if curved is None or any(isinstance(one, Aberrations) for one in pupils):
+        return "Aberrations"
+    return f"Defocus({curved.waves:g}, {curved.cutoff_cpp:g}, obscuration={obscuration:g})"
 
 
 @dataclass(frozen=True)

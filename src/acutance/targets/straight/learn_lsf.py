@@ -36,7 +36,7 @@ __all__ = [
 
 DENSITY_COUNTS = {
     "telescope": 2000,
-    "halo": 1000,
+    "halo": 1600,
     "trail": 700,
     "smear": 500,
     "sharpened": 1600,
@@ -45,6 +45,7 @@ DENSITY_COUNTS = {
     "plain": 400,
     "shifted": 1000,
     "processed": 1400,
+    "aberrated": 900,
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
 detector, nothing else."""

@@ -76,6 +76,7 @@ FAMILY_LOG_AMPLITUDES: Final = {
     **otf_families.FAMILY_LOG_AMPLITUDES,
     "shifted": -3.0,
     "processed": -3.0,
+    "aberrated": -3.0,
 }
 """Expected amplitude of every family relative to that of its own population: as in the plane, and
 few products are interpolated at one phase or processed twice."""
