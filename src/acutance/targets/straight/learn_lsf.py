@@ -49,7 +49,7 @@ DENSITY_COUNTS = {
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
 detector, nothing else."""
-_COORDINATES = 48
+_COORDINATES = 52
 """In the median .0001 of the light lies outside of these, of one processed sensor in fifty .0014;
 what thousand edges of a scene share must be less than what they tell: with 44 a product that was
 compensated and interpolated was .04 low at Nyquist."""
