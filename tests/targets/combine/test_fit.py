@@ -81,6 +81,31 @@ def test_slopes_in_closed_form_are_those_of_the_term(name):
         np.testing.assert_allclose(column, by_difference, atol=1e-8)
 
 
+def test_a_halo_reaches_from_a_gaussian_to_an_exponential():
+    u, v = np.random.default_rng(7).uniform(-0.5, 0.5, (2, 30))
+    share, sigma_px = 0.08, 2.5
+    p = np.array([np.log(share / (1 - share)), np.log(sigma_px), 0.0])
+    for taper, block in (
+        (1e-6, optics.Halo(share, sigma_px)),
+        (2 / 3, optics.ExponentialHalo(share, sigma_px / np.sqrt(3))),
+    ):
+        p[2] = np.log(taper / (1 - taper))
+        np.testing.assert_allclose(TERMS["halo"].otf(p, Plane(u, v)), block.otf(u, v), atol=1e-6)
+
+
+def test_aberrations_of_an_open_pupil_are_those_of_the_optics_with_their_light_in_the_middle():
+    freq, angle = np.linspace(0.05, 1.15, 12), np.radians([0.0, 35.0, 90.0, 140.0])[:, None]
+    u, v = (freq * np.cos(angle)).ravel(), (freq * np.sin(angle)).ravel()
+    waves, cutoff_cpp = np.array([0.03, 0.04, -0.03, 0.05, -0.02, 0.03]), 1.2
+    p = np.array([np.log(cutoff_cpp), -30.0, *waves])
+    found = TERMS["aberrated"].otf(p, Plane(u, v))
+    # Coma moves the light by the slope of its phase at no frequency.
+    moved = 4 * np.sqrt(2) * (u * waves[3] + v * waves[4]) / cutoff_cpp
+    expected = optics.Aberrations(cutoff_cpp, 0.0, *waves.tolist()).otf(u, v)
+    np.testing.assert_allclose(found * np.exp(2j * np.pi * moved), expected, atol=3e-4)
+    assert np.abs(expected.imag).max() > 0.05
+
+
 @pytest.mark.parametrize("logit", [-1.5, 0.0, 0.7])
 def test_interpolation_is_that_of_the_optics(logit):
     u, v = np.random.default_rng(5).uniform(-1, 1, (2, 30))

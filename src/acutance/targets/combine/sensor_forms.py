@@ -254,6 +254,8 @@ SCENE_FORMS: tuple[tuple[str, ...], ...] = (
 
 FORMS: tuple[tuple[str, ...], ...] = (
     *SCENE_FORMS,
+    ("gaussian", "aberrated"),
+    ("gaussian", "smear", "aberrated"),
     ("gaussian", "short kernel"),
     ("gaussian", "diffraction", "short kernel"),
     ("gaussian", "smear", "short kernel"),

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import wrap_axis
 from acutance.optics import Defocus, Diffraction
+from acutance.targets.combine.aberration_term import ABERRATED
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.processing_terms import PROCESSING_TERMS
-from acutance.targets.combine.term import Term, logistic, logistic_slope, wide_gaussian
+from acutance.targets.combine.term import Term, aperture, logistic, logistic_slope
 
 __all__ = ["TERMS", "sinc_growth"]
 
@@ -127,16 +128,38 @@ def _smear_numbers(p: Floats) -> dict[str, float]:
 
 def _halo(p: Floats, plane: Plane) -> Floats:
     share = logistic(p[0])
-    return np.asarray(1 - share + share * wide_gaussian(math.exp(p[1]), plane)[0])
+    return np.asarray(1 - share + share * _scattered(p, plane)[0])
 
 
 def _halo_slopes(p: Floats, plane: Plane) -> Floats:
-    halo, by_width = wide_gaussian(math.exp(p[1]), plane)
-    return np.stack([logistic_slope(p[0]) * (halo - 1), logistic(p[0]) * by_width], axis=1)
+    values, by_width, by_taper = _scattered(p, plane)
+    share = logistic(p[0])
+    by_share = logistic_slope(p[0]) * (values - 1)
+    return np.stack([by_share, share * by_width, share * by_taper], axis=1)
+
+
+def _scattered(p: Floats, plane: Plane) -> tuple[Floats, Floats, Floats]:
+    """OTF of scattered light, and its derivatives by the parameters of width and taper.
+
+    ``(1 + t x) ** (-1 / t)`` with x half the square of the standard deviation times the frequency
+    in radians: a Gaussian at a taper t of 0, an exponential in the plane at 2/3.
+    """
+    taper = logistic(p[2])
+    half_square = 0.5 * (math.exp(p[1]) * plane.waves) ** 2
+    grown = 1 + taper * half_square
+    log_values = -np.log1p(taper * half_square) / taper
+    values = np.exp(log_values)
+    by_width = -2 * half_square / grown * values
+    by_taper = -(log_values + half_square / grown) / taper * values * logistic_slope(p[2])
+    return values, by_width, by_taper
 
 
 def _halo_numbers(p: Floats) -> dict[str, float]:
-    return {"halo_share": logistic(p[0]), "halo_sigma_px": math.exp(p[1])}
+    return {
+        "halo_share": logistic(p[0]),
+        "halo_sigma_px": math.exp(p[1]),
+        "halo_taper": logistic(p[2]),
+    }
 
 
 def _trail(p: Floats, plane: Plane) -> Complexes:
@@ -148,27 +171,23 @@ def _trail_numbers(p: Floats) -> dict[str, float]:
     return {"trail_across_px": float(p[0]), "trail_along_px": float(p[1])}
 
 
-def _aperture(p: Floats) -> tuple[float, float]:
-    return math.exp(p[0]), 0.7 * logistic(p[1])
-
-
 def _diffraction(p: Floats, plane: Plane) -> Floats:
     """Once for every distance from zero frequency."""
     freq, where = plane.rings
-    cutoff, obscuration = _aperture(p)
+    cutoff, obscuration = aperture(p)
     otf = Diffraction(cutoff, obscuration=obscuration).otf(freq, np.zeros(freq.size))
     return np.asarray(np.asarray(otf)[where])
 
 
 def _diffraction_numbers(p: Floats) -> dict[str, float]:
-    cutoff, obscuration = _aperture(p)
+    cutoff, obscuration = aperture(p)
     return {"cutoff_cpp": cutoff, "obscuration": obscuration}
 
 
 def _defocus(p: Floats, plane: Plane) -> Floats:
     """Once for every distance from zero frequency."""
     freq, where = plane.rings
-    cutoff, obscuration = _aperture(p)
+    cutoff, obscuration = aperture(p)
     otf = Defocus(_waves(p), cutoff, obscuration).otf(freq, np.zeros(freq.size))
     return np.asarray(np.asarray(otf)[where])
 
@@ -207,12 +226,13 @@ TERMS: dict[str, Term] = {
     "upright smear": Term(
         _upright_smear, (-0.4, -0.4), (0.8, 0.8), _upright_smear_numbers, _upright_smear_slopes
     ),
-    "halo": Term(_halo, (-2.5, math.log(3.0)), (0.7, 0.4), _halo_numbers, _halo_slopes),
+    "halo": Term(_halo, (-2.5, math.log(3.0), -0.5), (0.7, 0.4, 1.5), _halo_numbers, _halo_slopes),
     "trail": Term(_trail, (0.0, 0.0), (0.4, 0.4), _trail_numbers),
     "diffraction": Term(_diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
     "defocus": Term(_defocus, (math.log(1.3), -0.5, 0.25), (0.4, 1.0, 0.15), _defocus_numbers),
+    "aberrated": ABERRATED,
     **PROCESSING_TERMS,
 }
 """Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear of a pixel or two, halos as of
-`acutance.optics.FAMILIES` and somewhat more (2 to 25 % of the light, 1.5 to 6 px), a quarter of a
-wave of defocus."""
+`acutance.optics.FAMILIES` and somewhat more (2 to 25 % of the light, 1.5 to 6 px, falling like a
+Gaussian or like an exponential), a quarter of a wave of defocus."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.targets.combine.plane import Plane
 
-__all__ = ["Term", "Transfer", "logistic", "logistic_slope", "wide_gaussian"]
+__all__ = ["Term", "Transfer", "aperture", "logistic", "logistic_slope", "wide_gaussian"]
 
 Transfer = Callable[[Floats, Plane], NDArray[Any]]
 """Optical transfer function (OTF), (n,), by parameters and places of the plane."""
@@ -50,6 +50,11 @@ def logistic(x: float) -> float:
 def logistic_slope(x: float) -> float:
     """Its derivative."""
     return logistic(x) * logistic(-x)
+
+
+def aperture(p: Floats) -> tuple[float, float]:
+    """Cut-off frequency in cycles per pixel, and obscuration, of the first two parameters."""
+    return math.exp(p[0]), 0.7 * logistic(p[1])
 
 
 def wide_gaussian(sigma_px: float, plane: Plane) -> tuple[Floats, Floats]:

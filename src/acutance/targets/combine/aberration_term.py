@@ -1,0 +1,142 @@
+"""An aperture with aberrations of low order as one factor of a sensor: coma, astigmatism, defocus.
+
+The transfer function of an aberrated pupil is that of the bare one times the mean of
+``exp(2 pi i D)`` over what the pupil and itself, shifted, have in common, D being the difference of
+the two wavefronts. For discs of radius one about -s and s, with x along the shift and y across, the
+Zernike polynomials of `acutance.optics.Aberrations` give::
+
+    D / s = x (8 sqrt(3) d + 4 sqrt(6) a_along + 24 sqrt(5) b (2 (x^2 + y^2 + s^2) - 1))
+            + y 4 sqrt(6) a_across
+            + sqrt(8) (2 (9 x^2 + 3 y^2 + 3 s^2 - 3) c_along + 12 x y c_across)
+
+of defocus d, astigmatism a, spherical aberration b and coma c, whose components are those about
+axes turned to the shift; what moves the image only, 2 sqrt(8) s c_along, is left out. The mean is a
+quadrature over the open pupil: an obscuration changes it little.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acutance.curves.grid import Floats
+from acutance.optics import Diffraction
+from acutance.targets.combine.plane import Plane
+from acutance.targets.combine.term import Term, aperture
+
+__all__ = ["ABERRATED"]
+
+Complexes = NDArray[np.complex128]
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_WAVES_MEAN = (0.03, 0.0, 0.0, 0.0, 0.0, 0.0)
+"""At no defocus and no astigmatism both are stationary: a fit that begins there stays."""
+_WAVES_STD = 0.04
+"""Of every coefficient: .1 waves in all is a telescope that is just diffraction-limited."""
+_STEP = 1e-5
+
+
+def _aberrated(p: Floats, plane: Plane) -> Complexes:
+    mean, _ = _mean_phases(p, plane, slopes=False)
+    return np.asarray(_diffraction(p[:2], plane) * mean)
+
+
+def _slopes(p: Floats, plane: Plane) -> Complexes:
+    bare = _diffraction(p[:2], plane)
+    mean, by_waves = _mean_phases(p, plane)
+    cutoff, obscuration = _STEP * np.eye(2, p.size)
+    by_cutoff = _aberrated(p + cutoff, plane) - _aberrated(p - cutoff, plane)
+    by_obscuration = _diffraction(p + obscuration, plane) - _diffraction(p - obscuration, plane)
+    by_pupil = np.stack([by_cutoff, by_obscuration * mean]) / (2 * _STEP)
+    return np.concatenate([by_pupil, bare * by_waves]).T
+
+
+def _diffraction(p: Floats, plane: Plane) -> Floats:
+    """Once for every distance from zero frequency."""
+    freq, where = plane.rings
+    otf = Diffraction(*aperture(p)).otf(freq, np.zeros(freq.size))
+    return np.asarray(np.asarray(otf)[where])
+
+
+def _mean_phases(p: Floats, plane: Plane, slopes: bool = True) -> tuple[Complexes, Complexes]:
+    """Mean of ``exp(2 pi i D)``, (n,), and its derivatives by the six coefficients, (6, n)."""
+    shift = np.minimum(plane.waves / (2 * math.pi * math.exp(p[0])), 1.0)
+    x, y, weights = _common_part(shift)
+    s = shift[:, None]
+    along, across = _turned(plane)
+    twice = np.stack([along[0] ** 2 - along[1] ** 2, 2 * along[0] * along[1]])
+    spherical = 24 * math.sqrt(5) * s * x * (2 * (x**2 + y**2 + s**2) - 1)
+    coma_along = 2 * math.sqrt(8) * s * (9 * x**2 + 3 * y**2 + 3 * s**2 - 3)
+    coma_across = 12 * math.sqrt(8) * s * x * y
+    turned = np.stack([-twice[1], twice[0]])
+    by_x = 8 * math.sqrt(3) * p[2] + 4 * math.sqrt(6) * (p[3:5] @ twice)
+    by_y = 4 * math.sqrt(6) * (p[3:5] @ turned)
+    difference = s * (by_x[:, None] * x + by_y[:, None] * y) + p[7] * spherical
+    difference += (p[5:7] @ along)[:, None] * coma_along + (p[5:7] @ across)[:, None] * coma_across
+    waves = weights * np.exp(2j * math.pi * difference)
+    mean = waves.sum(axis=1)
+    if not slopes:
+        return mean, np.empty((0, 0), complex)
+    parts = [
+        np.sum(waves * one, axis=1) for one in (s * x, s * y, spherical, coma_along, coma_across)
+    ]
+    return mean, 2j * math.pi * np.array(
+        [
+            8 * math.sqrt(3) * parts[0],
+            *4 * math.sqrt(6) * (twice * parts[0] + turned * parts[1]),
+            *along * parts[3] + across * parts[4],
+            parts[2],
+        ]
+    )
+
+
+def _common_part(shift: Floats) -> tuple[Floats, Floats, Floats]:
+    """Nodes x and y and weights of what two discs have in common, by shift, (n, m) each."""
+    # By the angle on the farther disc's rim: its chords have no infinite slope.
+    end = np.arccos(shift)[:, None]
+    angle = 0.5 * end * (_NODES + 1)
+    x, chord = np.cos(angle) - shift[:, None], np.sin(angle)
+    strip = _WEIGHTS * chord**2
+    x, chord = np.hstack([x, -x])[..., None], np.hstack([chord, chord])[..., None]
+    weights = np.hstack([strip, strip])[..., None] * _WEIGHTS
+    total = np.maximum(weights.sum(axis=(1, 2), keepdims=True), 1e-300)
+    rows = shift.size
+    return (
+        np.broadcast_to(x, weights.shape).reshape(rows, -1),
+        (chord * _NODES).reshape(rows, -1),
+        (weights / total).reshape(rows, -1),
+    )
+
+
+def _turned(plane: Plane) -> tuple[Floats, Floats]:
+    """Unit vectors along the shift and across it, (2, n) each."""
+    length = np.maximum(np.hypot(plane.u_cpp, plane.v_cpp), 1e-12)
+    along = np.stack([plane.u_cpp, plane.v_cpp]) / length
+    return along, np.stack([-along[1], along[0]])
+
+
+def _numbers(p: Floats) -> dict[str, float]:
+    cutoff, obscuration = aperture(p)
+    defocus, astigmatism, astigmatism_45, across, along, spherical = map(float, p[2:])
+    return {
+        "cutoff_cpp": cutoff,
+        "obscuration": obscuration,
+        "defocus_waves": 2 * math.sqrt(3) * abs(defocus),
+        "astigmatism_waves": math.hypot(astigmatism, astigmatism_45),
+        "coma_across_waves": across,
+        "coma_along_waves": along,
+        "spherical_waves": abs(spherical),
+    }
+
+
+ABERRATED = Term(
+    _aberrated,
+    (math.log(1.3), -0.5, *_WAVES_MEAN),
+    (0.4, 1.0, *6 * (_WAVES_STD,)),
+    _numbers,
+    _slopes,
+)
+"""Cut-off and obscuration as of an aperture in focus, then the coefficients in waves: defocus,
+astigmatism along 0 and 45 degrees, coma across and along, spherical aberration."""
