@@ -238,5 +238,6 @@ def test_few_clean_edges_of_any_family_are_warned_of(family):
         )
         warned.append(ac.measure_edge(image).verdict.word in ("doubtful", "invalid"))
     # Of 60 of each, 0 to 7 % are: 3 of 8 are seen once in 60 runs at 7 %. What is interpolated at
-    # one phase is uneven, as beside a strip: of 60 shifted 17 % are, of 60 processed 30 %.
-    assert sum(warned) <= {"shifted": 4, "processed": 5}.get(family, 2)
+    # one phase is uneven, as beside a strip: of 60 shifted 17 % are, of 60 processed 30 %. Coma
+    # is uneven as well: of 60 aberrated 32 %, half of them as if the values bent towards a level.
+    assert sum(warned) <= {"shifted": 4, "processed": 5, "aberrated": 5}.get(family, 2)

@@ -18,10 +18,17 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.geometry.line import Line
 from acutance.numerics.lorentz_tail import tail_lsf
-from acutance.optics import FAMILIES, Detector, Gaussian, Sensor, draw_sensor
+from acutance.optics import (
+    Detector,
+    ExponentialHalo,
+    Gaussian,
+    Halo,
+    Sensor,
+    draw_sensor,
+)
 from acutance.targets.straight.first_fit import fit_first
 from acutance.targets.straight.spline import CENTRES, quasi_interpolant
-from acutance.targets.straight.tuned import TAIL_WIDTH
+from acutance.targets.straight.tuned import FAMILY_LOG_AMPLITUDES, TAIL_WIDTH
 
 __all__ = [
     "DENSITY_COUNTS",
@@ -36,7 +43,8 @@ __all__ = [
 
 DENSITY_COUNTS = {
     "telescope": 2000,
-    "halo": 1600,
+    "halo": 1000,
+    "scatter": 1000,
     "trail": 700,
     "smear": 500,
     "sharpened": 1600,
@@ -48,7 +56,8 @@ DENSITY_COUNTS = {
     "aberrated": 900,
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
-detector, nothing else."""
+detector, nothing else; "scatter" are those halos that fall like an exponential: kernels as wide as
+both kinds together would blur either."""
 _COORDINATES = 52
 """In the median .0001 of the light lies outside of these, of one processed sensor in fifty .0014;
 what thousand edges of a scene share must be less than what they tell: with 44 a product that was
@@ -135,7 +144,7 @@ def _mirrored(departures: Floats) -> Floats:
 
 
 def learn(
-    sensors_per_family: int, seed: int, families: Iterable[str] = FAMILIES
+    sensors_per_family: int, seed: int, families: Iterable[str] = FAMILY_LOG_AMPLITUDES
 ) -> dict[str, Floats]:
     """The directions of every family, (SIZE + 1, r) each."""
     found = {}
@@ -181,9 +190,15 @@ def draw_density(counts: Mapping[str, int], seed: int) -> dict[str, Floats]:
 
 
 def _drawn(family: str, rng: np.random.Generator) -> Sensor:
-    if family != "plain":
+    if family == "plain":
+        return Sensor([Gaussian(rng.uniform(0.05, 1.1)), Detector(rng.uniform(0.85, 1.0))])
+    if family not in ("halo", "scatter"):
         return draw_sensor(family, rng)
-    return Sensor([Gaussian(rng.uniform(0.05, 1.1)), Detector(rng.uniform(0.85, 1.0))])
+    falls = ExponentialHalo if family == "scatter" else Halo
+    while True:
+        sensor = draw_sensor("halo", rng)
+        if any(isinstance(block, falls) for block in sensor.blocks):
+            return sensor
 
 
 def write_density(path: Path, density: dict[str, Floats]) -> None:

@@ -63,6 +63,9 @@ _UNLIKE_RER_STDS: Final = ((0.5, 1.5), (0.95, 0.75))
 """Probability of a sensor like none that was drawn, and the limit from there on: none of 600 clean
 edges, and 21 of the 73 strips of .4 to 4 px that no other check finds. The second finds four of 16
 pulses with a roof of two heights, and none of 2900 other targets."""
+_SURELY_SHIFTED: Final = 2 / 3
+"""Probability from which on interpolation at one phase is what the LSF is like: twice as likely as
+a trail and all other sensors, which white noise does not refute."""
 
 
 def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> Check:
@@ -206,7 +209,7 @@ def _unlike_sensors(
     noise as well. Where neighbours' noise is independent there was none, and the ground is uneven.
     """
     none, shifted = families.get("other", 0.0), families.get("shifted", 0.0)
-    is_likely = shifted > none and none + shifted > _UNLIKE_RER_STDS[0][0]
+    is_likely = shifted > none and none + shifted > _SURELY_SHIFTED
     if of_scene or not is_likely or not data.is_noise_white:
         return none, "no sensor known"
     return none + shifted, "a product interpolated at one phase, and its noise is not"
