@@ -64,6 +64,7 @@ PACKAGES = (
     "numerics.clipping",
     "numerics.repeated_pixels",
     "numerics.jpeg_blocks",
+    "numerics.periodic_noise",
     "numerics.normal_equations",
     "numerics.process_modes",
 )

@@ -108,6 +108,24 @@ def test_scenes_are_asked_once_and_not_by_their_edges():
     assert not any("JPEG" in reason for reason in compressed.edges.reason)
 
 
+def test_an_interpolated_scene_says_by_how_much():
+    image, _ = simulate.landscape(SENSOR, shape=(470, 470), snr=60, rng=np.random.default_rng(5))
+    at = np.arange(400) / 1.1 + 50.0
+    plain = ac.scan_scene(image[:400, :400])
+    found = ac.scan_scene(simulate.resample(image, at[:, None], at, kernel="cubic"))
+    (check,) = (one for one in found.checks if one.name == "periodic_noise")
+    assert not check.passed
+    assert check.severity == "note"
+    assert 0.2 < check.value < 0.5
+    assert "periods of 11.1 and 11.1 px" in check.message
+    assert "to 1.10 or 0.92 times its size, or turned by 5 degrees" in check.message
+    assert found.verdict.word == "usable"
+    (check,) = (one for one in plain.checks if one.name == "periodic_noise")
+    assert check.passed
+    assert check.value == 0.0
+    assert "the noise does not vary periodically" in check.message
+
+
 def test_an_enlarged_scene_without_edges_says_why():
     image, _ = simulate.landscape(SENSOR, shape=(200, 200), snr=60, rng=np.random.default_rng(3))
     with pytest.raises(ac.FewEdgesError, match=r"\d % of the pixels repeat .* the nearest pixel"):

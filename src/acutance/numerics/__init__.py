@@ -7,8 +7,8 @@
 - otf_modes, otf_families (learned by learn_otf), combined_prior: those of a transfer function in
   two dimensions, and directions in them that sensors of a family take; otf_kernels (learned by
   learn_kernels): taps of kernels, whole pixels apart.
-- clipping: pixels at the end of the scale; repeated_pixels, jpeg_blocks: what resampling and
-  compression left of them (pixel_steps: the step of their numbers).
+- clipping: pixels at the end of the scale; repeated_pixels, jpeg_blocks, periodic_noise: what
+  resampling and compression left of them (pixel_steps: the step of their numbers).
 - stacked: complex values as real ones.
 - lookup: cubic interpolation of tables; one_thread: linear algebra of many small matrices.
 """

@@ -21,7 +21,7 @@ from acutance.scan.sensor_fit import SensorFit
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.full_pixel import full_pixel
-from acutance.targets.processing_checks import PROCESSING_CHECKS, image_processing_checks
+from acutance.targets.processing_checks import SCENE_PROCESSING_CHECKS, scene_processing_checks
 from acutance.targets.record import ImageInfo
 from acutance.targets.region import stated_gsd
 from acutance.targets.slices import SLICE_FREQ_CPP
@@ -31,7 +31,7 @@ __all__ = ["SCENE_CHECKS", "check_scene"]
 SCENE_CHECKS = (
     "edges_used", "trusted_share", "scene_directions", "ideal_share", "ideal_borders",
     "strange_share", "scene_settled", "form_agrees", "rival", "parts_agree", "diagonals",
-    "field_change", "full_pixel", "stated_gsd", *PROCESSING_CHECKS,
+    "field_change", "full_pixel", "stated_gsd", *SCENE_PROCESSING_CHECKS,
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -104,7 +104,7 @@ def check_scene(
             [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
         ),
         stated_gsd(info, limits),
-        *image_processing_checks([image], limits),
+        *scene_processing_checks(*image, limits),
     )  # fmt: skip
 
 

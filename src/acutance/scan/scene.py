@@ -27,7 +27,7 @@ from acutance.scan.stated_objects import behind_objects, gsd_of_part, require_st
 from acutance.scan.window_edges import UsedEdge, WindowEdges
 from acutance.scan.windows import windows
 from acutance.targets.options import chosen_options
-from acutance.targets.processing_checks import image_processing_checks
+from acutance.targets.processing_checks import scene_processing_checks
 from acutance.targets.region import RoiLike, image_info, read_data
 
 __all__ = ["measured_scene", "scan_scene"]
@@ -209,7 +209,7 @@ def _common_reason(edges: SceneEdges) -> str:
 
 def _processing(image: Image, box: Box) -> str:
     """What processing left in the pixels: few edges of a resampled image are straight."""
-    found = image_processing_checks([(image, box)], {})
+    found = scene_processing_checks(image, box, {})
     return "".join(f"{check.message}; " for check in found if not check.passed)
 
 

@@ -22,6 +22,12 @@ PROCESSING_QUESTIONS: Final = {
         "the image was compressed by JPEG, which takes noise and fine detail away: MTFs err by "
         "more than the intervals; use the original",
     ),
+    "periodic_noise": Question(
+        "By how much does the noise vary periodically over the image?", "<=", 0.03,
+        "the image was interpolated onto a grid that was stretched or turned: the blur differs "
+        "from pixel to pixel, and the numbers are those of the product in the mean; use the "
+        "original grid", severity="note",
+    ),
     "odd_even": Question(
         "How much do odd and even columns, or rows, differ beyond noise?", "<=", 0.005,
         "two readouts have gains or offsets of their own; the intervals allow for it and are up to "
