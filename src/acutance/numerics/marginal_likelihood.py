@@ -10,12 +10,14 @@ marginal likelihood; its logarithm is called the log evidence here).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs, solve_triangular
+from scipy.linalg import solve_triangular
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
@@ -41,7 +43,7 @@ _MAX_STEP_DOWN, _MAX_STEP_UP = 4.0, 1.5
 _SETTLED_NOISE = 0.02
 _SETTLED_AMPLITUDE = 0.1
 """A last step this short is taken to first order."""
-_potrf, _syev = get_lapack_funcs(("potrf", "syev"), (np.empty((1, 1)),))
+_Found = TypeVar("_Found")
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,13 +230,25 @@ class Whitened:
 def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Whitened:
     """Posterior mean and covariance at given amplitudes and noise variance, by one Cholesky."""
     sigma = prior.std(log_amplitude)
-    precision, pull = _whitened_equations(normal.gram, normal.projection, sigma, prior.mean, noise)
-    # The transpose has Fortran's order: LAPACK copies nothing, and its upper factor is our lower.
-    upper, failed = _potrf(precision.T, lower=0, clean=1, overwrite_a=1)
-    _require_solution(failed)
-    inverse = lower_inverse(upper.T)
-    covariance = lower_square(inverse)
-    return Whitened(sigma, covariance @ pull, covariance, inverse.T)
+    mean, covariance, inverse = _solved(
+        _whitened, normal.gram, normal.projection, sigma, prior.mean, noise
+    )
+    return Whitened(sigma, mean, covariance, inverse.T)
+
+
+@compiled
+def _whitened(
+    gram: Floats, projection: Floats, sigma: Floats, mean: Floats, noise: float
+) -> tuple[Floats, Floats, Floats]:
+    """Mean (m,) and covariance (m, m) of the whitened coefficients, and the inverse of a factor of
+    the latter's inverse."""
+    precision, pull = _whitened_equations(gram, projection, sigma, mean, noise)
+    inverse = lower_inverse(np.asarray(np.linalg.cholesky(precision), np.float64))
+    covariance, found = lower_square(inverse), np.zeros(sigma.size)
+    for i in range(sigma.size):
+        for j in range(sigma.size):
+            found[i] += covariance[i, j] * pull[j]
+    return found, covariance, inverse
 
 
 @compiled
@@ -262,13 +276,15 @@ def _whitened_equations(
     return precision, pull
 
 
-def _require_solution(failed: int) -> None:
-    """Refuse what LAPACK could not factor: mostly pixels or first fits that are not finite."""
-    if failed:
+def _solved(solve: Callable[..., _Found], *equations: Any) -> _Found:
+    """Solve, or refuse what has no solution: mostly pixels or first fits that are not finite."""
+    try:
+        return solve(*equations)
+    except np.linalg.LinAlgError:
         raise TargetError(
-            f"the pixels do not determine the model: its equations have no solution (LAPACK code "
-            f"{failed}); choose a region with one target and without pixels that are not finite"
-        )
+            "the pixels do not determine the model: its equations have no solution; choose a "
+            "region with one target and without pixels that are not finite"
+        ) from None
 
 
 @dataclass(frozen=True, eq=False)
@@ -293,9 +309,7 @@ class LogEvidence:
     @cached_property
     def _axes(self) -> tuple[Floats, Floats]:
         """Principal curvatures, positive at a maximum of the log evidence, and their axes."""
-        power, axes, failed = _syev(-self.hessian)
-        _require_solution(failed)
-        return power, axes
+        return _solved(_principal_axes, -self.hessian)
 
     def step(self) -> Floats:
         """One bounded Newton step of the log amplitudes, uphill also where it is not concave."""
@@ -308,6 +322,12 @@ class LogEvidence:
         """Factor of the covariance of the log amplitudes (Laplace), (k, k)."""
         power, axes = self._axes
         return np.asarray(axes / np.sqrt(np.maximum(power, self.min_curvature)))
+
+
+@compiled
+def _principal_axes(matrix: Floats) -> tuple[Floats, Floats]:
+    """Eigenvalues of a symmetric matrix, ascending, and its eigenvectors in columns."""
+    return np.linalg.eigh(matrix)
 
 
 def log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> float:

@@ -22,6 +22,7 @@ __all__ = [
     "forward_substitution",
     "lower_inverse",
     "lower_square",
+    "orthonormal_rows",
     "products_of_rows",
     "sparse_product",
     "symmetric_product",
@@ -201,6 +202,15 @@ def forward_substitution(lower: Floats, right: Floats) -> None:
         scale = 1 / lower[i, i]
         for k in range(count):
             row[k] *= scale
+
+
+@compiled
+def orthonormal_rows(rows: Floats) -> Floats:
+    """Independent rows (k, n), each freed of those before it and made one long."""
+    found, lower = rows.copy(), symmetric_product(rows, rows.T.copy())
+    factorize(lower)
+    forward_substitution(lower, found)
+    return found
 
 
 @compiled
