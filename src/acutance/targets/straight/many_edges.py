@@ -22,8 +22,8 @@ from acutance.targets.options import chosen_options
 from acutance.targets.record import Record
 from acutance.targets.region import RegionPixels, RoiLike, read_region
 from acutance.targets.straight.edge import (
+    edge_steps,
     in_whole_image,
-    measure_edge,
     measure_segment,
     require_method,
 )
@@ -160,7 +160,7 @@ def each_edge(
     """
     require_method(method)
     chosen = chosen_options(options, EdgeOptions)
-    measure = partial(measure_edge, gsd_m=gsd_m, method=method, options=chosen)
+    measure = partial(edge_steps, gsd_m=gsd_m, method=method, options=chosen)
     return in_turn(measure, image, regions, workers=workers)
 
 

@@ -16,6 +16,7 @@ from acutance.raster import Gsd, Image
 from acutance.targets.check import Check, Checks, limit_of
 from acutance.targets.options import chosen_options, published_options
 from acutance.targets.region import RegionPixels, RoiLike, read_region
+from acutance.targets.steps import Steps, finished
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.edge import described, details_of, in_whole_image, require_phases
 from acutance.targets.straight.find_edges import find_segments
@@ -32,7 +33,7 @@ from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.trim import Extent
 from acutance.targets.straight.tuned import MAX_CORRECTED_WIDTH
 
-__all__ = ["PULSE_METHODS", "measure_pulse", "require_pulse_method"]
+__all__ = ["PULSE_METHODS", "measure_pulse", "pulse_steps", "require_pulse_method"]
 
 
 _Fitted = tuple[EdgeFit, Estimate, Estimate, Estimate]
@@ -110,6 +111,26 @@ def measure_pulse(
     NoEdgeError, PhaseError, SupportError
         If there is no pulse, it is aligned with the grid, or too little of it is there.
     """
+    return finished(
+        pulse_steps(
+            image, roi, width_px=width_px, width_m=width_m, gsd_m=gsd_m, fit_width=fit_width,
+            method=method, options=options,
+        )
+    )  # fmt: skip
+
+
+def pulse_steps(
+    image: Image | ArrayLike,
+    roi: RoiLike = None,
+    *,
+    width_px: float | None = None,
+    width_m: float | None = None,
+    gsd_m: float | Gsd | None = None,
+    fit_width: bool = True,
+    method: str = "spline",
+    options: PulseOptions | None = None,
+) -> Steps[StraightMeasurement]:
+    """`measure_pulse` in steps."""
     chosen = chosen_options(options, PulseOptions)
     estimate = require_pulse_method(method)
     region = read_region(image, roi, gsd_m)
@@ -120,12 +141,14 @@ def measure_pulse(
     require_phases(trimmed, trimmed.line, limit_of("sample_phases", chosen.limits))
     if stated_px is not None and method in PUBLISHED_PULSE:
         trimmed = replace(trimmed, pulse_width_px=stated_px)
+    yield
     with _naming_the_width(region, stated_px):
         found = estimate(trimmed, free, chosen)
     if free and stated_px is not None and _is_far(found[1].value, stated_px):
         # Far from the first guess the fit may have stopped in a local minimum: begin near the end.
         trimmed, extent = find_pulse(region.pixels, found[1].value)
         found = estimate(trimmed, free, chosen)
+    yield
     return _measurement(region, trimmed, extent, found, method, chosen, stated_px)
 
 
