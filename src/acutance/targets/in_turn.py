@@ -153,8 +153,10 @@ def _record(measure: Measure, place: int, image: Any, roi: Any) -> Steps[Record 
     """The record of one region, or why there is none."""
     try:
         found = yield from measure(image, roi)
+        # Numbers are read from the curves, and checks are answered, when they are asked for first.
         yield
-        # Checks are answered when they are first read.
+        found.numbers()
+        yield
         tuple(found.checks)
         yield
         return found.record

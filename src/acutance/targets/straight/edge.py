@@ -27,7 +27,7 @@ from acutance.targets.steps import Steps, finished
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.edge_checks import check_edge, edge_snr, sample_phases
 from acutance.targets.straight.find_edges import Segment, find_segments
-from acutance.targets.straight.fit_edge import SplineEdge, fit_edge
+from acutance.targets.straight.fit_edge import SplineEdge, fit_edge_steps
 from acutance.targets.straight.lsf import of_stated_target
 from acutance.targets.straight.options import EdgeOptions
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
@@ -58,20 +58,21 @@ _SIGNIFICANT = 3.0
 _OFF_LINE_PX = 1.0
 
 
-def _spline(trimmed: EdgePixels, options: EdgeOptions) -> EdgeFit:
+def _spline(trimmed: EdgePixels, options: EdgeOptions) -> Steps[EdgeFit]:
     if options.method_options is not None:
         raise OptionError("method_options belong to the published methods: leave them out")
-    return fit_edge(trimmed, robust=options.robust)
+    return fit_edge_steps(trimmed, robust=options.robust)
 
 
-def _published(name: str) -> Callable[[EdgePixels, EdgeOptions], EdgeFit]:
-    def measure(trimmed: EdgePixels, options: EdgeOptions) -> EdgeFit:
+def _published(name: str) -> Callable[[EdgePixels, EdgeOptions], Steps[EdgeFit]]:
+    def measure(trimmed: EdgePixels, options: EdgeOptions) -> Steps[EdgeFit]:
+        yield
         return PUBLISHED[name](trimmed, published_options(options, name, PUBLISHED_OPTIONS[name]))
 
     return measure
 
 
-METHODS: dict[str, Callable[[EdgePixels, EdgeOptions], EdgeFit]] = {
+METHODS: dict[str, Callable[[EdgePixels, EdgeOptions], Steps[EdgeFit]]] = {
     "spline": _spline,
     **{name: _published(name) for name in PUBLISHED},
 }
@@ -216,7 +217,7 @@ def _segment_steps(
     trimmed, extent = trim(region.pixels, segment)
     require_phases(trimmed, trimmed.line, limit_of("sample_phases", options.limits))
     yield
-    fit = estimate(trimmed, options)
+    fit = yield from estimate(trimmed, options)
     yield
     check = partial(
         check_edge, region, extent=extent, limits=options.limits, by_rows=method in PUBLISHED,
@@ -225,7 +226,7 @@ def _segment_steps(
     return _measurement(region, trimmed, fit, method, options, check)
 
 
-def require_method(name: str) -> Callable[[EdgePixels, EdgeOptions], EdgeFit]:
+def require_method(name: str) -> Callable[[EdgePixels, EdgeOptions], Steps[EdgeFit]]:
     """The edge method of a name.
 
     Raises
