@@ -10,14 +10,12 @@ marginal likelihood; its logarithm is called the log evidence here).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
+from scipy.linalg import get_lapack_funcs, solve_triangular
 
 from acutance.curves.grid import Floats
 from acutance.errors import TargetError
@@ -43,7 +41,7 @@ _MAX_STEP_DOWN, _MAX_STEP_UP = 4.0, 1.5
 _SETTLED_NOISE = 0.02
 _SETTLED_AMPLITUDE = 0.1
 """A last step this short is taken to first order."""
-_Found = TypeVar("_Found")
+(_syev,) = get_lapack_funcs(("syev",), (np.empty((1, 1)),))
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,9 +228,12 @@ class Whitened:
 def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Whitened:
     """Posterior mean and covariance at given amplitudes and noise variance, by one Cholesky."""
     sigma = prior.std(log_amplitude)
-    mean, covariance, inverse = _solved(
-        _whitened, normal.gram, normal.projection, sigma, prior.mean, noise
-    )
+    try:
+        mean, covariance, inverse = _whitened(
+            normal.gram, normal.projection, sigma, prior.mean, noise
+        )
+    except np.linalg.LinAlgError:
+        raise _unsolvable() from None
     return Whitened(sigma, mean, covariance, inverse.T)
 
 
@@ -276,15 +277,12 @@ def _whitened_equations(
     return precision, pull
 
 
-def _solved(solve: Callable[..., _Found], *equations: Any) -> _Found:
-    """Solve, or refuse what has no solution: mostly pixels or first fits that are not finite."""
-    try:
-        return solve(*equations)
-    except np.linalg.LinAlgError:
-        raise TargetError(
-            "the pixels do not determine the model: its equations have no solution; choose a "
-            "region with one target and without pixels that are not finite"
-        ) from None
+def _unsolvable() -> TargetError:
+    """Of equations that LAPACK refuses: mostly pixels or first fits are not finite."""
+    return TargetError(
+        "the pixels do not determine the model: its equations have no solution; choose a region "
+        "with one target and without pixels that are not finite"
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,7 +307,10 @@ class LogEvidence:
     @cached_property
     def _axes(self) -> tuple[Floats, Floats]:
         """Principal curvatures, positive at a maximum of the log evidence, and their axes."""
-        return _solved(_principal_axes, -self.hessian)
+        power, axes, failed = _syev(-self.hessian)
+        if failed:
+            raise _unsolvable()
+        return power, axes
 
     def step(self) -> Floats:
         """One bounded Newton step of the log amplitudes, uphill also where it is not concave."""
@@ -322,12 +323,6 @@ class LogEvidence:
         """Factor of the covariance of the log amplitudes (Laplace), (k, k)."""
         power, axes = self._axes
         return np.asarray(axes / np.sqrt(np.maximum(power, self.min_curvature)))
-
-
-@compiled
-def _principal_axes(matrix: Floats) -> tuple[Floats, Floats]:
-    """Eigenvalues of a symmetric matrix, ascending, and its eigenvectors in columns."""
-    return np.linalg.eigh(matrix)
 
 
 def log_evidence(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> float:
