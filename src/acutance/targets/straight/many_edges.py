@@ -132,8 +132,8 @@ def each_edge(
     """Measure the strongest edge of each of many regions, and hand out one result after the other.
 
     Regions are taken as they are needed, the first alone, then up to eight together, and few
-    results wait: memory stays flat, however many there are. For the pixels and the fit of one of them call `acutance.measure_edge`: its numbers
-    are the same.
+    results wait: memory stays flat, however many there are. For the pixels and the fit of one of
+    them call `acutance.measure_edge`: its numbers are the same.
 
     Parameters
     ----------
