@@ -11,6 +11,8 @@ from acutance.numerics.small_matrices import (
     lower_inverse,
     lower_square,
     products_of_rows,
+    sparse_product,
+    symmetric_product,
 )
 
 
@@ -43,6 +45,17 @@ def test_a_product_is_added(rows, inner):
     found = np.ones((rows, 5))
     add_product(found, left, right)
     assert np.allclose(found, 1 + left @ right, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("rows", [3, 4, 9, 21])
+@pytest.mark.parametrize("inner", [1, 4, 6, 24])
+def test_products_of_what_is_mostly_zero_and_of_what_is_symmetric(rows, inner):
+    rng = np.random.default_rng(rows)
+    near = np.abs(np.subtract.outer(np.arange(rows), np.arange(inner))) < 3
+    left, right = near * rng.standard_normal((rows, inner)), rng.standard_normal((inner, 5))
+    assert np.allclose(sparse_product(left, right), left @ right, rtol=0, atol=1e-12)
+    half = rng.standard_normal((rows, inner))
+    assert np.allclose(symmetric_product(half, half.T.copy()), half @ half.T, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("size", [4, 8, 28])

@@ -21,6 +21,7 @@ from acutance.targets.pair.tile import TapAxis, TapGrid
 from acutance.targets.periodic.bars_find import find_bars
 from acutance.targets.points.fit import _growth
 from acutance.targets.points.noise import PointNoise
+from acutance.targets.steps import finished
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.edge_checks import _change_along
 from acutance.targets.straight.find_edges import Segment
@@ -40,7 +41,7 @@ def solved_edge():
     )
     pixels = EdgePixels(image, truth.line, truth.dark, truth.bright, 0.6, 10.0)
     first = FirstFit(truth.line, GaussianPixel(0.4, 1.0), truth.dark, 1000.0, 10.0)
-    return pixels, solve(pixels.pixels, first)
+    return pixels, finished(solve(pixels.pixels, first))
 
 
 def changed(solved, **parts):

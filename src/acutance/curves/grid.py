@@ -215,15 +215,14 @@ def crossing(grid: Floats, values: Floats, level: float, start: float, direction
     origin = int(grid.searchsorted(start))
     if direction < 0:
         origin = min(origin, grid.size - 1)
-    above = values[origin::direction] > level
-    if above.size < 2:
-        return math.nan
-    change = int((above != above[0]).argmax())
+    # Crossings are near: plain numbers one by one are faster than arrays of all of them.
+    numbers: list[float] = values[origin::direction].tolist()
+    change = next((k for k, one in enumerate(numbers) if (one > level) != (numbers[0] > level)), 0)
     if change == 0:
         return math.nan
     last = origin + direction * change
     x0, x1 = grid.item(last - direction), grid.item(last)
-    y0, y1 = values.item(last - direction) - level, values.item(last) - level
+    y0, y1 = numbers[change - 1] - level, numbers[change] - level
     guess = x0 + (x1 - x0) * y0 / (y0 - y1)
     steepness = (y1 - y0) / (x1 - x0)
     # One step on the cubic removes what the chord leaves.

@@ -41,7 +41,7 @@ _MAX_STEP_DOWN, _MAX_STEP_UP = 4.0, 1.5
 _SETTLED_NOISE = 0.02
 _SETTLED_AMPLITUDE = 0.1
 """A last step this short is taken to first order."""
-_potrf, _syev = get_lapack_funcs(("potrf", "syev"), (np.empty((1, 1)),))
+(_syev,) = get_lapack_funcs(("syev",), (np.empty((1, 1)),))
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,13 +228,28 @@ class Whitened:
 def whiten(normal: Normal, prior: Prior, log_amplitude: Floats, noise: float) -> Whitened:
     """Posterior mean and covariance at given amplitudes and noise variance, by one Cholesky."""
     sigma = prior.std(log_amplitude)
-    precision, pull = _whitened_equations(normal.gram, normal.projection, sigma, prior.mean, noise)
-    # The transpose has Fortran's order: LAPACK copies nothing, and its upper factor is our lower.
-    upper, failed = _potrf(precision.T, lower=0, clean=1, overwrite_a=1)
-    _require_solution(failed)
-    inverse = lower_inverse(upper.T)
-    covariance = lower_square(inverse)
-    return Whitened(sigma, covariance @ pull, covariance, inverse.T)
+    try:
+        mean, covariance, inverse = _whitened(
+            normal.gram, normal.projection, sigma, prior.mean, noise
+        )
+    except np.linalg.LinAlgError:
+        raise _unsolvable() from None
+    return Whitened(sigma, mean, covariance, inverse.T)
+
+
+@compiled
+def _whitened(
+    gram: Floats, projection: Floats, sigma: Floats, mean: Floats, noise: float
+) -> tuple[Floats, Floats, Floats]:
+    """Mean (m,) and covariance (m, m) of the whitened coefficients, and the inverse of a factor of
+    the latter's inverse."""
+    precision, pull = _whitened_equations(gram, projection, sigma, mean, noise)
+    inverse = lower_inverse(np.asarray(np.linalg.cholesky(precision), np.float64))
+    covariance, found = lower_square(inverse), np.zeros(sigma.size)
+    for i in range(sigma.size):
+        for j in range(sigma.size):
+            found[i] += covariance[i, j] * pull[j]
+    return found, covariance, inverse
 
 
 @compiled
@@ -262,13 +277,12 @@ def _whitened_equations(
     return precision, pull
 
 
-def _require_solution(failed: int) -> None:
-    """Refuse what LAPACK could not factor: mostly pixels or first fits that are not finite."""
-    if failed:
-        raise TargetError(
-            f"the pixels do not determine the model: its equations have no solution (LAPACK code "
-            f"{failed}); choose a region with one target and without pixels that are not finite"
-        )
+def _unsolvable() -> TargetError:
+    """Of equations that LAPACK refuses: mostly pixels or first fits are not finite."""
+    return TargetError(
+        "the pixels do not determine the model: its equations have no solution; choose a region "
+        "with one target and without pixels that are not finite"
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -294,7 +308,8 @@ class LogEvidence:
     def _axes(self) -> tuple[Floats, Floats]:
         """Principal curvatures, positive at a maximum of the log evidence, and their axes."""
         power, axes, failed = _syev(-self.hessian)
-        _require_solution(failed)
+        if failed:
+            raise _unsolvable()
         return power, axes
 
     def step(self) -> Floats:

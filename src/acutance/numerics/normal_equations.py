@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.small_matrices import sparse_product, symmetric_product
 
 __all__ = ["Normal"]
 
@@ -14,6 +15,8 @@ __all__ = ["Normal"]
 @dataclass(frozen=True, eq=False)
 class Normal:
     """Weighted sums over the pixels, of a model that is linear in its m coefficients.
+
+    Where some of them are those of a spline, most of the sums are zero: few splines overlap.
 
     Attributes
     ----------
@@ -40,10 +43,10 @@ class Normal:
         """The equations if the first p unknowns are combinations (p, r) of r others."""
         p, r = directions.shape
         rest = self.projection.size - p
-        half = directions.T @ self.gram[:p]
+        half = sparse_product(self.gram[:, :p], directions)
         gram = np.empty((r + rest, r + rest))
-        gram[:r, :r], gram[:r, r:] = half[:, :p] @ directions, half[:, p:]
-        gram[r:, :r], gram[r:, r:] = half[:, p:].T, self.gram[p:, p:]
+        gram[:r, :r], gram[:r, r:] = symmetric_product(directions.T, half[:p]), half[p:].T
+        gram[r:, :r], gram[r:, r:] = half[p:], self.gram[p:, p:]
         projection = np.concatenate([directions.T @ self.projection[:p], self.projection[p:]])
         return Normal(gram, projection, self.data, self.count)
 
@@ -60,9 +63,9 @@ class Normal:
         old : slice
             Which of the unknowns have gone in their place.
         """
-        p, columns = directions.shape[0], directions[:, new]
-        products = columns.T @ source.gram[:p]
-        rows = np.hstack([products[:, :p] @ directions, products[:, p:]])
+        p, columns = directions.shape[0], np.ascontiguousarray(directions[:, new])
+        products = sparse_product(source.gram[:, :p], columns)
+        rows = np.hstack([products[:p].T @ directions, products[p:].T])
         gram = np.empty((rows.shape[1],) * 2)
         before, after = slice(old.start), slice(old.stop, None)
         for one, own in ((before, slice(new.start)), (after, slice(new.stop, None))):

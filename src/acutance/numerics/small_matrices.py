@@ -22,7 +22,10 @@ __all__ = [
     "forward_substitution",
     "lower_inverse",
     "lower_square",
+    "orthonormal_rows",
     "products_of_rows",
+    "sparse_product",
+    "symmetric_product",
 ]
 
 _SOME: Final = 512
@@ -40,6 +43,55 @@ def add_product(found: Floats, left: Floats, right: Floats) -> None:
         for j in range(fours if i < rows else 0, m):
             for k in range(count):
                 found[i, k] += left[i, j] * right[j, k]
+
+
+@compiled
+def sparse_product(left: Floats, right: Floats) -> Floats:
+    """The product of two matrices, (n, m) and (m, k): squares of 4 x 4 zeros are left out."""
+    n, m, count = len(left), len(right), right.shape[1]
+    found, rows, fours = np.zeros((n, count)), n - n % 4, m - m % 4
+    for i in range(0, rows, 4):
+        for j in range(0, fours, 4):
+            if _holds_any(left, i, j):
+                add_four_rows(found[i : i + 4], left[i : i + 4, j : j + 4], right[j:], 0, count)
+    for i in range(n):
+        for j in range(fours if i < rows else 0, m):
+            for k in range(count):
+                found[i, k] += left[i, j] * right[j, k]
+    return found
+
+
+@inlined
+def _until(i: int, n: int) -> int:
+    """Where a loop over four rows ends behind their diagonal: eight columns are taken at once."""
+    return min(i + 8 - i % 8, n)
+
+
+@inlined
+def _holds_any(matrix: Floats, i: int, j: int) -> bool:
+    """Whether the square of 4 x 4 numbers from a row and a column on has one that is not zero."""
+    for row in range(i, i + 4):
+        for column in range(j, j + 4):
+            if matrix[row, column] != 0:
+                return True
+    return False
+
+
+@compiled
+def symmetric_product(left: Floats, right: Floats) -> Floats:
+    """The product of two matrices, (n, m) and (m, n), that is known to be symmetric."""
+    n, m = left.shape
+    found, rows, fours = np.zeros((n, n)), n - n % 4, m - m % 4
+    for i in range(0, rows, 4):
+        add_four_rows(found[i : i + 4], left[i : i + 4, :fours], right, 0, _until(i, n))
+    for i in range(n):
+        for j in range(fours if i < rows else 0, m):
+            for k in range(i + 1):
+                found[i, k] += left[i, j] * right[j, k]
+    for i in range(n):
+        for j in range(i):
+            found[j, i] = found[i, j]
+    return found
 
 
 @inlined
@@ -153,6 +205,15 @@ def forward_substitution(lower: Floats, right: Floats) -> None:
 
 
 @compiled
+def orthonormal_rows(rows: Floats) -> Floats:
+    """Independent rows (k, n), each freed of those before it and made one long."""
+    found, lower = rows.copy(), symmetric_product(rows, rows.T.copy())
+    factorize(lower)
+    forward_substitution(lower, found)
+    return found
+
+
+@compiled
 def lower_inverse(lower: Floats) -> Floats:
     """The inverse X of a lower triangular matrix L, (n, n): both are zero above the diagonal.
 
@@ -166,7 +227,7 @@ def lower_inverse(lower: Floats) -> Floats:
         if i < fours and i == first:
             for k in range(0, i, 4):
                 factors = lower[i : i + 4, k : k + 4]
-                add_four_rows(inverse[i : i + 4], factors, inverse[k:], 0, k + 4)
+                add_four_rows(inverse[i : i + 4], factors, inverse[k:], 0, _until(k, n))
         for k in range(first if i < fours else 0, i):
             for j in range(k + 1):
                 row[j] += lower[i, k] * inverse[k, j]
@@ -183,7 +244,8 @@ def lower_square(lower: Floats) -> Floats:
     n = len(lower)
     found, fours = np.zeros((n, n)), n - n % 4
     for i in range(0, fours, 4):
-        add_four_rows(found[i : i + 4], lower.T[i : i + 4, i:fours], lower[i:], 0, i + 4)
+        factors = lower.T[i : i + 4, i:fours]
+        add_four_rows(found[i : i + 4], factors, lower[i:], 0, _until(i, n))
     for k in range(fours, n):
         for i in range(k + 1):
             for j in range(i + 1):

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -20,13 +21,17 @@ from acutance.raster.disk_copy import disk_copy
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import Record
 from acutance.targets.region import RoiLike
+from acutance.targets.steps import Steps, together
 from acutance.targets.target_result import Rejected
 
 __all__ = ["ImageRegions", "are_many", "in_turn"]
 
-Measure = Callable[[Image, RoiLike], Measurement]
+Measure = Callable[[Image, RoiLike], Steps[Measurement]]
 ImageRegions = Iterable[tuple[Image | ArrayLike, RoiLike]]
 """Pairs of an image and a region of it."""
+
+_TOGETHER = 8
+"""Regions that take every step together."""
 
 
 def in_turn(
@@ -36,15 +41,15 @@ def in_turn(
     *,
     workers: int = 1,
 ) -> Iterator[Record | Rejected]:
-    """Measure regions one after the other, or on several processes; results in their order.
+    """Measure regions in one process, or on several; results in their order.
 
-    Regions are taken as they are needed, and few results wait: memory stays flat however many
-    there are.
+    Regions are taken as they are needed, the first one alone, then a few more each time, and few
+    results wait: memory stays flat however many there are.
 
     Parameters
     ----------
     measure : function of (image, region)
-        At the top of a module, or a ``functools.partial`` of one.
+        In steps; at the top of a module, or a ``functools.partial`` of one.
     image : Image, (rows, cols) array_like or pairs
         Of all regions; or, without `regions`, pairs of an image and a region.
     regions : iterable of regions, optional
@@ -72,7 +77,8 @@ def _results(
     measure: Measure, pairs: Iterator[tuple[int, Any, Any]], workers: int
 ) -> Iterator[Record | Rejected]:
     if workers == 1:
-        yield from map(partial(_record, measure), pairs)
+        for some in _stacks(pairs):
+            yield from _records(measure, some)
         return
     with TemporaryDirectory(prefix="acutance-") as folder:
         there = _on_disk(pairs, Path(folder))
@@ -128,20 +134,39 @@ def _on_disk(pairs: Iterator[tuple[int, Any, Any]], folder: Path) -> Iterator[tu
         yield place, copy, roi
 
 
+def _stacks(pairs: Iterator[tuple[int, Any, Any]]) -> Iterator[list[tuple[int, Any, Any]]]:
+    """The regions that are measured together: the first result has to wait for no other."""
+    size = 1
+    while some := list(islice(pairs, size)):
+        yield some
+        size = min(2 * size, _TOGETHER)
+
+
 # What a record derives from a fit are products of many small matrices too.
 @one_thread
-def _record(measure: Measure, numbered: tuple[int, Any, Any]) -> Record | Rejected:
+def _records(measure: Measure, some: Sequence[tuple[int, Any, Any]]) -> list[Record | Rejected]:
+    """The record of every region, or why there is none."""
+    return together([_record(measure, *numbered) for numbered in some])
+
+
+def _record(measure: Measure, place: int, image: Any, roi: Any) -> Steps[Record | Rejected]:
     """The record of one region, or why there is none."""
-    place, image, roi = numbered
     try:
-        return measure(image, roi).record
+        found = yield from measure(image, roi)
+        # Numbers are read from the curves, and checks are answered, when they are asked for first.
+        yield
+        found.numbers()
+        yield
+        tuple(found.checks)
+        yield
+        return found.record
     except AcutanceError as error:
         return Rejected(_stage(error), str(error), _where(place, image, roi))
 
 
 def _fields(measure: Measure, numbered: tuple[int, Any, Any]) -> Mapping[str, Any] | Rejected:
     """The record's fields, on their way to another process: curves go as arrays, unwritten."""
-    found = _record(measure, numbered)
+    (found,) = _records(measure, [numbered])
     return found if isinstance(found, Rejected) else found.fields
 
 

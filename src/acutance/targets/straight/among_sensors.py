@@ -15,9 +15,11 @@ from functools import cache
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 from acutance.numerics.integrated_out import integrated_out
 from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.normal_equations import Normal
+from acutance.numerics.small_matrices import orthonormal_rows
 from acutance.targets.straight import lsf_prior
 from acutance.targets.straight.linear_model import Linear
 from acutance.targets.straight.sensor_density import drawn_sensors
@@ -107,7 +109,8 @@ def among_sensors(
         beta, _upper_factor(covariance), std, posterior.log_amplitude, posterior.variance,
         freedom=float(np.vdot(covariance, information)),
     )  # fmt: skip
-    prior = np.diag(np.append(first, np.zeros(q)) ** 2)
+    prior = np.zeros((n, n))
+    prior[:_FIRST, :_FIRST] = np.diag(first**2)
     prior[_FIRST:, _FIRST:] = (BROAD_PRIOR * height) ** 2 * drawn_sensors().second_moment
     alone = lsf.projection - (mean / std**2)[:n]
     return AmongSensors(
@@ -185,8 +188,8 @@ def _normal_prior(linear: Linear, posterior: Posterior) -> Floats:
     Level, width and place of the blur are free: what they can follow is no departure.
     """
     lsf, coordinates = _prior_columns()
-    free = np.linalg.qr(_lsf_of(linear.directions.esf[:, : _FIRST - 2]))[0]
-    columns = coordinates - (drawn_sensors().basis[:SIZE].T @ free) @ (free.T @ lsf)
+    free = orthonormal_rows(_lsf_of(linear.directions.esf[:, : _FIRST - 2]).T.copy())
+    columns = coordinates - (free @ drawn_sensors().basis[:SIZE]).T @ (free @ lsf)
     columns *= posterior.prior_std[_FIRST : 1 + linear.directions.block.size]
     columns /= linear.first_fit.height
     covariance = columns @ columns.T
@@ -194,9 +197,17 @@ def _normal_prior(linear: Linear, posterior: Posterior) -> Floats:
     return np.asarray(covariance)
 
 
+@compiled
 def _upper_factor(covariance: Floats) -> Floats:
     """Upper triangular factor: its first n columns are what remains open of the first n unknowns
     where all others are known."""
-    scale = np.sqrt(np.diagonal(covariance))
-    turned = (covariance / np.outer(scale, scale))[::-1, ::-1]
-    return np.asarray(scale[:, None] * np.linalg.cholesky(turned)[::-1, ::-1])
+    n, scale = len(covariance), np.sqrt(np.diag(covariance))
+    turned, found = np.empty((n, n)), np.empty((n, n))
+    for i in range(n):
+        for j in range(n):
+            turned[n - 1 - i, n - 1 - j] = covariance[i, j] / (scale[i] * scale[j])
+    lower = np.linalg.cholesky(turned)
+    for i in range(n):
+        for j in range(n):
+            found[i, j] = scale[i] * lower[n - 1 - i, n - 1 - j]
+    return found

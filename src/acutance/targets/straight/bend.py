@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 from acutance.numerics.noise import median, robust_scale
+from acutance.numerics.small_matrices import orthonormal_rows
 from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.step_profile import blurred_profile
 
@@ -70,13 +69,24 @@ def _curvature(
     known = (power > 0.3 * median(power)) & (np.abs(offset) < _MAX_OFFSET_PX)
     if np.count_nonzero(known) < _MIN_PARTS:
         return 0.0, np.inf, 1.0
-    half_px, offset = 0.5 * part_px * power.size, offset[known]
-    place = (first + (known.nonzero()[0] + 0.5) * part_px) / half_px
-    shapes = np.stack([np.ones(place.size), place, 0.5 * place * place])
-    inverse = np.linalg.solve(shapes @ shapes.T, shapes)
-    left = offset - (inverse @ offset) @ shapes
-    bow = inverse[2] / half_px**2
-    return float(bow @ offset), max(robust_scale(left), 1e-6) * math.sqrt(bow @ bow), half_px
+    half_px = 0.5 * part_px * power.size
+    place = np.asarray((first + (known.nonzero()[0] + 0.5) * part_px) / half_px, float)
+    bow, bow_std, left = _bow(place, offset[known])
+    std = max(robust_scale(left), 1e-6) * bow_std
+    return bow / half_px**2, std / half_px**2, half_px
+
+
+@compiled
+def _bow(place: Floats, offset: Floats) -> tuple[float, float, Floats]:
+    """Curvature of a parabola through offsets (n,) at some places, its standard deviation for
+    offsets with errors of one, and what the parabola leaves of them."""
+    shapes = np.ones((3, place.size))
+    for k in range(place.size):
+        shapes[1, k], shapes[2, k] = place[k], 0.5 * place[k] * place[k]
+    # The last one is what only a bow follows.
+    free = orthonormal_rows(shapes)
+    std = 1 / (free[2] @ shapes[2])
+    return std * (free[2] @ offset), std, offset - (free @ offset) @ free
 
 
 @compiled

@@ -23,10 +23,11 @@ from acutance.raster import Gsd, Image, value_far_off
 from acutance.targets.check import Check, Checks, limit_of
 from acutance.targets.options import chosen_options, published_options
 from acutance.targets.region import RegionPixels, RoiLike, read_region
+from acutance.targets.steps import Steps, finished
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.edge_checks import check_edge, edge_snr, sample_phases
 from acutance.targets.straight.find_edges import Segment, find_segments
-from acutance.targets.straight.fit_edge import SplineEdge, fit_edge
+from acutance.targets.straight.fit_edge import SplineEdge, fit_edge_steps
 from acutance.targets.straight.lsf import of_stated_target
 from acutance.targets.straight.options import EdgeOptions
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
@@ -40,6 +41,7 @@ __all__ = [
     "METHODS",
     "described",
     "details_of",
+    "edge_steps",
     "in_whole_image",
     "measure_edge",
     "measure_segment",
@@ -56,20 +58,21 @@ _SIGNIFICANT = 3.0
 _OFF_LINE_PX = 1.0
 
 
-def _spline(trimmed: EdgePixels, options: EdgeOptions) -> EdgeFit:
+def _spline(trimmed: EdgePixels, options: EdgeOptions) -> Steps[EdgeFit]:
     if options.method_options is not None:
         raise OptionError("method_options belong to the published methods: leave them out")
-    return fit_edge(trimmed, robust=options.robust)
+    return fit_edge_steps(trimmed, robust=options.robust)
 
 
-def _published(name: str) -> Callable[[EdgePixels, EdgeOptions], EdgeFit]:
-    def measure(trimmed: EdgePixels, options: EdgeOptions) -> EdgeFit:
+def _published(name: str) -> Callable[[EdgePixels, EdgeOptions], Steps[EdgeFit]]:
+    def measure(trimmed: EdgePixels, options: EdgeOptions) -> Steps[EdgeFit]:
+        yield
         return PUBLISHED[name](trimmed, published_options(options, name, PUBLISHED_OPTIONS[name]))
 
     return measure
 
 
-METHODS: dict[str, Callable[[EdgePixels, EdgeOptions], EdgeFit]] = {
+METHODS: dict[str, Callable[[EdgePixels, EdgeOptions], Steps[EdgeFit]]] = {
     "spline": _spline,
     **{name: _published(name) for name in PUBLISHED},
 }
@@ -119,16 +122,30 @@ def measure_edge(
     >>> print(ac.measure_edge(image).mtf_nyquist)  # doctest: +SKIP
     0.2893 ± 0.0061
     """
+    return finished(edge_steps(image, roi, gsd_m=gsd_m, method=method, options=options))
+
+
+def edge_steps(
+    image: Image | ArrayLike,
+    roi: RoiLike = None,
+    *,
+    gsd_m: float | Gsd | None = None,
+    method: str = "spline",
+    options: EdgeOptions | None = None,
+) -> Steps[StraightMeasurement]:
+    """`measure_edge` in steps: the strongest edge that can be measured.
+
+    Raises
+    ------
+    AcutanceError
+        If none can, the strongest's.
+    """
     chosen = chosen_options(options, EdgeOptions)
-    return _measure_first(read_region(image, roi, gsd_m), method, chosen)
-
-
-def _measure_first(region: RegionPixels, method: str, options: EdgeOptions) -> StraightMeasurement:
-    """Measure the strongest edge that can be measured; if none can, raise the strongest's error."""
+    region = read_region(image, roi, gsd_m)
     first: TargetError | None = None
     for segment in find_segments(region.pixels, _CANDIDATES):
         try:
-            return measure_segment(region, segment, method, options)
+            return (yield from _segment_steps(region, segment, method, chosen))
         except TargetError as error:
             first = first or error
     raise _named(_nothing_found(region) if first is None else _torn(first, region), region)
@@ -183,10 +200,25 @@ def measure_segment(
 
     Of a segment of a scene what is asked of the whole scene is not checked.
     """
+    return finished(_segment_steps(region, segment, method, options, of_scene=of_scene))
+
+
+def _segment_steps(
+    region: RegionPixels,
+    segment: Segment,
+    method: str,
+    options: EdgeOptions,
+    *,
+    of_scene: bool = False,
+) -> Steps[StraightMeasurement]:
+    """`measure_segment` in steps."""
     estimate = require_method(method)
+    yield
     trimmed, extent = trim(region.pixels, segment)
     require_phases(trimmed, trimmed.line, limit_of("sample_phases", options.limits))
-    fit = estimate(trimmed, options)
+    yield
+    fit = yield from estimate(trimmed, options)
+    yield
     check = partial(
         check_edge, region, extent=extent, limits=options.limits, by_rows=method in PUBLISHED,
         of_scene=of_scene,
@@ -194,7 +226,7 @@ def measure_segment(
     return _measurement(region, trimmed, fit, method, options, check)
 
 
-def require_method(name: str) -> Callable[[EdgePixels, EdgeOptions], EdgeFit]:
+def require_method(name: str) -> Callable[[EdgePixels, EdgeOptions], Steps[EdgeFit]]:
     """The edge method of a name.
 
     Raises

@@ -11,6 +11,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.numerics.noise import Correlation
+from acutance.targets.steps import Steps, finished
 from acutance.targets.straight.error_causes import FitCauses
 from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.ground_steps import GroundSide
@@ -20,7 +21,7 @@ from acutance.targets.straight.pixels_alone import PixelsAlone
 from acutance.targets.straight.solve import Solved, solve
 from acutance.targets.straight.tuned import MIN_FITTED_HEIGHT
 
-__all__ = ["SplineEdge", "fit_edge", "spline_edge"]
+__all__ = ["SplineEdge", "fit_edge", "fit_edge_steps", "spline_edge"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +77,14 @@ def fit_edge(trimmed: EdgePixels, *, robust: bool = True) -> SplineEdge:
     NoEdgeError
         If they hold no step.
     """
-    return spline_edge(trimmed.pixels, solve(trimmed.pixels, _first_fit(trimmed), robust=robust))
+    return finished(fit_edge_steps(trimmed, robust=robust))
+
+
+def fit_edge_steps(trimmed: EdgePixels, *, robust: bool) -> Steps[SplineEdge]:
+    """`fit_edge` in steps."""
+    solved = yield from solve(trimmed.pixels, _first_fit(trimmed), robust=robust)
+    yield
+    return spline_edge(trimmed.pixels, solved)
 
 
 def _first_fit(trimmed: EdgePixels) -> FirstFit:

@@ -11,13 +11,14 @@ import numpy as np
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
+from acutance.targets.steps import Steps, finished
 from acutance.targets.straight.first_fit import FirstFit, fit_first
 from acutance.targets.straight.fit_edge import SplineEdge, spline_edge
 from acutance.targets.straight.pixels import EdgePixels
 from acutance.targets.straight.solve import Solved, solve
 from acutance.targets.straight.step_profile import pulse_profile
 
-__all__ = ["PulsePixels", "SplinePulse", "fit_pulse"]
+__all__ = ["PulsePixels", "SplinePulse", "fit_pulse", "fit_pulse_steps"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +81,14 @@ def fit_pulse(trimmed: PulsePixels, *, fit_width: bool = True, robust: bool = Tr
     NoEdgeError
         If no pulse survives the fit.
     """
+    return finished(fit_pulse_steps(trimmed, fit_width=fit_width, robust=robust))
+
+
+def fit_pulse_steps(trimmed: PulsePixels, *, fit_width: bool, robust: bool) -> Steps[SplinePulse]:
+    """`fit_pulse` in steps."""
     first_fit = _first_fit(trimmed, fit_width)
-    solved = solve(trimmed.pixels, first_fit, robust=robust, fit_width=fit_width)
+    solved = yield from solve(trimmed.pixels, first_fit, robust=robust, fit_width=fit_width)
+    yield
     edge = spline_edge(trimmed.pixels, solved)
     return SplinePulse(
         **vars(edge),

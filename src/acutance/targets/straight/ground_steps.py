@@ -80,10 +80,10 @@ class Ground:
             widths.
         """
         first, near = NEAR_GROUND_STEPS.size, near_ground()
-        far = [_steps(distance, first) for distance in outwards]
-        side = np.concatenate([near.side, *_numbers(far)])
-        scale = [near.scale, *(_SCALE[first : first + len(steps)] for steps in far)]
-        return cls(near.spline, np.vstack(far), side, np.concatenate(scale), near.walks)
+        far, counts = _steps(outwards, first)
+        side = np.concatenate([near.side, *_numbers(counts)])
+        scale = [near.scale, *(_SCALE[first : first + count] for count in counts)]
+        return cls(near.spline, far, side, np.concatenate(scale), near.walks)
 
     @classmethod
     def beside_pulse(cls, outwards: Sequence[Floats], width: float) -> Ground:
@@ -96,26 +96,29 @@ class Ground:
         width : float
             The pulse's own width, in widths of the blur; none where a fit went below zero.
         """
-        beside = [_steps(distance, 0) for distance in outwards]
+        beside, counts = _steps(outwards, 0)
         count = min(max(int(width / _SEAM_WIDTHS) - 1, 0), _MAX_SEAMS)
         places = width * np.arange(1, count + 1) / (count + 1)
         seams = _blurred(-outwards[0], places) - _blurred(outwards[1], np.zeros(1))
-        steps = [*beside, seams]
-        scale = [_SCALE[: len(steps)] for steps in beside]
+        scale = [_SCALE[:one] for one in counts]
         scale.append(np.full(count, math.sqrt(max(width, 0.0) / (count + 1))))
         none = np.zeros((CELLS + 3, 0))
-        side = np.concatenate(_numbers(steps))
-        return cls(none, np.vstack(steps), side, np.concatenate(scale), 3)
+        side = np.concatenate(_numbers([*counts, count]))
+        return cls(none, np.vstack([beside, seams]), side, np.concatenate(scale), 3)
 
 
-def _numbers(steps: Sequence[Floats]) -> list[NDArray[np.intp]]:
-    return [np.full(len(own), number) for number, own in enumerate(steps)]
+def _numbers(counts: Sequence[int]) -> list[NDArray[np.intp]]:
+    return [np.full(count, number) for number, count in enumerate(counts)]
 
 
-def _steps(outwards: Floats, first: int) -> Floats:
-    """The steps of one side that the pixels reach beyond, from the first one on, (k, n)."""
-    last = int(np.searchsorted(_PLACES, float(outwards.max()) - _ROOM))
-    return _blurred(outwards, _PLACES[first : max(first, last)])
+def _steps(outwards: Sequence[Floats], first: int) -> tuple[Floats, list[int]]:
+    """The steps of either side that the pixels reach beyond, from the first one on, (k, n).
+
+    Those of the first side come first; how many each has follows.
+    """
+    lasts = [int(_PLACES.searchsorted(float(side.max()) - _ROOM)) for side in outwards]
+    places = [_PLACES[first : max(first, last)] for last in lasts]
+    return _blurred_beside(*outwards, *places), [own.size for own in places]
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,8 +149,21 @@ class GroundSide:
     @classmethod
     def of(cls, step: Floats, factor: Floats, width_px: float) -> GroundSide:
         """From the steps, (k,), and a factor of their covariance, (k, m)."""
-        std = np.sqrt(np.sum(np.cumsum(factor, axis=0) ** 2, axis=1))
+        std = _lengths_of_sums(factor)
         return cls(_PLACES[: step.size] * width_px, step, np.cumsum(step), std)
+
+
+@compiled
+def _lengths_of_sums(rows: Floats) -> Floats:
+    """Lengths of the sums of the first rows, of one more each time, (k,)."""
+    lengths, total = np.empty(len(rows)), np.zeros(rows.shape[1])
+    for i in range(len(rows)):
+        power = 0.0
+        for j in range(rows.shape[1]):
+            total[j] += rows[i, j]
+            power += total[j] * total[j]
+        lengths[i] = np.sqrt(power)
+    return lengths
 
 
 @cache
@@ -171,7 +187,24 @@ def _edge_spline() -> Floats:
 def _blurred(outwards: Floats, places: Floats) -> Floats:
     """Response to a unit step at every place, (k, n)."""
     response = np.empty((places.size, outwards.size))
+    _blur(response, outwards, places)
+    return response
+
+
+@compiled
+def _blurred_beside(
+    dark: Floats, bright: Floats, dark_places: Floats, bright_places: Floats
+) -> Floats:
+    """The same of the places on two sides, one after the other, in one array."""
+    response = np.empty((dark_places.size + bright_places.size, dark.size))
+    _blur(response[: dark_places.size], dark, dark_places)
+    _blur(response[dark_places.size :], bright, bright_places)
+    return response
+
+
+@compiled
+def _blur(response: Floats, outwards: Floats, places: Floats) -> None:
+    """Put the response to a unit step at every place into an array, (k, n)."""
     for j in range(places.size):
         for i in range(outwards.size):
             response[j, i] = normal_distribution(FWHM_OF_SIGMA * (outwards[i] - places[j]))[0]
-    return response

@@ -223,7 +223,9 @@ class Linear:
         """The LSF of the unknowns: the tail is added to the spline in closed form."""
         esf, tail, block = self.directions
         factor = self.latent(posterior)[: block.size]
-        return replace(self.mean_model(posterior), latent=np.vstack([esf @ factor, tail @ factor]))
+        latent = np.empty((len(esf) + 1, factor.shape[1]))
+        latent[:-1], latent[-1] = esf @ factor, tail @ factor
+        return replace(self.mean_model(posterior), latent=latent)
 
     def mean_model(self, posterior: Posterior) -> LsfModel:
         """The same as if it were known exactly."""

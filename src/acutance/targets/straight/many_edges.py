@@ -22,8 +22,8 @@ from acutance.targets.options import chosen_options
 from acutance.targets.record import Record
 from acutance.targets.region import RegionPixels, RoiLike, read_region
 from acutance.targets.straight.edge import (
+    edge_steps,
     in_whole_image,
-    measure_edge,
     measure_segment,
     require_method,
 )
@@ -131,9 +131,9 @@ def each_edge(
 ) -> Iterator[Record | Rejected]:
     """Measure the strongest edge of each of many regions, and hand out one result after the other.
 
-    Regions are taken as they are needed, and few results wait: memory stays flat, however many
-    there are. For the pixels and the fit of one of them call `acutance.measure_edge`: its numbers
-    are the same.
+    Regions are taken as they are needed, the first alone, then up to eight together, and few
+    results wait: memory stays flat, however many there are. For the pixels and the fit of one of
+    them call `acutance.measure_edge`: its numbers are the same.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def each_edge(
     """
     require_method(method)
     chosen = chosen_options(options, EdgeOptions)
-    measure = partial(measure_edge, gsd_m=gsd_m, method=method, options=chosen)
+    measure = partial(edge_steps, gsd_m=gsd_m, method=method, options=chosen)
     return in_turn(measure, image, regions, workers=workers)
 
 

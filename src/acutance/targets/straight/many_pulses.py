@@ -13,7 +13,7 @@ from acutance.targets.options import chosen_options
 from acutance.targets.record import Record
 from acutance.targets.region import RoiLike
 from acutance.targets.straight.options import PulseOptions
-from acutance.targets.straight.pulse import measure_pulse, require_pulse_method
+from acutance.targets.straight.pulse import pulse_steps, require_pulse_method
 from acutance.targets.target_result import Rejected
 
 __all__ = ["each_pulse", "measure_pulses"]
@@ -90,7 +90,7 @@ def each_pulse(
     """
     require_pulse_method(method)
     measure = partial(
-        measure_pulse, width_px=width_px, width_m=width_m, gsd_m=gsd_m, fit_width=fit_width,
+        pulse_steps, width_px=width_px, width_m=width_m, gsd_m=gsd_m, fit_width=fit_width,
         method=method, options=chosen_options(options, PulseOptions),
     )  # fmt: skip
     return in_turn(measure, image, regions, workers=workers)

@@ -61,7 +61,7 @@ def model_prior(
     rounding_floor : float, optional
         Noise below which rounding hides it, in data units.
     """
-    near, far = np.split(ground.side, [ground.spline.shape[1]])
+    near, far = ground.side[: ground.spline.shape[1]], ground.side[ground.spline.shape[1] :]
     block = np.concatenate([
         [-1], np.maximum(directions.block - FIRST_BLOCK, -1), GROUND_BLOCK + near,
         np.full(trends, _TREND_BLOCK), GROUND_BLOCK + far, np.full(free_std.size, -1),
@@ -69,7 +69,7 @@ def model_prior(
     scale, mean = np.ones(block.size), np.zeros(block.size)
     scale[block >= GROUND_BLOCK] = ground.scale
     scale[block.size - free_std.size :] = free_std / height
-    aperture = 1 + int(np.flatnonzero(directions.block == 1)[0])
+    aperture = 1 + int((directions.block == 1).argmax())
     scale[aperture] = APERTURE_PX[1]
     mean[aperture] = (APERTURE_PX[0] - blur.aperture_px) * height
     walks = [GROUND_LOG_AMPLITUDE] * ground.walks

@@ -16,11 +16,12 @@ from acutance.raster import Gsd, Image
 from acutance.targets.check import Check, Checks, limit_of
 from acutance.targets.options import chosen_options, published_options
 from acutance.targets.region import RegionPixels, RoiLike, read_region
+from acutance.targets.steps import Steps, finished
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.edge import described, details_of, in_whole_image, require_phases
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.find_pulse import find_pulse
-from acutance.targets.straight.fit_pulse import PulsePixels, fit_pulse
+from acutance.targets.straight.fit_pulse import PulsePixels, fit_pulse, fit_pulse_steps
 from acutance.targets.straight.lsf import of_stated_target, with_uncertain_halo
 from acutance.targets.straight.options import PulseOptions
 from acutance.targets.straight.pixels import EdgeFit
@@ -32,7 +33,7 @@ from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.trim import Extent
 from acutance.targets.straight.tuned import MAX_CORRECTED_WIDTH
 
-__all__ = ["PULSE_METHODS", "measure_pulse", "require_pulse_method"]
+__all__ = ["PULSE_METHODS", "measure_pulse", "pulse_steps", "require_pulse_method"]
 
 
 _Fitted = tuple[EdgeFit, Estimate, Estimate, Estimate]
@@ -40,17 +41,18 @@ _Fitted = tuple[EdgeFit, Estimate, Estimate, Estimate]
 rising one, and the full width at half maximum (FWHM) of its response."""
 
 
-def _spline(trimmed: PulsePixels, fit_width: bool, options: PulseOptions) -> _Fitted:
+def _spline(trimmed: PulsePixels, fit_width: bool, options: PulseOptions) -> Steps[_Fitted]:
     if options.method_options is not None:
         raise OptionError("method_options belong to the published methods: leave them out")
-    fit = fit_pulse(trimmed, fit_width=fit_width, robust=options.robust)
+    fit = yield from fit_pulse_steps(trimmed, fit_width=fit_width, robust=options.robust)
     response = with_uncertain_halo(fit.response)
     prf = prf_fwhm(response, fit.pulse_width.value, fit.width_factor)
     return replace(fit, response=response), fit.pulse_width, fit.height_ratio, prf
 
 
-def _published(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted]:
-    def measure(trimmed: PulsePixels, fit_width: bool, options: PulseOptions) -> _Fitted:
+def _published(name: str) -> Callable[[PulsePixels, bool, PulseOptions], Steps[_Fitted]]:
+    def measure(trimmed: PulsePixels, fit_width: bool, options: PulseOptions) -> Steps[_Fitted]:
+        yield
         wanted = PUBLISHED_PULSE_OPTIONS[name]
         fit = PUBLISHED_PULSE[name](trimmed, published_options(options, name, wanted))
         along_normal = fit.prf_fwhm_px / fit.px_per_normal
@@ -59,7 +61,7 @@ def _published(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted
     return measure
 
 
-PULSE_METHODS: dict[str, Callable[[PulsePixels, bool, PulseOptions], _Fitted]] = {
+PULSE_METHODS: dict[str, Callable[[PulsePixels, bool, PulseOptions], Steps[_Fitted]]] = {
     "spline": _spline,
     **{name: _published(name) for name in PUBLISHED_PULSE},
 }
@@ -110,6 +112,26 @@ def measure_pulse(
     NoEdgeError, PhaseError, SupportError
         If there is no pulse, it is aligned with the grid, or too little of it is there.
     """
+    return finished(
+        pulse_steps(
+            image, roi, width_px=width_px, width_m=width_m, gsd_m=gsd_m, fit_width=fit_width,
+            method=method, options=options,
+        )
+    )  # fmt: skip
+
+
+def pulse_steps(
+    image: Image | ArrayLike,
+    roi: RoiLike = None,
+    *,
+    width_px: float | None = None,
+    width_m: float | None = None,
+    gsd_m: float | Gsd | None = None,
+    fit_width: bool = True,
+    method: str = "spline",
+    options: PulseOptions | None = None,
+) -> Steps[StraightMeasurement]:
+    """`measure_pulse` in steps."""
     chosen = chosen_options(options, PulseOptions)
     estimate = require_pulse_method(method)
     region = read_region(image, roi, gsd_m)
@@ -120,12 +142,14 @@ def measure_pulse(
     require_phases(trimmed, trimmed.line, limit_of("sample_phases", chosen.limits))
     if stated_px is not None and method in PUBLISHED_PULSE:
         trimmed = replace(trimmed, pulse_width_px=stated_px)
+    yield
     with _naming_the_width(region, stated_px):
-        found = estimate(trimmed, free, chosen)
+        found = yield from estimate(trimmed, free, chosen)
     if free and stated_px is not None and _is_far(found[1].value, stated_px):
         # Far from the first guess the fit may have stopped in a local minimum: begin near the end.
         trimmed, extent = find_pulse(region.pixels, found[1].value)
-        found = estimate(trimmed, free, chosen)
+        found = yield from estimate(trimmed, free, chosen)
+    yield
     return _measurement(region, trimmed, extent, found, method, chosen, stated_px)
 
 
@@ -188,7 +212,9 @@ def _free_width(region: RegionPixels, held_px: float, *, robust: bool) -> Estima
     return width
 
 
-def require_pulse_method(name: str) -> Callable[[PulsePixels, bool, PulseOptions], _Fitted]:
+def require_pulse_method(
+    name: str,
+) -> Callable[[PulsePixels, bool, PulseOptions], Steps[_Fitted]]:
     """The pulse method of a name.
 
     Raises

@@ -22,6 +22,7 @@ from acutance.numerics.compiled import compiled
 from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
 from acutance.numerics.normal_equations import Normal
+from acutance.targets.steps import Steps
 from acutance.targets.straight.among_sensors import AmongSensors, among_sensors
 from acutance.targets.straight.error_causes import FitCauses
 from acutance.targets.straight.first_fit import FirstFit
@@ -191,8 +192,8 @@ class Solution:
 
 def solve(
     pixels: Pixels, first_fit: FirstFit, *, robust: bool = True, fit_width: bool = False
-) -> Solved:
-    """Solve the linear model until line, profile, outliers and noise have settled.
+) -> Steps[Solved]:
+    """Solve the linear model until line, profile, outliers and noise have settled, in steps.
 
     Parameters
     ----------
@@ -236,6 +237,7 @@ def solve(
             about = _updated(solved, fit_width) if has_moved else linear.first_fit
             fitted = pixels.value - solved.residual
             linear = Linear.about(about, pixels, fit_width=fit_width, fitted=fitted)
+    yield
     seen = among_sensors(
         solved.linear, solved.normal, solved.equations, solved.posterior, whiteness.inflation
     )

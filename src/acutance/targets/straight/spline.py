@@ -214,14 +214,17 @@ def combine(cell: NDArray[np.intp], weights: Floats, coefficients: Floats) -> Fl
     return value
 
 
+@compiled
 def esf_from_lsf(coefficients: Floats) -> Floats:
     """ESF coefficients e, (CELLS + 3, ...), of LSF coefficients c, (SIZE, ...)."""
-    sums = np.zeros((CELLS + 3, *coefficients.shape[1:]))
-    np.cumsum(coefficients * CELL, axis=0, out=sums[3 : 3 + SIZE])
-    sums[3 + SIZE :] = sums[2 + SIZE]
+    none = np.zeros_like(coefficients[:3])
+    sums = np.concatenate((none, CELL * coefficients, none[:2]))
+    for i in range(4, len(sums)):
+        sums[i] += sums[i - 1]
     return sums
 
 
+@compiled
 def quasi_interpolant(values: Floats) -> Floats:
     """Coefficients of the spline through a smooth function's `values` at the centres.
 

@@ -1,0 +1,33 @@
+"""Work in steps, taken together."""
+
+import pytest
+
+from acutance.targets.steps import finished, together
+
+
+def counted(name, count, taken):
+    for step in range(count):
+        taken.append((name, step))
+        yield
+    return name * count
+
+
+def test_every_step_is_taken_by_all_before_the_next_and_results_keep_their_order():
+    taken = []
+    found = together([counted("a", 2, taken), counted("b", 0, taken), counted("c", 3, taken)])
+    assert found == ["aa", "", "ccc"]
+    assert taken == [("a", 0), ("c", 0), ("a", 1), ("c", 1), ("c", 2)]
+
+
+def test_steps_alone_give_their_result():
+    assert finished(counted("a", 4, [])) == "aaaa"
+    assert together([]) == []
+
+
+def test_an_error_of_a_step_is_raised():
+    def fails():
+        yield
+        raise ValueError("no")
+
+    with pytest.raises(ValueError, match="no"):
+        finished(fails())
