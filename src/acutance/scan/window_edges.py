@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -22,8 +23,9 @@ from acutance.scan.options import ScanOptions
 from acutance.scan.pieces import region_box
 from acutance.scan.windows import Window
 from acutance.targets.region import RegionPixels, read_data
+from acutance.targets.steps import TOGETHER, Steps, together
 from acutance.targets.straight import StraightMeasurement
-from acutance.targets.straight.edge import measure_segment
+from acutance.targets.straight.edge import segment_steps
 from acutance.targets.straight.find_edges import Segment
 from acutance.targets.straight.options import EdgeOptions
 from acutance.targets.straight.surroundings import line_distances
@@ -147,24 +149,42 @@ def _measured(
     gsd = gsd or image.gsd(whole.row + whole.height / 2, whole.col + whole.width / 2)
     # The side of a shadow or a roof is too small to show that it is clipped: its window is not.
     clipped = clip_levels(pixels[np.isfinite(pixels)])
-    rows: list[dict[str, Any]] = []
-    used: list[UsedEdge] = []
-    for segment in segments:
+
+    def measured(segment: Segment | Unseen) -> Steps[tuple[dict[str, Any], UsedEdge | None]]:
         if isinstance(segment, Unseen):
-            rows.append(_place(segment.segment, whole) | {"reason": segment.reason})
-            continue
+            return _place(segment.segment, whole) | {"reason": segment.reason}, None
         around, own = _around(image, gsd, pixels, clipped, whole, segment, options)
-        row = _place(segment, whole)
-        try:
-            found = measure_segment(around, own, "spline", _EDGE_OPTIONS, of_scene=True)
-        except TargetError as error:
-            rows.append(row | {"reason": str(error)})
-            continue
-        is_used = not found.verdict.warns
-        rows.append(row | _numbers(found) | {"used": is_used})
-        if is_used:
-            used.append(UsedEdge.of(found))
-    return WindowEdges(rows, used)
+        return (yield from _edge(around, own, _place(segment, whole)))
+
+    every, waiting = [], iter(segments)
+    while some := list(islice(waiting, TOGETHER)):
+        every += together([measured(segment) for segment in some])
+    return WindowEdges([row for row, _ in every], [used for _, used in every if used is not None])
+
+
+def _edge(
+    around: RegionPixels, segment: Segment, place: dict[str, Any]
+) -> Steps[tuple[dict[str, Any], UsedEdge | None]]:
+    """Columns of an edge, in steps, and what it says of the sensor if it is to be used."""
+    try:
+        found = yield from segment_steps(around, segment, "spline", _EDGE_OPTIONS, of_scene=True)
+    except TargetError as error:
+        return place | {"reason": str(error)}, None
+    yield
+    numbers = _numbers(found)
+    yield
+    verdict = found.verdict
+    row = (
+        place
+        | numbers
+        | {
+            "verdict": verdict.word,
+            "reason": verdict.sentence if verdict.warns else "",
+            "used": not verdict.warns,
+        }
+    )
+    yield
+    return row, None if verdict.warns else UsedEdge.of(found)
 
 
 def _around(
@@ -203,8 +223,7 @@ def _place(segment: Segment, whole: Box) -> dict[str, Any]:
 
 
 def _numbers(found: StraightMeasurement) -> dict[str, Any]:
-    """Columns of an edge that was measured."""
-    verdict = found.verdict
+    """Columns of an edge that was measured, without its verdict."""
     columns: dict[str, Any] = {
         "row": found.line.row,
         "col": found.line.col,
@@ -212,8 +231,6 @@ def _numbers(found: StraightMeasurement) -> dict[str, Any]:
         "length_px": found.line.length_px,
         "place_std_px": found.line.offset_std_px,
         "snr": found.snr,
-        "verdict": verdict.word,
-        "reason": verdict.sentence if verdict.warns else "",
     }
     for name in ("mtf_nyquist", "rer", "fwhm_px"):
         number = getattr(found, name)

@@ -21,7 +21,7 @@ from acutance.raster.disk_copy import disk_copy
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import Record
 from acutance.targets.region import RoiLike
-from acutance.targets.steps import Steps, together
+from acutance.targets.steps import TOGETHER, Steps, together
 from acutance.targets.target_result import Rejected
 
 __all__ = ["ImageRegions", "are_many", "in_turn"]
@@ -29,9 +29,6 @@ __all__ = ["ImageRegions", "are_many", "in_turn"]
 Measure = Callable[[Image, RoiLike], Steps[Measurement]]
 ImageRegions = Iterable[tuple[Image | ArrayLike, RoiLike]]
 """Pairs of an image and a region of it."""
-
-_TOGETHER = 8
-"""Regions that take every step together."""
 
 
 def in_turn(
@@ -139,7 +136,7 @@ def _stacks(pairs: Iterator[tuple[int, Any, Any]]) -> Iterator[list[tuple[int, A
     size = 1
     while some := list(islice(pairs, size)):
         yield some
-        size = min(2 * size, _TOGETHER)
+        size = min(2 * size, TOGETHER)
 
 
 # What a record derives from a fit are products of many small matrices too.

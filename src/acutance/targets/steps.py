@@ -8,9 +8,12 @@ step after step, it finds what it needs: an edge takes a sixth less time.
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from typing import TypeVar
+from typing import Final, TypeVar
 
-__all__ = ["Steps", "finished", "together"]
+__all__ = ["TOGETHER", "Steps", "finished", "together"]
+
+TOGETHER: Final = 8
+"""Regions that take every step together: more share no more."""
 
 _Result = TypeVar("_Result")
 Steps = Generator[None, None, _Result]

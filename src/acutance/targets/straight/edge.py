@@ -47,6 +47,7 @@ __all__ = [
     "measure_segment",
     "require_method",
     "require_phases",
+    "segment_steps",
 ]
 
 _MANY_MISSING = 0.05
@@ -145,7 +146,7 @@ def edge_steps(
     first: TargetError | None = None
     for segment in find_segments(region.pixels, _CANDIDATES):
         try:
-            return (yield from _segment_steps(region, segment, method, chosen))
+            return (yield from segment_steps(region, segment, method, chosen))
         except TargetError as error:
             first = first or error
     raise _named(_nothing_found(region) if first is None else _torn(first, region), region)
@@ -189,21 +190,13 @@ def _named(error: TargetError, region: RegionPixels) -> TargetError:
 
 
 def measure_segment(
-    region: RegionPixels,
-    segment: Segment,
-    method: str,
-    options: EdgeOptions,
-    *,
-    of_scene: bool = False,
+    region: RegionPixels, segment: Segment, method: str, options: EdgeOptions
 ) -> StraightMeasurement:
-    """Measure one segment that was found in a region; see `measure_edge`.
-
-    Of a segment of a scene what is asked of the whole scene is not checked.
-    """
-    return finished(_segment_steps(region, segment, method, options, of_scene=of_scene))
+    """Measure one segment that was found in a region; see `measure_edge`."""
+    return finished(segment_steps(region, segment, method, options))
 
 
-def _segment_steps(
+def segment_steps(
     region: RegionPixels,
     segment: Segment,
     method: str,
@@ -211,7 +204,10 @@ def _segment_steps(
     *,
     of_scene: bool = False,
 ) -> Steps[StraightMeasurement]:
-    """`measure_segment` in steps."""
+    """`measure_segment` in steps.
+
+    Of a segment of a scene what is asked of the whole scene is not checked.
+    """
     estimate = require_method(method)
     yield
     trimmed, extent = trim(region.pixels, segment)
