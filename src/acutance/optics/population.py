@@ -5,9 +5,7 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
 
 - "telescope": an aperture with a central obscuration, in focus, out of it or with wavefront error,
   and any jitter, smear and diffusion of charge;
-- "aberrated": a telescope out of alignment: coma and other aberrations of low order;
-- "halo": light scattered over some pixels, 2 to 15 % of it, falling like a Gaussian or like an
-  exponential;
+- "halo": light in a broad Gaussian, 2 to 15 % of it;
 - "trail": charge left behind, on one side;
 - "smear": motion of .5 to 2.2 px during the exposure;
 - "sharpened", "restored": compensation on the ground by kernels of 3 to 15 taps, set by hand or
@@ -15,7 +13,9 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
   Gaussian blur and of a telescope's;
 - "resampled", "shifted": a product interpolated, at all phases of its pixels or at a single one, as
   a small part of it is;
-- "processed": compensated on the ground, then interpolated.
+- "processed": compensated on the ground, then interpolated;
+- "scatter": a halo behind a telescope, or one that falls like an exponential;
+- "aberrated": a telescope out of alignment: coma and other aberrations of low order.
 """
 
 from __future__ import annotations
@@ -48,12 +48,14 @@ __all__ = ["FAMILIES", "UNEVEN_FAMILIES", "draw_sensor"]
 
 _LOWEST_MTF, _HIGHEST_MTF = 0.01, 1.0
 """MTF at Nyquist beyond which there is nothing to measure, or no detector behind it."""
-_DECAY_PX = 0.8, 4.0
-"""Over which exponential halos fall: a Gaussian of 1.4 to 7 px is as wide."""
+_SCATTERED = 0.02, 0.15
+_HALO_PX, _DECAY_PX = (1.5, 5.0), (0.8, 4.0)
+"""Standard deviation of Gaussian halos, and over what exponential ones fall: of those a Gaussian of
+1.4 to 7 px is as wide."""
 _BY_HAND = 0.05, 0.8
 """Strength of kernels set by hand: light ones are as common as heavy ones, by their logarithm."""
-_LEAST_SUM = 0.2
-"""Of a kernel whose sum was to be one: with few taps for a strong filter it may be anything."""
+_LEAST_SUM = 0.01
+"""Of a kernel whose sum was to be one: few taps for a strong filter may sum to nothing."""
 
 
 def draw_sensor(family: str, rng: np.random.Generator) -> Sensor:
@@ -117,11 +119,16 @@ def _plain(rng: np.random.Generator) -> list[Block]:
 
 
 def _halo(rng: np.random.Generator) -> list[Block]:
-    blocks = _telescope(rng) if rng.random() < 0.5 else _plain(rng)
-    fraction = rng.uniform(0.02, 0.15)
-    if rng.random() < 0.5:
-        return [*blocks, Halo(fraction, rng.uniform(1.5, 5.0))]
-    return [*blocks, ExponentialHalo(fraction, math.exp(rng.uniform(*np.log(_DECAY_PX))))]
+    return [*_plain(rng), Halo(rng.uniform(*_SCATTERED), rng.uniform(*_HALO_PX))]
+
+
+def _scatter(rng: np.random.Generator) -> list[Block]:
+    is_plain = rng.random() < 0.4
+    blocks = _plain(rng) if is_plain else _telescope(rng)
+    fraction = rng.uniform(*_SCATTERED)
+    if is_plain or rng.random() < 0.6:
+        return [*blocks, ExponentialHalo(fraction, math.exp(rng.uniform(*np.log(_DECAY_PX))))]
+    return [*blocks, Halo(fraction, rng.uniform(*_HALO_PX))]
 
 
 def _trail(rng: np.random.Generator) -> list[Block]:
@@ -169,7 +176,7 @@ def _wiener_kernel(freq_cpp: Floats, blur: Floats, rng: np.random.Generator) -> 
     cosines[:, 0] = 1.0
     taps = np.linalg.lstsq(cosines, wanted / wanted[0], rcond=None)[0]
     kernel = np.concatenate([taps[:0:-1], taps])
-    if kernel.sum() < _LEAST_SUM:
+    if abs(kernel.sum()) < _LEAST_SUM:
         return _wiener_kernel(freq_cpp, blur, rng)
     return Sharpening(tuple(tuple(row) for row in np.outer(kernel, kernel).tolist()))
 
@@ -209,6 +216,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "resampled": _resampled,
     "shifted": _shifted,
     "processed": _processed,
+    "scatter": _scatter,
     "aberrated": _aberrated,
 }
 """How to draw the blocks of a sensor of each family."""

@@ -9,7 +9,6 @@ import acutance as ac
 from acutance import Sensor
 from acutance.numerics.gaussian_pixel_2d import FWHM_OF_SIGMA, GaussianPixel2d
 from acutance.optics import (
-    FAMILIES,
     Detector,
     Diffraction,
     Exponential,
@@ -23,6 +22,7 @@ from acutance.targets.points.learn_psf import departure, directions_of, learn, s
 from acutance.targets.points.psf_families import PARITIES, learned_families
 from acutance.targets.points.psf_prior import PsfDirections
 from acutance.targets.points.psf_spline import GRIDS, parity_part
+from acutance.targets.points.tuned import FAMILY_LOG_AMPLITUDES
 
 OVERSHARP = Sensor([Diffraction(0.9), Gaussian(0.2), Detector(), Sharpening.both_axes(0.6)])
 
@@ -84,7 +84,7 @@ def test_the_blur_of_a_departure_is_that_found_in_pixels(length_px):
     assert departure(sensor).widths_px == pytest.approx(blur.widths_px, abs=0.01)
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", FAMILY_LOG_AMPLITUDES)
 def test_sensors_never_seen_lie_in_the_directions_learned(family):
     """All directions together leave a tenth of a new sensor's departure, in the median."""
     families = learned_families()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from acutance import Sensor
-from acutance.optics import FAMILIES, Detector, Exponential, Gaussian, Smear, draw_sensor
+from acutance.optics import Detector, Exponential, Gaussian, Smear, draw_sensor
 from acutance.targets.points.learn_psf import departure
 from acutance.targets.points.learn_sensors import (
     DENSITY_COUNTS,
@@ -18,7 +18,7 @@ from acutance.targets.points.learn_sensors import (
 from acutance.targets.points.psf_families import learned_families
 from acutance.targets.points.psf_spline import GRIDS
 from acutance.targets.points.sensor_density import Basis, drawn_sensors, sensors_of
-from acutance.targets.points.tuned import FAMILY_WEIGHTS
+from acutance.targets.points.tuned import FAMILY_LOG_AMPLITUDES, FAMILY_WEIGHTS
 
 PIXEL = Detector()
 
@@ -33,7 +33,7 @@ def light(sensor, coordinates=None):
     return np.concatenate([g.step * c.ravel() for g, c in zip(GRIDS, parts, strict=True)])
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", FAMILY_LOG_AMPLITUDES)
 def test_sensors_never_seen_lie_in_the_coordinates(family):
     """What the coordinates leave of a new sensor's departure is a tenth of it, in the median."""
     unit = np.eye(drawn_sensors().directions.shape[1])
@@ -92,5 +92,5 @@ def test_sensors_of_another_blur_have_no_part():
     assert 100 < wide.part.size < narrow.part.size
     assert sensors.about((20.0, 20.0)).part.size == 0
     trailing = sensors.about((2.4, 1.3))
-    assert set(trailing.name[trailing.part]) <= {*FAMILIES, "plain"}
+    assert set(trailing.name[trailing.part]) <= {*FAMILY_LOG_AMPLITUDES, "plain"}
     assert trailing.part.size < narrow.part.size

@@ -78,7 +78,7 @@ def test_the_tail_of_a_direction_is_kept_apart_from_its_spline():
     assert found.tail[-1] == 1
     assert not found.esf[:, -1].any()
     # Of the families only those with an aperture have light beyond the spline.
-    apertures = set(FAMILY_LOG_AMPLITUDES) - {"trail", "smear", "sharpened"}
+    apertures = {"telescope", "restored", "resampled", "shifted", "processed"}
     for number, family in enumerate(FAMILY_LOG_AMPLITUDES):
         own = np.abs(found.tail[found.block == 2 + number]).max()
         assert own > 0.01 if family in apertures else own < 1e-9

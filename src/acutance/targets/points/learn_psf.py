@@ -21,7 +21,7 @@ from scipy.ndimage import map_coordinates
 
 from acutance.curves.grid import Floats
 from acutance.numerics.lorentz_tail import tail_otf, tail_psf
-from acutance.optics import FAMILIES, Sensor, draw_sensor
+from acutance.optics import Sensor, draw_sensor
 from acutance.targets.points.first_fit import FirstFit, fit_first_gaussian
 from acutance.targets.points.psf_families import PARITIES, Parities, entry_name
 from acutance.targets.points.psf_prior import PsfDirections
@@ -35,6 +35,7 @@ from acutance.targets.points.psf_spline import (
     parity_part,
 )
 from acutance.targets.points.stamps import Stamps
+from acutance.targets.points.tuned import FAMILY_LOG_AMPLITUDES
 
 __all__ = [
     "Departure",
@@ -219,7 +220,7 @@ def directions_of(departures: Sequence[Departure], negligible: float) -> dict[Pa
 
 
 def learn(
-    sensors_per_family: int, seed: int, families: Iterable[str] = FAMILIES
+    sensors_per_family: int, seed: int, families: Iterable[str] = FAMILY_LOG_AMPLITUDES
 ) -> dict[str, Floats]:
     """The directions of every family and parity, (r, m) each, by the names in the file."""
     learned: dict[str, Floats] = {}

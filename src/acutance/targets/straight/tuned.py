@@ -78,8 +78,8 @@ FAMILY_LOG_AMPLITUDES: Final = {
     "processed": -3.0,
 }
 """Expected amplitude of every family relative to that of its own population: as in the plane, and
-few products are interpolated at one phase or processed twice. What is aberrated departs along
-directions of these."""
+few products are interpolated at one phase or processed twice. What is scattered or aberrated
+departs along directions of these."""
 DETAIL: Final = (0.7, 0.17)
 """Fine structure of the peak: extent L and smoothness l of its process, in widths."""
 DETAIL_LOG_AMPLITUDE: Final = -3.0
