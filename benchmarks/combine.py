@@ -244,7 +244,7 @@ def main() -> None:
         "value. Chi² ratio: chi-square of the agreement over its expectation. Disagree, no "
         "plain: combinations whose checks `agreement` and `plain_sensor` failed. Correction: mean "
         "size of the correction of the parametric form. G: Gaussian and detector. The last "
-        "nine rows are families of sensors, another one in every draw."
+        "rows are families of sensors, another one in every draw."
     )
     few_text = (
         "Edges of 80 by 80 px at SNR 100, half of them 4 to 12 degrees off across and half off "
