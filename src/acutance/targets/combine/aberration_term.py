@@ -17,6 +17,7 @@ quadrature over the open pupil: an obscuration changes it little.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ from acutance.optics import Diffraction
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.term import Term, aperture
 
-__all__ = ["ABERRATED"]
+__all__ = ["ABERRATED", "diffraction"]
 
 Complexes = NDArray[np.complex128]
 
@@ -36,60 +37,90 @@ _WAVES_MEAN = (0.03, 0.0, 0.0, 0.0, 0.0, 0.0)
 _WAVES_STD = 0.04
 """Of every coefficient: .1 waves in all is a telescope that is just diffraction-limited."""
 _STEP = 1e-5
+_DEFOCUS, _ASTIGMATISM = 8 * math.sqrt(3), 4 * math.sqrt(6)
 
 
 def _aberrated(p: Floats, plane: Plane) -> Complexes:
-    mean, _ = _mean_phases(p, plane, slopes=False)
-    return np.asarray(_diffraction(p[:2], plane) * mean)
+    return np.asarray(diffraction(p[:2], plane) * _Difference.of(p, plane).mean)
 
 
 def _slopes(p: Floats, plane: Plane) -> Complexes:
-    bare = _diffraction(p[:2], plane)
-    mean, by_waves = _mean_phases(p, plane)
+    bare, difference = diffraction(p[:2], plane), _Difference.of(p, plane)
     cutoff, obscuration = _STEP * np.eye(2, p.size)
     by_cutoff = _aberrated(p + cutoff, plane) - _aberrated(p - cutoff, plane)
-    by_obscuration = _diffraction(p + obscuration, plane) - _diffraction(p - obscuration, plane)
-    by_pupil = np.stack([by_cutoff, by_obscuration * mean]) / (2 * _STEP)
-    return np.concatenate([by_pupil, bare * by_waves]).T
+    by_obscuration = diffraction(p + obscuration, plane) - diffraction(p - obscuration, plane)
+    by_pupil = np.stack([by_cutoff, by_obscuration * difference.mean]) / (2 * _STEP)
+    return np.concatenate([by_pupil, bare * difference.slopes]).T
 
 
-def _diffraction(p: Floats, plane: Plane) -> Floats:
-    """Once for every distance from zero frequency."""
+def diffraction(p: Floats, plane: Plane) -> Floats:
+    """OTF of an aperture in focus, (n,), worked out once for every distance from zero frequency."""
     freq, where = plane.rings
     otf = Diffraction(*aperture(p)).otf(freq, np.zeros(freq.size))
     return np.asarray(np.asarray(otf)[where])
 
 
-def _mean_phases(p: Floats, plane: Plane, slopes: bool = True) -> tuple[Complexes, Complexes]:
-    """Mean of ``exp(2 pi i D)``, (n,), and its derivatives by the six coefficients, (6, n)."""
-    shift = np.minimum(plane.waves / (2 * math.pi * math.exp(p[0])), 1.0)
-    x, y, weights = _common_part(shift)
-    s = shift[:, None]
-    along, across = _turned(plane)
-    twice = np.stack([along[0] ** 2 - along[1] ** 2, 2 * along[0] * along[1]])
-    spherical = 24 * math.sqrt(5) * s * x * (2 * (x**2 + y**2 + s**2) - 1)
-    coma_along = 2 * math.sqrt(8) * s * (9 * x**2 + 3 * y**2 + 3 * s**2 - 3)
-    coma_across = 12 * math.sqrt(8) * s * x * y
-    turned = np.stack([-twice[1], twice[0]])
-    by_x = 8 * math.sqrt(3) * p[2] + 4 * math.sqrt(6) * (p[3:5] @ twice)
-    by_y = 4 * math.sqrt(6) * (p[3:5] @ turned)
-    difference = s * (by_x[:, None] * x + by_y[:, None] * y) + p[7] * spherical
-    difference += (p[5:7] @ along)[:, None] * coma_along + (p[5:7] @ across)[:, None] * coma_across
-    waves = weights * np.exp(2j * math.pi * difference)
-    mean = waves.sum(axis=1)
-    if not slopes:
-        return mean, np.empty((0, 0), complex)
-    parts = [
-        np.sum(waves * one, axis=1) for one in (s * x, s * y, spherical, coma_along, coma_across)
-    ]
-    return mean, 2j * math.pi * np.array(
-        [
-            8 * math.sqrt(3) * parts[0],
-            *4 * math.sqrt(6) * (twice * parts[0] + turned * parts[1]),
-            *along * parts[3] + across * parts[4],
-            parts[2],
-        ]
-    )
+@dataclass(frozen=True, eq=False)
+class _Difference:
+    """The difference D of the wavefronts over what the pupil and itself, shifted, have in common.
+
+    Attributes
+    ----------
+    along, twice : (2, n) array
+        Unit vectors of the shifts, and of twice their angle.
+    shapes : (5, n, m) array
+        What D is made of: x and y, spherical aberration, coma along the shift and across it.
+    waves : (n, m) complex array
+        ``exp(2 pi i D)`` times the weights of the nodes.
+    """
+
+    along: Floats
+    twice: Floats
+    shapes: Floats
+    waves: Complexes
+
+    @classmethod
+    def of(cls, p: Floats, plane: Plane) -> _Difference:
+        """Of the parameters of `ABERRATED`, at places of the plane."""
+        shift = np.minimum(plane.waves / (2 * math.pi * math.exp(p[0])), 1.0)
+        x, y, weights = _common_part(shift)
+        s = shift[:, None]
+        spherical = 24 * math.sqrt(5) * s * x * (2 * (x**2 + y**2 + s**2) - 1)
+        coma_along = 2 * math.sqrt(8) * s * (9 * x**2 + 3 * y**2 + 3 * s**2 - 3)
+        coma_across = 12 * math.sqrt(8) * s * x * y
+        shapes = np.stack([s * x, s * y, spherical, coma_along, coma_across])
+        length = np.maximum(np.hypot(plane.u_cpp, plane.v_cpp), 1e-12)
+        along = np.stack([plane.u_cpp, plane.v_cpp]) / length
+        twice = np.stack([along[0] ** 2 - along[1] ** 2, 2 * along[0] * along[1]])
+        amounts = np.stack(
+            [
+                _DEFOCUS * p[2] + _ASTIGMATISM * (p[3:5] @ twice),
+                _ASTIGMATISM * (p[3:5] @ _across(twice)),
+                np.full(shift.size, p[7]),
+                p[5:7] @ along,
+                p[5:7] @ _across(along),
+            ]
+        )
+        difference = np.einsum("kn,knm->nm", amounts, shapes)
+        return cls(along, twice, shapes, weights * np.exp(2j * math.pi * difference))
+
+    @property
+    def mean(self) -> Complexes:
+        """Mean of ``exp(2 pi i D)``, (n,)."""
+        return np.asarray(self.waves.sum(axis=1))
+
+    @property
+    def slopes(self) -> Complexes:
+        """Its derivatives by the six coefficients, (6, n)."""
+        by_x, by_y, spherical, coma_along, coma_across = np.sum(self.waves * self.shapes, axis=2)
+        astigmatism = _ASTIGMATISM * (self.twice * by_x + _across(self.twice) * by_y)
+        coma = self.along * coma_along + _across(self.along) * coma_across
+        return 2j * math.pi * np.vstack([_DEFOCUS * by_x, astigmatism, coma, spherical])
+
+
+def _across(along: Floats) -> Floats:
+    """Vectors (2, n) turned by a quarter."""
+    return np.stack([-along[1], along[0]])
 
 
 def _common_part(shift: Floats) -> tuple[Floats, Floats, Floats]:
@@ -108,13 +139,6 @@ def _common_part(shift: Floats) -> tuple[Floats, Floats, Floats]:
         (chord * _NODES).reshape(rows, -1),
         (weights / total).reshape(rows, -1),
     )
-
-
-def _turned(plane: Plane) -> tuple[Floats, Floats]:
-    """Unit vectors along the shift and across it, (2, n) each."""
-    length = np.maximum(np.hypot(plane.u_cpp, plane.v_cpp), 1e-12)
-    along = np.stack([plane.u_cpp, plane.v_cpp]) / length
-    return along, np.stack([-along[1], along[0]])
 
 
 def _numbers(p: Floats) -> dict[str, float]:

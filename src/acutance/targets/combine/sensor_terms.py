@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import wrap_axis
-from acutance.optics import Defocus, Diffraction
-from acutance.targets.combine.aberration_term import ABERRATED
+from acutance.optics import Defocus
+from acutance.targets.combine.aberration_term import ABERRATED, diffraction
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.processing_terms import PROCESSING_TERMS
 from acutance.targets.combine.term import Term, aperture, logistic, logistic_slope
@@ -171,14 +171,6 @@ def _trail_numbers(p: Floats) -> dict[str, float]:
     return {"trail_across_px": float(p[0]), "trail_along_px": float(p[1])}
 
 
-def _diffraction(p: Floats, plane: Plane) -> Floats:
-    """Once for every distance from zero frequency."""
-    freq, where = plane.rings
-    cutoff, obscuration = aperture(p)
-    otf = Diffraction(cutoff, obscuration=obscuration).otf(freq, np.zeros(freq.size))
-    return np.asarray(np.asarray(otf)[where])
-
-
 def _diffraction_numbers(p: Floats) -> dict[str, float]:
     cutoff, obscuration = aperture(p)
     return {"cutoff_cpp": cutoff, "obscuration": obscuration}
@@ -228,7 +220,7 @@ TERMS: dict[str, Term] = {
     ),
     "halo": Term(_halo, (-2.5, math.log(3.0), -0.5), (0.7, 0.4, 1.5), _halo_numbers, _halo_slopes),
     "trail": Term(_trail, (0.0, 0.0), (0.4, 0.4), _trail_numbers),
-    "diffraction": Term(_diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
+    "diffraction": Term(diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
     "defocus": Term(_defocus, (math.log(1.3), -0.5, 0.25), (0.4, 1.0, 0.15), _defocus_numbers),
     "aberrated": ABERRATED,
     **PROCESSING_TERMS,
