@@ -2,7 +2,7 @@
 
 import pytest
 
-from acutance.targets.steps import finished, together
+from acutance.targets.steps import finished, stacks, together
 
 
 def counted(name, count, taken):
@@ -22,6 +22,13 @@ def test_every_step_is_taken_by_all_before_the_next_and_results_keep_their_order
 def test_steps_alone_give_their_result():
     assert finished(counted("a", 4, [])) == "aaaa"
     assert together([]) == []
+
+
+def test_stacks_grow_to_eight_regions_and_lose_none():
+    found = list(stacks(range(25), first=1))
+    assert [len(some) for some in found] == [1, 2, 4, 8, 8, 2]
+    assert [one for some in found for one in some] == list(range(25))
+    assert [len(some) for some in stacks(range(9))] == [8, 1]
 
 
 def test_an_error_of_a_step_is_raised():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from acutance.scan.options import ScanOptions
 from acutance.scan.pieces import region_box
 from acutance.scan.windows import Window
 from acutance.targets.region import RegionPixels, read_data
-from acutance.targets.steps import TOGETHER, Steps, together
+from acutance.targets.steps import Steps, stacks, together
 from acutance.targets.straight import StraightMeasurement
 from acutance.targets.straight.edge import segment_steps
 from acutance.targets.straight.find_edges import Segment
@@ -156,9 +155,7 @@ def _measured(
         around, own = _around(image, gsd, pixels, clipped, whole, segment, options)
         return (yield from _edge(around, own, _place(segment, whole)))
 
-    every, waiting = [], iter(segments)
-    while some := list(islice(waiting, TOGETHER)):
-        every += together([measured(segment) for segment in some])
+    every = [one for some in stacks(segments) for one in together(list(map(measured, some)))]
     return WindowEdges([row for row, _ in every], [used for _, used in every if used is not None])
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -21,7 +20,7 @@ from acutance.raster.disk_copy import disk_copy
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import Record
 from acutance.targets.region import RoiLike
-from acutance.targets.steps import TOGETHER, Steps, together
+from acutance.targets.steps import Steps, stacks, together
 from acutance.targets.target_result import Rejected
 
 __all__ = ["ImageRegions", "are_many", "in_turn"]
@@ -74,7 +73,8 @@ def _results(
     measure: Measure, pairs: Iterator[tuple[int, Any, Any]], workers: int
 ) -> Iterator[Record | Rejected]:
     if workers == 1:
-        for some in _stacks(pairs):
+        # The first result has to wait for no other.
+        for some in stacks(pairs, first=1):
             yield from _records(measure, some)
         return
     with TemporaryDirectory(prefix="acutance-") as folder:
@@ -129,14 +129,6 @@ def _on_disk(pairs: Iterator[tuple[int, Any, Any]], folder: Path) -> Iterator[tu
                 copies[id(image)] = copy
                 weakref.finalize(image, copies.pop, id(image), None)
         yield place, copy, roi
-
-
-def _stacks(pairs: Iterator[tuple[int, Any, Any]]) -> Iterator[list[tuple[int, Any, Any]]]:
-    """The regions that are measured together: the first result has to wait for no other."""
-    size = 1
-    while some := list(islice(pairs, size)):
-        yield some
-        size = min(2 * size, TOGETHER)
 
 
 # What a record derives from a fit are products of many small matrices too.

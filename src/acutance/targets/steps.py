@@ -7,14 +7,16 @@ step after step, it finds what it needs: an edge takes a sixth less time.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from itertools import islice
 from typing import Final, TypeVar
 
-__all__ = ["TOGETHER", "Steps", "finished", "together"]
+__all__ = ["Steps", "finished", "stacks", "together"]
 
-TOGETHER: Final = 8
+_TOGETHER: Final = 8
 """Regions that take every step together: more share no more."""
 
+_Region = TypeVar("_Region")
 _Result = TypeVar("_Result")
 Steps = Generator[None, None, _Result]
 """A function that yields after every step, and returns its result."""
@@ -36,3 +38,11 @@ def together(several: Sequence[Steps[_Result]]) -> list[_Result]:
                 except StopIteration as end:
                     found[place] = end.value
     return [found[place] for place in range(len(several))]
+
+
+def stacks(regions: Iterable[_Region], first: int = _TOGETHER) -> Iterator[list[_Region]]:
+    """The regions that are measured together: so many at first, then twice as many, up to eight."""
+    waiting, size = iter(regions), first
+    while some := list(islice(waiting, size)):
+        yield some
+        size = min(2 * size, _TOGETHER)
