@@ -255,6 +255,13 @@ def test_coma_is_the_autocorrelation_of_a_pupil_that_is_not_even():
     assert turned[0] == pytest.approx(found[0], abs=1e-9)
 
 
+def test_positive_coma_has_its_tail_towards_lower_columns():
+    sensor = Sensor([Aberrations(1.5, coma_across_waves=0.08), Gaussian(0.1)])
+    profile = sensor.profile(0.0)
+    away_px = np.linspace(1.0, 3.0, 41)
+    assert profile.lsf(-away_px).sum() > 5 * profile.lsf(away_px).sum()
+
+
 def test_aberrations_of_opposite_sign_mirror_the_spread():
     u, v = np.array([0.3, 0.5]), np.array([0.2, -0.1])
     both = Aberrations(1.2, 0.2, coma_across_waves=0.06, coma_along_waves=-0.04)

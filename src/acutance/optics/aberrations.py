@@ -31,7 +31,8 @@ class Aberrations:
         W = sqrt(3) d (2 r^2 - 1) + sqrt(6) r^2 (a_0 cos 2t + a_45 sin 2t)
             + sqrt(8) (3 r^3 - 2 r) (c_x cos t + c_y sin t) + sqrt(5) s (6 r^4 - 6 r^2 + 1)
 
-    Coma makes the spread function uneven: its tail points along (c_x, c_y), or away from it.
+    Coma makes the spread function uneven: where it is positive, the tail points towards lower
+    columns (c_x) or rows (c_y).
 
     The pupil is sampled, 128 times across, and autocorrelated by Fourier transforms, with and
     without aberrations; their ratio multiplies the exact OTF without them. Errors are below 3e-4

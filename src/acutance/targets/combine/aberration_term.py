@@ -11,7 +11,9 @@ Zernike polynomials of `acutance.optics.Aberrations` give::
 
 of defocus d, astigmatism a, spherical aberration b and coma c, whose components are those about
 axes turned to the shift; what moves the image only, 2 sqrt(8) s c_along, is left out. The mean is a
-quadrature over the open pupil: an obscuration changes it little.
+quadrature over the open pupil. Where it is obscured, other coefficients stand for it: fitted to
+twelve telescopes that were drawn (`acutance.optics.FAMILIES`) a form with this factor leaves .0001
+to .006 of the OTF, in root mean square.
 """
 
 from __future__ import annotations

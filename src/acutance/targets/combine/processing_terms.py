@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.optics.processing import interpolation_weight
 from acutance.targets.combine.plane import PIXELS, TAPS, Plane
-from acutance.targets.combine.term import Term, logistic, logistic_slope, wide_gaussian
+from acutance.targets.combine.term import Term, logistic, logistic_slope
 
 __all__ = ["PROCESSING_TERMS"]
 
@@ -70,13 +70,20 @@ def _mask(p: Floats) -> tuple[float, float]:
 
 def _unsharp(p: Floats, plane: Plane) -> Floats:
     gain, sigma = _mask(p)
-    return np.asarray(1 + gain * (1 - wide_gaussian(sigma, plane)[0]))
+    return np.asarray(1 + gain * (1 - _wide_gaussian(sigma, plane)[0]))
 
 
 def _unsharp_slopes(p: Floats, plane: Plane) -> Floats:
     gain, sigma = _mask(p)
-    blurred, by_width = wide_gaussian(sigma, plane)
+    blurred, by_width = _wide_gaussian(sigma, plane)
     return np.stack([2 * logistic_slope(p[0]) * (1 - blurred), -gain * by_width], axis=1)
+
+
+def _wide_gaussian(sigma_px: float, plane: Plane) -> tuple[Floats, Floats]:
+    """A round Gaussian, and its derivative by the logarithm of its width."""
+    square = (math.pi * sigma_px) ** 2 * (plane.u_cpp**2 + plane.v_cpp**2)
+    values = np.exp(-2 * square)
+    return values, -4 * square * values
 
 
 def _unsharp_numbers(p: Floats) -> dict[str, float]:

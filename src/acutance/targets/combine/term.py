@@ -7,13 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.targets.combine.plane import Plane
 
-__all__ = ["Term", "Transfer", "aperture", "logistic", "logistic_slope", "wide_gaussian"]
+__all__ = ["Term", "Transfer", "aperture", "logistic", "logistic_slope"]
 
 Transfer = Callable[[Floats, Plane], NDArray[Any]]
 """Optical transfer function (OTF), (n,), by parameters and places of the plane."""
@@ -55,10 +54,3 @@ def logistic_slope(x: float) -> float:
 def aperture(p: Floats) -> tuple[float, float]:
     """Cut-off frequency in cycles per pixel, and obscuration, of the first two parameters."""
     return math.exp(p[0]), 0.7 * logistic(p[1])
-
-
-def wide_gaussian(sigma_px: float, plane: Plane) -> tuple[Floats, Floats]:
-    """A round Gaussian, and its derivative by the logarithm of its width."""
-    square = (math.pi * sigma_px) ** 2 * (plane.u_cpp**2 + plane.v_cpp**2)
-    values = np.exp(-2 * square)
-    return values, -4 * square * values

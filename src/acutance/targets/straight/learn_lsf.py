@@ -1,6 +1,6 @@
 """Learn from optics how line spread functions (LSF) depart from a Gaussian through a pixel.
 
-Sensors of every family (`acutance.optics.FAMILIES`) are drawn at random. Each is fitted as the
+Sensors of families (`acutance.optics.FAMILIES`) are drawn at random. Each is fitted as the
 first fit of an edge would be, and what is left of its LSF, in the spline of `lsf_prior` and the
 tail, is its departure. The principal directions of a family's departures, each with the root of
 its mean square, are the family's part of the normal prior (`lsf_prior`); the departures themselves,
@@ -18,12 +18,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.geometry.line import Line
 from acutance.numerics.lorentz_tail import tail_lsf
-from acutance.optics import (
-    Detector,
-    Gaussian,
-    Sensor,
-    draw_sensor,
-)
+from acutance.optics import Detector, Gaussian, Sensor, draw_sensor
 from acutance.targets.straight.first_fit import fit_first
 from acutance.targets.straight.spline import CENTRES, quasi_interpolant
 from acutance.targets.straight.tuned import FAMILY_LOG_AMPLITUDES, TAIL_WIDTH
