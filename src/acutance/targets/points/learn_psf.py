@@ -2,10 +2,10 @@
 
 Sensors of families (`acutance.optics.FAMILIES`; `tuned` says which) are drawn at random. The PSF of
 each is fitted as the first fit of sources would be, and what is left of it, in the splines of
-`psf_spline` and the tail, is its departure. Sensors are as often turned by 90 degrees and mirrored as not, so departures
-of different parities have nothing to do with one another: the principal directions of each, with
-the root of their mean square, are the family's part of the normal prior (`psf_prior`). The
-departures themselves are the density of sensors (`learn_sensors`).
+`psf_spline` and the tail, is its departure. Sensors are as often turned by 90 degrees and mirrored
+as not, so departures of different parities have nothing to do with one another: the principal
+directions of each, with the root of their mean square, are the family's part of the normal prior
+(`psf_prior`). The departures themselves are the density of sensors (`learn_sensors`).
 """
 
 from __future__ import annotations
