@@ -28,6 +28,11 @@ PROCESSING_QUESTIONS: Final = {
         "from pixel to pixel, and the numbers are those of the product in the mean; use the "
         "original grid", severity="note",
     ),
+    "removed_noise": Question(
+        "How much more do single pixels scatter at the border than on the plateaus?", "<=", 2.0,
+        "noise was removed where the ground is flat, by a filter that keeps edges: it sharpens "
+        "borders, and the intervals do not know; use the image before it",
+    ),
     "odd_even": Question(
         "How much do odd and even columns, or rows, differ beyond noise?", "<=", 0.005,
         "two readouts have gains or offsets of their own; the intervals allow for it and are up to "

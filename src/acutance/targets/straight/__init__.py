@@ -7,10 +7,10 @@ curves, with `spline`, `spline_equations`, `lsf`, `lsf_prior`, `gradients`, `gro
 `step_profile`; the last pass is `among_sensors`, its prior `sensor_density`; `learn_lsf` learned
 both priors), `edge` and `pulse` (the public functions; `many_edges`, `many_pulses` for all edges
 of a target and for many regions),
-`edge_checks`, `pulse_checks`, `pixel_checks`, `structure_checks`, `odd_even` and
-`ground_checks` (is the target good enough; `check_data` is their input). What takes a model of its
-own: `rim` (a strip along the border), `nonlinearity` (a characteristic that curves: of edges
-`mirror_sum` and `side_noise`, of pulses `curved_model` with `lsf_parity`).
+`edge_checks`, `pulse_checks`, `pixel_checks`, `structure_checks`, `odd_even`,
+`removed_noise` and `ground_checks` (is the target good enough; `check_data` is their input). What
+takes a model of its own: `rim` (a strip along the border), `nonlinearity` (a characteristic that
+curves: of edges `mirror_sum` and `side_noise`, of pulses `curved_model` with `lsf_parity`).
 `error_causes`: what the uncertainty consists of; `pixels_alone`: what pixels say, the prior apart;
 `stated_target`: what is stated of the target.
 `pulse_halo`, `pulse_response`, `pulse_spectrum`, `pulse_width`: for pulses only. `published`:

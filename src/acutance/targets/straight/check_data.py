@@ -23,6 +23,7 @@ from acutance.numerics.noise import (
 from acutance.targets.check import MAX_RATIO
 from acutance.targets.straight.check_loops import (
     blocks_of,
+    border_offsets,
     largest_odd_part,
     mean_std,
     parts_along,
@@ -33,10 +34,13 @@ from acutance.targets.straight.check_loops import (
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.tuned import NOISE_FLOOR, STRUCTURE_OUTLIER_SIGMAS
 
-__all__ = ["MISFIT", "CheckData", "ratio_in_words", "regular"]
+__all__ = ["MISFIT", "STEEP_SHARE", "Border", "CheckData", "ratio_in_words", "regular"]
 
 MISFIT = 3e-4
 """Residuals below this share of the contrast are the model's own, not noise."""
+
+STEEP_SHARE: Final = 0.3
+"""Pixels steeper than this share of the steepest lie on the border."""
 
 _FAR_WIDTHS, _NEAR_WIDTHS = 2.0, 1.5
 _OUTLYING = 4.0
@@ -73,6 +77,25 @@ class CoarseEsf(NamedTuple):
     def nearest(self, place: int) -> int:
         """The number of the place nearest to one of the whole curve."""
         return min(round(place / _COARSE), self.value.size - 1)
+
+
+class Border(NamedTuple):
+    """What is left of the pixels where the image is steep.
+
+    Attributes
+    ----------
+    pixels : int
+        How many they are.
+    power, noise : float
+        Their mean square residual, and that of the noisier plateau.
+    steepness : float
+        Their mean square slope.
+    """
+
+    pixels: int
+    power: float
+    noise: float
+    steepness: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,6 +269,16 @@ class CheckData:
     def _lsf_at_near_pixels(self) -> tuple[Floats, Floats]:
         grid, value = self.fit.response.lsf.distance_px, self.fit.response.lsf.value
         return slope_and_bend(value, *regular(grid), self.before, self.near)
+
+    @cached_property
+    def border(self) -> Border:
+        """What is left of the pixels of the first step's border."""
+        return Border(
+            *border_offsets(
+                self.residual, self.slope, self.near, self.before, self.behind, self.far_px,
+                STEEP_SHARE,
+            )
+        )  # fmt: skip
 
     @cached_property
     def coarse_esf(self) -> CoarseEsf:

@@ -26,6 +26,7 @@ from acutance.targets.straight.pixel_checks import (
     quantisation,
     saturation,
 )
+from acutance.targets.straight.removed_noise import removed_noise
 from acutance.targets.straight.step_profile import EDGE
 from acutance.targets.straight.structure_checks import (
     asymmetric_lsf,
@@ -66,9 +67,9 @@ EDGE_CHECKS = (
     "rows", "straightness_px", "blur_uniformity", "edge_roughness_px", "lsf_width_px",
     "lsf_narrow_px", "plateau_dark_px", "plateau_bright_px", "saturation", "undeclared_fill",
     "quantisation", "full_pixel", "stated_gsd", *PROCESSING_CHECKS, "nonlinearity", "gradient",
-    "correlated_noise", "odd_even", "structure", "one_sided_overshoot", "double_edge",
-    "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground", "close_ground",
-    "mirrored_ground", "rim",
+    "correlated_noise", "odd_even", "removed_noise", "structure", "one_sided_overshoot",
+    "double_edge", "asymmetric_lsf", "asymmetric_wings", "profile", "outliers", "ground",
+    "close_ground", "mirrored_ground", "rim",
 )  # fmt: skip
 """Names of all checks of an edge."""
 
@@ -139,6 +140,7 @@ def _of_the_image(region: RegionPixels, data: CheckData, limits: Limits) -> tupl
         full_pixel([data.fit.response.mtf_nyquist], limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
+        removed_noise(data, limits),
     )
 
 

@@ -36,6 +36,7 @@ from acutance.targets.straight.pixel_checks import (
 from acutance.targets.straight.published import PublishedPulse
 from acutance.targets.straight.pulse_spectrum import zeros_cpp
 from acutance.targets.straight.pulse_width import WidthConsistency
+from acutance.targets.straight.removed_noise import removed_noise
 from acutance.targets.straight.step_profile import pulse_profile
 from acutance.targets.straight.structure_checks import (
     asymmetric_lsf,
@@ -58,9 +59,9 @@ PULSE_CHECKS = (
     "sample_phases", "rows", "straightness_px", "edge_roughness_px", "lsf_width_px",
     "plateau_before_px", "plateau_behind_px", "saturation", "undeclared_fill", "quantisation",
     "full_pixel", "stated_gsd", *PROCESSING_CHECKS, "nonlinearity", "gradient",
-    "correlated_noise", "odd_even", "asymmetric_lsf", "profile", "outliers", "parallel_deg",
-    "background_step", "width_px", "width_sigmas", "zero_distance_cpp", "ground", "close_ground",
-    "mirrored_ground",
+    "correlated_noise", "odd_even", "removed_noise", "asymmetric_lsf", "profile", "outliers",
+    "parallel_deg", "background_step", "width_px", "width_sigmas", "zero_distance_cpp", "ground",
+    "close_ground", "mirrored_ground",
 )  # fmt: skip
 """Names of all checks of a pulse."""
 
@@ -123,6 +124,7 @@ def check_pulse(
         gradient(data, limits),
         correlated_noise(data, limits),
         odd_even(data, limits),
+        removed_noise(data, limits),
         asymmetric_lsf(data, limits),
         profile(
             data,

@@ -22,7 +22,6 @@ from acutance.targets.question import PLACES
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.check_loops import (
     blotches,
-    border_offsets,
     largest_bump,
     second_peak,
 )
@@ -51,7 +50,6 @@ _REACH_PX = 40.0
 _BIN_PX = 1.0
 _PART_PX = 5.0
 _MIN_PARTS, _MAX_PARTS = 4, 12
-_STEEP_SHARE = 0.3
 _MAX_OFFSET_PX = 0.15
 _MAX_ASYMMETRY, _ANY_ASYMMETRY = 0.08, 0.1
 """Caution where a deviation of RER is small, and whatever it is."""
@@ -130,9 +128,7 @@ def edge_roughness(data: CheckData, limits: Limits) -> Check:
     d^2 is the excess of their mean square residual over that of the noisier plateau, divided by the
     mean square slope.
     """
-    count, power, noise, steepness = border_offsets(
-        data.residual, data.slope, data.near, data.before, data.behind, data.far_px, _STEEP_SHARE
-    )
+    count, power, noise, steepness = data.border
     # The variance of count squares of Gaussian noise.
     chance = STRUCTURE_SIGMAS * noise * math.sqrt(2 / max(count, 1))
     value = math.sqrt((power - noise) / steepness) if power - noise > chance else 0.0
