@@ -34,6 +34,7 @@ EVERY_BLOCK = [
     optics.Butterworth(1.4),
     optics.Exponential(0.1, "across"),
     optics.Resampling("bilinear"),
+    optics.Resampling("lanczos"),
     optics.Shift(0.2, 0.3, "cubic", -0.75),
     optics.Sharpening.both_axes(0.1),
 ]

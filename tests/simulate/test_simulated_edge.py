@@ -8,6 +8,7 @@ from scipy.special import erf
 
 from acutance.errors import ModelError
 from acutance.optics import Detector, Exponential, Gaussian, Sensor
+from acutance.optics.interpolation import interpolation_weight
 from acutance.simulate import Noise, Regrid, edge, reference_systems, render_edge, resample
 
 SENSOR = Sensor([Gaussian(0.4), Detector()], gsd_m=0.7)
@@ -184,6 +185,18 @@ def test_kernels_reproduce_polynomials(kernel, degree):
         np.testing.assert_allclose(found, places[1] ** power + 2 * places[0] ** power, atol=1e-12)
     beyond = resample(cols ** (degree + 1), *places, kernel=kernel)
     assert np.max(np.abs(beyond - places[1] ** (degree + 1))) > 0.05
+
+
+@pytest.mark.parametrize("kernel", ["spline", "lanczos"])
+def test_long_kernels_are_those_of_the_optics(kernel):
+    image = np.random.default_rng(2).normal(size=(40, 42))
+    row, col = 19.3, 21.8
+    down = interpolation_weight(kernel, np.arange(40) - row)
+    right = interpolation_weight(kernel, np.arange(42) - col)
+    found = resample(image, np.array([[row]]), np.array([[col]]), kernel=kernel)
+    assert found.item() == pytest.approx(float(down @ image @ right), abs=1e-7)
+    flat = resample(np.full((9, 9), 3.0), np.array([[0.2]]), np.array([[4.6]]), kernel=kernel)
+    assert flat.item() == pytest.approx(3.0, abs=1e-12)
 
 
 def test_large_images_are_fine():

@@ -40,8 +40,9 @@ from acutance.optics.aperture import (
 from acutance.optics.block import Block
 from acutance.optics.detector import ChargeDiffusion, Detector
 from acutance.optics.electronics import Exponential
+from acutance.optics.interpolation import Interpolation
 from acutance.optics.motion import Smear
-from acutance.optics.processing import Interpolation, Resampling, Sharpening, Shift
+from acutance.optics.processing import Resampling, Sharpening, Shift
 from acutance.optics.sensor import Sensor
 
 __all__ = ["FAMILIES", "UNEVEN_FAMILIES", "draw_sensor"]

@@ -4,58 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.optics.block import Block, Transfer, require
+from acutance.optics.interpolation import (
+    KERNEL_REACH_PX,
+    Interpolation,
+    interpolation_transfer,
+    interpolation_weight,
+)
 
-__all__ = [
-    "KERNEL_REACH_PX",
-    "Interpolation",
-    "Resampling",
-    "Rescaled",
-    "Sharpening",
-    "Shift",
-    "interpolation_weight",
-    "spline_transfer",
-]
-
-Interpolation = Literal["nearest", "bilinear", "cubic"]
-
-KERNEL_REACH_PX: dict[str, float] = {"nearest": 0.5, "bilinear": 1.0, "cubic": 2.0}
-"""Distance beyond which an interpolation kernel is zero, in pixels."""
-
-
-def interpolation_weight(kernel: Interpolation, distance_px: ArrayLike, a: float = -0.5) -> Floats:
-    """Weight an interpolation kernel gives to a pixel at a distance.
-
-    Parameters
-    ----------
-    kernel : {"nearest", "bilinear", "cubic"}
-        "cubic" is Keys' cubic convolution (IEEE Trans. ASSP 29, 1153, 1981).
-    distance_px : array
-        Place of the pixel minus the interpolated place.
-    a : float, optional
-        Slope of the cubic kernel at distance 1: -0.5 (Keys, third order), -0.75 and -1 are in use.
-
-    Returns
-    -------
-    array of the same shape
-    """
-    x = np.abs(np.asarray(distance_px, float))
-    if kernel == "nearest":
-        # Half way between two pixels the one on the left is taken, as `floor` would.
-        signed = np.asarray(distance_px, float)
-        return np.where((signed >= -0.5) & (signed < 0.5), 1.0, 0.0)
-    if kernel == "bilinear":
-        return np.asarray(np.maximum(1 - x, 0.0))
-    near = ((a + 2) * x - (a + 3)) * x**2 + 1
-    far = a * (((x - 5) * x + 8) * x - 4)
-    return np.where(x < 1, near, np.where(x < 2, far, 0.0))
+__all__ = ["Resampling", "Rescaled", "Sharpening", "Shift"]
 
 
 def _require_kernel(block: object, kernel: str) -> None:
@@ -75,9 +37,9 @@ class Resampling:
 
     Parameters
     ----------
-    kernel : {"nearest", "bilinear", "cubic"}, optional
+    kernel : {"nearest", "bilinear", "cubic", "spline", "lanczos"}, optional
     a : float, optional
-        Parameter of the cubic kernel; see `interpolation_weight`.
+        Parameter of the cubic kernel; see `acutance.optics.interpolation`.
     """
 
     kernel: Interpolation = "cubic"
@@ -88,31 +50,8 @@ class Resampling:
         require(self, -4.0, 0.0, a=self.a)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
-        return np.asarray(self._transform(np.asarray(u)) * self._transform(np.asarray(v)))
-
-    def _transform(self, f: Floats) -> Floats:
-        if self.kernel == "nearest":
-            return np.asarray(np.sinc(f))
-        if self.kernel == "bilinear":
-            return np.asarray(np.sinc(f) ** 2)
-        return _cubic_transform(f, self.a)
-
-
-_LEGENDRE = np.polynomial.legendre.leggauss(12)
-
-
-def _cubic_transform(f: Floats, a: float) -> Floats:
-    """Fourier transform of the cubic convolution kernel: closed form, quadrature near zero."""
-    small = np.abs(f) < 0.1
-    g = np.where(small, 1.0, f)
-    keys = 3 * (np.sinc(g) ** 2 - np.sinc(2 * g))
-    keys = keys + 2 * a * (3 * np.sinc(2 * g) ** 2 - 2 * np.sinc(2 * g) - np.sinc(4 * g))
-    nodes, weights = _LEGENDRE
-    x = np.concatenate([0.5 * (nodes + 1), 0.5 * (nodes + 1) + 1])
-    mass = np.tile(weights, 2) * interpolation_weight("cubic", x, a)
-    low = np.where(small, f, 0.0)
-    near_zero = sum(m * np.cos(2 * math.pi * p * low) for m, p in zip(mass, x, strict=True))
-    return np.asarray(np.where(small, near_zero, keys / (math.pi * g) ** 2))
+        across, along = (interpolation_transfer(self.kernel, np.asarray(f), self.a) for f in (u, v))
+        return np.asarray(across * along)
 
 
 @dataclass(frozen=True)
@@ -127,9 +66,9 @@ class Shift:
     ----------
     row_px, col_px : float
         Shift in pixels; only its fraction of a pixel matters.
-    kernel : {"nearest", "bilinear", "cubic"}, optional
+    kernel : {"nearest", "bilinear", "cubic", "spline", "lanczos"}, optional
     a : float, optional
-        Parameter of the cubic kernel; see `interpolation_weight`.
+        Parameter of the cubic kernel; see `acutance.optics.interpolation`.
     """
 
     row_px: float = 0.0
@@ -147,8 +86,11 @@ class Shift:
         return np.asarray(across * self._transform(np.asarray(v), self.row_px))
 
     def _transform(self, f: Floats, shift_px: float) -> Transfer:
-        offset = np.arange(-2, 4) - (shift_px - math.floor(shift_px))
+        reach = max(math.ceil(KERNEL_REACH_PX[self.kernel]), 2)
+        offset = np.arange(-reach, reach + 2) - (shift_px - math.floor(shift_px))
         weight = interpolation_weight(self.kernel, offset, self.a)
+        # What a spline has beyond its reach is missing.
+        weight = weight / weight.sum()
         # The offsets are a pixel apart: a polynomial in what a pixel turns the phase by.
         turn = np.exp(2j * math.pi * f)
         values = np.zeros_like(turn)
@@ -234,11 +176,3 @@ class Rescaled:
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
         return self.system.otf(np.asarray(u) / self.scale, np.asarray(v) / self.scale)
-
-
-def spline_transfer(freq_cpp: Floats) -> Floats:
-    """Mean transfer of interpolation with a cubic spline: ``sinc^4(f) / ((2 + cos 2 pi f) / 3)``.
-
-    Close to 1 up to 0.3 and a half at Nyquist, as that of every good interpolation.
-    """
-    return np.asarray(3 * np.sinc(freq_cpp) ** 4 / (2 + np.cos(2 * math.pi * freq_cpp)))

@@ -11,7 +11,7 @@ from scipy.ndimage import map_coordinates
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.optics.block import Transfer, require
-from acutance.optics.processing import spline_transfer
+from acutance.optics.interpolation import spline_transfer
 from acutance.simulate.noise import Noise
 
 __all__ = ["NativeGrid"]

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.ndimage import map_coordinates
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.geometry.line import Line
 from acutance.optics import Resampling, Rescaled, Sensor, Shift
 from acutance.optics.block import require
-from acutance.optics.processing import KERNEL_REACH_PX, Interpolation, interpolation_weight
+from acutance.optics.interpolation import KERNEL_REACH_PX, Interpolation, interpolation_weight
 from acutance.simulate.noise import Noise
 
 __all__ = ["Regrid", "render_regridded", "resample"]
@@ -36,9 +37,9 @@ def resample(
     rows, cols : (p, q) arrays
         Places in pixels of `image`; integers are pixel centres. Shift, stretch and rotation are
         all given by these.
-    kernel : {"nearest", "bilinear", "cubic"}, optional
+    kernel : {"nearest", "bilinear", "cubic", "spline", "lanczos"}, optional
     a : float, optional
-        Parameter of the cubic kernel; see `acutance.optics.processing.interpolation_weight`.
+        Parameter of the cubic kernel; see `acutance.optics.interpolation`.
 
     Returns
     -------
@@ -46,11 +47,14 @@ def resample(
         Pixels beyond the border repeat those at the border.
     """
     row_at, col_at = np.broadcast_arrays(np.asarray(rows, float), np.asarray(cols, float))
+    if kernel == "spline":
+        return np.asarray(map_coordinates(image, [row_at, col_at], order=3, mode="nearest"))
     top, left = np.floor(row_at).astype(int), np.floor(col_at).astype(int)
     result = np.zeros(row_at.shape)
-    for row in (top + k for k in range(-1, 3)):
+    reach = math.ceil(KERNEL_REACH_PX[kernel])
+    for row in (top + k for k in range(1 - reach, reach + 1)):
         down = interpolation_weight(kernel, row - row_at, a)
-        for col in (left + k for k in range(-1, 3)):
+        for col in (left + k for k in range(1 - reach, reach + 1)):
             right = interpolation_weight(kernel, col - col_at, a)
             inside = np.clip(row, 0, image.shape[0] - 1), np.clip(col, 0, image.shape[1] - 1)
             result += down * right * image[inside]
@@ -71,7 +75,7 @@ class Regrid:
         Size of the new pixels in old ones, 0.5 to 2. At 1 all new pixels have the same phase
         and the resampled system is known exactly; otherwise the phases vary, the transfer is
         that of the mean phase, and single pixels differ from it with their phase.
-    kernel : {"nearest", "bilinear", "cubic"}, optional
+    kernel : {"nearest", "bilinear", "cubic", "spline", "lanczos"}, optional
     a : float, optional
         Parameter of the cubic kernel.
     """
@@ -104,7 +108,8 @@ class Regrid:
     def margin_px(self, shape: tuple[int, int]) -> int:
         """How much wider the old image has to be on every side, in old pixels."""
         reach = max(abs(self.shift_row_px), abs(self.shift_col_px))
-        return math.ceil(reach + abs(self.scale - 1) * max(shape)) + 3
+        kernel_px = max(math.ceil(KERNEL_REACH_PX[self.kernel]), 2)
+        return math.ceil(reach + abs(self.scale - 1) * max(shape)) + kernel_px + 1
 
     def source_line(self, line: Line, shape: tuple[int, int], moved_px: float) -> Line:
         """The line in old pixels that becomes `line` in new ones.

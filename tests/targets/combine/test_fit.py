@@ -114,6 +114,20 @@ def test_interpolation_is_that_of_the_optics(logit):
     np.testing.assert_allclose(found, optics.Resampling("cubic", a).otf(u, v), atol=1e-12)
 
 
+def test_resampling_is_that_of_a_spline_and_nearly_that_of_other_kernels():
+    freq = np.linspace(-0.6, 0.6, 25)
+    u, v = (one.ravel() for one in np.meshgrid(freq, freq))
+    old_pixel_px = 1.08
+    limits = {"spline": (4.0, 5e-4), "lanczos": (4.0, 0.06), "cubic": (2.7, 0.07)}
+    for kernel, (power, most) in limits.items():
+        p = np.array([np.log(power), np.log(old_pixel_px)])
+        found = TERMS["resampling"].otf(p, Plane(u, v))
+        expected = optics.Resampling(kernel).otf(old_pixel_px * u, old_pixel_px * v)
+        np.testing.assert_allclose(found, expected, atol=most)
+    numbers = TERMS["resampling"].numbers(p)
+    assert numbers == pytest.approx({"spline_degree": 1.7, "old_pixel_px": old_pixel_px})
+
+
 @pytest.mark.parametrize("place", [(0.0, 0.0), (0.8, -0.3), (-1.7, 2.5)])
 def test_a_phase_is_a_shift_of_the_optics_with_its_light_in_the_middle(place):
     u, v = np.random.default_rng(6).uniform(-1, 1, (2, 30))

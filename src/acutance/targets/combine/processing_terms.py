@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.optics.processing import interpolation_weight
+from acutance.optics.interpolation import interpolation_weight
 from acutance.targets.combine.plane import PIXELS, TAPS, Plane
 from acutance.targets.combine.term import Term, logistic, logistic_slope
 

@@ -18,6 +18,7 @@ from acutance.optics import Defocus
 from acutance.targets.combine.aberration_term import ABERRATED, diffraction
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.processing_terms import PROCESSING_TERMS
+from acutance.targets.combine.resampling_term import RESAMPLING
 from acutance.targets.combine.term import Term, aperture, logistic, logistic_slope
 
 __all__ = ["TERMS", "sinc_growth"]
@@ -223,6 +224,7 @@ TERMS: dict[str, Term] = {
     "diffraction": Term(diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
     "defocus": Term(_defocus, (math.log(1.3), -0.5, 0.25), (0.4, 1.0, 0.15), _defocus_numbers),
     "aberrated": ABERRATED,
+    "resampling": RESAMPLING,
     **PROCESSING_TERMS,
 }
 """Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear of a pixel or two, halos as of

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.optics.processing import spline_transfer
+from acutance.optics.interpolation import spline_transfer
 from acutance.targets.pair.tile import TapAxis
 
 __all__ = ["MAX_VARIANCE_PX2", "MIN_VARIANCE_PX2", "AxisGaussian"]
