@@ -195,6 +195,19 @@ def share_of(scene):
     return {check.name: check for check in scene.checks}["trusted_share"]
 
 
+@pytest.mark.parametrize(("share", "is_said"), [(0.1, False), (0.28, True)])
+def test_more_light_in_a_halo_than_optics_scatter_is_said(share, is_said):
+    sensor = ac.Sensor([optics.Gaussian(0.35), optics.Halo(share, 2.8), optics.Detector()])
+    image, _ = simulate.landscape(
+        sensor, shape=(500, 500), snr=100, options=bare_ground(soft=0.0),
+        rng=np.random.default_rng(6),
+    )  # fmt: skip
+    check = next(one for one in ac.scan_scene(image).checks if one.name == "halo_share")
+    assert check.value == pytest.approx(share, abs=0.05)
+    assert check.passed is not is_said
+    assert check.severity == "caution"
+
+
 def test_where_nearly_all_edges_contradict_a_sensor_the_scan_is_doubtful(ideal):
     """A landscape decimated four times without a filter: of 275 edges 20 pass, by chance."""
     fine, _ = simulate.landscape(

@@ -20,6 +20,7 @@ from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.sensor_fit import SensorFit
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.combine.curves import ChiSquare
+from acutance.targets.combine.weighted_forms import CombinedOtf
 from acutance.targets.full_pixel import full_pixel
 from acutance.targets.processing_checks import SCENE_PROCESSING_CHECKS, scene_processing_checks
 from acutance.targets.record import ImageInfo
@@ -30,8 +31,8 @@ __all__ = ["SCENE_CHECKS", "check_scene"]
 
 SCENE_CHECKS = (
     "edges_used", "trusted_share", "scene_directions", "ideal_share", "ideal_borders",
-    "strange_share", "scene_settled", "form_agrees", "rival", "parts_agree", "diagonals",
-    "field_change", "full_pixel", "stated_gsd", *SCENE_PROCESSING_CHECKS,
+    "strange_share", "scene_settled", "form_agrees", "halo_share", "rival", "parts_agree",
+    "diagonals", "field_change", "full_pixel", "stated_gsd", *SCENE_PROCESSING_CHECKS,
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -96,6 +97,7 @@ def check_scene(
             + ("" if fit.settled else ", and did not settle"), limits,
         ),
         _form_agrees(fit.agreement, limits),
+        _halo_share(fit.otf, limits),
         _rival(fit.rivals, transfer, limits),
         _parts_agree(fit.parts, limits),
         _diagonals(transfer, limits),
@@ -137,6 +139,14 @@ def _form_agrees(chi_square: ChiSquare, limits: Limits) -> Check:
         f"{chi_square.expected:.0f} degrees of freedom, {ratio:.2f} times as much"
     )
     return answer("form_agrees", ratio, found, limits)
+
+
+def _halo_share(sensor: CombinedOtf, limits: Limits) -> Check:
+    """Which share of the light lies in a wide halo, the mean over all forms of the sensor."""
+    numbers = [(one.weight, one.form.numbers(one.parameters)) for one in sensor.forms]
+    share = sum(weight * found.get("halo_share", 0.0) for weight, found in numbers)
+    found = f"{100 * share:.0f} % of the light lies in a halo"
+    return answer("halo_share", share, found, limits)
 
 
 def _rival(rivals: Sequence[Rival], transfer: Otf2d, limits: Limits) -> Check:

@@ -48,6 +48,11 @@ SCENE_QUESTIONS: Final = {
         "no form of sensor is like these edges, or they do not have one: the numbers may err by "
         "more than their intervals; look at the edges by direction",
     ),
+    "halo_share": Question(
+        "Which share of the light lies in a halo?", "<=", 0.2,
+        "no optics scatter so much: borders that fall off slowly (hedges, banks, wet ground) were "
+        "taken for ideal ones; scan a larger part, or another image",
+    ),
     "parts_agree": Question(
         "By which share is the MTF at Nyquist uncertain as the parts disagree?", "<=", 0.05,
         "their objects differ in a softness that all of them have; compare other scenes",
