@@ -8,7 +8,7 @@ the Nyquist frequency of the old grid. Cardinal splines of degree m - 1 have the
     K(f) = 1 / sum_k |f / (f - k)|^m,
 
 of every m between a linear interpolation (2), a cubic spline (4) and a band limit (infinity);
-Lanczos' kernel of three lobes is within .03 of m = 4, Keys' cubic convolution within .01 of 2.65
+Lanczos' kernel of three lobes is within .03 of m = 4, Keys' cubic convolution within .04 of 2.8
 (M. Unser, IEEE Signal Processing Magazine 16-6, 1999, 22, section "cardinal splines").
 """
 
