@@ -50,8 +50,8 @@ SCENE_QUESTIONS: Final = {
     ),
     "halo_share": Question(
         "Which share of the light lies in a halo?", "<=", 0.2,
-        "no optics scatter so much: borders that fall off slowly (hedges, banks, wet ground) were "
-        "taken for ideal ones; scan a larger part, or another image",
+        "optics scatter less; borders that fall off slowly (hedges, banks, wet ground) were taken "
+        "for ideal ones: scan a larger part, or another image",
     ),
     "parts_agree": Question(
         "By which share is the MTF at Nyquist uncertain as the parts disagree?", "<=", 0.05,
