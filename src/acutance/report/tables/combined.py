@@ -45,6 +45,8 @@ PARAMETERS = {
     "cubic_a": ("cubic convolution, a", ""),
     "phase_across_px": ("cubic convolution, place across", "px"),
     "phase_along_px": ("cubic convolution, place along", "px"),
+    "spline_degree": ("interpolation, degree of a spline", ""),
+    "old_pixel_px": ("pixels before the interpolation", "px"),
     "diffusion_px": ("depth from which charge spreads", "px"),
     "detector_fill": ("detector's width over the stated one", ""),
 }

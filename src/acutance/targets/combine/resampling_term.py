@@ -28,6 +28,8 @@ __all__ = ["RESAMPLING"]
 _IMAGES: Final[Floats] = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 """Repetitions of the old grid's spectrum that have a part."""
 _TINY: Final = 1e-9
+_MOST: Final = 300.0
+"""Logarithm of what is as good as infinite: next to a multiple of the old grid's sampling."""
 
 
 def _resampling(p: Floats, plane: Plane) -> Floats:
@@ -50,10 +52,10 @@ def _along_axis(p: Floats, freq_cpp: Floats) -> tuple[Floats, Floats, Floats]:
     old = math.exp(p[1]) * freq_cpp[:, None]
     apart = old - _IMAGES
     apart = np.where(np.abs(apart) < _TINY, _TINY, apart)
-    ratio = np.maximum(np.abs(old / apart), _TINY)
-    image = ratio**power
+    log_ratio = np.log(np.maximum(np.abs(old / apart), _TINY))
+    image = np.exp(np.minimum(power * log_ratio, _MOST))
     values = 1 / (1 + image.sum(axis=1))
-    by_power = -(values**2) * power * np.sum(image * np.log(ratio), axis=1)
+    by_power = -(values**2) * power * np.sum(image * log_ratio, axis=1)
     by_size = (values**2) * power * np.sum(image * _IMAGES / apart, axis=1)
     return values, by_power, by_size
 
