@@ -199,6 +199,11 @@ def test_long_kernels_are_those_of_the_optics(kernel):
     assert flat.item() == pytest.approx(3.0, abs=1e-12)
 
 
+def test_a_kernel_that_there_is_not_is_refused():
+    with pytest.raises(ModelError, match=r"resample: kernel is 'sinc', .* 'spline', 'lanczos'"):
+        resample(np.zeros((9, 9)), np.array([[4.5]]), np.array([[4.5]]), kernel="sinc")
+
+
 def test_large_images_are_fine():
     image, _ = edge(reference_systems()["diffraction"], shape=(20, 700), angle_deg=6.0)
     assert np.all(np.diff(image, axis=1) > 0)

@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
+from acutance.errors import ModelError
 
 __all__ = [
     "KERNEL_REACH_PX",
     "Interpolation",
     "interpolation_transfer",
     "interpolation_weight",
+    "require_kernel",
     "spline_transfer",
 ]
 
@@ -29,6 +31,21 @@ _LOBES: Final = 3
 _POLE: Final = math.sqrt(3) - 2
 """By this the coefficients of a cubic spline through one pixel fall from pixel to pixel."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+def require_kernel(of: str, kernel: str) -> None:
+    """Refuse a kernel that is none of those above.
+
+    Raises
+    ------
+    ModelError
+        It names what was given, of which block or function.
+    """
+    if kernel not in KERNEL_REACH_PX:
+        raise ModelError(
+            f"{of}: kernel is {kernel!r}, it has to be one of "
+            + ", ".join(repr(name) for name in KERNEL_REACH_PX)
+        )
 
 
 def interpolation_weight(kernel: Interpolation, distance_px: ArrayLike, a: float = -0.5) -> Floats:
@@ -75,9 +92,9 @@ def _windowed_sine(x: Floats) -> Floats:
 
 def _cardinal_spline(x: Floats) -> Floats:
     """The cubic spline that is 1 at one pixel and 0 at all others, at distances of 0 and more."""
-    nearest = np.floor(x)
+    below = np.floor(x)
     parts = (
-        math.sqrt(3) * _POLE ** np.abs(nearest + k) * _b_spline(np.abs(x - nearest - k))
+        math.sqrt(3) * _POLE ** np.abs(below + k) * _b_spline(np.abs(x - below - k))
         for k in range(-1, 3)
     )
     return np.where(x < KERNEL_REACH_PX["spline"], sum(parts), 0.0)

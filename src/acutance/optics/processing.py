@@ -15,17 +15,10 @@ from acutance.optics.interpolation import (
     Interpolation,
     interpolation_transfer,
     interpolation_weight,
+    require_kernel,
 )
 
 __all__ = ["Resampling", "Rescaled", "Sharpening", "Shift"]
-
-
-def _require_kernel(block: object, kernel: str) -> None:
-    if kernel not in KERNEL_REACH_PX:
-        raise ModelError(
-            f"{type(block).__name__}: kernel is {kernel!r}, it has to be one of "
-            + ", ".join(repr(name) for name in KERNEL_REACH_PX)
-        )
 
 
 @dataclass(frozen=True)
@@ -46,7 +39,7 @@ class Resampling:
     a: float = -0.5
 
     def __post_init__(self) -> None:
-        _require_kernel(self, self.kernel)
+        require_kernel(type(self).__name__, self.kernel)
         require(self, -4.0, 0.0, a=self.a)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
@@ -77,7 +70,7 @@ class Shift:
     a: float = -0.5
 
     def __post_init__(self) -> None:
-        _require_kernel(self, self.kernel)
+        require_kernel(type(self).__name__, self.kernel)
         require(self, -4.0, 0.0, a=self.a)
         require(self, -1e6, 1e6, row_px=self.row_px, col_px=self.col_px)
 

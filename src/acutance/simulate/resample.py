@@ -11,11 +11,15 @@ from numpy.typing import ArrayLike
 from scipy.ndimage import map_coordinates
 
 from acutance.curves.grid import Floats
-from acutance.errors import ModelError
 from acutance.geometry.line import Line
 from acutance.optics import Resampling, Rescaled, Sensor, Shift
 from acutance.optics.block import require
-from acutance.optics.interpolation import KERNEL_REACH_PX, Interpolation, interpolation_weight
+from acutance.optics.interpolation import (
+    KERNEL_REACH_PX,
+    Interpolation,
+    interpolation_weight,
+    require_kernel,
+)
 from acutance.simulate.noise import Noise
 
 __all__ = ["Regrid", "render_regridded", "resample"]
@@ -45,7 +49,13 @@ def resample(
     -------
     (p, q) array
         Pixels beyond the border repeat those at the border.
+
+    Raises
+    ------
+    ModelError
+        If there is no such kernel.
     """
+    require_kernel("resample", kernel)
     row_at, col_at = np.broadcast_arrays(np.asarray(rows, float), np.asarray(cols, float))
     if kernel == "spline":
         return np.asarray(map_coordinates(image, [row_at, col_at], order=3, mode="nearest"))
@@ -89,11 +99,7 @@ class Regrid:
     def __post_init__(self) -> None:
         require(self, 0.5, 2.0, scale=self.scale)
         require(self, -1e6, 1e6, shift_row_px=self.shift_row_px, shift_col_px=self.shift_col_px)
-        if self.kernel not in KERNEL_REACH_PX:
-            raise ModelError(
-                f"Regrid: kernel is {self.kernel!r}, it has to be one of "
-                + ", ".join(repr(name) for name in KERNEL_REACH_PX)
-            )
+        require_kernel("Regrid", self.kernel)
 
     def system(self, sensor: Sensor) -> Sensor:
         """The sensor and the resampling as one system, in new pixels."""

@@ -15,7 +15,7 @@ Lanczos' kernel of three lobes is within .03 of m = 4, Keys' cubic convolution w
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -25,39 +25,62 @@ from acutance.targets.combine.term import Term
 
 __all__ = ["RESAMPLING"]
 
-_IMAGES: Final[Floats] = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
-"""Repetitions of the old grid's spectrum that have a part."""
+_ORDERS: Final[Floats] = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
+"""Of the repetitions of the old grid's spectrum that have a part."""
 _TINY: Final = 1e-9
 _MOST: Final = 300.0
 """Logarithm of what is as good as infinite: next to a multiple of the old grid's sampling."""
 
 
+class _Images(NamedTuple):
+    """Repetitions of the spectrum along one axis, relative to the spectrum itself.
+
+    Attributes
+    ----------
+    apart_cpp : (n, 6) array
+        Frequencies in cycles per old pixel, from the middle of each repetition.
+    log_ratio, size : (n, 6) arrays
+    """
+
+    apart_cpp: Floats
+    log_ratio: Floats
+    size: Floats
+
+    @property
+    def left(self) -> Floats:
+        """The transfer, (n,)."""
+        return np.asarray(1 / (1 + self.size.sum(axis=1)))
+
+
 def _resampling(p: Floats, plane: Plane) -> Floats:
     """By the logarithms of m, and of the size of an old pixel in new ones."""
-    across, along = (_along_axis(p, freq)[0] for freq in (plane.u_cpp, plane.v_cpp))
+    across, along = (_images(p, freq).left for freq in (plane.u_cpp, plane.v_cpp))
     return np.asarray(across * along)
 
 
 def _resampling_slopes(p: Floats, plane: Plane) -> Floats:
-    (across, *by_across), (along, *by_along) = (
-        _along_axis(p, freq) for freq in (plane.u_cpp, plane.v_cpp)
+    across, along = (_images(p, freq) for freq in (plane.u_cpp, plane.v_cpp))
+    one, other = across.left, along.left
+    by_one, by_other = (
+        _slopes(math.exp(p[0]), images, left) for images, left in ((across, one), (along, other))
     )
-    slopes = [one * along + across * other for one, other in zip(by_across, by_along, strict=True)]
-    return np.stack(slopes, axis=1)
+    return np.asarray(by_one * other[:, None] + one[:, None] * by_other)
 
 
-def _along_axis(p: Floats, freq_cpp: Floats) -> tuple[Floats, Floats, Floats]:
-    """The transfer along one axis, (n,), and its derivatives by both parameters."""
-    power = math.exp(p[0])
-    old = math.exp(p[1]) * freq_cpp[:, None]
-    apart = old - _IMAGES
+def _images(p: Floats, freq_cpp: Floats) -> _Images:
+    old_cpp = math.exp(p[1]) * freq_cpp[:, None]
+    apart = old_cpp - _ORDERS
     apart = np.where(np.abs(apart) < _TINY, _TINY, apart)
-    log_ratio = np.log(np.maximum(np.abs(old / apart), _TINY))
-    image = np.exp(np.minimum(power * log_ratio, _MOST))
-    values = 1 / (1 + image.sum(axis=1))
-    by_power = -(values**2) * power * np.sum(image * log_ratio, axis=1)
-    by_size = (values**2) * power * np.sum(image * _IMAGES / apart, axis=1)
-    return values, by_power, by_size
+    log_ratio = np.log(np.maximum(np.abs(old_cpp / apart), _TINY))
+    return _Images(apart, log_ratio, np.exp(np.minimum(math.exp(p[0]) * log_ratio, _MOST)))
+
+
+def _slopes(power: float, images: _Images, left: Floats) -> Floats:
+    """Derivatives of the transfer along one axis by both parameters, (n, 2)."""
+    growth = power * left**2
+    by_power = -growth * np.sum(images.size * images.log_ratio, axis=1)
+    by_size = growth * np.sum(images.size * _ORDERS / images.apart_cpp, axis=1)
+    return np.stack([by_power, by_size], axis=1)
 
 
 def _resampling_numbers(p: Floats) -> dict[str, float]:

@@ -40,8 +40,8 @@ def removed_noise(data: CheckData, limits: Limits) -> Check:
         pairs, products = _neighbours(
             data.residual, data.slope, data.near, *data.trimmed.pixels.at, STEEP_SHARE
         )
-        most = np.maximum(_SIGMAS / np.sqrt(pairs), _LESS * smooth)
-        if pairs.min() >= _MIN_PAIRS and np.all(np.abs(products) < most * border.power):
+        enough = pairs.min() >= _MIN_PAIRS
+        if enough and _are_unlike(pairs, np.abs(products) / border.power, smooth):
             ratio = math.sqrt(border.power / border.noise)
     found = "no noise was found at the border that plateaus do not have"
     if ratio > 1:
@@ -50,6 +50,11 @@ def removed_noise(data: CheckData, limits: Limits) -> Check:
             f"plateaus, whose neighbours' noise correlates by {abs(data.across.strongest):.2f}"
         )
     return answer("removed_noise", ratio, found, limits)
+
+
+def _are_unlike(pairs: Floats, correlation: Floats, smooth: float) -> bool:
+    """Whether neighbours at the border correlate by no more than chance, or less than others."""
+    return bool(np.all(correlation < np.maximum(_SIGMAS / np.sqrt(pairs), _LESS * smooth)))
 
 
 @compiled
