@@ -78,7 +78,7 @@ def test_results_come_in_the_order_of_the_tasks(workers):
 
 
 def test_this_process_is_one_of_those_that_work_for_results_in_turn(tmp_path):
-    # Thirty-two chunks: the first waits until two processes have begun one.
+    # The first waits until two processes have begun one.
     found = set(results_in_turn(waits_for_company, [tmp_path] * 512, workers=2))
     assert len(found) == 2
     assert os.getpid() in found

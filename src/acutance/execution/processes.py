@@ -34,7 +34,7 @@ _MAX_CHUNK = 8
 _GRACE_S = 2.0
 """For the tasks in work when a run is ended."""
 _WAITING_PER_WORKER = 16
-"""Chunks that are handed out before the first of them is waited for."""
+"""Tasks that are handed out before the first of them is waited for."""
 
 
 def require_workers(workers: int) -> None:
@@ -172,40 +172,35 @@ def results_in_turn(
         return
     todo = iter(tasks)
     # The first is for this process, which has nothing to load.
-    waiting = deque([_Chunk[Task, Result](list(islice(todo, _MAX_CHUNK)), Future())])
+    waiting = deque(_Waiting[Task, Result](task, Future()) for task in islice(todo, 1))
     with _processes(workers - 1) as pool:
-        while True:
+        while waiting:
             with _interrupts_held_back():
-                while len(waiting) < _WAITING_PER_WORKER * workers:
-                    chunk = list(islice(todo, _MAX_CHUNK))
-                    if not chunk:
-                        break
-                    waiting.append(_Chunk(chunk, pool.submit(_work_through, work, chunk)))
-            if not waiting:
-                return
+                for task in islice(todo, _WAITING_PER_WORKER * workers - len(waiting)):
+                    waiting.append(_Waiting(task, pool.submit(_work_through, work, [task])))
             if waiting[0].results.done() or not _work_here(work, waiting):
                 yield from waiting.popleft().results.result()
 
 
 @dataclass
-class _Chunk(Generic[Task, Result]):
-    """Tasks in the order of a run, and where their results will be."""
+class _Waiting(Generic[Task, Result]):
+    """A task of a run, and where its result will be."""
 
-    tasks: list[Task]
+    task: Task
     results: Future[list[Result]]
 
 
-def _work_here(work: Callable[[Task], Result], waiting: Iterable[_Chunk[Task, Result]]) -> bool:
-    """Do in this process the first chunk that no other has begun; whether there was one."""
-    for chunk in waiting:
-        if chunk.results.cancel():
-            chunk.results = Future()
+def _work_here(work: Callable[[Task], Result], waiting: Iterable[_Waiting[Task, Result]]) -> bool:
+    """Do in this process the first task that no other has begun; whether there was one."""
+    for one in waiting:
+        if one.results.cancel():
+            one.results = Future()
             try:
                 with interruptible():
-                    chunk.results.set_result([work(task) for task in chunk.tasks])
+                    one.results.set_result([work(one.task)])
             except Exception as error:
                 # It comes after the results before it.
-                chunk.results.set_exception(error)
+                one.results.set_exception(error)
             return True
     return False
 

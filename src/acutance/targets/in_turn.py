@@ -72,15 +72,15 @@ def in_turn(
 def _results(
     measure: Measure, pairs: Iterator[tuple[int, Any, Any]], workers: int
 ) -> Iterator[Record | Rejected]:
+    # The first result has to wait for no other.
     if workers == 1:
-        # The first result has to wait for no other.
         for some in stacks(pairs, first=1):
             yield from _records(measure, some)
         return
     with TemporaryDirectory(prefix="acutance-") as folder:
-        there = _on_disk(pairs, Path(folder))
+        there = stacks(_on_disk(pairs, Path(folder)), first=1)
         for found in results_in_turn(partial(_fields, measure), there, workers=workers):
-            yield found if isinstance(found, Rejected) else Record(found)
+            yield from (one if isinstance(one, Rejected) else Record(one) for one in found)
 
 
 def are_many(image: Any, roi: Any) -> bool:
@@ -153,10 +153,12 @@ def _record(measure: Measure, place: int, image: Any, roi: Any) -> Steps[Record 
         return Rejected(_stage(error), str(error), _where(place, image, roi))
 
 
-def _fields(measure: Measure, numbered: tuple[int, Any, Any]) -> Mapping[str, Any] | Rejected:
-    """The record's fields, on their way to another process: curves go as arrays, unwritten."""
-    (found,) = _records(measure, [numbered])
-    return found if isinstance(found, Rejected) else found.fields
+def _fields(
+    measure: Measure, some: Sequence[tuple[int, Any, Any]]
+) -> list[Mapping[str, Any] | Rejected]:
+    """The records' fields, on their way to another process: curves go as arrays, unwritten."""
+    records = _records(measure, some)
+    return [one if isinstance(one, Rejected) else one.fields for one in records]
 
 
 def _stage(error: AcutanceError) -> str:
