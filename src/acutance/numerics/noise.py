@@ -24,6 +24,7 @@ __all__ = [
     "rounding_std",
     "side_variances",
     "smallest_step",
+    "variance_between",
 ]
 
 _MIN_DOWNWEIGHTED = 3.0
@@ -57,14 +58,14 @@ def side_variances(residual: Floats, esf: Floats) -> tuple[float, float]:
     residual, esf : (n,) arrays
         Residuals of a fit, and the fitted edge response (0 dark .. 1 bright), of the same pixels.
     """
-    dark = _variance_between(residual, esf, -math.inf, 0.05)
-    return dark, _variance_between(residual, esf, 0.95, math.inf)
+    dark = variance_between(residual, esf, -math.inf, 0.05)
+    return dark, variance_between(residual, esf, 0.95, math.inf)
 
 
-def _variance_between(residual: Floats, esf: Floats, low: float, high: float) -> float:
-    """Variance of the pixels of some responses, without values that Gaussian noise does not reach.
+def variance_between(residual: Floats, esf: Floats, low: float, high: float) -> float:
+    """Variance of residuals of pixels whose fitted response lies between two, (n,) each.
 
-    Of all pixels, where those are few.
+    Without values that Gaussian noise does not reach; of all pixels, where those are few.
     """
     count, variance, largest = _scatter(residual, esf, low, high)
     if count < _MIN_PAIRS:

@@ -129,6 +129,28 @@ def test_a_pulse_shows_both_polarities(bright):
         assert "above a straight line" in found.message
 
 
+def narrow_pulse(seed, gamma=1.0):
+    """A pulse of 2.5 to 3.5 px at SNR 150, bright or dark: its top is never flat."""
+    rng = np.random.default_rng((11, seed))
+    width_px = float(rng.uniform(2.5, 3.5))
+    image, _ = ac.simulate.pulse(
+        SYSTEMS[("gaussian", "diffraction", "halo", "wide")[seed % 4]], width_px=width_px,
+        shape=(60, 40), snr=150, dark=20.0, bright=220.0, rng=rng,
+        angle_deg=float(rng.uniform(3, 12)), offset_px=float(rng.uniform(-0.5, 0.5)),
+    )  # fmt: skip
+    light = np.asarray(image) if seed % 2 else 240.0 - np.asarray(image)
+    return FULL_SCALE * (np.clip(light, 0, None) / FULL_SCALE) ** (1 / gamma), width_px
+
+
+def test_the_noise_of_a_narrow_pulse_shows_a_curve():
+    for gamma, allowed in ((1.0, (0, 1)), (1.3, (11, 16))):
+        pulses = [narrow_pulse(seed, gamma) for seed in range(16)]
+        found = [check(ac.measure_pulse(image, width_px=px)) for image, px in pulses]
+        named = sum(not one.passed for one in found)
+        assert allowed[0] <= named <= allowed[1]
+        assert all("above a straight line" in one.message for one in found if not one.passed)
+
+
 def test_the_gamma_of_a_curvature():
     for gamma in (0.7, 1.3, 2.2):
         dark, bright = (np.array([20.0, 220.0]) / 255) ** (1 / gamma) * 255

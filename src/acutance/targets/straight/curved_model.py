@@ -43,12 +43,21 @@ from acutance.targets.straight.tuned import (
     TREND_LOG_AMPLITUDE,
 )
 
-__all__ = ["CURVATURE_STD", "CurvedModel", "MeanProfile", "Solved", "first_blur", "solve"]
+__all__ = [
+    "AMPLITUDE_STEPS",
+    "CURVATURE_STD",
+    "CurvedModel",
+    "MeanProfile",
+    "Solved",
+    "first_blur",
+    "solve",
+]
 
 CURVATURE_STD: Final = 0.3
 """Prior of c: a gamma of 2.2 between 20 and 220 of 255 is .56, 1.3 between 50 and 200 .15."""
+AMPLITUDE_STEPS: Final = 12
+"""Of Newton's, for the amplitudes of a prior of which nothing is known yet."""
 _MAX_STEP_PX: Final = 0.3
-_AMPLITUDE_STEPS: Final = 12
 _SETTLED_AMPLITUDE: Final = 0.15
 _APERTURE: Final = 3
 _APERTURE_STD_PX: Final = 0.3
@@ -248,7 +257,7 @@ def solve(
     free: NDArray[np.bool_],
     c: float,
     earlier: Solved | None = None,
-    most: int = _AMPLITUDE_STEPS,
+    most: int = AMPLITUDE_STEPS,
 ) -> Solved:
     """Solve for the free unknowns, the last being added to c, and the prior's amplitudes.
 

@@ -14,7 +14,7 @@ not straight:
   LSF, has a part that follows u. It is weighed against an odd part of the LSF, as trails and coma
   give. A small odd part of low order cannot be told from a curve by one edge. A pulse shows both
   polarities: its LSF may have any shape (`curved_model`);
-- the noise of an edge's two sides (`side_noise`), which a curve of slope g multiplies by g.
+- the noise of the target's two levels (`side_noise`), which a curve of slope g multiplies by g.
 
 Both are weighed by their likelihoods, with the unknowns integrated out.
 """
@@ -22,7 +22,7 @@ Both are weighed by their likelihoods, with the unknowns integrated out.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Final
 
@@ -35,9 +35,11 @@ from acutance.numerics.compiled import compiled
 from acutance.optics.population import UNEVEN_FAMILIES
 from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.curved_model import (
+    AMPLITUDE_STEPS,
     CURVATURE_STD,
     CurvedModel,
     MeanProfile,
+    Solved,
     first_blur,
     solve,
 )
@@ -69,7 +71,7 @@ _HIGHER_ORDERS: Final = 0.1
 _MAX_STEPS: Final = 5
 _MAX_STEP: Final = 0.3
 _SETTLED_SIGMAS: Final = 0.2
-_PRIOR_ODDS_OF_PULSES: Final = 1 / 3
+_PRIOR_LOG_ODDS_OF_PULSES: Final = -math.log(3)
 
 _EVEN, _ODD, _LOW_ODD, _LOW_ODD_UNEVEN = 0.5, 0.1, 0.1, 0.3
 _LOW_ODD_STD: Final = 0.25
@@ -116,7 +118,7 @@ class Curvature:
 NO_CURVATURE: Final = Curvature(0.0, math.inf, -math.inf)
 
 
-def find_curvature(data: CheckData, profile: Profile) -> Curvature:
+def find_curvature(data: CheckData, profile: Profile, sign: float = 1.0) -> Curvature:
     """The curvature that the pixels of a straight target show.
 
     Parameters
@@ -124,9 +126,11 @@ def find_curvature(data: CheckData, profile: Profile) -> Curvature:
     data : CheckData
     profile : Profile
         The steps of the target.
+    sign : float, optional
+        -1 of a dark pulse, whose values are negated.
     """
     try:
-        return _of_edge(data) if len(profile.shares) == 1 else _of_pulse(data, profile)
+        return _of_edge(data) if len(profile.shares) == 1 else _of_pulse(data, profile, sign)
     except TargetError:
         return NO_CURVATURE
 
@@ -279,37 +283,81 @@ def _amplitudes(weighed: Weighed) -> tuple[Floats, Floats, Floats]:
     return mean[best], precision[best] ** -0.5, np.logaddexp.reduce(evidence)
 
 
-def _of_pulse(data: CheckData, profile: Profile) -> Curvature:
+def _of_pulse(data: CheckData, profile: Profile, sign: float) -> Curvature:
     """The curve that a pulse shows, against any LSF.
 
-    Looked for only if the first step to it is longer than chance.
+    Looked for only if the first step to it is longer than chance, or the noise shows one.
     """
+    linear, straight = _straight_pulse(data, profile)
+    first = _curved(linear, linear.response(straight.beta), 0.0, straight)
+    noise = SideNoise.of_pulse(data, sign)
+    unlikely = noise is None or noise.max_gain < _MIN_GAIN
+    if unlikely and abs(first.beta[-1]) < _MIN_SIGMAS * first.last_std:
+        return NO_CURVATURE
+    return _with_noise(_likeliest(linear, straight, first), noise)
+
+
+def _straight_pulse(data: CheckData, profile: Profile) -> tuple[CurvedModel, Solved]:
+    """The model about the response that explains a pulse best without a curve, and this."""
     blur = first_blur(data, profile)
     linear = CurvedModel.about(MeanProfile.of(data, blur.width_px), blur, profile)
-    everything = np.ones(linear.block.size, bool)
-    no_curve = everything.copy()
-    no_curve[-1] = False
-    straight = solve(linear.normal(linear.mean, 0.0), linear, no_curve, 0.0)
+    straight = _straight(linear, None)
     # A second time about the fitted response, not about that of the first fit.
     linear = linear.renewed(straight.beta)
-    straight = solve(linear.normal(linear.mean, 0.0), linear, no_curve, 0.0, straight)
-    u = linear.response(straight.beta)
-    curved = solve(linear.normal(u, 0.0), linear, everything, 0.0, straight)
-    if abs(curved.beta[-1]) < _MIN_SIGMAS * curved.last_std:
-        return NO_CURVATURE
-    c = 0.0
+    return linear, _straight(linear, straight)
+
+
+def _straight(linear: CurvedModel, earlier: Solved | None, most: int = AMPLITUDE_STEPS) -> Solved:
+    """A pulse without a curve."""
+    no_curve = np.arange(linear.block.size) < linear.block.size - 1
+    return solve(linear.normal(linear.mean, 0.0), linear, no_curve, 0.0, earlier, most)
+
+
+def _curved(
+    linear: CurvedModel, u: Floats, c: float, earlier: Solved, most: int = AMPLITUDE_STEPS
+) -> Solved:
+    """A pulse with a curve, about a linear image and a curvature."""
+    everything = np.ones(linear.block.size, bool)
+    return solve(linear.normal(u, c), linear, everything, c, earlier, most)
+
+
+def _likeliest(linear: CurvedModel, straight: Solved, curved: Solved) -> Curvature:
+    """The likeliest curve on the way from a first step, and its odds by the shape of the pulse.
+
+    Where steps do not settle, the shape tells nothing for it: ground that no model has, not a
+    curve, may draw them away.
+    """
+    c, found, settled = 0.0, NO_CURVATURE, False
     for _ in range(_MAX_STEPS):
         step = float(curved.beta[-1])
         c = min(max(c + min(max(step, -_MAX_STEP), _MAX_STEP), -_MAX_CURVATURE), _MAX_CURVATURE)
-        if abs(step) < _SETTLED_SIGMAS * curved.last_std:
+        log_odds = curved.log_evidence - straight.log_evidence + _PRIOR_LOG_ODDS_OF_PULSES
+        found = max(found, Curvature(c, curved.last_std, log_odds), key=lambda one: one.log_odds)
+        settled = abs(step) < _SETTLED_SIGMAS * curved.last_std
+        if settled:
             break
         u = linear.response(curved.beta)
         linear = linear.renewed(curved.beta)
-        curved = solve(linear.normal(u, c), linear, everything, c, curved, most=2)
-    if abs(c) >= _MAX_CURVATURE:
-        return NO_CURVATURE
-    log_odds = curved.log_evidence - straight.log_evidence + math.log(_PRIOR_ODDS_OF_PULSES)
-    return Curvature(c, curved.last_std, log_odds)
+        # The same renewal and amplitudes may explain more without a curve.
+        again = _straight(linear, curved, most=2)
+        straight = max(straight, again, key=lambda one: one.log_evidence)
+        curved = _curved(linear, u, c, curved, most=2)
+    if settled and abs(c) < _MAX_CURVATURE:
+        return found
+    return replace(found, log_odds=min(found.log_odds, _PRIOR_LOG_ODDS_OF_PULSES))
+
+
+def _with_noise(shape: Curvature, noise: SideNoise | None) -> Curvature:
+    """What a pulse shows by its shape and by its noise."""
+    amplitude = shape.value + shape.std * _GRID
+    density = np.where(np.abs(amplitude) < _MAX_CURVATURE, _NORMAL, _NEGLIGIBLE)
+    if noise is not None:
+        density = density * noise.likelihood(noise.slopes(amplitude[None]))[0]
+    own = density / density.sum()
+    mean = float(own @ amplitude)
+    std = math.sqrt(float(own @ (amplitude - mean) ** 2))
+    gain = math.log(float(density.sum()) / float(_NORMAL.sum()))
+    return Curvature(mean, std, shape.log_odds + gain)
 
 
 def _log_normal(x: float, std: float) -> float:

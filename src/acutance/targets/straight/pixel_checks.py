@@ -132,7 +132,7 @@ def nonlinearity(data: CheckData, limits: Limits, profile: Profile, sign: float 
     Zero where a linear sensor explains the image about as well. `sign` is -1 of a dark pulse, whose
     values are negated.
     """
-    found = find_curvature(data, profile)
+    found = find_curvature(data, profile, sign)
     if found.log_odds < NONLINEAR_LOG_ODDS:
         return answer("nonlinearity", 0.0, "the image's values are proportional to light", limits)
     value, std = found.departure * abs(found.value), found.departure * found.std
