@@ -81,6 +81,22 @@ def test_what_agrees_is_said_to_and_what_does_not_is_not(pair, method):
         assert edge.difference.value == pytest.approx(edge.after.value - edge.predicted.value)
 
 
+def test_an_image_of_another_sensor_is_named(pair):
+    filter, before, after = pair
+    proof = ac.verify_restoration(before, after, filter, [(15, 15, 90, 90)])
+    assert proof.notes == ()
+    wide = ac.simulate.reference_systems()["wide"]
+    for_another = ac.design_restoration(wide, snr=100, noise_gain=1.6)
+    restored = ac.Image.from_array(ac.restore(before.read(), for_another))
+    proof = ac.verify_restoration(before, restored, for_another, [(15, 15, 90, 90)])
+    assert proof.agrees
+    (note,) = proof.notes
+    assert "the filter was designed for" in note
+    assert proof.to_dict()["notes"] == [note]
+    turned = dataclasses.replace(proof.edges[0], before=proof.edges[0].designed * 0.2)
+    assert "soft themselves" in dataclasses.replace(proof, edges=(turned,)).notes[0]
+
+
 def test_two_lines_share_no_error(pair):
     filter, before, after = pair
     regions = [(15, 15, 90, 90)]

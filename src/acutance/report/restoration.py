@@ -75,7 +75,8 @@ def proof_text(proof: RestorationProof) -> str:
     """
     refused = [f"{one}" for one in proof.rejected]
     verdict = f"The image {proof.sentence}."
-    return "\n".join((table_text(proof_table(proof)), *refused, verdict))
+    notes = [f"note: {note}" for note in proof.notes]
+    return "\n".join((table_text(proof_table(proof)), *refused, verdict, *notes))
 
 
 def niirs_text(found: Niirs) -> str:

@@ -29,6 +29,8 @@ _MAX_EDGES, _MIN_LENGTH_PX, _HALF_WIDTH_PX = 80, 20.0, 9.0
 
 _AGREES_LEVEL = 0.95
 _SAME_LINE_DEG = 0.5
+_UNLIKE, _DESIGN_STD = 4.0, 0.01
+"""Deviations from the design that are named; what edges off the axes and of other ground add."""
 _SHARED_AND_OWN_ERROR: dict[str, tuple[float, float]] = {
     "spline": (0.0, 0.005),
     "sdsu-2005": (0.95, 0.006),
@@ -68,6 +70,10 @@ class VerifiedEdge(ShortRepr):
         Of `acutance.measure_edge`.
     turned_deg : float
         Angle between the lines found before and after.
+    designed : Estimate, optional
+        MTF at Nyquist across or along that the filter was designed for.
+    count : int
+        Edges, of a mean.
     """
 
     name: str
@@ -80,6 +86,8 @@ class VerifiedEdge(ShortRepr):
     overshoot: Estimate
     method: str = "spline"
     turned_deg: float = 0.0
+    designed: Estimate | None = None
+    count: int = 1
 
     @property
     def off(self) -> float:
@@ -110,6 +118,19 @@ class VerifiedEdge(ShortRepr):
         return self.off / self.difference.std
 
     @property
+    def unlike_design(self) -> float:
+        """How many deviations MTF at Nyquist before the filter is above what it was designed for.
+
+        Negative below it; 0 where that is not known.
+        """
+        if self.designed is None:
+            return 0.0
+        known = self.designed.std if math.isfinite(self.designed.std) else 0.0
+        return (self.before.value - self.designed.value) / math.hypot(
+            self.before.std, known, _DESIGN_STD
+        )
+
+    @property
     def noise_gain(self) -> float:
         """SNR before over that after: the noise gain as the edge shows it."""
         return self.snr_before / self.snr_after
@@ -124,6 +145,7 @@ class VerifiedEdge(ShortRepr):
             "mtf_nyquist_predicted": self.predicted.to_dict(),
             "difference": self.difference.to_dict(),
             "deviations": self.deviations,
+            "mtf_nyquist_designed": None if self.designed is None else self.designed.to_dict(),
             "overshoot_after": self.overshoot.to_dict(),
             "snr_before": self.snr_before,
             "snr_after": self.snr_after,
@@ -163,7 +185,8 @@ class RestorationProof(ShortRepr):
     def sentence(self) -> str:
         """Whether the image is as sharp as predicted, in words of deviations."""
         worst = self.worst
-        of = f"{len(self.edges)} edges" if len(self.edges) > 1 else "the edge"
+        count = sum(one.count for one in self.edges)
+        of = f"{count} edges" if count > 1 else "the edge"
         by = f"{worst.name} by {worst.difference.value:+.4f} ± {worst.difference.std:.4f}"
         if self.agrees:
             return (
@@ -175,6 +198,23 @@ class RestorationProof(ShortRepr):
             f"(at most {self.limit:.1f} are expected)"
         ).replace("-", "−")
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where the image is not that of the sensor the filter was designed for."""
+        unlike = max(self.edges, key=lambda one: abs(one.unlike_design))
+        if unlike.designed is None or abs(unlike.unlike_design) < _UNLIKE:
+            return ()
+        why = (
+            "it is of another sensor or band, or was sharpened before"
+            if unlike.unlike_design > 0
+            else "it is of another sensor or band, or its borders are soft themselves"
+        )
+        return (
+            f"{unlike.name}: before the filter MTF at Nyquist is {unlike.before}, and the filter "
+            f"was designed for {unlike.designed} ({abs(unlike.unlike_design):.0f} deviations): "
+            f"{why}; it does not become what the design promises",
+        )
+
     def summary(self) -> str:
         """Whether measured and predicted agree."""
         return self.sentence
@@ -184,6 +224,7 @@ class RestorationProof(ShortRepr):
         return {
             "agrees": self.agrees,
             "sentence": self.sentence,
+            "notes": list(self.notes),
             "edges": [one.to_dict() for one in self.edges],
             "rejected": list(self.rejected),
         }
@@ -256,6 +297,7 @@ def _of_edge(
         name, normal_deg, before.mtf_nyquist, after.mtf_nyquist,
         before.mtf_nyquist * _gain(filter, normal_deg), before.snr, after.snr, after.overshoot,
         before.method, axis_difference(after.line.normal_deg, normal_deg),
+        _designed(filter, before.orientation),
     )  # fmt: skip
 
 
@@ -331,7 +373,13 @@ def _mean_edge(name: str, pairs: Sequence[_Pair], filter: RestorationFilter) -> 
         float(np.median([one.snr for one in before])),
         float(np.median([one.snr for one in after])),
         _mean(after, "overshoot", weight),
+        designed=_designed(filter, before[0].orientation),
+        count=len(pairs),
     )
+
+
+def _designed(filter: RestorationFilter, orientation: str) -> Estimate:
+    return filter.before.directions[orientation].mtf_nyquist
 
 
 def _mean(
