@@ -110,6 +110,11 @@ def test_a_lower_bound_follows_shift_and_scale_and_ends_with_the_sign() -> None:
     assert (width / 4).lowest == 0.0
     assert (1 - width).lowest is None
     assert (-width).lowest is None
+    assert (1 - width).highest == 1.0
+    share = Estimate(0.9, 0.2, lowest=0.0, highest=1.0)
+    assert (1 - share).interval() == (0.0, pytest.approx(0.1 + 1.96 * 0.2, abs=1e-4))
+    assert share.interval()[1] == 1.0
+    assert Estimate.from_dict(share.to_dict()) == share
 
 
 def test_document_has_none_where_there_is_no_number() -> None:

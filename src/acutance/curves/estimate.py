@@ -54,6 +54,8 @@ class Estimate:
         One standard deviation, of everything the data can show. A truth has 0.
     lowest : float, optional
         What the quantity cannot fall below, 0 for an MTF or a width: intervals end there.
+    highest : float, optional
+        What it cannot exceed, 1 for a share: intervals end there, too.
 
     Examples
     --------
@@ -70,6 +72,7 @@ class Estimate:
     value: float
     std: float = 0.0
     lowest: float | None = None
+    highest: float | None = None
 
     # numpy then leaves sums and products with its own scalars to the methods below.
     __array_ufunc__: ClassVar[None] = None
@@ -77,7 +80,8 @@ class Estimate:
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """The interval that holds the truth with probability `level` (above 0, below 1).
 
-        It is symmetric about the value, cut off where it would reach below `lowest`.
+        It is symmetric about the value, cut off where it would reach below `lowest` or above
+        `highest`.
 
         Raises
         ------
@@ -86,13 +90,16 @@ class Estimate:
         """
         half = normal_quantile(level) * self.std
         low, high = self.value - half, self.value + half
-        return (low, high) if self.lowest is None else (max(low, self.lowest), high)
+        return (
+            low if self.lowest is None else max(low, self.lowest),
+            high if self.highest is None else min(high, self.highest),
+        )
 
     def to_dict(self) -> dict[str, float | list[float] | None]:
         """Value, standard deviation and 95 % interval; ``None`` where they do not exist.
 
-        A quantity with a lower bound has it as ``lowest``: an interval that begins there was
-        cut off.
+        A quantity with a bound has it as ``lowest`` or ``highest``: an interval that begins or
+        ends there was cut off.
         """
         if not math.isfinite(self.value):
             return {"value": None, "std": None, "interval95": None}
@@ -102,7 +109,8 @@ class Estimate:
             "std": self.std if stated else None,
             "interval95": list(self.interval(0.95)) if stated else None,
         }
-        return document if self.lowest is None else {**document, "lowest": self.lowest}
+        bounds = {"lowest": self.lowest, "highest": self.highest}
+        return document | {name: bound for name, bound in bounds.items() if bound is not None}
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> Estimate:
@@ -111,7 +119,7 @@ class Estimate:
             math.nan if document[name] is None else float(document[name])
             for name in ("value", "std")
         )
-        return cls(value, std, document.get("lowest"))
+        return cls(value, std, document.get("lowest"), document.get("highest"))
 
     def __float__(self) -> float:
         return float(self.value)
@@ -125,7 +133,7 @@ class Estimate:
 
     def _key(self) -> tuple[float | None, ...]:
         value, std = (None if math.isnan(part) else part for part in (self.value, self.std))
-        return value, std, self.lowest
+        return value, std, self.lowest, self.highest
 
     def __lt__(self, other: float | Estimate) -> bool:
         return self.value < float(other) if _is_number(other) else NotImplemented
@@ -161,10 +169,11 @@ class Estimate:
     __rmul__ = __mul__
 
     def _linear(self, slope: float, offset: float) -> Estimate:
-        """``slope * self + offset``; a negative slope turns a lower bound into an upper one."""
+        """``slope * self + offset``; a negative slope exchanges the bounds."""
         slope, offset = float(slope), float(offset)
-        lowest = None if self.lowest is None or slope < 0 else slope * self.lowest + offset
-        return Estimate(slope * self.value + offset, abs(slope) * self.std, lowest)
+        ends = (self.lowest, self.highest) if slope >= 0 else (self.highest, self.lowest)
+        bounds = (None if end is None else slope * end + offset for end in ends)
+        return Estimate(slope * self.value + offset, abs(slope) * self.std, *bounds)
 
     def __format__(self, spec: str) -> str:
         """Value and standard deviation, both by `spec`; without one as `str` does."""

@@ -254,7 +254,7 @@ def _measurement(
         options=options.to_dict(),
         edges=known,
         field=field,
-        objects={name: Estimate(value, std, 0.0) for name, (value, std) in fit.kinds.items()},
+        objects={name: Estimate(value, std, 0.0, 1.0) for name, (value, std) in fit.kinds.items()},
         ideal_by_direction=fit.ideal_by_direction,
         normal_deg_bins=tuple(fit.normal_deg.tolist()),
         details=fit,

@@ -117,7 +117,7 @@ class SensorFit:
         found = []
         for g in np.flatnonzero(self._counts).tolist():
             value, std = _share_of(KINDS["ideal"], self.member.share[g], self._covariances[g])
-            share = Estimate(value, std, 0.0)
+            share = Estimate(value, std, 0.0, 1.0)
             found.append(IdealShare(float(SECTOR_DEG[g]), int(self._counts[g]), share))
         return tuple(found)
 
