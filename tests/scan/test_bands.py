@@ -118,6 +118,11 @@ def test_the_deviation_of_the_shift_is_true():
     assert abs(np.mean(off)) < 0.5
 
 
+def test_equal_bands_have_no_shift():
+    shift = shift_of([two_bands(3, 300, 150)[0]] * 2)
+    assert (shift.row_px.value, shift.col_px.value, shift.correlation) == (0.0, 0.0, 0.0)
+
+
 def test_objects_that_differ_between_bands_widen_the_shift():
     """Places of drawn edges: half of them scatter, and a tenth are far away."""
     rng = np.random.default_rng(4)

@@ -108,10 +108,12 @@ def band_shift(first: SceneEdges, other: SceneEdges) -> BandShift:
         if max(moved, abs(scatter - before)) < _SETTLED_PX:
             break
     covariance = _covariance(normal, along - normal @ shift, np.hypot(std, scatter))
-    row_std, col_std = np.sqrt(np.diagonal(covariance))
+    row_std, col_std = np.sqrt(np.diagonal(covariance)).tolist()
+    # Bands that are equal have no deviation.
+    correlation = float(covariance[0, 1]) / (row_std * col_std) if row_std * col_std > 0 else 0.0
     return BandShift(
-        Estimate(float(shift[0]), float(row_std)), Estimate(float(shift[1]), float(col_std)),
-        float(covariance[0, 1] / (row_std * col_std)), int(both.sum()), scatter,
+        Estimate(float(shift[0]), row_std), Estimate(float(shift[1]), col_std), correlation,
+        shared, scatter,
     )  # fmt: skip
 
 
