@@ -221,13 +221,13 @@ def _target_sections(
     picture = Plate.of_figure(
         target_figure(result, backdrop=backdrop, origin=origin, on_page=True),
         "The edges and their MTFs by direction",
-        "Numbered edges, the MTF of each with its 95 % band, the weighted mean at Nyquist.",
+        "Numbered edges, the MTF of each with its 95 % band, the means at Nyquist.",
         wide=True,
     )
     last = Section.of_table(options_table(measurements[0]))
     return (
         Section("The target", verdicts=_target_verdicts(result), plates=(picture,)),
-        Section("Weighted means", tables=(means_headline(result),), side_by_side=True),
+        Section("Means", tables=(means_headline(result),), side_by_side=True),
         *_failed_section(result),
         *map(Section.of_table, target_tables(result)),
         _with_command(last, command or _command(measurements[0])),

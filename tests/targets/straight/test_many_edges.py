@@ -2,6 +2,7 @@
 
 import json
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,12 @@ from acutance.report import document as document_of
 from acutance.report import json_text
 from acutance.report.tables.target import group_rows
 from acutance.simulate import site
-from acutance.targets.straight.many_edges import TargetResult, _weighted_mean, combine_edges
+from acutance.targets.straight.many_edges import (
+    TargetResult,
+    _shared_border,
+    _weighted_mean,
+    combine_edges,
+)
 
 SYSTEM = ac.Sensor(
     [ac.optics.Gaussian(0.4), ac.optics.Detector(1.0), ac.optics.Smear(0.5, "along")]
@@ -186,3 +192,18 @@ def test_every_rejected_edge_is_told_in_pixels_of_the_whole_image(scene):
     for one in rejected:
         assert roi[0] <= one.values["row"] < roi[0] + roi[2]
         assert roi[1] <= one.values["col"] < roi[1] + roi[3]
+
+
+def test_a_line_that_runs_on_to_another_object_shares_its_border():
+    """Of a line over ten rows, the last three are the border of an edge that was measured."""
+
+    def edge(rows):
+        used = np.zeros((20, 20), bool)
+        used[rows] = True
+        return SimpleNamespace(details=SimpleNamespace(used=used, distance_px=columns[used]))
+
+    columns = np.tile(np.arange(20.0) - 9.5, (20, 1))
+    long, short = edge(slice(0, 10)), edge(slice(7, 15))
+    assert _shared_border(long, short) == pytest.approx(0.3)
+    assert _shared_border(short, long) == pytest.approx(3 / 8)
+    assert _shared_border(long, edge(slice(10, 15))) == 0.0

@@ -192,7 +192,7 @@ def _draw_group(axes: Axes, result: TargetResult[Any], orientation: str, color: 
 
 
 def _write_groups(axes: Axes, result: TargetResult[Any]) -> None:
-    rows = [("", "", "weighted mean ± std", "chi² / dof", "p")]
+    rows = [("", "", "mean ± std", "chi² / dof", "p")]
     rows += group_rows(result, DRAWN)
     colors = [INK, *(BLUE if row[0] == "across" else VERMILION for row in rows[1:])]
     write_grid(

@@ -36,7 +36,7 @@ def target_tables(result: TargetResult[Any]) -> tuple[Table, ...]:
 
 
 def means_headline(result: TargetResult[Any]) -> Table:
-    """The weighted means of the main numbers: a row a direction."""
+    """The means of the main numbers: a row a direction."""
     numbers = {
         f"{name}\nmean of {count_edges(len(group.measurements))}": dict(group.metrics)
         for name, group in result.groups.items()
@@ -73,7 +73,8 @@ def _means_table(result: TargetResult[Any]) -> Table:
         for metric in by_metric
     ]
     columns = (part for name in result.groups for part in (f"{name} mean", "chi² / dof", "p"))
-    notes = ("The means weigh every edge by one over its variance.", *notes_on_means(result))
+    weights = "Means with a chi² weigh every edge by one over its variance."
+    notes = (weights, *notes_on_means(result))
     return Table(
         ("Metric", *columns), tuple(rows), "l" + "rrr" * len(result.groups),
         title="Means by direction", notes=notes,
@@ -111,7 +112,7 @@ def notes_on_means(result: TargetResult[Any]) -> tuple[str, ...]:
 def group_rows(
     result: TargetResult[Any], names: Sequence[str] = METRICS
 ) -> list[tuple[str, str, str, str, str]]:
-    """Direction, metric, weighted mean, chi-square over its degrees of freedom, p-value."""
+    """Direction, metric, mean, chi-square over its degrees of freedom, p-value."""
     rows = []
     for orientation, group in result.groups.items():
         for name in names:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
-from typing import Any, overload
+from typing import Any, Final, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
@@ -35,6 +35,14 @@ from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
 from acutance.targets.uncertainty_budget import std_of_mean, systematic_share
 
 __all__ = ["combine_edges", "each_edge", "measure_edges"]
+
+_BORDER_PX: Final = 1.5
+_MAX_SHARED: Final = 0.05
+"""Share of a border's pixels beyond which two edges are not counted as two."""
+_SHARED_WORDS: Final = (
+    "{:.0f} % of its border is that of an edge that was measured before: its line runs over two "
+    "objects; choose a region with one of them (measure_edge, without --all)"
+)
 
 
 @overload
@@ -183,8 +191,14 @@ def _edges_of_target(
             where = _where(in_whole_image(segment.line, region))
             rejected.append(Rejected("fit", str(error), where))
             continue
-        if not any(_same_edge(found, other) for other in measured):
-            measured.append(found)
+        if any(_same_edge(found, other) for other in measured):
+            continue
+        shared = max((_shared_border(found, other) for other in measured), default=0.0)
+        if shared > _MAX_SHARED:
+            where = _where(in_whole_image(segment.line, region))
+            rejected.append(Rejected("fit", _SHARED_WORDS.format(100 * shared), where))
+            continue
+        measured.append(found)
     kept, dim = _of_the_target(measured)
     return TargetResult(kept, (*rejected, *dim), combine_edges(kept))
 
@@ -200,6 +214,22 @@ def _same_edge(one: StraightMeasurement, other: StraightMeasurement) -> bool:
     apart = abs(float(other.line.tangent_distance(one.line.row, one.line.col)))
     reach = 0.5 * min(one.line.length_px, other.line.length_px)
     return turn_deg < 5 and offset < 2 and apart < reach
+
+
+def _shared_border(one: StraightMeasurement, other: StraightMeasurement) -> float:
+    """Share of an edge's border pixels that are the border of another, too.
+
+    A line that runs on past the end of its object meets the border of the next one.
+    """
+    own, others = _border(one), _border(other)
+    return float(np.mean(others[own])) if own.any() else 0.0
+
+
+def _border(one: StraightMeasurement) -> NDArray[np.bool_]:
+    """The used pixels next to the line, in the region."""
+    border = np.zeros(one.details.used.shape, bool)
+    border[one.details.used] = np.abs(one.details.distance_px) < _BORDER_PX
+    return border
 
 
 def _of_the_target(
