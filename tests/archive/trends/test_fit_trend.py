@@ -89,6 +89,19 @@ def test_a_season_is_found(series_of: Make) -> None:
     assert fit_trend(series_of()).season_probability < 0.3
 
 
+def test_a_line_off_the_level_by_a_season_that_is_hardly_there_is_explained(
+    series_of: Make,
+) -> None:
+    words = "The level is without a season"
+    trends = [fit_trend(series_of(seed, season=0.012)) for seed in range(6)]
+    off = [abs(one.at(one.last).value - one.level.value) / one.level.std for one in trends]
+    unlikely = [one.season_probability < 0.5 for one in trends]
+    said = [words in trend_text(one) for one in trends]
+    assert said == [a and b > 0.3 for a, b in zip(unlikely, off, strict=True)]
+    assert True in said
+    assert False in said
+
+
 def test_one_bad_day_moves_nothing_and_is_named(series_of: Make) -> None:
     made = series_of(drift=0.02)
     spoiled = made.value.copy()

@@ -15,6 +15,8 @@ __all__ = ["percent", "season_words", "signed", "trend_text"]
 
 _SURE = 0.95
 _WORTH = 0.1
+_NOTICED = 0.3
+"""Deviations between the level and the line on that day, from which on a reader asks why."""
 
 
 def signed(estimate: Estimate) -> str:
@@ -79,9 +81,15 @@ def _event_words(trend: Trend) -> list[str]:
 
 
 def season_words(trend: Trend) -> str:
-    """That the level is without the season, in a sentence; "" where there hardly is one."""
+    """That the level is without the season, in a sentence; "" where that hardly matters."""
     if trend.season_probability < 0.5:
-        return ""
+        there = trend.at(trend.last)
+        if abs(there.value - trend.level.value) < _NOTICED * trend.level.std:
+            return ""
+        return (
+            f"The level is without a season, which is there with a probability of "
+            f"{trend.season_probability:.2f}; with it the line is at {there} on that day."
+        )
     amplitude = 100 * trend.season_amplitude / abs(trend.level.value or 1.0)
     sure = "" if trend.season_probability > _SURE else f" ({trend.season_probability:.2f} sure)"
     return (
