@@ -225,6 +225,9 @@ _POINTS = {
         "How much do the backgrounds differ, relative to the median peak?", "<=", 0.05,
         "use a uniform grassy area", "QuickBird report 4.4",
     ),
+    "positions": Question(
+        "At which share of the given positions is a source?", ">=", 0.5, "check rows and columns",
+    ),
     "survey_px": Question(
         "How far are the measured places from the surveyed ones?", "<=", 0.1,
         "check the survey, or the order of its points", "QuickBird report 5.7.3 (0.017 to 0.047)",

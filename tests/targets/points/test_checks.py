@@ -28,7 +28,7 @@ def image():
 
 
 def test_every_check_is_asked_and_no_other(image):
-    found = ac.measure_points(image, surveyed=LAYOUT)
+    found = ac.measure_points(image, positions=LAYOUT, surveyed=LAYOUT)
     assert {one.name for one in found.checks} == set(POINTS_CHECKS)
     assert {one.name for one in found.failed_checks} == {"sources", "phase_gap_px"}
     assert found.verdict.word == "usable"
@@ -37,7 +37,11 @@ def test_every_check_is_asked_and_no_other(image):
 @pytest.mark.parametrize("method", ["psf-fit", "gaussian-2003"])
 def test_every_limit_can_fail(image, method):
     found = ac.measure_points(
-        image, surveyed=LAYOUT, method=method, options=PointsOptions(limits=ABSURD)
+        image,
+        positions=LAYOUT,
+        surveyed=LAYOUT,
+        method=method,
+        options=PointsOptions(limits=ABSURD),
     )
     assert found.failed_checks == tuple(found.checks)
     assert {one.name: one.limit for one in found.checks}.items() <= ABSURD.items()
@@ -100,3 +104,11 @@ def test_noise_that_neighbours_share_widens_the_intervals():
     assert 2.5 < resampled.details.fit.correlation.inflation < 5.0
     widened = resampled.across.mtf_nyquist.std / plain.across.mtf_nyquist.std
     assert 1.3 < widened < 2.2
+
+
+def test_positions_without_sources_are_doubted(image):
+    elsewhere = np.concatenate([LAYOUT[:1], LAYOUT[1:] + 4.5])
+    found = ac.measure_points(image, positions=elsewhere)
+    failed = next(one for one in found.failed_checks if one.name == "positions")
+    assert f"at {len(LAYOUT) - 1} of the {len(LAYOUT)} positions" in failed.message
+    assert found.verdict.word == "doubtful"

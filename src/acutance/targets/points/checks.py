@@ -16,7 +16,7 @@ from acutance.targets.points.survey import SurveyErrors
 from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
 from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 
-__all__ = ["POINTS_CHECKS", "check_points", "check_survey", "phase_gap_px"]
+__all__ = ["POINTS_CHECKS", "check_points", "check_positions", "check_survey", "phase_gap_px"]
 
 POINTS_CHECKS = (
     "sources",
@@ -32,6 +32,7 @@ POINTS_CHECKS = (
     "full_scale",
     "correlated_noise",
     "outliers",
+    "positions",
     "survey_px",
 )
 """Names of all checks of point sources; their questions are in `acutance.targets.QUESTIONS`."""
@@ -89,6 +90,12 @@ def check_points(
         found = f"{100 * outliers:.1f} % of the pixels lie far from the fit"
         checks.append(answer("outliers", outliers, found, limits))
     return tuple(checks)
+
+
+def check_positions(missing: int, given: int, limits: Limits) -> Check:
+    """Whether the given positions are those of sources."""
+    found = f"at {missing} of the {given} positions that were given there is no source"
+    return answer("positions", 1 - missing / given, found, limits)
 
 
 def check_survey(survey: SurveyErrors, limits: Limits) -> Check:

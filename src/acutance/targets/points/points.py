@@ -18,7 +18,7 @@ from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
 from acutance.targets.check import Check, Checks
 from acutance.targets.options import chosen_options, published_options
-from acutance.targets.points.checks import check_points, check_survey
+from acutance.targets.points.checks import check_points, check_positions, check_survey
 from acutance.targets.points.detect import RejectedSpot
 from acutance.targets.points.extent import excess_variances
 from acutance.targets.points.first_fit import FirstFit, fit_first_gaussian, unlike_sources
@@ -200,6 +200,10 @@ def measure_points(
     wanted = None if positions is None else _places_of("positions", positions) - _origin(region)
     selected = select_spots(region, wanted, chosen)
     measurement = _measured(method, region, selected, chosen)
+    if wanted is not None:
+        missing = sum(one.reason == "no source" for one in selected.rejected)
+        matched = check_positions(missing, len(wanted), chosen.limits)
+        measurement = replace(measurement, checks=(*measurement.checks, matched))
     if surveyed is None:
         return measurement
     return _with_survey(measurement, _places_of("surveyed", surveyed), survey_reference, chosen)
