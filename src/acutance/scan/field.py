@@ -154,7 +154,7 @@ class Field(ShortRepr):
     def holds(self, row: float, col: float) -> bool:
         """Whether a place lies in the field."""
         x, y = self.places(np.array(row), np.array(col))
-        return bool(max(abs(x), abs(y)) <= 1.0)
+        return bool(abs(x) <= 1.0 and abs(y) <= 1.0)
 
     def summary(self) -> str:
         """How likely it is that nothing changes."""
