@@ -146,6 +146,9 @@ def test_sharpness_at_a_place(ideal):
     assert len(scene.over_field(2, 4)) == 8
     with pytest.raises(ac.RegionError, match="rows 0 to 599"):
         scene.at(600, 0)
+    for place in ((np.nan, 10), (10, np.nan)):
+        with pytest.raises(ac.RegionError, match="rows 0 to 599"):
+            scene.at(*place)
     places = scene.to_dict()["field"]["places"]
     assert len(places) == 9
     assert places[4]["along"]["rer"]["value"] == pytest.approx(0.68, abs=0.02)
