@@ -58,6 +58,31 @@ def test_a_link_to_an_input_is_the_input(acutance, folder, link):
         assert (folder / name).read_text() == "mine"
 
 
+@pytest.mark.parametrize(
+    "kept", ["low.tif", "low.IMD", "places.geojson", "my.toml", "new.db", "new.db-wal", "sub.xml"]
+)
+def test_a_log_is_no_file_of_its_batch(acutance, folder, kept):
+    """Lines are added to a log: an image, a plan or a database with lines at its end is broken."""
+    (folder / "places.geojson").write_text("mine")
+    (folder / "low.IMD").write_text("mine")
+    (folder / "my.toml").write_text(
+        'images = "l*.tif"\ntargets = "places.geojson"\narchive = "new.db"\n'
+        '[[stated]]\nmetadata = "sub.xml"\n'
+    )
+    before = {one.name: one.read_bytes() for one in folder.iterdir()}
+    for words in (
+        ("my.toml",),
+        ("low.tif", "--targets", "places.geojson", "--archive", "sqlite:///new.db"),
+    ):
+        if kept in ("my.toml", "sub.xml") and "my.toml" not in words:
+            continue
+        done = acutance("batch", *words, "--log", f"./{kept}")
+        assert done.exit_code == 2
+        assert f"--log ./{kept} is the input " in done.stderr
+        assert "which it would overwrite: give another name" in done.stderr
+    assert {one.name: one.read_bytes() for one in folder.iterdir()} == before
+
+
 def test_words_that_are_no_path_are_no_input(folder):
     odd = ("1,2,3,4", "x" * 5000, "nul\0byte", None)
     assert check_output("--csv", "new.csv", (".csv",), keep=odd).path.name == "new.csv"

@@ -24,7 +24,7 @@ from sqlalchemy.pool import QueuePool
 from acutance.archive.failures import explained, is_passing
 from acutance.errors import ArchiveError
 
-__all__ = ["PATIENCE_S", "Database", "insert_missing", "is_there", "open_database"]
+__all__ = ["PATIENCE_S", "Database", "file_of", "insert_missing", "is_there", "open_database"]
 
 Done = TypeVar("Done")
 
@@ -117,11 +117,17 @@ class Database:
 
 def is_there(place: str | os.PathLike[str]) -> bool:
     """Whether a place is a file that exists already, or a server's: those are not made here."""
+    file = file_of(place)
+    return file is None or file.exists()
+
+
+def file_of(place: str | os.PathLike[str]) -> Path | None:
+    """The file of a place, be it there yet or not; None of a server's."""
     text = _as_text(place)
     if "://" not in text:
-        return Path(text).exists()
+        return Path(text)
     url = _url(text)
-    return url.get_backend_name() != "sqlite" or Path(url.database or "").exists()
+    return Path(url.database or "") if url.get_backend_name() == "sqlite" else None
 
 
 def open_database(place: str | os.PathLike[str], *, read_only: bool = False) -> Database:

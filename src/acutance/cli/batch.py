@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from acutance.cli.options import JsonOption
+from acutance.cli.output import require_own_file
 from acutance.cli.progress import progress_bar
 from acutance.cli.study import WorkersOption, dask_option
 from acutance.cli.terminal import FAILED_CHECK, NOTHING_MEASURED, say
@@ -88,6 +89,8 @@ def batch(
     again. An image that cannot be read stops no other.
     """
     plan = _plan(images, targets, archive, band, sensor, height, workers, dask)
+    if log is not None:
+        require_own_file("--log", log, keep=_files_of(images, plan))
 
     from acutance.archive.counted import counted
     from acutance.batch import run_batch
@@ -125,7 +128,7 @@ def _plan(
 
     from acutance.batch.plan import BatchPlan, StatedOfImages, read_plan
 
-    is_plan = images[0].lower().endswith(_PLAN)
+    is_plan = _is_plan(images)
     if is_plan and len(images) > 1:
         raise OptionError(f"{images[0]} is a plan and names its images: give it alone")
     if not is_plan and (targets is None or archive is None):
@@ -151,6 +154,30 @@ def _plan(
         # Heights of the plan are of some images, and go before.
         plan = replace(plan, stated=(StatedOfImages(height_m=height), *plan.stated))
     return plan
+
+
+def _files_of(words: Sequence[str], plan: BatchPlan) -> Iterator[str]:
+    """Every file that the batch reads or keeps results in, by the words it was called with."""
+    from acutance.archive.connection import file_of
+    from acutance.batch.image_list import list_images
+    from acutance.raster.metadata.files_beside import files_beside
+
+    archive = file_of(plan.archive)
+    if archive is not None:
+        # SQLite keeps what is new in files beside it.
+        yield from (f"{archive}{ending}" for ending in ("", "-wal", "-shm", "-journal"))
+    yield str(plan.targets)
+    for stated in plan.stated:
+        yield from stated.metadata or ()
+    if _is_plan(words):
+        yield words[0]
+    for image in list_images(plan.images):
+        yield image.path
+        yield from map(str, files_beside(image.path))
+
+
+def _is_plan(words: Sequence[str]) -> bool:
+    return words[0].lower().endswith(_PLAN)
 
 
 def _bands(text: str) -> tuple[str | int, ...]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
-__all__ = ["OutputFile", "check_optional", "check_output", "make_folder"]
+__all__ = ["OutputFile", "check_optional", "check_output", "make_folder", "require_own_file"]
 
 
 @dataclass(frozen=True)
@@ -102,11 +103,7 @@ def check_output(
             f"{option} {name} is a link into the folder {place.parent}, which does not exist: make "
             "it first, or remove the link"
         )
-    for known in keep:
-        if known is not None and _is_same_file(name, known):
-            raise OptionError(
-                f"{option} {name} is the input {known}, which it would overwrite: give another name"
-            )
+    require_own_file(option, name, keep=keep)
     part = _part_path(path)
     try:
         part.write_bytes(b"")
@@ -121,6 +118,27 @@ def check_optional(
 ) -> OutputFile | None:
     """The file of `check_output`, or None where none was asked for."""
     return None if name is None else check_output(option, name, endings, keep=keep)
+
+
+def require_own_file(option: str, name: str, *, keep: Iterable[str | None] = ()) -> None:
+    """Make sure that what a command writes there overwrites nothing that it reads.
+
+    Parameters
+    ----------
+    option, name, keep
+        As of `check_output`, which calls this; for files that are added to, or of any ending.
+
+    Raises
+    ------
+    OptionError
+        If it is an input, by whatever name, be it there yet or not.
+    """
+    own = _identities(name)
+    for known in keep:
+        if known is not None and not own.isdisjoint(_identities(known)):
+            raise OptionError(
+                f"{option} {name} is the input {known}, which it would overwrite: give another name"
+            )
 
 
 def make_folder(called: str, name: str) -> Path:
@@ -140,9 +158,15 @@ def make_folder(called: str, name: str) -> Path:
     return folder
 
 
-def _is_same_file(name: str, other: str) -> bool:
-    # os.path.exists is False, and raises nothing, for words that can be no path at all.
-    return os.path.exists(name) and os.path.exists(other) and os.path.samefile(name, other)
+def _identities(name: str) -> set[str | tuple[int, int]]:
+    """What two names of one file share: its path without links, and its number if it is there."""
+    found: set[str | tuple[int, int]] = set()
+    # Words that can be no path at all are refused by the system, and are no file.
+    with suppress(OSError, ValueError):
+        found.add(os.path.realpath(name))
+        about = os.stat(name)
+        found.add((about.st_dev, about.st_ino))
+    return found
 
 
 def _place(path: Path) -> Path:
