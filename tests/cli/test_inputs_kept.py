@@ -2,10 +2,12 @@
 
 import os
 
+import numpy as np
 import pytest
 
-from acutance.cli.output import check_output
+from acutance.cli.output import check_output, outputs_of_a_run
 from acutance.errors import OptionError
+from acutance.raster import write_geotiff
 
 
 @pytest.fixture
@@ -81,6 +83,35 @@ def test_a_log_is_no_file_of_its_batch(acutance, folder, kept):
         assert f"--log ./{kept} is the input " in done.stderr
         assert "which it would overwrite: give another name" in done.stderr
     assert {one.name: one.read_bytes() for one in folder.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("words", "options"),
+    [
+        (("--edges", "new.csv", "--csv", "./new.csv"), "--csv and --edges"),
+        (("--keep", "new.csv", "--edges", "new.csv"), "--edges and --keep"),
+        (("--edges", "b.csv", "--csv", "linked.csv"), "--csv and --edges"),
+        (("--csv", "a.csv", "--edges", "a-band-2.csv", "--band", "1,2"), "--edges and --csv"),
+        (("--keep", "n.html", "--report", "n.html"), "--report and --keep"),
+    ],
+)
+def test_no_output_overwrites_another(refused, folder, words, options):
+    os.link("b.csv", "linked.csv")
+    write_geotiff("low.tif", np.ones((2, 40, 40), np.float32), gsd_m=1.0)
+    before = {one.name: one.read_bytes() for one in folder.iterdir()}
+    refused(("scan", "low.tif", *words), f"{options} name the same file")
+    assert {one.name: one.read_bytes() for one in folder.iterdir()} == before
+
+
+def test_a_scan_keeps_its_windows_in_no_input(refused, folder):
+    refused(("scan", "low.tif", "--keep", "./low.tif"), "--keep ./low.tif is the input low.tif")
+
+
+def test_two_runs_may_write_the_same_file(folder):
+    """In a program that calls commands one after the other."""
+    for option in ("--csv", "--edges"):
+        with outputs_of_a_run():
+            check_output(option, "new.csv", (".csv",))
 
 
 def test_words_that_are_no_path_are_no_input(folder):

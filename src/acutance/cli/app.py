@@ -34,6 +34,7 @@ from acutance.cli import (
     star,
     study,
 )
+from acutance.cli.output import outputs_of_a_run
 from acutance.cli.terminal import (
     BAD_USAGE,
     EXIT_CODES,
@@ -65,7 +66,7 @@ class _Commands(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         try:
-            with _stdout_needed():
+            with _stdout_needed(), outputs_of_a_run():
                 return super().invoke(ctx)
         except (TargetError, NoDataError, NothingSelectedError) as error:
             fail(str(error), NOTHING_MEASURED)

@@ -3,15 +3,28 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 
 from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
-__all__ = ["OutputFile", "check_optional", "check_output", "make_folder", "require_own_file"]
+__all__ = [
+    "OutputFile",
+    "check_optional",
+    "check_output",
+    "make_folder",
+    "outputs_of_a_run",
+    "require_own_file",
+]
+
+Identity = str | tuple[int, int]
+
+_outputs: ContextVar[dict[Identity, str] | None] = ContextVar("outputs", default=None)
+"""The files that the run writes, and the options that named them."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +134,7 @@ def check_optional(
 
 
 def require_own_file(option: str, name: str, *, keep: Iterable[str | None] = ()) -> None:
-    """Make sure that what a command writes there overwrites nothing that it reads.
+    """Make sure that what a command writes there overwrites nothing that it reads or writes.
 
     Parameters
     ----------
@@ -131,7 +144,7 @@ def require_own_file(option: str, name: str, *, keep: Iterable[str | None] = ())
     Raises
     ------
     OptionError
-        If it is an input, by whatever name, be it there yet or not.
+        If it is an input or another output of the run, by whatever name, be it there yet or not.
     """
     own = _identities(name)
     for known in keep:
@@ -139,6 +152,24 @@ def require_own_file(option: str, name: str, *, keep: Iterable[str | None] = ())
             raise OptionError(
                 f"{option} {name} is the input {known}, which it would overwrite: give another name"
             )
+    outputs = _outputs.get()
+    if outputs is None:
+        return
+    for one in own:
+        # A command may ask for a file again before it writes it, by the same option.
+        other = outputs.setdefault(one, option)
+        if other != option:
+            raise OptionError(f"{other} and {option} name the same file, {name}: give two")
+
+
+@contextmanager
+def outputs_of_a_run() -> Iterator[None]:
+    """What is found writable inside belongs to one run: no two options may name one file."""
+    before = _outputs.set({})
+    try:
+        yield
+    finally:
+        _outputs.reset(before)
 
 
 def make_folder(called: str, name: str) -> Path:
@@ -158,9 +189,9 @@ def make_folder(called: str, name: str) -> Path:
     return folder
 
 
-def _identities(name: str) -> set[str | tuple[int, int]]:
+def _identities(name: str) -> set[Identity]:
     """What two names of one file share: its path without links, and its number if it is there."""
-    found: set[str | tuple[int, int]] = set()
+    found: set[Identity] = set()
     # Words that can be no path at all are refused by the system, and are no file.
     with suppress(OSError, ValueError):
         found.add(os.path.realpath(name))

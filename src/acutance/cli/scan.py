@@ -14,7 +14,7 @@ import typer
 from acutance.cli.choices import parse_grid
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions, SoftnessOptions
-from acutance.cli.output import OutputFile, check_optional
+from acutance.cli.output import OutputFile, check_optional, require_own_file
 from acutance.cli.progress import progress_bar
 from acutance.cli.results import Outputs, Shown
 from acutance.cli.study import WorkersOption, dask_option
@@ -119,6 +119,8 @@ def scan(
     table = check_optional("--edges", edges, (".csv", ".parquet", ".geojson"), keep=kept)
     if dask is not None and workers is not None:
         raise OptionError("--workers and --dask cannot be combined: the cluster has its own")
+    if keep is not None:
+        require_own_file("--keep", keep, keep=kept)
     places = parse_grid("--field", field)
     images, regions = pixels.open(image)
     if len(regions) > 1:
@@ -126,6 +128,9 @@ def scan(
             f"--roi names {len(regions)} regions, and a scene is one: give one of them"
         )
     (region,) = regions.values()
+    if pixels.are_several:
+        # Files that cannot be written, or are others of the run, are found out before the work.
+        outputs.of_regions([_band_stem(str(one.band)) for one in images], kept)
 
     from acutance.scan import BandScenes, ScanOptions, scan_bands, scan_scene
     from acutance.scan.parquet import require_parquet
@@ -193,13 +198,18 @@ def _write_edges(table: OutputFile, edges: EdgeTable, image: Image) -> None:
         table.deliver(json_text(edges.to_geojson(lonlat)))
 
 
+def _band_stem(name: str) -> str:
+    """What a band is called in the names of files."""
+    return f"band-{name}"
+
+
 def _deliver_bands(
     outputs: Outputs, found: BandScenes, kept: tuple[str | None, ...], images: Sequence[Image]
 ) -> None:
     """One page and one document of all bands; figures and curves in files of their own."""
     from acutance import report
 
-    names = [f"band-{name}" for name in found.scenes]
+    names = [_band_stem(name) for name in found.scenes]
     looks: dict[str, dict[str, Any]] = {name: {} for name in found.scenes}
     if outputs.figure is not None or outputs.report is not None:
         by_band = {one.band: one for one in images}

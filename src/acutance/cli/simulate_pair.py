@@ -11,7 +11,6 @@ from acutance.cli.output import check_output
 from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.cli.terminal import say
-from acutance.errors import OptionError
 
 __all__ = ["PAIR_EXAMPLE", "pair"]
 
@@ -58,8 +57,6 @@ def pair(
     inputs = (sensor, high_sensor)
     files, shape = SimulatedFiles.of(out, *inputs), parse_size(size)
     fine = check_output("--high", high, (".tif", ".tiff"), keep=inputs)
-    if fine.place == files.image.place:
-        raise OptionError("--out and --high name the same file: give two")
     rows, cols = parse_pair("--shift", shift, "rows and columns, as in 0.4,-1.2")
 
     from acutance.raster import Gsd
