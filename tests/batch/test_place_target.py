@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from acutance.batch.find_line import edge_candidates
+from acutance.batch.find_points import find_points
 from acutance.batch.place_target import NotHereError, place_target
+from acutance.errors import RegionError
 from acutance.raster import Geolocation, Gsd, Image
 from acutance.raster.surveyed_targets import targets_of
 
@@ -128,3 +131,22 @@ def test_an_image_located_by_rpc_needs_a_height_of_the_targets_it_may_show():
     assert why(5.0) == "no height"
     assert why(4.9977) == "no height"
     assert (why(4.99), why(5.01), why(80.0)) == ("outside",) * 3
+
+
+@pytest.mark.parametrize(
+    ("crs", "name"), [("pixel", "position_std_px"), ("EPSG:32631", "position_std_m")]
+)
+def test_what_is_not_found_is_told_the_deviation_that_counts(crs, name):
+    line, points = (
+        ([[50, 50], [50, 90]], [[50, 50], [70, 90]])
+        if crs == "pixel"
+        else ([[6e5 + 50, 5e6 - 50], [6e5 + 50, 5e6 - 90]], [[6e5 + 50, 5e6 - 50]])
+    )
+    image = image_at((1.0, 0.0, 6e5, 0.0, -1.0, 5e6), "EPSG:32631")
+    with pytest.raises(RegionError, match=f"state a larger {name}$"):
+        edge_candidates(placed(target(line, crs=crs), image), image)
+    survey = target(points, "MultiPoint", crs, kind="points")
+    with pytest.raises(RegionError, match=f"state a larger {name}$"):
+        find_points(placed(survey, image), image)
+    with pytest.raises(RegionError, match=f"state a smaller {name}$"):
+        placed(target(line, crs=crs, **{name: 1000}), image)

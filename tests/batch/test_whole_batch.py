@@ -250,7 +250,9 @@ def test_an_image_without_georeference_and_date(write_field, run, rows):
     _, rejected = rows()
     assert "neither a geotransform with a CRS, RPC nor" in " ".join(rejected["reason"])
     turned = [[one.col + s, one.row + t] for one, s, t in ((EDGE, 1.5, -14), (EDGE, -1.5, 14))]
-    pixels = survey(feature("pixels", "edge", "LineString", turned), crs="pixel")
+    pixels = survey(
+        feature("pixels", "edge", "LineString", turned, position_std_m=None), crs="pixel"
+    )
     assert run(plain, targets=pixels).measured == 1
     measured, _ = rows()
     assert measured["acquired"][0] is None or str(measured["acquired"][0]) == "NaT"

@@ -59,6 +59,16 @@ def test_pixels():
     assert target.in_pixels
 
 
+@pytest.mark.parametrize("more", [{}, {"colour": 1}])
+def test_metres_of_places_in_pixels_are_refused(more):
+    """They would mean nothing: the place of such a target is uncertain by position_std_px."""
+    known = feature(points=((10, 20), (30, 20)), position_std_m=40, **more)
+    with pytest.raises(OptionError, match="its own is in pixels: give position_std_px"):
+        targets_of(known, "targets", "pixel")
+    site = feature(None, site="Salon de Provence", position_std_m=40)
+    assert targets_of(site, "targets", "pixel")[0].position_std_m == 40
+
+
 def test_a_site_of_the_catalogue_needs_no_geometry():
     (target,) = targets_of(feature(None, site="Salon de Provence", orientation="across"), "targets")
     assert target.shape == "Point"

@@ -134,7 +134,7 @@ def _nearest(placed: PlacedTarget, region: RegionPixels) -> Segment:
         raise NotHereError(
             "not found",
             f"no straight edge lies within {placed.search_px:.1f} px of the surveyed line: "
-            f"{found}; check the coordinates, or state a larger position_std_m",
+            f"{found}; check the coordinates, or state a larger {placed.std_name}",
             "find",
         )
     return best[1]

@@ -49,7 +49,7 @@ def find_points(placed: PlacedTarget, image: Image) -> tuple[Box, Floats]:
             "not found",
             f"{int(matched.sum())} of {len(placed.points)} surveyed points have a spot within "
             f"{placed.search_px:.1f} px, and half of them are needed: check the coordinates, or "
-            "state a larger position_std_m",
+            f"state a larger {placed.std_name}",
             "find",
         )
     return box, placed.points[matched] + shift

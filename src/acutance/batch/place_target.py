@@ -57,6 +57,11 @@ class PlacedTarget:
     search_px: float
     gsd: Gsd | None
 
+    @property
+    def std_name(self) -> str:
+        """The property that states how far it is looked for, for messages."""
+        return "position_std_px" if _std_gsd(self.target, self.gsd) is None else "position_std_m"
+
 
 def place_target(
     target: SurveyedTarget, image: Image, georeference: Georeference, gsd: Gsd | None = None
@@ -178,10 +183,16 @@ def _square(target: SurveyedTarget, middle: Floats, gsd: Gsd | None) -> Floats:
     return middle + corners * half
 
 
+def _std_gsd(target: SurveyedTarget, gsd: Gsd | None) -> Gsd | None:
+    """The GSD by which metres of uncertainty become pixels; None where it is stated in pixels."""
+    return None if target.in_pixels else gsd
+
+
 def _search_px(target: SurveyedTarget, gsd: Gsd | None) -> float:
-    if target.in_pixels or gsd is None:
+    own = _std_gsd(target, gsd)
+    if own is None:
         return max(_SIGMAS * target.position_std_px, _MIN_SEARCH_PX)
-    return max(_SIGMAS * target.position_std_m / min(gsd.row_m, gsd.col_m), _MIN_SEARCH_PX)
+    return max(_SIGMAS * target.position_std_m / min(own.row_m, own.col_m), _MIN_SEARCH_PX)
 
 
 def _require_inside(placed: PlacedTarget, image: Image) -> None:
@@ -202,7 +213,8 @@ def _require_inside(placed: PlacedTarget, image: Image) -> None:
         raise NotHereError(
             "not located",
             f"the target may lie anywhere within {placed.search_px:.0f} px of its place (three "
-            "standard deviations), as far as the image goes: state a smaller position_std_m",
+            "standard deviations), as far as the image goes: state a smaller "
+            f"{placed.std_name}",
         )
 
 

@@ -263,6 +263,8 @@ def _faults_beside(feature: Mapping[str, Any], given: Mapping[str, Any], crs: st
     kind = given.get("kind") if given.get("kind") in KINDS else None
     shape, _, faults = _geometry(feature.get("geometry"), kind, crs)
     faults += _of_other_kinds(given, kind)
+    if feature.get("geometry") is not None:
+        faults += _of_other_coordinates(given.get("position_std_m"), crs)
     if shape == "Point" and not given.keys() & {"size_m", "size_px"}:
         faults.append(_NO_SIZE)
     return faults
@@ -274,6 +276,13 @@ def _of_other_kinds(names: Iterable[str], kind: str | None) -> list[str]:
         return []
     others = set(sum(_OF_KIND.values(), ())) - set(_OF_KIND[kind])
     return [f"{one} is no property of the kind {kind!r}" for one in sorted(others & set(names))]
+
+
+def _of_other_coordinates(std_m: Any, crs: str) -> list[str]:
+    """A deviation in metres of a place in pixels: nothing would come of it."""
+    if crs.lower() != PIXELS or std_m is None:
+        return []
+    return ["position_std_m is of places on the ground, its own is in pixels: give position_std_px"]
 
 
 def _fault(fault: DocumentFault) -> str:
@@ -292,6 +301,7 @@ def _checked(
         std_m = _CATALOGUE_STD_M if std_m is None else std_m
     own = {name for name in given.model_fields_set if name in _OF_KIND[given.kind]}
     faults += _of_other_kinds(given.model_fields_set, given.kind)
+    faults += _of_other_coordinates(given.position_std_m, crs)
     if shape == "Point" and size_m is None and given.size_px is None:
         faults.append(_NO_SIZE)
     if given.valid_from and given.valid_to and given.valid_to < given.valid_from:
