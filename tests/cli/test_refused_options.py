@@ -33,6 +33,8 @@ def test_the_seed_of_a_demo_is_0_or_more(refused, folder):
         (("site", "--targets", 3, "--size", "1000000,1000000"), "400 million pixels"),
         (("edge", "--size", "1000000,1000000"), "25 million pixels"),
         (("edge", "--dark", 3, "--bright", 1), "(--falling) turns the edge round"),
+        (("pulse", "--width-px", 0), "it has to be above 0 (--width-px, --width-m)"),
+        (("pulse", "--width-px", 300), "or a narrower pulse (--width-px, --width-m)"),
         (("points", "--peak", 0), "peak is 0"),
         (("points", "--peak", -3), "peak is -3"),
         (("pair", "--high", "b.tif", "--gain", 0), "the gain cannot be 0"),

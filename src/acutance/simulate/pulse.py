@@ -281,7 +281,7 @@ def _require_pulse(
 ) -> None:
     left, level, right = levels
     if not width_px > 0:
-        raise ModelError(f"width_px is {width_px:g}, it has to be above 0 (--width)")
+        raise ModelError(f"width_px is {width_px:g}, it has to be above 0 (--width-px, --width-m)")
     if length_px is not None and not length_px > 0:
         raise ModelError(f"length_px is {length_px:g}, it has to be above 0 (--length)")
     if not (level - left) * (level - right) > 0:
@@ -303,5 +303,6 @@ def _require_inside(line: Line, width_px: float, shape: tuple[int, int]) -> None
         raise ModelError(
             f"the sides of the pulse lie {0.5 * width_px:.1f} px on either hand of its middle, "
             f"the image of {rows} by {cols} px ends {-before:.1f} px before and {behind:.1f} px "
-            "behind it: use a larger image (--size), or a narrower pulse (--width)"
+            "behind it: use a larger image (--size), or a narrower pulse "
+            "(--width-px, --width-m)"
         )
