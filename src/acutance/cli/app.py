@@ -88,7 +88,8 @@ class _Commands(TyperGroup):
 
 def _as_typed(message: str, command: Any) -> str:
     """The message with the option as it is typed, where it begins with its name in Python."""
-    found = re.match(r"([a-z_]+) is ", message)
+    # Where all options of a kind are checked alike, its name in Python goes before.
+    found = re.match(r"(?:[A-Z]\w+: )?([a-z_]+) (?:is|has to be) ", message)
     if found is None:
         return message
     asked = f"--{found[1].replace('_', '-')}"

@@ -77,8 +77,8 @@ class ScanOptions:
                 raise OptionError(f"{name} is {value:g}: give {low:g} to {high:g}")
         if not all(1 <= count <= _MAX_PLACES for count in self.places):
             raise OptionError(
-                f"places is {self.places[0]} x {self.places[1]}: give 1 to {_MAX_PLACES} by row "
-                "and by column"
+                f"places (--field) is {self.places[0]} x {self.places[1]}: give 1 to "
+                f"{_MAX_PLACES} by row and by column"
             )
         if self.max_length_px < 1.5 * self.min_length_px:
             raise OptionError(

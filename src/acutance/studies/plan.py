@@ -75,10 +75,12 @@ class PlanOptions:
     def __post_init__(self) -> None:
         if self.target not in ("edge", "pulse"):
             raise OptionError(f'the target is {self.target!r}: it has to be "edge" or "pulse"')
-        if not (self.snr > 0 and self.draws >= 0 and self.window_px > 0):
+        for name, value in (("snr", self.snr), ("window_px", self.window_px)):
+            if not value > 0:
+                raise OptionError(f"{name} is {value:g}, it has to be above 0")
+        if self.draws < 0:
             raise OptionError(
-                f"snr is {self.snr:g}, draws {self.draws} and window_px {self.window_px:g}: SNR "
-                "and window have to be above 0"
+                f"draws is {self.draws}: give 2 or more simulated images, or 0 for the bounds alone"
             )
         if self.draws == 1:
             raise OptionError(

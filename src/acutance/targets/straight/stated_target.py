@@ -129,9 +129,11 @@ def require_softness(options: SoftnessOptions) -> None:
             continue
         softness = _estimate(given)
         if not (0 <= softness.value < math.inf and 0 <= softness.std < math.inf):
+            # An estimate in words leaves out a deviation that is no number.
+            std = f" ± {softness.std:g}" if softness.std else ""
             raise OptionError(
-                f"{name}: target_softness_{unit} is {softness}: a standard deviation of the "
-                "border's profile and its own, both 0 or more, are needed"
+                f"{name}: target_softness_{unit} is {softness.value:g}{std}: a standard deviation "
+                "of the border's profile and its own, both 0 or more, are needed"
             )
 
 
