@@ -101,6 +101,13 @@ def test_one_is_shown(acutance, campaign, measured):
     assert (missing.exit_code, missing.stdout) == (4, "")
 
 
+def test_stac_is_no_file(refused, campaign, tmp_path):
+    out = tmp_path / "stac.JSON"
+    words = ("archive", "export", campaign, "--to", "stac", out)
+    refused(words, 'stac.JSON ends in ".json" as a file does, and stac is a folder')
+    assert not out.exists()
+
+
 @pytest.mark.parametrize("to", ["jsonl", "parquet", "csv", "stac"])
 def test_exports_are_imported(acutance, campaign, tmp_path, to):
     out = tmp_path / (to if to == "stac" else f"out.{to}")

@@ -52,8 +52,14 @@ def write_stac(entries: Iterable[Entry], place: Path) -> int:
     Raises
     ------
     OptionError
-        If pystac is not installed, an image has no date, or the folder is there already.
+        If pystac is not installed, an image has no date, or the folder is there already, or is
+        called as a file.
     """
+    if place.suffix.lower() == ".json":
+        raise OptionError(
+            f'{place} ends in ".json" as a file does, and stac is a folder of several: name a '
+            "folder that is new or empty"
+        )
     require_library("pystac", "stac")
     if place.exists() and (not place.is_dir() or any(place.iterdir())):
         raise OptionError(f"{place} is there already: name a folder that is new or empty")
