@@ -135,6 +135,12 @@ def test_all_edges_of_a_site_are_measured(acutance, site_image, shown, tmp_path,
     assert result.exit_code == 0, result.stderr
     document = json.loads(result.stdout)
     assert document["schema"] == "acutance/target/1"
+    verdicts = [one["verdict"]["word"] for one in document["measurements"]]
+    ranked = ("invalid", "doubtful", "usable", "good")
+    assert document["verdict"]["word"] == min(verdicts, key=ranked.index)
+    checks = [check["passed"] for one in document["measurements"] for check in one["checks"]]
+    failed = f"{checks.count(False)} of" if False in checks else "All"
+    assert document["verdict"]["sentence"].startswith(f"{failed} {len(checks)} checks ")
     for one in document["measurements"]:
         keeps_to_schema(one)
     assert set(document["groups"]) == {"across", "along"}

@@ -43,6 +43,6 @@ def test_the_bound_of_ratios_is_no_number_that_was_found():
 def test_several_targets_have_the_verdict_of_the_worst(measurement, target):
     words = ("good", "usable", "doubtful", "invalid")
     worst = max((one.verdict.word for one in target.measurements), key=words.index)
-    assert common_verdict(target.measurements) == worst
+    assert common_verdict(target.measurements).word == worst
     clean = replace(measurement, checks=(answer("rows", 30.0, "rows", {}),))
-    assert common_verdict([clean]) == "good"
+    assert common_verdict([clean]).word == "good"

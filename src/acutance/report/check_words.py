@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from acutance.report.labels import format_number
-from acutance.targets.check import MAX_RATIO, verdict_of
+from acutance.targets.check import MAX_RATIO, Verdict, verdict_of
 from acutance.targets.check_table import QUESTIONS
 
 if TYPE_CHECKING:
-    from acutance.targets.check import Check, VerdictWord
+    from acutance.targets.check import Check
     from acutance.targets.measurement import Measurement
     from acutance.targets.record import Record
 
@@ -47,9 +47,10 @@ def write_found(check: Check, digits: int = 4) -> str:
     return next((one for one in tried if check.passed or one != limit), limit)
 
 
-def common_verdict(measurements: Sequence[Measurement]) -> VerdictWord:
-    """The verdict of all checks of several targets: that of the worst."""
-    return verdict_of(check for one in measurements for check in one.checks).word
+def common_verdict(measurements: Sequence[Measurement]) -> Verdict:
+    """The verdict of all checks of several targets: that of the worst, and how many failed."""
+    word = verdict_of(check for one in measurements for check in one.checks).word
+    return Verdict(word, count_failed_checks(measurements))
 
 
 def failed_by_check(measurements: Sequence[Measurement]) -> tuple[tuple[str, str, str], ...]:

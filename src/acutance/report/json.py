@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.report.check_words import common_verdict
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.targets import Rejected, TargetResult
 from acutance.targets.record import strict_json
@@ -95,6 +96,7 @@ def _target_document(result: TargetResult[Any], covariance: bool) -> dict[str, A
     place = {id(one): i for i, one in enumerate(result.measurements)}
     return {
         "schema": "acutance/target/1",
+        "verdict": common_verdict(result.measurements).to_dict(),
         "measurements": [_measurement_document(one, covariance) for one in result.measurements],
         "groups": {
             orientation: {

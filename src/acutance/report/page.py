@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from acutance.report.check_words import common_verdict, count_failed_checks, failed_by_check
+from acutance.report.check_words import common_verdict, failed_by_check
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.report.figure import panels
 from acutance.report.figures.comparison import comparison_figure
@@ -236,9 +236,8 @@ def _target_sections(
 
 def _target_verdicts(result: TargetResult[Any]) -> tuple[Verdict, ...]:
     """One verdict of all edges: that of the worst."""
-    word = common_verdict(result.measurements)
-    counted = count_failed_checks(result.measurements)
-    return (Verdict(word, f"{word.capitalize()}: {counted}"),)
+    common = common_verdict(result.measurements)
+    return (Verdict(common.word, f"{common.word.capitalize()}: {common.sentence}"),)
 
 
 def _failed_section(result: TargetResult[Any]) -> tuple[Section, ...]:

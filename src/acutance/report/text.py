@@ -106,7 +106,6 @@ def _target_text(result: TargetResult[Any]) -> str:
     measurements = result.measurements
     head = f"{count_edges(len(measurements))} measured, {len(result.rejected)} rejected"
     where = f"\n  {describe_image(measurements[0])}" if measurements else ""
-    counted = count_failed_checks(measurements)
     failed = [
         f"  {name}, edges {edges}: {meaning}"
         for name, edges, meaning in failed_by_check(measurements)
@@ -114,7 +113,7 @@ def _target_text(result: TargetResult[Any]) -> str:
     return "\n\n".join(
         (
             head + where,
-            f"{common_verdict(measurements)}: {counted}",
+            str(common_verdict(measurements)),
             *map(table_text, tables(result)),
             *notes_on_means(result),
             *(["\n".join(("Failed checks", *failed))] if failed else []),

@@ -153,6 +153,10 @@ class Verdict:
     def __str__(self) -> str:
         return f"{self.word}: {self.sentence}"
 
+    def to_dict(self) -> dict[str, str]:
+        """Both, for JSON."""
+        return {"word": self.word, "sentence": self.sentence}
+
     @property
     def warns(self) -> bool:
         """Whether the numbers may be biased, or have no meaning."""

@@ -267,7 +267,7 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
             **curves,
             "plane": self.plane_document(),
             "checks": WrittenLater(partial(_documents, tuple(self.checks))),
-            "verdict": {"word": verdict.word, "sentence": verdict.sentence},
+            "verdict": verdict.to_dict(),
             "budget": self.budget_document(),
             "options": dict(self.options),
             "software": {"acutance": __version__},
