@@ -105,6 +105,24 @@ def test_plans_that_mean_nothing(refused, words, message):
     refused(("plan", *words), message)
 
 
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [
+        (("edge", "x.tif", "--report", "a.html", "--report", "b.html"), "--report was given 2"),
+        (("archive", "list", "a.db", "--last=3", "--last", "2"), "--last was given 2"),
+        (("plan", "edge", "--rows", "3", "--rows", "4", "--rows", "5"), "--rows was given 3"),
+    ],
+)
+def test_an_option_of_one_value_is_given_once(refused, folder, words, option):
+    refused(words, f"{option} times, and only the last would count: give it once")
+    assert not list(folder.iterdir())
+
+
+def test_options_of_several_values_are_given_often(acutance, edge_image):
+    words = ("--limit", "rows=1", "--limit", "angle_deg=0", "--json", "--json")
+    assert acutance("edge", edge_image, *words).exit_code == 0
+
+
 def test_an_edge_can_fall(acutance, folder):
     result = acutance("simulate", "edge", "--falling", "--out", "a.tif")
     assert result.exit_code == 0, result.stderr

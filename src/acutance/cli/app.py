@@ -6,12 +6,13 @@ import atexit
 import gc
 import re
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup, TyperOption
 
 from acutance import __version__
 from acutance.cli import (
@@ -84,6 +85,22 @@ class _Commands(TyperGroup):
             if not was_interrupted(error):
                 raise
             stop("")
+
+
+class _Command(TyperCommand):
+    """A command that refuses an option given twice, of which only the last would count."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        _, _, given = self.make_parser(ctx).parse_args(args=list(args))
+        # A shell that completes the words is told nothing.
+        for one, times in Counter(() if ctx.resilient_parsing else given).items():
+            takes_one = isinstance(one, TyperOption) and not (one.multiple or one.is_flag)
+            if takes_one and times > 1:
+                raise OptionError(
+                    f"{max(one.opts, key=len)} was given {times} times, and only the last would "
+                    "count: give it once"
+                )
+        return super().parse_args(ctx, args)
 
 
 def _as_typed(message: str, command: Any) -> str:
@@ -169,6 +186,18 @@ app.add_typer(archive.app, name="archive")
 app.add_typer(restore.app, name="restore")
 app.add_typer(simulate.app, name="simulate")
 app.add_typer(plan_mirrors.app, name="plan")
+
+
+def _commands_under(group: typer.Typer) -> Iterator[Any]:
+    """Every command of a group and of those in it, as it was registered."""
+    yield from group.registered_commands
+    for one in group.registered_groups:
+        if one.typer_instance is not None:
+            yield from _commands_under(one.typer_instance)
+
+
+for _info in _commands_under(app):
+    _info.cls = _Command
 
 
 def run() -> None:
