@@ -110,6 +110,7 @@ def test_a_lower_bound_follows_shift_and_scale_and_ends_with_the_sign() -> None:
     assert (width / 4).lowest == 0.0
     assert (1 - width).lowest is None
     assert (-width).lowest is None
+    assert str(Estimate(110998.4, 3578.2)) == "111000 ± 3600"
     assert (1 - width).highest == 1.0
     share = Estimate(0.9, 0.2, lowest=0.0, highest=1.0)
     assert (1 - share).interval() == (0.0, pytest.approx(0.1 + 1.96 * 0.2, abs=1e-4))

@@ -29,6 +29,8 @@ def test_a_standard_deviation_too_small_for_decimals_is_told():
     assert words.value_and_std == "0.289110 ± 8e−09"
     assert words.interval == "0.289110 … 0.289110"
     assert word_estimate(Estimate(3e-8, 8e-7)).value_and_std == "0"
+    assert word_estimate(Estimate(110998.4, 3578.2)).value_and_std == "111000 ± 3600"
+    assert "cut off" in word_estimate(Estimate(0.8, 0.47, 0.0, 1.0)).interval
 
 
 def test_long_names_are_shortened_in_the_middle():

@@ -192,7 +192,9 @@ class Estimate:
             return f"{self.value:.4f}"
         if self.std < 10.0**-_MAX_DIGITS:
             return f"{self.value:.{_MAX_DIGITS}f} ± {self.std:.0e}"
-        digits = min(max(0, 1 - math.floor(math.log10(self.std))), _MAX_DIGITS)
+        digits = min(1 - math.floor(math.log10(self.std)), _MAX_DIGITS)
+        if digits < 0:
+            return f"{round(self.value, digits):.0f} ± {round(self.std, digits):.0f}"
         return f"{self.value:.{digits}f} ± {self.std:.{digits}f}"
 
 

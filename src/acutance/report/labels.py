@@ -202,9 +202,9 @@ def word_estimate(estimate: Estimate) -> NumberWords:
     if is_nothing or not (math.isfinite(std) and std > _ROUNDING_STD * max(1.0, abs(value))):
         exact = "0" if is_nothing or abs(value) < _ROUNDING_STD else write_fixed(value)
         return NumberWords(exact, MISSING, MISSING, MISSING)
-    digits = min(max(0, 1 - math.floor(math.log10(std))), 7)
+    digits = min(1 - math.floor(math.log10(std)), 7)
     low, high = estimate.interval(0.95)
-    is_cut = estimate.lowest is not None and low <= estimate.lowest
+    is_cut = low == estimate.lowest or high == estimate.highest
     if std < _MIN_STD:
         shown, least, most = (write_fixed(part, 6) for part in (value, low, high))
         return NumberWords(shown, f"{std:.0e}".replace("-", "−"), least, most, is_cut)
@@ -213,8 +213,11 @@ def word_estimate(estimate: Estimate) -> NumberWords:
 
 
 def write_fixed(value: float, digits: int = 4) -> str:
-    """A number with fixed decimals, a real minus sign, and none before a zero."""
-    text = f"{value:.{digits}f}"
+    """A number with fixed decimals, a real minus sign, and none before a zero.
+
+    With fewer than 0 it is rounded to tens, hundreds and so on.
+    """
+    text = f"{value:.{digits}f}" if digits >= 0 else f"{round(value, digits):.0f}"
     return (
         text.replace("-", "−") if any(digit in text for digit in "123456789") else text.strip("-")
     )
