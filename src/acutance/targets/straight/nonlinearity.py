@@ -65,8 +65,9 @@ _AMPLITUDE_STDS: Final[Floats] = np.array([CURVATURE_STD, 0.25, 0.25, 0.25])
 """Prior of c and of every k."""
 _MIN_GAIN: Final = 0.1
 """Of log likelihood, by shape and noise, below which the odds of a curve cannot become large."""
-_MIN_SIGMAS: Final = 1.2
-"""Of c of a pulse in the first, linear step: below it no curve is looked for."""
+_MIN_SIGMAS, _MIN_GAIN_OF_PULSES = 1.2, 1.0
+"""Of c of a pulse in the first, linear step, and of log likelihood by its noise: where both are
+below, the odds of a curve cannot become large."""
 _HIGHER_ORDERS: Final = 0.1
 _MAX_STEPS: Final = 5
 _MAX_STEP: Final = 0.3
@@ -291,7 +292,7 @@ def _of_pulse(data: CheckData, profile: Profile, sign: float) -> Curvature:
     linear, straight = _straight_pulse(data, profile)
     first = _curved(linear, linear.response(straight.beta), 0.0, straight)
     noise = SideNoise.of_pulse(data, sign)
-    unlikely = noise is None or noise.max_gain < _MIN_GAIN
+    unlikely = noise is None or noise.max_gain < _MIN_GAIN_OF_PULSES
     if unlikely and abs(first.beta[-1]) < _MIN_SIGMAS * first.last_std:
         return NO_CURVATURE
     return _with_noise(_likeliest(linear, straight, first), noise)
