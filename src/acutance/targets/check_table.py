@@ -226,7 +226,7 @@ _POINTS = {
         "use a uniform grassy area", "QuickBird report 4.4",
     ),
     "positions": Question(
-        "At which share of the given positions is a source?", ">=", 0.5, "check rows and columns",
+        "Which share of the positions has a source?", ">=", 0.5, "give row, column of this image",
     ),
     "survey_px": Question(
         "How far are the measured places from the surveyed ones?", "<=", 0.1,

@@ -15,7 +15,8 @@ from acutance.report.tables.target import group_rows
 from acutance.simulate import site
 from acutance.targets.straight.many_edges import (
     TargetResult,
-    _shared_border,
+    _border,
+    _shared,
     _weighted_mean,
     combine_edges,
 )
@@ -200,10 +201,11 @@ def test_a_line_that_runs_on_to_another_object_shares_its_border():
     def edge(rows):
         used = np.zeros((20, 20), bool)
         used[rows] = True
-        return SimpleNamespace(details=SimpleNamespace(used=used, distance_px=columns[used]))
+        details = SimpleNamespace(used=used, distance_px=columns[used])
+        return _border(SimpleNamespace(details=details))
 
     columns = np.tile(np.arange(20.0) - 9.5, (20, 1))
     long, short = edge(slice(0, 10)), edge(slice(7, 15))
-    assert _shared_border(long, short) == pytest.approx(0.3)
-    assert _shared_border(short, long) == pytest.approx(3 / 8)
-    assert _shared_border(long, edge(slice(10, 15))) == 0.0
+    assert _shared(long, short) == pytest.approx(0.3)
+    assert _shared(short, long) == pytest.approx(3 / 8)
+    assert _shared(long, edge(slice(10, 15))) == 0.0

@@ -179,26 +179,28 @@ def _edges_of_target(
     """Every usable edge of a region."""
     chosen = chosen_options(options, EdgeOptions)
     measured: list[StraightMeasurement] = []
+    borders: list[NDArray[np.intp]] = []
     rejected: list[Rejected] = []
     strongest = 0.0
     for segment in find_segments(region.pixels):
         strongest = max(strongest, segment.strength)
         if segment.strength < MIN_STRENGTH_SHARE * strongest:
             break
+        where = _where(in_whole_image(segment.line, region))
         try:
             found = measure_segment(region, segment, method, chosen)
         except TargetError as error:
-            where = _where(in_whole_image(segment.line, region))
             rejected.append(Rejected("fit", str(error), where))
             continue
         if any(_same_edge(found, other) for other in measured):
             continue
-        shared = max((_shared_border(found, other) for other in measured), default=0.0)
+        border = _border(found)
+        shared = max((_shared(border, other) for other in borders), default=0.0)
         if shared > _MAX_SHARED:
-            where = _where(in_whole_image(segment.line, region))
             rejected.append(Rejected("fit", _SHARED_WORDS.format(100 * shared), where))
             continue
         measured.append(found)
+        borders.append(border)
     kept, dim = _of_the_target(measured)
     return TargetResult(kept, (*rejected, *dim), combine_edges(kept))
 
@@ -216,20 +218,18 @@ def _same_edge(one: StraightMeasurement, other: StraightMeasurement) -> bool:
     return turn_deg < 5 and offset < 2 and apart < reach
 
 
-def _shared_border(one: StraightMeasurement, other: StraightMeasurement) -> float:
+def _border(one: StraightMeasurement) -> NDArray[np.intp]:
+    """Numbers of the used pixels next to the line, in the region."""
+    near = np.abs(one.details.distance_px) < _BORDER_PX
+    return np.asarray(np.flatnonzero(one.details.used)[near])
+
+
+def _shared(border: NDArray[np.intp], other: NDArray[np.intp]) -> float:
     """Share of an edge's border pixels that are the border of another, too.
 
     A line that runs on past the end of its object meets the border of the next one.
     """
-    own, others = _border(one), _border(other)
-    return float(np.mean(others[own])) if own.any() else 0.0
-
-
-def _border(one: StraightMeasurement) -> NDArray[np.bool_]:
-    """The used pixels next to the line, in the region."""
-    border = np.zeros(one.details.used.shape, bool)
-    border[one.details.used] = np.abs(one.details.distance_px) < _BORDER_PX
-    return border
+    return float(np.mean(np.isin(border, other))) if border.size else 0.0
 
 
 def _of_the_target(

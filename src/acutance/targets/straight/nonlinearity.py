@@ -86,6 +86,7 @@ _PRIOR_SHOULDER: Final = 0.5
 _GRID: Final[Floats] = np.linspace(-4.0, 4.0, 41)
 _NORMAL: Final[Floats] = np.exp(-0.5 * _GRID**2)
 _NEGLIGIBLE: Final = 1e-12
+_MIN_SLOPE: Final = 1e-3
 
 
 @dataclass(frozen=True)
@@ -221,7 +222,7 @@ def _folded(mirrored: MirrorSum, noise: SideNoise | None, log_linear: Floats) ->
     allowed = np.sum(density, axis=1)
     density[0] *= 2 * np.where(amplitude[0] > 0, _BRIGHTENS, 1 - _BRIGHTENS)
     if noise is not None:
-        density *= noise.likelihood(_slopes(amplitude))
+        density *= noise.likelihood(_slopes(amplitude, noise))
     total = np.sum(density, axis=1)
     curved = shape + np.log(total / allowed) + _log_prior()
     # An odd part that looks like a curve: of sensors it is smaller than of curves.
@@ -229,10 +230,15 @@ def _folded(mirrored: MirrorSum, noise: SideNoise | None, log_linear: Floats) ->
     linear = np.array([even, odd, shape[0] + rarer]) + log_linear
     log_odds = float(np.logaddexp.reduce(curved) - np.logaddexp.reduce(linear))
     best = int(np.argmax(curved))
-    own = density[best] / total[best]
-    mean = float(own @ amplitude[best])
-    spread = math.sqrt(float(own @ (amplitude[best] - mean) ** 2))
+    mean, spread = _mean_and_std(amplitude[best], density[best])
     return Curvature(mean, spread, log_odds, float(_BEGINS[best]))
+
+
+def _mean_and_std(amplitude: Floats, density: Floats) -> tuple[float, float]:
+    """Of amplitudes of some density, (m,)."""
+    own = density / density.sum()
+    mean = float(own @ amplitude)
+    return mean, math.sqrt(float(own @ (amplitude - mean) ** 2))
 
 
 @cache
@@ -256,12 +262,18 @@ def _bends(half: Floats) -> Floats:
     return found
 
 
-def _slopes(amplitude: Floats) -> Floats:
-    """Slope of the characteristic at the bright level over that at the dark one, (k, m)."""
-    rest = np.append(1.0, 1 - _SHOULDERS)[:, None]
-    at_dark = 1 + rest * amplitude
-    at_bright = at_dark - 2 * amplitude
-    return np.maximum(at_bright, 1e-3) / np.maximum(at_dark, 1e-3)
+def _slopes(amplitude: Floats, noise: SideNoise) -> Floats:
+    """Slope of characteristics at the brighter level over that at the darker one, (k, m).
+
+    Of a curve and the shoulders, or of the first k of them.
+    """
+    begins = _BEGINS[: len(amplitude), None]
+    rest = 1 - begins
+    at_dark, at_bright = (
+        np.maximum(1 + amplitude * (rest - 2 * np.maximum(level - begins, 0) / rest), _MIN_SLOPE)
+        for level in (noise.dark, noise.bright)
+    )
+    return np.asarray(at_bright / at_dark)
 
 
 def _densities(amplitude: Floats) -> Floats:
@@ -350,15 +362,12 @@ def _likeliest(linear: CurvedModel, straight: Solved, curved: Solved) -> Curvatu
 
 def _with_noise(shape: Curvature, noise: SideNoise | None) -> Curvature:
     """What a pulse shows by its shape and by its noise."""
-    amplitude = shape.value + shape.std * _GRID
-    density = np.where(np.abs(amplitude) < _MAX_CURVATURE, _NORMAL, _NEGLIGIBLE)
+    amplitude = (shape.value + shape.std * _GRID)[None]
+    density = _densities(amplitude)
     if noise is not None:
-        density = density * noise.likelihood(noise.slopes(amplitude[None]))[0]
-    own = density / density.sum()
-    mean = float(own @ amplitude)
-    std = math.sqrt(float(own @ (amplitude - mean) ** 2))
+        density *= noise.likelihood(_slopes(amplitude, noise))
     gain = math.log(float(density.sum()) / float(_NORMAL.sum()))
-    return Curvature(mean, std, shape.log_odds + gain)
+    return Curvature(*_mean_and_std(amplitude[0], density[0]), shape.log_odds + gain)
 
 
 def _log_normal(x: float, std: float) -> float:

@@ -34,7 +34,6 @@ the noise's power along the normal over that of white noise."""
 _NOISE_BEFORE: Final = 0.85
 """Share of curves that the noise goes through; else it is added behind, as by compression."""
 _TEXTURE_STD: Final = 2.5
-_MIN_SLOPE: Final = 1e-3
 _NOISE_STD: Final = 0.05
 _TAKEN: Final = 1.8
 """Variance of the logarithm of a pulse over that by chance: the fit takes some of the noise of its
@@ -122,14 +121,6 @@ class SideNoise:
         """Log likelihood of the characteristic that suits this noise best, over that of none."""
         best, without = (self._density(log_ratio) for log_ratio in (0.0, self.log_variance))
         return max(math.log(_NOISE_BEFORE * best / without + 1 - _NOISE_BEFORE), 0.0)
-
-    def slopes(self, curvature: Floats) -> Floats:
-        """Slope of ``v = u + c u (1 - u)`` at the brighter level over that at the darker one."""
-        at_dark, at_bright = (
-            np.maximum(1 + curvature * (1 - 2 * level), _MIN_SLOPE)
-            for level in (self.dark, self.bright)
-        )
-        return np.asarray(at_bright / at_dark)
 
     def likelihood(self, slope: Floats) -> Floats:
         """Likelihood of characteristics of a slope, bright over dark, over that of none."""
