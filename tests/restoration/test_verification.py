@@ -97,6 +97,23 @@ def test_an_image_of_another_sensor_is_named(pair):
     assert "soft themselves" in dataclasses.replace(proof, edges=(turned,)).notes[0]
 
 
+@pytest.mark.parametrize("orientation", ["across", "along"])
+def test_a_slanted_edge_of_a_smeared_sensor_is_of_its_own(orientation):
+    optics = ac.optics
+    sensor = ac.Sensor([optics.Gaussian(0.35), optics.Detector(), optics.Smear(1.2, "along")])
+    filter = ac.design_restoration(sensor, snr=100, noise_gain=1.6)
+    image, _ = ac.simulate.edge(
+        sensor, angle_deg=38, orientation=orientation, shape=(80, 80), snr=200,
+        rng=np.random.default_rng(5),
+    )  # fmt: skip
+    before, after = (
+        ac.Image.from_array(np.asarray(one)) for one in (image, ac.restore(image, filter))
+    )
+    proof = ac.verify_restoration(before, after, filter, [(2, 2, 76, 76)])
+    assert proof.notes == ()
+    assert abs(proof.edges[0].unlike_design) < 2
+
+
 def test_two_lines_share_no_error(pair):
     filter, before, after = pair
     regions = [(15, 15, 90, 90)]

@@ -18,15 +18,17 @@ An image, filtered:
 - `filling.py` what stands in the place of pixels without data
 - `window_filter.py` one window; `applying.py` an array or a file (windows and files: ``raster/``)
 - `filter_match.py` whether a filter is of such pixels and bands
-- `verification.py` edges before and after, beside the prediction
+- `proof.py` edges before and after, beside the prediction
+- `verification.py` how they are measured
 """
 
 from acutance.restoration.applying import RestoredImage, restore, restore_array
 from acutance.restoration.design import design_restoration
 from acutance.restoration.interpretability import Niirs, niirs
+from acutance.restoration.proof import RestorationProof
 from acutance.restoration.restoration_filter import RestorationFilter
 from acutance.restoration.scene_spectrum import NaturalScene
-from acutance.restoration.verification import RestorationProof, verify_restoration
+from acutance.restoration.verification import verify_restoration
 from acutance.restoration.window_filter import PixelCounts
 
 __all__ = [

@@ -1,233 +1,33 @@
-"""The proof: edges measured before and after a filter, beside what was predicted of them."""
+"""Measure edges before and after a filter, for the proof that it does what was predicted."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
 from acutance.curves import Estimate
 from acutance.curves.direction import unit_vector
-from acutance.curves.estimate import normal_quantile
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.curves.short_repr import ShortRepr
 from acutance.errors import AcutanceError, NoEdgeError
 from acutance.geometry.angles import axis_difference
 from acutance.raster import Box, Image, Region
+from acutance.restoration.proof import RestorationProof, VerifiedEdge
 from acutance.restoration.restoration_filter import RestorationFilter
 from acutance.scan import SceneEdges, scan_scene
 from acutance.targets.straight import StraightMeasurement, measure_edge
 from acutance.targets.uncertainty_budget import std_of_mean, systematic_share
 
-__all__ = ["RestorationProof", "VerifiedEdge", "verify_restoration"]
+__all__ = ["verify_restoration"]
 
 _MAX_EDGES, _MIN_LENGTH_PX, _HALF_WIDTH_PX = 80, 20.0, 9.0
 
-_AGREES_LEVEL = 0.95
-_SAME_LINE_DEG = 0.5
-_UNLIKE, _DESIGN_STD = 4.0, 0.01
-"""Deviations from the design that are named; what edges off the axes and of other ground add."""
-_SHARED_AND_OWN_ERROR: dict[str, tuple[float, float]] = {
-    "spline": (0.0, 0.005),
-    "sdsu-2005": (0.95, 0.006),
-    "kompsat-2014": (0.0, 0.03),
-    "iso12233": (0.95, 0.004),
-    "fermi": (0.0, 0.06),
-}
-"""By method: correlation of the errors before and after, and what it errs by besides, in MTF.
-
-From simulated edges of three sensors at SNR 40, 100 and 300, kernels of noise gain 1.4 and 2.2.
-Plain methods read both images by the same sums, so their errors are the same. The reference sees
-another sensor after the filter, with what it expects of that, and the errors are nearly
-independent. Methods that fit a shape miss one that overshoots."""
-
+_OTHER = {"across": "along", "along": "across"}
+_LEAST_MTF = 1e-3
 _Pair = tuple[StraightMeasurement, StraightMeasurement]
 RegionLike = Region | Box | tuple[int, int, int, int]
-
-
-@dataclass(frozen=True, eq=False)
-class VerifiedEdge(ShortRepr):
-    """An edge, or the mean of a scene's edges in one direction, before and after a filter.
-
-    Parameters
-    ----------
-    name : str
-    normal_deg : float
-        Direction of the normal.
-    before, after : Estimate
-        MTF at Nyquist as measured.
-    predicted : Estimate
-        That before, times the filter's own transfer there.
-    snr_before, snr_after : float
-        As measured; of a scene the medians.
-    overshoot : Estimate
-        After, as measured.
-    method : str
-        Of `acutance.measure_edge`.
-    turned_deg : float
-        Angle between the lines found before and after.
-    designed : Estimate, optional
-        MTF at Nyquist across or along that the filter was designed for.
-    count : int
-        Edges, of a mean.
-    """
-
-    name: str
-    normal_deg: float
-    before: Estimate
-    after: Estimate
-    predicted: Estimate
-    snr_before: float
-    snr_after: float
-    overshoot: Estimate
-    method: str = "spline"
-    turned_deg: float = 0.0
-    designed: Estimate | None = None
-    count: int = 1
-
-    @property
-    def off(self) -> float:
-        """Measured minus predicted."""
-        return self.after.value - self.predicted.value
-
-    @property
-    def difference(self) -> Estimate:
-        """Measured minus predicted, with its deviation.
-
-        Both measurements see the same pixels, and how much of their errors is the same depends on
-        the method: by the reference next to nothing, by "iso12233" and "sdsu-2005" nearly all, as
-        long as both find the same line. So the deviation is the root of the sum of both squares,
-        less what they share, with what the method errs by besides. Within two deviations are, in
-        simulations, .99 of 630 differences by the reference, .97 of 300 after kernels that aim at
-        points, and .94 to 1 of 590 by the other methods.
-        """
-        shared, own = _SHARED_AND_OWN_ERROR[self.method]
-        if abs(self.turned_deg) > _SAME_LINE_DEG:
-            shared = 0.0
-        after, predicted = self.after.std, self.predicted.std
-        noise = after**2 + predicted**2 - 2 * shared * after * predicted
-        return Estimate(self.off, math.sqrt(noise + own**2))
-
-    @property
-    def deviations(self) -> float:
-        """How many of its deviations the difference has."""
-        return self.off / self.difference.std
-
-    @property
-    def unlike_design(self) -> float:
-        """How many deviations MTF at Nyquist before the filter is above what it was designed for.
-
-        Negative below it; 0 where that is not known.
-        """
-        if self.designed is None:
-            return 0.0
-        known = self.designed.std if math.isfinite(self.designed.std) else 0.0
-        return (self.before.value - self.designed.value) / math.hypot(
-            self.before.std, known, _DESIGN_STD
-        )
-
-    @property
-    def noise_gain(self) -> float:
-        """SNR before over that after: the noise gain as the edge shows it."""
-        return self.snr_before / self.snr_after
-
-    def to_dict(self) -> dict[str, Any]:
-        """All numbers, for JSON."""
-        return {
-            "name": self.name,
-            "normal_deg": self.normal_deg,
-            "mtf_nyquist_before": self.before.to_dict(),
-            "mtf_nyquist_after": self.after.to_dict(),
-            "mtf_nyquist_predicted": self.predicted.to_dict(),
-            "difference": self.difference.to_dict(),
-            "deviations": self.deviations,
-            "mtf_nyquist_designed": None if self.designed is None else self.designed.to_dict(),
-            "overshoot_after": self.overshoot.to_dict(),
-            "snr_before": self.snr_before,
-            "snr_after": self.snr_after,
-        }
-
-
-@dataclass(frozen=True, eq=False)
-class RestorationProof(ShortRepr):
-    """Edges before and after a filter.
-
-    Parameters
-    ----------
-    edges : tuple of VerifiedEdge
-    rejected : tuple of str
-        Regions without a result, and why.
-    """
-
-    edges: tuple[VerifiedEdge, ...]
-    rejected: tuple[str, ...] = ()
-
-    @property
-    def worst(self) -> VerifiedEdge:
-        """The edge whose difference has the most deviations."""
-        return max(self.edges, key=lambda one: abs(one.deviations))
-
-    @property
-    def limit(self) -> float:
-        """Deviations that the worst of so many edges keeps in 95 % of all proofs that agree."""
-        return normal_quantile(_AGREES_LEVEL ** (1 / len(self.edges)))
-
-    @property
-    def agrees(self) -> bool:
-        """Whether every edge was measured as predicted, within its deviation."""
-        return abs(self.worst.deviations) <= self.limit
-
-    @property
-    def sentence(self) -> str:
-        """Whether the image is as sharp as predicted, in words of deviations."""
-        worst = self.worst
-        count = sum(one.count for one in self.edges)
-        of = f"{count} edges" if count > 1 else "the edge"
-        by = f"{worst.name} by {worst.difference.value:+.4f} ± {worst.difference.std:.4f}"
-        if self.agrees:
-            return (
-                f"agrees with the prediction: {of} within {abs(worst.deviations):.1f} deviations "
-                f"(at most {self.limit:.1f} are expected)"
-            )
-        return (
-            f"does not agree with the prediction: {by}, {abs(worst.deviations):.1f} deviations "
-            f"(at most {self.limit:.1f} are expected)"
-        ).replace("-", "−")
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Where the image is not that of the sensor the filter was designed for."""
-        unlike = max(self.edges, key=lambda one: abs(one.unlike_design))
-        if unlike.designed is None or abs(unlike.unlike_design) < _UNLIKE:
-            return ()
-        why = (
-            "it is of another sensor or band, or was sharpened before"
-            if unlike.unlike_design > 0
-            else "it is of another sensor or band, or its borders are soft themselves"
-        )
-        return (
-            f"{unlike.name}: before the filter MTF at Nyquist is {unlike.before}, and the filter "
-            f"was designed for {unlike.designed} ({abs(unlike.unlike_design):.0f} deviations): "
-            f"{why}; it does not become what the design promises",
-        )
-
-    def summary(self) -> str:
-        """Whether measured and predicted agree."""
-        return self.sentence
-
-    def to_dict(self) -> dict[str, Any]:
-        """All edges, for JSON."""
-        return {
-            "agrees": self.agrees,
-            "sentence": self.sentence,
-            "notes": list(self.notes),
-            "edges": [one.to_dict() for one in self.edges],
-            "rejected": list(self.rejected),
-        }
 
 
 def verify_restoration(
@@ -297,7 +97,7 @@ def _of_edge(
         name, normal_deg, before.mtf_nyquist, after.mtf_nyquist,
         before.mtf_nyquist * _gain(filter, normal_deg), before.snr, after.snr, after.overshoot,
         before.method, axis_difference(after.line.normal_deg, normal_deg),
-        _designed(filter, before.orientation),
+        _designed(filter, [before], np.ones(1)),
     )  # fmt: skip
 
 
@@ -373,13 +173,28 @@ def _mean_edge(name: str, pairs: Sequence[_Pair], filter: RestorationFilter) -> 
         float(np.median([one.snr for one in before])),
         float(np.median([one.snr for one in after])),
         _mean(after, "overshoot", weight),
-        designed=_designed(filter, before[0].orientation),
+        designed=_designed(filter, before, weight),
         count=len(pairs),
     )
 
 
-def _designed(filter: RestorationFilter, orientation: str) -> Estimate:
-    return filter.before.directions[orientation].mtf_nyquist
+def _designed(
+    filter: RestorationFilter, edges: Sequence[StraightMeasurement], weight: Floats
+) -> Estimate:
+    """MTF at Nyquist along the edges' normals of the sensor the filter was designed for.
+
+    Of a Gaussian its logarithm varies with the square of the cosine of the angle to an axis; other
+    sensors are about as far between their axes.
+    """
+    names = [edge.orientation for edge in edges]
+    own, other = (
+        [filter.before.directions[name].mtf_nyquist for name in those]
+        for those in (names, [_OTHER[name] for name in names])
+    )
+    share = np.sin(np.radians([edge.line.angle_deg for edge in edges])) ** 2
+    value, beside = (np.maximum([one.value for one in some], _LEAST_MTF) for some in (own, other))
+    std = float(weight @ np.nan_to_num([one.std for one in own]))
+    return Estimate(float(weight @ (value ** (1 - share) * beside**share)), std, 0.0)
 
 
 def _mean(
