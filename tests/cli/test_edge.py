@@ -258,3 +258,31 @@ def test_statements_that_are_no_numbers_are_refused(acutance, edge_image, wrong)
     result = acutance("edge", edge_image, *wrong)
     assert result.exit_code == 2
     assert " ".join(wrong) in result.stderr
+
+
+def test_requirements_are_answered_everywhere(acutance, edge_image, tmp_path, keeps_to_schema):
+    words = ("edge", edge_image, "--require", "mtf_nyquist>=0.09", "--require", "fwhm_m <= 0.1")
+    text = acutance(*words, "--report", tmp_path / "edge.html")
+    assert text.exit_code == 0, text.stderr
+    assert "across: mtf_nyquist >= 0.09 is met" in text.stdout
+    assert "across: fwhm_m <= 0.1 is not met" in text.stdout
+    page = (tmp_path / "edge.html").read_text()
+    assert "Required across: mtf_nyquist &gt;= 0.09 is met" in page
+    strict = acutance(*words, "--strict", "--json")
+    assert strict.exit_code == 3
+    assert "1 requirement is not met" in strict.stderr
+    document = json.loads(strict.stdout)
+    keeps_to_schema(document)
+    assert [one["word"] for one in document["requirements"]] == ["met", "not met"]
+    refused = acutance("edge", edge_image, "--require", "mtf_nyquist")
+    assert refused.exit_code == 2
+    assert "mtf_nyquist>=0.09" in refused.stderr
+
+
+def test_methods_compared_answer_each_and_all_edges_by_their_means(acutance, edge_image):
+    words = ("edge", edge_image, "--require", "mtf_nyquist>=0.09", "--json")
+    compared = json.loads(acutance(*words, "--compare", "fermi").stdout)["requirements"]
+    assert [one["method"] for one in compared] == ["spline", "fermi"]
+    whole = json.loads(acutance(*words, "--all").stdout)
+    (answer,) = whole["requirements"]
+    assert answer["number"] == whole["groups"]["across"]["metrics"]["mtf_nyquist"]

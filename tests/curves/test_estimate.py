@@ -140,3 +140,15 @@ def test_document_has_none_where_there_is_no_number() -> None:
 )
 def test_a_document_loses_nothing(number: Estimate) -> None:
     assert Estimate.from_dict(json.loads(json.dumps(number.to_dict()))) == number
+
+
+def test_the_probability_of_a_limit_is_that_of_the_interval() -> None:
+    number = Estimate(0.2, 0.01, lowest=0.0)
+    low, high = number.interval(0.95)
+    assert number.probability_above(low) == pytest.approx(0.975)
+    assert number.probability_above(high) == pytest.approx(0.025)
+    assert number.probability_above(0.0) == 1.0
+    assert Estimate(0.97, 0.05, highest=1.0).probability_above(1.01) == 0.0
+    assert [Estimate(0.2).probability_above(limit) for limit in (0.2, 0.21)] == [1.0, 0.0]
+    assert math.isnan(Estimate(math.nan, 0.1, lowest=0.0).probability_above(-1.0))
+    assert math.isnan(Estimate(0.2, math.nan).probability_above(0.1))

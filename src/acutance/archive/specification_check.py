@@ -28,12 +28,16 @@ from acutance.archive.trends.words import season_words
 from acutance.curves import METRICS, Estimate
 from acutance.curves.estimate import normal_quantile
 from acutance.errors import OptionError
+from acutance.targets.conformity import (
+    MET,
+    NOT_MET,
+    OPEN,
+    conformity_word,
+    written_probability,
+)
 
 __all__ = ["Answer", "SpecificationCheck", "check_requirement", "check_specification"]
 
-MET: Final = "met"
-NOT_MET: Final = "not met"
-OPEN: Final = "cannot be told yet"
 _YEAR_DAYS: Final = 365.25
 _MOST: Final = 10_000
 """More images than this are no answer."""
@@ -89,7 +93,8 @@ class Answer:
         text = (
             f"{what}{asked} is {self.word}" if self.word != OPEN else f"{what}{asked} {self.word}"
         )
-        text += f" (probability of being met {_written(self.probability)}): {_interval(self.mean)}"
+        chance = written_probability(self.probability)
+        text += f" (probability of being met {chance}): {_interval(self.mean)}"
         if self.day is not None:
             text += f" on {self.day}"
         text += f", {counted(self.images, 'image')}."
@@ -312,7 +317,7 @@ def _answer(
     images: int, square: float, systematic_std: float, reason: str,
 ) -> Answer:  # fmt: skip
     confidence = requirement.confidence
-    word = MET if met >= confidence else NOT_MET if met <= 1 - confidence else OPEN
+    word = conformity_word(met, confidence)
     is_told = word != OPEN
     more = 0 if is_told else _images_that_tell(requirement, mean, square, systematic_std)
     return Answer(requirement, what, word, met, mean, day, images, more, reason)
@@ -342,10 +347,3 @@ def _interval(mean: Estimate) -> str:
     digits = len(value.partition(".")[2])
     low, high = mean.interval(0.95)
     return f"{value} (95 %: {low:.{digits}f} to {high:.{digits}f})"
-
-
-def _written(probability: float) -> str:
-    """A probability that never looks like a certainty."""
-    if probability > 0.999:
-        return "> 0.999"
-    return "< 0.001" if probability < 0.001 else f"{probability:.3f}"

@@ -143,11 +143,12 @@ def _compared(function: Callable[..., Measurement], names: Sequence[str]) -> Com
         except TargetError as error:
             first = first or error
             rejected.append(Rejected("method", str(error), {"method": name}))
-            say(f"acutance: method {name}: {error}")
         else:
             found.append(one)
     if first is not None and not found:
         raise first
+    for refused in rejected:
+        say(f"acutance: method {refused.values['method']}: {refused.reason}")
     return Comparison(tuple(found), rejected=tuple(rejected))
 
 
@@ -214,9 +215,12 @@ def _deliver_parts(
         what = "bands and regions" if parts[0].is_of_bands else "regions"
         raise TargetError(f"none of the {len(parts)} {what} could be measured")
     if outputs.as_json:
-        typer.echo(report.json_text(_parts_document(parts, found, rejected, outputs.covariance)))
+        typer.echo(report.json_text(_parts_document(parts, found, rejected, outputs)))
     else:
-        texts = {place: report.text(shown.result) for place, shown in found.items()}
+        texts = {
+            place: report.text(shown.result, required=outputs.required)
+            for place, shown in found.items()
+        }
         texts |= {place: f"not measured: {reason}" for place, reason in rejected.items()}
         labelled = (f"{one.label}: {texts[place]}" for place, one in enumerate(parts))
         typer.echo("\n\n".join(labelled))
@@ -225,19 +229,16 @@ def _deliver_parts(
 
 def _parts_document(
     parts: Sequence[_Part], found: Mapping[int, Shown], rejected: Mapping[int, str],
-    covariance: bool,
+    outputs: Outputs,
 ) -> dict[str, Any]:  # fmt: skip
     """The document ``acutance/regions/1``, of several bands ``acutance/bands/1``.
 
     It holds one result a region and band, and those without one.
     """
-    from acutance import report
-
     return {
         "schema": "acutance/bands/1" if parts[0].is_of_bands else "acutance/regions/1",
         "results": [
-            {**parts[place].document, **report.document(shown.result, covariance=covariance)}
-            for place, shown in found.items()
+            {**parts[place].document, **outputs.document(shown)} for place, shown in found.items()
         ],
         "rejected": [
             {"stage": "measurement", "reason": reason, "values": parts[place].document}

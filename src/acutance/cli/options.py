@@ -15,6 +15,7 @@ from acutance.targets.kinds import KINDS, methods_text
 if TYPE_CHECKING:
     from acutance.raster import Gsd, Image, Region
     from acutance.raster.image import AlongTrack
+    from acutance.targets import ToleranceLimit
 
 __all__ = [
     "BrightOption",
@@ -215,14 +216,43 @@ class ResultOptions:
         list[str] | None,
         typer.Option(metavar="NAME=VALUE", help="Ask more or less of a check; repeatable."),
     ] = None
+    require: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NUMBER>=LIMIT",
+            help="Tell whether a number keeps a limit, with the probability: mtf_nyquist>=0.09, or "
+            "along.fwhm_m<=1.5 for one direction; repeatable. Of the sensor over many images: "
+            "acutance archive check.",
+        ),
+    ] = None
     strict: Annotated[
-        bool, typer.Option("--strict", help="Exit with code 3 when a check failed.")
+        bool,
+        typer.Option(
+            "--strict",
+            help="Exit with code 3 when a check failed, or a requirement is not met or cannot be "
+            "told yet.",
+        ),
     ] = False
 
     @property
     def limits(self) -> Mapping[str, float]:
         """The limits of ``--limit`` by the names of the checks."""
         return parse_limits(self.limit or ())
+
+    @property
+    def required(self) -> tuple[ToleranceLimit, ...]:
+        """What ``--require`` asks for.
+
+        Raises
+        ------
+        OptionError
+            If a text states no limit.
+        """
+        if not self.require:
+            return ()
+        from acutance.targets import ToleranceLimit
+
+        return tuple(map(ToleranceLimit.of, self.require))
 
 
 @dataclass(frozen=True)

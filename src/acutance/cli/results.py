@@ -16,7 +16,7 @@ from acutance.errors import OptionError
 
 if TYPE_CHECKING:
     from acutance.report import Comparison
-    from acutance.targets import Measurement, TargetResult
+    from acutance.targets import Measurement, TargetResult, ToleranceLimit
 
 __all__ = ["Outputs", "Shown"]
 
@@ -59,6 +59,8 @@ class Outputs:
     ----------
     figure, report, csv : OutputFile or None
     as_json, covariance, strict : bool
+    required : tuple of ToleranceLimit
+        Requirements to be answered.
     """
 
     figure: OutputFile | None
@@ -67,6 +69,7 @@ class Outputs:
     as_json: bool
     covariance: bool
     strict: bool
+    required: tuple[ToleranceLimit, ...]
 
     @classmethod
     def checked(cls, options: ResultOptions, inputs: Iterable[str | None]) -> Outputs:
@@ -90,7 +93,7 @@ class Outputs:
             check_optional("--figure", options.figure, (".png", ".svg", ".pdf"), keep=kept),
             check_optional("--report", options.report, (".html",), keep=kept),
             check_optional("--csv", options.csv, (".csv",), keep=kept),
-            options.as_json, options.covariance, options.strict,
+            options.as_json, options.covariance, options.strict, options.required,
         )  # fmt: skip
 
     def of_regions(self, names: Sequence[str], inputs: Iterable[str | None]) -> list[Outputs]:
@@ -118,10 +121,16 @@ class Outputs:
 
         self.write_files(shown)
         if self.as_json:
-            typer.echo(report.json_text(report.document(shown.result, covariance=self.covariance)))
+            typer.echo(report.json_text(self.document(shown)))
         else:
-            typer.echo(report.text(shown.result))
+            typer.echo(report.text(shown.result, required=self.required))
         self.require_checks([shown])
+
+    def document(self, shown: Shown) -> dict[str, Any]:
+        """A result as a document, with what was asked for."""
+        from acutance import report
+
+        return report.document(shown.result, self.covariance, required=self.required)
 
     def write_files(self, shown: Shown) -> None:
         """Write the files that were asked for."""
@@ -131,7 +140,9 @@ class Outputs:
             figure = report.draw(shown.result, **shown.drawn_on)
             self.figure.deliver(report.figure_bytes(figure, self.figure.ending))
         if self.report is not None:
-            page = report.page(shown.result, command=command_line(), **shown.drawn_on)
+            page = report.page(
+                shown.result, command=command_line(), required=self.required, **shown.drawn_on
+            )
             self.report.deliver(page)
         if self.csv is not None:
             self.csv.deliver(report.csv(shown.result))
@@ -149,10 +160,26 @@ class Outputs:
         missing += sum(shown.methods_missing for shown in shown_results)
         measurements = [one for shown in shown_results for one in shown.measurements]
         failed = sum(not one.trusted for one in measurements)
-        if self.strict and failed:
+        if not self.strict:
+            return
+        unmet = self._unmet(shown_results)
+        if failed:
             say(f"acutance: a check failed in {failed} of {len(measurements)} measurements")
-        if self.strict and (failed or missing):
+        if unmet:
+            some = "1 requirement is" if unmet == 1 else f"{unmet} requirements are"
+            say(f"acutance: {some} not met, or cannot be told yet")
+        if failed or missing or unmet:
             raise typer.Exit(FAILED_CHECK)
+
+    def _unmet(self, results: Iterable[Shown]) -> int:
+        """How many requirements of all results are not met, or cannot be told yet."""
+        from acutance.report.requirements import answers_to
+        from acutance.targets.conformity import MET
+
+        answers = (
+            answer for shown in results for _, answer in answers_to(shown.result, self.required)
+        )
+        return sum(answer.word != MET for answer in answers)
 
 
 def _named(output: OutputFile | None, stem: str, kept: tuple[str | None, ...]) -> OutputFile | None:

@@ -223,11 +223,13 @@ def _deliver_bands(
     if outputs.report is not None:
         backdrops = {name: look["backdrop"] for name, look in looks.items()}
         outputs.report.deliver(
-            report.bands_page(found, command=command_line(), backdrops=backdrops)
+            report.bands_page(
+                found, command=command_line(), required=outputs.required, backdrops=backdrops
+            )
         )
     if outputs.as_json:
-        document = report.bands_document(found, covariance=outputs.covariance)
+        document = report.bands_document(found, outputs.covariance, required=outputs.required)
         typer.echo(report.json_text(document))
     else:
-        typer.echo(report.bands_text(found))
+        typer.echo(report.bands_text(found, required=outputs.required))
     outputs.require_checks(each, missing=len(found.rejected))

@@ -95,6 +95,22 @@ class Estimate:
             high if self.highest is None else min(high, self.highest),
         )
 
+    def probability_above(self, limit: float) -> float:
+        """How probable it is that the truth is at least `limit`, by a normal density.
+
+        Certain of a bound that the quantity cannot cross; ``nan`` where the value or its deviation
+        does not exist.
+        """
+        if math.isnan(self.value) or math.isnan(self.std):
+            return math.nan
+        if self.lowest is not None and limit <= self.lowest:
+            return 1.0
+        if self.highest is not None and limit > self.highest:
+            return 0.0
+        if self.std == 0:
+            return float(self.value >= limit)
+        return 0.5 * math.erfc((limit - self.value) / (math.sqrt(2) * self.std))
+
     def to_dict(self) -> dict[str, float | list[float] | None]:
         """Value, standard deviation and 95 % interval; ``None`` where they do not exist.
 

@@ -81,8 +81,9 @@ def parse_rois(text: str, image: Image) -> dict[str, Region]:
     -------
     dict of str to Region
         In the order of the file, by the name of each feature (``properties.name``, else ``id``,
-        else "feature 2"); other texts name their only region themselves. A polygon may reach
-        beyond the image, and some of several may lie outside it: to read those is refused.
+        else "feature 2"); other texts name their only region themselves. A polygon, and a box in
+        degrees, may reach beyond the image: the pixels inside are read. Some of several may lie
+        outside it: to read those is refused.
 
     Raises
     ------

@@ -12,6 +12,7 @@ from acutance.report.html import Plate, Section, Table, Verdict, render_page
 from acutance.report.json import document
 from acutance.report.labels import describe_image, metric_words, provenance, word_estimate
 from acutance.report.page import sections, verdict_of
+from acutance.report.requirements import Required, required_lines, required_verdicts
 from acutance.report.text import table_text
 
 if TYPE_CHECKING:
@@ -77,12 +78,14 @@ def _shifts_table(found: BandScenes) -> Table:
     )  # fmt: skip
 
 
-def bands_text(found: BandScenes) -> str:
+def bands_text(found: BandScenes, *, required: Required = ()) -> str:
     """Several bands for a terminal: the tables, the verdicts, what was not measured.
 
     Parameters
     ----------
     found : BandScenes
+    required : sequence of ToleranceLimit or str, optional
+        Requirements that every band answers.
     """
     first = found.scenes[found.first]
     bands = f"{len(found.scenes)} band{'s' if len(found.scenes) > 1 else ''}"
@@ -97,10 +100,21 @@ def bands_text(found: BandScenes) -> str:
         f"scene in {bands}\n  {image}",
         *map(table_text, bands_tables(found)),
         "\n".join(lines),
+        *_required_of_bands(found, required),
     ))  # fmt: skip
 
 
-def bands_document(found: BandScenes, covariance: bool = False) -> dict[str, Any]:
+def _required_of_bands(found: BandScenes, required: Required) -> list[str]:
+    return [
+        f"Band {name}: {lines[:1].lower()}{lines[1:]}"
+        for name, scene in found.scenes.items()
+        for lines in required_lines(scene, required)
+    ]
+
+
+def bands_document(
+    found: BandScenes, covariance: bool = False, *, required: Required = ()
+) -> dict[str, Any]:
     """The document ``acutance/bands/1``: one result a band, shifts, bands without a result.
 
     Parameters
@@ -108,11 +122,13 @@ def bands_document(found: BandScenes, covariance: bool = False) -> dict[str, Any
     found : BandScenes
     covariance : bool, optional
         As of `acutance.report.document`.
+    required : sequence of ToleranceLimit or str, optional
+        Requirements that every band answers.
     """
     return {
         "schema": "acutance/bands/1",
         "results": [
-            {"band": name, **document(scene, covariance=covariance)}
+            {"band": name, **document(scene, covariance, required=required)}
             for name, scene in found.scenes.items()
         ],
         "shifts": [
@@ -134,6 +150,7 @@ def bands_page(
     found: BandScenes,
     *,
     command: str | None = None,
+    required: Required = (),
     backdrops: Mapping[str, Floats] | None = None,
 ) -> str:
     """Several bands as one page: the tables and all MTFs first, then every band.
@@ -143,6 +160,8 @@ def bands_page(
     found : BandScenes
     command : str, optional
         The command line.
+    required : sequence of ToleranceLimit or str, optional
+        Requirements that every band answers.
     backdrops : mapping of str to (rows, cols) array, optional
         By band a quick look at what was scanned.
     """
@@ -162,6 +181,10 @@ def bands_page(
     ] + [
         Verdict("usable", f"Band {one.values['band']} – No shift: {one.reason}")
         for one in found.unshifted
+    ] + [
+        answer
+        for name, scene in found.scenes.items()
+        for answer in required_verdicts(scene, required, f"Band {name} – ")
     ]  # fmt: skip
     each = [
         replace(section, title=f"Band {name}: {section.title[:1].lower()}{section.title[1:]}")

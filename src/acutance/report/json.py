@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from acutance.report.check_words import common_verdict
 from acutance.report.comparison import Comparison, Result, as_result
+from acutance.report.requirements import Required, with_requirements
 from acutance.targets import Rejected, TargetResult
 from acutance.targets.record import strict_json
 
@@ -33,7 +34,9 @@ def measurement_schema() -> dict[str, Any]:
     return schema
 
 
-def document(result: Result, covariance: bool = False) -> dict[str, Any]:
+def document(
+    result: Result, covariance: bool = False, *, required: Required = ()
+) -> dict[str, Any]:
     """Any result as a JSON document.
 
     A measurement is ``acutance/measurement/1``; several of one target are
@@ -48,18 +51,25 @@ def document(result: Result, covariance: bool = False) -> dict[str, Any]:
         ``factor`` of the ESF and the LSF, and of ``factor_real`` and ``factor_imag`` of the MTF,
         of both directions belong to the same k standard normal variables, so that any combination
         of the curves has a standard deviation.
+    required : sequence of ToleranceLimit or str, optional
+        Requirements to be answered in "requirements": "mtf_nyquist >= 0.09".
     """
     found = as_result(result)
     if isinstance(found, TargetResult):
-        return _target_document(found, covariance)
-    if isinstance(found, Comparison):
-        each = [_measurement_document(one, covariance) for one in found.measurements]
-        return {
-            "schema": "acutance/comparison/1",
-            "measurements": each,
-            "rejected": _rejected_documents(found.rejected),
-        }
-    return _measurement_document(found, covariance)
+        own = _target_document(found, covariance)
+    elif isinstance(found, Comparison):
+        own = _comparison_document(found, covariance)
+    else:
+        own = _measurement_document(found, covariance)
+    return with_requirements(own, found, required)
+
+
+def _comparison_document(comparison: Comparison, covariance: bool) -> dict[str, Any]:
+    return {
+        "schema": "acutance/comparison/1",
+        "measurements": [_measurement_document(one, covariance) for one in comparison.measurements],
+        "rejected": _rejected_documents(comparison.rejected),
+    }
 
 
 def _measurement_document(measurement: Measurement, covariance: bool) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from acutance.report.check_words import common_verdict, failed_by_check
@@ -21,6 +22,7 @@ from acutance.report.labels import (
     title_of,
 )
 from acutance.report.paper import new_page, styled
+from acutance.report.requirements import Required, required_verdicts
 from acutance.report.tables.measurement import headline_table, numbers_of, options_table
 from acutance.report.tables.result import tables
 from acutance.report.tables.target import means_headline, target_tables
@@ -41,6 +43,7 @@ def page(
     result: Result,
     *,
     command: str | None = None,
+    required: Required = (),
     backdrop: Floats | None = None,
     origin: tuple[int, int] = (0, 0),
 ) -> str:
@@ -53,6 +56,8 @@ def page(
     command : str, optional
         The command line that produced it; of edges and pulses of a file it is made up from the
         measurement when not given.
+    required : sequence of ToleranceLimit or str, optional
+        Requirements to be answered: "mtf_nyquist >= 0.09".
     backdrop, origin : optional
         Of all edges of a target, or of a scene: see `acutance.report.draw`.
 
@@ -62,7 +67,7 @@ def page(
         A whole document: style and drawings are inside, nothing is loaded from elsewhere.
     """
     found = as_result(result)
-    content = sections(found, command=command, backdrop=backdrop, origin=origin)
+    content = sections(found, command=command, required=required, backdrop=backdrop, origin=origin)
     if isinstance(found, TargetResult):
         count = count_edges(len(found.measurements))
         first = found.measurements[0]
@@ -97,16 +102,20 @@ def sections(
     result: Result,
     *,
     command: str | None = None,
+    required: Required = (),
     backdrop: Floats | None = None,
     origin: tuple[int, int] = (0, 0),
 ) -> tuple[Section, ...]:
     """What `page` shows, for a page that holds more than one result."""
     found = as_result(result)
     if isinstance(found, TargetResult):
-        return _target_sections(found, backdrop, origin, command)
-    if isinstance(found, Comparison):
-        return _comparison_sections(found, command)
-    return _measurement_sections(found, backdrop, command)
+        own = _target_sections(found, backdrop, origin, command)
+    elif isinstance(found, Comparison):
+        own = _comparison_sections(found, command)
+    else:
+        own = _measurement_sections(found, backdrop, command)
+    answers = required_verdicts(found, required)
+    return (replace(own[0], verdicts=(*own[0].verdicts, *answers)), *own[1:])
 
 
 def verdict_of(result: Measurement | Record, label: str = "") -> Verdict:

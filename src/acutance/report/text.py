@@ -19,6 +19,7 @@ from acutance.report.labels import (
     describe_measurement,
     title_of,
 )
+from acutance.report.requirements import Required, required_lines
 from acutance.report.tables.measurement import numbers_table
 from acutance.report.tables.result import kind_tables, tables
 from acutance.report.tables.scene_reasons import reasons_table
@@ -36,12 +37,14 @@ MAX_ROWS = 40
 _REASONS = 6
 
 
-def text(result: Result) -> str:
+def text(result: Result, *, required: Required = ()) -> str:
     """Any result as text: what was measured, the verdict, the numbers, the checks.
 
     Parameters
     ----------
     result : Measurement, TargetResult, Comparison or sequence of Measurement
+    required : sequence of ToleranceLimit or str, optional
+        Requirements to be answered: "mtf_nyquist >= 0.09".
 
     Returns
     -------
@@ -50,12 +53,13 @@ def text(result: Result) -> str:
     """
     found = as_result(result)
     if isinstance(found, TargetResult):
-        return _target_text(found)
+        return _target_text(found, required)
     if isinstance(found, Comparison):
-        return _comparison_text(found)
+        return _comparison_text(found, required)
     parts = [
         f"{describe_measurement(found)}\n  {describe_image(found)}",
         *([str(found.verdict)] if found.checks else []),
+        *required_lines(found, required),
         table_text(numbers_table(found), drop_last=1),
         *([f"  {causes}"] if (causes := uncertainty_line(found)) else []),
         *(table_text(table) for table in kind_tables(found) if not table.page_only),
@@ -81,7 +85,7 @@ def _verdict_lines(measurement: Measurement) -> list[str]:
     ]
 
 
-def _comparison_text(comparison: Comparison) -> str:
+def _comparison_text(comparison: Comparison, required: Required) -> str:
     """A column and the failed checks of each method."""
     first = comparison.measurements[0]
     title = title_of(first).split(",")[0]
@@ -95,13 +99,14 @@ def _comparison_text(comparison: Comparison) -> str:
         (
             f"{title} by {len(comparison.labels)} methods, {' and '.join(comparison.directions)} "
             f"track\n  {describe_image(first)}",
+            *required_lines(comparison, required),
             *map(table_text, tables(comparison)),
             "\n".join((*verdicts, *refused)),
         )
     )
 
 
-def _target_text(result: TargetResult[Any]) -> str:
+def _target_text(result: TargetResult[Any], required: Required) -> str:
     """Every edge, the means by direction, what was rejected, and what failed checks found."""
     measurements = result.measurements
     head = f"{count_edges(len(measurements))} measured, {len(result.rejected)} rejected"
@@ -114,6 +119,7 @@ def _target_text(result: TargetResult[Any]) -> str:
         (
             head + where,
             str(common_verdict(measurements)),
+            *required_lines(result, required),
             *map(table_text, tables(result)),
             *notes_on_means(result),
             *(["\n".join(("Failed checks", *failed))] if failed else []),

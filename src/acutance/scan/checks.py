@@ -196,11 +196,14 @@ def _diagonals(transfer: Otf2d, limits: Limits) -> Check:
     std = float(np.linalg.norm(one.gradient(NYQUIST_CPP) - other.gradient(NYQUIST_CPP)))
     mean = max(0.5 * sum(both), 1e-9)
     least = max(abs(both[0] - both[1]) - _SIGNIFICANT * std, 0.0) / mean
-    found = (
-        f"the MTF at Nyquist is {both[0]:.3f} along one diagonal and {both[1]:.3f} along the "
-        f"other, surely (by {_SIGNIFICANT:.0f} standard deviations) different by "
-        f"{100 * least:.0f} % of it"
+    told = (
+        f"the MTF at Nyquist is {both[0]:.3f} along one diagonal and {both[1]:.3f} along the other"
     )
+    sigmas = f"{_SIGNIFICANT:.0f} standard deviations"
+    if least > 0:
+        found = f"{told}, surely (by {sigmas}) different by {100 * least:.0f} % of it"
+    else:
+        found = f"{told}: within {sigmas} they agree"
     return answer("diagonals", least, found, limits)
 
 

@@ -1,12 +1,13 @@
 """Targets: an image in, a `Measurement` out. One folder a kind of target.
 
-What the kinds share stands here: `kinds` (their names and methods), `region` (the pixels
-of a measurement), `options` (what callers choose), `check` and `check_table` (is the
-target good enough), `processing_traces` (what processing left in its pixels, and
-`processing_checks` of it), `slices` (an OTF along some directions, with covariance), `measurement`
-and its light half, `record` (a direction of it: `recorded_direction`), `directions` (what these two
-have in common), `uncertainty_budget` (what their deviations consist of), and `target_result`
-(several measurements of one target). The kinds, none of which imports another:
+What the kinds share stands here: `kinds` (their names and methods), `region` (the pixels of a
+measurement), `options` (what callers choose), `check` and `check_table` (is the target good
+enough), `processing_traces` (what processing left in its pixels, and `processing_checks` of it),
+`slices` (an OTF along some directions, with covariance), `measurement` and its light half, `record`
+(a direction of it: `recorded_direction`), `directions` (what these two have in common),
+`uncertainty_budget` (what their deviations consist of), `target_result` (several measurements of
+one target), and `conformity` (whether they meet a requirement). The kinds, none of which imports
+another:
 
 - `straight`: edges and pulses, along their normals
 - `points`: mirrors, lamps, stars of the sky
@@ -25,6 +26,7 @@ from acutance.targets.kinds import KINDS, Kind
 if TYPE_CHECKING:
     from acutance.targets.check import Check, Verdict
     from acutance.targets.check_table import QUESTIONS
+    from acutance.targets.conformity import Conformity, ToleranceLimit
     from acutance.targets.measurement import Measurement
     from acutance.targets.question import Question
     from acutance.targets.record import ImageInfo, Record
@@ -37,6 +39,7 @@ __all__ = [
     "QUESTIONS",
     "BudgetTerm",
     "Check",
+    "Conformity",
     "EdgeGroup",
     "ImageInfo",
     "Kind",
@@ -46,6 +49,7 @@ __all__ = [
     "Record",
     "Rejected",
     "TargetResult",
+    "ToleranceLimit",
     "Verdict",
 ]
 
@@ -54,6 +58,7 @@ _HOMES = {
     "QUESTIONS": "check_table",
     "BudgetTerm": "uncertainty_budget",
     "Check": "check",
+    "Conformity": "conformity",
     "EdgeGroup": "target_result",
     "ImageInfo": "record",
     "Measurement": "measurement",
@@ -62,6 +67,7 @@ _HOMES = {
     "Record": "record",
     "Rejected": "target_result",
     "TargetResult": "target_result",
+    "ToleranceLimit": "conformity",
     "Verdict": "check",
 }
 

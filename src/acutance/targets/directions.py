@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 if TYPE_CHECKING:
+    from acutance.targets.conformity import Conformity, ToleranceLimit
     from acutance.targets.measurement import Measurement
     from acutance.targets.record import Record
 
@@ -43,7 +44,28 @@ class HasDirections(Generic[One]):
             )
         return self.directions[name]
 
+    def conformity(self, *limits: ToleranceLimit | str) -> tuple[Conformity, ...]:
+        """Whether requirements are met, with the probability: one answer a limit and direction.
+
+        Parameters
+        ----------
+        *limits : ToleranceLimit or str
+            "mtf_nyquist >= 0.09", or "along.fwhm_m <= 1.5" for one direction.
+
+        Raises
+        ------
+        OptionError
+            If a text states no limit.
+        """
+        from acutance.targets.conformity import conformity_of
+
+        return conformity_of(self._whole, limits)
+
     def _repr_html_(self) -> str:
         from acutance.report import notebook_html
 
-        return notebook_html(cast("Measurement | Record", self))
+        return notebook_html(self._whole)
+
+    @property
+    def _whole(self) -> Measurement | Record:
+        return cast("Measurement | Record", self)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from acutance.curves import Estimate
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.line import Orientation
 from acutance.targets.measurement import Measurement
+
+if TYPE_CHECKING:
+    from acutance.targets.conformity import Conformity, ToleranceLimit
 
 __all__ = ["EdgeGroup", "Rejected", "TargetResult"]
 
@@ -109,6 +112,12 @@ class TargetResult(ShortRepr, Generic[One]):
         """How many edges, and the main means of each group."""
         count = f"measured {len(self.measurements)}, rejected {len(self.rejected)}"
         return "; ".join((count, *(group.summary() for group in self.groups.values())))
+
+    def conformity(self, *limits: ToleranceLimit | str) -> tuple[Conformity, ...]:
+        """Whether the means meet requirements: see `Measurement.conformity`."""
+        from acutance.targets.conformity import conformity_of
+
+        return conformity_of(self, limits)
 
     def _repr_html_(self) -> str:
         from acutance.report import notebook_html

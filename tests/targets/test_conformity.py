@@ -1,0 +1,142 @@
+"""Requirements: met, not met, or it cannot be told yet, with true probabilities."""
+
+import math
+
+import numpy as np
+import pytest
+
+import acutance as ac
+from acutance import optics, simulate
+from acutance.targets import ToleranceLimit
+from acutance.targets.conformity import conformity_word, written_probability
+
+SENSOR = ac.Sensor([optics.Gaussian(0.45), optics.Detector(0.95)])
+
+
+@pytest.fixture(scope="module")
+def edge():
+    image, _ = simulate.edge(SENSOR, angle_deg=6, snr=100, rng=np.random.default_rng(3))
+    return ac.measure_edge(image)
+
+
+def test_a_number_far_from_its_limit_is_told(edge):
+    number = edge.mtf_nyquist
+    met, missed, above = edge.conformity(
+        f"mtf_nyquist >= {number.value - 4 * number.std}",
+        f"mtf_nyquist>={number.value + 4 * number.std}",
+        "fwhm_px <= 3",
+    )
+    assert [one.word for one in (met, missed, above)] == ["met", "not met", "met"]
+    assert met.probability == pytest.approx(0.99997, abs=2e-5)
+    assert "across: mtf_nyquist >= " in met.summary
+    assert "> 0.999" in met.summary
+
+
+def test_one_near_its_limit_is_not_and_says_how_many_would_tell(edge):
+    number = edge.mtf_nyquist
+    (answer,) = edge.conformity(f"mtf_nyquist >= {number.value - 0.5 * number.std:.6f}")
+    assert answer.word == "cannot be told yet"
+    assert answer.probability == pytest.approx(0.691, abs=0.002)
+    # A single one is told at 1.645 deviations: (1.645 / 0.5)^2 of them at half of one.
+    assert "about 11 measurements" in answer.summary
+
+
+def test_a_direction_that_was_not_measured_is_not_told(edge):
+    (answer,) = edge.conformity("along.mtf_nyquist >= 0.01")
+    assert (answer.orientation, answer.word, answer.probability) == (
+        "along", "cannot be told yet", None,
+    )  # fmt: skip
+    assert "across track only" in answer.summary
+
+
+def test_a_doubtful_measurement_tells_nothing():
+    image, _ = simulate.edge(SENSOR, angle_deg=6, snr=100, rng=np.random.default_rng(3))
+    doubtful = ac.measure_edge(np.minimum(image, np.quantile(image, 0.6)))
+    assert doubtful.verdict.warns
+    (answer,) = doubtful.conformity("mtf_nyquist >= 0.01")
+    assert (answer.word, answer.probability) == ("cannot be told yet", None)
+    assert f"the measurement is {doubtful.verdict.word}" in answer.summary
+
+
+def test_metres_need_a_gsd(edge):
+    (answer,) = edge.conformity("fwhm_m <= 1")
+    assert answer.word == "cannot be told yet"
+    assert "GSD" in answer.summary
+
+
+def test_a_curve_that_does_not_fall_so_far_has_no_number():
+    sharp = ac.Sensor([optics.Gaussian(0.2), optics.Detector(0.6)])
+    image, _ = simulate.edge(sharp, angle_deg=6, snr=200, rng=np.random.default_rng(4))
+    found = ac.measure_edge(image, options=ac.EdgeOptions(limits={"full_pixel": 9}))
+    number = found.mtf30_cpp
+    (answer,) = found.conformity("mtf30_cpp >= 0.4")
+    assert (answer.probability is None) == math.isnan(number.value)
+
+
+def test_the_record_answers_as_the_measurement(edge):
+    asked = ("mtf_nyquist >= 0.2", "rer >= 0.5")
+    assert edge.record.conformity(*asked) == edge.conformity(*asked)
+
+
+def test_of_all_edges_of_a_target_the_means_are_asked():
+    image = simulate.checkerboard(SENSOR, snr=100, rng=np.random.default_rng(5)).image
+    found = ac.measure_edges(image)
+    answers = found.conformity("mtf_nyquist >= 0.1", "along.fwhm_px <= 9")
+    assert [one.orientation for one in answers] == ["across", "along", "along"]
+    assert all(one.word == "met" for one in answers)
+    assert answers[0].number == found.groups["across"].metrics["mtf_nyquist"]
+
+
+def test_probabilities_are_true():
+    """Of many edges whose limits lie around the truth as many are met as was said."""
+    rng, said, met = np.random.default_rng(11), [], []
+    for _ in range(150):
+        image, truth = simulate.edge(SENSOR, angle_deg=rng.uniform(3, 12), snr=60, rng=rng)
+        number = ac.measure_edge(image).mtf_nyquist
+        limit = truth.mtf_nyquist.value + rng.normal(0.0, 1.5) * number.std
+        said.append(ToleranceLimit("mtf_nyquist", ">=", limit).probability(number))
+        met.append(truth.mtf_nyquist.value >= limit)
+    chance = np.array(said)
+    scatter = math.sqrt(float(np.sum(chance * (1 - chance))))
+    assert abs(chance.sum() - sum(met)) < 3 * scatter
+    told = (chance > 0.95) | (chance < 0.05)
+    wrong = np.where(chance > 0.5, ~np.array(met), np.array(met))
+    assert told.sum() > 30
+    assert wrong[told].mean() < 0.06
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("mtf_nyquist > 0.1", "not of the form"),
+        ("mtf_nyquist >= x", "not of the form"),
+        ("mtf_nyquist >= nan", "has no limit"),
+        ("0.1 <= mtf_nyquist", "not of the form"),
+        ("contrast >= 0.1", "no number of a measurement"),
+        ("up.rer >= 0.1", "not of the form"),
+        ("", "not of the form"),
+    ],
+)
+def test_texts_that_state_no_limit_are_refused(text, said):
+    with pytest.raises(ac.OptionError, match=said):
+        ToleranceLimit.of(text)
+
+
+@pytest.mark.parametrize("confidence", [0.5, 1.0, 2.0])
+def test_a_confidence_tells_more_than_a_coin(confidence):
+    with pytest.raises(ac.OptionError, match="confidence"):
+        ToleranceLimit("rer", ">=", 0.5, confidence=confidence)
+
+
+def test_an_unknown_direction_is_refused():
+    with pytest.raises(ac.OptionError, match="across or along"):
+        ToleranceLimit("rer", ">=", 0.5, orientation="up")
+
+
+def test_words_and_probabilities_at_their_ends():
+    assert [conformity_word(p, 0.95) for p in (0.95, 0.05, 0.5)] == [
+        "met", "not met", "cannot be told yet",
+    ]  # fmt: skip
+    assert [written_probability(p) for p in (0.9995, 0.0005, 0.25)] == [
+        "> 0.999", "< 0.001", "0.250",
+    ]  # fmt: skip
