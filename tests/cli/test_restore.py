@@ -325,3 +325,17 @@ def test_the_proof_is_of_the_band_the_filter_is_of(acutance, folder, tmp_path):
     assert result.exit_code == 0, result.stderr
     assert "band 2:\nEdges before and after" in result.stdout
     assert "filtered though the filter is of band 2: band 1" in result.stdout
+
+
+def test_what_was_written_is_told_where_no_edge_proves_it(acutance, folder, tmp_path):
+    flat = tmp_path / "flat.tif"
+    pixels = np.random.default_rng(3).normal(100, 1, (80, 80)).astype(np.float32)
+    write_geotiff(flat, pixels, gsd_m=0.7)
+    result = acutance(
+        "restore", "apply", flat, "--filter", folder / "filter.json", "--out", tmp_path / "o.tif",
+        "--verify",
+    )  # fmt: skip
+    assert result.exit_code == 4
+    assert "band 1: 6400 pixels" in result.stdout
+    assert "name regions with edges" in result.stderr
+    assert (tmp_path / "o.tif").exists()

@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+import xarray
 
 from acutance.errors import ImageError, OptionError, RegionError
 from acutance.raster import Box, Gsd, Image, open_image
@@ -57,11 +58,18 @@ def test_unusable_pixels_are_nan():
         (np.zeros((4, 4), bool), "mask holds no grey levels"),
         (np.array([[object(), 1]]), "not real numbers"),
         (np.array([["a", "b"]]), "not real numbers"),
+        ({"band": 1}, "a dict is no array.*acutance.open_image"),
+        (xarray.DataArray(np.zeros((4, 5)), dims=("x", "y")), "axes .* are x and y.*transpose"),
     ],
 )
 def test_an_array_that_is_no_image_is_refused(array, message):
     with pytest.raises(ImageError, match=message):
         Image.from_array(array)
+
+
+def test_an_array_with_named_axes_has_rows_first():
+    array = xarray.DataArray(np.arange(6.0).reshape(2, 3), dims=("y", "x"))
+    assert Image.from_array(array).read().tolist() == [[0, 1, 2], [3, 4, 5]]
 
 
 @pytest.mark.parametrize("gsd_m", [0.0, -1.0, np.nan, np.inf])

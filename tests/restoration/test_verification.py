@@ -149,3 +149,18 @@ def test_differences_are_within_their_deviations(sensor):
     for own in found.values():
         assert np.mean(np.abs(own) < 2) >= 0.9
         assert np.sqrt(np.mean(np.square(own))) > 0.3
+
+
+def test_an_image_of_few_edges_is_verified_by_these(pair):
+    """They are too few for a scan to tell the sensor by, which is not asked for."""
+    filter, before, after = pair
+    (edge,) = ac.verify_restoration(before, after, filter).edges
+    assert 1 <= edge.count < 8
+    assert abs(edge.off) < 2 * np.hypot(edge.after.std, edge.predicted.std)
+
+
+def test_an_image_without_edges_says_how_to_name_some(pair):
+    filter = pair[0]
+    flat = ac.Image.from_array(np.random.default_rng(2).normal(100, 1, (120, 120)))
+    with pytest.raises(ac.NoEdgeError, match="name regions with edges"):
+        ac.verify_restoration(flat, flat, filter)

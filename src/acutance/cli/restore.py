@@ -245,18 +245,19 @@ def apply(
             "value, --nodata nan that every value is data"
         )
     lines += [f"note: {note}" for note in restored.notes]
+    if not as_json:
+        typer.echo("\n".join(lines))
     proof = None
     if verify:
         of = chosen.band if chosen.band in restored.bands else next(iter(restored.bands))
         proof = _verified((image, str(place.place)), of, chosen, regions, nodata, method)
         document["proof"] = {"band": of, **proof.to_dict()}
-        lines.append(f"\n{_proof_text(proof, of, len(restored.bands))}")
+        if not as_json:
+            typer.echo(f"\n{_proof_text(proof, of, len(restored.bands))}")
     if as_json:
         from acutance.report import json_text
 
         typer.echo(json_text(document))
-    else:
-        typer.echo("\n".join(lines))
     if proof is not None and not proof.agrees:
         raise typer.Exit(FAILED_CHECK)
 

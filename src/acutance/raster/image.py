@@ -36,6 +36,9 @@ __all__ = ["AlongTrack", "Image"]
 AlongTrack = Literal["x", "y"]
 """The image axis the satellite flew along: x is that of the columns' numbers, y of the rows'."""
 
+_COLUMNS_FIRST = (("x", "y"), ("lon", "lat"), ("longitude", "latitude"), ("col", "row"))
+"""Names of axes, as xarray has them, of an image that lies on its side."""
+
 
 @dataclass(frozen=True, eq=False)
 class Image(ShortRepr):
@@ -262,17 +265,30 @@ def _as_array(array: Any) -> NDArray[Any]:
     Raises
     ------
     ImageError
-        If it is the name of a file, or rows of different lengths.
+        If it is the name of a file, no array, one whose axes are named as columns and rows, or
+        rows of different lengths.
     """
     if isinstance(array, str | bytes | os.PathLike):
         raise ImageError(
             f"{os.fspath(array)!r} is the name of a file, no array: open it with "
             "acutance.open_image(name), and measure what that returns"
         )
+    axes = tuple(str(name).lower() for name in getattr(array, "dims", ()))
+    if axes in _COLUMNS_FIRST:
+        raise ImageError(
+            f"the axes of the {type(array).__name__} are {axes[0]} and {axes[1]}, and an image has "
+            "rows first: give its transpose, or across and along are exchanged"
+        )
     try:
-        return np.asanyarray(array)
+        found: NDArray[Any] = np.asanyarray(array)
     except (TypeError, ValueError) as error:
         raise ImageError(
             f"the {type(array).__name__} given cannot be made an array ({error}): give "
             "rows of equal length"
         ) from error
+    if found.dtype == object and found.ndim == 0:
+        raise ImageError(
+            f"a {type(array).__name__} is no array: give rows and columns of numbers; a file is "
+            "opened by its name, acutance.open_image(name)"
+        )
+    return found

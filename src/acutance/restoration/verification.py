@@ -11,7 +11,7 @@ from acutance.curves import Estimate
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.errors import AcutanceError, NoEdgeError
+from acutance.errors import AcutanceError, FewEdgesError, NoEdgeError
 from acutance.geometry.angles import axis_difference
 from acutance.raster import Box, Image, Region
 from acutance.restoration.proof import RestorationProof, VerifiedEdge
@@ -113,13 +113,13 @@ def _of_scene(
     """
     found = [
         pair
-        for region in _regions_of(scan_scene(before).edges)
+        for region in _regions_of(_edges_of(before))
         if (pair := _tried(before, after, region, method)) is not None
     ]
     if not found:
         raise NoEdgeError(
-            "no edge of the scene could be measured before and after: name regions with edges "
-            "(--roi)"
+            f"the image was searched for edges of {_MIN_LENGTH_PX:g} px, and none could be "
+            "measured before and after: name regions with edges (regions, --roi)"
         )
     groups: dict[str, list[_Pair]] = {"across": [], "along": []}
     for pair in found:
@@ -127,6 +127,15 @@ def _of_scene(
     return [
         _mean_edge(f"{name}, {len(own)} edges", own, filter) for name, own in groups.items() if own
     ]
+
+
+def _edges_of(image: Image) -> SceneEdges:
+    """The edges of a scene; also where they are too few for its sensor, which is not asked for."""
+    try:
+        return scan_scene(image).edges
+    except FewEdgesError as error:
+        found: SceneEdges = error.edges
+        return found
 
 
 def _regions_of(edges: SceneEdges) -> list[Region]:

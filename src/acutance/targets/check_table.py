@@ -69,9 +69,9 @@ _STRAIGHT = {
         "with so few fine structure is not determined; the intervals are wider", severity="note",
     ),
     "rows": Question(
-        "How many rows of the edge are used?", ">=", 20.0,
+        "How many pixels of the edge's length are used?", ">=", 20.0,
         "the intervals are wide; choose a region with more of it",
-        "KOMPSAT-3 draft 3e (more than 10 to 20)", "note",
+        "KOMPSAT-3 draft 3e (more than 10 to 20 rows)", "note",
     ),
     "straightness_px": Question(
         "How far does the edge leave its line?", "<=", 0.05, "choose a straighter part",

@@ -234,14 +234,15 @@ def mark_zeros(axes: Axes, width_px: float) -> None:
     for k, zero in enumerate(zeros, start=1):
         axes.axvline(zero, color=PURPLE, linewidth=0.9, linestyle=":", zorder=1)
         if k == 1 or len(zeros) <= MAX_ZEROS_NAMED:
-            near_end = zero > 0.93
-            ends = (zero - 0.05, zero) if near_end else (zero, zero + 0.05)
+            # Beside it end the axes, or lies the line at Nyquist.
+            on_left = zero > 0.93 or 0.45 < zero < 0.5
+            ends = (zero - 0.05, zero) if on_left else (zero, zero + 0.05)
             axes.text(
-                zero + (-0.006 if near_end else 0.006),
+                zero + (-0.006 if on_left else 0.006),
                 _clear_height(axes, *ends),
                 f"{k}/w",
                 transform=axes.get_xaxis_transform(),
-                ha="right" if near_end else "left",
+                ha="right" if on_left else "left",
                 va="center",
                 color=PURPLE,
                 fontsize=7,

@@ -99,4 +99,4 @@ def _cell(name: str, value: float | int | str) -> str:
         return "-"
     if name.endswith(("_rms", "_bound", "_free")):
         return f"{value:.4f}"
-    return f"{value:.2f}".rstrip("0").rstrip(".")
+    return f"{value:g}" if name == "rows" else f"{value:.2f}"

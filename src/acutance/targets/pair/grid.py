@@ -202,10 +202,9 @@ def _require_size(low: Image, high: Image, ratio: float) -> None:
     away = [abs(high.shape[i] - ratio * low.shape[i]) for i in (0, 1)]
     if any(gap > room for gap, room in zip(away, whole, strict=True)):
         raise OptionError(
-            f"a ratio of {ratio:g} was given, but images of {high.shape[0]} x {high.shape[1]} and "
-            f"{low.shape[0]} x {low.shape[1]} pixels, which show the same ground unless they are "
-            f"georeferenced, have {shares[0]:.3g} and {shares[1]:.3g}: cut both to the "
-            "same ground, or give files with geotransforms"
+            f"a ratio of {ratio:g} was given, but {_sizes(low, high)}, which show the same ground "
+            f"unless they are georeferenced, have {shares[0]:.3g} and {shares[1]:.3g}: cut both to "
+            "the same ground, or give files with geotransforms"
         )
 
 
@@ -218,10 +217,21 @@ def _by_shapes(low: Image, high: Image) -> float:
         return float(nearest)
     if abs(rows - cols) * longest <= 1 and found >= _MIN_RATIO:
         return found
+    if max(rows, cols) < 1:
+        advice = "they are exchanged, the low one comes first"
+    else:
+        advice = f"both have to show the same ground, at a ratio of at least {_MIN_RATIO:g}"
     raise OptionError(
-        f"images of {high.shape[0]} x {high.shape[1]} and {low.shape[0]} x {low.shape[1]} pixels "
-        f"without geotransforms have no common ratio ({rows:.3g} and {cols:.3g}): the "
-        "first has to be the LOW one, both have to show the same ground; or give the ratio"
+        f"{_sizes(low, high)}, without geotransforms, have ratios of {rows:.3g} down the rows and "
+        f"{cols:.3g} along them: {advice}; or give the ratio"
+    )
+
+
+def _sizes(low: Image, high: Image) -> str:
+    """Both images with their sizes, in words."""
+    return (
+        f"a low image of {low.shape[0]} x {low.shape[1]} and a high one of {high.shape[0]} x "
+        f"{high.shape[1]} pixels"
     )
 
 

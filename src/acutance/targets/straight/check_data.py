@@ -325,4 +325,4 @@ def regular(grid: Floats) -> tuple[float, float]:
 
 def ratio_in_words(ratio: float) -> str:
     """A ratio in words: beyond `MAX_RATIO` only that it is larger."""
-    return f"more than {MAX_RATIO:.0f}" if ratio >= MAX_RATIO else f"{ratio:.0f}"
+    return f"more than {MAX_RATIO:.0f}" if ratio >= MAX_RATIO else f"{ratio:.3g}"

@@ -73,6 +73,9 @@ EDGE_CHECKS = (
 )  # fmt: skip
 """Names of all checks of an edge."""
 
+_ROUNDING = 1e-12
+"""Standard deviations of plateaus, relative to the contrast, that are arithmetic's alone."""
+
 
 def check_edge(
     region: RegionPixels,
@@ -147,7 +150,7 @@ def _of_the_image(region: RegionPixels, data: CheckData, limits: Limits) -> tupl
 def edge_snr(data: CheckData) -> float:
     """Contrast over the mean standard deviation of the plateaus (KOMPSAT-3 draft 3c)."""
     std = data.plateau_std
-    return 1 / std if std > 0 else math.inf
+    return 1 / std if std > _ROUNDING else math.inf
 
 
 def _contrast(data: CheckData, limits: Limits) -> Check:
@@ -185,8 +188,9 @@ def phases(data: CheckData, limits: Limits) -> Check:
 
 
 def enough_rows(extent: Extent, limits: Limits) -> Check:
-    """Length of the edge in rows."""
-    return answer("rows", extent.length_px, f"{extent.length_px:.0f} rows are used", limits)
+    """Length of the edge that is used."""
+    found = f"{extent.length_px:.0f} px of the edge's length are used"
+    return answer("rows", extent.length_px, found, limits)
 
 
 def straightness(data: CheckData, limits: Limits) -> Check:
