@@ -224,7 +224,7 @@ def reasons(pairs):
 
 def test_reasons_that_differ_in_numbers_are_one_with_their_medians():
     few = (
-        "only {} px of the target's length has at least 3.7 px of plateau on both sides (at least "
+        "{} px of the target's length have at least 3.7 px of plateau on both sides (at least "
         "8 are needed): choose a region"
     )
     advice = "objects on the target, or a fit that does not hold; choose a cleaner region"
@@ -236,7 +236,7 @@ def test_reasons_that_differ_in_numbers_are_one_with_their_medians():
     assert found == (
         (
             "3", "rejected", "–",
-            "Only 2 px of the target's length has at least 3.7 px of plateau on both sides (at "
+            "2 px of the target's length have at least 3.7 px of plateau on both sides (at "
             "least 8 are needed)",
         ),
         ("2", "doubtful", "outliers", "3.25 % of the pixels lie far"),

@@ -149,7 +149,7 @@ def select_usable(image: Floats, edge: FirstFit, half_length_px: float) -> Usabl
     length = int(np.count_nonzero(rows))
     if length < MIN_ROWS:
         raise SupportError(
-            f"only {length} px of the target's length has at least {need:.1f} px of plateau on "
+            f"{length} px of the target's length have at least {need:.1f} px of plateau on "
             f"both sides (at least {MIN_ROWS} are needed): choose a region with more of it"
         )
     used = np.isfinite(residual)
