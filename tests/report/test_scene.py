@@ -11,7 +11,7 @@ from test_figures import outside, overlaps, texts
 
 from acutance.report import draw, figure_bytes, page, panels, reasons_text, text
 from acutance.report.figures.scene_population import expected_counts, scatter_of
-from acutance.report.figures.scene_sensor import EdgesSeen, edges_seen, sensor_along, sensor_at
+from acutance.report.figures.scene_sensor import EdgesSeen, edges_seen, sensor_along
 from acutance.report.paper import new_page, styled
 from acutance.report.tables.scene import scene_tables, word_chance
 from acutance.report.tables.scene_reasons import reasons_table
@@ -141,7 +141,7 @@ def test_the_field_has_numbers_at_its_places_in_the_same_colours(measured):
     assert shown == pytest.approx(middle.across.mtf_nyquist.value, abs=1e-3)
     row, col = across.texts[4].get_position()[::-1]
     assert (row, col) == (middle.row, middle.col)
-    found = sensor_at(measured, np.array([row]), np.array([col]), np.array([0.0]))[0]
+    found = measured.mtf_nyquist_at(np.array([row]), np.array([col]), np.array([0.0]))[0]
     image = across.images[0].get_array()
     near = image[image.shape[0] // 2, image.shape[1] // 2]
     assert near == pytest.approx(found, abs=0.01)

@@ -9,7 +9,7 @@ from acutance import simulate
 from acutance.curves import Estimate, Otf2d
 from acutance.errors import OptionError
 from acutance.raster import Gsd
-from acutance.report.figures.scene_sensor import edges_seen, sensor_at
+from acutance.report.figures.scene_sensor import edges_seen
 from acutance.scan.scan_identity import scan_identity
 from acutance.scan.stated_objects import OtfBehindObjects, behind_objects
 
@@ -169,4 +169,4 @@ def test_edges_are_drawn_beside_what_they_show(image, stated):
     one, other = edges_seen(plain), edges_seen(stated)
     np.testing.assert_allclose(one.sensor, other.sensor, atol=1e-9)
     at = (np.array([300.0]), np.array([300.0]), np.array([0.0]))
-    assert sensor_at(stated, *at) > 1.2 * sensor_at(plain, *at)
+    assert stated.mtf_nyquist_at(*at) > 1.2 * plain.mtf_nyquist_at(*at)

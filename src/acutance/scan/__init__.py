@@ -15,13 +15,20 @@ function), `scene_edges` and `scene_measurement` (its result; written by `edge_t
 (several bands at once; `band_shift` between them), `options`.
 """
 
-from acutance.scan.band_shift import BandShift
-from acutance.scan.bands import BandEdges, BandScenes, scan_bands
-from acutance.scan.field import Field
-from acutance.scan.options import ScanOptions
-from acutance.scan.scene import scan_scene
-from acutance.scan.scene_edges import SceneEdges
-from acutance.scan.scene_measurement import SceneMeasurement, ScenePlace
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from acutance.names_on_use import names_on_use
+
+if TYPE_CHECKING:
+    from acutance.scan.band_shift import BandShift
+    from acutance.scan.bands import BandEdges, BandScenes, scan_bands
+    from acutance.scan.field import Field
+    from acutance.scan.options import ScanOptions
+    from acutance.scan.scene import scan_scene
+    from acutance.scan.scene_edges import SceneEdges
+    from acutance.scan.scene_measurement import SceneMeasurement, ScenePlace
 
 __all__ = [
     "BandEdges",
@@ -35,3 +42,19 @@ __all__ = [
     "scan_bands",
     "scan_scene",
 ]
+
+# The modules are loaded when a name is first used: a report of an edge scans nothing.
+_HOMES = {
+    "BandEdges": "bands",
+    "BandScenes": "bands",
+    "BandShift": "band_shift",
+    "Field": "field",
+    "ScanOptions": "options",
+    "SceneEdges": "scene_edges",
+    "SceneMeasurement": "scene_measurement",
+    "ScenePlace": "scene_measurement",
+    "scan_bands": "bands",
+    "scan_scene": "scene",
+}
+
+__getattr__ = names_on_use(__name__, _HOMES)

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.curves.metrics import NYQUIST_CPP
 from acutance.curves.otf2d import OtfModel, PackableOtf
 from acutance.curves.short_repr import ShortRepr
 from acutance.scan.blur_modes import blur_modes
@@ -31,6 +32,8 @@ DEGREES: Final = (1, 1, 2, 2, 2)
 """Of the polynomials: columns, rows, columns twice, both, rows twice."""
 _MAX_LOG_GAIN: Final = 1.0
 """Beyond the band a change would grow without bounds, of light that is not there."""
+_EVERY_DEG: Final[Floats] = np.linspace(0.0, 180.0, 361)
+"""A sensor is computed along these: a scene may have more edges than it has directions."""
 
 
 def field_places(roi: tuple[int, int, int, int], row: Floats, col: Floats) -> tuple[Floats, Floats]:
@@ -135,6 +138,24 @@ class Field(ShortRepr):
         weight = field_polynomials(*self.places(np.array(row), np.array(col)))
         return FieldOtf(base, weight[:, None] - self.middle, self.amount, self.root)
 
+    def mtf_nyquist(self, base: OtfModel, row: Floats, col: Floats, normal_deg: Floats) -> Floats:
+        """MTF at Nyquist at places (n,) along normals (n,): that of `at`, of many at once.
+
+        Parameters
+        ----------
+        base : OtfModel
+            In the middle of the edges.
+        row, col : (n,) arrays
+            In pixels of the image.
+        normal_deg : (n,) array
+        """
+        every = np.abs(base.otf(*_nyquist(_EVERY_DEG)))
+        middle = np.interp(np.mod(normal_deg, 180.0), _EVERY_DEG, every)
+        weight = field_polynomials(*self.places(row, col))[:, :, None] - self.middle
+        by_mode = np.sum(weight * self.amount.reshape(len(DEGREES), -1), axis=1)
+        log_gain = np.sum(by_mode * blur_modes(*_nyquist(normal_deg)), axis=1)
+        return np.asarray(middle * np.exp(log_gain))
+
     def change(self, row: float, col: float, u_cpp: Floats, v_cpp: Floats) -> tuple[Floats, Floats]:
         """Logarithm of the MTF at a place over its mean, and its standard deviation, (n,) each."""
         place = field_polynomials(*self.places(np.array(row), np.array(col)))
@@ -174,3 +195,9 @@ def _centred(values: Floats, start: int, size: int) -> Floats:
 
 def _middles(start: int, size: int, count: int) -> Floats:
     return np.asarray(start - 0.5 + size * (np.arange(count) + 0.5) / count)
+
+
+def _nyquist(normal_deg: Floats) -> tuple[Floats, Floats]:
+    """Frequencies u and v of Nyquist along normals."""
+    angle = np.radians(normal_deg)
+    return NYQUIST_CPP * np.cos(angle), NYQUIST_CPP * np.sin(angle)

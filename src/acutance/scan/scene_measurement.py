@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from acutance.curves import Estimate, Mtf, Otf2d, Response
+from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import RegionError
 from acutance.geometry.line import Orientation
@@ -16,7 +17,7 @@ from acutance.scan.field import Field, FieldOtf
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_likelihood import likelihood_of_slices
 from acutance.scan.sensor_fit import IdealShare
-from acutance.scan.stated_objects import OtfBehindObjects
+from acutance.scan.stated_objects import OtfBehindObjects, as_in_image
 from acutance.targets.measurement import Measurement
 from acutance.targets.slices import OtfSlices
 from acutance.targets.uncertainty_budget import BudgetTerm, budget_rows, main_stds
@@ -131,9 +132,7 @@ class SceneMeasurement(Measurement):
                 f"row {row:g}, column {col:g} lies outside of what was scanned, rows {top} to "
                 f"{top + height - 1} and columns {left} to {left + width - 1}: give a place in it"
             )
-        mean = self.otf.model
-        assert isinstance(mean, FieldOtf)
-        model = self.field.at(mean.base, row, col)
+        model = self.field.at(self._mean.base, row, col)
         return ScenePlace(row, col, Otf2d(model, self.otf.gsd_m), self.axes_deg)
 
     def over_field(self, rows: int = 3, cols: int = 3) -> tuple[ScenePlace, ...]:
@@ -141,10 +140,23 @@ class SceneMeasurement(Measurement):
         row, col = self.field.grid(rows, cols)
         return tuple(self.at(float(i), float(j)) for i in row for j in col)
 
-    def _budget(self) -> tuple[BudgetTerm, ...]:
-        """Rows for the fit, and for the softness that all objects may have."""
+    def mtf_nyquist_at(self, row: Floats, col: Floats, normal_deg: Floats) -> Floats:
+        """MTF at Nyquist at places (n,) along normals (n,): that of `at`, of many at once."""
+        return self.field.mtf_nyquist(self._mean.base, row, col, normal_deg)
+
+    def mtf_nyquist_seen(self, row: Floats, col: Floats, normal_deg: Floats) -> Floats:
+        """The same as edges show it: behind the softness that is stated of all objects."""
+        return self.field.mtf_nyquist(as_in_image(self._mean.base), row, col, normal_deg)
+
+    @property
+    def _mean(self) -> FieldOtf:
         mean = self.otf.model
         assert isinstance(mean, FieldOtf)
+        return mean
+
+    def _budget(self) -> tuple[BudgetTerm, ...]:
+        """Rows for the fit, and for the softness that all objects may have."""
+        mean = self._mean
         if not isinstance(mean.base, OtfBehindObjects):
             return super()._budget()
         rows: tuple[BudgetTerm, ...] = ()

@@ -8,7 +8,6 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.report.figures.panel import Panel
-from acutance.report.figures.scene_sensor import sensor_at
 from acutance.report.labels import word_estimate
 from acutance.report.paper import INK
 from acutance.report.tables.scene import word_chance
@@ -79,7 +78,7 @@ def _draw(page: FigureBase, measurement: SceneMeasurement) -> None:
 def _map(measurement: SceneMeasurement, rows: Floats, cols: Floats, normal_deg: float) -> Floats:
     """MTF at Nyquist in one direction on a grid, (rows, cols)."""
     row, col = (one.ravel() for one in np.meshgrid(rows, cols, indexing="ij"))
-    found = sensor_at(measurement, row, col, np.full(row.size, normal_deg))
+    found = measurement.mtf_nyquist_at(row, col, np.full(row.size, normal_deg))
     return found.reshape(rows.size, cols.size)
 
 

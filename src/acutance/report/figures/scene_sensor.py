@@ -9,18 +9,11 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.report.labels import word_softness
-from acutance.scan.blur_modes import blur_modes
-from acutance.scan.field import DEGREES, Field, FieldOtf, field_polynomials
-from acutance.scan.stated_objects import as_in_image
 
 if TYPE_CHECKING:
-    from acutance.curves.otf2d import OtfModel
     from acutance.scan import SceneMeasurement
 
-__all__ = ["EdgesSeen", "behind_words", "edges_seen", "sensor_along", "sensor_at"]
-
-_EVERY_DEG = np.linspace(0.0, 180.0, 361)
-"""The sensor is computed along these: a scene may have more edges than it has directions."""
+__all__ = ["EdgesSeen", "behind_words", "edges_seen", "sensor_along"]
 
 
 class EdgesSeen(NamedTuple):
@@ -60,7 +53,8 @@ def edges_seen(measurement: SceneMeasurement) -> EdgesSeen:
     row, col, normal_deg = edges.row[own], edges.col[own], edges.normal_deg[own]
     return EdgesSeen(
         row, col, normal_deg, edges.length_px[own], edges.mtf_nyquist[own],
-        edges.mtf_nyquist_std[own], edges.ideal[own], _seen_at(measurement, row, col, normal_deg),
+        edges.mtf_nyquist_std[own], edges.ideal[own],
+        measurement.mtf_nyquist_seen(row, col, normal_deg),
     )  # fmt: skip
 
 
@@ -74,40 +68,9 @@ def behind_words(measurement: SceneMeasurement) -> str:
 
 def sensor_along(measurement: SceneMeasurement, normal_deg: Floats) -> tuple[Floats, Floats]:
     """MTF at Nyquist along normals (n,), the mean over the field, and its standard deviation."""
-    model, (u, v) = measurement.otf.model, _nyquist(normal_deg)
+    angle, model = np.radians(normal_deg), measurement.otf.model
+    u, v = NYQUIST_CPP * np.cos(angle), NYQUIST_CPP * np.sin(angle)
     otf, factor = model.otf(u, v), model.factor(u, v)
     modulus = np.abs(otf)
     along = (np.conj(otf) / np.maximum(modulus, 1e-12))[:, None] * factor
     return modulus, np.sqrt(np.sum(along.real**2, axis=1))
-
-
-def sensor_at(
-    measurement: SceneMeasurement, row: Floats, col: Floats, normal_deg: Floats
-) -> Floats:
-    """MTF at Nyquist at places (n,) along normals (n,): that of `Field.at`, of many at once."""
-    mean = measurement.otf.model
-    assert isinstance(mean, FieldOtf)
-    return _at(measurement.field, mean.base, row, col, normal_deg)
-
-
-def _seen_at(measurement: SceneMeasurement, row: Floats, col: Floats, normal_deg: Floats) -> Floats:
-    """The same as edges show it: behind the softness that is stated of all objects."""
-    mean = measurement.otf.model
-    assert isinstance(mean, FieldOtf)
-    return _at(measurement.field, as_in_image(mean.base), row, col, normal_deg)
-
-
-def _at(field: Field, middle: OtfModel, row: Floats, col: Floats, normal_deg: Floats) -> Floats:
-    """MTF at Nyquist at places of a field, of a sensor that is `middle` among its edges."""
-    every = np.abs(middle.otf(*_nyquist(_EVERY_DEG)))
-    base = np.interp(np.mod(normal_deg, 180.0), _EVERY_DEG, every)
-    weight = field_polynomials(*field.places(row, col))[:, :, None] - field.middle
-    by_mode = np.sum(weight * field.amount.reshape(len(DEGREES), -1), axis=1)
-    log_gain = np.sum(by_mode * blur_modes(*_nyquist(normal_deg)), axis=1)
-    return np.asarray(base * np.exp(log_gain))
-
-
-def _nyquist(normal_deg: Floats) -> tuple[Floats, Floats]:
-    """Frequencies u and v of Nyquist along normals."""
-    angle = np.radians(normal_deg)
-    return NYQUIST_CPP * np.cos(angle), NYQUIST_CPP * np.sin(angle)
