@@ -68,10 +68,15 @@ def test_all_faults_at_once():
         "workers": 0,
         "stated": {"sensr": "QB02", "acquired": 20260105, "gsd_m": -1.0, "height_m": 1e5},
         "edge": "spline",
+        "pulse": {"metod": "spline", "limits": {"rowz": 3}},
+        "scene": {"method": "magic"},
     }
     with pytest.raises(OptionError) as caught:
         plan_of(document, "plan.toml")
     for words in (
+        "- pulse has no option 'metod'",
+        "- there is no check 'rowz'",
+        "- there is no scene method 'magic'",
         "the plan plan.toml cannot be used",
         "there is no key 'target'",
         "there is no key 'colour'",

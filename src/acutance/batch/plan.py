@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from acutance.batch.plan_options import faults_of_plan
 from acutance.errors import OptionError
 from acutance.raster.document_faults import document_faults
 from acutance.raster.gsd import Gsd
@@ -243,8 +244,13 @@ def plan_of(document: Mapping[str, Any], name: str, folder: Path | None = None) 
     try:
         given = _Plan.model_validate(document)
     except ValidationError as error:
-        faults = "\n".join(f"  - {one.in_words('key')}" for one in document_faults(error, document))
-        raise OptionError(f"the plan {name} cannot be used:\n{faults}") from None
+        faults = [one.in_words("key") for one in document_faults(error, document)]
+        # Faults of options alone are found where they are used; here they are seen with the others.
+        tables = {kind: document.get(kind) for kind in _KINDS}
+        of_plan = {kind: one for kind, one in tables.items() if isinstance(one, Mapping)}
+        faults += [one for several in faults_of_plan(of_plan).values() for one in several]
+        listed = "\n".join(f"  - {one}" for one in faults)
+        raise OptionError(f"the plan {name} cannot be used:\n{listed}") from None
     at = Path() if folder is None else folder
     return BatchPlan(
         images=tuple(_below(at, one) for one in _texts(given.images)),
