@@ -15,6 +15,7 @@ from acutance.batch.entries import image_entry, target_entry
 from acutance.batch.place_target import NotHereError, PlacedTarget, place_target
 from acutance.batch.plan import StatedOfImages
 from acutance.batch.plan_options import ChosenOptions
+from acutance.batch.reason_words import words_of
 from acutance.batch.row_key import Reading, day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
 from acutance.batch.summary import NO_FILE
@@ -229,13 +230,13 @@ def _row(
     except NotHereError as error:
         rejected = _rejected(error.stage, str(error), error.why, chosen, image)
     except AcutanceError as error:
-        rejected = _rejected(_stage(error), str(error), type(error).__name__, chosen, image)
+        rejected = _rejected(_stage(error), str(error), words_of(error), chosen, image)
     except BrokenExecutor:
         # The processes of a scene were killed: that says nothing about the image.
         raise
     except Exception as error:  # one target that fails must not end a batch of thousands
         reason = f"the measurement failed, {type(error).__name__}: {str(error)[:200]}"
-        rejected = _rejected("fit", reason, type(error).__name__, chosen, image)
+        rejected = _rejected("fit", reason, words_of(error), chosen, image)
     return {"rejected": rejected}, 0.0 if begin is None else _processor_s() - begin
 
 

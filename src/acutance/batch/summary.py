@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from acutance.archive.counted import counted
+from acutance.batch.reason_words import in_words
 from acutance.batch.selected_bands import Band, without_band
 from acutance.curves.short_repr import ShortRepr
 
@@ -17,20 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["BatchSummary", "Tally"]
 
-_WORDS = {
-    "ImageError": "unreadable image",
-    "RegionError": "outside or too small",
-    "NoDataError": "no data",
-    "TargetError": "no target found",
-    "NoEdgeError": "no edge found",
-    "NoBarsError": "no bars found",
-    "NoStarError": "no star found",
-    "PhaseError": "aligned with the pixel grid",
-    "SupportError": "too few rows or plateau",
-    "OptionError": "option not usable",
-    "ModelError": "target described in contradiction",
-}
-"""Reasons that are names of errors, in words."""
 NO_FILE = "no such file"
 """Why an image that is not there has no measurement."""
 VERDICTS = ("good", "usable", "doubtful", "invalid")
@@ -180,7 +167,7 @@ class Tally:
         if verdict is not None:
             self.verdicts[verdict] += 1
         else:
-            self.reasons[_WORDS.get(why or "", why or "rejected")] += 1
+            self.reasons[in_words(why or "rejected")] += 1
 
     def to_dict(self) -> dict[str, Any]:
         """Counts so far, for JSON."""
