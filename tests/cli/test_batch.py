@@ -149,6 +149,17 @@ def test_what_is_refused(refused, given, tmp_path, edge_image):
     refused(given, "kept.db")
 
 
+def test_a_folder_and_a_plan_among_images_are_refused_before_the_work(
+    refused, given, tmp_path, edge_image
+):
+    folder = tmp_path / "im"
+    folder.mkdir()
+    (tmp_path / "plan.toml").write_text("")
+    refused((*given, folder), f"no images but folders: {folder}: write {folder}/*.tif")
+    refused((*given, tmp_path / "plan.toml"), "plan.toml is a plan and names its images: give it")
+    assert not (tmp_path / "kept.db").exists()
+
+
 def test_faults_of_targets_are_named_together(refused, given, tmp_path):
     targets_file(tmp_path, edge("a", kind="wires"), edge("b", colour=1))
     refused(given, "target 1 (a): kind is 'wires'")

@@ -20,7 +20,7 @@ from acutance.raster.metadata.findings import ANGLES
 from acutance.raster.metadata.times import time_or_day
 from acutance.raster.nearest_name import nearest_name
 
-__all__ = ["BatchPlan", "StatedOfImages", "plan_of", "read_plan"]
+__all__ = ["BatchPlan", "StatedOfImages", "is_plan_file", "plan_of", "read_plan"]
 
 Texts = str | list[str]
 
@@ -194,6 +194,11 @@ def _set_values(stated: StatedOfImages) -> dict[str, Any]:
         for name, value in values
         if value is not None
     }
+
+
+def is_plan_file(path: str) -> bool:
+    """Whether a file is a plan and no image, by the ending of its name."""
+    return path.lower().endswith(".toml")
 
 
 def read_plan(path: str | os.PathLike[str]) -> BatchPlan:
