@@ -137,6 +137,8 @@ class Tally:
         self.missing: list[str] = []
         self.copies: dict[str, str] = {}
         self.bands: set[Band] = set()
+        self.outlived: set[str] = set()
+        """Keys of rejections that hold no longer: of files that were missing."""
 
     def add_earlier(self, rows: Sequence[Outcome]) -> None:
         """Count rows that were there before."""

@@ -120,6 +120,7 @@ def run_batch(
         there = place.outcomes({one.content for one in known.values()})
         todo = _tasks(files, known, wanted, work, there, tally)
         run = _run(todo, wanted, work, place, there, tally, progress, kept) if todo else None
+        place.remove_rejections(tally.outlived)
     bands = [one for some in (work.bands, *(t.bands for t in work.targets)) for one in some or ()]
     return tally.summary(wanted.archive, len(files), time.monotonic() - begin, run, bands)
 
@@ -214,6 +215,8 @@ def _tasks(
         stated, image = stated_of(file.path, plan.stated), known.get(file.path)
         reading = reading_of({name: getattr(stated, name) for name in _READING})
         content = None if image is None else image.content
+        if content is not None:
+            tally.outlived.add(unreadable_key(None, file.path))
         if content is not None and (content, reading) in seen:
             tally.copies[file.path] = seen[content, reading]
             continue
