@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from acutance.archive.connection import Database
+from acutance.archive.contradictions import Differing, kept_otherwise
+from acutance.archive.entry import ImageEntry
 from acutance.archive.outcomes import Outcome, kept_outcomes
 from acutance.archive.removing import remove_rejections
 from acutance.archive.runs import end_run, kept_keys, start_run
@@ -47,6 +49,22 @@ class RowsOfRuns:
     def end_run(self, run: int, summary: Mapping[str, Any]) -> None:
         """Write down that a run ended, with its summary."""
         end_run(self._database, run, summary)
+
+    def kept_otherwise(self, stated: Mapping[str, ImageEntry]) -> dict[str, Differing]:
+        """What is stated of images and is not what is kept: `correct_images` changes that.
+
+        Parameters
+        ----------
+        stated : mapping of str to ImageEntry
+            By the keys of rows; those that are not there are passed over.
+
+        Returns
+        -------
+        dict of str to mapping
+            By the path of the image in the archive, and by the name of what is stated ("sensor"):
+            what is kept, and what is stated.
+        """
+        return kept_otherwise(self._database, stated)
 
     def remove_rejections(self, keys: Iterable[str]) -> int:
         """Remove rejections that hold no longer, and images of which nothing else is kept.

@@ -95,6 +95,8 @@ class MeasuredImage:
         Of the processor, spent in measurements, of all the worker did.
     by_rpc : bool
         Whether its RPC locate it, and need the height of the ground.
+    image : ImageEntry or None
+        All that is known of it; None where it cannot be opened.
     """
 
     entries: list[Entry]
@@ -102,6 +104,7 @@ class MeasuredImage:
     day: str | None
     measuring_s: float
     by_rpc: bool = False
+    image: ImageEntry | None = None
 
 
 @dataclass(frozen=True)
@@ -134,7 +137,7 @@ def measure_image(work: BatchWork, task: BatchTask) -> MeasuredImage:
     day = None if opened.acquired is None else opened.acquired.isoformat()
     measuring_s = sum(seconds for _, seconds in found)
     entries = [entry for entry, _ in found]
-    return MeasuredImage(entries, opened.bands, day, measuring_s, opened.by_rpc)
+    return MeasuredImage(entries, opened.bands, day, measuring_s, opened.by_rpc, opened.entry)
 
 
 def _opened(task: BatchTask) -> _Opened:

@@ -236,10 +236,30 @@ def _text(found: BatchSummary) -> str:
         lines.append(
             f"reasons in full: acutance archive list {shlex.quote(found.archive)} --rejected"
         )
+    lines += _kept_otherwise(found)
     if found.missing_bands:
         asked = ", ".join(map(str, found.missing_bands))
         lines.append(f"no image has band {asked}: choose from {', '.join(found.bands)}")
     return "\n".join(lines)
+
+
+def _kept_otherwise(found: BatchSummary) -> list[str]:
+    """Images that the archive knows otherwise than was stated, and the command that corrects it."""
+    from acutance.archive.contradictions import in_words, written
+
+    if not found.kept_otherwise:
+        return []
+    several = found.kept_otherwise.values()
+    image = next(iter(found.kept_otherwise)) if len(several) == 1 else "NAME"
+    words = ["acutance", "archive", "correct", found.archive, "--image", image]
+    for name in dict.fromkeys(name for one in several for name in one):
+        stated = {written(one[name][1]) for one in several if name in one}
+        words += [f"--{name.replace('_', '-')}", stated.pop() if len(stated) == 1 else "VALUE"]
+    return [
+        *_named(f"not changed: {path} is kept with {in_words(one)}"
+                for path, one in found.kept_otherwise.items()),
+        f"rows that are there stay as they are; where they are wrong: {shlex.join(words)}",
+    ]  # fmt: skip
 
 
 def _named(lines: Iterable[str]) -> list[str]:
