@@ -68,10 +68,15 @@ def test_all_faults_at_once():
         "workers": 0,
         "stated": {"sensr": "QB02", "acquired": 20260105, "gsd_m": -1.0, "height_m": 1e5},
         "edge": "spline",
+        "pulse": {"metod": "spline", "limits": {"rowz": 3}},
+        "scene": {"method": "magic"},
     }
     with pytest.raises(OptionError) as caught:
         plan_of(document, "plan.toml")
     for words in (
+        "- pulse has no option 'metod'",
+        "- there is no check 'rowz'",
+        "- there is no scene method 'magic'",
         "the plan plan.toml cannot be used",
         "there is no key 'target'",
         "there is no key 'colour'",
@@ -139,6 +144,26 @@ def test_images_are_listed_once(tmp_path):
     assert exact.size == 1
     (missing,) = list_images([str(tmp_path / "missing.tif")])
     assert (missing.stamp, missing.size) == ("", 0)
+
+
+def test_folders_and_plans_are_no_images(tmp_path):
+    """All of them are named at once; folders that a pattern matches are passed over."""
+    (tmp_path / "im").mkdir()
+    for name in ("a.tif", "plan.TOML", "im/b.tif"):
+        (tmp_path / name).write_bytes(b"x")
+    given = [str(tmp_path / name) for name in ("a.tif", "im", "none-*", "plan.TOML")]
+    with pytest.raises(OptionError) as caught:
+        list_images(given)
+    for words in (
+        f"no file matches {given[2]}: correct",
+        f"no images but folders: {given[1]}: write {tmp_path}/im/*.tif",
+        f"no images but plans: {given[3]}: give a plan alone",
+    ):
+        assert words in str(caught.value)
+    with pytest.raises(OptionError, match="no images but plans"):
+        list_images([str(tmp_path / "*")])
+    (tmp_path / "plan.TOML").unlink()
+    assert [one.path for one in list_images([str(tmp_path / "*")])] == [given[0]]
 
 
 def test_a_document_beside_an_image_changes_its_stamp(tmp_path):

@@ -12,11 +12,13 @@ from rasterio.rpc import RPC
 from surveyed_field import EDGE, PULSE, SENSOR, feature, line_of, on_map, survey, written
 
 import acutance as ac
+from acutance import errors
 from acutance.archive import Archive, ImageCorrection
 from acutance.batch import BatchPlan
 from acutance.batch.image_list import content_of
 from acutance.batch.plan import StatedOfImages
-from acutance.errors import ArchiveError, NoEdgeError, OptionError
+from acutance.batch.reason_words import in_words, words_of
+from acutance.errors import ArchiveError, FewEdgesError, NoEdgeError, OptionError, PhaseError
 from acutance.geometry import Line
 
 
@@ -326,9 +328,44 @@ def test_a_measurement_that_fails_is_a_row(write_field, run, monkeypatch, rows):
 
     monkeypatch.setattr("acutance.batch.measure_target.measure_target", fail)
     found = run(write_field(0))
-    assert found.reasons == {"LinAlgError": 2}
+    assert found.reasons == {"measurement failed": 2}
     _, rejected = rows()
     assert "LinAlgError: singular" in rejected["reason"][0]
+
+
+def test_reasons_of_all_errors_are_words(write_field, run, rows, monkeypatch):
+    """Kept in words, as the summary has them; older rows with the name of an error are read."""
+    several = [FewEdgesError("too few", None), NoEdgeError("none"), PhaseError("aligned")]
+    for name in errors.__all__:
+        kind = getattr(errors, name)
+        words = words_of(kind("x", None) if kind is FewEdgesError else kind("x"))
+        assert words
+        assert words not in errors.__all__
+        assert in_words(name) in (words, name)
+
+    def fail(*_):
+        raise several.pop(0)
+
+    monkeypatch.setattr("acutance.batch.measure_target.measure_target", fail)
+    lines = (feature(name, "edge", "LineString", line_of(EDGE, 30.0)) for name in "abc")
+    found = run(write_field(0), targets=survey(*lines))
+    words = {"few edges", "no edge found", "aligned with the pixel grid"}
+    assert set(found.reasons) == words
+    assert {one["why"] for one in rows()[1]["values"]} == words
+
+
+def test_a_scene_with_few_edges_names_no_option_of_a_scan(tmp_path, run, rows):
+    image = np.full((200, 200), 100.0, np.float32)
+    image[60:140, 60:140] = 400.0
+    image += np.random.default_rng(2).normal(0, 2, image.shape).astype(np.float32)
+    ac.raster.write_geotiff(tmp_path / "square.tif", image, gsd_m=2.0)
+    scene = survey(feature("scene", "scene", None, None))
+    assert run(tmp_path / "square.tif", targets=scene).reasons == {"few edges": 1}
+    (reason,) = rows()[1]["reason"]
+    assert "at least" in reason
+    assert "measure single edges" in reason
+    assert "--" not in reason
+    assert "error." not in reason
 
 
 def test_a_scene_is_kept_with_its_summary(tmp_path, run, rows):

@@ -1,6 +1,7 @@
 """``acutance batch``: words, files, exit codes."""
 
 import json
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +69,19 @@ def test_a_height_is_stated_of_all_images(acutance, given):
     assert first["kept"] > 0
     assert (done["kept"], done["done_before"]) == (0, first["kept"] + first["done_before"])
     assert acutance(*given, "--height", "120000").exit_code == 2
+
+
+def test_a_sensor_that_is_stated_of_kept_images_is_told(acutance, given, edge_image, tmp_path):
+    acutance(*given)
+    told = acutance(*given, "--sensor", "OTHER")
+    assert told.exit_code == 0
+    assert f"not changed: {edge_image} is kept with sensor not known, not OTHER" in told.stdout
+    (command,) = (line for line in told.stdout.splitlines() if "archive correct" in line)
+    words = shlex.split(command.partition("where they are wrong: acutance ")[2])
+    assert acutance(*words).exit_code == 0
+    assert "not changed" not in acutance(*given, "--sensor", "OTHER").stdout
+    document = json.loads(acutance(*given, "--sensor", "THIRD", "--json").stdout)
+    assert document["kept_otherwise"] == {edge_image: {"sensor": ["OTHER", "THIRD"]}}
 
 
 def test_a_log_has_a_line_for_every_row(acutance, given, tmp_path):
@@ -147,6 +161,17 @@ def test_what_is_refused(refused, given, tmp_path, edge_image):
     refused((*given[:-2], "--workers", 1, tmp_path / "x-*.tif"), "no file matches")
     (tmp_path / "kept.db").write_bytes(b"not a database, but long enough to be read as one" * 50)
     refused(given, "kept.db")
+
+
+def test_a_folder_and_a_plan_among_images_are_refused_before_the_work(
+    refused, given, tmp_path, edge_image
+):
+    folder = tmp_path / "im"
+    folder.mkdir()
+    (tmp_path / "plan.toml").write_text("")
+    refused((*given, folder), f"no images but folders: {folder}: write {folder}/*.tif")
+    refused((*given, tmp_path / "plan.toml"), "plan.toml is a plan and names its images: give it")
+    assert not (tmp_path / "kept.db").exists()
 
 
 def test_faults_of_targets_are_named_together(refused, given, tmp_path):

@@ -187,12 +187,13 @@ def test_a_scene_that_is_refused_leaves_the_reasons(acutance, tmp_path):
         table.unlink(missing_ok=True)
         done = acutance("scan", path, "--workers", 1, "--edges", table, *band)
         assert done.exit_code == 4
-        assert "--edges FILE" in done.stderr
+        assert "--edges FILE" not in done.stderr
         assert "Edges left out" in done.stderr
         assert "to its angle" in done.stderr or "sample phases over" in done.stderr
         rows = list(csv.DictReader(table.read_text().splitlines()))
         assert rows
         assert all(row["reason"] for row in rows if row["used"] != "True")
+    assert "the reason of each: --edges FILE" in acutance("scan", path, "--workers", 1).stderr
 
 
 def test_an_image_without_data_is_named(refused, tmp_path):

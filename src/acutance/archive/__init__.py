@@ -9,7 +9,8 @@ Sees records only, never pixels. In the order the data take:
 - `counted`: numbers with what they count
 - `connection`, `failures`: SQLite or PostgreSQL, transactions that wait, errors in words
 - `packing`, `systematic`, `rows`, `adding`: entries become rows, added once each
-- `runs`, `outcomes`: batches that wrote into the archive; how what they ask for came out
+- `runs`, `outcomes`, `removing`: batches that wrote into the archive; how what they ask for came
+  out; rejections that hold no longer
 - `selection`, `columns`, `measurements`: which rows are meant, and what they hold as columns
 - `stored_entries`, `overview`: rows become entries again, and are counted
 - `image_corrections`, `named_images`, `correction_notes`: dates, sensors, GSD, angles of images
@@ -21,7 +22,7 @@ Sees records only, never pixels. In the order the data take:
 - `specification`, `specification_check`: requirements, and whether they are met
 - `tables_by`: tables across and along by sensor, band, site, date
 - `published`: the tables that publications print, as entries
-- `questions`, `archive`: all of it under one name, `Archive`
+- `questions`, `rows_of_runs`, `archive`: all of it under one name, `Archive`
 """
 
 from __future__ import annotations

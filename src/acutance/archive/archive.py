@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self, Unpack
+from typing import TYPE_CHECKING, Self, Unpack
 
 from acutance.archive.adding import add_entries, add_entry, record_of
 from acutance.archive.connection import open_database
@@ -20,10 +20,9 @@ from acutance.archive.measurements import (
     select_rejections,
 )
 from acutance.archive.migrations import ensure_schema
-from acutance.archive.outcomes import Outcome, kept_outcomes
 from acutance.archive.overview import Overview, overview_of
 from acutance.archive.questions import Questions
-from acutance.archive.runs import end_run, kept_keys, start_run
+from acutance.archive.rows_of_runs import RowsOfRuns
 from acutance.archive.selection import Selection, SelectionWords
 from acutance.archive.stored_entries import select_ids, stored_entries
 from acutance.errors import OptionError
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["Archive"]
 
 
-class Archive(Questions):
+class Archive(Questions, RowsOfRuns):
     """Measurements with their images, targets and runs, in a file of SQLite or in PostgreSQL.
 
     Many processes may add at once; what is added twice is kept once. The tables are made where
@@ -211,36 +210,6 @@ class Archive(Questions):
             If a correction means no image, or a file name that several have.
         """
         return correct_images(self._database, corrections, dry_run=dry_run)
-
-    def keys(self, *, run: int | None = None, images: Iterable[str] | None = None) -> set[str]:
-        """Keys of what is kept, measured or rejected.
-
-        Parameters
-        ----------
-        run : int, optional
-            What this run wrote.
-        images : iterable of str, optional
-            Of images with this content (SHA-256).
-        """
-        return kept_keys(self._database, run, None if images is None else list(images))
-
-    def outcomes(self, images: Iterable[str]) -> dict[str, Outcome]:
-        """How the rows of some images came out, by key: their verdict, or why they have none.
-
-        Parameters
-        ----------
-        images : iterable of str
-            Contents of images (SHA-256).
-        """
-        return kept_outcomes(self._database, images)
-
-    def start_run(self, plan: Mapping[str, Any]) -> int:
-        """Write down that a run began, with its plan; returns its number."""
-        return start_run(self._database, plan)
-
-    def end_run(self, run: int, summary: Mapping[str, Any]) -> None:
-        """Write down that a run ended, with its summary."""
-        end_run(self._database, run, summary)
 
     def measurements(self, **selection: Unpack[SelectionWords]) -> Measurements:
         """Measurements as columns, a row for each measurement and direction.

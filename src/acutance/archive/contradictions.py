@@ -19,7 +19,10 @@ from acutance.archive.entry import ImageEntry
 from acutance.archive.rows import image_row
 from acutance.archive.tables import images, measurements
 
-__all__ = ["contradictions"]
+__all__ = ["Differing", "contradictions", "in_words", "kept_otherwise", "written"]
+
+Differing = Mapping[str, tuple[Any, Any]]
+"""By name: what is kept, and what is stated."""
 
 _STATED: Final = (
     "sensor", "level", "acquired", "view_zenith_deg", "view_azimuth_deg", "sun_elevation_deg",
@@ -44,36 +47,81 @@ def contradictions(database: Database, stated: Mapping[str, ImageEntry]) -> dict
     dict of str to str
         A sentence each, with both; keys without a contradiction are left out.
     """
-    keys = list(stated)
     found: dict[str, str] = {}
+    for row, differing in _contradicting(database, stated):
+        found[row["key"]] = (
+            f"the archive has this measurement already, as number {row['id']}, with "
+            f"{in_words(differing)}, and keeps a measurement once: {_advice(row)}"
+        )
+    return found
+
+
+def kept_otherwise(database: Database, stated: Mapping[str, ImageEntry]) -> dict[str, Differing]:
+    """What is stated of images and is not what is kept, by the paths that the archive has.
+
+    Parameters
+    ----------
+    database : Database
+    stated : mapping of str to ImageEntry
+        By keys; those that are not there are passed over.
+
+    Returns
+    -------
+    dict of str to mapping
+        By image, and by the name of what is stated: what is kept, and what is stated.
+    """
+    found: dict[str, Differing] = {}
+    for row, differing in _contradicting(database, stated):
+        image = row["path"] or row["content"] or f"image {row['image_id']}"
+        found[image] = {**found.get(image, {}), **differing}
+    return dict(sorted(found.items()))
+
+
+def in_words(differing: Differing) -> str:
+    """Values that are kept, and those that are stated."""
+    return " and ".join(
+        f"{name} {written(kept)}, not {written(stated)}"
+        for name, (kept, stated) in differing.items()
+    )
+
+
+def _contradicting(
+    database: Database, stated: Mapping[str, ImageEntry]
+) -> Iterator[tuple[Mapping[str, Any], Differing]]:
+    """Rows of measurements and their images, with what is stated otherwise."""
+    keys = list(stated)
+    # All rows of an image of a batch have one entry.
+    rows = {id(one): image_row(one) for one in {id(one): one for one in stated.values()}.values()}
     for at in range(0, len(keys), _CHUNK):
         some = keys[at : at + _CHUNK]
         for row in database.read(partial(_kept, keys=some)):
-            differing = list(_differing(row, image_row(stated[row["key"]])))
+            differing = dict(_differing(row, rows[id(stated[row["key"]])]))
             if differing:
-                found[row["key"]] = (
-                    f"the archive has this measurement already, as number {row['id']}, with "
-                    f"{' and '.join(differing)}, and keeps a measurement once: {_advice(row)}"
-                )
-    return found
+                yield row, differing
 
 
 def _kept(connection: Connection, keys: list[str]) -> list[Mapping[str, Any]]:
     """What is kept of the images of some measurements."""
-    columns = (images.c[name] for name in _STATED)
     asked = (
-        select(measurements.c.key, measurements.c.id, images.c.name, *columns)
+        select(
+            measurements.c.key,
+            measurements.c.id,
+            measurements.c.image_id,
+            *(images.c[name] for name in ("name", "path", "content", *_STATED)),
+        )
         .join(images, images.c.id == measurements.c.image_id)
         .where(measurements.c.key.in_(keys))
     )
     return [dict(row) for row in connection.execute(asked).mappings()]
 
 
-def _differing(kept: Mapping[str, Any], stated: Mapping[str, Any]) -> Iterator[str]:
-    """What is stated and is not what is kept, in words."""
+def _differing(
+    kept: Mapping[str, Any], stated: Mapping[str, Any]
+) -> Iterator[tuple[str, tuple[Any, Any]]]:
+    """What is stated and is not what is kept, by name."""
     for name in _STATED:
         if stated[name] is not None and not _agree(kept[name], stated[name]):
-            yield f"{name} {_written(kept[name])}, not {_written(stated[name])}"
+            yield name, (kept[name], stated[name])
 
 
 def _agree(kept: Any, stated: Any) -> bool:
@@ -94,7 +142,8 @@ def _advice(row: Mapping[str, Any]) -> str:
     )
 
 
-def _written(value: Any) -> str:
+def written(value: Any) -> str:
+    """A value of an image, as `archive correct` reads it."""
     if value is None:
         return "not known"
     return value.isoformat() if hasattr(value, "isoformat") else str(value)

@@ -5,7 +5,8 @@ the options of the kinds), `image_list` (files and their contents, by `remembere
 `row_key` (what is done is not done again), then in the workers `measure_image` (one image, all its
 targets), with `place_target` (where the survey says it is, or why not here), `find_line` and
 `find_points` (the target near that place) and `measure_target` (by kind); `entries` (rows for the
-archive), `whole_batch` (all of it, by `spread_images`) and `summary` (what came out).
+archive), `whole_batch` (all of it, by `spread_images`) and `summary` (what came out,
+by `reason_words`).
 """
 
 from __future__ import annotations

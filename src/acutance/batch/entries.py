@@ -8,6 +8,7 @@ import numpy as np
 
 from acutance.archive.dates import as_utc
 from acutance.archive.entry import ImageEntry, TargetEntry
+from acutance.batch.plan import StatedOfImages
 from acutance.errors import RegionError
 from acutance.geometry.angles import wrap_direction
 from acutance.raster.geolocation import LONLAT_CRS, transform_points
@@ -18,7 +19,7 @@ from acutance.raster.surveyed_targets import SurveyedTarget
 if TYPE_CHECKING:
     from acutance.batch.measure_image import BatchTask
 
-__all__ = ["image_entry", "target_entry"]
+__all__ = ["image_entry", "stated_entry", "target_entry"]
 
 _FIELDS = (
     "sensor", "level", "acquired", "gsd_m",
@@ -52,6 +53,16 @@ def image_entry(task: BatchTask, statement: ImageStatement) -> ImageEntry:
         if is_day(when):
             sources["acquired"] += ": a day without a time, kept as its beginning"
     return ImageEntry(path=task.path, content=task.content, sources=sources, **values)
+
+
+def stated_entry(stated: StatedOfImages) -> ImageEntry | None:
+    """What the plan states of an image, apart from what it says itself; None if that is nothing."""
+    values = {name: getattr(stated, name) for name in _FIELDS}
+    if all(value is None for value in values.values()):
+        return None
+    if values["acquired"] is not None:
+        values["acquired"] = as_utc(values["acquired"], "acquired")
+    return ImageEntry(**values)
 
 
 def target_entry(target: SurveyedTarget) -> TargetEntry:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from acutance.batch.plan import StatedOfImages
+from acutance.batch.plan import StatedOfImages, is_plan_file
 from acutance.errors import OptionError
 from acutance.raster.metadata.files_beside import files_beside
 
@@ -43,23 +43,41 @@ def list_images(patterns: Iterable[str]) -> list[ImageFile]:
     Raises
     ------
     OptionError
-        If a pattern matches no file, or there are no images.
+        If a pattern matches no file, a path is a folder or a plan, or there are no images.
     """
     found: dict[str, ImageFile] = {}
-    empty = []
+    empty, folders, plans = [], [], []
     for pattern in patterns:
         is_path = os.path.exists(pattern) or not glob.has_magic(pattern)
         paths = [pattern] if is_path else sorted(glob.glob(pattern, recursive=True))
         if not paths:
             empty.append(pattern)
         for path in paths:
-            if is_path or os.path.isfile(path):
+            if is_plan_file(path):
+                plans.append(path)
+            elif is_path and os.path.isdir(path):
+                folders.append(path)
+            elif is_path or os.path.isfile(path):
                 found.setdefault(os.path.realpath(path), _image_file(path))
-    if empty:
-        raise OptionError(f"no file matches {', '.join(empty)}: correct the names of the images")
+    faults = [
+        *_fault("no file matches", empty, "correct the names of the images"),
+        *_fault("no images but folders:", folders, f"write {_inside(folders)}"),
+        *_fault("no images but plans:", plans, "give a plan alone, it names its images"),
+    ]
+    if faults:
+        raise OptionError("; ".join(faults))
     if not found:
         raise OptionError("there are no images: name files, or a pattern such as images/*.tif")
     return list(found.values())
+
+
+def _fault(what: str, paths: Sequence[str], advice: str) -> list[str]:
+    return [f"{what} {', '.join(paths)}: {advice}"] if paths else []
+
+
+def _inside(folders: Sequence[str]) -> str:
+    """Patterns of the images in folders, as examples."""
+    return " ".join(os.path.join(folder, "*.tif") for folder in folders)
 
 
 def _image_file(path: str) -> ImageFile:

@@ -15,6 +15,7 @@ from acutance.batch.entries import image_entry, target_entry
 from acutance.batch.place_target import NotHereError, PlacedTarget, place_target
 from acutance.batch.plan import StatedOfImages
 from acutance.batch.plan_options import ChosenOptions
+from acutance.batch.reason_words import words_of
 from acutance.batch.row_key import Reading, day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
 from acutance.batch.summary import NO_FILE
@@ -94,6 +95,8 @@ class MeasuredImage:
         Of the processor, spent in measurements, of all the worker did.
     by_rpc : bool
         Whether its RPC locate it, and need the height of the ground.
+    image : ImageEntry or None
+        All that is known of it; None where it cannot be opened.
     """
 
     entries: list[Entry]
@@ -101,6 +104,7 @@ class MeasuredImage:
     day: str | None
     measuring_s: float
     by_rpc: bool = False
+    image: ImageEntry | None = None
 
 
 @dataclass(frozen=True)
@@ -133,7 +137,7 @@ def measure_image(work: BatchWork, task: BatchTask) -> MeasuredImage:
     day = None if opened.acquired is None else opened.acquired.isoformat()
     measuring_s = sum(seconds for _, seconds in found)
     entries = [entry for entry, _ in found]
-    return MeasuredImage(entries, opened.bands, day, measuring_s, opened.by_rpc)
+    return MeasuredImage(entries, opened.bands, day, measuring_s, opened.by_rpc, opened.entry)
 
 
 def _opened(task: BatchTask) -> _Opened:
@@ -229,13 +233,13 @@ def _row(
     except NotHereError as error:
         rejected = _rejected(error.stage, str(error), error.why, chosen, image)
     except AcutanceError as error:
-        rejected = _rejected(_stage(error), str(error), type(error).__name__, chosen, image)
+        rejected = _rejected(_stage(error), str(error), words_of(error), chosen, image)
     except BrokenExecutor:
         # The processes of a scene were killed: that says nothing about the image.
         raise
     except Exception as error:  # one target that fails must not end a batch of thousands
         reason = f"the measurement failed, {type(error).__name__}: {str(error)[:200]}"
-        rejected = _rejected("fit", reason, type(error).__name__, chosen, image)
+        rejected = _rejected("fit", reason, words_of(error), chosen, image)
     return {"rejected": rejected}, 0.0 if begin is None else _processor_s() - begin
 
 

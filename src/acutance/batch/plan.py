@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from acutance.batch.plan_options import faults_of_plan
 from acutance.errors import OptionError
 from acutance.raster.document_faults import document_faults
 from acutance.raster.gsd import Gsd
@@ -19,7 +20,7 @@ from acutance.raster.metadata.findings import ANGLES
 from acutance.raster.metadata.times import time_or_day
 from acutance.raster.nearest_name import nearest_name
 
-__all__ = ["BatchPlan", "StatedOfImages", "plan_of", "read_plan"]
+__all__ = ["BatchPlan", "StatedOfImages", "is_plan_file", "plan_of", "read_plan"]
 
 Texts = str | list[str]
 
@@ -195,6 +196,11 @@ def _set_values(stated: StatedOfImages) -> dict[str, Any]:
     }
 
 
+def is_plan_file(path: str) -> bool:
+    """Whether a file is a plan and no image, by the ending of its name."""
+    return path.lower().endswith(".toml")
+
+
 def read_plan(path: str | os.PathLike[str]) -> BatchPlan:
     """The plan of a TOML file; paths in it are relative to the file.
 
@@ -243,8 +249,13 @@ def plan_of(document: Mapping[str, Any], name: str, folder: Path | None = None) 
     try:
         given = _Plan.model_validate(document)
     except ValidationError as error:
-        faults = "\n".join(f"  - {one.in_words('key')}" for one in document_faults(error, document))
-        raise OptionError(f"the plan {name} cannot be used:\n{faults}") from None
+        faults = [one.in_words("key") for one in document_faults(error, document)]
+        # Faults of options alone are found where they are used; here they are seen with the others.
+        tables = {kind: document.get(kind) for kind in _KINDS}
+        of_plan = {kind: one for kind, one in tables.items() if isinstance(one, Mapping)}
+        faults += [one for several in faults_of_plan(of_plan).values() for one in several]
+        listed = "\n".join(f"  - {one}" for one in faults)
+        raise OptionError(f"the plan {name} cannot be used:\n{listed}") from None
     at = Path() if folder is None else folder
     return BatchPlan(
         images=tuple(_below(at, one) for one in _texts(given.images)),

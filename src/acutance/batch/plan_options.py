@@ -15,7 +15,7 @@ from acutance.errors import OptionError
 from acutance.raster.surveyed_targets import SurveyedTarget
 from acutance.targets.kinds import KINDS
 
-__all__ = ["ChosenOptions", "choose_options", "require_options"]
+__all__ = ["ChosenOptions", "choose_options", "faults_of_plan", "require_options"]
 
 _NOT_HERE = frozenset(("method_options", "groups", "centre"))
 """Options that are objects, or places in one image."""
@@ -92,18 +92,26 @@ def require_options(
     OptionError
         Names all of them at once, those of the plan once and not for every target.
     """
-    faults: list[str] = []
-    wrong = set()
-    for kind, given in of_plan.items():
-        found = _faults("the plan", _chosen(kind, None, given, {}))
-        faults.extend(found)
-        wrong |= {kind} if found else set()
+    of_kinds = faults_of_plan(of_plan)
+    faults = [f"the plan: {one}" for several in of_kinds.values() for one in several]
     for number, (target, one) in enumerate(zip(targets, chosen, strict=True), start=1):
-        if target.kind not in wrong:
+        if target.kind not in of_kinds:
             named = f" ({target.name})" if target.name != str(number) else ""
-            faults.extend(_faults(f"target {number}{named}", one))
+            faults.extend(f"target {number}{named}: {fault}" for fault in _faults(one))
     if faults:
         raise OptionError("options cannot be used:\n" + "\n".join(f"  - {one}" for one in faults))
+
+
+def faults_of_plan(of_plan: Mapping[str, Mapping[str, Any]]) -> dict[str, list[str]]:
+    """What is wrong with the options of a plan, in words, by the kinds that have faults.
+
+    Parameters
+    ----------
+    of_plan : mapping of str to mapping
+        By kind.
+    """
+    found = {kind: _faults(_chosen(kind, None, given, {})) for kind, given in of_plan.items()}
+    return {kind: faults for kind, faults in found.items() if faults}
 
 
 def _chosen(
@@ -123,18 +131,16 @@ def _limits(given: Mapping[str, Any]) -> dict[str, Any]:
     return dict(limits) if isinstance(limits, Mapping) else {}
 
 
-def _faults(whose: str, chosen: ChosenOptions) -> list[str]:
+def _faults(chosen: ChosenOptions) -> list[str]:
     """What is wrong with options, in words."""
     methods = _of_kind(chosen.kind)[2]
     known = [one.name for one in fields(_class_of(chosen.kind)) if one.name not in _NOT_HERE]
-    found = [
-        f"{whose}: {chosen.kind} has no option {one!r}" for one in chosen.given if one not in known
-    ]
+    found = [f"{chosen.kind} has no option {one!r}" for one in chosen.given if one not in known]
     if chosen.method not in methods:
         named = ", ".join(methods)
-        found.append(f"{whose}: there is no {chosen.kind} method {chosen.method!r}: {named}")
+        found.append(f"there is no {chosen.kind} method {chosen.method!r}: {named}")
     usable = {name: one for name, one in chosen.given.items() if name in known}
-    return found + [f"{whose}: {one}" for one in _bad_values(replace(chosen, given=usable))]
+    return found + _bad_values(replace(chosen, given=usable))
 
 
 def _bad_values(chosen: ChosenOptions) -> list[str]:

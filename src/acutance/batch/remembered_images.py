@@ -39,12 +39,19 @@ class KnownImage:
         Of the acquisition.
     by_rpc : bool
         Whether its RPC locate it, and need the height of the ground.
+    stated : str
+        Digest of the statement of the plan by which bands and day were found out.
     """
 
     content: str
     bands: tuple[tuple[int, str | None], ...] | None = None
     day: str | None = None
     by_rpc: bool = False
+    stated: str = ""
+
+    def under(self, stated: str) -> KnownImage:
+        """What is known of it under a statement: its content alone, if that is another."""
+        return self if stated == self.stated else KnownImage(self.content)
 
 
 class RememberedImages:
@@ -108,6 +115,7 @@ def _known_image(text: str) -> KnownImage | None:
         found = json.loads(text)
         bands = found["bands"]
         named = None if bands is None else tuple((int(one), name) for one, name in bands)
-        return KnownImage(str(found["content"]), named, found["day"], bool(found["by_rpc"]))
+        by_rpc, stated = bool(found["by_rpc"]), str(found["stated"])
+        return KnownImage(str(found["content"]), named, found["day"], by_rpc, stated)
     except (ValueError, KeyError, TypeError):
         return None

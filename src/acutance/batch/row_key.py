@@ -14,7 +14,15 @@ from typing import Any
 from acutance.batch.plan_options import ChosenOptions
 from acutance.raster.surveyed_targets import SurveyedTarget
 
-__all__ = ["Reading", "day_of", "reading_of", "row_key", "target_digest", "unreadable_key"]
+__all__ = [
+    "Reading",
+    "day_of",
+    "reading_of",
+    "row_key",
+    "statement_digest",
+    "target_digest",
+    "unreadable_key",
+]
 
 _FREE = ("description", "source")
 
@@ -54,6 +62,11 @@ def reading_of(stated: Mapping[str, Any]) -> Reading:
     at_height = {key: one for key, one in stated.items() if one is not None}
     pixels = {key: one for key, one in at_height.items() if key != "height_m"}
     return Reading(_digest(pixels), _digest(at_height))
+
+
+def statement_digest(stated: Mapping[str, Any]) -> str:
+    """Of what is stated of an image, None left out: bands and day are found out by it."""
+    return _digest({key: one for key, one in stated.items() if one is not None})
 
 
 def row_key(content: str, reading: str, target: str, band: int, day: str | None) -> str:

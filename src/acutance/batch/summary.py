@@ -8,29 +8,19 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from acutance.archive.counted import counted
+from acutance.archive.packing import plain_json
+from acutance.batch.reason_words import in_words
 from acutance.batch.selected_bands import Band, without_band
 from acutance.curves.short_repr import ShortRepr
 
 if TYPE_CHECKING:
+    from acutance.archive.contradictions import Differing
+    from acutance.archive.entry import ImageEntry
     from acutance.archive.outcomes import Outcome
     from acutance.batch.measure_image import MeasuredImage
 
 __all__ = ["BatchSummary", "Tally"]
 
-_WORDS = {
-    "ImageError": "unreadable image",
-    "RegionError": "outside or too small",
-    "NoDataError": "no data",
-    "TargetError": "no target found",
-    "NoEdgeError": "no edge found",
-    "NoBarsError": "no bars found",
-    "NoStarError": "no star found",
-    "PhaseError": "aligned with the pixel grid",
-    "SupportError": "too few rows or plateau",
-    "OptionError": "option not usable",
-    "ModelError": "target described in contradiction",
-}
-"""Reasons that are names of errors, in words."""
 NO_FILE = "no such file"
 """Why an image that is not there has no measurement."""
 VERDICTS = ("good", "usable", "doubtful", "invalid")
@@ -55,6 +45,9 @@ class BatchSummary(ShortRepr):
         By path why an image could not be read.
     copies : mapping of str to str
         Images with the content of another, which stands for them; by path that of the other.
+    kept_otherwise : mapping of str to mapping
+        By image, and by the name of what is stated of it and is not what the archive has
+        ("sensor"): what is kept, and what is stated. Rows that are there stay as they are.
     missing_bands : tuple of (str or int)
         Bands that were asked for and that no image has.
     bands : tuple of str
@@ -80,6 +73,7 @@ class BatchSummary(ShortRepr):
     missing: tuple[str, ...] = ()
     faults: Mapping[str, str] = field(default_factory=dict)
     copies: Mapping[str, str] = field(default_factory=dict)
+    kept_otherwise: Mapping[str, Differing] = field(default_factory=dict)
     missing_bands: tuple[str | int, ...] = ()
     bands: tuple[str, ...] = ()
     done_before: int = 0
@@ -110,10 +104,12 @@ class BatchSummary(ShortRepr):
     def summary(self) -> str:
         """Rows, and how they came out."""
         by_verdict = ", ".join(f"{self.verdicts[one]} {one}" for one in self.verdicts)
+        otherwise = counted(len(self.kept_otherwise), "image")
         return (
             f"{counted(self.images, 'image')}, {counted(self.kept, 'row')} added, "
             f"{self.done_before} there before; "
             f"measured {self.measured} ({by_verdict or 'none'}), rejected {self.rejected}"
+            + (f"; {otherwise} kept otherwise than stated" if self.kept_otherwise else "")
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -126,6 +122,7 @@ class BatchSummary(ShortRepr):
             "missing": list(self.missing),
             "faults": dict(self.faults),
             "copies": dict(self.copies),
+            "kept_otherwise": plain_json(self.kept_otherwise),
             "missing_bands": list(self.missing_bands),
             "done_before": self.done_before,
             "kept": self.kept,
@@ -150,6 +147,10 @@ class Tally:
         self.missing: list[str] = []
         self.copies: dict[str, str] = {}
         self.bands: set[Band] = set()
+        self.stated: dict[str, ImageEntry] = {}
+        """By keys of rows what is stated of their images."""
+        self.outlived: set[str] = set()
+        """Keys of rejections that hold no longer: of files that were missing, dates not known."""
 
     def add_earlier(self, rows: Sequence[Outcome]) -> None:
         """Count rows that were there before."""
@@ -176,11 +177,16 @@ class Tally:
                 if why == NO_FILE:
                     self.missing.append(path)
 
+    def add_stated(self, keys: Iterable[str], image: ImageEntry | None) -> None:
+        """Note what is stated of the image of some rows; None if that is nothing."""
+        if image is not None:
+            self.stated.update(dict.fromkeys(keys, image))
+
     def _count(self, verdict: str | None, why: str | None) -> None:
         if verdict is not None:
             self.verdicts[verdict] += 1
         else:
-            self.reasons[_WORDS.get(why or "", why or "rejected")] += 1
+            self.reasons[in_words(why or "rejected")] += 1
 
     def to_dict(self) -> dict[str, Any]:
         """Counts so far, for JSON."""
@@ -198,6 +204,7 @@ class Tally:
         elapsed_s: float,
         run: int | None,
         bands: Iterable[str | int] = (),
+        kept_otherwise: Mapping[str, Differing] | None = None,
     ) -> BatchSummary:
         """What came out, verdicts from the best, reasons from the most frequent.
 
@@ -212,6 +219,7 @@ class Tally:
             missing=tuple(self.missing),
             faults=self.faults,
             copies=self.copies,
+            kept_otherwise=kept_otherwise or {},
             missing_bands=without_band(bands, there) if there else (),
             bands=tuple(
                 f"{one.number} ({one.name})" if one.name else f"{one.number}" for one in there

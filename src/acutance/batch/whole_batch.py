@@ -12,6 +12,7 @@ from typing import Any
 from acutance.archive import Archive, Entry
 from acutance.archive.connection import is_there
 from acutance.archive.outcomes import Outcome
+from acutance.batch.entries import stated_entry
 from acutance.batch.image_list import (
     ImageFile,
     content_of,
@@ -20,7 +21,7 @@ from acutance.batch.image_list import (
     stated_of,
 )
 from acutance.batch.measure_image import BatchTask, BatchWork, MeasuredImage
-from acutance.batch.plan import BatchPlan, read_plan
+from acutance.batch.plan import BatchPlan, StatedOfImages, read_plan
 from acutance.batch.plan_options import choose_options, require_options
 from acutance.batch.remembered_images import KnownImage, RememberedImages
 from acutance.batch.row_key import (
@@ -28,6 +29,7 @@ from acutance.batch.row_key import (
     day_of,
     reading_of,
     row_key,
+    statement_digest,
     target_digest,
     unreadable_key,
 )
@@ -44,6 +46,8 @@ Progress = Callable[[int, int], None]
 KeptEntries = Callable[[Sequence[Entry]], None]
 
 _READING = ("gsd_m", "height_m", "nodata", "along_track", "linearize", "band_names")
+_SAID = ("acquired", "band_names", "metadata")
+"""What bands and day of an image are found out by."""
 _MANY_BYTES = 2 * 10**9
 """So many are read for their checksums by all processes."""
 
@@ -120,8 +124,11 @@ def run_batch(
         there = place.outcomes({one.content for one in known.values()})
         todo = _tasks(files, known, wanted, work, there, tally)
         run = _run(todo, wanted, work, place, there, tally, progress, kept) if todo else None
+        place.remove_rejections(tally.outlived)
+        otherwise = place.kept_otherwise(tally.stated)
     bands = [one for some in (work.bands, *(t.bands for t in work.targets)) for one in some or ()]
-    return tally.summary(wanted.archive, len(files), time.monotonic() - begin, run, bands)
+    elapsed_s = time.monotonic() - begin
+    return tally.summary(wanted.archive, len(files), elapsed_s, run, bands, otherwise)
 
 
 def _wanted(
@@ -212,8 +219,12 @@ def _tasks(
     found, seen = [], dict[tuple[str, Reading], str]()
     for file in files:
         stated, image = stated_of(file.path, plan.stated), known.get(file.path)
+        if image is not None:
+            image = image.under(_statement(stated))
         reading = reading_of({name: getattr(stated, name) for name in _READING})
         content = None if image is None else image.content
+        if content is not None:
+            tally.outlived.add(unreadable_key(None, file.path))
         if content is not None and (content, reading) in seen:
             tally.copies[file.path] = seen[content, reading]
             continue
@@ -223,12 +234,19 @@ def _tasks(
         done = by_content.get(content or "", set())
         wanted = None if image is None else _wanted_keys(image, reading, work)
         if unreadable_key(content, file.path) in done:
-            wanted = {unreadable_key(content, file.path)}
-        if wanted is not None and wanted <= done:
+            tally.add_earlier([there[unreadable_key(content, file.path)]])
+            continue
+        if image is not None and wanted is not None and wanted <= done:
             tally.add_earlier([there[key] for key in wanted])
+            tally.add_stated(wanted, stated_entry(stated))
+            tally.outlived |= _outlived_keys(image, reading, work)
             continue
         found.append((file, BatchTask(file.path, content, stated, reading, frozenset(done))))
     return found
+
+
+def _statement(stated: StatedOfImages) -> str:
+    return statement_digest({name: getattr(stated, name) for name in _SAID})
 
 
 def _wanted_keys(image: KnownImage, reading: Reading, work: BatchWork) -> set[str] | None:
@@ -242,6 +260,14 @@ def _wanted_keys(image: KnownImage, reading: Reading, work: BatchWork) -> set[st
         for band in (Band(*one) for one in image.bands)
         if selected(band, work.bands, target.bands)
     }
+
+
+def _outlived_keys(image: KnownImage, reading: Reading, work: BatchWork) -> set[str]:
+    """Keys of rows that an image had while its date was not known, and has not with its date."""
+    wanted, undated = (
+        _wanted_keys(one, reading, work) or set() for one in (image, replace(image, day=None))
+    )
+    return undated - wanted
 
 
 def _run(
@@ -269,10 +295,15 @@ def _run(
         if kept is not None:
             kept(found.entries)
         if task.content is not None and found.bands is not None:
-            image = KnownImage(task.content, found.bands, found.day, found.by_rpc)
+            said = _statement(task.stated)
+            image = KnownImage(task.content, found.bands, found.day, found.by_rpc, said)
             memory.remember({file: image})
             wanted = _wanted_keys(image, task.reading, work) or set()
             tally.add_earlier([there[key] for key in wanted & task.done])
+            # What stated documents say is known once they were read.
+            by_documents = task.stated.metadata is not None
+            tally.add_stated(wanted, found.image if by_documents else stated_entry(task.stated))
+            tally.outlived |= _outlived_keys(image, task.reading, work)
         tally.add_image(task.path, found, new)
         if progress is not None:
             progress(len(finished), len(todo))

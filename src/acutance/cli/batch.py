@@ -31,7 +31,6 @@ EXAMPLE = (
     "  acutance batch plan.toml --dask tcp://host:8786 --json\n"
     "  acutance batch images/*.tif --targets targets.geojson --archive campaign.db --band pan,3"
 )
-_PLAN = ".toml"
 
 
 def batch(
@@ -126,11 +125,12 @@ def _plan(
     if workers is not None and dask is not None:
         raise OptionError("--workers and --dask cannot be combined: the cluster has its own")
 
-    from acutance.batch.plan import BatchPlan, StatedOfImages, read_plan
+    from acutance.batch.plan import BatchPlan, StatedOfImages, is_plan_file, read_plan
 
-    is_plan = _is_plan(images)
+    given_plan = next(filter(is_plan_file, images), None)
+    is_plan = given_plan is not None
     if is_plan and len(images) > 1:
-        raise OptionError(f"{images[0]} is a plan and names its images: give it alone")
+        raise OptionError(f"{given_plan} is a plan and names its images: give it alone")
     if not is_plan and (targets is None or archive is None):
         raise OptionError("images need --targets FILE and --archive PLACE, or give a plan.toml")
     given: dict[str, Any] = {
@@ -160,6 +160,7 @@ def _files_of(words: Sequence[str], plan: BatchPlan) -> Iterator[str]:
     """Every file that the batch reads or keeps results in, by the words it was called with."""
     from acutance.archive.connection import file_of
     from acutance.batch.image_list import list_images
+    from acutance.batch.plan import is_plan_file
     from acutance.raster.metadata.files_beside import files_beside
 
     archive = file_of(plan.archive)
@@ -169,15 +170,10 @@ def _files_of(words: Sequence[str], plan: BatchPlan) -> Iterator[str]:
     yield str(plan.targets)
     for stated in plan.stated:
         yield from stated.metadata or ()
-    if _is_plan(words):
-        yield words[0]
+    yield from filter(is_plan_file, words)
     for image in list_images(plan.images):
         yield image.path
         yield from map(str, files_beside(image.path))
-
-
-def _is_plan(words: Sequence[str]) -> bool:
-    return words[0].lower().endswith(_PLAN)
 
 
 def _bands(text: str) -> tuple[str | int, ...]:
@@ -240,10 +236,30 @@ def _text(found: BatchSummary) -> str:
         lines.append(
             f"reasons in full: acutance archive list {shlex.quote(found.archive)} --rejected"
         )
+    lines += _kept_otherwise(found)
     if found.missing_bands:
         asked = ", ".join(map(str, found.missing_bands))
         lines.append(f"no image has band {asked}: choose from {', '.join(found.bands)}")
     return "\n".join(lines)
+
+
+def _kept_otherwise(found: BatchSummary) -> list[str]:
+    """Images that the archive knows otherwise than was stated, and the command that corrects it."""
+    from acutance.archive.contradictions import in_words, written
+
+    if not found.kept_otherwise:
+        return []
+    several = found.kept_otherwise.values()
+    image = next(iter(found.kept_otherwise)) if len(several) == 1 else "NAME"
+    words = ["acutance", "archive", "correct", found.archive, "--image", image]
+    for name in dict.fromkeys(name for one in several for name in one):
+        stated = {written(one[name][1]) for one in several if name in one}
+        words += [f"--{name.replace('_', '-')}", stated.pop() if len(stated) == 1 else "VALUE"]
+    return [
+        *_named(f"not changed: {path} is kept with {in_words(one)}"
+                for path, one in found.kept_otherwise.items()),
+        f"rows that are there stay as they are; where they are wrong: {shlex.join(words)}",
+    ]  # fmt: skip
 
 
 def _named(lines: Iterable[str]) -> list[str]:

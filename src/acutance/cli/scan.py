@@ -157,7 +157,7 @@ def scan(
             # The reasons are what is asked for then.
             if table is not None:
                 _write_edges(table, error.edges, images[0])
-            _tell_reasons(error)
+            _tell_reasons(error, is_written=table is not None)
             raise
     if table is not None:
         _write_edges(table, found.edges, images[0])
@@ -176,12 +176,14 @@ def _backdrop(image: Image, found: SceneMeasurement) -> dict[str, Any]:
     return {"backdrop": quick_look(image, Box(*found.image.roi))}
 
 
-def _tell_reasons(error: FewEdgesError) -> None:
-    """Why edges are not used, beside the message."""
+def _tell_reasons(error: FewEdgesError, is_written: bool) -> None:
+    """Why edges are not used, beside the message, and where there is more about each."""
     from acutance import report
 
     if reasons := report.reasons_text(error.edges):
         typer.echo(reasons, err=True)
+        if not is_written:
+            typer.echo("the table of the edges has the reason of each: --edges FILE", err=True)
 
 
 def _write_edges(table: OutputFile, edges: EdgeTable, image: Image) -> None:

@@ -178,8 +178,7 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, image: Image, box: Box) ->
         raise FewEdgesError(
             f"{_counted(edges.size)} found, and {len(used)} of them can be used, where "
             f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}{_processing(image, box)}"
-            "scan a larger part, or another image, or measure single edges; the table of the edges "
-            "has every reason (--edges FILE; in Python, error.edges)",
+            "scan a larger part, or another image, or measure single edges",
             edges,
         )
     axis_deg = np.array([one.axis_deg for one in used])

@@ -1,0 +1,82 @@
+"""What batches and imports ask of an archive and write down, row by row, by keys."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from acutance.archive.connection import Database
+from acutance.archive.contradictions import Differing, kept_otherwise
+from acutance.archive.entry import ImageEntry
+from acutance.archive.outcomes import Outcome, kept_outcomes
+from acutance.archive.removing import remove_rejections
+from acutance.archive.runs import end_run, kept_keys, start_run
+
+__all__ = ["RowsOfRuns"]
+
+
+class RowsOfRuns:
+    """Runs, and rows by their keys."""
+
+    _database: Database
+
+    def keys(self, *, run: int | None = None, images: Iterable[str] | None = None) -> set[str]:
+        """Keys of what is kept, measured or rejected.
+
+        Parameters
+        ----------
+        run : int, optional
+            What this run wrote.
+        images : iterable of str, optional
+            Of images with this content (SHA-256).
+        """
+        return kept_keys(self._database, run, None if images is None else list(images))
+
+    def outcomes(self, images: Iterable[str]) -> dict[str, Outcome]:
+        """How the rows of some images came out, by key: their verdict, or why they have none.
+
+        Parameters
+        ----------
+        images : iterable of str
+            Contents of images (SHA-256).
+        """
+        return kept_outcomes(self._database, images)
+
+    def start_run(self, plan: Mapping[str, Any]) -> int:
+        """Write down that a run began, with its plan; returns its number."""
+        return start_run(self._database, plan)
+
+    def end_run(self, run: int, summary: Mapping[str, Any]) -> None:
+        """Write down that a run ended, with its summary."""
+        end_run(self._database, run, summary)
+
+    def kept_otherwise(self, stated: Mapping[str, ImageEntry]) -> dict[str, Differing]:
+        """What is stated of images and is not what is kept: `correct_images` changes that.
+
+        Parameters
+        ----------
+        stated : mapping of str to ImageEntry
+            By the keys of rows; those that are not there are passed over.
+
+        Returns
+        -------
+        dict of str to mapping
+            By the path of the image in the archive, and by the name of what is stated ("sensor"):
+            what is kept, and what is stated.
+        """
+        return kept_otherwise(self._database, stated)
+
+    def remove_rejections(self, keys: Iterable[str]) -> int:
+        """Remove rejections that hold no longer, and images of which nothing else is kept.
+
+        Parameters
+        ----------
+        keys : iterable of str
+            Those of measurements are passed over.
+
+        Returns
+        -------
+        int
+            How many were removed.
+        """
+        return remove_rejections(self._database, keys)

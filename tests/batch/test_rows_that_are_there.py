@@ -1,0 +1,143 @@
+"""Rows of an archive that another batch finds there: what outlives its reason, what stays."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from surveyed_field import EDGE, feature, line_of, survey
+
+from acutance.archive import Archive, ImageCorrection
+from acutance.batch import BatchPlan
+from acutance.batch.plan import StatedOfImages
+
+
+@pytest.fixture
+def overview(tmp_path):
+    """Counts of the archive."""
+
+    def read():
+        with Archive(tmp_path / "kept.db", read_only=True) as archive:
+            return archive.overview()
+
+    return read
+
+
+def test_an_image_that_arrives_late_is_missing_no_longer(write_field, run, rows, overview):
+    there, late = write_field(0), write_field(1)
+    pixels = late.read_bytes()
+    late.unlink()
+    assert run(there, late).reasons == {"no such file": 1}
+    assert (overview().images, overview().rejected) == (2, 1)
+    late.write_bytes(pixels)
+    assert run(there, late).kept == 2
+    assert len(rows()[1]) == 0
+    assert (overview().images, overview().rejected) == (2, 0)
+    # What is measured stays when the file goes, and is there when it comes back.
+    late.unlink()
+    assert run(late).missing == (str(late),)
+    late.write_bytes(pixels)
+    found = run(late)
+    assert (found.kept, found.done_before) == (0, 2)
+    assert (len(rows()[0]), len(rows()[1])) == (4, 0)
+
+
+def test_a_file_that_arrives_and_is_no_image_has_the_row_of_its_content(run, rows, tmp_path):
+    run(tmp_path / "late.tif")
+    (tmp_path / "late.tif").write_text("no image")
+    assert run(tmp_path / "late.tif").reasons == {"unreadable image": 1}
+    assert [one["why"] for one in rows()[1]["values"]] == ["unreadable image"]
+
+
+@pytest.fixture
+def run_stated(run):
+    """Run a batch of images of which something is stated."""
+
+    def run_with(*images, targets=None, stated=(), **values):
+        plan = BatchPlan((), {}, "", stated=(*stated, StatedOfImages(**values)))
+        return run(*images, targets=targets, plan=plan)
+
+    return run_with
+
+
+@pytest.mark.parametrize("is_remembered", [True, False])
+def test_what_is_stated_of_images_that_are_kept_is_named(
+    write_field, run, run_stated, tmp_path, monkeypatch, is_remembered
+):
+    images = [write_field(number) for number in range(2)]
+    assert run(*images).kept_otherwise == {}
+    if not is_remembered:
+        monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "another"))
+    both = StatedOfImages(sensor="OTHER", level="L1")
+    first = StatedOfImages(images=("field-0.tif",), sensor="SIM-1")
+    found = run_stated(*images, stated=[both], images=("field-0.tif",), sensor="SIM-1")
+    assert (found.kept, found.done_before) == (0, 4)
+    assert found.kept_otherwise == {
+        str(images[0]): {"level": (None, "L1")},
+        str(images[1]): {"level": (None, "L1"), "sensor": ("SIM-1", "OTHER")},
+    }
+    assert found.to_dict()["kept_otherwise"][str(images[1])]["sensor"] == ["SIM-1", "OTHER"]
+    assert found.summary().endswith("; 2 images kept otherwise than stated")
+    with Archive(tmp_path / "kept.db") as archive:
+        archive.correct_images([ImageCorrection(image="field-*.tif", level="L1")])
+        archive.correct_images([ImageCorrection(image="field-1.tif", sensor="OTHER")])
+    assert run_stated(*images, stated=[both, first]).kept_otherwise == {}
+
+
+def test_what_a_plan_states_from_the_beginning_is_no_contradiction(
+    write_field, run_stated, tmp_path
+):
+    bad = tmp_path / "bad.tif"
+    bad.write_text("no image")
+    given = {"sensor": "S", "level": "L1", "acquired": "2026-03-04", "view_zenith_deg": 20.3}
+    for _ in range(2):
+        assert run_stated(write_field(0), bad, **given).kept_otherwise == {}
+
+
+def test_rows_of_a_new_target_have_what_is_stated_and_older_ones_are_named(
+    write_field, run, run_stated, rows
+):
+    image = write_field(0)
+    edge, pulse = survey()["features"]
+    run(image, targets=survey(edge))
+    assert run_stated(image, targets=survey(pulse), sensor="OTHER").kept_otherwise == {}
+    found = run_stated(image, sensor="OTHER")
+    assert (found.kept, found.done_before) == (0, 2)
+    assert found.kept_otherwise == {str(image): {"sensor": ("SIM-1", "OTHER")}}
+    assert sorted(rows()[0]["sensor"]) == ["OTHER", "SIM-1"]
+
+
+def test_documents_that_are_stated_later_are_compared(write_field, run, run_stated, tmp_path):
+    image, document = write_field(0), tmp_path / "elsewhere.json"
+    document.write_text(json.dumps({
+        "type": "Feature", "stac_version": "1.0.0", "id": "x", "links": [],
+        "properties": {"datetime": "2026-01-01T10:00:00Z", "platform": "OTHER"},
+        "assets": {"pan": {"href": "field-0.tif"}},
+    }))  # fmt: skip
+    run(image)
+    found = run_stated(image, metadata=(str(document),))
+    assert found.kept_otherwise == {str(image): {"sensor": ("SIM-1", "OTHER")}}
+
+
+def test_a_date_that_is_stated_later_counts(write_field, run, run_stated, rows):
+    """What is remembered of an image is what was found out under another statement."""
+    image = write_field(0, tags={})
+    line = line_of(EDGE, 30.0)
+    targets = survey(
+        feature("at times", "edge", "LineString", line, valid_to="2030-01-01"),
+        feature("later", "edge", "LineString", line, valid_from="2030-01-01"),
+    )
+    assert run(image, targets=targets).reasons == {"no date": 2}
+    found = run_stated(image, targets=targets, acquired="2026-03-04")
+    assert (found.measured, dict(found.reasons)) == (1, {"not there then": 1})
+    # The rows without a date are gone: they said that the image states none.
+    assert [one["why"] for one in rows()[1]["values"]] == ["not there then"]
+    assert run_stated(image, targets=targets, acquired="2026-03-04").run is None
+
+
+def test_band_names_that_are_stated_later_count(write_field, run, run_stated):
+    image = write_field(0)
+    only = survey(feature("edge", "edge", "LineString", line_of(EDGE, 30.0), bands=["pan"]))
+    assert run(image, targets=only).missing_bands == ("pan",)
+    found = run_stated(image, targets=only, band_names=("pan",))
+    assert (found.measured, found.missing_bands) == (1, ())
