@@ -152,8 +152,9 @@ class Questions(ABC):
         self.require_known_names(*asked)  # type: ignore[arg-type]
         return check_specification(
             specification,
-            lambda words: self.measurements(**{**selection, **words}),
+            lambda words: self.measurements(**words),
             events,
+            selection=selection,
         )
 
     def compare(

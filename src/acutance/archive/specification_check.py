@@ -8,9 +8,10 @@ trend; of images that show no trend (fewer than three dates) the mean with rando
 from __future__ import annotations
 
 import datetime
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import ceil
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -20,7 +21,7 @@ from acutance.archive.counted import counted
 from acutance.archive.specification import Requirement, Specification
 from acutance.archive.trends.fit_trend import fit_trend
 from acutance.archive.trends.images import mean_of_images
-from acutance.archive.trends.measured_series import all_series
+from acutance.archive.trends.measured_series import all_series, unmeasured_directions
 from acutance.archive.trends.series import Event, Series, date_of, decimal_year
 from acutance.archive.trends.trend import Trend
 from acutance.archive.trends.tuned import MIN_IMAGES
@@ -140,7 +141,7 @@ class SpecificationCheck:
     title : str
     answers : tuple of Answer
         In the order of the requirements; one for each sensor, band, level and direction that a
-        requirement does not choose between.
+        requirement does not choose between. A direction that was not measured has one, too.
     """
 
     title: str
@@ -174,7 +175,11 @@ class SpecificationCheck:
 
 
 def check_specification(
-    specification: Specification, select: Select, events: Sequence[Event] = ()
+    specification: Specification,
+    select: Select,
+    events: Sequence[Event] = (),
+    *,
+    selection: Mapping[str, Any] = MappingProxyType({}),
 ) -> SpecificationCheck:
     """Judge all requirements of a specification.
 
@@ -185,6 +190,8 @@ def check_specification(
         Rows of an archive by filters (`Requirement.selection`).
     events : sequence of Event, optional
         Dates at which the sensors may have changed.
+    selection : mapping, optional
+        More filters of an archive; those of a requirement go before them.
 
     Returns
     -------
@@ -192,18 +199,28 @@ def check_specification(
     """
     answers: list[Answer] = []
     for requirement in specification.requirement:
-        rows = select(requirement.selection)
-        found = [check_requirement(requirement, series, events)
-                 for series in all_series(rows, requirement.metric)]  # fmt: skip
-        answers += found or [_nothing(requirement)]
+        words = {**selection, **requirement.selection}
+        rows = select(words)
+        answers += [check_requirement(requirement, series, events)
+                    for series in all_series(rows, requirement.metric)]  # fmt: skip
+        if not len(rows):
+            answers.append(_nothing(requirement, _asked_words(words)))
+        elif words.get("orientation") is None:
+            answers += [_nothing(requirement, what, f' (for {other} alone, state orientation = '
+                                 f'"{other}" in the requirement)')
+                        for what, other in unmeasured_directions(rows)]  # fmt: skip
     return SpecificationCheck(specification.title, tuple(answers))
 
 
-def _nothing(requirement: Requirement) -> Answer:
+def _asked_words(words: Mapping[str, Any]) -> str:
+    """Whose measurements are asked for: "QB02 or K3, pan"."""
+    chosen = (words.get(name) for name in ("sensor", "band", "orientation"))
+    return ", ".join(one if isinstance(one, str) else " or ".join(one) for one in chosen if one)
+
+
+def _nothing(requirement: Requirement, what: str, advice: str = "") -> Answer:
     """Nothing in the archive is what a requirement is about."""
-    chosen = (requirement.selection.get(name) for name in ("sensor", "band", "orientation"))
-    what = ", ".join(one if isinstance(one, str) else " or ".join(one) for one in chosen if one)
-    reason = f"there is no image{_trusted_words(requirement)}"
+    reason = f"there is no image{_trusted_words(requirement)}{advice}"
     return Answer(requirement, what, OPEN, None, None, None, 0, MIN_IMAGES, reason)
 
 
