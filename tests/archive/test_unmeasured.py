@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 from acutance.archive import Archive
 from acutance.archive.specification import Specification
+from acutance.errors import NothingSelectedError
 from acutance.targets.record import Record
 
 
@@ -60,3 +63,28 @@ def test_of_products_of_several_gsds_each_is_asked(archive: Archive, entry_of: A
     found = archive.check(specification({"sensor": "K3"}))
     missing = [one.what for one in found.answers if one.word != "met"]
     assert missing == ["K3, pan, GSD 2.8 m, along"]
+
+
+@pytest.mark.parametrize("mistyped", [{"sensor": "NOPE"}, {"band": "pam"}, {"site": "Stenis"}])
+def test_a_mistyped_name_stops_no_other_requirement(
+    archive: Archive, entry_of: Any, mistyped: dict[str, Any]
+) -> None:
+    archive.add_entries(entry_of(i) for i in range(12))
+    good = {"sensor": "QB02", "orientation": "across"}
+    found = archive.check(specification(mistyped, good))
+    wrong, judged = found.answers
+    ((filtered, name),) = mistyped.items()
+    assert f"cannot be told yet: no {filtered} is called '{name}', only " in wrong.summary
+    assert (wrong.word, wrong.more_images) == ("cannot be told yet", None)
+    assert judged.word == "met"
+    assert found.word == "cannot be told yet"
+    with pytest.raises(NothingSelectedError, match=r"only .* \(requirement 1, 2\)"):
+        archive.check(specification(mistyped, mistyped))
+
+
+def test_of_several_names_those_that_occur_are_judged(archive: Archive, entry_of: Any) -> None:
+    archive.add_entries(entry_of(i) for i in range(12))
+    several = specification({"sensor": ["QB02", "NOPE"], "orientation": "across"})
+    assert [(one.what, one.word) for one in archive.check(several).answers] == [
+        ("QB02, pan, across", "met"), ("QB02 or NOPE, across", "cannot be told yet"),
+    ]  # fmt: skip

@@ -29,7 +29,7 @@ from acutance.report.labels import METRIC_WORDS, word_estimate
 
 if TYPE_CHECKING:
     from acutance.archive.measurements import Measurements, Rejections
-    from acutance.archive.specification_check import Answer, SpecificationCheck
+    from acutance.archive.requirement_answers import Answer, SpecificationCheck
     from acutance.archive.trends import Event
 
 __all__ = ["sensor_page"]

@@ -11,7 +11,7 @@ import numpy as np
 
 from acutance.archive.columns import Columns
 from acutance.archive.dates import day_or_minute
-from acutance.archive.specification_check import SpecificationCheck
+from acutance.archive.requirement_answers import SpecificationCheck
 from acutance.archive.tables_by import MeasurementTable, table_by
 from acutance.archive.trends import Trend
 from acutance.curves import MAIN_NUMBERS
