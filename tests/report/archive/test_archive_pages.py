@@ -12,10 +12,11 @@ import pytest
 
 import acutance as ac
 from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
+from acutance.archive.specification import Specification
 from acutance.archive.trends import Event, Series, fit_trend
 from acutance.errors import OptionError
 from acutance.report.archive import sensor_page, trend_figure, trend_page
-from acutance.report.archive.sensor_tables import images_table
+from acutance.report.archive.sensor_tables import images_table, specification_table
 from acutance.report.archive.trend_page import trend_verdict
 from acutance.report.archive.wording import signed, with_minus
 from acutance.report.labels import MISSING
@@ -164,6 +165,23 @@ def test_requirements_come_first(archive, tmp_path):
     assert page.index("across track: ") < page.index("falls by")
     assert '<div class="verdict good"><p>across track' in page
     assert '<div class="verdict invalid"><p>sharp' in page
+
+
+def test_the_table_of_a_specification_has_the_words_of_its_sentences(archive):
+    told = {"metric": "mtf_nyquist", "orientation": "across"}
+    spec = Specification.of({"requirement": [{**told, "minimum": 0.9}, {**told, "maximum": 0.9}]})
+    check = archive.check(spec)
+    table = specification_table(check)
+    assert [row[table.columns.index("Probability")] for row in table.rows] == ["< 0.001", "> 0.999"]
+    assert table.columns[0] == "Of"
+    assert len(table.align) == len(table.columns) == len(table.rows[0])
+    assert "More images: how many would tell" in table.notes[0]
+    named = Specification.of(
+        {"requirement": [{**told, "minimum": 0.9, "name": "sharp"}, {**told, "maximum": 0.9}]}
+    )
+    table = specification_table(archive.check(named))
+    assert [row[0] for row in table.rows] == ["sharp", MISSING]
+    assert [row[2] for row in table.rows] == ["mtf_nyquist >= 0.9", "mtf_nyquist <= 0.9"]
 
 
 def test_curves_of_bands_are_drawn_apart(tmp_path, edge_record):
