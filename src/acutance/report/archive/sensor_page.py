@@ -90,7 +90,7 @@ def sensor_page(
         check = archive.check(specification, events=events, sensor=sensor)
     comparisons = comparisons_of(rows, sensor, metric)
     content = (
-        _answer_section(states, check, comparisons),
+        *_answer_sections(states, check, comparisons),
         *_trend_sections(states, check),
         *map(Section.of_table, comparison_tables(comparisons)),
         *_curve_sections(rows),
@@ -105,9 +105,9 @@ def _facts(every: Measurements, rejected: Rejections, used: Measurements) -> dic
     return {"measured": str(measured), "used": str(taken), "rejected": str(len(rejected))}
 
 
-def _answer_section(
+def _answer_sections(
     states: Sequence[SeriesState], check: SpecificationCheck | None, comparisons: SensorComparisons
-) -> Section:
+) -> list[Section]:
     """Specification, changes and comparisons first; then the state of every direction."""
     answers = check.answers if check else ()
     verdicts = (
@@ -118,7 +118,7 @@ def _answer_section(
     tables = [state_table(states)]
     if check is not None:
         tables.insert(0, specification_table(check))
-    return Section("Result", verdicts=verdicts, tables=tuple(tables))
+    return [Section("Result", verdicts=verdicts), *map(Section.of_table, tables)]
 
 
 def _answer_verdict(answer: Answer) -> Verdict:

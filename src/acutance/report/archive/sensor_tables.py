@@ -31,27 +31,34 @@ _VERDICTS = ("good", "usable", "doubtful", "invalid")
 
 
 def state_table(states: Sequence[SeriesState]) -> Table:
-    """Every band and direction: numbers on the day of the last image, and the drift."""
+    """Every band and direction: numbers on the day of the last image, and their drift."""
+    metrics = tuple(states[0].found)
     rows: list[tuple[str, ...]] = []
     for one in states:
         trend = one.trend
         rows.append((
             one.name, str(one.images), str(one.measurements),
             str(trend.last) if trend else _span(one.days),
-            *(word_estimate(one.level(metric)).value_and_std for metric in MAIN_NUMBERS),
-            percent(trend.relative_rate_per_year) if trend else MISSING,
+            *(_level_and_drift(one, metric) for metric in metrics),
             "\n".join(_changes(trend)) if trend else MISSING,
         ))  # fmt: skip
-    labels = (metric_words(name).label_with_unit for name in MAIN_NUMBERS)
+    labels = (metric_words(name).label_with_unit for name in metrics)
     drawn = METRIC_WORDS[states[0].metric].label
     return Table(
-        ("", "Images", "Measurements", "On", *labels, "Drift a year", "Changes"),
-        tuple(rows), "lrrlrrrrl", title="State",
+        ("", "Images", "Measurements", "On", *labels, f"Changes of {drawn}"),
+        tuple(rows), f"lrrr{'r' * len(metrics)}l", title="State",
         notes=(
-            "The sensor's mean on the day of its last image, without the season; where there is no "
-            f"trend the mean of all images. Drift and changes are those of the {drawn}.",
+            "The sensor's mean on the day of its last image, without the season, and below it the "
+            "drift of that number; where there is no trend the mean of all images.",
         ),
     )  # fmt: skip
+
+
+def _level_and_drift(state: SeriesState, metric: str) -> str:
+    level, found = word_estimate(state.level(metric)).value_and_std, state.found[metric]
+    if not isinstance(found, Trend):
+        return level
+    return f"{level}\n{percent(found.relative_rate_per_year)} a year"
 
 
 def _span(days: tuple[date, ...]) -> str:
