@@ -258,6 +258,24 @@ def test_undated_images_of_bands_that_are_not_named(tmp_path, edge_record):
     assert "of one image, which shows no trend" in page
 
 
+def test_a_sensor_without_a_name_has_a_title_and_the_note_of_the_check(tmp_path, edge_record):
+    with Archive(tmp_path / "unnamed.db") as made:
+        for at in range(6):
+            record = ac.Record({**edge_record.document, "gsd_m": 10.0 if at < 4 else 20.0})
+            image = ImageEntry(path=f"B{at}.tif", content=f"{at:064x}")
+            made.add_entries([Entry(record=record, image=image, key=str(at))])
+        page = words_of(sensor_page(made, ""))
+        told = {"metric": "mtf_nyquist", "minimum": 0.1, "orientation": "across"}
+        answers = made.check(Specification.of({"requirement": [told]})).answers
+        with pytest.raises(OptionError, match=r"sensors are '' \(not named\): name another"):
+            sensor_page(made, "QB02")
+    assert "<title>Sensor not named</title>" in page
+    for answer, images in zip(answers, (4, 2), strict=True):
+        note = f"No sensor and no band is named: {images} images are taken to be of one."
+        assert note in answer.reason
+        assert f"<b>note</b>: {note}" in page
+
+
 def test_bands_are_in_the_order_of_their_numbers(tmp_path, edge_record):
     with Archive(tmp_path / "bands.db") as made:
         for band in ("B11", "B8A", "B2"):
@@ -292,7 +310,7 @@ def test_an_image_dated_to_the_day_has_no_time(tmp_path, edge_record):
 
 
 def test_a_sensor_that_is_not_there_is_named(archive):
-    with pytest.raises(OptionError, match="0 measurements of QB03"):
+    with pytest.raises(OptionError, match=r"0 measurements of 'QB03'.* sensors are QB02:"):
         sensor_page(archive, "QB03")
     with pytest.raises(OptionError, match="no metric 'mtf'"):
         sensor_page(archive, "QB02", metric="mtf")
