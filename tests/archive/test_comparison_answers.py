@@ -139,6 +139,32 @@ def test_a_lone_image_without_a_deviation_scatters_as_the_others_do() -> None:
     assert np.mean(held) > 0.91
 
 
+def test_what_does_not_differ_is_the_first_minus_the_second() -> None:
+    """As the numbers of the same comparison are, whichever of them is larger."""
+    value = 1 + 0.01 * np.random.default_rng(6).standard_normal(12)
+    for ratio in (0.999, 1.001):
+        noise = 0.01 * np.random.default_rng(7).standard_normal(12)
+        across = group(0, ratio * value + noise, orientation="across", image_id=np.arange(12))
+        along = group(1, value, orientation="along", image_id=np.arange(12))
+        one = only(compared(across, along, by="orientation"))
+        assert one.answer != "differ"
+        assert "across minus along" in one.sentence
+        ends = map(float, re.findall(r"95 %: (\S+) to (\S+) %", one.sentence)[0])
+        expected = [100 * end for end in one.relative.interval()]
+        assert list(ends) == pytest.approx(expected, abs=0.06)
+
+
+def test_groups_that_are_never_together_are_named() -> None:
+    value = np.ones(4)
+    apart = compared(group(0, value, method="p"), group(1, value, method="q", sensor="K3"))
+    assert apart.groups == ("edge p", "edge q")
+    assert not apart.differences
+    assert "there are edge p, edge q, but no two of them with the same sensor" in apart.summary
+    assert "sensor and level" in compared(
+        group(0, value, band="pan"), group(1, value, band="red", sensor="K3"), by="band"
+    ).summary  # fmt: skip
+
+
 def test_sentence_and_interval_have_one_sign() -> None:
     value = 1 + 0.01 * np.random.default_rng(6).standard_normal(12)
     across = group(0, value, orientation="across", image_id=np.arange(12))

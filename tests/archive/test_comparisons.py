@@ -247,7 +247,8 @@ def test_what_cannot_be_compared_is_refused() -> None:
     with pytest.raises(NothingSelectedError):
         compare_groups(none, "mtf_nyquist")
     assert compare_groups(rows, "mtf_nyquist", "kind").summary == (
-        "There are no two kinds to be compared."
+        "there are no two kinds to be compared: all measurements are of one kind, edge; add "
+        "measurements of another one, or widen the filters"
     )
 
 

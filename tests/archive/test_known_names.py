@@ -57,7 +57,7 @@ def of_gsd(entry_of: Any, i: int, gsd_m: float) -> Entry:
 def test_images_of_several_gsds_are_not_joined(archive: Archive, entry_of: Any) -> None:
     sizes = (10.0, 10.3, 20.0, 30.0)
     archive.add_entries(of_gsd(entry_of, i, sizes[i // 2]) for i in range(8))
-    found = archive.check(specification())
+    found = archive.check(specification(orientation="across"))
     assert [(one.what, one.images) for one in found.answers] == [
         ("GSD 10 to 10.3 m, across", 4), ("GSD 20 m, across", 2), ("GSD 30 m, across", 2),
     ]  # fmt: skip
@@ -78,4 +78,5 @@ def test_bands_without_a_name_are_selected_as_the_message_says(
     assert len(archive.measurements(band=["", "pan"])) == len(archive.measurements())
     with pytest.raises(NothingSelectedError, match="holds nothing that is selected"):
         archive.trend("rer", sensor="")
-    assert len(archive.check(specification(band="", sensor="QB02")).answers) == 1
+    unnamed = specification(band="", sensor="QB02", orientation="across")
+    assert len(archive.check(unnamed).answers) == 1

@@ -97,7 +97,7 @@ def test_the_specification_of_the_data_purchase(archive: Archive) -> None:
         {"metric": "mtf_nyquist", "minimum": 0.2, "sensor": "QB02", "band": "NIR", "level": "CC"},
         {"metric": "mtf_nyquist", "minimum": 0.2, "sensor": "KOMPSAT-3", "band": "NIR"},
     ]})  # fmt: skip
-    found = archive.check(spec)
+    found = archive.check(spec, orientation="across")
     assert [answer.word for answer in found.answers] == [
         "met", "cannot be told yet", "cannot be told yet"
     ]  # fmt: skip

@@ -115,6 +115,11 @@ def test_across_and_along_are_compared(acutance, place):
 def test_what_cannot_be_compared(acutance, place):
     done = acutance("archive", "compare", place, "--by", "method")
     assert done.exit_code == 4
-    assert "There are no two methods" in done.stderr
+    assert "acutance: there are no two methods to be compared: " in done.stderr
+    assert "all measurements are of one method, edge published; add measurements" in done.stderr
+    done = acutance("archive", "compare", place, "--by", "band", "--json")
+    assert done.exit_code == 4
+    assert json.loads(done.stdout)["comparisons"][0]["groups"] == []
+    assert "no measurement has mtf_nyquist and a known band" in done.stderr
     assert acutance("archive", "compare", place, "--by", "moon").exit_code == 2
     assert acutance("archive", "compare", place, "--sensor", "other").exit_code == 4

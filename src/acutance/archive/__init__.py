@@ -19,7 +19,7 @@ Sees records only, never pixels. In the order the data take:
 - `weighted_means`: means of measurements that disagree
 - `trends`: drift, steps, season and scatter of a sensor through the years
 - `comparison_margin`, `comparisons`: whether across and along differ, whether methods agree
-- `specification`, `specification_check`: requirements, and whether they are met
+- `specification`, `specification_check`, `requirement_answers`: requirements, are they met
 - `tables_by`: tables across and along by sensor, band, site, date
 - `published`: the tables that publications print, as entries
 - `questions`, `rows_of_runs`, `archive`: all of it under one name, `Archive`

@@ -2,51 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
-
 from sqlalchemy import Connection, select
 
 from acutance.archive.connection import Database
 from acutance.archive.selection import Selection, names_of
 from acutance.errors import NothingSelectedError
 
-__all__ = ["require_known_names"]
+__all__ = ["require_known_names", "unknown_names"]
 
 _MANY = 20
 
 
-def require_known_names(database: Database, selections: Iterable[Selection]) -> None:
+def require_known_names(database: Database, selection: Selection) -> None:
     """Refuse names that occur nowhere in the archive, all of them at once.
 
     Parameters
     ----------
     database : Database
-    selections : iterable of Selection
+    selection : Selection
 
     Raises
     ------
     NothingSelectedError
         Tells the names that occur.
     """
-    several = list(selections)
-    found = database.read(lambda connection: _unknown(connection, several))
+    found = unknown_names(database, selection)
     if found:
-        raise NothingSelectedError(f"archive {database.place}: {'; '.join(found)}")
+        raise NothingSelectedError(f"archive {database.place}: {found}")
 
 
-def _unknown(connection: Connection, selections: list[Selection]) -> list[str]:
-    asked: dict[str, tuple[Any, dict[str, None]]] = {}
-    for one in selections:
-        for name, column, wanted in one.by_name():
-            if wanted is not None:
-                asked.setdefault(name, (column, {}))[1].update(dict.fromkeys(names_of(wanted)))
+def unknown_names(database: Database, selection: Selection) -> str:
+    """Which names of a selection occur nowhere, and which do; "" where all occur.
+
+    Parameters
+    ----------
+    database : Database
+    selection : Selection
+    """
+    return "; ".join(database.read(lambda connection: _unknown(connection, selection)))
+
+
+def _unknown(connection: Connection, selection: Selection) -> list[str]:
     found = []
-    for name, (column, names) in asked.items():
+    for name, column, wanted in selection.by_name():
+        if wanted is None:
+            continue
         known = sorted(connection.execute(
             select(column).where(column.is_not(None)).distinct()
         ).scalars())  # fmt: skip
-        missing = [repr(one) for one in names if one and one not in known]
+        missing = [repr(one) for one in dict.fromkeys(names_of(wanted)) if one and one not in known]
         if missing:
             found.append(f"no {name} is called {' or '.join(missing)}, {_listed(known)}")
     return found

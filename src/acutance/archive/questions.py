@@ -14,8 +14,8 @@ from acutance.archive.selection import Selection, SelectionWords
 
 if TYPE_CHECKING:
     from acutance.archive.comparisons import GroupComparison
+    from acutance.archive.requirement_answers import SpecificationCheck
     from acutance.archive.specification import Specification
-    from acutance.archive.specification_check import SpecificationCheck
     from acutance.archive.tables_by import MeasurementTable
     from acutance.archive.trends import Event, Series, Trend
     from acutance.archive.weighted_means import WeightedMean
@@ -37,12 +37,12 @@ class Questions(ABC):
     def measurements(self, **selection: Unpack[SelectionWords]) -> Measurements:
         """Measurements as columns."""
 
-    def require_known_names(self, *selections: SelectionWords) -> None:
+    def require_known_names(self, selection: SelectionWords) -> None:
         """Refuse filters by names that occur nowhere, all of them at once.
 
         Parameters
         ----------
-        *selections : mapping
+        selection : mapping
             Filters, as of `measurements`.
 
         Raises
@@ -52,7 +52,7 @@ class Questions(ABC):
         """
         from acutance.archive.known_names import require_known_names
 
-        require_known_names(self._database, map(Selection.of, selections))
+        require_known_names(self._database, Selection.of(selection))
 
     def series(self, metric: str, **selection: Unpack[SelectionWords]) -> Series:
         """One metric of one sensor, band and direction through time.
@@ -139,21 +139,23 @@ class Questions(ABC):
         Raises
         ------
         NothingSelectedError
-            If sensors, bands, sites or other names of a requirement occur nowhere.
+            If no requirement can be judged, because sensors, bands, sites or other names in each
+            of them occur nowhere. Where others can, the answer to one with such a name tells it.
         OptionError
             If there is no specification, or it cannot be read.
         """
+        from acutance.archive.known_names import unknown_names
         from acutance.archive.specification import Specification, read_specification
         from acutance.archive.specification_check import check_specification
 
         if not isinstance(specification, Specification):
             specification = read_specification(specification)
-        asked = [{**selection, **one.selection} for one in specification.requirement]
-        self.require_known_names(*asked)  # type: ignore[arg-type]
         return check_specification(
             specification,
-            lambda words: self.measurements(**{**selection, **words}),
+            lambda words: self.measurements(**words),
             events,
+            selection=selection,
+            unknown=lambda words: unknown_names(self._database, Selection.of(words)),
         )
 
     def compare(

@@ -8,35 +8,30 @@ trend; of images that show no trend (fewer than three dates) the mean with rando
 from __future__ import annotations
 
 import datetime
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from math import ceil
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
 
 from acutance.archive.columns import Columns
-from acutance.archive.counted import counted
+from acutance.archive.requirement_answers import Answer, SpecificationCheck
 from acutance.archive.specification import Requirement, Specification
 from acutance.archive.trends.fit_trend import fit_trend
 from acutance.archive.trends.images import mean_of_images
-from acutance.archive.trends.measured_series import all_series
+from acutance.archive.trends.measured_series import all_series, unmeasured_directions
 from acutance.archive.trends.series import Event, Series, date_of, decimal_year
 from acutance.archive.trends.trend import Trend
 from acutance.archive.trends.tuned import MIN_IMAGES
 from acutance.archive.trends.words import season_words
 from acutance.curves import METRICS, Estimate
 from acutance.curves.estimate import normal_quantile
-from acutance.errors import OptionError
-from acutance.targets.conformity import (
-    MET,
-    NOT_MET,
-    OPEN,
-    conformity_word,
-    written_probability,
-)
+from acutance.errors import NothingSelectedError, OptionError
+from acutance.targets.conformity import OPEN, conformity_word
 
-__all__ = ["Answer", "SpecificationCheck", "check_requirement", "check_specification"]
+__all__ = ["check_requirement", "check_specification"]
 
 _YEAR_DAYS: Final = 365.25
 _MOST: Final = 10_000
@@ -45,136 +40,17 @@ _MOST: Final = 10_000
 
 Select = Callable[[dict[str, Any]], Columns]
 """Rows of an archive by the filters of a requirement."""
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What is known of a requirement.
-
-    Attributes
-    ----------
-    requirement : Requirement
-    what : str
-        Whose it is: "QB02, pan, across".
-    word : {"met", "not met", "cannot be told yet"}
-    probability : float or None
-        That it is met; ``None`` where nothing can be said.
-    mean : Estimate or None
-        The sensor's mean on the day.
-    day : date or None
-    images : int
-    more_images : int or None
-        How many more would tell, if the mean is what it is now; 0 where it is told, ``None`` where
-        none of a reasonable number would, or where the day asked is before or after all images.
-    nearest : date or None
-        Where the day asked is before the first or after the last image: the day of that image.
-    reason : str
-        Why it cannot be told, or what to know of it.
-    """
-
-    requirement: Requirement
-    what: str
-    word: str
-    probability: float | None
-    mean: Estimate | None
-    day: datetime.date | None
-    images: int
-    more_images: int | None
-    reason: str = ""
-    nearest: datetime.date | None = None
-
-    @property
-    def summary(self) -> str:
-        """The answer in a sentence."""
-        what = f"{self.what}: " if self.what else ""
-        asked = self.requirement.sentence
-        if self.mean is None or self.probability is None:
-            return f"{what}{asked} {self.word}: {self.reason}."
-        text = (
-            f"{what}{asked} is {self.word}" if self.word != OPEN else f"{what}{asked} {self.word}"
-        )
-        chance = written_probability(self.probability)
-        text += f" (probability of being met {chance}): {_interval(self.mean)}"
-        if self.day is not None:
-            text += f" on {self.day}"
-        text += f", {counted(self.images, 'image')}."
-        if self.word == OPEN:
-            text += f" {self.advice}"
-        return f"{text} {self.reason}".rstrip()
-
-    @property
-    def advice(self) -> str:
-        """How many more images would tell."""
-        if self.nearest is not None:
-            return (
-                f"The nearest image is of {self.nearest}: until there are some of about "
-                f"{self.day}, the drift is continued, and the deviation grows with it."
-            )
-        if self.more_images is None:
-            return "More images alone would not tell: the mean is too near the limit."
-        count = self.more_images
-        return f"About {counted(count, 'more image')} would tell."
-
-    def to_dict(self) -> dict[str, Any]:
-        """All fields for JSON; the requirement as it was written."""
-        return {
-            "requirement": self.requirement.model_dump(mode="json", exclude_none=True),
-            "what": self.what,
-            "word": self.word,
-            "probability": self.probability,
-            "mean": None if self.mean is None else self.mean.to_dict(),
-            "day": None if self.day is None else self.day.isoformat(),
-            "images": self.images,
-            "more_images": self.more_images,
-            "nearest": None if self.nearest is None else self.nearest.isoformat(),
-            "summary": self.summary,
-        }
-
-
-@dataclass(frozen=True)
-class SpecificationCheck:
-    """The answers to all requirements of a specification.
-
-    Attributes
-    ----------
-    title : str
-    answers : tuple of Answer
-        In the order of the requirements; one for each sensor, band, level and direction that a
-        requirement does not choose between.
-    """
-
-    title: str
-    answers: tuple[Answer, ...]
-
-    @property
-    def word(self) -> str:
-        """Of the whole: not met if one is not met, met if all are, else it cannot be told yet."""
-        words = {answer.word for answer in self.answers}
-        if NOT_MET in words:
-            return NOT_MET
-        return MET if words == {MET} else OPEN
-
-    @property
-    def summary(self) -> str:
-        """The word, and how many answers are of each."""
-        counts = {word: sum(answer.word == word for answer in self.answers)
-                  for word in (MET, NOT_MET, OPEN)}  # fmt: skip
-        listed = ", ".join(f"{count} {word}" for word, count in counts.items() if count)
-        return f"{self.title or 'The specification'}: {self.word} ({listed})"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Title, word and all answers for JSON."""
-        return {
-            "schema": "acutance/specification-check/1",
-            "title": self.title,
-            "word": self.word,
-            "summary": self.summary,
-            "answers": [answer.to_dict() for answer in self.answers],
-        }
+Unknown = Callable[[Mapping[str, Any]], str]
+"""Which names among filters occur nowhere in an archive, in a sentence; "" if all occur."""
 
 
 def check_specification(
-    specification: Specification, select: Select, events: Sequence[Event] = ()
+    specification: Specification,
+    select: Select,
+    events: Sequence[Event] = (),
+    *,
+    selection: Mapping[str, Any] = MappingProxyType({}),
+    unknown: Unknown = lambda _: "",
 ) -> SpecificationCheck:
     """Judge all requirements of a specification.
 
@@ -185,26 +61,70 @@ def check_specification(
         Rows of an archive by filters (`Requirement.selection`).
     events : sequence of Event, optional
         Dates at which the sensors may have changed.
+    selection : mapping, optional
+        More filters of an archive; those of a requirement go before them.
+    unknown : callable, optional
+        Which names among filters occur nowhere; "" if all do.
 
     Returns
     -------
     SpecificationCheck
+
+    Raises
+    ------
+    NothingSelectedError
+        If every requirement has such names, and nothing is left to be judged.
     """
     answers: list[Answer] = []
+    missing: list[str] = []
     for requirement in specification.requirement:
-        rows = select(requirement.selection)
-        found = [check_requirement(requirement, series, events)
-                 for series in all_series(rows, requirement.metric)]  # fmt: skip
-        answers += found or [_nothing(requirement)]
+        words = {**selection, **requirement.selection}
+        missing.append(unknown(words))
+        answers += _answers(requirement, select(words), words, missing[-1], events)
+    if all(missing) and not any(answer.images for answer in answers):
+        raise NothingSelectedError(f"no requirement can be judged: {_by_reason(missing)}")
     return SpecificationCheck(specification.title, tuple(answers))
 
 
-def _nothing(requirement: Requirement) -> Answer:
+def _by_reason(missing: Sequence[str]) -> str:
+    """What is missing, with the numbers of the requirements it is missed by."""
+    places: dict[str, list[str]] = {}
+    for number, reason in enumerate(missing, 1):
+        places.setdefault(reason, []).append(str(number))
+    return "; ".join(f"{reason} (requirement {', '.join(at)})" for reason, at in places.items())
+
+
+def _answers(
+    requirement: Requirement, rows: Columns, words: Mapping[str, Any], missing: str,
+    events: Sequence[Event],
+) -> list[Answer]:  # fmt: skip
+    """The answers to one requirement; of what is not there, why it cannot be told."""
+    found = [check_requirement(requirement, series, events)
+             for series in all_series(rows, requirement.metric)]  # fmt: skip
+    no_image = f"there is no image{_trusted_words(requirement)}"
+    if missing:
+        # Of a name that is mistyped no image will ever be there.
+        found.append(_nothing(requirement, _asked_words(words), missing, more_images=None))
+    elif not found:
+        found.append(_nothing(requirement, _asked_words(words), no_image))
+    if words.get("orientation") is None:
+        for what, other in unmeasured_directions(rows):
+            advice = f'for {other} alone, state orientation = "{other}" in the requirement'
+            found.append(_nothing(requirement, what, f"{no_image} ({advice})"))
+    return found
+
+
+def _asked_words(words: Mapping[str, Any]) -> str:
+    """Whose measurements are asked for: "QB02 or K3, pan"."""
+    chosen = (words.get(name) for name in ("sensor", "band", "orientation"))
+    return ", ".join(one if isinstance(one, str) else " or ".join(one) for one in chosen if one)
+
+
+def _nothing(
+    requirement: Requirement, what: str, reason: str, more_images: int | None = MIN_IMAGES
+) -> Answer:
     """Nothing in the archive is what a requirement is about."""
-    chosen = (requirement.selection.get(name) for name in ("sensor", "band", "orientation"))
-    what = ", ".join(one if isinstance(one, str) else " or ".join(one) for one in chosen if one)
-    reason = f"there is no image{_trusted_words(requirement)}"
-    return Answer(requirement, what, OPEN, None, None, None, 0, MIN_IMAGES, reason)
+    return Answer(requirement, what, OPEN, None, None, None, 0, more_images, reason)
 
 
 def check_requirement(
@@ -334,16 +254,3 @@ def _images_that_tell(
         return None
     count = max(1, ceil(square * (1 / wanted - 1 / now)))
     return count if count <= _MOST else None
-
-
-def _interval(mean: Estimate) -> str:
-    """A mean with its 95 % interval, which is that of the density the probability is of.
-
-    A deviation would be read with a normal density, whose tails are shorter than Student's.
-    """
-    value, _, std = str(mean).partition(" ± ")
-    if not std:
-        return value
-    digits = len(value.partition(".")[2])
-    low, high = mean.interval(0.95)
-    return f"{value} (95 %: {low:.{digits}f} to {high:.{digits}f})"

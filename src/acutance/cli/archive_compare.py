@@ -64,7 +64,7 @@ def compare(
                     "comparisons": [one.to_dict() for one in found]}  # fmt: skip
         typer.echo(json_text(document))
     if not any(one.differences for one in found):
-        fail(found[0].summary.rstrip("."), NOTHING_MEASURED)
+        fail(found[0].summary, NOTHING_MEASURED)
     if not as_json:
         for one in found:
             typer.echo(one.summary)

@@ -12,13 +12,15 @@ import pytest
 
 import acutance as ac
 from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
+from acutance.archive.specification import Specification
 from acutance.archive.trends import Event, Series, fit_trend
 from acutance.errors import OptionError
 from acutance.report.archive import sensor_page, trend_figure, trend_page
-from acutance.report.archive.sensor_tables import images_table
+from acutance.report.archive.sensor_state import states_of
+from acutance.report.archive.sensor_tables import images_table, specification_table, state_table
 from acutance.report.archive.trend_page import trend_verdict
-from acutance.report.archive.wording import signed, with_minus
-from acutance.report.labels import MISSING
+from acutance.report.archive.wording import percent, signed, with_minus
+from acutance.report.labels import MISSING, word_estimate
 from acutance.targets import Rejected
 
 BEGIN = datetime(2024, 1, 10, 10, tzinfo=UTC)
@@ -134,6 +136,26 @@ def test_the_page_of_a_sensor_has_its_state_changes_and_images(archive):
     assert "By target, across" in page
 
 
+def test_every_number_of_the_state_has_its_own_drift(archive):
+    """Drift and changes of a width stood beside the MTF alone."""
+    rows = archive.measurements(sensor="QB02", verdict="usable")
+    states = states_of(rows, "QB02", "fwhm_m", [REFOCUS])
+    table = state_table(states)
+    assert table.columns[4:6] == ("FWHM on the ground [m]", "MTF at Nyquist")
+    assert table.columns[-1] == "Changes of FWHM on the ground"
+    (row,) = table.rows
+    for at, metric in ((4, "fwhm_m"), (5, "mtf_nyquist")):
+        level, drift = row[at].splitlines()
+        trend = archive.trend(
+            metric, sensor="QB02", orientation="across", verdict="usable", events=[REFOCUS]
+        )
+        assert level == word_estimate(trend.level).value_and_std
+        assert drift == f"{percent(trend.relative_rate_per_year)} a year"
+    assert "2025-01-01 refocus" in row[-1]
+    page = words_of(sensor_page(archive, "QB02", metric="fwhm_m"))
+    assert "below it the drift of that number" in page
+
+
 def test_across_and_along_are_compared_at_the_top(tmp_path, edge_record):
     rng = np.random.default_rng(2)
     with Archive(tmp_path / "both.db") as made:
@@ -157,6 +179,26 @@ def test_across_and_along_are_compared_at_the_top(tmp_path, edge_record):
     assert "First minus second" in page
 
 
+def test_sentences_and_tables_have_one_sign(tmp_path, edge_record):
+    """The larger one came first in the sentence, the first one in the table."""
+    with Archive(tmp_path / "both.db") as made:
+        for at in range(24):
+            number = {**edge_record.document["mtf_nyquist"], "value": 0.3 + 0.001 * (at % 5)}
+            direction = "along" if at % 2 else "across"
+            number["value"] += 0.001 * (at % 2)
+            shown = {"orientation": direction, "measured_directions": [direction], "budget": []}
+            document = {**edge_record.document, "mtf_nyquist": number, **shown}
+            day = BEGIN + timedelta(days=30 * (at // 2))
+            image = ImageEntry(path=f"{at // 2:02d}.tif", sensor="QB02", acquired=day)
+            made.add_entries([Entry(record=ac.Record(document), image=image, key=str(at))])
+        page = words_of(sensor_page(made, "QB02"))
+        relative = made.compare("mtf_nyquist").differences[0].relative
+    assert relative.value < 0
+    assert f">{percent(relative)}<" in page
+    low, high = (f"{100 * end:+.1f}".replace("-", "−") for end in relative.interval())
+    assert f"across minus along, 95 %: {low} to {high} %" in page
+
+
 def test_requirements_come_first(archive, tmp_path):
     spec = tmp_path / "spec.toml"
     spec.write_text(SPEC, encoding="utf-8")
@@ -164,6 +206,24 @@ def test_requirements_come_first(archive, tmp_path):
     assert page.index("across track: ") < page.index("falls by")
     assert '<div class="verdict good"><p>across track' in page
     assert '<div class="verdict invalid"><p>sharp' in page
+    assert "More images: how many would tell" in page
+
+
+def test_the_table_of_a_specification_has_the_words_of_its_sentences(archive):
+    told = {"metric": "mtf_nyquist", "orientation": "across"}
+    spec = Specification.of({"requirement": [{**told, "minimum": 0.9}, {**told, "maximum": 0.9}]})
+    check = archive.check(spec)
+    table = specification_table(check)
+    assert [row[table.columns.index("Probability")] for row in table.rows] == ["< 0.001", "> 0.999"]
+    assert table.columns[0] == "Of"
+    assert len(table.align) == len(table.columns) == len(table.rows[0])
+    assert "More images: how many would tell" in table.notes[0]
+    named = Specification.of(
+        {"requirement": [{**told, "minimum": 0.9, "name": "sharp"}, {**told, "maximum": 0.9}]}
+    )
+    table = specification_table(archive.check(named))
+    assert [row[0] for row in table.rows] == ["sharp", MISSING]
+    assert [row[2] for row in table.rows] == ["mtf_nyquist >= 0.9", "mtf_nyquist <= 0.9"]
 
 
 def test_curves_of_bands_are_drawn_apart(tmp_path, edge_record):
@@ -198,6 +258,24 @@ def test_undated_images_of_bands_that_are_not_named(tmp_path, edge_record):
     assert "of one image, which shows no trend" in page
 
 
+def test_a_sensor_without_a_name_has_a_title_and_the_note_of_the_check(tmp_path, edge_record):
+    with Archive(tmp_path / "unnamed.db") as made:
+        for at in range(6):
+            record = ac.Record({**edge_record.document, "gsd_m": 10.0 if at < 4 else 20.0})
+            image = ImageEntry(path=f"B{at}.tif", content=f"{at:064x}")
+            made.add_entries([Entry(record=record, image=image, key=str(at))])
+        page = words_of(sensor_page(made, ""))
+        told = {"metric": "mtf_nyquist", "minimum": 0.1, "orientation": "across"}
+        answers = made.check(Specification.of({"requirement": [told]})).answers
+        with pytest.raises(OptionError, match=r"sensors are '' \(not named\): name another"):
+            sensor_page(made, "QB02")
+    assert "<title>Sensor not named</title>" in page
+    for answer, images in zip(answers, (4, 2), strict=True):
+        note = f"No sensor and no band is named: {images} images are taken to be of one."
+        assert note in answer.reason
+        assert f"<b>note</b>: {note}" in page
+
+
 def test_bands_are_in_the_order_of_their_numbers(tmp_path, edge_record):
     with Archive(tmp_path / "bands.db") as made:
         for band in ("B11", "B8A", "B2"):
@@ -207,7 +285,7 @@ def test_bands_are_in_the_order_of_their_numbers(tmp_path, edge_record):
     for before in ('<td class="l">', "<figcaption>"):
         places = [page.index(f"{before}{band}") for band in ("B2", "B8A", "B11")]
         assert places == sorted(places)
-    assert f'<td class="l">{BEGIN:%Y-%m-%d}</td>' in page
+    assert f'<td class="r">{BEGIN:%Y-%m-%d}</td>' in page
 
 
 def test_numbers_of_a_table_have_the_digits_of_their_deviations(archive):
@@ -232,7 +310,7 @@ def test_an_image_dated_to_the_day_has_no_time(tmp_path, edge_record):
 
 
 def test_a_sensor_that_is_not_there_is_named(archive):
-    with pytest.raises(OptionError, match="0 measurements of QB03"):
+    with pytest.raises(OptionError, match=r"0 measurements of 'QB03'.* sensors are QB02:"):
         sensor_page(archive, "QB03")
     with pytest.raises(OptionError, match="no metric 'mtf'"):
         sensor_page(archive, "QB02", metric="mtf")

@@ -21,7 +21,12 @@ from acutance.archive.comparisons.difference import (
     is_of_pixels,
 )
 from acutance.archive.comparisons.group_comparison import GroupComparison, GroupScatter
-from acutance.archive.comparisons.groups import MeasuredGroup, Stratum, strata_of
+from acutance.archive.comparisons.groups import (
+    MeasuredGroup,
+    Stratum,
+    group_names,
+    strata_of,
+)
 from acutance.archive.comparisons.means import difference_of_means
 from acutance.archive.comparisons.pairing import find_pairs
 from acutance.archive.comparisons.random_difference import RandomDifference
@@ -80,8 +85,9 @@ def compare_groups(
         if len(stratum.groups) >= _SEVERAL:
             scatters.append(_scatter(stratum, by, found))
     return GroupComparison(
-        metric=metric, by=by, differences=tuple(differences), scatters=tuple(scatters)
-    )
+        metric=metric, by=by, groups=group_names(rows, metric, by),
+        differences=tuple(differences), scatters=tuple(scatters),
+    )  # fmt: skip
 
 
 def _differences(stratum: Stratum, metric: str, by: str, margin: float) -> Iterator[Difference]:

@@ -118,20 +118,20 @@ class Difference:
 
     @property
     def _answer_words(self) -> str:
-        sign = -1 if self.relative.value < 0 else 1
+        differ = self.answer == "differ"
+        sign = -1 if differ and self.relative.value < 0 else 1
         relative = sign * self.relative
         low, high = (100 * end for end in relative.interval(LEVEL))
         digits = 2 if high - low < 1 else 1
         ends = f"95 %: {low:+.{digits}f} to {high:+.{digits}f} %"
-        if self.answer == "differ":
+        if differ:
             less = f", less than {100 * self.margin:g} %" if high / 100 <= self.margin else ""
             unsigned = ends.replace("+", "")
             return f"{self._larger_words} by {100 * relative} %{less} ({self.metric}, {unsigned})"
         pair = f"{self.first} and {self.second}"
         if low != low:
             return f"whether {pair} differ cannot be told ({self.metric}, without deviations)"
-        first, second = (self.first, self.second) if sign > 0 else (self.second, self.first)
-        ends = f"{self.metric}, {first} minus {second}, {ends}"
+        ends = f"{self.metric}, {self.first} minus {self.second}, {ends}"
         if self.answer == "agree":
             return f"{pair} agree within {100 * self.margin:g} % ({ends})"
         if self._is_of_few_images:

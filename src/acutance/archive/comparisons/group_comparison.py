@@ -9,6 +9,7 @@ from html import escape
 from typing import Any
 
 from acutance.archive.comparisons.difference import Difference
+from acutance.archive.comparisons.groups import NEVER_MIXED
 from acutance.curves import Estimate
 
 __all__ = ["GroupComparison", "GroupScatter"]
@@ -71,6 +72,8 @@ class GroupComparison:
     Attributes
     ----------
     metric, by : str
+    groups : tuple of str
+        Names of all that occur, whether there is another one to compare each with or not.
     differences : tuple of Difference
         Of every two groups of one sensor, band, product level and direction; empty where there
         are no two.
@@ -80,13 +83,35 @@ class GroupComparison:
 
     metric: str
     by: str
+    groups: tuple[str, ...]
     differences: tuple[Difference, ...]
     scatters: tuple[GroupScatter, ...]
 
     @property
     def summary(self) -> str:
-        """All answers, a line each."""
-        return "\n".join(self._lines()) or f"There are no two {self.by}s to be compared."
+        """All answers, a line each; where there is none, why."""
+        return "\n".join(self._lines()) or self._nothing
+
+    @property
+    def _nothing(self) -> str:
+        """What was found in place of two groups, and what to do."""
+        nothing = f"there are no two {self.by}s to be compared"
+        if not self.groups:
+            return (
+                f"{nothing}: no measurement has {self.metric} and a known {self.by}; compare "
+                "another number, or by something else"
+            )
+        listed = ", ".join(self.groups)
+        if len(self.groups) == 1:
+            return (
+                f"{nothing}: all measurements are of one {self.by}, {listed}; add measurements of "
+                "another one, or widen the filters"
+            )
+        same = " and ".join(name for name in NEVER_MIXED if name != self.by)
+        return (
+            f"{nothing}: there are {listed}, but no two of them with the same {same}; add such "
+            "measurements, or compare by something else"
+        )
 
     def _lines(self) -> Iterator[str]:
         for one in self.differences:
@@ -99,6 +124,7 @@ class GroupComparison:
         return {
             "metric": self.metric,
             "by": self.by,
+            "groups": list(self.groups),
             "differences": [one.to_dict() for one in self.differences],
             "scatters": [one.to_dict() for one in self.scatters],
         }

@@ -15,11 +15,19 @@ from acutance.curves import METRICS
 from acutance.curves.grid import Floats
 from acutance.errors import NothingSelectedError, OptionError
 
-__all__ = ["COMPARED", "MeasuredGroup", "Stratum", "Target", "strata_of"]
+__all__ = [
+    "COMPARED",
+    "NEVER_MIXED",
+    "MeasuredGroup",
+    "Stratum",
+    "Target",
+    "group_names",
+    "strata_of",
+]
 
 COMPARED: Final = ("orientation", "method", "kind", "band", "level", "sensor", "site", "target")
 """What can be compared."""
-_NEVER_MIXED: Final = ("sensor", "band", "level", "orientation")
+NEVER_MIXED: Final = ("sensor", "band", "level", "orientation")
 _MAX_GROUPS: Final = 12
 """More groups have more pairs than anybody reads."""
 _UNKNOWN: Final = "unknown"
@@ -93,12 +101,8 @@ def strata_of(rows: Columns, metric: str, by: str) -> Iterator[Stratum]:
     OptionError
         If there is no such metric or group, there are no rows, or too many groups.
     """
-    _require(rows, metric, by)
-    known = np.isfinite(rows[metric])
-    if by not in _ALWAYS_KNOWN:
-        known &= np.array([one is not None for one in rows[by].tolist()], bool)
-    rows = Columns({name: column[known] for name, column in rows.columns.items()})
-    fixed = [name for name in _NEVER_MIXED if name != by]
+    rows = _comparable(rows, metric, by)
+    fixed = [name for name in NEVER_MIXED if name != by]
     keys = list(zip(*(_words(rows, name) for name in fixed), strict=True))
     strata, of_stratum = _numbered(keys)
     names, of_name = _numbered(_words(rows, by))
@@ -115,6 +119,27 @@ def strata_of(rows: Columns, metric: str, by: str) -> Iterator[Stratum]:
             )
         groups = tuple(_group(rows, metric, names[one], own & (of_name == one)) for one in found)
         yield Stratum(", ".join(part for part in strata[at] if part != _UNKNOWN), groups)
+
+
+def group_names(rows: Columns, metric: str, by: str) -> tuple[str, ...]:
+    """Names of all groups in order, whether there is another one to compare each with or not.
+
+    Parameters
+    ----------
+    rows : Columns
+    metric, by : str
+        As of `strata_of`.
+    """
+    return tuple(sorted(set(_words(_comparable(rows, metric, by), by))))
+
+
+def _comparable(rows: Columns, metric: str, by: str) -> Columns:
+    """Rows with a number, of which what is compared is known."""
+    _require(rows, metric, by)
+    known = np.isfinite(rows[metric])
+    if by not in _ALWAYS_KNOWN:
+        known &= np.array([one is not None for one in rows[by].tolist()], bool)
+    return Columns({name: column[known] for name, column in rows.columns.items()})
 
 
 def _numbered(words: Sequence[_Word]) -> tuple[list[_Word], NDArray[np.int64]]:

@@ -25,10 +25,12 @@ __all__ = [
     "gsd_words",
     "one_series",
     "random_and_systematic",
+    "unmeasured_directions",
     "years_of",
 ]
 
-_ONE_OF = ("sensor", "band", "level", "orientation")
+_PRODUCT = ("sensor", "band", "level")
+_ONE_OF = (*_PRODUCT, "orientation")
 """What a trend is of one of."""
 _MIXED = ("method", "kind")
 """What differs in how it measures: its change looks like one of the sensor."""
@@ -77,15 +79,43 @@ def all_series(rows: Columns, metric: str) -> Iterator[Series]:
     metric : str
     """
     _require_metric(metric)
-    keys = [tuple(one) for one in zip(*(rows[name].tolist() for name in _ONE_OF), strict=True)]
-    index = {key: at for at, key in enumerate(dict.fromkeys(keys))}
-    label = np.array([index[key] for key in keys], int)
-    for key in sorted(index, key=lambda one: tuple(map(natural_key, one))):
-        ours = label == index[key]
+    for ours in _masks_by(rows, _ONE_OF):
         classes = by_gsd(rows, ours)
         for mask in classes:
             size = gsd_words(rows["gsd_m"][mask]) if len(classes) > 1 else None
             yield _series(rows, metric, mask, size)
+
+
+def unmeasured_directions(rows: Columns) -> Iterator[tuple[str, str]]:
+    """What was measured in one direction alone: the series that is not there, and the direction.
+
+    ("QB02, pan, along", "across") where there are rows across and none along.
+
+    Parameters
+    ----------
+    rows : Columns
+    """
+    for ours in _masks_by(rows, _PRODUCT):
+        classes = by_gsd(rows, ours)
+        alone = [mask for mask in classes if len(set(rows["orientation"][mask].tolist())) == 1]
+        across = [mask for mask in alone if rows["orientation"][mask][0] == "across"]
+        # Of pixels that are far from square across and along are classes of their own.
+        if 2 * len(across) == len(alone):
+            continue
+        for mask in alone:
+            size = gsd_words(rows["gsd_m"][mask]) if len(classes) > 1 else None
+            measured = str(rows["orientation"][mask][0])
+            other = "along" if measured == "across" else "across"
+            yield _title(rows, mask, size, other), measured
+
+
+def _masks_by(rows: Columns, names: tuple[str, ...]) -> Iterator[NDArray[np.bool_]]:
+    """A mask for each combination of words of some columns, in natural order."""
+    keys = [tuple(one) for one in zip(*(rows[name].tolist() for name in names), strict=True)]
+    index = {key: at for at, key in enumerate(dict.fromkeys(keys))}
+    label = np.array([index[key] for key in keys], int)
+    for key in sorted(index, key=lambda one: tuple(map(natural_key, one))):
+        yield label == index[key]
 
 
 def by_gsd(rows: Columns, mask: NDArray[np.bool_] | None = None) -> list[NDArray[np.bool_]]:
@@ -117,6 +147,13 @@ def _require_metric(metric: str) -> None:
         raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRICS)}")
 
 
+def _title(rows: Columns, mask: NDArray[np.bool_], size: str | None, orientation: str) -> str:
+    """What the rows of a mask are of: "QB02, pan, across"."""
+    sensor, band, level = (rows[name][mask][0] for name in _PRODUCT)
+    parts = (sensor, _band_words(band), level, size, orientation)
+    return ", ".join(str(part) for part in parts if part is not None)
+
+
 def _band_words(band: str | None) -> str | None:
     """The name of a band; of one that is known by its number alone, that it is a band."""
     return f"band {band}" if band is not None and band.isdecimal() else band
@@ -134,13 +171,11 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | Non
     std, systematic = random_and_systematic(rows, metric, mask)
     image = rows["image_id"][mask]
     names = dict(zip(image.tolist(), rows["image"][mask].tolist(), strict=True))
-    sensor, band, level, orientation = (rows[name][mask][0] for name in _ONE_OF)
-    title = (sensor, _band_words(band), level, size, orientation)
     return Series(
         metric=metric, when=years_of(rows["acquired"][mask]), value=value, std=std,
         systematic_std=systematic, image=image, gsd_m=rows["gsd_m"][mask],
         image_names={number: name for number, name in names.items() if name is not None},
-        name=", ".join(str(part) for part in title if part is not None),
+        name=_title(rows, mask, size, rows["orientation"][mask][0]),
         notes=(*_unnamed(rows, mask), *_mixed(rows, mask)),
     )  # fmt: skip
 

@@ -10,7 +10,7 @@ from acutance.archive.comparison_margin import MARGIN
 from acutance.archive.comparisons import compare_groups
 from acutance.curves import MAIN_NUMBERS
 from acutance.errors import OptionError
-from acutance.report.archive.wording import percent
+from acutance.report.archive.wording import percent, with_minus
 from acutance.report.html import Table
 from acutance.report.labels import METRIC_WORDS, MISSING
 
@@ -56,7 +56,7 @@ class SensorComparisons:
             several = {one.of for one in main.scatters}
             lines += [one.sentence for one in main.differences if one.of not in several]
             lines += [one.sentence for one in main.scatters]
-        return [self.without_sensor(line) for line in lines[:_MAX_SENTENCES]]
+        return [with_minus(self.without_sensor(line)) for line in lines[:_MAX_SENTENCES]]
 
     def without_sensor(self, text: str) -> str:
         """A text that begins with the sensor, without it."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 from acutance.archive import Archive
@@ -24,12 +25,13 @@ from acutance.report.archive.sensor_tables import (
     state_table,
 )
 from acutance.report.archive.trend_page import trend_plate, trend_verdict
+from acutance.report.archive.wording import with_minus
 from acutance.report.html import Section, Verdict, render_page
 from acutance.report.labels import METRIC_WORDS, word_estimate
 
 if TYPE_CHECKING:
     from acutance.archive.measurements import Measurements, Rejections
-    from acutance.archive.specification_check import Answer, SpecificationCheck
+    from acutance.archive.requirement_answers import Answer, SpecificationCheck
     from acutance.archive.trends import Event
 
 __all__ = ["sensor_page"]
@@ -54,6 +56,7 @@ def sensor_page(
     ----------
     archive : Archive
     sensor : str
+        "" of images that name none.
     metric : str, optional
         What is drawn through time.
     specification : path, optional
@@ -77,27 +80,30 @@ def sensor_page(
     every, rejected = archive.measurements(sensor=sensor), archive.rejected(sensor=sensor)
     rows = archive.measurements(sensor=sensor, verdict=verdict)
     if not len(rows):
-        known = [one.sensor for one in archive.overview().sensors if one.sensor is not None]
+        sensors = archive.overview().sensors
+        known = [one.sensor or "'' (not named)" for one in sensors if one.measured]
         raise NothingSelectedError(
-            f"archive {archive.place} holds {len(every)} measurements of {sensor}, none of them "
+            f"archive {archive.place} holds {len(every)} measurements of {sensor!r}, none of them "
             f"{verdict} or better; its sensors are {', '.join(known) or 'not known'}: name another "
             "sensor, or a lower verdict"
         )
-    rows = with_gsd_bands(rows)
+    # Told apart by their GSD here, too, and with the note that their band is not named.
     states = states_of(rows, sensor, metric, events)
+    rows = with_gsd_bands(rows)
     check = None
     if specification is not None:
         check = archive.check(specification, events=events, sensor=sensor)
     comparisons = comparisons_of(rows, sensor, metric)
     content = (
-        _answer_section(states, check, comparisons),
+        *_answer_sections(states, check, comparisons),
         *_trend_sections(states, check),
         *map(Section.of_table, comparison_tables(comparisons)),
         *_curve_sections(rows),
         *map(Section.of_table, means_tables(rows)),
         *_list_sections(every, rejected, command),
     )
-    return render_page(sensor, "What its measurements say", content, _facts(every, rejected, rows))
+    title = sensor or "Sensor not named"
+    return render_page(title, "What its measurements say", content, _facts(every, rejected, rows))
 
 
 def _facts(every: Measurements, rejected: Rejections, used: Measurements) -> dict[str, str]:
@@ -105,9 +111,9 @@ def _facts(every: Measurements, rejected: Rejections, used: Measurements) -> dic
     return {"measured": str(measured), "used": str(taken), "rejected": str(len(rejected))}
 
 
-def _answer_section(
+def _answer_sections(
     states: Sequence[SeriesState], check: SpecificationCheck | None, comparisons: SensorComparisons
-) -> Section:
+) -> list[Section]:
     """Specification, changes and comparisons first; then the state of every direction."""
     answers = check.answers if check else ()
     verdicts = (
@@ -118,7 +124,7 @@ def _answer_section(
     tables = [state_table(states)]
     if check is not None:
         tables.insert(0, specification_table(check))
-    return Section("Result", verdicts=verdicts, tables=tuple(tables))
+    return [Section("Result", verdicts=verdicts), *map(Section.of_table, tables)]
 
 
 def _answer_verdict(answer: Answer) -> Verdict:
@@ -127,6 +133,13 @@ def _answer_verdict(answer: Answer) -> Verdict:
 
 
 def _state_verdict(state: SeriesState) -> Verdict:
+    """The state in a sentence, with what has to be known of its measurements."""
+    found = _changes_verdict(state)
+    notes = (("note", with_minus(text)) for text in state.notes)
+    return replace(found, details=(*found.details, *notes))
+
+
+def _changes_verdict(state: SeriesState) -> Verdict:
     label = f"{state.name}: " if state.name else ""
     if state.trend is not None:
         return trend_verdict(state.trend, label=label)

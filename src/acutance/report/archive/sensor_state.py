@@ -35,6 +35,8 @@ class SeriesState:
     measurements, images : int
     days : tuple of date
         Of the first and of the last image; empty where none has a date.
+    notes : tuple of str
+        What has to be known of the measurements, in sentences.
     """
 
     name: str
@@ -43,6 +45,7 @@ class SeriesState:
     measurements: int
     images: int
     days: tuple[date, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def trend(self) -> Trend | None:
@@ -88,5 +91,7 @@ def states_of(
         when = known.when[np.isfinite(known.when)]
         days = (date_of(float(when.min())), date_of(float(when.max()))) if when.size else ()
         images = len(set(known.image.tolist()))
-        states.append(SeriesState(name, metric, found, known.size, images, days))
+        drawn = found[metric]
+        notes = drawn.notes if isinstance(drawn, Trend) else main.notes
+        states.append(SeriesState(name, metric, found, known.size, images, days, notes))
     return states

@@ -11,7 +11,7 @@ import numpy as np
 
 from acutance.archive.columns import Columns
 from acutance.archive.dates import day_or_minute
-from acutance.archive.specification_check import SpecificationCheck
+from acutance.archive.requirement_answers import Answer, SpecificationCheck
 from acutance.archive.tables_by import MeasurementTable, table_by
 from acutance.archive.trends import Trend
 from acutance.curves import MAIN_NUMBERS
@@ -19,6 +19,7 @@ from acutance.report.archive.sensor_state import SeriesState
 from acutance.report.archive.wording import event_percent, interval_words, percent
 from acutance.report.html import Table
 from acutance.report.labels import METRIC_WORDS, MISSING, metric_words, word_estimate
+from acutance.targets.conformity import written_probability
 
 __all__ = ["images_table", "means_tables", "rejected_table", "specification_table", "state_table"]
 
@@ -30,27 +31,34 @@ _VERDICTS = ("good", "usable", "doubtful", "invalid")
 
 
 def state_table(states: Sequence[SeriesState]) -> Table:
-    """Every band and direction: numbers on the day of the last image, and the drift."""
+    """Every band and direction: numbers on the day of the last image, and their drift."""
+    metrics = tuple(states[0].found)
     rows: list[tuple[str, ...]] = []
     for one in states:
         trend = one.trend
         rows.append((
             one.name, str(one.images), str(one.measurements),
             str(trend.last) if trend else _span(one.days),
-            *(word_estimate(one.level(metric)).value_and_std for metric in MAIN_NUMBERS),
-            percent(trend.relative_rate_per_year) if trend else MISSING,
+            *(_level_and_drift(one, metric) for metric in metrics),
             "\n".join(_changes(trend)) if trend else MISSING,
         ))  # fmt: skip
-    labels = (metric_words(name).label_with_unit for name in MAIN_NUMBERS)
+    labels = (metric_words(name).label_with_unit for name in metrics)
     drawn = METRIC_WORDS[states[0].metric].label
     return Table(
-        ("", "Images", "Measurements", "On", *labels, "Drift a year", "Changes"),
-        tuple(rows), "lrrlrrrrl", title="State",
+        ("", "Images", "Measurements", "On", *labels, f"Changes of {drawn}"),
+        tuple(rows), f"lrrr{'r' * len(metrics)}l", title="State",
         notes=(
-            "The sensor's mean on the day of its last image, without the season; where there is no "
-            f"trend the mean of all images. Drift and changes are those of the {drawn}.",
+            "The sensor's mean on the day of its last image, without the season, and below it the "
+            "drift of that number; where there is no trend the mean of all images.",
         ),
     )  # fmt: skip
+
+
+def _level_and_drift(state: SeriesState, metric: str) -> str:
+    level, found = word_estimate(state.level(metric)).value_and_std, state.found[metric]
+    if not isinstance(found, Trend):
+        return level
+    return f"{level}\n{percent(found.relative_rate_per_year)} a year"
 
 
 def _span(days: tuple[date, ...]) -> str:
@@ -66,28 +74,32 @@ def _changes(trend: Trend) -> list[str]:
 
 def specification_table(check: SpecificationCheck) -> Table:
     """Every requirement with its answer."""
-    rows: list[tuple[str, ...]] = []
-    alerts = set()
-    for answer in check.answers:
-        if answer.word != "met":
-            alerts.add(len(rows))
-        mean = answer.mean
-        rows.append((
-            answer.requirement.name or answer.requirement.sentence, answer.what,
-            answer.requirement.sentence, answer.word,
-            MISSING if answer.probability is None else f"{answer.probability:.3f}",
-            MISSING if mean is None else word_estimate(mean).value,
-            MISSING if mean is None else interval_words(mean),
-            str(answer.images), MISSING if answer.more_images is None else str(answer.more_images),
-        ))  # fmt: skip
+    rows = [_answer_row(answer) for answer in check.answers]
+    columns = ["Requirement", "Of", "Limit", "Answer", "Probability", "Mean", "95 %", "Images",
+               "More images"]  # fmt: skip
+    align = "lllllrrrr"
+    if not any(answer.requirement.name for answer in check.answers):
+        # The limit is what tells requirements without names apart.
+        rows, columns, align = [row[1:] for row in rows], columns[1:], align[1:]
+    alerts = (at for at, answer in enumerate(check.answers) if answer.word != "met")
     return Table(
-        ("Requirement", "Of", "Limit", "Answer", "Probability", "Mean", "95 %", "Images", "More"),
-        tuple(rows), "lllllrrrr", alerts=frozenset(alerts), title="Specification",
+        tuple(columns), tuple(rows), align, alerts=frozenset(alerts), title="Specification",
         notes=(
             "Probability: that the sensor's mean over the year (without the season) meets the "
-            "limit; 95 %: the interval of the same density. More: images that would tell, if the "
-            "mean is what it is now.",
+            "limit; 95 %: the interval of the same density. More images: how many would tell, if "
+            "the mean is what it is now; 0 where it is told.",
         ),
+    )  # fmt: skip
+
+
+def _answer_row(answer: Answer) -> tuple[str, ...]:
+    mean, chance = answer.mean, answer.probability
+    return (
+        answer.requirement.name or MISSING, answer.what, answer.requirement.sentence, answer.word,
+        MISSING if chance is None else written_probability(chance),
+        MISSING if mean is None else word_estimate(mean).value,
+        MISSING if mean is None else interval_words(mean),
+        str(answer.images), MISSING if answer.more_images is None else str(answer.more_images),
     )  # fmt: skip
 
 
