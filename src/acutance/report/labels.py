@@ -81,6 +81,10 @@ class MetricWords:
         """The label, with the unit in brackets where there is one."""
         return f"{self.label} [{self.unit}]" if self.unit else self.label
 
+    def of(self, value: str) -> str:
+        """A value in a sentence: its label before it, its unit behind."""
+        return f"{self.label} {value} {self.unit}".rstrip()
+
 
 METRIC_WORDS = {
     "width_px": MetricWords("Width", "px", "Width of the pulse along its normal."),

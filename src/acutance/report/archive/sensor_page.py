@@ -144,7 +144,7 @@ def _changes_verdict(state: SeriesState) -> Verdict:
     if state.trend is not None:
         return trend_verdict(state.trend, label=label)
     words = word_estimate(state.level(state.metric)).value_and_std
-    what = f"{label}{METRIC_WORDS[state.metric].label} {words}"
+    what = f"{label}{METRIC_WORDS[state.metric].of(words)}"
     if state.images == 1:
         return Verdict("usable", f"{what}: of one image, which shows no trend.")
     days = "too few of them have dates, or they are of one day, for a trend"

@@ -98,7 +98,7 @@ def trend_verdict(trend: Trend, limit: float | None = None, label: str = "") -> 
     changed = bool(words)
     if not changed:
         words = [f"no change is found: {percent(rate)} a year"]
-    level = f"{METRIC_WORDS[trend.metric].label} {_value(trend.level)} on {trend.last}"
+    level = f"{METRIC_WORDS[trend.metric].of(_value(trend.level))} on {trend.last}"
     word: Literal["good", "doubtful"] = "doubtful" if changed else "good"
     details = [("season", text) for text in (with_minus(season_words(trend)),) if text]
     details += [("steps", text) for text in _open_steps(trend)]
