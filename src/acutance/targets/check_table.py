@@ -7,6 +7,7 @@ source were set by simulation: documentation, "Edges", "Pulses", "Points" and so
 
 from __future__ import annotations
 
+from acutance.targets.pair_questions import PAIR_QUESTIONS
 from acutance.targets.processing_questions import PROCESSING_QUESTIONS
 from acutance.targets.question import PLACES, Question
 from acutance.targets.scene_questions import SCENE_QUESTIONS
@@ -289,62 +290,6 @@ _PERIODIC = {
     ),
 }  # fmt: skip
 
-_PAIR = {
-    "ratio": Question(
-        "How many times finer are the high image's pixels?", ">=", 2.0,
-        "its own blur and aliasing count the less the finer it is", "Li et al. 5.2",
-    ),
-    "reference_mtf": Question(
-        "Which is the high image's own MTF at the low one's Nyquist frequency?", ">=", 0.5,
-        "it is divided out, and every per cent it is wrong by is in the result",
-        "Li et al. 5.1, 5.2",
-    ),
-    "reference_directions": Question(
-        "In how many directions was the reference measured?", ">=", 2.0,
-        "the one is taken for all: smear or asymmetry of its sensor is then in the result; combine "
-        "measurements in two directions, or use points or a star",
-    ),
-    "correlation": Question(
-        "How much do the low image and the blurred high one correlate?", ">=", 0.9,
-        "other bands, dates or views show other things", "Li et al. 5.1",
-    ),
-    "coherence": Question(
-        "Which share of the low image's detail at Nyquist does the high one explain?", ">=", 0.1,
-        "the rest is noise, aliasing and scene differences; choose a region with roads, "
-        "shorelines, buildings", "Li et al. 5.2", "note",
-    ),
-    "pixels": Question(
-        "How many low pixels were used?", ">=", 2000.0,
-        "the standard deviations fall with their root; choose a larger region", severity="note",
-    ),
-    "left_out": Question(
-        "Which share of the low pixels does not fit the rest?", "<=", 0.2,
-        "clouds, shadows, changes between the two dates, defects: mask them, or choose another "
-        "region",
-    ),
-    "registration_px": Question(
-        "How much do the images shift against each other from place to place?", "<=", 0.1,
-        "that blurs the kernel; choose a smaller region",
-    ),
-    "shift_px": Question(
-        "How far does the low image lie off its geometry?", "<=", 3.0,
-        "measured and allowed for, but a sign of a wrong pair or ratio", severity="note",
-    ),
-    "residual_correlation": Question(
-        "How much do neighbouring residuals correlate?", "<=", 0.2,
-        "the two bands have different colours, or the scene changed; the fit whitens the residuals "
-        "and the intervals allow for it, but a difference that looks like blur stays in the MTF",
-    ),
-    "inflation": Question(
-        "How many times more than white residuals explain do the regions scatter?", "<=", 2.0,
-        "the standard deviations were raised by that", severity="note",
-    ),
-    "iteration_change": Question(
-        "Did the parametric fit settle, change over threshold?", "<=", 1.0,
-        "allow more steps, or a larger threshold", "Li et al. 5.3",
-    ),
-}  # fmt: skip
-
 _COMBINED = {
     "agreement": Question(
         "Which is the chance of a larger chi-square, if the measurements agree?", ">=", 0.01,
@@ -394,7 +339,7 @@ _COMBINED = {
 }  # fmt: skip
 
 QUESTIONS: dict[str, Question] = {
-    **_ANY_TARGET, **PROCESSING_QUESTIONS, **_STRAIGHT, **_POINTS, **_PERIODIC, **_PAIR,
+    **_ANY_TARGET, **PROCESSING_QUESTIONS, **_STRAIGHT, **_POINTS, **_PERIODIC, **PAIR_QUESTIONS,
     **_COMBINED, **SCENE_QUESTIONS,
 }  # fmt: skip
 """All questions by name; each kind of target asks some of them."""

@@ -7,13 +7,15 @@ sees and the other does not is no noise, and limits real pairs.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from acutance.curves import Estimate
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.raster import Box, Fill, Image
-from acutance.targets.check import Check, Limits, answer
+from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.grid import PairGrid
 from acutance.targets.pair.kernel_fit import KernelFit
@@ -37,6 +39,7 @@ PAIR_CHECKS = (
     "registration_px",
     "shift_px",
     "residual_correlation",
+    "equal_blur",
     "inflation",
     "saturation",
     "undeclared_fill",
@@ -54,6 +57,7 @@ def check_pair(
     model: KernelOtf,
     spectra: PairSpectra | None,
     local: LocalFit,
+    difference: Estimate,
     limits: Limits,
     *,
     stop_change: float,
@@ -74,6 +78,8 @@ def check_pair(
     model : KernelOtf
     spectra : PairSpectra or None
     local : LocalFit
+    difference : Estimate
+        Variance of the blur of strong structures less that of weak ones, low pixels squared.
     limits : mapping of str to float
         Limits that the caller changed.
     stop_change : float
@@ -97,6 +103,7 @@ def check_pair(
         *_pixels(fit, limits),
         *_places(gaussian, local, limits),
         *_residuals(fit, model, limits),
+        _equal_blur(difference, limits),
         answer(
             "saturation", clipped, f"{100 * clipped:.2f} % of an image's pixels are clipped", limits
         ),
@@ -189,6 +196,18 @@ def _residuals(fit: KernelFit, model: KernelOtf, limits: Limits) -> Iterator[Che
         f"regions of the map scatter {model.inflation:.2f} times as much as white residuals explain"
     )
     yield answer("inflation", model.inflation, found, limits)
+
+
+def _equal_blur(difference: Estimate, limits: Limits) -> Check:
+    sigmas = min(abs(difference.value) / difference.std, MAX_RATIO) if difference.std > 0 else 0.0
+    found = "strong and weak structures are too few to compare how they are blurred"
+    if math.isfinite(difference.std):
+        size = Estimate(abs(difference.value), difference.std)
+        found = (
+            f"the blur of strong structures is {'wider' if difference.value > 0 else 'narrower'} "
+            f"than that of weak ones by a variance of {size} low pixels squared"
+        )
+    return answer("equal_blur", sigmas, found, limits)
 
 
 def _iteration(gaussian: GaussianFit, stop_change: float, limits: Limits) -> Check:

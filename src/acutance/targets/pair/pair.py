@@ -23,6 +23,7 @@ from acutance.targets.options import chosen_options
 from acutance.targets.pair import tuned
 from acutance.targets.pair.axis_gaussian import AxisGaussian
 from acutance.targets.pair.checks import check_pair
+from acutance.targets.pair.equal_blur import blur_difference
 from acutance.targets.pair.gaussian_fit import GaussianFit, fit_gaussian
 from acutance.targets.pair.grid import PairGrid, pair_grid
 from acutance.targets.pair.kernel_fit import KernelFit, fit_kernel
@@ -119,7 +120,8 @@ def measure_biresolution(
         transfer=Otf2d(model, info.pixel_gsd_m),
         snr=_snr(gaussian, pixel_fit),
         checks=check_pair(
-            tiles.grid, gaussian, pixel_fit, model, spectra, local, chosen.limits,
+            tiles.grid, gaussian, pixel_fit, model, spectra, local,
+            blur_difference(ground, tiles.taps, gaussian, pixel_fit), chosen.limits,
             stop_change=chosen.stop_change, clipped=_clipped(tiles), fills=tiles.fills(),
             images=tiles.parts, info=info, inverted=match.inverted,
         ),

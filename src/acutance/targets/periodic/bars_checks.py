@@ -6,12 +6,14 @@ from statistics import median
 
 import numpy as np
 
+from acutance.curves import Estimate
 from acutance.targets.check import Check, Limits, answer
 from acutance.targets.periodic.fit_bars import BarsSolution
 from acutance.targets.periodic.pattern_checks import (
     contrast_snr,
     correlated_noise,
     level,
+    nonlinearity,
     outliers,
     saturation,
     stated_levels,
@@ -24,7 +26,7 @@ __all__ = ["BARS_CHECKS", "bars_checks"]
 BARS_CHECKS = (
     "contrast_snr", "level", "stated_levels", "bars", "bar_directions", "coarsest_cpp",
     "finest_cpp", "misfit", "saturation", "undeclared_fill", "stated_gsd", *PROCESSING_CHECKS,
-    "correlated_noise", "outliers",
+    "nonlinearity", "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of bars."""
 
@@ -60,6 +62,7 @@ def bars_checks(
         undeclared_fill([region.fill], limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
+        nonlinearity(_curvature(solved), "bars", limits),
         correlated_noise(
             solved.correlation, solved.snr, limits,
             advice="the image was resampled, or the bars are not as they were taken to be (place, "
@@ -77,6 +80,11 @@ def _stated_levels(solved: BarsSolution, limits: Limits) -> tuple[Check, ...]:
     own = stated.levels.dark if solved.otf.level > 0 else stated.levels.bright
     seen = median(solved.backgrounds)
     return (stated_levels(stated, "beside the bars", seen, own, limits),)
+
+
+def _curvature(solved: BarsSolution) -> Estimate:
+    """From dark to bright: of dark bars the fit has it the other way round."""
+    return solved.curvature if solved.otf.level > 0 else solved.curvature * -1.0
 
 
 def _bars(solved: BarsSolution, limits: Limits) -> Check:

@@ -28,6 +28,7 @@ from acutance.numerics.noise import Correlation, correlation
 from acutance.numerics.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.bars_ends import OtfTable, end_effect, light_of_neighbours
 from acutance.targets.periodic.bars_pixels import GroupPixels, group_columns
+from acutance.targets.periodic.curvature import find_curvature
 from acutance.targets.periodic.otf_model import FittedOtf, level_row, mode_count
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
@@ -83,6 +84,8 @@ class BarsSolution:
         Of the residuals of neighbouring pixels.
     stated : StatedContrast or None
         The stated levels, if there are any.
+    curvature : Estimate
+        Of the characteristic of the values.
     """
 
     otf: FittedOtf
@@ -93,6 +96,7 @@ class BarsSolution:
     noise: float
     correlation: Correlation
     stated: StatedContrast | None
+    curvature: Estimate
 
     @property
     def snr(self) -> float:
@@ -212,6 +216,9 @@ def _fit_otf(
         ).otf
         seen = StatedContrast(levels, Estimate(abs(free.level), free.level_std))
     own = [_own(fitted, number) for number in range(len(pixels))]
+    modes = slice(_OWN * len(pixels), None)
+    bars = contrast * np.concatenate(scattered)
+    bars += fitted.design[:, modes] @ fitted.posterior.beta[modes]
     return BarsSolution(
         otf=fitted.otf,
         groups=pixels,
@@ -221,6 +228,7 @@ def _fit_otf(
         noise=fitted.noise,
         correlation=noise_found,
         stated=seen,
+        curvature=find_curvature(fitted, bars, fitted.otf.level, weight, noise_found.inflation),
     )
 
 
@@ -278,7 +286,7 @@ def _regression(
     prior = _prior(pixels, stated, mean, states, contrast, level_stated=levels is not None)
     posterior = prior.posterior(normal, variance, inflation, earlier=earlier)
     otf = FittedOtf(mean, posterior.beta[first:], posterior.factor[first:])
-    return Regression(posterior, otf, value - design @ posterior.beta)
+    return Regression(posterior, otf, value - design @ posterior.beta, design)
 
 
 def _design(

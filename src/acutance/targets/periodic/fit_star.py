@@ -26,6 +26,7 @@ from acutance.numerics.noise import Correlation, correlation
 from acutance.numerics.otf_kernels import blur_before
 from acutance.numerics.otf_modes import HIGHEST_CPP, MeanOtf, ProcessModes
 from acutance.numerics.shape_error import ShapeError
+from acutance.targets.periodic.curvature import find_curvature
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
@@ -104,6 +105,8 @@ class StarSolution:
         Half way between dark and bright spokes, image units: the mean of what lies under them.
     stated : StatedContrast or None
         The stated levels, if there are any.
+    curvature : Estimate
+        Of the characteristic of the values.
     """
 
     star: SiemensStar
@@ -119,6 +122,7 @@ class StarSolution:
     outer_px: float
     middle: float
     stated: StatedContrast | None
+    curvature: Estimate
 
     @property
     def reach_cpp(self) -> tuple[float, float]:
@@ -206,18 +210,20 @@ def solve_star(
     residual[rows, cols] = fitted.residual
     seen = shape_error(residual, star, fitted.noise, fitted.otf.level, inner, outer)
     otf = replace(fitted.otf, shape_error=_error_of_the_prior(fitted.otf).with_another(seen))
-    stated = None
+    stated, one = None, amplitude_of(1.0, wave)
     if levels is not None:
         free = _regression(
             design, value, weight, table, level, None, noise_found.inflation, None, None
         ).otf
-        one = amplitude_of(1.0, wave)
         stated = StatedContrast(levels, Estimate(free.level / one, free.level_std / one))
+    contrast = fitted.otf.level / one
+    spokes = design[:, _FIRST:] @ fitted.posterior.beta[_FIRST:] + 0.5 * contrast
+    curvature = find_curvature(fitted, spokes, contrast, weight, noise_found.inflation)
     middle = float(np.mean(design[:, :_BACKGROUND] @ fitted.posterior.beta[:_BACKGROUND]))
     col_std, row_std = (np.linalg.norm(fitted.posterior.factor[_PLACE], axis=1) / level).tolist()
     return StarSolution(
         star, (row_std, col_std), otf, rows, cols, value, fitted.residual, fitted.noise,
-        noise_found, inner, outer, middle, stated,
+        noise_found, inner, outer, middle, stated, curvature,
     )  # fmt: skip
 
 
@@ -333,7 +339,7 @@ def _regression(
     prior = _prior(table.mean, level, level_stated=levels is not None)
     posterior = prior.posterior(normal, variance, inflation, earlier=earlier)
     otf = FittedOtf(table.mean, posterior.beta[_FIRST:], posterior.factor[_FIRST:])
-    return Regression(posterior, otf, value - design @ posterior.beta)
+    return Regression(posterior, otf, value - design @ posterior.beta, design)
 
 
 def _prior(mean: MeanOtf, level: float, *, level_stated: bool) -> CombinedPrior:

@@ -44,6 +44,7 @@ class Regression(NamedTuple):
     posterior: Posterior
     otf: FittedOtf
     residual: Floats
+    design: Floats
 
     @property
     def noise(self) -> float:

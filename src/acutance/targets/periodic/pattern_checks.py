@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.numerics.clipping import clipped_share
 from acutance.numerics.noise import Correlation, outlier_share
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
+from acutance.targets.periodic.curvature import DEPARTURE
 from acutance.targets.periodic.otf_model import FittedOtf
 from acutance.targets.periodic.stated_contrast import StatedContrast
 from acutance.targets.periodic.tuned import QUIET_SNR
@@ -17,6 +19,7 @@ __all__ = [
     "contrast_snr",
     "correlated_noise",
     "level",
+    "nonlinearity",
     "outliers",
     "saturation",
     "stated_levels",
@@ -24,6 +27,8 @@ __all__ = [
 
 _SURE: Final = 3.0
 """Deviations by which a contrast fitted without the stated levels surely differs from theirs."""
+_SURE_CURVE: Final = 4.0
+"""Deviations from which a curvature is one."""
 
 
 def contrast_snr(snr: float, whose: str, limits: Limits) -> Check:
@@ -68,6 +73,27 @@ def stated_levels(
         f"{free} by the pattern and {contrast:.5g} by them"
     )
     return answer("stated_levels", value, found, limits)
+
+
+def nonlinearity(curvature: Estimate, bright: str, limits: Limits) -> Check:
+    """How far values depart from a straight line of light; zero where none surely does.
+
+    Parameters
+    ----------
+    curvature : Estimate
+    bright : str
+        What is bright: "spokes".
+    limits : mapping of str to float
+    """
+    if abs(curvature.value) < _SURE_CURVE * curvature.std:
+        return answer("nonlinearity", 0.0, "the image's values are proportional to light", limits)
+    value = Estimate(abs(curvature.value), curvature.std) * (100 * DEPARTURE)
+    lies = "above" if curvature.value > 0 else "below"
+    found = (
+        f"half way up the contrast the values lie {value} % of it {lies} a straight line of light, "
+        f"or bright {bright} are {'wider' if curvature.value > 0 else 'narrower'} than dark ones"
+    )
+    return answer("nonlinearity", value.value / 100, found, limits)
 
 
 def saturation(

@@ -12,6 +12,7 @@ from acutance.targets.periodic.pattern_checks import (
     contrast_snr,
     correlated_noise,
     level,
+    nonlinearity,
     outliers,
     saturation,
     stated_levels,
@@ -24,7 +25,7 @@ __all__ = ["STAR_CHECKS", "star_checks", "third_harmonic"]
 STAR_CHECKS = (
     "contrast_snr", "level", "stated_levels", "rim_cpp", "centre_cpp", "sweep_deg", "wave",
     "saturation", "undeclared_fill", "stated_gsd", *PROCESSING_CHECKS,
-    "correlated_noise", "outliers",
+    "nonlinearity", "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of a star."""
 
@@ -54,6 +55,7 @@ def star_checks(
         undeclared_fill([region.fill], limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
+        nonlinearity(solved.curvature, "spokes", limits),
         correlated_noise(
             solved.correlation, snr, limits,
             advice="the image was resampled, or the spokes are not those of a perfect star",
