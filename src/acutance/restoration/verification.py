@@ -11,12 +11,12 @@ from acutance.curves import Estimate
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.errors import AcutanceError, FewEdgesError, NoEdgeError
+from acutance.errors import AcutanceError, NoEdgeError
 from acutance.geometry.angles import axis_difference
 from acutance.raster import Box, Image, Region
 from acutance.restoration.proof import RestorationProof, VerifiedEdge
 from acutance.restoration.restoration_filter import RestorationFilter
-from acutance.scan import SceneEdges, scan_scene
+from acutance.scan import SceneEdges, edges_of_scene
 from acutance.targets.straight import StraightMeasurement, measure_edge
 from acutance.targets.uncertainty_budget import std_of_mean, systematic_share
 
@@ -50,7 +50,7 @@ def verify_restoration(
     filter : RestorationFilter
     regions : sequence or mapping of Region, Box or (row, column, height, width), optional
         One edge each, by name or by number. Without them the longest edges that
-        `acutance.scan_scene` uses are measured.
+        `acutance.scan_scene` would use are measured.
     method : str, optional
         Of `acutance.measure_edge`. The reference states all of its uncertainty, but where a filter
         aims at points (``desired="point"``) few sensors it expects fall so steeply at Nyquist, and
@@ -113,7 +113,7 @@ def _of_scene(
     """
     found = [
         pair
-        for region in _regions_of(_edges_of(before))
+        for region in _regions_of(edges_of_scene(before))
         if (pair := _tried(before, after, region, method)) is not None
     ]
     if not found:
@@ -127,15 +127,6 @@ def _of_scene(
     return [
         _mean_edge(f"{name}, {len(own)} edges", own, filter) for name, own in groups.items() if own
     ]
-
-
-def _edges_of(image: Image) -> SceneEdges:
-    """The edges of a scene; also where they are too few for its sensor, which is not asked for."""
-    try:
-        return scan_scene(image).edges
-    except FewEdgesError as error:
-        found: SceneEdges = error.edges
-        return found
 
 
 def _regions_of(edges: SceneEdges) -> list[Region]:

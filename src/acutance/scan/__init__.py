@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from acutance.scan.bands import BandEdges, BandScenes, scan_bands
     from acutance.scan.field import Field
     from acutance.scan.options import ScanOptions
-    from acutance.scan.scene import scan_scene
+    from acutance.scan.scene import edges_of_scene, scan_scene
     from acutance.scan.scene_edges import SceneEdges
     from acutance.scan.scene_measurement import SceneMeasurement, ScenePlace
 
@@ -39,6 +39,7 @@ __all__ = [
     "SceneEdges",
     "SceneMeasurement",
     "ScenePlace",
+    "edges_of_scene",
     "scan_bands",
     "scan_scene",
 ]
@@ -53,6 +54,7 @@ _HOMES = {
     "SceneEdges": "scene_edges",
     "SceneMeasurement": "scene_measurement",
     "ScenePlace": "scene_measurement",
+    "edges_of_scene": "scene",
     "scan_bands": "bands",
     "scan_scene": "scene",
 }

@@ -30,7 +30,7 @@ from acutance.targets.options import chosen_options
 from acutance.targets.processing_checks import scene_processing_checks
 from acutance.targets.region import RoiLike, image_info, read_data
 
-__all__ = ["measured_scene", "scan_scene"]
+__all__ = ["edges_of_scene", "measured_scene", "scan_scene"]
 
 _MIN_EDGES = 8
 _MIN_GAP_DEG = 20.0
@@ -110,6 +110,17 @@ def scan_scene(
         keep=keep, progress=progress,
     )  # fmt: skip
     return measured_scene(source, box, gsd, chosen, [one for (one,) in found])
+
+
+def edges_of_scene(image: Image) -> SceneEdges:
+    """Every edge of a whole image, measured and judged: of the sensor under them nothing is asked.
+
+    Parameters
+    ----------
+    image : Image
+    """
+    found = scan_windows([image], Box.whole(image.shape), None, gsd=None, options=ScanOptions())
+    return SceneEdges.of_rows([row for (window,) in found for row in window.rows])
 
 
 def measured_scene(
