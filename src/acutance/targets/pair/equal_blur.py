@@ -13,7 +13,7 @@ the kernel. Deviations come from the scatter of blocks, so residuals need not be
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -25,12 +25,11 @@ from acutance.targets.pair import tuned
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.kernel_fit import KernelFit
 from acutance.targets.pair.noise import WHITE, noise_gram
-from acutance.targets.pair.tile import TapGrid, Tiles, core, filtered
+from acutance.targets.pair.residual_slopes import SLOPES, TileSlopes
+from acutance.targets.pair.tile import TapGrid
 
 __all__ = ["blur_difference"]
 
-_SLOPES: Final = ((0, 0), (1, 0), (0, 1), (2, 0), (0, 2))
-"""Columns of `AxisGaussian.taps` along rows and columns: gain, shifts, variances."""
 _VARIANCE: Final[Floats] = np.array([0.0, 0.0, 0.0, 0.5, 0.5])
 """The mean of both variances."""
 _BLOCK_PX: Final = 16
@@ -52,15 +51,16 @@ class _Pixels(NamedTuple):
         return _Pixels(self.columns[which], self.residual[which], self.block[which])
 
 
-def blur_difference(tiles: Tiles, grid: TapGrid, gaussian: GaussianFit, fit: KernelFit) -> Estimate:
+def blur_difference(
+    tiles: Iterable[TileSlopes], grid: TapGrid, gaussian: GaussianFit, fit: KernelFit
+) -> Estimate:
     """Variance of the blur of strong structures less that of weak ones, low pixels squared.
 
     Parameters
     ----------
-    tiles : Tiles
+    tiles : iterable of TileSlopes
     grid : TapGrid
     gaussian : GaussianFit
-        Its slopes are those of the kernel.
     fit : KernelFit
 
     Returns
@@ -68,7 +68,7 @@ def blur_difference(tiles: Tiles, grid: TapGrid, gaussian: GaussianFit, fit: Ker
     Estimate
         With an infinite deviation where there are too few pixels of either.
     """
-    found = list(_pixels(tiles, grid, gaussian, fit))
+    found = [_pixels(tile) for tile in tiles if tile.columns.size]
     if not found:
         return UNKNOWN
     every = _Pixels(*(np.concatenate(column) for column in zip(*found, strict=True)))
@@ -81,24 +81,14 @@ def blur_difference(tiles: Tiles, grid: TapGrid, gaussian: GaussianFit, fit: Ker
     return Estimate(one - other, std) if math.isfinite(std) else UNKNOWN
 
 
-def _pixels(
-    tiles: Tiles, grid: TapGrid, gaussian: GaussianFit, fit: KernelFit
-) -> Iterator[_Pixels]:
-    """The usable low pixels of every tile, its columns about their mean."""
-    slopes = gaussian.down.taps(grid.down)[:, :3], gaussian.across.taps(grid.across)[:, :3]
-    for tile, residual in zip(tiles(), fit.residuals(tiles), strict=True):
-        rest = core(residual)
-        usable = np.isfinite(rest)
-        if not usable.any():
-            continue
-        field = core(filtered(tile, grid, *slopes))[usable]
-        columns = gaussian.gain * np.stack([field[:, i, j] for i, j in _SLOPES], axis=1)
-        rows, cols = np.nonzero(usable)
-        down, across = (
-            (place + start) // _BLOCK_PX
-            for place, start in zip((rows, cols), tile.place, strict=True)
-        )
-        yield _Pixels(columns - columns.mean(axis=0), rest[usable], down * 2**20 + across)
+def _pixels(tile: TileSlopes) -> _Pixels:
+    """The usable low pixels of a tile, its columns about their mean."""
+    down, across = (
+        (place + start) // _BLOCK_PX
+        for place, start in zip(np.nonzero(tile.usable), tile.place, strict=True)
+    )
+    columns = tile.columns - tile.columns.mean(axis=0)
+    return _Pixels(columns, tile.rest, down * 2**20 + across)
 
 
 def _parting(steepness: Floats) -> float:
@@ -112,7 +102,7 @@ def _noise_products(grid: TapGrid, gaussian: GaussianFit, fit: KernelFit) -> Flo
     """Products (6, 6) of the reference's noise of variance 1 in the columns and in the model."""
     down = gaussian.down.taps(grid.down).T
     across = gaussian.across.taps(grid.across).T
-    slopes = [gaussian.gain * np.outer(down[i], across[j]) for i, j in _SLOPES]
+    slopes = [gaussian.gain * np.outer(down[i], across[j]) for i, j in SLOPES]
     return noise_gram(np.stack([*slopes, fit.kernel.taps]), grid, WHITE)
 
 

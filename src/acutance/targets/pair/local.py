@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,9 +10,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.raster import Box
-from acutance.targets.pair.gaussian_fit import GaussianFit
-from acutance.targets.pair.kernel_fit import KernelFit
-from acutance.targets.pair.tile import TapGrid, Tiles, core, filtered
+from acutance.targets.pair.residual_slopes import TileSlopes
 
 __all__ = ["LocalFit", "ResidualMap", "fit_regions"]
 
@@ -99,22 +98,13 @@ class ResidualMap:
 
 
 def fit_regions(
-    tiles: Tiles,
-    grid: TapGrid,
-    gaussian: GaussianFit,
-    fit: KernelFit,
-    shape: tuple[int, int],
-    box: Box,
+    tiles: Iterable[TileSlopes], shape: tuple[int, int], box: Box
 ) -> tuple[LocalFit, ResidualMap]:
     """Fit how every region differs to the residuals of the common kernel, and map these.
 
     Parameters
     ----------
-    tiles : Tiles
-    grid : TapGrid
-    gaussian : GaussianFit
-        Its slopes are those of the kernel.
-    fit : KernelFit
+    tiles : iterable of TileSlopes
     shape : (int, int)
         Rows and columns of the map.
     box : Box
@@ -124,22 +114,15 @@ def fit_regions(
     gram, projection = np.zeros((regions, 6, 6)), np.zeros((regions, 6))
     power, count = np.zeros(regions), np.zeros(regions)
     shown = ResidualMap.empty(box)
-    for tile, residual in zip(tiles(), fit.residuals(tiles), strict=True):
-        shown.fill(tile.place, residual)
-        rest = core(residual)
-        usable = np.isfinite(rest)
-        if not usable.any():
+    for tile in tiles:
+        shown.fill(tile.place, tile.residual)
+        rest = tile.rest
+        if not rest.size:
             continue
-        slopes = gaussian.down.taps(grid.down)[:, :3], gaussian.across.taps(grid.across)[:, :3]
-        field = core(filtered(tile, grid, *slopes))
-        # Columns of `AxisGaussian.taps` along rows and columns: gain, shifts, variances.
-        pairs = ((0, 0), (1, 0), (0, 1), (2, 0), (0, 2))
-        columns = np.stack([field[usable][:, i, j] for i, j in pairs], axis=1) * gaussian.gain
-        columns = np.column_stack([columns, np.ones(columns.shape[0])])
+        columns = np.column_stack([tile.columns, np.ones(rest.size)])
         columns[:, 0] -= columns[:, 0].mean()
-        rest, of = rest[usable], core(tile.regions)[usable]
-        for region in np.unique(of).tolist():
-            own = of == region
+        for region in np.unique(tile.regions).tolist():
+            own = tile.regions == region
             part = columns[own]
             gram[region] += part.T @ part
             projection[region] += part.T @ rest[own]

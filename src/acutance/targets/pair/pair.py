@@ -39,6 +39,7 @@ from acutance.targets.pair.pair_measurement import (
 from acutance.targets.pair.reference import ReferenceLike, reference_otf
 from acutance.targets.pair.reference_otf import ReferenceOtf
 from acutance.targets.pair.register import Registration, registered_tiles
+from acutance.targets.pair.residual_slopes import residual_slopes
 from acutance.targets.pair.screen import ScreenedTiles, screened
 from acutance.targets.pair.spectral_ratio import PairSpectra, fit_spectra, pair_spectra
 from acutance.targets.pair.tile import TapGrid, core
@@ -110,9 +111,8 @@ def measure_biresolution(
     model = KernelOtf.of_fit(
         fit, (tiles.grid.across.band_cpp, tiles.grid.down.band_cpp), reference
     )  # fmt: skip
-    local, residuals = fit_regions(
-        ground, tiles.taps, gaussian, pixel_fit, tiles.map_shape, tiles.box
-    )  # fmt: skip
+    slopes = list(residual_slopes(ground, tiles.taps, gaussian, pixel_fit))
+    local, residuals = fit_regions(slopes, tiles.map_shape, tiles.box)
     info = image_info(coarse, tiles.box, coarse.gsd(*_middle(tiles.box)))
     return BiresolutionMeasurement(
         kind="biresolution",
@@ -121,7 +121,7 @@ def measure_biresolution(
         snr=_snr(gaussian, pixel_fit),
         checks=check_pair(
             tiles.grid, gaussian, pixel_fit, model, spectra, local,
-            blur_difference(ground, tiles.taps, gaussian, pixel_fit), chosen.limits,
+            blur_difference(slopes, tiles.taps, gaussian, pixel_fit), chosen.limits,
             stop_change=chosen.stop_change, clipped=_clipped(tiles), fills=tiles.fills(),
             images=tiles.parts, info=info, inverted=match.inverted,
         ),
