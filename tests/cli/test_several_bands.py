@@ -90,3 +90,12 @@ def test_other_kinds_take_several_bands(acutance, image):
     done = acutance("pulse", image, "--band", "all", "--width-px", "3")
     assert done.exit_code == 4
     assert "none of the 3 bands and regions could be measured" in done.stderr
+
+
+def test_every_band_answers_what_is_required(acutance, image):
+    words = ("edge", image, "--band", "1,2", "--require", "mtf_nyquist>=0.01")
+    done = acutance(*words)
+    assert done.exit_code == 0, done.stderr
+    assert done.stdout.count("mtf_nyquist >= 0.01 is met") == 2
+    document = json.loads(acutance(*words, "--json").stdout)
+    assert [one["requirements"][0]["word"] for one in document["results"]] == ["met", "met"]

@@ -243,3 +243,14 @@ def test_the_table_of_edges_has_a_row_of_every_band(found):
 def test_bands_that_do_not_go_together_are_refused(images, bands, message):
     with pytest.raises(ac.ImageError, match=message):
         ac.scan_bands(images, bands)
+
+
+def test_every_band_answers_what_is_required(found):
+    required = ["along.mtf_nyquist >= 0.9"]
+    text, page = bands_text(found, required=required), bands_page(found, required=required)
+    document = bands_document(found, required=required)
+    for name, one in zip(found.scenes, document["results"], strict=True):
+        (answer,) = one["requirements"]
+        assert answer["word"] == "not met"
+        assert f"Band {name}: required\n  {answer['summary']}" in text
+        assert f"Band {name} – Required along: mtf_nyquist &gt;= 0.9 is not met" in page

@@ -41,6 +41,13 @@ def test_one_near_its_limit_is_not_and_says_how_many_would_tell(edge):
     assert "about 11 measurements" in answer.summary
 
 
+def test_who_is_content_with_less_confidence_is_told(edge):
+    number = edge.mtf_nyquist
+    limit = ToleranceLimit("mtf_nyquist", ">=", number.value - 0.5 * number.std, confidence=0.65)
+    (answer,) = edge.conformity(limit)
+    assert answer.word == "met"
+
+
 def test_a_direction_that_was_not_measured_is_not_told(edge):
     (answer,) = edge.conformity("along.mtf_nyquist >= 0.01")
     assert (answer.orientation, answer.word, answer.probability) == (

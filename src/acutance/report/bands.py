@@ -106,9 +106,9 @@ def bands_text(found: BandScenes, *, required: Required = ()) -> str:
 
 def _required_of_bands(found: BandScenes, required: Required) -> list[str]:
     return [
-        f"Band {name}: {lines[:1].lower()}{lines[1:]}"
+        lines
         for name, scene in found.scenes.items()
-        for lines in required_lines(scene, required)
+        for lines in required_lines(scene, required, f"Band {name}: required")
     ]
 
 

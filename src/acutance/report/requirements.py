@@ -23,7 +23,7 @@ _COLOURS: Final[Mapping[str, Literal["good", "usable", "doubtful", "invalid"]]] 
 
 
 def answers_to(result: Result, required: Required) -> tuple[tuple[str, Conformity], ...]:
-    """What a result says of requirements; of several methods each, with its label.
+    """What a result says of requirements, with the label of the method where there are several.
 
     Parameters
     ----------
@@ -39,24 +39,28 @@ def answers_to(result: Result, required: Required) -> tuple[tuple[str, Conformit
     if not isinstance(found, Comparison):
         return tuple(("", one) for one in conformity_of(found, required))
     return tuple(
-        (f"{label}, ", answer)
+        (label, answer)
         for label, one in zip(found.labels, found.measurements, strict=True)
         for answer in conformity_of(one, required)
     )
 
 
-def required_lines(result: Result, required: Required) -> list[str]:
-    """The answers as one text, if there are any."""
-    lines = [f"  {label}{answer.summary}" for label, answer in answers_to(result, required)]
-    return ["\n".join(["Required", *lines])] if lines else []
+def required_lines(result: Result, required: Required, title: str = "Required") -> list[str]:
+    """The answers as one text under a title, if there are any."""
+    lines = [f"  {_sentence(*one)}" for one in answers_to(result, required)]
+    return ["\n".join([title, *lines])] if lines else []
 
 
 def required_verdicts(result: Result, required: Required, label: str = "") -> tuple[Verdict, ...]:
     """The answers as boxes of a page, in the colours of verdicts."""
     return tuple(
-        Verdict(_COLOURS[answer.word], f"{label}Required {own}{answer.summary}")
-        for own, answer in answers_to(result, required)
+        Verdict(_COLOURS[answer.word], f"{label}Required {_sentence(method, answer)}")
+        for method, answer in answers_to(result, required)
     )
+
+
+def _sentence(method: str, answer: Conformity) -> str:
+    return f"{method}, {answer.summary}" if method else answer.summary
 
 
 def with_requirements(
@@ -64,7 +68,7 @@ def with_requirements(
 ) -> dict[str, Any]:
     """A document with the answers; the same where nothing is required."""
     answers = [
-        {**({"method": label.removesuffix(", ")} if label else {}), **answer.to_dict()}
-        for label, answer in answers_to(result, required)
+        {**({"method": method} if method else {}), **answer.to_dict()}
+        for method, answer in answers_to(result, required)
     ]
     return {**document, "requirements": answers} if answers else document

@@ -120,8 +120,12 @@ class ToleranceLimit:
         return cls(metric, sense, limit, orientation)  # type: ignore[arg-type]
 
     def __str__(self) -> str:
-        where = "" if self.orientation is None else f"{self.orientation}."
-        return f"{where}{self.metric} {self.sense} {self.limit:g}"
+        return self.sentence if self.orientation is None else f"{self.orientation}.{self.sentence}"
+
+    @property
+    def sentence(self) -> str:
+        """Metric, sense and limit."""
+        return f"{self.metric} {self.sense} {self.limit:g}"
 
     def probability(self, number: Estimate) -> float:
         """How probable it is that the true value keeps the limit; ``nan`` where there is none."""
@@ -157,7 +161,7 @@ class Conformity:
     @property
     def summary(self) -> str:
         """The answer in a sentence."""
-        asked = f"{self.orientation}: {self.asked.metric} {self.asked.sense} {self.asked.limit:g}"
+        asked = f"{self.orientation}: {self.asked.sentence}"
         if self.probability is None:
             return f"{asked} {self.word}: {self.reason}"
         told = f"probability of being met {written_probability(self.probability)}"
