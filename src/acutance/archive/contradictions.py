@@ -90,8 +90,9 @@ def _contradicting(
 ) -> Iterator[tuple[Mapping[str, Any], Differing]]:
     """Rows of measurements and their images, with what is stated otherwise."""
     keys = list(stated)
-    # All rows of an image of a batch have one entry.
-    rows = {id(one): image_row(one) for one in {id(one): one for one in stated.values()}.values()}
+    # All rows of an image of a batch have one entry: it is made a row once.
+    entries = {id(one): one for one in stated.values()}
+    rows = {own: image_row(one) for own, one in entries.items()}
     for at in range(0, len(keys), _CHUNK):
         some = keys[at : at + _CHUNK]
         for row in database.read(partial(_kept, keys=some)):
