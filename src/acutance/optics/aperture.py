@@ -11,7 +11,16 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.optics.block import Transfer, require
 
-__all__ = ["Defocus", "Diffraction", "ExponentialHalo", "Gaussian", "Halo", "WavefrontError"]
+__all__ = [
+    "Defocus",
+    "Diffraction",
+    "ExponentialHalo",
+    "Gaussian",
+    "Halo",
+    "WavefrontError",
+    "aperture_transfer",
+    "defocused_transfer",
+]
 
 _PLACES = 4096
 """Of the plane at once: the quadrature needs some fifty numbers for each."""
@@ -122,27 +131,36 @@ class Diffraction:
         require(self, 0.0, 0.99, obscuration=self.obscuration)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
-        # Unit pupil radius: the discs' centres are 2 nu apart.
-        shift = 2 * np.hypot(u, v) / self.cutoff_cpp
-        hole = self.obscuration
-        if hole == 0:
-            return _overlap(1.0, 1.0, shift) / math.pi
-        area = _overlap(1.0, 1.0, shift) - 2 * _overlap(1.0, hole, shift)
-        return (area + _overlap(hole, hole, shift)) / (math.pi * (1 - hole**2))
+        return aperture_transfer(np.hypot(u, v) / self.cutoff_cpp, self.obscuration)
 
 
-def _overlap(big: float, small: float, shift: Floats) -> Floats:
+def aperture_transfer(nu: Floats, obscuration: Floats | float) -> Floats:
+    """The transfer of apertures in focus, `Diffraction`.
+
+    Parameters
+    ----------
+    nu : (...) array
+        Frequencies over the cut-off frequency.
+    obscuration : (...) array or float
+        Diameter of the obscuration over that of the aperture, 0 to below 1.
+    """
+    # Unit pupil radius: the discs' centres are 2 nu apart.
+    shift, hole = 2 * nu, np.asarray(obscuration)
+    if not np.any(hole):
+        return _overlap(1.0, 1.0, shift) / math.pi
+    area = _overlap(1.0, 1.0, shift) - 2 * _overlap(1.0, hole, shift)
+    return np.asarray((area + _overlap(hole, hole, shift)) / (math.pi * (1 - hole**2)))
+
+
+def _overlap(big: Floats | float, small: Floats | float, shift: Floats) -> Floats:
     """Area common to two discs of radii `big` >= `small` whose centres are `shift` apart."""
-    d = np.minimum(np.maximum(shift, max(big - small, 1e-300)), big + small)
+    d = np.minimum(np.maximum(shift, np.maximum(big - small, 1e-300)), big + small)
     x = np.minimum(np.maximum((d**2 + big**2 - small**2) / (2 * d), -big), big)
     y = np.minimum(np.maximum(d - x, -small), small)
     chord = np.sqrt(np.maximum(big**2 - x**2, 0.0))
     area = big**2 * np.arccos(x / big) + small**2 * np.arccos(y / small) - d * chord
-    return np.where(shift >= big + small, 0.0, np.where(shift <= big - small, _disc(small), area))
-
-
-def _disc(radius: float) -> float:
-    return math.pi * radius**2
+    inside = math.pi * small**2
+    return np.where(shift >= big + small, 0.0, np.where(shift <= big - small, inside, area))
 
 
 @dataclass(frozen=True)
@@ -184,28 +202,51 @@ class Defocus:
         nu = np.asarray(np.hypot(u, v) / self.cutoff_cpp)
         otf = np.zeros(nu.shape)
         inside = nu < 1
-        at, hole = nu[inside], self.obscuration
-        end = np.minimum(1 - at, (1 - hole**2) / (4 * np.maximum(at, 1e-9)))
-        area = self._half_disc(1.0, at, -at, end)
-        if hole > 0:
-            area = area - self._half_disc(hole, at, at, end)
-        otf[inside] = area * (4 / (math.pi * (1 - hole**2)))
+        otf[inside] = defocused_transfer(nu[inside], self.waves, self.obscuration)
         return otf
 
-    def _half_disc(self, radius: float, nu: Floats, centre: Floats, end: Floats) -> Floats:
-        """Integral of half the chord of a disc, times the cosine of the phase, from 0 to `end`."""
-        # By the angle on the disc's rim, in which the chord has no infinite slope at its ends.
-        first = np.arccos(np.clip((end - centre) / radius, -1.0, 1.0))
-        span = np.arccos(np.clip(-centre / radius, -1.0, 1.0)) - first
-        nodes, weights = _legendre(32 + math.ceil(16 * abs(self.waves)))
-        total = np.empty(nu.shape)
-        for start in range(0, nu.size, _PLACES):
-            some = slice(start, start + _PLACES)
-            theta = first[some, None] + 0.5 * span[some, None] * (nodes + 1)
-            x = centre[some, None] + radius * np.cos(theta)
-            wave = np.cos(8 * math.pi * self.waves * nu[some, None] * x)
-            total[some] = ((radius * np.sin(theta)) ** 2 * wave) @ weights
-        return np.asarray(0.5 * span * total)
+
+def defocused_transfer(
+    nu: Floats, waves: Floats | float, obscuration: Floats | float = 0.0
+) -> Floats:
+    """The transfer of apertures out of focus, `Defocus`.
+
+    Parameters
+    ----------
+    nu : (...) array
+        Frequencies over the cut-off frequency.
+    waves : (...) array or float
+    obscuration : (...) array or float
+    """
+    at, hole = np.minimum(nu, 1.0), np.asarray(obscuration)
+    end = np.minimum(1 - at, (1 - hole**2) / (4 * np.maximum(at, 1e-9)))
+    area = _half_disc(1.0, waves, at, -at, end)
+    if np.any(hole):
+        area = area - _half_disc(hole, waves, at, at, end)
+    return np.asarray(area * (4 / (math.pi * (1 - hole**2))))
+
+
+def _half_disc(
+    radius: Floats | float, waves: Floats | float, nu: Floats, centre: Floats, end: Floats
+) -> Floats:
+    """Integral of half the chord of a disc, times the cosine of the phase, from 0 to `end`."""
+    # By the angle on the disc's rim, in which the chord has no infinite slope at its ends.
+    first = np.arccos(np.clip((end - centre) / radius, -1.0, 1.0))
+    span = np.arccos(np.clip(-centre / radius, -1.0, 1.0)) - first
+    nodes, weights = _legendre(32 + math.ceil(16 * float(np.max(np.abs(waves)))))
+    radius, phase, centre = (
+        np.broadcast_to(one, span.shape).reshape(-1, 1)
+        for one in (radius, 8 * math.pi * waves * nu, centre)
+    )
+    from_first, half = first.reshape(-1, 1), 0.5 * span.reshape(-1, 1)
+    total = np.empty(span.size)
+    for start in range(0, span.size, _PLACES):
+        some = slice(start, start + _PLACES)
+        theta = from_first[some] + half[some] * (nodes + 1)
+        x = centre[some] + radius[some] * np.cos(theta)
+        wave = np.cos(phase[some] * x)
+        total[some] = ((radius[some] * np.sin(theta)) ** 2 * wave) @ weights
+    return np.asarray(0.5 * span * total.reshape(span.shape))
 
 
 @cache

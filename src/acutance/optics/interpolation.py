@@ -14,6 +14,7 @@ from acutance.errors import ModelError
 __all__ = [
     "KERNEL_REACH_PX",
     "Interpolation",
+    "cubic_convolution_weight",
     "interpolation_transfer",
     "interpolation_weight",
     "require_kernel",
@@ -80,6 +81,20 @@ def interpolation_weight(kernel: Interpolation, distance_px: ArrayLike, a: float
         apart = x - np.floor(x)
         whole = sum(_windowed_sine(apart + k) for k in range(-_LOBES, _LOBES))
         return np.asarray(_windowed_sine(x) / whole)
+    return cubic_convolution_weight(x, a)
+
+
+def cubic_convolution_weight(distance_px: Floats, a: Floats | float) -> Floats:
+    """Weights of Keys' cubic convolution.
+
+    Parameters
+    ----------
+    distance_px : (...) array
+        Place of the pixel minus the interpolated place.
+    a : (...) array or float
+        Slope of the kernel at distance 1.
+    """
+    x = np.abs(distance_px)
     near = ((a + 2) * x - (a + 3)) * x**2 + 1
     far = a * (((x - 5) * x + 8) * x - 4)
     return np.where(x < 1, near, np.where(x < 2, far, 0.0))

@@ -25,9 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.optics import Diffraction
+from acutance.optics.aperture import aperture_transfer
 from acutance.targets.combine.plane import Plane
-from acutance.targets.combine.term import Term, aperture
+from acutance.targets.combine.term import Term, aperture, columns, one_by_one
 
 __all__ = ["ABERRATED", "diffraction"]
 
@@ -52,14 +52,15 @@ def _slopes(p: Floats, plane: Plane) -> Complexes:
     by_cutoff = _aberrated(p + cutoff, plane) - _aberrated(p - cutoff, plane)
     by_obscuration = diffraction(p + obscuration, plane) - diffraction(p - obscuration, plane)
     by_pupil = np.stack([by_cutoff, by_obscuration * difference.mean]) / (2 * _STEP)
-    return np.concatenate([by_pupil, bare * difference.slopes]).T
+    return np.concatenate([by_pupil, bare * difference.slopes])
 
 
 def diffraction(p: Floats, plane: Plane) -> Floats:
-    """OTF of an aperture in focus, (n,), worked out once for every distance from zero frequency."""
+    """OTF of apertures in focus, (..., n), once for every distance from zero frequency."""
     freq, where = plane.rings
-    otf = Diffraction(*aperture(p)).otf(freq, np.zeros(freq.size))
-    return np.asarray(np.asarray(otf)[where])
+    log_cutoff, logit, *_ = columns(p)
+    cutoff, obscuration = aperture(log_cutoff, logit)
+    return aperture_transfer(freq / cutoff, obscuration)[..., where]
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,11 +145,11 @@ def _common_part(shift: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _numbers(p: Floats) -> dict[str, float]:
-    cutoff, obscuration = aperture(p)
+    cutoff, obscuration = aperture(p[0], p[1])
     defocus, astigmatism, astigmatism_45, across, along, spherical = map(float, p[2:])
     return {
-        "cutoff_cpp": cutoff,
-        "obscuration": obscuration,
+        "cutoff_cpp": float(cutoff),
+        "obscuration": float(obscuration),
         "defocus_waves": 2 * math.sqrt(3) * abs(defocus),
         "astigmatism_waves": math.hypot(astigmatism, astigmatism_45),
         "coma_across_waves": across,
@@ -158,11 +159,11 @@ def _numbers(p: Floats) -> dict[str, float]:
 
 
 ABERRATED = Term(
-    _aberrated,
+    one_by_one(_aberrated),
     (math.log(1.3), -0.5, *_WAVES_MEAN),
     (0.4, 1.0, *6 * (_WAVES_STD,)),
     _numbers,
-    _slopes,
+    one_by_one(_slopes),
 )
 """Cut-off and obscuration as of an aperture in focus, then the coefficients in waves: defocus,
 astigmatism along 0 and 45 degrees, coma across and along, spherical aberration."""

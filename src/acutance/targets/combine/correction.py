@@ -11,33 +11,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.targets.combine.plane import Plane
+from acutance.targets.combine.plane import PROCESS_PLACES, Plane
 from acutance.targets.combine.sensor_forms import SensorForm
 
 __all__ = ["Correction"]
 
 Complexes = NDArray[np.complex128]
 
-_LENGTH_CPP = 0.25
-_RINGS = ((0.10, 3), (0.25, 4), (0.40, 6), (0.55, 8), (0.75, 8))
 _JITTER = 1e-6
-
-
-def _places() -> Floats:
-    """Places on half of the plane, (m, 2)."""
-    found = [
-        (radius * math.cos(math.pi * k / count), radius * math.sin(math.pi * k / count))
-        for radius, count in _RINGS
-        for k in range(count)
-    ]
-    return np.array(found)
 
 
 @dataclass(frozen=True)
@@ -60,25 +48,18 @@ class Correction(ShortRepr):
         p = np.array(self.parameters)
         size = np.abs(self.form.otf_on(p, plane))
         # Sharpening multiplies the blur by a gain: the blur is the detector's at most.
-        blurred = np.minimum(size, np.abs(self.form.factors_on(p, plane)[-1]))
+        blurred = np.minimum(size, np.abs(self.form.detector_on(p, plane)))
         reach = -math.e * size * np.log(np.maximum(blurred, 1e-30))
-        even = self._kernel(plane.u_cpp, plane.v_cpp, 1.0) @ self._roots[0]
-        odd = self._kernel(plane.u_cpp, plane.v_cpp, -1.0) @ self._roots[1]
+        even, odd = (near @ root for near, root in zip(plane.processes, _roots(), strict=True))
         return np.asarray(reach[:, None] * np.concatenate([even, 1j * odd], axis=1))
 
-    def _kernel(self, u: Floats, v: Floats, parity: float) -> Floats:
-        x, y = _places().T
-        near = np.exp(-0.5 * ((u[:, None] - x) ** 2 + (v[:, None] - y) ** 2) / _LENGTH_CPP**2)
-        far = np.exp(-0.5 * ((u[:, None] + x) ** 2 + (v[:, None] + y) ** 2) / _LENGTH_CPP**2)
-        return np.asarray(0.5 * (near + parity * far))
 
-    @cached_property
-    def _roots(self) -> tuple[Floats, Floats]:
-        """Factors that give unit weights the processes' covariance at the places, even and odd."""
-        x, y = _places().T
-        found = []
-        for parity in (1.0, -1.0):
-            value, vector = np.linalg.eigh(self._kernel(x, y, parity))
-            kept = value > _JITTER
-            found.append(vector[:, kept] / np.sqrt(value[kept]))
-        return found[0], found[1]
+@cache
+def _roots() -> tuple[Floats, Floats]:
+    """Factors that give unit weights the processes' covariance at their places, even and odd."""
+    found = []
+    for covariance in Plane(*PROCESS_PLACES.T).processes:
+        value, vector = np.linalg.eigh(covariance)
+        kept = value > _JITTER
+        found.append(vector[:, kept] / np.sqrt(value[kept]))
+    return found[0], found[1]

@@ -198,17 +198,31 @@ class WhitenedCurves:
         return np.concatenate([one.level for one in self.curves])
 
     @cached_property
-    def lit(self) -> Floats:
-        """Which values belong to which spectrum, (spectra, size): all of those of unknown light."""
-        rows = np.repeat(np.arange(len(self.curves)), [one.size for one in self.curves])
-        spectra = [i for i, one in enumerate(self.curves) if one.likelihood is not None]
-        return np.asarray(rows == np.array(spectra, int)[:, None], float)
+    def _segments(self) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.bool_]]:
+        """Of the curves that have values: the first of these, how many, whether they are a spectrum
+        of unknown light."""
+        seen = [one for one in self.curves if one.size]
+        sizes = np.array([one.size for one in seen], np.intp)
+        is_lit = np.array([one.likelihood is not None for one in seen], bool)
+        return np.cumsum(sizes) - sizes, sizes, is_lit
+
+    def sums(self, values: Floats) -> Floats:
+        """Sums of whitened values (..., size) over every curve that has some, (..., curves)."""
+        return np.asarray(np.add.reduceat(values, self._segments[0], axis=-1))
+
+    def of_spectra(self, numbers: Floats, else_: float) -> Floats:
+        """The number of its spectrum (..., curves) for every value, (..., size).
+
+        Of curves that are no spectra another one.
+        """
+        _, sizes, is_lit = self._segments
+        return np.repeat(np.where(is_lit, numbers, else_), sizes, axis=-1)
 
     @cached_property
     def _ends(self) -> list[int]:
         return [0, *np.cumsum([one.otf.size for one in self.curves]).tolist()]
 
-    @property
+    @cached_property
     def parts(self) -> list[slice]:
         """The rows of each curve in whitened values."""
         ends = np.cumsum([0, *(one.size for one in self.curves)]).tolist()
@@ -242,28 +256,27 @@ class WhitenedCurves:
             own[part, part] = together[part] @ together[part].T
         return np.asarray(_COMMON * (together @ together.T - own))
 
+    def shared_of(self, ways: Floats) -> Floats:
+        """Covariance of products of the whitened errors with some ways (size, k), (k, k), as far
+        as errors of different curves are shared: likelihoods share none."""
+        if all(one.likelihood is not None for one in self.curves):
+            return np.zeros((ways.shape[1],) * 2)
+        return np.asarray(ways.T @ self.shared @ ways)
+
     def of(self, values: Complexes) -> Floats:
-        """Values (n,) or (n, p) at all places, whitened curve by curve."""
-        matrices, places, rows = self._stack
-        wide = np.zeros((matrices.shape[0] * matrices.shape[2], *values.shape[1:]))
-        wide[places[0]], wide[places[1]] = values.real, values.imag
-        found = matrices @ wide.reshape(matrices.shape[0], matrices.shape[2], -1)
-        return np.asarray(found.reshape(-1, *values.shape[1:])[rows])
+        """Values (..., n) at all places, whitened curve by curve, (..., size)."""
+        rows = np.ascontiguousarray(values, complex).reshape(-1, self.u_cpp.size).view(float)
+        found = np.empty((len(rows), self.values.size))
+        places = pairwise(self._ends)
+        for (a, b), part, matrix in zip(places, self.parts, self._matrices, strict=True):
+            np.matmul(rows[:, 2 * a : 2 * b], matrix, out=found[:, part])
+        return found.reshape(*values.shape[:-1], -1)
 
     @cached_property
-    def _stack(self) -> tuple[Floats, NDArray[np.intp], NDArray[np.intp]]:
-        """What whitens each curve, (c, m, 2 n) with zeros where one has fewer values or places.
-
-        Then where the real and the imaginary parts of all places belong among the c * 2 n of the
-        stack, (2, places), and which of its c * m values there are.
-        """
-        sizes = np.array([one.size for one in self.curves])
-        counts = np.array([one.otf.size for one in self.curves])
-        most, longest = int(sizes.max()), int(counts.max())
-        matrices = np.zeros((counts.size, most, 2 * longest))
-        for own, one, size, count in zip(matrices, self.curves, sizes, counts, strict=True):
-            own[:size, :count] = one.whitening[:, :count]
-            own[:size, longest : longest + count] = one.whitening[:, count:]
-        own_places = np.flatnonzero((np.arange(2 * longest) < counts[:, None]).ravel())
-        rows = np.flatnonzero((np.arange(most) < sizes[:, None]).ravel())
-        return matrices, np.stack([own_places, own_places + longest]), rows
+    def _matrices(self) -> list[Floats]:
+        """What whitens each curve, (2 n, m): real and imaginary parts of a place side by side."""
+        found = []
+        for one in self.curves:
+            parts = np.stack(np.split(one.whitening.T, 2), axis=1)
+            found.append(parts.reshape(one.whitening.shape[::-1]))
+        return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
-from acutance.targets.combine.form_fit import FIRST_STEPS, FormFit, fit_form, likely_starts
+from acutance.targets.combine.form_fit import FIRST_STEPS, FormFit, Start, fit_forms, likely_starts
 from acutance.targets.combine.lit_curves import LitCurves
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
 from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
@@ -116,49 +116,61 @@ def combine_curves(
         Of curves that hardly differed, the largest weight first: where a form begins, too.
         Forms with defocus and a kernel have several optima.
     """
-    known = {one.form: one for one in reversed(near)}
     data = WhitenedCurves([one.centred() for one in curves])
-    nowhere = np.zeros((data.values.size, 0))
-
-    def fitted(form: SensorForm, start: Floats | None = None) -> FormFit:
-        starts = [known[form].parameters] if form in known else []
-        starts += [start] if start is not None else likely_starts(data, form)
-        return fit_form(data, form, starts, 0.0, nowhere, FIRST_STEPS)
-
-    def settled(fits: Sequence[FormFit]) -> list[FormFit]:
-        least = min((one.score for one in fits), default=0.0)
-        return [
-            fit_form(data, one.form, [one.parameters], 0.0, nowhere)
-            if one.score < least + _HOPELESS
-            else one
-            for one in fits
-        ]
-
-    plain = settled([fitted(SensorForm(terms, detector_px)) for terms in forms])
+    plain = _settled(data, [(SensorForm(terms, detector_px), None) for terms in forms], near)
     first = min(plain, key=lambda one: one.score)
     correction = Correction(first.form, tuple(first.parameters.tolist()))
-    near_first = LitCurves(data, first.otf_on(data.plane))
-    ways = near_first.of(correction.directions_on(data.plane))
-    aligned = [
-        fitted(form, start)
-        for one in _weighted(plain)
-        for form, start in one.form.aligned(one.parameters)
-    ]
-    fits = [*plain, *settled(aligned)]
-    for last in sorted(fits, key=lambda one: one.score)[:_MAX_CORRECTED]:
-        for share in _SHARES[1:]:
-            # A larger correction moves the form on from where a smaller one left it.
-            one = fit_form(data, last.form, [last.parameters], share, share * ways)
-            fits.append(one)
-            # Scores have one least: what no correction of some size explains, no larger one does.
-            if one.score > last.score - 2 * math.log(_MIN_WEIGHT):
-                break
-            last = one
+    aligned = [pair for one in _weighted(plain) for pair in one.form.aligned(one.parameters)]
+    fits = [*plain, *_settled(data, aligned, near)]
+    ways = LitCurves(data, first.otf_on(data.plane)).of(correction.directions_on(data.plane).T).T
+    last = sorted(fits, key=lambda one: one.score)[:_MAX_CORRECTED]
+    for share in _SHARES[1:]:
+        # A larger correction moves the form on from where a smaller one left it.
+        before, last = last, fit_forms(data, [one.start for one in last], share, share * ways)
+        fits += last
+        # Scores have one least: what no correction of some size explains, no larger one does.
+        last = [
+            one
+            for one, smaller in zip(last, before, strict=True)
+            if one.score <= smaller.score - 2 * math.log(_MIN_WEIGHT)
+        ]
+        if not last:
+            break
     weighted = _weighted([replace(one, correction=correction) for one in fits])
     simplest = min(plain, key=lambda one: len(one.form.terms))
     kept = {one.form.oblique_terms for one in weighted}
     origins = [one for one in plain if one.form.terms in kept]
     return CombinedFit(data, weighted, first, simplest, (*weighted, *origins))
+
+
+def _settled(
+    data: WhitenedCurves,
+    forms: Sequence[tuple[SensorForm, Floats | None]],
+    near: Sequence[WeightedForm],
+) -> list[FormFit]:
+    """Forms without a correction, from known places, or else from guesses; hopeless ones are left
+    after the first steps."""
+    if not forms:
+        return []
+    nowhere = np.zeros((data.values.size, 0))
+    starts: dict[SensorForm, list[Floats]] = {form: [] for form, _ in forms}
+    for one in near:
+        # The first one counts: it has the largest weight.
+        if one.form in starts and not starts[one.form]:
+            starts[one.form].append(one.parameters)
+    unknown = [form for form, start in forms if start is None]
+    guesses = dict(zip(unknown, likely_starts(data, unknown), strict=True))
+    for form, start in forms:
+        starts[form] += guesses[form] if start is None else [start]
+    fits = fit_forms(data, _pairs(starts), 0.0, nowhere, FIRST_STEPS)
+    least = min(one.score for one in fits)
+    hopeful = [one.start for one in fits if one.score < least + _HOPELESS]
+    again = {one.form: one for one in fit_forms(data, hopeful, 0.0, nowhere)}
+    return [again.get(one.form, one) for one in fits]
+
+
+def _pairs(starts: Mapping[SensorForm, Sequence[Floats]]) -> list[Start]:
+    return [(form, p) for form, own in starts.items() for p in own]
 
 
 def _weighted(fits: Sequence[FormFit]) -> tuple[FormFit, ...]:
@@ -184,13 +196,13 @@ def _chi_squares(
     mean = sum(one.weight * one.otf_on(data.plane) for one in forms)
     near = LitCurves(data, np.asarray(mean))
     residual = near.residual
-    slopes = near.of(best.slopes_on(data.plane))
+    slopes = near.of(best.slopes_on(data.plane).T).T
     inverse = np.linalg.inv(slopes.T @ slopes + np.diag(best.prior_std**-2.0))
     left = near.apart(np.eye(residual.size)) - slopes @ inverse @ slopes.T
     covariance = left @ data.covariance @ left.T
     axes = [np.eye(residual.size)[:, part] for part in data.parts]
     if shapes is not None:
-        ways = near.of(shapes)
+        ways = near.of(shapes.T).T
         axes = [own @ _span(ways[part]) for own, part in zip(axes, data.parts, strict=True)]
     members = tuple(_chi_square(own.T @ residual, own.T @ covariance @ own) for own in axes)
     whole = np.concatenate(axes, axis=1)

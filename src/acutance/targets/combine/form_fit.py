@@ -1,23 +1,33 @@
-"""One form of a sensor fitted to all curves: the parameters of largest posterior density."""
+"""Forms of a sensor fitted to all curves: the parameters of largest posterior density.
+
+All forms, from all of their starts, are fitted side by side (`acutance.targets.combine.
+form_products`, `acutance.numerics.levenberg_marquardt`).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import leastsq
 
 from acutance.curves.grid import Floats
+from acutance.numerics.levenberg_marquardt import Expansion, least_squares
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import WhitenedCurves
+from acutance.targets.combine.form_products import FormProducts
 from acutance.targets.combine.lit_curves import LitCurves
-from acutance.targets.combine.sensor_forms import SensorForm, product
+from acutance.targets.combine.sensor_forms import SensorForm
 from acutance.targets.combine.weighted_forms import WeightedForm
 
-__all__ = ["FIRST_STEPS", "FormFit", "fit_form", "likely_starts"]
+__all__ = ["FIRST_STEPS", "FormFit", "Start", "fit_forms", "likely_starts"]
+
+Places = NDArray[np.intp]
+Start = tuple[SensorForm, Floats]
+"""A form, and the parameters (p,) where its fit begins."""
 
 FIRST_STEPS, _MAX_STEPS = 30, 60
 _STARTS_TRIED = 2
@@ -51,23 +61,26 @@ class FormFit(WeightedForm):
         """Prior standard deviations of parameters and weights, (p + m,)."""
         return np.concatenate([self.form.std, np.full(self.weights.size, self.share)])
 
+    @property
+    def start(self) -> Start:
+        """Where another fit of the form may begin."""
+        return self.form, self.parameters
 
-def fit_form(
+
+def fit_forms(
     data: WhitenedCurves,
-    form: SensorForm,
-    starts: Sequence[Floats],
+    starts: Sequence[Start],
     share: float,
     ways: Floats,
     steps: int = _MAX_STEPS,
-) -> FormFit:
-    """The parameters of largest posterior density, the correction integrated out.
+) -> list[FormFit]:
+    """The parameters of largest posterior density of every form, the correction integrated out.
 
     Parameters
     ----------
     data : WhitenedCurves
-    form : SensorForm
-    starts : sequence of (p,) arrays
-        Where the fit begins, in turn; the best end counts.
+    starts : sequence of Start
+        Where the fits begin, those of a form in turn: of several of one form the best end counts.
     share : float
         Standard deviation of the correction, of the logarithm of the OTF.
     ways : (n, m) array
@@ -75,89 +88,155 @@ def fit_form(
     steps : int, optional
         Most evaluations of a fit.
     """
-    std, misfit = form.std, _Misfit(data, form, ways)
-    cost, p = min((misfit.least(first, steps) for first in starts), key=lambda one: one[0])
-    off, _ = misfit.parts(p)
-    by_p = misfit.slopes_of_curves(p)
-    design = np.concatenate([by_p, ways], axis=1)
-    normal = design.T @ design
-    normal += np.diag(np.concatenate([std**-2.0, np.ones(ways.shape[1])]))
-    inverse = np.linalg.inv(normal)
-    moved = design @ inverse
-    # The directions' weights are counted in units of the share.
-    scale = np.concatenate([np.ones(p.size), np.full(ways.shape[1], share)])
-    amounts = np.linalg.solve(normal[p.size :, p.size :], ways.T @ off)
-    # Laplace: the posterior of parameters and directions is narrower than their prior.
-    whole = np.concatenate([std, np.ones(ways.shape[1])])
-    narrowed = np.linalg.slogdet(whole[:, None] * normal * whole)[1]
-    score = cost + float(narrowed)
-    nothing = Correction(form, tuple(p.tolist()))
-    covariance = scale[:, None] * (inverse + moved.T @ data.shared @ moved) * scale
-    root = np.asarray(np.linalg.cholesky(0.5 * (covariance + covariance.T)))
-    return FormFit(form, share, nothing, p, share * amounts, root, 1.0, score=score)
+    misfits = _Misfits(data, [form for form, _ in starts], ways)
+    ends, costs = least_squares(
+        misfits, misfits.padded([p for _, p in starts]), misfits.products.std,
+        most=steps, settled=_SETTLED, flat=_FLAT,
+    )  # fmt: skip
+    places = groupby(range(len(starts)), key=lambda i: starts[i][0])
+    best = np.array([min(own, key=costs.__getitem__) for _, own in places], np.intp)
+    return misfits.fits(ends[best], costs[best], best, share)
 
 
-class _Misfit:
-    """How far a form is from all curves, and from the prior of its parameters."""
+class _Misfits:
+    """How far forms are from all curves, and from the prior of their parameters."""
 
-    def __init__(self, data: WhitenedCurves, form: SensorForm, ways: Floats) -> None:
-        self.data, self.form = data, form
+    def __init__(self, data: WhitenedCurves, forms: Sequence[SensorForm], ways: Floats) -> None:
+        self.data, self.forms, self.ways = data, forms, ways
+        self.products = FormProducts(tuple(one.terms for one in forms), forms[0].detector_px)
         # (1 + ways ways^T)^(-1/2), by the singular values of ways.
         self.left, singular, _ = np.linalg.svd(ways, full_matrices=False)
         self.damping = 1 / np.sqrt(1 + singular**2) - 1
-        self.mean, self.std = form.mean, form.std
-        self.last = np.full(self.mean.size, np.nan)
-        self.last_factors: list[NDArray[Any]] = []
-        self.last_curves: LitCurves
+        self.near: _NearForms
 
-    def least(self, start: Floats, steps: int) -> tuple[float, Floats]:
-        """The least sum of squares of the residual, and where it is, by Levenberg and Marquardt.
+    def padded(self, parameters: Sequence[Floats]) -> Floats:
+        """Parameters of every form, (f, p); 0 where it has fewer."""
+        found = np.zeros_like(self.products.mean)
+        for own, p in zip(found, parameters, strict=True):
+            own[: p.size] = p
+        return found
 
-        `scipy.optimize.least_squares` takes the same steps, in a tenth more of the time.
-        """
-        found, _, info, *_ = leastsq(
-            self.residual, start, Dfun=self.slopes, full_output=True,
-            ftol=_SETTLED, xtol=_SETTLED, gtol=_FLAT, maxfev=steps,
-        )  # fmt: skip
-        left = info["fvec"]
-        return float(left @ left), np.asarray(found)
+    def costs(self, x: Floats, which: Places) -> Floats:
+        """Sums of squares of the residuals, the correction integrated out, and from the prior."""
+        # A trial step may lead anywhere.
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            self.near = _NearForms(self, x, which)
+            return self.near.costs
 
-    def curves(self, p: Floats) -> LitCurves:
-        """All curves about the OTF; slopes are asked for where the residual was."""
-        if not np.array_equal(p, self.last):
-            self.last, self.last_factors = p.copy(), self.form.factors_on(p, self.data.plane)
-            self.last_curves = LitCurves(self.data, product(self.last_factors))
-        return self.last_curves
+    def expansions(self, x: Floats, which: Places) -> Expansion:
+        """How they change with the parameters, of some of those whose costs were asked last."""
+        near = self.near.some(np.searchsorted(self.near.which, which))
+        slopes, std = self.damped(near.slopes), near.products.std
+        gram = slopes @ slopes.transpose(0, 2, 1)
+        np.einsum("bii->bi", gram)[:] += std**-2.0
+        fall = slopes @ self.damped(near.curves.residual)[..., None]
+        return Expansion(gram, near.from_prior / std - fall[..., 0])
 
-    def parts(self, p: Floats) -> tuple[Floats, Floats]:
-        """Of the curves, and of the parameters from their prior, in standard deviations."""
-        return self.curves(p).residual, (p - self.mean) / self.std
-
-    def residual(self, p: Floats) -> Floats:
-        """All in one, the correction integrated out."""
-        off, from_prior = self.parts(p)
-        return np.concatenate([self._damped(off), from_prior])
-
-    def slopes_of_curves(self, p: Floats) -> Floats:
-        """Derivatives of the whitened OTF by the parameters, (n, p)."""
-        near = self.curves(p)
-        return near.of(self.form.slopes_on(p, self.data.plane, self.last_factors))
-
-    def slopes(self, p: Floats) -> Floats:
-        """Derivatives of the residual."""
-        return np.concatenate([-self._damped(self.slopes_of_curves(p)), np.diag(1 / self.std)])
-
-    def _damped(self, values: Floats) -> Floats:
+    def damped(self, values: Floats) -> Floats:
+        """Whitened values (..., size), the correction integrated out."""
         if not self.damping.size:
             return values
-        return np.asarray(values + (self.left * self.damping) @ (self.left.T @ values))
+        return np.asarray(values + (values @ self.left) @ (self.left * self.damping).T)
+
+    def fits(self, x: Floats, costs: Floats, which: Places, share: float) -> list[FormFit]:
+        """Forms `which`, one a form, at the parameters where the costs are least."""
+        near = _NearForms(self, x, which)
+        return [
+            self._fit(
+                self.forms[i], x[k], float(costs[k]), near.slopes[k].T, near.curves.residual[k],
+                share,
+            )
+            for k, i in enumerate(which.tolist())
+        ]  # fmt: skip
+
+    def _fit(
+        self, form: SensorForm, x: Floats, cost: float, by_p: Floats, off: Floats, share: float
+    ) -> FormFit:
+        std, ways = form.std, self.ways
+        p = x[: std.size].copy()
+        design = np.concatenate([by_p[:, : p.size], ways], axis=1)
+        normal = design.T @ design
+        normal += np.diag(np.concatenate([std**-2.0, np.ones(ways.shape[1])]))
+        inverse = np.linalg.inv(normal)
+        moved = design @ inverse
+        # The directions' weights are counted in units of the share.
+        scale = np.concatenate([np.ones(p.size), np.full(ways.shape[1], share)])
+        amounts = np.linalg.solve(normal[p.size :, p.size :], ways.T @ off)
+        # Laplace: the posterior of parameters and directions is narrower than their prior.
+        whole = np.concatenate([std, np.ones(ways.shape[1])])
+        narrowed = np.linalg.slogdet(whole[:, None] * normal * whole)[1]
+        score = cost + float(narrowed)
+        nothing = Correction(form, tuple(p.tolist()))
+        covariance = scale[:, None] * (inverse + self.data.shared_of(moved)) * scale
+        root = np.asarray(np.linalg.cholesky(0.5 * (covariance + covariance.T)))
+        return FormFit(form, share, nothing, p, share * amounts, root, 1.0, score=score)
 
 
-def likely_starts(data: WhitenedCurves, form: SensorForm) -> list[Floats]:
-    """The first guesses of the parameters that fit best."""
-    misfit = _Misfit(data, form, np.zeros((data.values.size, 0)))
-    best_first = sorted(_starts(form), key=lambda p: float(np.sum(misfit.residual(p) ** 2)))
-    return best_first[:_STARTS_TRIED]
+@dataclass(frozen=True, eq=False)
+class _NearForms:
+    """Some forms at some parameters.
+
+    Attributes
+    ----------
+    misfits : _Misfits
+    x : (b, p) array
+    which : (b,) int array
+    """
+
+    misfits: _Misfits
+    x: Floats
+    which: Places
+
+    @cached_property
+    def products(self) -> FormProducts:
+        return self.misfits.products.some(self.which)
+
+    @cached_property
+    def factors(self) -> NDArray[np.complex128]:
+        return self.products.factors(self.x, self.misfits.data.plane)
+
+    @cached_property
+    def curves(self) -> LitCurves:
+        """All curves about the OTF of each, (b, n)."""
+        return LitCurves(self.misfits.data, self.factors.prod(axis=0))
+
+    @cached_property
+    def from_prior(self) -> Floats:
+        """Parameters, (b, p), in prior standard deviations from the mean."""
+        return np.asarray((self.x - self.products.mean) / self.products.std)
+
+    @cached_property
+    def costs(self) -> Floats:
+        residual = self.misfits.damped(self.curves.residual)
+        return np.asarray(np.sum(residual**2, axis=1) + np.sum(self.from_prior**2, axis=1))
+
+    @cached_property
+    def slopes(self) -> Floats:
+        """Derivatives of the whitened OTFs by the parameters, (b, p, size)."""
+        slopes = self.products.slopes(self.x, self.misfits.data.plane, self.factors)
+        return self.curves.of(slopes)
+
+    def some(self, kept: Places) -> _NearForms:
+        """Those at places (k,) among them; what is known of them is not worked out again."""
+        found = _NearForms(self.misfits, self.x[kept], self.which[kept])
+        vars(found).update(factors=self.factors[:, kept], curves=self.curves.some(kept))
+        return found
+
+
+def likely_starts(data: WhitenedCurves, forms: Sequence[SensorForm]) -> list[list[Floats]]:
+    """Of every form the first guesses of the parameters that fit best."""
+    if not forms:
+        return []
+    guesses = [_starts(form) for form in forms]
+    owners = [form for form, own in zip(forms, guesses, strict=True) for _ in own]
+    misfits = _Misfits(data, owners, np.zeros((data.values.size, 0)))
+    x = misfits.padded([p for own in guesses for p in own])
+    costs = iter(misfits.costs(x, np.arange(len(x))).tolist())
+    found = []
+    for own in guesses:
+        order = np.argsort([next(costs) for _ in own], kind="stable")
+        found.append([own[i] for i in order[:_STARTS_TRIED].tolist()])
+    return found
 
 
 def _starts(form: SensorForm) -> list[Floats]:

@@ -29,12 +29,12 @@ _NO_LIGHT = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class LitCurves:
-    """All curves about an OTF, each in the light that suits it best.
+    """All curves about an OTF, or about several, each in the light that suits it best.
 
     Parameters
     ----------
     data : WhitenedCurves
-    otf : (n,) complex array
+    otf : (..., n) complex array
         At all places.
     """
 
@@ -43,30 +43,44 @@ class LitCurves:
 
     @cached_property
     def _whole(self) -> Floats:
-        """The OTF as a whitened spectrum of unit light, (size,)."""
+        """The OTF as a whitened spectrum of unit light, (..., size)."""
         return self.data.of(self.otf) + self.data.level
 
     @cached_property
     def _square(self) -> Floats:
-        """Its square, of every spectrum."""
-        return np.maximum(self.data.lit @ self._whole**2, _NO_LIGHT)
+        """Its square, of every curve, (..., curves)."""
+        return np.maximum(self.data.sums(self._whole**2), _NO_LIGHT)
 
     @cached_property
     def light(self) -> Floats:
-        """The light of every value's spectrum, (size,); 1 of curves that are no spectra."""
-        lit = self.data.lit
-        return 1 + ((lit @ (self._whole * self.data.values)) / self._square - 1) @ lit
+        """The light of every value's spectrum, (..., size); 1 of curves that are no spectra."""
+        seen = self.data.sums(self._whole * self.data.values)
+        return self.data.of_spectra(seen / self._square, 1.0)
 
     @cached_property
     def residual(self) -> Floats:
-        """What the OTF leaves of all values, (size,)."""
+        """What the OTF leaves of all values, (..., size)."""
         return self.data.values - self.light * self._whole
 
     def of(self, values: Complexes) -> Floats:
-        """Changes of the OTF, (n,) or (n, p), in whitened values, less what light makes up for."""
-        return self.apart((self.light * self.data.of(values).T).T)
+        """Changes of the OTF, (..., n) or (..., p, n), whitened, less what light makes up for."""
+        whitened = self.data.of(values)
+        return self.apart(_beside(self.light, whitened) * whitened)
 
     def apart(self, whitened: Floats) -> Floats:
-        """Whitened values (size,) or (size, p), less their part along each spectrum."""
-        lit = self.data.lit * self._whole
-        return np.asarray(whitened - (lit.T / self._square) @ (lit @ whitened))
+        """Whitened values (..., size) or (..., p, size), less their part along each spectrum."""
+        whole, square = (_beside(one, whitened) for one in (self._whole, self._square))
+        along = self.data.of_spectra(self.data.sums(whole * whitened) / square, 0.0)
+        return np.asarray(whitened - whole * along)
+
+    def some(self, kept: NDArray[np.intp]) -> LitCurves:
+        """Those about some of several OTFs; what is known of them is not worked out again."""
+        known = {name: values[kept] for name, values in vars(self).items() if name != "data"}
+        found = LitCurves(self.data, known["otf"])
+        vars(found).update(known)
+        return found
+
+
+def _beside(own: Floats, others: Floats) -> Floats:
+    """One for each OTF, for arithmetic with several for each."""
+    return own if own.ndim == others.ndim else own[..., None, :]

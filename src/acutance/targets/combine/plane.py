@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.optics import Resampling
 
-__all__ = ["PIXELS", "TAPS", "Plane"]
+__all__ = ["PIXELS", "PROCESS_PLACES", "TAPS", "Plane"]
 
 Complexes = NDArray[np.complex128]
 
@@ -20,6 +20,14 @@ TAPS = 7
 """Outer taps on either side of the kernels."""
 PIXELS: Floats = np.arange(-2.0, 3.0)
 """Pixels of which cubic convolution at less than half a pixel from one makes a value."""
+PROCESS_PLACES: Floats = np.array([
+    (radius * math.cos(math.pi * k / count), radius * math.sin(math.pi * k / count))
+    for radius, count in ((0.10, 3), (0.25, 4), (0.40, 6), (0.55, 8), (0.75, 8))
+    for k in range(count)
+])  # fmt: skip
+"""Places on half of the plane whose values make a smooth function, (m, 2), cycles per pixel."""
+_PROCESS_CPP = 0.25
+"""Length over which it varies."""
 _DIGITS = 12
 """Of a frequency: those of slices in different directions differ in the last ones."""
 
@@ -75,6 +83,17 @@ class Plane:
         """Transfer from the middle one of `PIXELS` to each, across and along, (n, 5) each."""
         across, along = (np.outer(freq, PIXELS) for freq in (self.u_cpp, self.v_cpp))
         return np.exp(2j * math.pi * across), np.exp(2j * math.pi * along)
+
+    @cached_property
+    def processes(self) -> tuple[Floats, Floats]:
+        """Covariances of an even and of an odd Gaussian process here and at `PROCESS_PLACES`,
+        (n, m) each."""
+        x, y = PROCESS_PLACES.T
+        near, far = (
+            np.exp(-0.5 * ((u[:, None] - x) ** 2 + (v[:, None] - y) ** 2) / _PROCESS_CPP**2)
+            for u, v in ((self.u_cpp, self.v_cpp), (-self.u_cpp, -self.v_cpp))
+        )
+        return 0.5 * (near + far), 0.5 * (near - far)
 
 
 def _tap_gains(freq: Floats) -> Floats:

@@ -1,6 +1,7 @@
 """What ground processing does to a parametric sensor: kernels, masks, interpolation.
 
-Parameters are those of `acutance.targets.combine.sensor_terms`: unbounded, with a normal prior.
+Parameters are those of `acutance.targets.combine.sensor_terms`: unbounded, with a normal prior, of
+several sensors at once.
 """
 
 from __future__ import annotations
@@ -9,77 +10,85 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
-from acutance.optics.interpolation import interpolation_weight
+from acutance.optics.interpolation import cubic_convolution_weight
 from acutance.targets.combine.plane import PIXELS, TAPS, Plane
-from acutance.targets.combine.term import Term, logistic, logistic_slope
+from acutance.targets.combine.term import Term, columns, logistic, logistic_slope
 
 __all__ = ["PROCESSING_TERMS"]
 
 Complexes = NDArray[np.complex128]
 
 
-def _taps(p: Floats) -> tuple[float, float]:
+def _taps(log_size: Floats, log_ratio: Floats) -> tuple[Floats, Floats]:
     """Outer taps of the kernel across and along with the opposite sign, by their logarithms."""
-    return math.exp(p[0] + p[1]), math.exp(p[0] - p[1])
+    return np.exp(log_size + log_ratio), np.exp(log_size - log_ratio)
+
+
+def _tap_parts(p: Floats, plane: Plane) -> tuple[Floats, Floats]:
+    """What the outer taps add to the gain across and along."""
+    across, along = _taps(*columns(p))
+    by_col, by_row = (gains[:, 0] for gains in plane.tap_gains)
+    return across * by_col, along * by_row
 
 
 def _sharpening(p: Floats, plane: Plane) -> Floats:
-    across, along = _taps(p)
-    by_col, by_row = (gains[:, 0] for gains in plane.tap_gains)
-    return np.asarray((1 + across * by_col) * (1 + along * by_row))
+    across, along = _tap_parts(p, plane)
+    return np.asarray((1 + across) * (1 + along))
 
 
 def _sharpening_slopes(p: Floats, plane: Plane) -> Floats:
-    across, along = _taps(p)
-    by_col, by_row = (gains[:, 0] for gains in plane.tap_gains)
-    one, other = across * by_col * (1 + along * by_row), along * by_row * (1 + across * by_col)
-    return np.stack([one + other, one - other], axis=1)
+    across, along = _tap_parts(p, plane)
+    one, other = across * (1 + along), along * (1 + across)
+    return np.stack([one + other, one - other], axis=-2)
 
 
 def _sharpening_numbers(p: Floats) -> dict[str, float]:
-    across, along = _taps(p)
-    return {"sharpening_across": across, "sharpening_along": along}
+    across, along = _taps(p[0], p[1])
+    return {"sharpening_across": float(across), "sharpening_along": float(along)}
 
 
 def _square_parts(plane: Plane) -> Floats:
-    """What four side taps and four corner taps of a kernel of 3 x 3 add, of -1 each, (n, 2)."""
+    """What four side taps and four corner taps of a kernel of 3 x 3 add, of -1 each, (2, n)."""
     by_col, by_row = (gains[:, 0] for gains in plane.tap_gains)
     sides = by_col + by_row
-    return np.stack([sides, 2 * sides - by_col * by_row], axis=1)
+    return np.stack([sides, 2 * sides - by_col * by_row])
 
 
 def _square_kernel(p: Floats, plane: Plane) -> Floats:
     """Any kernel of 3 x 3 taps with the symmetry of the grid: sharpening, a box's unsharp mask."""
-    return np.asarray(1 + _square_parts(plane) @ p)
+    return np.asarray(1 + p @ _square_parts(plane))
 
 
 def _square_kernel_slopes(p: Floats, plane: Plane) -> Floats:
-    return _square_parts(plane)
+    parts = _square_parts(plane)
+    return np.broadcast_to(parts, (*p.shape[:-1], *parts.shape))
 
 
 def _square_kernel_numbers(p: Floats) -> dict[str, float]:
     return {"side_tap": -float(p[0]), "corner_tap": -float(p[1])}
 
 
-def _mask(p: Floats) -> tuple[float, float]:
+def _mask(logit: Floats, log_sigma: Floats) -> tuple[Floats, Floats]:
     """Gain (at most 2, as in use) and width of an unsharp mask."""
-    return 2.0 * logistic(p[0]), math.exp(p[1])
+    return 2.0 * logistic(logit), np.exp(log_sigma)
 
 
 def _unsharp(p: Floats, plane: Plane) -> Floats:
-    gain, sigma = _mask(p)
+    gain, sigma = _mask(*columns(p))
     return np.asarray(1 + gain * (1 - _wide_gaussian(sigma, plane)[0]))
 
 
 def _unsharp_slopes(p: Floats, plane: Plane) -> Floats:
-    gain, sigma = _mask(p)
+    gain, sigma = _mask(*columns(p))
     blurred, by_width = _wide_gaussian(sigma, plane)
-    return np.stack([2 * logistic_slope(p[0]) * (1 - blurred), -gain * by_width], axis=1)
+    by_gain = 2 * logistic_slope(p[..., :1]) * (1 - blurred)
+    return np.stack([by_gain, -gain * by_width], axis=-2)
 
 
-def _wide_gaussian(sigma_px: float, plane: Plane) -> tuple[Floats, Floats]:
+def _wide_gaussian(sigma_px: Floats, plane: Plane) -> tuple[Floats, Floats]:
     """A round Gaussian, and its derivative by the logarithm of its width."""
     square = (math.pi * sigma_px) ** 2 * (plane.u_cpp**2 + plane.v_cpp**2)
     values = np.exp(-2 * square)
@@ -87,19 +96,20 @@ def _wide_gaussian(sigma_px: float, plane: Plane) -> tuple[Floats, Floats]:
 
 
 def _unsharp_numbers(p: Floats) -> dict[str, float]:
-    gain, sigma = _mask(p)
-    return {"unsharp_gain": gain, "unsharp_sigma_px": sigma}
+    gain, sigma = _mask(p[0], p[1])
+    return {"unsharp_gain": float(gain), "unsharp_sigma_px": float(sigma)}
 
 
 def _kernel(p: Floats, plane: Plane) -> Floats:
     """An even kernel of 15 taps, the same in both axes: its outer taps are -p[0], -p[1], ..."""
     across, along = plane.tap_gains
-    return np.asarray((1 + across @ p) * (1 + along @ p))
+    return np.asarray((1 + p @ across.T) * (1 + p @ along.T))
 
 
 def _kernel_slopes(p: Floats, plane: Plane) -> Floats:
     across, along = plane.tap_gains
-    return np.asarray(across * (1 + along @ p)[:, None] + along * (1 + across @ p)[:, None])
+    one, other = (1 + p @ across.T)[..., None, :], (1 + p @ along.T)[..., None, :]
+    return np.asarray(across.T * other + along.T * one)
 
 
 def _kernel_numbers(p: Floats) -> dict[str, float]:
@@ -108,7 +118,8 @@ def _kernel_numbers(p: Floats) -> dict[str, float]:
 
 def _short_taps(p: Floats) -> Floats:
     """All taps of a kernel of seven, by standard normal parameters: its tap k is -p[k]."""
-    return np.pad(_SHORT_MEAN + _SHORT_ROOT @ p, (0, TAPS - _SHORT_MEAN.size))
+    longer = np.zeros((*p.shape[:-1], TAPS - _SHORT_MEAN.size))
+    return np.concatenate([_SHORT_MEAN + p @ _SHORT_ROOT.T, longer], axis=-1)
 
 
 def _short_kernel(p: Floats, plane: Plane) -> Floats:
@@ -117,61 +128,70 @@ def _short_kernel(p: Floats, plane: Plane) -> Floats:
 
 def _short_kernel_slopes(p: Floats, plane: Plane) -> Floats:
     by_tap = _kernel_slopes(_short_taps(p), plane)
-    return np.asarray(by_tap[:, : _SHORT_MEAN.size] @ _SHORT_ROOT)
+    return np.asarray(_SHORT_ROOT.T @ by_tap[..., : _SHORT_MEAN.size, :])
 
 
 def _short_kernel_numbers(p: Floats) -> dict[str, float]:
     return _kernel_numbers(_short_taps(p)[: _SHORT_MEAN.size])
 
 
-def _cubic(p: Floats) -> float:
+def _cubic(logit: Floats) -> Floats:
     """Parameter of a cubic convolution, -1 to 0."""
-    return -logistic(p[0])
+    return -logistic(logit)
+
+
+def _cubic_parts(p: Floats, plane: Plane) -> tuple[Floats, Floats]:
+    """OTF of cubic convolution across and along."""
+    (across, along), (by_across, by_along) = (part.T for part in plane.cubic_parts)
+    return across + _cubic(p) * by_across, along + _cubic(p) * by_along
 
 
 def _interpolation(p: Floats, plane: Plane) -> Floats:
-    at_none, by_unit = plane.cubic_parts
-    return np.asarray(np.prod(at_none + _cubic(p) * by_unit, axis=1))
+    across, along = _cubic_parts(p, plane)
+    return across * along
 
 
 def _interpolation_slopes(p: Floats, plane: Plane) -> Floats:
-    at_none, by_unit = plane.cubic_parts
-    across, along = (at_none + _cubic(p) * by_unit).T
-    by_parameter = by_unit[:, 0] * along + across * by_unit[:, 1]
-    return np.asarray(-logistic_slope(p[0]) * by_parameter[:, None])
+    across, along = _cubic_parts(p, plane)
+    by_across, by_along = plane.cubic_parts[1].T
+    by_parameter = by_across * along + across * by_along
+    return np.asarray(-logistic_slope(p) * by_parameter)[..., None, :]
 
 
 def _interpolation_numbers(p: Floats) -> dict[str, float]:
-    return {"cubic_a": _cubic(p)}
+    return {"cubic_a": float(_cubic(p[0]))}
 
 
-def _phases(p: Floats) -> tuple[float, float]:
-    """Sub-pixel places of interpolation across and along: equally likely from -1/2 to 1/2."""
-    return 0.5 * math.erf(p[0] * math.sqrt(0.5)), 0.5 * math.erf(p[1] * math.sqrt(0.5))
+def _sub_pixel(p: Floats) -> Floats:
+    """Sub-pixel places of interpolation: equally likely from -1/2 to 1/2."""
+    return np.asarray(ndtr(p) - 0.5)
 
 
 def _phase(p: Floats, plane: Plane) -> Complexes:
     """Cubic convolution at one phase of the pixels, as in a small part of a warped image."""
-    across, along = _phases(p)
+    across, along, logit = columns(p)
     by_col, by_row = plane.pixel_waves
-    a = _cubic(p[2:])
-    return _at_phase(across, a, plane.u_cpp, by_col) * _at_phase(along, a, plane.v_cpp, by_row)
+    a = _cubic(logit)
+    return np.asarray(
+        _at_phase(_sub_pixel(across), a, plane.u_cpp, by_col)
+        * _at_phase(_sub_pixel(along), a, plane.v_cpp, by_row)
+    )
 
 
-def _at_phase(phase_px: float, a: float, freq: Floats, pixel_waves: Complexes) -> Complexes:
+def _at_phase(phase_px: Floats, a: Floats, freq: Floats, pixel_waves: Complexes) -> Complexes:
     """Along one axis; the mean place of the light is taken off.
 
     Cubic convolution moves the image: only that of a = -1/2 keeps straight lines.
     """
     away_px = PIXELS - phase_px
-    weight = interpolation_weight("cubic", away_px, a)
-    middle_px = phase_px + float(away_px @ weight)
-    return np.asarray((pixel_waves @ weight) * np.exp(-2j * math.pi * middle_px * freq))
+    weight = cubic_convolution_weight(away_px, a)
+    middle_px = phase_px + np.sum(away_px * weight, axis=-1, keepdims=True)
+    return np.asarray((weight @ pixel_waves.T) * np.exp(-2j * math.pi * middle_px * freq))
 
 
 def _phase_numbers(p: Floats) -> dict[str, float]:
-    across, along = _phases(p)
-    return {"phase_across_px": across, "phase_along_px": along, "cubic_a": _cubic(p[2:])}
+    across, along = map(float, _sub_pixel(p[:2]))
+    return {"phase_across_px": across, "phase_along_px": along, "cubic_a": float(_cubic(p[2]))}
 
 
 _TAP_MEAN = (0.4, *((TAPS - 1) * [0.0]))

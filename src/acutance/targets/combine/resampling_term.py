@@ -21,7 +21,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.targets.combine.plane import Plane
-from acutance.targets.combine.term import Term
+from acutance.targets.combine.term import Term, columns
 
 __all__ = ["RESAMPLING"]
 
@@ -37,9 +37,9 @@ class _Images(NamedTuple):
 
     Attributes
     ----------
-    apart_cpp : (n, 6) array
+    apart_cpp : (..., n, 6) array
         Frequencies in cycles per old pixel, from the middle of each repetition.
-    log_ratio, size : (n, 6) arrays
+    log_ratio, size : (..., n, 6) arrays
     """
 
     apart_cpp: Floats
@@ -48,8 +48,8 @@ class _Images(NamedTuple):
 
     @property
     def left(self) -> Floats:
-        """The transfer, (n,)."""
-        return np.asarray(1 / (1 + self.size.sum(axis=1)))
+        """The transfer, (..., n)."""
+        return np.asarray(1 / (1 + self.size.sum(axis=-1)))
 
 
 def _resampling(p: Floats, plane: Plane) -> Floats:
@@ -61,26 +61,26 @@ def _resampling(p: Floats, plane: Plane) -> Floats:
 def _resampling_slopes(p: Floats, plane: Plane) -> Floats:
     across, along = (_images(p, freq) for freq in (plane.u_cpp, plane.v_cpp))
     one, other = across.left, along.left
-    by_one, by_other = (
-        _slopes(math.exp(p[0]), images, left) for images, left in ((across, one), (along, other))
-    )
-    return np.asarray(by_one * other[:, None] + one[:, None] * by_other)
+    power = np.exp(p[..., :1])
+    by_one, by_other = _slopes(power, across, one), _slopes(power, along, other)
+    return np.asarray(by_one * other[..., None, :] + one[..., None, :] * by_other)
 
 
 def _images(p: Floats, freq_cpp: Floats) -> _Images:
-    old_cpp = math.exp(p[1]) * freq_cpp[:, None]
+    power, size = columns(np.exp(p))
+    old_cpp = (size * freq_cpp)[..., None]
     apart = old_cpp - _ORDERS
     apart = np.where(np.abs(apart) < _TINY, _TINY, apart)
     log_ratio = np.log(np.maximum(np.abs(old_cpp / apart), _TINY))
-    return _Images(apart, log_ratio, np.exp(np.minimum(math.exp(p[0]) * log_ratio, _MOST)))
+    return _Images(apart, log_ratio, np.exp(np.minimum(power[..., None] * log_ratio, _MOST)))
 
 
-def _slopes(power: float, images: _Images, left: Floats) -> Floats:
-    """Derivatives of the transfer along one axis by both parameters, (n, 2)."""
+def _slopes(power: Floats, images: _Images, left: Floats) -> Floats:
+    """Derivatives of the transfer along one axis by both parameters, (..., 2, n)."""
     growth = power * left**2
-    by_power = -growth * np.sum(images.size * images.log_ratio, axis=1)
-    by_size = growth * np.sum(images.size * _ORDERS / images.apart_cpp, axis=1)
-    return np.stack([by_power, by_size], axis=1)
+    by_power = -growth * np.sum(images.size * images.log_ratio, axis=-1)
+    by_size = growth * np.sum(images.size * _ORDERS / images.apart_cpp, axis=-1)
+    return np.stack([by_power, by_size], axis=-2)
 
 
 def _resampling_numbers(p: Floats) -> dict[str, float]:

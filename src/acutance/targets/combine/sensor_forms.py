@@ -1,4 +1,4 @@
-"""Parametric sensors: products of terms (`sensor_terms`) with a rectangular detector.
+"""Parametric sensors: products of terms (`sensor_terms`) with diffusion and a detector.
 
 The forms are those of `acutance.optics.FAMILIES`: what a telescope, its detector and the processing
 on the ground do.
@@ -6,33 +6,28 @@ on the ground do.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
-from functools import reduce
-from typing import Any
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
+from acutance.targets.combine.detector_terms import detector_terms
+from acutance.targets.combine.form_products import FormProducts
 from acutance.targets.combine.plane import Plane
-from acutance.targets.combine.sensor_terms import TERMS, sinc_growth
-from acutance.targets.combine.term import Term, Transfer
+from acutance.targets.combine.sensor_terms import TERMS
+from acutance.targets.combine.term import Term
 
-__all__ = ["FORMS", "SCENE_FORMS", "SensorForm", "product"]
+__all__ = ["FORMS", "SCENE_FORMS", "SensorForm"]
 
 Complexes = NDArray[np.complex128]
 
-_STEP = 1e-5
 _OBLIQUE = {
     "upright gaussian": "gaussian", "round gaussian": "gaussian", "upright smear": "smear",
 }  # fmt: skip
 _GAUSSIAN_WIDTHS = ("sigma_across_px", "sigma_along_px", "sigma_minor_px")
-_FILL_STD = 0.12
-"""Of the logarithm of a detector's width over the stated one: fill factors are near one."""
-_DIFFUSION_MEAN, _DIFFUSION_STD = math.log(0.1), 1.0
-"""Of the logarithm of the depth from which charge spreads, px: every detector has some."""
 
 
 @dataclass(frozen=True)
@@ -71,14 +66,12 @@ class SensorForm:
     @property
     def mean(self) -> Floats:
         """Prior mean of all parameters, (p,): of terms, of diffusion, of the detector's fill."""
-        own = [one for name in self.terms for one in TERMS[name].mean]
-        return np.array([*own, _DIFFUSION_MEAN, 0.0])
+        return np.asarray(_alone(self).mean[0])
 
     @property
     def std(self) -> Floats:
         """Prior standard deviation of all parameters, (p,)."""
-        own = [one for name in self.terms for one in TERMS[name].std]
-        return np.array([*own, _DIFFUSION_STD, _FILL_STD])
+        return np.asarray(_alone(self).std[0])
 
     def otf(self, p: Floats, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF (n,), exactly 1 at zero frequency."""
@@ -86,36 +79,23 @@ class SensorForm:
 
     def otf_on(self, p: Floats, plane: Plane) -> Complexes:
         """OTF (n,) at places of the plane."""
-        return product(self.factors_on(p, plane))
+        return np.asarray(_alone(self).factors(p[None], plane)[:, 0].prod(axis=0))
 
-    def factors_on(self, p: Floats, plane: Plane) -> list[NDArray[Any]]:
-        """OTFs of all terms, of diffusion, and of the detector as the last, (n,) each."""
-        own = [term.otf(own, plane) for term, own in self._split(p)]
-        return [*own, _diffusion(p[-2], plane), _detector(p[-1:], plane, self.detector_px)]
+    def detector_on(self, p: Floats, plane: Plane) -> Complexes:
+        """OTF of the detector alone, (n,)."""
+        return np.asarray(_alone(self).factors(p[None], plane)[-1, 0])
 
-    def slopes_on(
-        self, p: Floats, plane: Plane, factors: list[NDArray[Any]] | None = None
-    ) -> Complexes:
-        """Derivatives of the OTF by the parameters, (n, p); the factors may be known already."""
-        values = self.factors_on(p, plane) if factors is None else factors
-        slopes = [
-            _differences(term.otf, here, own, plane) if term.slopes is None
-            else term.slopes(own, plane)
-            for (term, own), here in zip(self._split(p), values, strict=False)
-        ]  # fmt: skip
-        slopes.append(_diffusion_slopes(p[-2], plane))
-        slopes.append(_detector_slopes(p[-1:], plane, self.detector_px))
-        others = [product(values[:i] + values[i + 1 :]) for i in range(len(values))]
-        return np.concatenate(
-            [other[:, None] * by_own for other, by_own in zip(others, slopes, strict=True)], axis=1
-        )
+    def slopes_on(self, p: Floats, plane: Plane) -> Complexes:
+        """Derivatives of the OTF by the parameters, (n, p)."""
+        factors = _alone(self).factors(p[None], plane)
+        return np.asarray(_alone(self).slopes(p[None], plane, factors)[0].T)
 
     def numbers(self, p: Floats) -> dict[str, float]:
         """The reported numbers, by name."""
         found: dict[str, float] = {}
         for term, own in self._split(p):
             found |= term.numbers(own)
-        return {**found, "diffusion_px": math.exp(p[-2]), "detector_fill": math.exp(p[-1])}
+        return found
 
     def min_sigma_px(self, p: Floats) -> float:
         """Smallest standard deviation of the Gaussian: it limits the band."""
@@ -152,68 +132,18 @@ class SensorForm:
 
     def _split(self, p: Floats) -> list[tuple[Term, Floats]]:
         found, start = [], 0
-        for name in self.terms:
-            stop = start + len(TERMS[name].mean)
-            found.append((TERMS[name], p[start:stop]))
+        last = detector_terms(self.detector_px).values()
+        for term in (*(TERMS[name] for name in self.terms), *last):
+            stop = start + len(term.mean)
+            found.append((term, p[start:stop]))
             start = stop
         return found
 
 
-def _diffusion(log_depth: float, plane: Plane) -> Floats:
-    """OTF of charge that spreads before it is collected, (n,): `acutance.optics.ChargeDiffusion`.
-
-    A Gaussian where it takes little, of tails that fall more slowly.
-    """
-    return np.asarray(_sech(math.exp(log_depth) * plane.waves))
-
-
-def _diffusion_slopes(log_depth: float, plane: Plane) -> Floats:
-    """Its derivative, (n, 1)."""
-    travelled = math.exp(log_depth) * plane.waves
-    return np.asarray((-travelled * np.tanh(travelled) * _sech(travelled))[:, None])
-
-
-def _sech(x: Floats) -> Floats:
-    """One over the hyperbolic cosine, where that is too large as well."""
-    falls = np.exp(-np.abs(x))
-    return np.asarray(2 * falls / (1 + falls**2))
-
-
-def _detector(p: Floats, plane: Plane, detector_px: tuple[float, float]) -> Floats:
-    """OTF of a rectangular detector, (n,), by the logarithm of its width over the stated one."""
-    across, along = _detector_waves(p, plane, detector_px)
-    return np.asarray(np.sinc(across) * np.sinc(along))
-
-
-def _detector_slopes(p: Floats, plane: Plane, detector_px: tuple[float, float]) -> Floats:
-    """Its derivative, (n, 1)."""
-    across, along = _detector_waves(p, plane, detector_px)
-    one, other = np.sinc(across), np.sinc(along)
-    by_both = sinc_growth(across, one) * other + one * sinc_growth(along, other)
-    return np.asarray(by_both[:, None])
-
-
-def _detector_waves(
-    p: Floats, plane: Plane, detector_px: tuple[float, float]
-) -> tuple[Floats, Floats]:
-    """Cycles over the detector, across and along."""
-    across, along = math.exp(p[0]) * np.array(detector_px)
-    return across * plane.u_cpp, along * plane.v_cpp
-
-
-def _differences(otf: Transfer, here: NDArray[Any], p: Floats, plane: Plane) -> NDArray[Any]:
-    """Derivatives by the parameters, (n, p), by differences from the OTF as it is `here`.
-
-    To one side: a step leads away from a smear or a trail of 0, which is stationary. By slopes in
-    closed form a fit that comes there stays.
-    """
-    moves = _STEP * np.eye(p.size)
-    return np.stack([(otf(p + move, plane) - here) / _STEP for move in moves], axis=1)
-
-
-def product(values: list[NDArray[Any]]) -> Complexes:
-    """Of factors of an OTF, (n,)."""
-    return np.asarray(reduce(np.multiply, values), complex)
+@cache
+def _alone(form: SensorForm) -> FormProducts:
+    """A form beside no other."""
+    return FormProducts((form.terms,), form.detector_px)
 
 
 SCENE_FORMS: tuple[tuple[str, ...], ...] = (

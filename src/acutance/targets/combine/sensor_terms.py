@@ -2,7 +2,7 @@
 
 Each is centred, so that none moves the image. Parameters are unbounded numbers of order 1 with a
 normal prior, as wide as the range of real sensors: it keeps a term that the data do not show from
-running away.
+running away. Those of several sensors are taken at once, (..., p), with an OTF for each, (..., n).
 """
 
 from __future__ import annotations
@@ -14,42 +14,44 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import wrap_axis
-from acutance.optics import Defocus
+from acutance.optics.aperture import defocused_transfer
 from acutance.targets.combine.aberration_term import ABERRATED, diffraction
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.processing_terms import PROCESSING_TERMS
 from acutance.targets.combine.resampling_term import RESAMPLING
-from acutance.targets.combine.term import Term, aperture, logistic, logistic_slope
+from acutance.targets.combine.term import Term, aperture, columns, logistic, logistic_slope
 
 __all__ = ["TERMS", "sinc_growth"]
 
 Complexes = NDArray[np.complex128]
 
 
-def _blur_covariance(p: Floats) -> tuple[float, float, float]:
+def _blur_covariance(
+    log_across: Floats, log_along: Floats, turned: Floats
+) -> tuple[Floats, Floats, Floats]:
     """Variances across and along and covariance of the Gaussian, px^2."""
-    across, along = math.exp(p[0]), math.exp(p[1])
-    correlation = math.tanh(p[2])
-    return across**2, along**2, correlation * across * along
+    across, along = np.exp(log_across), np.exp(log_along)
+    return across**2, along**2, np.tanh(turned) * across * along
 
 
 def _gaussian(p: Floats, plane: Plane) -> Floats:
-    xx, yy, xy = _blur_covariance(p)
+    xx, yy, xy = _blur_covariance(*columns(p))
     u, v = plane.u_cpp, plane.v_cpp
-    return np.asarray(np.exp(-2 * math.pi**2 * (xx * u**2 + 2 * xy * u * v + yy * v**2)))
+    return np.asarray(np.exp(-2 * math.pi**2 * (xx * u**2 + 2 * xy * (u * v) + yy * v**2)))
 
 
 def _gaussian_slopes(p: Floats, plane: Plane) -> Floats:
-    xx, yy, xy = _blur_covariance(p)
+    log_across, log_along, turned = columns(p)
+    xx, yy, xy = _blur_covariance(log_across, log_along, turned)
     u, v = plane.u_cpp, plane.v_cpp
-    crossed = xy * u * v
-    by_correlation = math.exp(p[0] + p[1]) / math.cosh(p[2]) ** 2 * u * v
-    falls = np.stack([xx * u**2 + crossed, yy * v**2 + crossed, by_correlation], axis=1)
-    return np.asarray(-4 * math.pi**2 * _gaussian(p, plane)[:, None] * falls)
+    crossed = xy * (u * v)
+    by_correlation = np.exp(log_across + log_along) / np.cosh(turned) ** 2 * (u * v)
+    falls = np.stack([xx * u**2 + crossed, yy * v**2 + crossed, by_correlation], axis=-2)
+    return np.asarray(-4 * math.pi**2 * _gaussian(p, plane)[..., None, :] * falls)
 
 
 def _gaussian_numbers(p: Floats) -> dict[str, float]:
-    xx, yy, xy = _blur_covariance(p)
+    xx, yy, xy = map(float, _blur_covariance(*p))
     middle, half = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), xy)
     return {
         "sigma_across_px": math.sqrt(xx),
@@ -63,11 +65,15 @@ def _gaussian_numbers(p: Floats) -> dict[str, float]:
 
 def _upright(p: Floats, plane: Plane) -> Floats:
     """A Gaussian whose axes are those of the image."""
-    return _gaussian(np.append(p, 0.0), plane)
+    return _gaussian(_not_turned(p), plane)
 
 
 def _upright_slopes(p: Floats, plane: Plane) -> Floats:
-    return _gaussian_slopes(np.append(p, 0.0), plane)[:, :2]
+    return _gaussian_slopes(_not_turned(p), plane)[..., :2, :]
+
+
+def _not_turned(p: Floats) -> Floats:
+    return np.concatenate([p, np.zeros_like(p[..., :1])], axis=-1)
 
 
 def _upright_numbers(p: Floats) -> dict[str, float]:
@@ -80,8 +86,9 @@ def _round(p: Floats, plane: Plane) -> Floats:
 
 
 def _round_slopes(p: Floats, plane: Plane) -> Floats:
-    across, along, correlation = _gaussian_slopes(_nearly_round(p), plane).T
-    return np.stack([across + along, across - along, correlation], axis=1)
+    slopes = _gaussian_slopes(_nearly_round(p), plane)
+    across, along, correlation = (slopes[..., i, :] for i in range(3))
+    return np.stack([across + along, across - along, correlation], axis=-2)
 
 
 def _round_numbers(p: Floats) -> dict[str, float]:
@@ -89,11 +96,13 @@ def _round_numbers(p: Floats) -> dict[str, float]:
 
 
 def _nearly_round(p: Floats) -> Floats:
-    return np.array([p[0] + p[1], p[0] - p[1], p[2]])
+    width, difference, correlation = columns(p)
+    return np.concatenate([width + difference, width - difference, correlation], axis=-1)
 
 
 def _smear(p: Floats, plane: Plane) -> Floats:
-    return np.asarray(np.sinc(p[0] * plane.u_cpp + p[1] * plane.v_cpp))
+    across, along = columns(p)
+    return np.asarray(np.sinc(across * plane.u_cpp + along * plane.v_cpp))
 
 
 def sinc_growth(waves: Floats, sinc: Floats) -> Floats:
@@ -104,15 +113,21 @@ def sinc_growth(waves: Floats, sinc: Floats) -> Floats:
 def _upright_smear(p: Floats, plane: Plane) -> Floats:
     """Smears along both axes of the image, by the logarithms of their lengths."""
     # A length of 0 is stationary: an expansion about it knows nothing of smears.
-    across, along = math.exp(p[0]) * plane.u_cpp, math.exp(p[1]) * plane.v_cpp
+    across, along = _smeared_waves(p, plane)
     return np.asarray(np.sinc(across) * np.sinc(along))
 
 
 def _upright_smear_slopes(p: Floats, plane: Plane) -> Floats:
-    across, along = math.exp(p[0]) * plane.u_cpp, math.exp(p[1]) * plane.v_cpp
+    across, along = _smeared_waves(p, plane)
     one, other = np.sinc(across), np.sinc(along)
     by_across = sinc_growth(across, one) * other
-    return np.stack([by_across, one * sinc_growth(along, other)], axis=1)
+    return np.stack([by_across, one * sinc_growth(along, other)], axis=-2)
+
+
+def _smeared_waves(p: Floats, plane: Plane) -> tuple[Floats, Floats]:
+    """Cycles over a smear, across and along."""
+    across, along = columns(np.exp(p))
+    return across * plane.u_cpp, along * plane.v_cpp
 
 
 def _upright_smear_numbers(p: Floats) -> dict[str, float]:
@@ -128,15 +143,15 @@ def _smear_numbers(p: Floats) -> dict[str, float]:
 
 
 def _halo(p: Floats, plane: Plane) -> Floats:
-    share = logistic(p[0])
+    share = logistic(p[..., :1])
     return np.asarray(1 - share + share * _scattered(p, plane)[0])
 
 
 def _halo_slopes(p: Floats, plane: Plane) -> Floats:
     values, by_width, by_taper = _scattered(p, plane)
-    share = logistic(p[0])
-    by_share = logistic_slope(p[0]) * (values - 1)
-    return np.stack([by_share, share * by_width, share * by_taper], axis=1)
+    share = logistic(p[..., :1])
+    by_share = logistic_slope(p[..., :1]) * (values - 1)
+    return np.stack([by_share, share * by_width, share * by_taper], axis=-2)
 
 
 def _scattered(p: Floats, plane: Plane) -> tuple[Floats, Floats, Floats]:
@@ -145,26 +160,28 @@ def _scattered(p: Floats, plane: Plane) -> tuple[Floats, Floats, Floats]:
     ``(1 + t x) ** (-1 / t)`` with x half the square of the standard deviation times the frequency
     in radians: a Gaussian at a taper t of 0, an exponential in the plane at 2/3.
     """
-    taper = logistic(p[2])
-    half_square = 0.5 * (math.exp(p[1]) * plane.waves) ** 2
+    _, log_sigma, logit = columns(p)
+    taper = logistic(logit)
+    half_square = 0.5 * (np.exp(log_sigma) * plane.waves) ** 2
     grown = 1 + taper * half_square
     log_values = -np.log1p(taper * half_square) / taper
     values = np.exp(log_values)
     by_width = -2 * half_square / grown * values
-    by_taper = -(log_values + half_square / grown) / taper * values * logistic_slope(p[2])
+    by_taper = -(log_values + half_square / grown) / taper * values * logistic_slope(logit)
     return values, by_width, by_taper
 
 
 def _halo_numbers(p: Floats) -> dict[str, float]:
     return {
-        "halo_share": logistic(p[0]),
+        "halo_share": float(logistic(p[0])),
         "halo_sigma_px": math.exp(p[1]),
-        "halo_taper": logistic(p[2]),
+        "halo_taper": float(logistic(p[2])),
     }
 
 
 def _trail(p: Floats, plane: Plane) -> Complexes:
-    across, along = 2j * math.pi * p[0] * plane.u_cpp, 2j * math.pi * p[1] * plane.v_cpp
+    length_across, length_along = columns(2 * math.pi * p)
+    across, along = 1j * length_across * plane.u_cpp, 1j * length_along * plane.v_cpp
     return np.asarray(np.exp(across + along) / ((1 + across) * (1 + along)))
 
 
@@ -173,24 +190,20 @@ def _trail_numbers(p: Floats) -> dict[str, float]:
 
 
 def _diffraction_numbers(p: Floats) -> dict[str, float]:
-    cutoff, obscuration = aperture(p)
-    return {"cutoff_cpp": cutoff, "obscuration": obscuration}
+    cutoff, obscuration = aperture(p[0], p[1])
+    return {"cutoff_cpp": float(cutoff), "obscuration": float(obscuration)}
 
 
 def _defocus(p: Floats, plane: Plane) -> Floats:
     """Once for every distance from zero frequency."""
     freq, where = plane.rings
-    cutoff, obscuration = aperture(p)
-    otf = Defocus(_waves(p), cutoff, obscuration).otf(freq, np.zeros(freq.size))
-    return np.asarray(np.asarray(otf)[where])
-
-
-def _waves(p: Floats) -> float:
-    return math.tanh(p[2])
+    log_cutoff, logit, waves = columns(p)
+    cutoff, obscuration = aperture(log_cutoff, logit)
+    return defocused_transfer(freq / cutoff, np.tanh(waves), obscuration)[..., where]
 
 
 def _defocus_numbers(p: Floats) -> dict[str, float]:
-    return {**_diffraction_numbers(p), "defocus_waves": abs(_waves(p))}
+    return {**_diffraction_numbers(p), "defocus_waves": abs(math.tanh(p[2]))}
 
 
 _SIGMA_MEAN, _SIGMA_STD = (math.log(0.4),), (0.7,)

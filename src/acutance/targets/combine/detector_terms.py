@@ -1,0 +1,77 @@
+"""The last factors of every parametric sensor: charge that spreads, and a rectangular detector."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from acutance.curves.grid import Floats
+from acutance.targets.combine.plane import Plane
+from acutance.targets.combine.sensor_terms import sinc_growth
+from acutance.targets.combine.term import Term
+
+__all__ = ["DETECTOR_PARAMETERS", "detector_terms"]
+
+DETECTOR_PARAMETERS = 2
+"""Of diffusion and of the detector's fill."""
+_FILL_STD = 0.12
+"""Of the logarithm of a detector's width over the stated one: fill factors are near one."""
+_DIFFUSION_MEAN, _DIFFUSION_STD = math.log(0.1), 1.0
+"""Of the logarithm of the depth from which charge spreads, px: every detector has some."""
+
+
+def detector_terms(detector_px: tuple[float, float]) -> dict[str, Term]:
+    """Both, of a detector of a stated width across and along, in pixels."""
+
+    def detector(p: Floats, plane: Plane) -> Floats:
+        """By the logarithm of its width over the stated one."""
+        across, along = waves(p, plane)
+        return np.asarray(np.sinc(across) * np.sinc(along))
+
+    def detector_slopes(p: Floats, plane: Plane) -> Floats:
+        across, along = waves(p, plane)
+        one, other = np.sinc(across), np.sinc(along)
+        by_both = sinc_growth(across, one) * other + one * sinc_growth(along, other)
+        return np.asarray(by_both[..., None, :])
+
+    def waves(p: Floats, plane: Plane) -> tuple[Floats, Floats]:
+        """Cycles over the detector, across and along."""
+        across, along = detector_px
+        return np.exp(p) * (across * plane.u_cpp), np.exp(p) * (along * plane.v_cpp)
+
+    return {"diffusion": _DIFFUSION, "detector": Term(
+        detector, (0.0,), (_FILL_STD,), _fill_numbers, detector_slopes
+    )}  # fmt: skip
+
+
+def _fill_numbers(p: Floats) -> dict[str, float]:
+    return {"detector_fill": math.exp(p[0])}
+
+
+def _diffusion(p: Floats, plane: Plane) -> Floats:
+    """Charge that spreads before it is collected: `acutance.optics.ChargeDiffusion`.
+
+    A Gaussian where it takes little, of tails that fall more slowly.
+    """
+    return _sech(np.exp(p) * plane.waves)
+
+
+def _diffusion_slopes(p: Floats, plane: Plane) -> Floats:
+    travelled = np.exp(p) * plane.waves
+    return np.asarray((-travelled * np.tanh(travelled) * _sech(travelled))[..., None, :])
+
+
+def _diffusion_numbers(p: Floats) -> dict[str, float]:
+    return {"diffusion_px": math.exp(p[0])}
+
+
+def _sech(x: Floats) -> Floats:
+    """One over the hyperbolic cosine, where that is too large as well."""
+    falls = np.exp(-np.abs(x))
+    return np.asarray(2 * falls / (1 + falls**2))
+
+
+_DIFFUSION = Term(
+    _diffusion, (_DIFFUSION_MEAN,), (_DIFFUSION_STD,), _diffusion_numbers, _diffusion_slopes
+)
