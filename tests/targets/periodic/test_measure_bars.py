@@ -314,6 +314,25 @@ def test_coltman_series_of_a_known_system():
     assert np.max(np.abs(inverse - otf[:, 0].real)[9:]) < 0.005
 
 
+@pytest.mark.parametrize("angle_deg", [0.0, 6.0])
+def test_a_ctf_whose_third_harmonic_pixels_hide_is_undefined(angle_deg):
+    """Of a period of 6 px along the grid it lies at Nyquist: pixels show one of its two phases."""
+    system = reference_systems()["sharpened"]
+    image, truth = ac.simulate.bars(
+        system, angle_deg=angle_deg, periods_px=(9.0, 6.001, 3.5), snr=100,
+        rng=np.random.default_rng(4),
+    )  # fmt: skip
+    group = measure_bars(image, options=BarsOptions(count=5)).groups[1]
+    document = group.to_dict()
+    if angle_deg == 0:
+        assert np.isnan([group.reading.ctf, group.reading.ctf_std, group.coltman]).all()
+        assert document["ctf"]["value"] is document["coltman_mtf"] is None
+    else:
+        assert abs(group.reading.ctf - truth.ctf[1]) < 0.03
+        assert document["coltman_mtf"] == group.coltman
+    assert abs(group.reading.modulation - group.mtf.value) < 0.03
+
+
 def test_document():
     found, _ = measured_bars()
     document = found.to_dict()

@@ -84,7 +84,7 @@ def _draw_mtf(axes: Axes, measurement: BarsMeasurement) -> None:
     low, high = band_edges(mtf.value, mtf.std)
     groups = [one for one in measurement.groups if measurement.is_first_direction(one)]
     highest = [float(high.max()), *(one.reading.ctf for one in groups)]
-    mark_frequencies(axes, response.gsd_m, 1.02 * max(highest))
+    mark_frequencies(axes, response.gsd_m, 1.02 * float(np.nanmax(highest)))
     axes.fill_between(mtf.freq_cpp, low, high, color=BLUE, alpha=0.25, linewidth=0)
     axes.plot(mtf.freq_cpp, mtf.value, color=BLUE, label="joint fit")
     freq = [one.freq_cpp for one in groups]

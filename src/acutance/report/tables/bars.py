@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from acutance.curves import Estimate
@@ -46,7 +47,7 @@ def _groups_table(measurement: BarsMeasurement) -> Table:
                 Estimate(group.reading.modulation, group.reading.modulation_std)
             ).value_and_std,
             word_estimate(Estimate(group.reading.ctf, group.reading.ctf_std)).value_and_std,
-            f"{group.coltman:.4f}",
+            word_estimate(Estimate(group.coltman, math.nan)).value,
         )
         for number, group in enumerate(measurement.groups, start=1)
     )
@@ -54,7 +55,8 @@ def _groups_table(measurement: BarsMeasurement) -> Table:
         "MTF: the joint fit of all groups. Sinusoid: the fundamental of every group over that of "
         "square bars. CTF: the contrast of the bars themselves. Coltman: MTF from the CTF of all "
         "groups by Coltman's series, with a CTF that falls along the last two groups' line beyond "
-        "them. Deviations of sinusoid and CTF are those of the noise alone: as groups have ends, "
+        "them. Neither is defined for a group along the grid of which pixels hide a harmonic. "
+        "Deviations of sinusoid and CTF are those of the noise alone: as groups have ends, "
         "one or two percent of either are no MTF."
     )
     return Table(COLUMNS, rows, "rrrrrrrr", title="Groups", notes=(note,))

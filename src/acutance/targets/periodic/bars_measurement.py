@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -63,7 +64,7 @@ class BarsGroup(ShortRepr):
             "mtf": self.mtf.to_dict(),
             "modulation": Estimate(reading.modulation, reading.modulation_std).to_dict(),
             "ctf": Estimate(reading.ctf, reading.ctf_std).to_dict(),
-            "coltman_mtf": self.coltman,
+            "coltman_mtf": self.coltman if math.isfinite(self.coltman) else None,
         }
 
 

@@ -27,7 +27,8 @@ class GroupReading:
         Amplitude of the sinusoid over that of square bars (2 / pi of the contrast): the MTF as
         far as a finite group shows one frequency, and its standard deviation by noise alone.
     ctf, ctf_std : float
-        Contrast of the bars midway on bars and gaps over that of wide bars.
+        Contrast of the bars midway on bars and gaps over that of wide bars; NaN where sampling
+        hides a harmonic of it.
     """
 
     modulation: float
@@ -53,7 +54,7 @@ def read_group(
     """
     middle = 0.0 if bars.count % 2 else 0.5 * bars.period_px
     phase = 2 * math.pi * bars.freq_cpp * (across_px - middle)
-    design = _harmonics(bars, phase)
+    design, is_whole = _harmonics(bars, phase)
     inverse = np.linalg.pinv(design.T @ design, rcond=1e-8)
     fit = inverse @ (design.T @ value)
     covariance = noise**2 * inverse
@@ -63,13 +64,19 @@ def read_group(
     both = np.zeros(fit.size)
     both[1::2] = 2.0
     ctf, ctf_std = float(both @ fit), math.sqrt(float(both @ covariance @ both))
+    if not is_whole:
+        ctf = ctf_std = math.nan
     return GroupReading(
         float(modulation), float(modulation_std), ctf / contrast, ctf_std / abs(contrast)
     )
 
 
-def _harmonics(bars: Bars, phase: Floats) -> Floats:
-    """Constant, fundamental, and the odd harmonics that sampling separates from those before."""
+def _harmonics(bars: Bars, phase: Floats) -> tuple[Floats, bool]:
+    """Constant, fundamental, and the odd harmonics that sampling separates from those before.
+
+    Then whether these are all that a sensor may pass.
+    """
+    is_whole = True
     design = np.stack([np.ones(phase.size), np.cos(phase), np.sin(phase)], axis=1)
     for number in (3, 5):
         if number * bars.freq_cpp > _HIGHEST_CPP:
@@ -78,7 +85,9 @@ def _harmonics(bars: Bars, phase: Floats) -> Floats:
         wider = np.column_stack([design, np.cos(turn), np.sin(turn)])
         if np.linalg.cond(wider.T @ wider) < _MAX_CONDITION:
             design = wider
-    return design
+        else:
+            is_whole = False
+    return design, is_whole
 
 
 def coltman_mtf(freq_cpp: Floats, ctf: Floats) -> Floats:
@@ -86,8 +95,14 @@ def coltman_mtf(freq_cpp: Floats, ctf: Floats) -> Floats:
 
     ``M(f) = pi/4 [C(f) + C(3f)/3 - C(5f)/5 + C(7f)/7 + C(11f)/11 - C(13f)/13 ...]`` (Coltman,
     JOSA 44, 468, 1954). Between the frequencies C is interpolated; beyond the last it goes on
-    along the line of the last two, down to 0.
+    along the line of the last two, down to 0. Where C is not known (NaN) there is no MTF.
     """
+    known = np.isfinite(ctf)
+    if not known.all():
+        found = np.full(ctf.shape, np.nan)
+        if known.any():
+            found[known] = coltman_mtf(freq_cpp[known], ctf[known])
+        return found
     if freq_cpp.size > 1:
         slope = (ctf[-2] - ctf[-1]) / (freq_cpp[-1] - freq_cpp[-2])
         if slope > 0 and ctf[-1] > 0:
