@@ -259,6 +259,12 @@ _PERIODIC = {
         "they scale the whole MTF: take both from wide patches of the same materials in this "
         "image and band (dark and bright), or state none", severity="fail",
     ),
+    "contrast_uniformity": Question(
+        "How much does the contrast differ from group to group, or from side to side?",
+        "<=", 0.005,
+        "paint, haze or a cloud differ there, and a part of it is taken for the sensor; leave the "
+        "group out, or take another image",
+    ),
     "coarsest_cpp": Question(
         "Which is the frequency of the widest bars?", "<=", 0.2,
         "below it the MTF follows from the outline of the groups", severity="note",
