@@ -222,9 +222,21 @@ _POINTS = {
         "How many times the noise are the residuals of the worst source?", "<=", 1.5,
         "it is no point, or the PSF differs over the region; leave it out",
     ),
+    "equal_widths": Question(
+        "By how many deviations do the widths of the sources differ more than by noise?",
+        "<=", 4.0,
+        "mirrors of different sizes, doubles, or a PSF that differs over the region: the MTF is "
+        "that of their mean; leave out the wide ones, or measure parts of the region",
+    ),
     "background_uniformity": Question(
         "How much do the backgrounds differ, relative to the median peak?", "<=", 0.05,
         "use a uniform grassy area", "QuickBird report 4.4",
+    ),
+    "background_curvature": Question(
+        "How far does the ground bend within the reach of a source, relative to the median peak?",
+        "<=", 0.002,
+        "a bent background is taken for wings of the PSF; choose a plane area, or use fewer "
+        "pixels around each source (radius_px)",
     ),
     "positions": Question(
         "Which share of the positions has a source?", ">=", 0.5, "give row, column of this image",
@@ -246,6 +258,12 @@ _PERIODIC = {
         "<=", 0.05,
         "they scale the whole MTF: take both from wide patches of the same materials in this "
         "image and band (dark and bright), or state none", severity="fail",
+    ),
+    "contrast_uniformity": Question(
+        "How much does the contrast differ from group to group, or from side to side?",
+        "<=", 0.005,
+        "paint, haze or a cloud differ there, and a part of it is taken for the sensor; leave the "
+        "group out, or take another image",
     ),
     "coarsest_cpp": Question(
         "Which is the frequency of the widest bars?", "<=", 0.2,

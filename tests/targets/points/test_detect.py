@@ -58,6 +58,14 @@ def test_what_is_no_point_is_rejected_by_name(scene):
     assert len(kept) == len(PLACES) - 1
 
 
+def test_twelve_bits_in_sixteen_are_clipped_where_values_pile_up(scene):
+    limit = float(np.rint(np.percentile(scene, 99.8)))
+    clipped = np.minimum(np.rint(scene), limit)
+    kept, reasons = sorted_by_reason(clipped, saturation=65535.0)
+    assert "saturated" in reasons.values()
+    assert len(kept) < len(PLACES)
+
+
 def test_a_narrow_track_is_a_cosmic_ray(scene):
     image = scene.copy()
     for i in range(3):

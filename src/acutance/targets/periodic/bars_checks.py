@@ -11,6 +11,7 @@ from acutance.targets.check import Check, Limits, answer
 from acutance.targets.periodic.fit_bars import BarsSolution
 from acutance.targets.periodic.pattern_checks import (
     contrast_snr,
+    contrast_uniformity,
     correlated_noise,
     level,
     nonlinearity,
@@ -26,7 +27,7 @@ __all__ = ["BARS_CHECKS", "bars_checks"]
 BARS_CHECKS = (
     "contrast_snr", "level", "stated_levels", "bars", "bar_directions", "coarsest_cpp",
     "finest_cpp", "misfit", "saturation", "undeclared_fill", "stated_gsd", *PROCESSING_CHECKS,
-    "nonlinearity", "correlated_noise", "outliers",
+    "nonlinearity", "contrast_uniformity", "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of bars."""
 
@@ -63,6 +64,7 @@ def bars_checks(
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
         nonlinearity(_curvature(solved), "bars", limits),
+        contrast_uniformity(solved.uneven, _names(solved), limits),
         correlated_noise(
             solved.correlation, solved.snr, limits,
             advice="the image was resampled, or the bars are not as they were taken to be (place, "
@@ -85,6 +87,10 @@ def _stated_levels(solved: BarsSolution, limits: Limits) -> tuple[Check, ...]:
 def _curvature(solved: BarsSolution) -> Estimate:
     """From dark to bright: of dark bars the fit has it the other way round."""
     return solved.curvature if solved.otf.level > 0 else solved.curvature * -1.0
+
+
+def _names(solved: BarsSolution) -> list[str]:
+    return [f"group {number}" for number in range(1, len(solved.groups) + 1)]
 
 
 def _bars(solved: BarsSolution, limits: Limits) -> Check:

@@ -11,21 +11,17 @@ a square wave, so the residuals show c, once what the fit has taken of it is lef
 
 from __future__ import annotations
 
-import math
 from typing import Final
-
-import numpy as np
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.targets.periodic.otf_regression import Regression
+from acutance.targets.periodic.residual_share import left_of
 
 __all__ = ["DEPARTURE", "find_curvature"]
 
 DEPARTURE: Final = 0.25
 """Largest distance of the curve from a straight line, for a curvature of 1."""
-_MIN_LEFT: Final = 1e-3
-"""Share of the bend's power that the fit has to leave."""
 
 
 def find_curvature(
@@ -52,13 +48,4 @@ def find_curvature(
     """
     shape = pattern / contrast
     bend = contrast * shape * (1 - shape)
-    pulled = weight * bend
-    posterior = fitted.posterior
-    at_amplitudes = posterior.factor[:, : -posterior.log_amplitude.size]
-    noise = posterior.variance * inflation
-    power = float(bend @ pulled)
-    taken = float(np.sum((at_amplitudes.T @ (fitted.design.T @ pulled)) ** 2)) / noise
-    left = power - taken
-    if not left > _MIN_LEFT * power:
-        return Estimate(0.0, math.inf)
-    return Estimate(float(pulled @ fitted.residual) / left, math.sqrt(noise / left))
+    return left_of(fitted, bend[None, :], weight, inflation)[0]

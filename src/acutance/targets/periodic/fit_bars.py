@@ -46,6 +46,7 @@ from acutance.targets.periodic.tuned import (
     ROUNDNESS_STD,
     SCATTERED_STD,
 )
+from acutance.targets.periodic.uneven_contrast import uneven_groups
 
 __all__ = ["BarsSolution", "solve_bars"]
 
@@ -86,6 +87,8 @@ class BarsSolution:
         The stated levels, if there are any.
     curvature : Estimate
         Of the characteristic of the values.
+    uneven : tuple of Estimate
+        How much more contrast every group has than the others, as a share.
     """
 
     otf: FittedOtf
@@ -97,6 +100,7 @@ class BarsSolution:
     correlation: Correlation
     stated: StatedContrast | None
     curvature: Estimate
+    uneven: tuple[Estimate, ...]
 
     @property
     def snr(self) -> float:
@@ -229,6 +233,7 @@ def _fit_otf(
         correlation=noise_found,
         stated=seen,
         curvature=find_curvature(fitted, bars, fitted.otf.level, weight, noise_found.inflation),
+        uneven=uneven_groups(fitted, bars, ends, weight, noise_found.inflation),
     )
 
 

@@ -52,6 +52,7 @@ from acutance.targets.periodic.tuned import (
     STAR_NOISE_FLOOR,
     STAR_SHAPE_SHARE,
 )
+from acutance.targets.periodic.uneven_contrast import uneven_sides
 
 __all__ = ["SIDE_MARGIN_PX", "StarSolution", "amplitude_of", "solve_star"]
 
@@ -107,6 +108,8 @@ class StarSolution:
         The stated levels, if there are any.
     curvature : Estimate
         Of the characteristic of the values.
+    uneven : Estimate
+        By which share the contrast rises to one side, other than by light.
     """
 
     star: SiemensStar
@@ -123,6 +126,7 @@ class StarSolution:
     middle: float
     stated: StatedContrast | None
     curvature: Estimate
+    uneven: Estimate
 
     @property
     def reach_cpp(self) -> tuple[float, float]:
@@ -217,13 +221,16 @@ def solve_star(
         ).otf
         stated = StatedContrast(levels, Estimate(free.level / one, free.level_std / one))
     contrast = fitted.otf.level / one
-    spokes = design[:, _FIRST:] @ fitted.posterior.beta[_FIRST:] + 0.5 * contrast
-    curvature = find_curvature(fitted, spokes, contrast, weight, noise_found.inflation)
+    spokes = design[:, _FIRST:] @ fitted.posterior.beta[_FIRST:]
+    inflation = noise_found.inflation
+    curvature = find_curvature(fitted, spokes + 0.5 * contrast, contrast, weight, inflation)
+    _, angle = star.polar(rows.astype(float), cols.astype(float))
+    uneven = uneven_sides(fitted, spokes, angle, fitted.posterior.beta[1:3], weight, inflation)
     middle = float(np.mean(design[:, :_BACKGROUND] @ fitted.posterior.beta[:_BACKGROUND]))
     col_std, row_std = (np.linalg.norm(fitted.posterior.factor[_PLACE], axis=1) / level).tolist()
     return StarSolution(
         star, (row_std, col_std), otf, rows, cols, value, fitted.residual, fitted.noise,
-        noise_found, inner, outer, middle, stated, curvature,
+        noise_found, inner, outer, middle, stated, curvature, uneven,
     )  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 from acutance.curves import Estimate
@@ -17,6 +18,7 @@ from acutance.targets.periodic.tuned import QUIET_SNR
 
 __all__ = [
     "contrast_snr",
+    "contrast_uniformity",
     "correlated_noise",
     "level",
     "nonlinearity",
@@ -28,7 +30,7 @@ __all__ = [
 _SURE: Final = 3.0
 """Deviations by which a contrast fitted without the stated levels surely differs from theirs."""
 _SURE_CURVE: Final = 4.0
-"""Deviations from which a curvature is one."""
+"""Deviations from which a curvature is one, and a difference of contrast."""
 
 
 def contrast_snr(snr: float, whose: str, limits: Limits) -> Check:
@@ -94,6 +96,29 @@ def nonlinearity(curvature: Estimate, bright: str, limits: Limits) -> Check:
         f"or bright {bright} are {'wider' if curvature.value > 0 else 'narrower'} than dark ones"
     )
     return answer("nonlinearity", value.value / 100, found, limits)
+
+
+def contrast_uniformity(uneven: Sequence[Estimate], where: Sequence[str], limits: Limits) -> Check:
+    """How far the contrast is from the same everywhere; zero where no difference is sure.
+
+    Parameters
+    ----------
+    uneven : sequence of Estimate
+        Differences of contrast, as shares.
+    where : sequence of str
+        What each of them is of: "group 2".
+    limits : mapping of str to float
+    """
+    sure = [
+        (abs(one.value), one, place)
+        for one, place in zip(uneven, where, strict=True)
+        if abs(one.value) > _SURE_CURVE * one.std
+    ]
+    if not sure:
+        return answer("contrast_uniformity", 0.0, "the contrast is the same everywhere", limits)
+    value, largest, place = max(sure, key=lambda one: one[0])
+    found = f"the contrast of {place} differs from that of the others by {largest * 100.0} %"
+    return answer("contrast_uniformity", value, found, limits)
 
 
 def saturation(

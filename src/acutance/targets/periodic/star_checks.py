@@ -10,6 +10,7 @@ from acutance.targets.check import Check, Limits, answer
 from acutance.targets.periodic.fit_star import StarSolution
 from acutance.targets.periodic.pattern_checks import (
     contrast_snr,
+    contrast_uniformity,
     correlated_noise,
     level,
     nonlinearity,
@@ -25,7 +26,7 @@ __all__ = ["STAR_CHECKS", "star_checks", "third_harmonic"]
 STAR_CHECKS = (
     "contrast_snr", "level", "stated_levels", "rim_cpp", "centre_cpp", "sweep_deg", "wave",
     "saturation", "undeclared_fill", "stated_gsd", *PROCESSING_CHECKS,
-    "nonlinearity", "correlated_noise", "outliers",
+    "nonlinearity", "contrast_uniformity", "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of a star."""
 
@@ -56,6 +57,7 @@ def star_checks(
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
         nonlinearity(solved.curvature, "spokes", limits),
+        contrast_uniformity([solved.uneven], ["one side"], limits),
         correlated_noise(
             solved.correlation, snr, limits,
             advice="the image was resampled, or the spokes are not those of a perfect star",

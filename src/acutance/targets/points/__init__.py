@@ -7,9 +7,10 @@ around each), `first_fit` (one Gaussian through a pixel for all), `fit` (the joi
 `amplitudes`; its last pass is `among_sensors`, with `sensor_density` and `pads`; `learn_psf` and
 `learn_sensors` made what `psf_families` and `sensor_density` read; `points_fit` is its result,
 `pixels_alone` what the pixels say without a prior), `extent` (what is wider), `sources` (the
-numbers of each), `survey` (against surveyed places), `checks`, `points_measurement` (the result),
-`points` (the public function); `published` (the Gaussian of the report of 2003), `options`, and
-`tuned` (every tuned number, and what set it).
+numbers of each), `survey` (against surveyed places), `checks` (with `rounding`, noise in steps of
+the image's numbers), `points_measurement` (the result), `points` (the public function);
+`published` (the Gaussian of the report of 2003), `options`, and `tuned` (every tuned number, and
+what set it).
 """
 
 from acutance.targets.points.checks import POINTS_CHECKS

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Final
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.numerics.noise import Correlation
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
+from acutance.targets.points import tuned
+from acutance.targets.points.rounding import noise_in_steps
 from acutance.targets.points.sources import PointSource
 from acutance.targets.points.survey import SurveyErrors
 from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
@@ -24,12 +28,15 @@ POINTS_CHECKS = (
     "spacing_px",
     "phase_gap_px",
     "background_uniformity",
+    "background_curvature",
     "psf_width_px",
     "source_misfit",
+    "equal_widths",
     "undeclared_fill",
     "stated_gsd",
     *PROCESSING_CHECKS,
     "full_scale",
+    "quantisation",
     "correlated_noise",
     "outliers",
     "positions",
@@ -39,6 +46,13 @@ POINTS_CHECKS = (
 
 _PHASES = 21
 _MIN_ABOUT_PLANE = 5
+_MIN_ABOUT_SURFACE: Final = 12
+_MIN_BENT: Final = 8
+"""Sources from which on the slopes of their backgrounds show whether the ground bends."""
+_REACH_PX: Final = 13.0
+"""How far from a source its pixels are used."""
+_SURE: Final = 5.0
+"""Deviations from which a bend of the ground is one."""
 
 
 def check_points(
@@ -50,6 +64,7 @@ def check_points(
     full_scale: float | None = None,
     correlation: Correlation | None = None,
     outliers: float | None = None,
+    widths: tuple[Floats, Floats] | None = None,
 ) -> tuple[Check, ...]:
     """All checks of an array of point sources.
 
@@ -67,6 +82,9 @@ def check_points(
         Of the noise, where the method knows it.
     outliers : float, optional
         Share of outlying pixels, where the method knows it.
+    widths : (k,) and (k,) arrays, optional
+        Variance of every source beyond that of the PSF, as a share of it, with its deviation,
+        where the method knows them.
     """
     checks = [
         answer("sources", len(sources), _counted(sources), limits),
@@ -74,12 +92,16 @@ def check_points(
         _spacing(sources, limits),
         _phase_gap(sources, limits),
         _background_uniformity(sources, limits),
+        _background_curvature(sources, limits),
         _psf_width(fwhm_px, limits),
         _source_misfit(sources, limits),
         undeclared_fill([region.fill], limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
+        _quantisation(sources, region, limits),
     ]
+    if widths is not None:
+        checks.append(_equal_widths(sources, *widths, limits))
     if full_scale is not None:
         found = f"the brightest pixel is at {100 * full_scale:.0f} % of the detector's range"
         checks.append(answer("full_scale", full_scale, found, limits))
@@ -169,6 +191,37 @@ def _background_uniformity(sources: Sequence[PointSource], limits: Limits) -> Ch
     return answer("background_uniformity", scatter, found, limits)
 
 
+def _background_curvature(sources: Sequence[PointSource], limits: Limits) -> Check:
+    """How far the ground bends off its slope where stamps end; zero where it surely does not.
+
+    The slopes of the backgrounds show it: under a single source a bent ground and a wing are one.
+    """
+    peak = float(np.median([one.peak for one in sources]))
+    slopes = np.array([one.slope for one in sources])
+    found = [
+        abs(bend.value) * 0.5 * _REACH_PX**2 / peak
+        for bend in (_rise(_places(sources), slopes[:, axis], axis) for axis in (0, 1))
+        if abs(bend.value) > _SURE * bend.std
+    ]
+    sag = max(found, default=0.0)
+    text = (
+        f"{_REACH_PX:g} px from a source the ground bends by {100 * sag:.2f} % of the median peak"
+    )
+    return answer("background_curvature", sag, text, limits)
+
+
+def _rise(places: Floats, slope: Floats, axis: int) -> Estimate:
+    """How much the slope along an axis rises per pixel along it."""
+    count = slope.size
+    columns = np.hstack([np.ones((count, 1)), places - places.mean(axis=0)])
+    if count < _MIN_BENT or np.linalg.matrix_rank(columns) < columns.shape[1]:
+        return Estimate(0.0, math.inf)
+    inverse = np.linalg.inv(columns.T @ columns)
+    fit = inverse @ (columns.T @ slope)
+    scatter = float(np.sum((slope - columns @ fit) ** 2)) / (count - columns.shape[1])
+    return Estimate(float(fit[1 + axis]), math.sqrt(scatter * inverse[1 + axis, 1 + axis]))
+
+
 def _source_misfit(sources: Sequence[PointSource], limits: Limits) -> Check:
     worst = max(sources, key=lambda one: one.misfit)
     misfit = min(worst.misfit, MAX_RATIO)
@@ -177,6 +230,45 @@ def _source_misfit(sources: Sequence[PointSource], limits: Limits) -> Check:
         f"are {misfit:.1f} times the noise"
     )
     return answer("source_misfit", misfit, found, limits)
+
+
+def _equal_widths(
+    sources: Sequence[PointSource], excess: Floats, std: Floats, limits: Limits
+) -> Check:
+    """Whether the sources differ in width by more than their noise: chi-square, in deviations.
+
+    A mirror of a whole pixel widens its image by less than its residuals show, pixel by pixel. A
+    PSF that changes slowly over the field is no difference of the sources.
+    """
+    weight = 1 / np.sqrt(std**2 + tuned.EXTENT_TOLERANCE**2)
+    columns = _slow_changes(sources) * weight[:, None]
+    away = excess * weight
+    away = away - columns @ np.linalg.lstsq(columns, away, rcond=None)[0]
+    freedom = max(away.size - columns.shape[1], 1)
+    beyond = (float(away @ away) - freedom) / math.sqrt(2 * freedom)
+    value = min(max(beyond, 0.0), MAX_RATIO)
+    found = f"the widths of the sources differ by {value:.1f} deviations more than by noise"
+    return answer("equal_widths", value, found, limits)
+
+
+def _slow_changes(sources: Sequence[PointSource]) -> Floats:
+    """Columns of a surface of second order through the field; of few sources their mean."""
+    ones = np.ones((len(sources), 1))
+    if len(sources) < _MIN_ABOUT_SURFACE:
+        return ones
+    y, x = (_places(sources) - _places(sources).mean(axis=0)).T
+    return np.hstack([ones, np.stack([x, y, x * x, x * y, y * y], axis=1)])
+
+
+def _quantisation(sources: Sequence[PointSource], region: RegionPixels, limits: Limits) -> Check:
+    origin = region.box.row, region.box.col
+    steps = min(noise_in_steps(region.pixels, _places(sources) - origin), MAX_RATIO)
+    found = (
+        "the noise is more than a step of the image's numbers"
+        if steps == MAX_RATIO
+        else f"the background's noise is {steps:.2f} steps of the image's numbers"
+    )
+    return answer("quantisation", steps, found, limits)
 
 
 def _places(sources: Sequence[PointSource]) -> Floats:

@@ -264,7 +264,7 @@ def sort_spots(
         As `find_spots` takes and gives them.
     spots : sequence of Spot
     saturation : float or None
-        The detector's limit; without it, the largest value where pixels pile up at it.
+        The detector's limit; a lower one where pixels pile up at the largest value.
     noise : float
     min_snr : float
         Minimum peak over the noise.
@@ -273,7 +273,8 @@ def sort_spots(
     rivals : sequence of Spot, optional
         All spots of the image, if `spots` are only some of them.
     """
-    limit = _limit(image) if saturation is None else saturation
+    # 12 bits are often stored in 16: the type's limit is not the detector's.
+    limit = min(_limit(image), math.inf if saturation is None else saturation)
     others = spots if rivals is None else rivals
     single = [_own_fault(image, residual, one, limit, noise) for one in spots]
     whole = [one for one, fault in zip(spots, single, strict=True) if fault is None]

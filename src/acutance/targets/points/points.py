@@ -60,7 +60,7 @@ def _fit_jointly(
     checks = partial(
         check_points, sources, region, options.limits,
         full_scale=_full_scale(shown, region), correlation=fit.correlation,
-        outliers=outlier_share(fit.standard_residual, 1.0),
+        outliers=outlier_share(fit.standard_residual, 1.0), widths=excess_variances(fit),
     )  # fmt: skip
     return _measurement(
         "psf-fit", fit.model, region, options, sources, rejected, checks=checks,
