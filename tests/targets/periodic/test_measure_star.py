@@ -197,6 +197,19 @@ def test_cycles_are_counted_or_refused():
         measure_star(image, cycles=3)
 
 
+@pytest.mark.parametrize("part", ["whole", "three quarters"])
+@pytest.mark.parametrize("off", [-2, -1, 1, 2])
+def test_a_number_of_cycles_next_to_the_true_one_is_refused(part, off):
+    """A wrong number moves the centre, and explains a third of the rings about it."""
+    image, _ = star_scene()
+    if part == "three quarters":
+        middle = image.shape[0] // 2
+        image[:middle, middle:] = np.nan
+    asked = rf"{CYCLES + off} cycles was asked for.*show {CYCLES}"
+    with pytest.raises(NoStarError, match=asked):
+        measure_star(image, cycles=CYCLES + off)
+
+
 def test_a_star_cut_off_by_the_border_is_measured():
     image, truth = star_scene()
     found = measure_star(image[:, :48], cycles=CYCLES, options=STATED)

@@ -8,6 +8,7 @@ fan too. The spokes' phase along the rings then moves the centre to where the ri
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -28,6 +29,11 @@ _COARSE_CPP = 0.3
 """Spokes finer than this do not take part in finding the star: they are aliased or faint."""
 _SECTORS = 10
 _SECTOR_CYCLES = 2.0
+_SURE_STRENGTH = 0.95
+"""Share of the rings that no wrong number of cycles explains: one next to the true one .32 of a
+whole star, some .8 of three quarters of one."""
+_LIKELY_COUNTS, _NEXT_COUNTS = 3, (-2, -1, 1, 2)
+"""Other numbers that are counted: the likeliest in parts of turns, and those next to the stated."""
 
 
 def find_star(
@@ -73,7 +79,10 @@ def find_star(
         smooth, lively, (found.row, found.col), farthest, first if cycles is None else cycles
     )
     if cycles is not None:
-        _require_count(smooth, lively, found, whole)
+        likely = sorted(local, key=lambda n: -local[n])[:_LIKELY_COUNTS]
+        others = {*likely, *(cycles + k for k in _NEXT_COUNTS)} & local.keys()
+        start = replace(found, row=row, col=col)
+        _require_count(smooth, lively, start, whole.get(cycles, 0.0), others)
     best = max(whole, key=lambda n: whole[n]) if cycles is None else cycles
     if best != first:
         found = _settled(smooth, lively, replace(found, cycles=best))
@@ -169,21 +178,29 @@ def _require_spokes(
 
 
 def _require_count(
-    smooth: Floats, lively: Flags, star: SiemensStar, strength: dict[int, float]
+    smooth: Floats, lively: Flags, start: SiemensStar, own: float, others: Iterable[int]
 ) -> None:
-    """Refuse a star whose rings are explained better by another number of cycles."""
-    best = max(strength, key=lambda n: strength[n])
-    own = strength.get(star.cycles, 0.0)
-    if own >= MIN_STAR_STRENGTH and strength[best] < 1.5 * own:
+    """Refuse a star whose rings are explained better by another number of cycles.
+
+    Each number is counted about the centre that it leads to itself: about a centre that is off, a
+    wrong one explains a third of the rings and more than the true one does there.
+    """
+    if own >= _SURE_STRENGTH:
         return
-    # The centre was settled with the wrong number: count again about the right one.
-    other = _settled(smooth, lively, replace(star, cycles=best))
-    again = _strengths(smooth, lively, (other.row, other.col), star.rim_px, best)
-    best = max(again, key=lambda n: again[n])
-    found = f"the rings show {best}" if again[best] > MIN_STAR_STRENGTH else "no number fits"
+    best, strength = start, own
+    for n in sorted(others):
+        star = _settled(smooth, lively, replace(start, cycles=n))
+        first, centre = star.radius_at(_COARSE_CPP), (star.row, star.col)
+        found = _strength(smooth, lively, centre, n, first, start.rim_px, 1.0)
+        if found > strength:
+            best, strength = star, found
+    is_alike = strength < 1.5 * own and 1 - strength > 0.5 * (1 - own)
+    if own >= MIN_STAR_STRENGTH and is_alike:
+        return
+    shown = f"the rings show {best.cycles}" if strength > MIN_STAR_STRENGTH else "no number fits"
     raise NoStarError(
-        f"a star of {star.cycles} cycles was asked for, but about row {other.row:.1f}, column "
-        f"{other.col:.1f} {found}: check the number of cycles and the region"
+        f"a star of {start.cycles} cycles was asked for, but about row {best.row:.1f}, column "
+        f"{best.col:.1f} {shown}: check the number of cycles and the region"
     )
 
 
