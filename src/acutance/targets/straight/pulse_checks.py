@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
 
@@ -65,6 +66,14 @@ PULSE_CHECKS = (
 )  # fmt: skip
 """Names of all checks of a pulse."""
 
+_LEAST_FREE_PX: Final = 1.75
+"""Narrower pulses have several widths that fit, each with its own blur: of 717 of .5 to 1.5 px, six
+shapes of sensors at SNR 40 to 200, 54 % of the intervals of MTF at Nyquist held, and of 720 of a
+held width 99 %; of those of 2 px 98 %."""
+_FREE_ADVICE = (
+    "so narrow a pulse has several widths that fit, each with another blur; hold the width that "
+    "was measured on the ground (fit_width=False, --hold-width), or use a wider target"
+)
 _HELD_ADVICE = (
     "the held width, or the GSD, is wrong, and every number with it; leave the width free "
     "(method spline without --hold-width), or measure the target again"
@@ -136,7 +145,7 @@ def check_pulse(
         outliers(data, limits),
         _parallel(data, limits, height_ratio.value),
         _background_step(limits, height_ratio.value),
-        _wide_enough(limits, width.value),
+        _wide_enough(limits, width),
         stated_width,
         _zero_distance(data, limits, width.value, by_ratio=by_ratio),
         *ground_checks(data, limits, ("before", "behind")),
@@ -188,8 +197,13 @@ def _background_step(limits: Limits, height_ratio: float) -> Check:
     return answer("background_step", value, found, limits)
 
 
-def _wide_enough(limits: Limits, width_px: float) -> Check:
-    return answer("width_px", width_px, f"the pulse is {width_px:.2f} px wide", limits)
+def _wide_enough(limits: Limits, width: Estimate) -> Check:
+    """Whether there is enough of the pulse, and of its width where that was fitted."""
+    found = f"the pulse is {width.value:.2f} px wide"
+    if not width.std > 0:
+        return answer("width_px", width.value, found, limits)
+    advice = _FREE_ADVICE if width.value < _LEAST_FREE_PX else None
+    return answer("width_px", width.value, found, limits, caution=_LEAST_FREE_PX, advice=advice)
 
 
 def width_check(

@@ -1,0 +1,50 @@
+"""Pulses narrower than two pixels: their width has to be held."""
+
+import numpy as np
+import pytest
+
+import acutance as ac
+
+SENSORS = ac.simulate.reference_systems()
+
+
+def narrow(name, seed, width_px=1.0):
+    return ac.simulate.pulse(
+        SENSORS[name], width_px=width_px, angle_deg=6 + seed, snr=80,
+        rng=np.random.default_rng(seed),
+    )  # fmt: skip
+
+
+def check_of(measured, name="width_px"):
+    return next(one for one in measured.checks if one.name == name)
+
+
+@pytest.mark.parametrize("name", ["gaussian", "halo", "defocused"])
+def test_a_narrow_pulse_of_free_width_is_doubtful(name):
+    image, _ = narrow(name, 1)
+    check = check_of(ac.measure_pulse(image))
+    assert not check.passed
+    assert check.severity == "caution"
+    assert "--hold-width" in check.message
+    assert ac.measure_pulse(image).verdict.word == "doubtful"
+
+
+@pytest.mark.parametrize("name", ["gaussian", "diffraction", "halo", "sharpened", "asymmetric"])
+def test_with_its_width_held_its_intervals_hold(name):
+    off = []
+    for seed in range(6):
+        image, truth = narrow(name, seed)
+        held = ac.measure_pulse(image, width_px=1.0, fit_width=False)
+        assert check_of(held).severity == "note"
+        true = truth.response.mtf_nyquist.value
+        off.append((held.mtf_nyquist.value - true) / held.mtf_nyquist.std)
+    assert np.abs(off).max() < 2.5
+
+
+def test_of_two_pixels_the_width_may_be_free():
+    image, truth = narrow("gaussian", 2, width_px=2.1)
+    measured = ac.measure_pulse(image)
+    assert check_of(measured).passed
+    assert abs(measured.mtf_nyquist.value - truth.response.mtf_nyquist.value) < (
+        3 * measured.mtf_nyquist.std
+    )
