@@ -162,6 +162,16 @@ def test_an_edge_by_a_named_sensor(render):
     assert truth["mtf_nyquist"] == pytest.approx(0.2667, abs=1e-4)
 
 
+def test_a_gsd_leaves_metres_of_a_sensor_file(render, tmp_path):
+    path = tmp_path / "metres.toml"
+    path.write_text("gsd_m = 0.5\n[[block]]\nkind = 'Gaussian'\nsigma_m = 0.2\n", encoding="utf-8")
+    image, truth, _ = render("edge", "--sensor", path, "--gsd", 1)
+    assert image.gsd().row_m == 1.0
+    assert truth["sensor"]["blocks"][0]["sigma_px"] == pytest.approx(0.2)
+    _, truth, _ = render("edge", "--sensor", "generic-2005", "--gsd", 2)
+    assert truth["sensor"]["blocks"][0]["sigma_px"] == 0.39
+
+
 def test_the_budget_of_a_sensor(acutance, tmp_path):
     figure, toml = tmp_path / "budget.svg", tmp_path / "sensor.toml"
     result = acutance(
